@@ -1,0 +1,216 @@
+//! Changes single values of a scene and keeps the rest of its text, comments included.
+
+use serde_json::Value as Json;
+use toml_edit::{DocumentMut, Item, Value as Toml};
+
+use super::suggest::one_of;
+use super::tree::{Node, Value, is_json, steps};
+use super::{Problem, Scene, SceneError};
+
+impl Scene {
+    /// The scene with one value replaced, checked anew.
+    ///
+    /// `path` is dotted, with entries of lists by name or by index: `chain.links`,
+    /// `sprockets.camshaft.inertia`, `sprockets[1].load`. `value` is TOML, or else taken as a
+    /// text: `124`, `12 mm`, `[{ kind = "constant", torque = "5 kN m" }]`. A key that is absent is
+    /// added, with the tables that lead to it.
+    ///
+    /// # Errors
+    /// A path that leads nowhere; otherwise those of [`Scene::from_text`].
+    pub fn replace(&self, path: &str, value: &str) -> Result<Self, SceneError> {
+        let toml = value.trim().parse::<Toml>().unwrap_or_else(|_| Toml::from(value.trim()));
+        if is_json(&self.text) {
+            self.put(path, &json_of(&toml), toml)
+        } else {
+            self.put(path, &Json::Null, toml)
+        }
+    }
+
+    /// The scene with one value replaced by a JSON value, checked anew; see [`Scene::replace`].
+    ///
+    /// # Errors
+    /// A path that leads nowhere, or a JSON `null`; otherwise those of [`Scene::from_text`].
+    pub fn replace_json(&self, path: &str, value: &Json) -> Result<Self, SceneError> {
+        match toml_of(value) {
+            Some(toml) => self.put(path, value, toml),
+            None => Err(self.refuse(path, "`null` is not a value", None)),
+        }
+    }
+
+    fn put(&self, path: &str, json: &Json, toml: Toml) -> Result<Self, SceneError> {
+        let keys = self.keys(path)?;
+        let text = if is_json(&self.text) {
+            let mut root: Json = serde_json::from_str(&self.text).unwrap_or_default();
+            put_json(&mut root, &keys, json)
+                .ok_or_else(|| self.refuse(path, "nothing can be put here", None))?;
+            format!("{root:#}\n")
+        } else {
+            let text = self.text.strip_prefix('\u{feff}').unwrap_or(&self.text);
+            let mut document: DocumentMut = text.parse().unwrap_or_default();
+            put_toml(document.as_item_mut(), &keys, toml)
+                .ok_or_else(|| self.refuse(path, "nothing can be put here", None))?;
+            document.to_string()
+        };
+        Self::from_text(&text, &self.name)
+    }
+
+    fn refuse(&self, path: &str, message: &str, hint: Option<String>) -> SceneError {
+        let (path, line) = self.tree.locate(path);
+        let mut problem = Problem::new(&path, line, message);
+        problem.hint = hint;
+        SceneError::new(&self.name, vec![problem])
+    }
+
+    /// The steps of a path, with names in lists turned into indices.
+    fn keys(&self, path: &str) -> Result<Vec<Key>, SceneError> {
+        let mut node = Some(&self.tree);
+        let mut keys = Vec::new();
+        for step in steps(path) {
+            let Some(Value::List(items)) = node.map(|node| &node.value) else {
+                node = node.and_then(|node| node.get(&step));
+                keys.push(Key::Name(step));
+                continue;
+            };
+            let Some(index) = node.and_then(|list| list.position(&step)) else {
+                let names: Vec<&str> = items.iter().filter_map(name_of).collect();
+                let message = format!("there is no `{step}` in a list of {}", items.len());
+                return Err(self.refuse(path, &message, Some(one_of(&step, &names))));
+            };
+            node = items.get(index);
+            keys.push(Key::Index(index));
+        }
+        if keys.is_empty() {
+            return Err(self.refuse(path, "the path is empty", Some("such as `chain.links`".into())));
+        }
+        Ok(keys)
+    }
+}
+
+enum Key {
+    Name(String),
+    Index(usize),
+}
+
+fn name_of(node: &Node) -> Option<&str> {
+    match &node.get("name")?.value {
+        Value::Text(name) => Some(name),
+        _ => None,
+    }
+}
+
+fn put_json(root: &mut Json, keys: &[Key], value: &Json) -> Option<()> {
+    let mut place = root;
+    for key in keys {
+        place = match key {
+            Key::Index(index) => place.get_mut(index)?,
+            Key::Name(name) => {
+                if place.is_null() {
+                    *place = Json::Object(serde_json::Map::new());
+                }
+                place.as_object_mut()?.entry(name.as_str()).or_insert(Json::Null)
+            }
+        };
+    }
+    *place = value.clone();
+    Some(())
+}
+
+fn put_toml(root: &mut Item, keys: &[Key], value: Toml) -> Option<()> {
+    let Some((key, rest)) = keys.split_first() else {
+        put_value(root, value);
+        return Some(());
+    };
+    match key {
+        Key::Name(name) => {
+            if let Some(Toml::InlineTable(_)) = root.as_value() {
+                return put_inline(root.as_value_mut()?, keys, value);
+            }
+            let item = root.as_table_like_mut()?.entry(name).or_insert(Item::None);
+            if item.is_none() && !rest.is_empty() {
+                *item = Item::Table(toml_edit::Table::new());
+            }
+            put_toml(item, rest, value)
+        }
+        Key::Index(index) => match root {
+            Item::ArrayOfTables(tables) => match rest.split_first() {
+                Some((Key::Name(name), rest)) => {
+                    let item = tables.get_mut(*index)?.entry(name).or_insert(Item::None);
+                    if item.is_none() && !rest.is_empty() {
+                        *item = Item::Value(Toml::InlineTable(toml_edit::InlineTable::new()));
+                    }
+                    put_toml(item, rest, value)
+                }
+                // A whole entry: its keys one by one, so that the table keeps its heading.
+                _ => {
+                    let Toml::InlineTable(entries) = value else {
+                        return None;
+                    };
+                    let table = tables.get_mut(*index)?;
+                    table.clear();
+                    for (key, value) in &entries {
+                        table.insert(key, Item::Value(value.clone()));
+                    }
+                    Some(())
+                }
+            },
+            Item::Value(list) => put_inline(list, keys, value),
+            _ => None,
+        },
+    }
+}
+
+fn put_inline(place: &mut Toml, keys: &[Key], value: Toml) -> Option<()> {
+    let Some((key, rest)) = keys.split_first() else {
+        let decor = place.decor().clone();
+        *place = value;
+        *place.decor_mut() = decor;
+        return Some(());
+    };
+    let next = match key {
+        Key::Index(index) => place.as_array_mut()?.get_mut(*index)?,
+        Key::Name(name) => {
+            let empty = || Toml::InlineTable(toml_edit::InlineTable::new());
+            place.as_inline_table_mut()?.entry(name).or_insert_with(empty)
+        }
+    };
+    put_inline(next, rest, value)
+}
+
+/// Puts a value where another one was and keeps the comment behind it.
+fn put_value(item: &mut Item, mut value: Toml) {
+    if let Some(old) = item.as_value() {
+        *value.decor_mut() = old.decor().clone();
+    }
+    *item = Item::Value(value);
+}
+
+fn toml_of(json: &Json) -> Option<Toml> {
+    Some(match json {
+        Json::Null => return None,
+        Json::Bool(truth) => (*truth).into(),
+        Json::Number(number) => match number.as_i64() {
+            Some(whole) => whole.into(),
+            None => number.as_f64()?.into(),
+        },
+        Json::String(text) => text.as_str().into(),
+        Json::Array(items) => Toml::Array(items.iter().filter_map(toml_of).collect()),
+        Json::Object(entries) => {
+            let entries = entries.iter().filter_map(|(key, value)| Some((key, toml_of(value)?)));
+            Toml::InlineTable(entries.map(|(key, value)| (key.as_str(), value)).collect())
+        }
+    })
+}
+
+fn json_of(toml: &Toml) -> Json {
+    match toml {
+        Toml::String(text) => text.value().as_str().into(),
+        Toml::Integer(number) => (*number.value()).into(),
+        Toml::Float(number) => (*number.value()).into(),
+        Toml::Boolean(truth) => (*truth.value()).into(),
+        Toml::Datetime(date) => date.value().to_string().into(),
+        Toml::Array(items) => items.iter().map(json_of).collect(),
+        Toml::InlineTable(entries) => {
+            entries.iter().map(|(key, value)| (key.to_owned(), json_of(value))).collect()
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! Scenes: drives described in a text.
+//!
+//! ```text
+//! text ──parse──► tree ──validate──► normalised tree ──serde──► Scene ──resolve──► Drive
+//! ```
+//!
+//! A scene is TOML, or JSON when the text begins with `{`. The format is described by the types
+//! in `schema` and, from these, by [`schema()`]. Everything wrong with a text is
+//! reported at once, with its place: see [`SceneError`].
+//!
+//! # Example
+//!
+//! ```
+//! use chaindrive::scene::Scene;
+//!
+//! let scene = Scene::from_text(
+//!     r#"
+//!     title = "Two sprockets"
+//!
+//!     [chain]
+//!     pitch = "25.4 mm"
+//!     links = 78
+//!     mass = "68.8 g"
+//!     stiffness = "161 MN/m"
+//!     roller_diameter = "15.88 mm"
+//!
+//!     [[sprockets]]
+//!     name = "driver"
+//!     teeth = 19
+//!     centre = ["0 mm", "0 mm"]
+//!     motion = { kind = "constant", speed = "300 rpm" }
+//!
+//!     [[sprockets]]
+//!     name = "driven"
+//!     teeth = 19
+//!     centre = ["749.3 mm", "0 mm"]
+//!     inertia = "0.05 kg m^2"
+//!     load = [{ kind = "constant", torque = "-40 N m" }]
+//!     "#,
+//!     "two_sprockets.toml",
+//! )?;
+//! let drive = scene.drive()?;
+//! assert_eq!(drive.chain.links(), 78);
+//!
+//! let longer = scene.replace("chain.links", "80")?;
+//! assert_eq!(longer.drive()?.chain.links(), 80);
+//!
+//! let error = Scene::from_text("[chain]\npitch = '12 rpm'", "bad.toml").unwrap_err();
+//! assert!(error.to_string().starts_with("bad.toml:1: chain.links: missing"));
+//! # Ok::<(), chaindrive::scene::SceneError>(())
+//! ```
+
+mod edit;
+mod error;
+mod presets;
+mod quantity;
+mod read;
+mod resolve;
+mod schema;
+mod suggest;
+mod tree;
+mod unit;
+mod validate;
+
+use chaindrive_mechanics::Drive;
+use serde::Deserialize;
+
+pub use error::{Problem, SceneError};
+pub use presets::presets;
+pub use schema::schema;
+
+use schema::SceneText;
+use tree::Node;
+
+/// A drive as described: well-formed, with every key of the right type and dimension.
+///
+/// Whether the parts go together is the question of [`Scene::drive`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    name: String,
+    text: String,
+    tree: Node,
+    content: SceneText,
+}
+
+impl Scene {
+    /// Reads TOML, or JSON when the text begins with `{`; `name` is what messages call it.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the text.
+    pub fn from_text(text: &str, name: &str) -> Result<Self, SceneError> {
+        let tree = Node::parse(text).map_err(|problem| SceneError::new(name, vec![problem]))?;
+        Self::from_tree(tree, text, name)
+    }
+
+    /// Reads TOML.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the text.
+    pub fn from_toml(text: &str, name: &str) -> Result<Self, SceneError> {
+        let tree = Node::parse_toml(text).map_err(|problem| SceneError::new(name, vec![problem]))?;
+        Self::from_tree(tree, text, name)
+    }
+
+    /// Reads JSON.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the text.
+    pub fn from_json(text: &str, name: &str) -> Result<Self, SceneError> {
+        let tree = Node::parse_json(text).map_err(|problem| SceneError::new(name, vec![problem]))?;
+        Self::from_tree(tree, text, name)
+    }
+
+    fn from_tree(tree: Node, text: &str, name: &str) -> Result<Self, SceneError> {
+        let mut normalised = tree.clone();
+        let problems = validate::validate(&mut normalised, &schema::raw());
+        if !problems.is_empty() {
+            return Err(SceneError::new(name, problems));
+        }
+        let content = SceneText::deserialize(normalised.to_json()).map_err(|error| {
+            // The validator has let something pass that serde does not: our mistake, not the user's.
+            let problem = Problem::new("", None, format!("the scene could not be read: {error}"));
+            SceneError::new(name, vec![problem.hint("please report this scene as a bug")])
+        })?;
+        Ok(Self {
+            name: name.to_owned(),
+            text: text.to_owned(),
+            tree,
+            content,
+        })
+    }
+
+    /// Builds the drive.
+    ///
+    /// # Errors
+    /// Every part out of range and every pair of parts that do not go together.
+    pub fn drive(&self) -> Result<Drive, SceneError> {
+        resolve::drive(&self.content, &self.tree)
+            .map_err(|problems| SceneError::new(&self.name, problems))
+    }
+
+    /// What the scene shows, in a line; may be empty.
+    pub fn title(&self) -> &str {
+        &self.content.title
+    }
+
+    /// What messages call the scene: its file or preset.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The text that reproduces this scene, TOML or JSON as it was written.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// What a front end runs and records unless told otherwise.
+    pub fn run_defaults(&self) -> RunDefaults {
+        let run = &self.content.run;
+        RunDefaults {
+            until: run.until.map(|time| time.0),
+            every: run.every.map(|time| time.0),
+            method: run.method.map(schema::Method::name),
+            step: run.step.map(|time| time.0),
+            record: run.record.clone().unwrap_or_default(),
+        }
+    }
+}
+
+/// What a scene suggests to run and record.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RunDefaults {
+    /// Duration of the run \[s\].
+    pub until: Option<f64>,
+    /// Time between two samples \[s\].
+    pub every: Option<f64>,
+    /// Method of time stepping: `verlet`, `rk4` or `dormand-prince`.
+    pub method: Option<&'static str>,
+    /// Step of a method with a fixed step \[s\].
+    pub step: Option<f64>,
+    /// Channels to record; empty when the scene leaves them open.
+    pub record: Vec<String>,
+}

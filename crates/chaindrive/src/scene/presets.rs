@@ -1,0 +1,70 @@
+//! Scenes that come with the program.
+
+use super::suggest::one_of;
+use super::{Problem, Scene, SceneError};
+
+/// Name, one-line description and text of every embedded scene.
+const PRESETS: [(&str, &str, &str); 6] = [
+    (
+        "marine_engine",
+        "Camshaft drive of a large two-stroke engine: four sprockets, three guide bars, tensioner",
+        include_str!("../../scenes/marine_engine.toml"),
+    ),
+    (
+        "marine_two_sprockets",
+        "The chain of the marine engine around two sprockets: the smallest large drive",
+        include_str!("../../scenes/marine_two_sprockets.toml"),
+    ),
+    (
+        "industrial_16b",
+        "15 kW through a 16B-1 chain, 19 to 57 teeth",
+        include_str!("../../scenes/industrial_16b.toml"),
+    ),
+    (
+        "timing_drive",
+        "Valve timing of a car: 8 mm bush chain, fixed guide, arm with a hydraulic plunger",
+        include_str!("../../scenes/timing_drive.toml"),
+    ),
+    (
+        "hanging_chain",
+        "Twenty links between two fixed ends: a discrete catenary",
+        include_str!("../../scenes/hanging_chain.toml"),
+    ),
+    (
+        "spinning_ring",
+        "A free ring of twenty elastic links, stretched by its rotation",
+        include_str!("../../scenes/spinning_ring.toml"),
+    ),
+];
+
+const NAMES: [(&str, &str); PRESETS.len()] = {
+    let mut names = [("", ""); PRESETS.len()];
+    let mut i = 0;
+    while i < names.len() {
+        names[i] = (PRESETS[i].0, PRESETS[i].1);
+        i += 1;
+    }
+    names
+};
+
+/// Name and one-line description of every embedded scene.
+pub fn presets() -> &'static [(&'static str, &'static str)] {
+    &NAMES
+}
+
+impl Scene {
+    /// The embedded scene of this name; [`presets`] lists them.
+    ///
+    /// # Errors
+    /// No scene has this name.
+    pub fn preset(name: &str) -> Result<Self, SceneError> {
+        match PRESETS.iter().find(|(known, ..)| *known == name) {
+            Some((name, _, text)) => Self::from_toml(text, name),
+            None => {
+                let known = NAMES.map(|(known, _)| known);
+                let problem = Problem::new("", None, "there is no embedded scene of this name");
+                Err(SceneError::new(name, vec![problem.hint(one_of(name, &known))]))
+            }
+        }
+    }
+}

@@ -1,0 +1,327 @@
+//! Numbers with units: the only place where millimetres become metres.
+//!
+//! A quantity in a scene is a number in SI units, or a text of a number and a unit. Which units
+//! fit is a property of the key: its type here is one of the newtypes below, and the type puts
+//! its dimension into the schema as `x-dimension`.
+
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::Deserialize;
+
+use super::unit::{self, Powers, UnitProblem};
+
+/// A kind of quantity.
+#[derive(Debug)]
+pub(crate) struct Dimension {
+    /// Name with its article, as messages use it.
+    pub(crate) name: &'static str,
+    /// SI unit.
+    pub(crate) unit: &'static str,
+    /// A value as one would write it.
+    pub(crate) example: &'static str,
+    powers: [f64; 4],
+    /// Whether radians count: they tell a speed of rotation from a frequency, but torques and
+    /// rotational springs are written with and without.
+    strict_angle: bool,
+}
+
+macro_rules! quantities {
+    ($($(#[$doc:meta])* $type:ident, $name:literal, $unit:literal, $example:literal, $powers:expr, $strict:literal;)*) => {
+        /// Every kind of quantity a scene knows.
+        static DIMENSIONS: &[Dimension] = &[$(Dimension {
+            name: $name,
+            unit: $unit,
+            example: $example,
+            powers: $powers,
+            strict_angle: $strict,
+        }),*];
+        $(
+            $(#[$doc])*
+            #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+            #[serde(transparent)]
+            pub struct $type(
+                /// The value in SI units.
+                pub f64,
+            );
+
+            impl JsonSchema for $type {
+                fn inline_schema() -> bool {
+                    true
+                }
+
+                fn schema_name() -> Cow<'static, str> {
+                    stringify!($type).into()
+                }
+
+                fn json_schema(_: &mut SchemaGenerator) -> Schema {
+                    json_schema!({
+                        "type": ["number", "string"],
+                        "x-dimension": $name,
+                        "x-unit": $unit,
+                        "examples": [$example],
+                    })
+                }
+            }
+        )*
+    };
+}
+
+quantities! {
+    /// A length \[m\].
+    Length, "a length", "m", "88.9 mm", [1.0, 0.0, 0.0, 0.0], true;
+    /// A mass \[kg\].
+    Mass, "a mass", "kg", "3.01 kg", [0.0, 1.0, 0.0, 0.0], true;
+    /// A time \[s\].
+    Time, "a time", "s", "20 ms", [0.0, 0.0, 1.0, 0.0], true;
+    /// A plane angle \[rad\].
+    Angle, "an angle", "rad", "30 deg", [0.0, 0.0, 0.0, 1.0], true;
+    /// A pure number \[–\].
+    Ratio, "a pure number", "1", "3 %", [0.0; 4], true;
+    /// A speed \[m/s\].
+    Speed, "a speed", "m/s", "0.05 m/s", [1.0, 0.0, -1.0, 0.0], true;
+    /// An acceleration \[m/s²\].
+    Acceleration, "an acceleration", "m/s^2", "-9.81 m/s^2", [1.0, 0.0, -2.0, 0.0], true;
+    /// A speed of rotation \[rad/s\].
+    AngularSpeed, "an angular speed", "rad/s", "1500 rpm", [0.0, 0.0, -1.0, 1.0], true;
+    /// A frequency \[Hz\].
+    Frequency, "a frequency", "Hz", "95 Hz", [0.0, 0.0, -1.0, 0.0], true;
+    /// A force \[N\].
+    Force, "a force", "N", "15 kN", [1.0, 1.0, -2.0, 0.0], true;
+    /// A stiffness \[N/m\].
+    Stiffness, "a stiffness", "N/m", "815 MN/m", [0.0, 1.0, -2.0, 0.0], true;
+    /// A damping coefficient \[N s/m\].
+    Damping, "a damping", "N s/m", "2.97 kN s/m", [0.0, 1.0, -1.0, 0.0], true;
+    /// A moment of inertia \[kg m²\].
+    Inertia, "a moment of inertia", "kg m^2", "251 kg m^2", [2.0, 1.0, 0.0, 0.0], true;
+    /// A torque \[N m\].
+    Torque, "a torque", "N m", "5 kN m", [2.0, 1.0, -2.0, 0.0], false;
+    /// A rotational stiffness \[N m/rad\].
+    AngularStiffness, "a rotational stiffness", "N m/rad", "40 N m/rad", [2.0, 1.0, -2.0, -1.0], false;
+    /// A rotational damping \[N m s/rad\].
+    AngularDamping, "a rotational damping", "N m s", "2 N m s", [2.0, 1.0, -1.0, -1.0], false;
+    /// A torque over the square of an angular speed \[N m s²\].
+    QuadraticDamping, "a quadratic rotational damping", "N m s^2", "0.1 N m s^2", [2.0, 1.0, 0.0, -2.0], false;
+    /// A pressure or an elastic modulus \[Pa\].
+    Pressure, "a pressure", "Pa", "207 GPa", [-1.0, 1.0, -2.0, 0.0], true;
+    /// A dynamic viscosity \[Pa s\].
+    Viscosity, "a viscosity", "Pa s", "10 mPa s", [-1.0, 1.0, -1.0, 0.0], true;
+    /// Stiffness of a power law \[N/mⁿ\]; n is the `exponent` beside it.
+    ContactStiffness, "a contact stiffness", "N/m^n", "6e11 N/m^1.5", [f64::NAN, 1.0, -2.0, 0.0], true;
+}
+
+/// Name of the quantity whose unit depends on the exponent beside it.
+pub(crate) const CONTACT_STIFFNESS: &str = "a contact stiffness";
+
+/// Why a text is not the quantity that is needed.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Complaint {
+    pub(crate) message: String,
+    pub(crate) hint: String,
+}
+
+impl Dimension {
+    /// The dimension called so in the schema.
+    pub(crate) fn named(name: &str) -> Option<&'static Self> {
+        DIMENSIONS.iter().find(|dimension| dimension.name == name)
+    }
+
+    /// Reads a number and a unit into SI; `exponent` is the n of a power law, where known.
+    pub(crate) fn read(&self, text: &str, exponent: Option<f64>) -> Result<f64, Complaint> {
+        let text = text.trim();
+        let complain = |message: String, hint: String| Complaint { message, hint };
+        let such_as = || format!("write {} such as \"{}\"", self.name, self.example);
+        let Some((number, rest)) = split_number(text) else {
+            return Err(complain(format!("`{text}` does not begin with a number"), such_as()));
+        };
+        if rest.starts_with(',') {
+            return Err(complain(
+                format!("`{text}` has a comma"),
+                "decimals are written with a point".into(),
+            ));
+        }
+        let unit = if rest.trim().is_empty() {
+            if self.powers != [0.0; 4] {
+                return Err(complain(
+                    format!("`{text}` has no unit"),
+                    format!("{}, or the bare number {number} [{}]", such_as(), self.unit),
+                ));
+            }
+            unit::parse("").expect("no unit at all is a pure number")
+        } else {
+            unit::parse(rest).map_err(|problem| match problem {
+                UnitProblem::Unknown(symbol) => complain(
+                    format!("unknown unit `{symbol}` in `{text}`"),
+                    format!("{}; the units are {}", such_as(), unit::known()),
+                ),
+                UnitProblem::Grammar(reason) => {
+                    complain(format!("`{}` is not a unit: {reason}", rest.trim()), such_as())
+                }
+            })?
+        };
+        if !self.fits(unit.powers, exponent) {
+            let hint = self.hint_for(unit.powers, exponent);
+            let name = name_of(unit.powers);
+            return Err(complain(format!("`{text}` is {name}, needed is {}", self.name), hint));
+        }
+        let value = shift_decimal(number, unit.decade) * unit.factor;
+        if value.is_finite() {
+            Ok(value)
+        } else {
+            Err(complain(format!("`{text}` is not a finite number"), such_as()))
+        }
+    }
+
+    fn fits(&self, found: Powers, exponent: Option<f64>) -> bool {
+        if self.name == CONTACT_STIFFNESS {
+            let [length, mass, time, angle] = found.0;
+            // N/mⁿ = kg m^(1−n) s⁻²
+            let n = exponent.unwrap_or(1.0 - length);
+            return Powers([length, mass, time, angle]).matches(Powers([1.0 - n, 1.0, -2.0, 0.0]));
+        }
+        let needed = Powers(self.powers);
+        if self.strict_angle {
+            found.matches(needed)
+        } else {
+            found.without_angle().matches(needed.without_angle())
+        }
+    }
+
+    fn hint_for(&self, found: Powers, exponent: Option<f64>) -> String {
+        let per_second = Powers([0.0, 0.0, -1.0, 0.0]);
+        let turning = Powers([0.0, 0.0, -1.0, 1.0]);
+        match self.name {
+            "an angular speed" if found.matches(per_second) => {
+                "1/s and Hz count events; write radians or turns, \"10 rad/s\" or \"1500 rpm\"".into()
+            }
+            "a frequency" if found.matches(turning) => {
+                "a speed of rotation is not a frequency; write \"25 Hz\" for 1500 rpm".into()
+            }
+            CONTACT_STIFFNESS => match exponent {
+                Some(n) => format!("with exponent = {n} the unit is N/m^{n}"),
+                None => format!("such as \"{}\"", self.example),
+            },
+            _ => format!("such as \"{}\"", self.example),
+        }
+    }
+}
+
+/// What a dimension is called, or else its powers.
+fn name_of(powers: Powers) -> String {
+    let known = DIMENSIONS.iter().find(|d| powers.matches(Powers(d.powers)));
+    match known {
+        Some(dimension) => dimension.name.to_owned(),
+        None if powers.matches(Powers([2.0, 1.0, -3.0, 0.0])) => "a power".to_owned(),
+        None => format!("in {powers}"),
+    }
+}
+
+/// The decimal number at the beginning of a text, and what follows it.
+fn split_number(text: &str) -> Option<(&str, &str)> {
+    let bytes = text.as_bytes();
+    let digits = |mut at: usize| {
+        while bytes.get(at).is_some_and(u8::is_ascii_digit) {
+            at += 1;
+        }
+        at
+    };
+    let start = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
+    let mut end = digits(start);
+    if bytes.get(end) == Some(&b'.') {
+        end = digits(end + 1);
+    }
+    if matches!(bytes.get(end), Some(b'e' | b'E')) {
+        let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+        let after = digits(end + 1 + sign);
+        if after > end + 1 + sign {
+            end = after;
+        }
+    }
+    let (number, rest) = text.split_at(end);
+    number.parse::<f64>().ok()?;
+    Some((number, rest))
+}
+
+/// The number with its decimal point moved, rounded once.
+fn shift_decimal(number: &str, decade: i32) -> f64 {
+    let (mantissa, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
+    let exponent: i32 = exponent.parse().unwrap_or(i32::MAX);
+    let shifted = format!("{mantissa}e{}", exponent.saturating_add(decade));
+    shifted.parse().unwrap_or(f64::INFINITY)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(name: &str, text: &str) -> Result<f64, Complaint> {
+        Dimension::named(name).unwrap().read(text, None)
+    }
+
+    #[test]
+    #[expect(clippy::float_cmp, reason = "decimal prefixes must not cost a rounding")]
+    fn decimals_are_exact() {
+        assert_eq!(read("a length", "88.9 mm"), Ok(0.0889));
+        assert_eq!(read("a length", "88.9mm"), Ok(0.0889));
+        assert_eq!(read("a stiffness", "815 MN/m"), Ok(815e6));
+        assert_eq!(read("a mass", "8.89 g"), Ok(0.00889));
+        assert_eq!(read("a mass", "3.01 kg"), Ok(3.01));
+        assert_eq!(read("a pure number", "0.5 %"), Ok(0.005));
+        assert_eq!(read("a pure number", "0.5"), Ok(0.5));
+        assert_eq!(read("a length", "-1.5e2 µm"), Ok(-1.5e-4));
+        assert_eq!(read("an acceleration", "-9.81 m/s^2"), Ok(-9.81));
+        assert_eq!(read("a pressure", "0.3 MPa"), Ok(0.3e6));
+        assert_eq!(read("a rotational damping", "2 N m s"), Ok(2.0));
+        assert_eq!(read("a rotational damping", "2 N m s/rad"), Ok(2.0));
+        assert_eq!(read("a contact stiffness", "6e11 N/m^1.5"), Ok(6e11));
+    }
+
+    #[test]
+    fn angles_and_turns() {
+        let speed = read("an angular speed", "1500 rpm").unwrap();
+        assert!((speed - 157.079_632_679_489_66).abs() < 1e-12);
+        let angle = read("an angle", "180°").unwrap();
+        assert!((angle - std::f64::consts::PI).abs() < 1e-15);
+    }
+
+    #[test]
+    fn complaints_say_what_to_write() {
+        let table = [
+            ("an angular speed", "12 mm", "`12 mm` is a length, needed is an angular speed", "1500 rpm"),
+            ("an angular speed", "10 1/s", "is a frequency", "10 rad/s"),
+            ("an angular speed", "10 Hz", "is a frequency", "rad/s"),
+            ("a frequency", "1500 rpm", "is an angular speed", "25 Hz"),
+            ("a length", "12 furlong", "unknown unit `furlong`", "the units are m g s"),
+            ("a length", "12", "has no unit", "the bare number 12 [m]"),
+            ("a length", "12,7 mm", "has a comma", "point"),
+            ("a length", "mm", "does not begin with a number", "88.9 mm"),
+            ("a length", "nan mm", "does not begin with a number", "88.9 mm"),
+            ("a length", "1e999 m", "not a finite number", "88.9 mm"),
+            ("a length", "", "does not begin with a number", "88.9 mm"),
+            ("a torque", "5 kW", "is a power", "5 kN m"),
+            ("a damping", "5 N/m s", "what stands under `/`", "2.97 kN s/m"),
+            ("a mass", "2 kg m2", "write powers as `^2`", "3.01 kg"),
+            ("a pure number", "3 mm", "is a length", "3 %"),
+        ];
+        for (name, text, message, hint) in table {
+            let complaint = read(name, text).unwrap_err();
+            assert!(complaint.message.contains(message), "{complaint:?}");
+            assert!(complaint.hint.contains(hint), "{complaint:?}");
+        }
+    }
+
+    #[test]
+    fn the_unit_of_a_power_law_follows_its_exponent() {
+        let stiffness = Dimension::named(CONTACT_STIFFNESS).unwrap();
+        assert!(stiffness.read("6e11 N/m^1.5", Some(1.5)).is_ok());
+        let complaint = stiffness.read("6e11 N/m", Some(1.5)).unwrap_err();
+        assert!(complaint.hint.contains("N/m^1.5"), "{complaint:?}");
+    }
+
+    #[test]
+    fn examples_are_valid() {
+        for dimension in DIMENSIONS {
+            assert!(dimension.read(dimension.example, None).is_ok(), "{}", dimension.name);
+        }
+    }
+}

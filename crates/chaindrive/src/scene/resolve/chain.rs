@@ -1,0 +1,161 @@
+//! The chain: lengths, masses, stiffness and damping, link by link.
+
+use chaindrive_mechanics::{Chain, End, Ends};
+
+use super::scatter::Normal;
+use super::{Findings, motion};
+use crate::scene::schema::{self, Scatter};
+
+/// Roller diameter \[pitches\] of a strand that touches nothing.
+const UNTOUCHED_ROLLER: f64 = 0.6;
+/// Height of a link plate \[roller diameters\]: 1.31 to 1.47 in the catalogues.
+const PLATE: f64 = 1.4;
+/// Damping ratio ζ \[–\] of a link: measured values are not published, 0.01 to 0.05 are in use.
+const DAMPING_RATIO: f64 = 0.03;
+
+/// `touched`: whether there is a sprocket or guide for which the roller diameter matters.
+pub(super) fn resolve(
+    text: &schema::Chain,
+    touched: bool,
+    findings: &mut Findings<'_>,
+) -> Option<Chain> {
+    let links = text.links as usize;
+    let rollers = links + usize::from(text.ends.is_some());
+    let lengths = lengths(text, links, findings);
+    let given = text.masses.as_ref().map(|all| all.iter().map(|m| m.0).collect());
+    let masses = each(("mass", "masses"), text.mass.map(|m| m.0), given, rollers, findings);
+    let given = text.stiffnesses.as_ref().map(|all| all.iter().map(|k| k.0).collect());
+    let single = text.stiffness.map(|k| k.0);
+    let stiffness = each(("stiffness", "stiffnesses"), single, given, links, findings);
+    let roller_diameter = match text.roller_diameter {
+        Some(diameter) => diameter.0,
+        None if touched => {
+            let hint = "give the roller diameter, from which teeth and guides follow";
+            findings.refuse_with("chain.roller_diameter", "missing", hint);
+            return None;
+        }
+        None => UNTOUCHED_ROLLER * text.pitch.0,
+    };
+    if text.damping.is_some() && text.damping_ratio.is_some() {
+        findings.refuse_with("chain.damping_ratio", "`damping` is given too", "keep one of them");
+    }
+    let ends = ends(text, findings);
+
+    let scatter = text.scatter.clone().unwrap_or(Scatter {
+        pitch: Default::default(),
+        mass: Default::default(),
+        stiffness: Default::default(),
+        seed: 0,
+    });
+    let vary = |values: Vec<f64>, deviation: f64, stream: u32, scale: Option<f64>| -> Vec<f64> {
+        let mut normal = Normal::new(scatter.seed, stream);
+        let varied = values.into_iter().map(|v| v + deviation * scale.unwrap_or(v) * normal.next());
+        varied.collect()
+    };
+    let lengths = vary(lengths?, scatter.pitch.0, 0, Some(text.pitch.0));
+    let masses = vary(masses?, scatter.mass.0, 1, None);
+    let stiffness = vary(stiffness?, scatter.stiffness.0, 2, None);
+    let damping = match text.damping {
+        Some(damping) => vec![damping.0; links],
+        None => {
+            let ratio = text.damping_ratio.map_or(DAMPING_RATIO, |ratio| ratio.0);
+            // c = 2 ζ √(k m)
+            let pairs = stiffness.iter().zip(&masses);
+            pairs.map(|(k, m)| 2.0 * ratio * (k * m).max(0.0).sqrt()).collect()
+        }
+    };
+    Some(Chain {
+        pitch: text.pitch.0,
+        lengths,
+        stiffness,
+        damping,
+        masses,
+        roller_diameter,
+        plate_height: text.plate_height.map_or(PLATE * roller_diameter, |height| height.0),
+        ends: ends?,
+    })
+}
+
+fn lengths(text: &schema::Chain, links: usize, findings: &mut Findings<'_>) -> Option<Vec<f64>> {
+    let worn = 1.0 + text.elongation.0;
+    if let Some(pitches) = &text.pitches {
+        for (key, given) in [("inner_pitch", text.inner_pitch), ("outer_pitch", text.outer_pitch)] {
+            if given.is_some() {
+                let path = format!("chain.{key}");
+                findings.refuse_with(&path, "`pitches` is given too", "keep one of them");
+            }
+        }
+        let found = pitches.len();
+        if found != links {
+            let message = format!("{found} values, needed are {links}, one for every link");
+            findings.refuse("chain.pitches", message);
+            return None;
+        }
+        return Some(pitches.iter().map(|pitch| pitch.0 * worn).collect());
+    }
+    let inner = text.inner_pitch.unwrap_or(text.pitch).0;
+    let outer = text.outer_pitch.unwrap_or(text.pitch).0;
+    let alternating = text.inner_pitch.is_some() || text.outer_pitch.is_some();
+    if alternating && text.ends.is_none() && links % 2 == 1 {
+        let message = format!("{links} links, but inner and outer links alternate");
+        let hint = "a closed chain of both needs an even number";
+        findings.refuse_with("chain.links", message, hint);
+        return None;
+    }
+    let of = |i: usize| if i.is_multiple_of(2) { inner } else { outer };
+    Some((0..links).map(|i| of(i) * worn).collect())
+}
+
+/// One value for all, or a value for each.
+fn each(
+    (one, many): (&str, &str),
+    single: Option<f64>,
+    list: Option<Vec<f64>>,
+    count: usize,
+    findings: &mut Findings<'_>,
+) -> Option<Vec<f64>> {
+    match (single, list) {
+        (Some(value), None) => Some(vec![value; count]),
+        (None, Some(values)) if values.len() == count => Some(values),
+        (None, Some(values)) => {
+            let part = if many == "masses" { "roller" } else { "link" };
+            let message =
+                format!("{} values, needed are {count}, one for every {part}", values.len());
+            findings.refuse(&format!("chain.{many}"), message);
+            None
+        }
+        (Some(_), Some(_)) => {
+            let message = format!("`{one}` is given too");
+            findings.refuse_with(&format!("chain.{many}"), message, "keep one of them");
+            None
+        }
+        (None, None) => {
+            let hint = format!("give the {one} of one link, or `{many}` as a list");
+            findings.refuse_with(&format!("chain.{one}"), "missing", hint);
+            None
+        }
+    }
+}
+
+fn ends(text: &schema::Chain, findings: &mut Findings<'_>) -> Option<Ends> {
+    let Some([first, last]) = &text.ends else {
+        return Some(Ends::Closed);
+    };
+    let mut resolve = |index: usize, end: &schema::End| {
+        let path = format!("chain.ends[{index}]");
+        Some(match end {
+            schema::End::Free => End::Free,
+            schema::End::Fixed => End::Fixed,
+            schema::End::Driven { x, y } => {
+                let x = motion::shift(x, &format!("{path}.x"), findings);
+                let y = motion::shift(y, &format!("{path}.y"), findings);
+                End::Driven { x: x?, y: y? }
+            }
+            schema::End::Pulled { force: [x, y] } => End::Pulled {
+                force: chaindrive_geometry::Vector::new(x.0, y.0),
+            },
+        })
+    };
+    let (first, last) = (resolve(0, first), resolve(1, last));
+    Some(Ends::Open([first?, last?]))
+}

@@ -1,0 +1,128 @@
+//! Guides.
+
+use std::f64::consts::TAU;
+
+use chaindrive_geometry::{Arc, ArcSpline, GeometryError, Piece, Point, bar, rail};
+use chaindrive_mechanics::{Chain, Guide, GuideSupport, Touches};
+
+use super::{Findings, Names, contact, motion, point};
+use crate::scene::schema::{self, Face, SceneText, TravelSide};
+
+/// Radius of the ends of a bar \[straight lengths\].
+const END_RADIUS: f64 = 0.25;
+/// Angle of the ends of a bar \[deg\].
+const END_ANGLE: f64 = 10.0;
+
+pub(super) fn resolve_all(
+    scene: &SceneText,
+    names: &Names<'_>,
+    chain: &Chain,
+    findings: &mut Findings<'_>,
+) -> Option<Vec<Guide>> {
+    let guides: Vec<_> = scene
+        .guides
+        .iter()
+        .enumerate()
+        .map(|(i, text)| resolve(text, &format!("guides[{i}]"), scene, names, chain, findings))
+        .collect();
+    guides.into_iter().collect()
+}
+
+fn resolve(
+    text: &schema::Guide,
+    path: &str,
+    scene: &SceneText,
+    names: &Names<'_>,
+    chain: &Chain,
+    findings: &mut Findings<'_>,
+) -> Option<Guide> {
+    let face = findings.keep(&format!("{path}.face"), face(&text.face));
+    let support = support(text, path, names, findings);
+    let surface = contact::surface(
+        &text.contact,
+        &format!("{path}.contact"),
+        &scene.contact.guides,
+        contact::GUIDES,
+        chain,
+        findings,
+    );
+    Some(Guide {
+        name: text.name.clone(),
+        face: face?,
+        support: support?,
+        touches: match text.touches {
+            schema::Touches::Rollers => Touches::Rollers,
+            schema::Touches::Eyes => Touches::Eyes,
+            schema::Touches::Plates => Touches::Plates,
+        },
+        surface: surface?,
+    })
+}
+
+/// Working face with its material on the left of travel.
+fn face(face: &Face) -> Result<ArcSpline, GeometryError> {
+    match face {
+        Face::Bar {
+            start,
+            end,
+            end_radius,
+            end_angle,
+            material,
+        } => {
+            let (start, end) = match material {
+                TravelSide::Left => (point(*start), point(*end)),
+                TravelSide::Right => (point(*end), point(*start)),
+            };
+            let radius = end_radius.map_or_else(|| END_RADIUS * (end - start).norm(), |r| r.0);
+            let angle = end_angle.map_or(END_ANGLE.to_radians(), |angle| angle.0);
+            bar(start, end, radius, angle)
+        }
+        Face::Points {
+            points,
+            radii,
+            material,
+        } => {
+            let mut points: Vec<Point> = points.iter().copied().map(point).collect();
+            let mut radii: Vec<f64> = radii.iter().map(|radius| radius.0).collect();
+            if *material == TravelSide::Right {
+                points.reverse();
+                radii.reverse();
+            }
+            rail(&points, &radii)
+        }
+        Face::Arc {
+            centre,
+            radius,
+            from,
+            to,
+        } => {
+            let sweep = (to.0 - from.0).rem_euclid(TAU);
+            ArcSpline::open(&[Piece::Arc(Arc {
+                centre: point(*centre),
+                radius: radius.0,
+                start_angle: from.0,
+                sweep: if sweep == 0.0 { TAU } else { sweep },
+            })])
+        }
+    }
+}
+
+fn support(
+    text: &schema::Guide,
+    path: &str,
+    names: &Names<'_>,
+    findings: &mut Findings<'_>,
+) -> Option<GuideSupport> {
+    let path = format!("{path}.support");
+    Some(match &text.support {
+        None | Some(schema::GuideSupport::Fixed) => GuideSupport::Fixed,
+        Some(schema::GuideSupport::Prescribed { x, y }) => {
+            let x = motion::shift(x, &format!("{path}.x"), findings);
+            let y = motion::shift(y, &format!("{path}.y"), findings);
+            GuideSupport::Prescribed { x: x?, y: y? }
+        }
+        Some(schema::GuideSupport::Tensioner { name }) => {
+            GuideSupport::Tensioner(names.tensioner(name, &format!("{path}.name"), findings)?)
+        }
+    })
+}

@@ -1,0 +1,139 @@
+//! Where the chain lies at the start.
+
+use chaindrive_geometry::Vector;
+use chaindrive_mechanics::{Adjust, Chain, Fit, Layout, Stop, Tighten};
+
+use super::{Findings, Names, start};
+use crate::scene::schema::{self, Carrier, Route, SceneText};
+use crate::scene::suggest::one_of;
+
+/// The layout of the chain: as `chain.start` says, or else along the route.
+pub(super) fn layout(
+    scene: &SceneText,
+    names: &Names<'_>,
+    chain: &Chain,
+    gravity: Vector,
+    findings: &mut Findings<'_>,
+) -> Option<Layout> {
+    if let Some(start) = &scene.chain.start {
+        if scene.route.is_some() {
+            let hint = "keep one of them";
+            findings.refuse_with("route", "`chain.start` lays the chain already", hint);
+        }
+        return start::layout(start, chain, gravity, findings);
+    }
+    if scene.chain.ends.is_some() {
+        let hint = "say where an open strand lies: `line`, `hang` or `points`";
+        findings.refuse_with("chain.start", "missing", hint);
+        if scene.route.is_some() {
+            findings.refuse("route", "an open strand has no route");
+        }
+        return None;
+    }
+    let absent = Route::default();
+    let route = scene.route.as_ref().unwrap_or(&absent);
+    let stops = stops(route, names, findings);
+    let adjust = adjust(route, scene, names, findings);
+    let adjust = adjust?;
+    let tighten = match route.tighten {
+        schema::Tighten::RestLength => Tighten::RestLength,
+        schema::Tighten::Travel => Tighten::Travel,
+    };
+    if tighten == Tighten::Travel && adjust == Adjust::Nothing {
+        let hint = "say in `route.adjust` what moves, or take `rest-length`";
+        findings.refuse_with("route.tighten", "nothing is there to travel", hint);
+    }
+    Some(Layout::Route {
+        stops: stops?,
+        phase: route.phase.map_or(0.5, |phase| phase.0),
+        fit: Fit {
+            adjust,
+            pretension: route.pretension.0,
+            tighten,
+        },
+    })
+}
+
+fn stops(route: &Route, names: &Names<'_>, findings: &mut Findings<'_>) -> Option<Vec<Stop>> {
+    let Some(stops) = &route.stops else {
+        let count = names.sprockets.len();
+        if count < 2 {
+            let message = format!("{count} sprockets, but a closed chain runs around at least two");
+            let hint = "add a sprocket, or make the chain a strand with `chain.ends`";
+            findings.refuse_with("sprockets", message, hint);
+            return None;
+        }
+        return Some((0..count).map(Stop::Sprocket).collect());
+    };
+    let mut found = Vec::new();
+    let mut complete = true;
+    for (i, name) in stops.iter().enumerate() {
+        let path = format!("route.stops[{i}]");
+        let sprocket = names.sprockets.iter().position(|known| known == name);
+        let guide = || names.guides.iter().position(|known| known == name);
+        let stop = sprocket.map(Stop::Sprocket).or_else(|| guide().map(Stop::Guide));
+        let Some(stop) = stop else {
+            let known: Vec<&str> = names.sprockets.iter().chain(&names.guides).copied().collect();
+            let message = format!("no sprocket or guide is named `{name}`");
+            findings.refuse_with(&path, message, one_of(name, &known));
+            complete = false;
+            continue;
+        };
+        if found.contains(&stop) {
+            findings.refuse_with(&path, format!("`{name}` stands twice"), "the chain passes it once");
+        } else if i == 0 && sprocket.is_none() {
+            let hint = "begin the list with any of the sprockets";
+            findings.refuse_with(&path, "the first stop must be a sprocket", hint);
+        }
+        found.push(stop);
+    }
+    if stops.len() < 2 {
+        let message = format!("{} stops, but a closed chain has at least two", stops.len());
+        findings.refuse("route.stops", message);
+    }
+    complete.then_some(found)
+}
+
+fn adjust(
+    route: &Route,
+    scene: &SceneText,
+    names: &Names<'_>,
+    findings: &mut Findings<'_>,
+) -> Option<Adjust> {
+    let path = "route.adjust.name";
+    let carried = |index: usize| matches!(scene.tensioners[index].carrier, Carrier::Slider { .. });
+    let mut tensioner = |name: &str, slides: bool, findings: &mut Findings<'_>| {
+        let index = names.tensioner(name, path, findings)?;
+        if carried(index) != slides {
+            let (is, other) = if slides { ("an arm", "arm") } else { ("a slider", "slider") };
+            let hint = format!("take `kind = \"{other}\"`");
+            findings.refuse_with(path, format!("`{name}` is {is}"), hint);
+            return None;
+        }
+        Some(index)
+    };
+    match &route.adjust {
+        None | Some(schema::Adjust::Nothing) => Some(Adjust::Nothing),
+        Some(schema::Adjust::Sprocket {
+            name,
+            direction,
+            within,
+        }) => {
+            let sprocket = findings.lookup(&names.sprockets, "sprocket", name, path);
+            let direction = findings.direction("route.adjust.direction", *direction);
+            Some(Adjust::Sprocket {
+                sprocket: sprocket?,
+                direction: direction?,
+                within: within.0,
+            })
+        }
+        Some(schema::Adjust::Slider { name, within }) => Some(Adjust::Tensioner {
+            tensioner: tensioner(name, true, findings)?,
+            within: within.0,
+        }),
+        Some(schema::Adjust::Arm { name, within }) => Some(Adjust::Tensioner {
+            tensioner: tensioner(name, false, findings)?,
+            within: within.0,
+        }),
+    }
+}

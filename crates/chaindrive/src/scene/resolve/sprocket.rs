@@ -1,0 +1,132 @@
+//! Sprockets.
+
+use std::f64::consts::FRAC_PI_2;
+
+use chaindrive_geometry::{Side, ToothGap};
+use chaindrive_mechanics::{Chain, Rotation, Sprocket, Support};
+
+use super::{Findings, Names, contact, motion, point, tooth};
+use crate::scene::schema::{self, Push, SceneText};
+
+pub(super) fn resolve_all(
+    scene: &SceneText,
+    names: &Names<'_>,
+    chain: &Chain,
+    findings: &mut Findings<'_>,
+) -> Option<Vec<Sprocket>> {
+    let sprockets: Vec<_> = scene
+        .sprockets
+        .iter()
+        .enumerate()
+        .map(|(i, text)| resolve(text, &format!("sprockets[{i}]"), scene, names, chain, findings))
+        .collect();
+    sprockets.into_iter().collect()
+}
+
+fn resolve(
+    text: &schema::Sprocket,
+    path: &str,
+    scene: &SceneText,
+    names: &Names<'_>,
+    chain: &Chain,
+    findings: &mut Findings<'_>,
+) -> Option<Sprocket> {
+    let form = tooth::form(
+        text.tooth.as_ref(),
+        chain.pitch,
+        chain.roller_diameter,
+        &format!("{path}.tooth"),
+        findings,
+    );
+    let gap = form.and_then(|form| {
+        let gap = ToothGap::new(text.teeth, chain.pitch, chain.roller_diameter, &form);
+        let place = if text.tooth.is_some() { "tooth" } else { "teeth" };
+        findings.keep(&format!("{path}.{place}"), gap)
+    });
+    let rotation = rotation(text, path, findings);
+    let support = support(text, path, names, findings);
+    let surface = contact::surface(
+        &text.contact,
+        &format!("{path}.contact"),
+        &scene.contact.teeth,
+        contact::TEETH,
+        chain,
+        findings,
+    );
+    let support = support?;
+    let moves = match &support {
+        Support::Springs { .. } => true,
+        Support::Tensioner(index) => scene.tensioners[*index].push != Push::Locked,
+        Support::Fixed | Support::Prescribed { .. } => false,
+    };
+    if moves && text.mass.is_none() {
+        let hint = "give the mass, because the centre can move";
+        findings.refuse_with(&format!("{path}.mass"), "missing", hint);
+    }
+    Some(Sprocket {
+        name: text.name.clone(),
+        gap: gap?,
+        side: match text.side {
+            schema::Side::Left => Side::Left,
+            schema::Side::Right => Side::Right,
+        },
+        centre: point(text.centre),
+        rotation: rotation?,
+        support,
+        inertia: text.inertia.map_or(0.0, |inertia| inertia.0),
+        mass: text.mass.map_or(0.0, |mass| mass.0),
+        surface: surface?,
+        gap_angle: text.gap_angle.map_or(FRAC_PI_2, |angle| angle.0),
+    })
+}
+
+fn rotation(
+    text: &schema::Sprocket,
+    path: &str,
+    findings: &mut Findings<'_>,
+) -> Option<Rotation> {
+    if let Some(given) = &text.motion {
+        for (key, torques) in [("drive", &text.drive), ("load", &text.load)] {
+            if !torques.is_empty() {
+                let hint = "keep one of them: a prescribed motion supplies whatever torque it takes";
+                findings.refuse_with(&format!("{path}.{key}"), "`motion` is given too", hint);
+            }
+        }
+        let motion = motion::turn(given, &format!("{path}.motion"), findings);
+        return motion.map(Rotation::Prescribed);
+    }
+    if text.inertia.is_none() {
+        let hint = "give the moment of inertia of a wheel that turns freely, or `motion`";
+        findings.refuse_with(&format!("{path}.inertia"), "missing", hint);
+    }
+    let drive = motion::torques(&text.drive, &format!("{path}.drive"), findings);
+    let load = motion::torques(&text.load, &format!("{path}.load"), findings);
+    Some(Rotation::Free {
+        drive: drive?,
+        load: load?,
+    })
+}
+
+fn support(
+    text: &schema::Sprocket,
+    path: &str,
+    names: &Names<'_>,
+    findings: &mut Findings<'_>,
+) -> Option<Support> {
+    let path = format!("{path}.support");
+    Some(match &text.support {
+        None | Some(schema::Support::Fixed) => Support::Fixed,
+        Some(schema::Support::Prescribed { x, y }) => {
+            let x = motion::shift(x, &format!("{path}.x"), findings);
+            let y = motion::shift(y, &format!("{path}.y"), findings);
+            Support::Prescribed { x: x?, y: y? }
+        }
+        Some(schema::Support::Springs { stiffness, damping }) => Support::Springs {
+            stiffness: stiffness.map(|k| k.0),
+            damping: damping.map(|c| c.0),
+        },
+        Some(schema::Support::Tensioner { name }) => {
+            Support::Tensioner(names.tensioner(name, &format!("{path}.name"), findings)?)
+        }
+    })
+}

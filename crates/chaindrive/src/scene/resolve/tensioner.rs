@@ -1,0 +1,175 @@
+//! Tensioners.
+
+use chaindrive_mechanics::{Carrier, Hydraulic, Plunger, Push, Spring, Tensioner};
+
+use super::{Findings, point};
+use crate::scene::quantity::{Damping, Force};
+use crate::scene::schema::{self, GuideSupport, Oil, SceneText, Support};
+
+pub(super) fn resolve_all(
+    scene: &SceneText,
+    findings: &mut Findings<'_>,
+) -> Option<Vec<Tensioner>> {
+    let mut tensioners = Vec::new();
+    for (i, text) in scene.tensioners.iter().enumerate() {
+        let path = format!("tensioners[{i}]");
+        let sprockets = scene.sprockets.iter().any(
+            |s| matches!(&s.support, Some(Support::Tensioner { name }) if *name == text.name),
+        );
+        let guides = scene.guides.iter().any(
+            |g| matches!(&g.support, Some(GuideSupport::Tensioner { name }) if *name == text.name),
+        );
+        if !(sprockets || guides) {
+            let hint = "let a sprocket or guide say `support = { kind = \"tensioner\", name = … }`";
+            findings.refuse_with(&path, format!("`{}` carries nothing", text.name), hint);
+        }
+        tensioners.push(resolve(text, &path, findings));
+    }
+    tensioners.into_iter().collect()
+}
+
+fn resolve(
+    text: &schema::Tensioner,
+    path: &str,
+    findings: &mut Findings<'_>,
+) -> Option<Tensioner> {
+    let (carrier, inertia, key) = match &text.carrier {
+        schema::Carrier::Slider { direction, mass } => {
+            let direction = findings.direction(&format!("{path}.carrier.direction"), *direction);
+            let carrier = direction.map(|direction| Carrier::Slider { direction });
+            (carrier, mass.map(|mass| mass.0), "mass")
+        }
+        schema::Carrier::Arm {
+            pivot,
+            inertia,
+            plunger,
+        } => {
+            let plunger = match plunger {
+                None => Some(None),
+                Some(plunger) => findings
+                    .direction(&format!("{path}.carrier.plunger.direction"), plunger.direction)
+                    .map(|direction| {
+                        Some(Plunger {
+                            at: point(plunger.at),
+                            direction,
+                        })
+                    }),
+            };
+            let pivot = point(*pivot);
+            let carrier = plunger.map(|plunger| Carrier::Arm { pivot, plunger });
+            (carrier, inertia.map(|inertia| inertia.0), "inertia")
+        }
+    };
+    if inertia.is_none() && text.push != schema::Push::Locked {
+        let hint = format!("give the {key} of a tensioner that is not locked");
+        findings.refuse_with(&format!("{path}.carrier.{key}"), "missing", hint);
+    }
+    let bare_arm = matches!(&text.carrier, schema::Carrier::Arm { plunger: None, .. });
+    let push = push(&text.push, bare_arm, &format!("{path}.push"), findings);
+    Some(Tensioner {
+        name: text.name.clone(),
+        carrier: carrier?,
+        inertia: inertia.unwrap_or(0.0),
+        push: push?,
+    })
+}
+
+/// `bare_arm`: an arm without a plunger, on which only a torque can act.
+fn push(
+    text: &schema::Push,
+    bare_arm: bool,
+    path: &str,
+    findings: &mut Findings<'_>,
+) -> Option<Push> {
+    let turns = matches!(text, schema::Push::TorsionSpring { .. });
+    if bare_arm && matches!(text, schema::Push::Spring { .. } | schema::Push::Hydraulic { .. }) {
+        let hint = "give the arm a `plunger`, or take a `torsion-spring`";
+        findings.refuse_with(path, "a force needs a place on the arm", hint);
+        return None;
+    }
+    if turns && !bare_arm {
+        let hint = "take a `spring`, or an arm without a plunger";
+        findings.refuse_with(path, "a torsion spring turns an arm and nothing else", hint);
+        return None;
+    }
+    match text {
+        schema::Push::Locked => Some(Push::Locked),
+        schema::Push::Spring {
+            preload,
+            stiffness,
+            damping,
+        } => Some(Push::Spring(Spring {
+            preload: preload.0,
+            stiffness: stiffness.0,
+            damping: damping.0,
+        })),
+        schema::Push::TorsionSpring {
+            preload,
+            stiffness,
+            damping,
+        } => Some(Push::Spring(Spring {
+            preload: preload.0,
+            stiffness: stiffness.0,
+            damping: damping.0,
+        })),
+        schema::Push::Hydraulic {
+            preload,
+            stiffness,
+            extending,
+            supply,
+            relief,
+            leak,
+            oil,
+        } => {
+            let (supply, relief, leak) = match oil {
+                Some(oil) => from_oil(oil, (*supply, *relief, *leak), path, findings)?,
+                None => (
+                    given(supply.map(|f| f.0), "supply", path, findings)?,
+                    given(relief.map(|f| f.0), "relief", path, findings)?,
+                    given(leak.map(|c| c.0), "leak", path, findings)?,
+                ),
+            };
+            if relief < supply {
+                let message = "the relief valve opens below the supply pressure";
+                findings.refuse(&format!("{path}.{}", if oil.is_some() { "oil.relief" } else { "relief" }), message);
+                return None;
+            }
+            Some(Push::Hydraulic(Hydraulic {
+                preload: preload.0,
+                stiffness: stiffness.0,
+                supply,
+                relief,
+                leak,
+                extending: extending.0,
+            }))
+        }
+    }
+}
+
+fn given(value: Option<f64>, key: &str, path: &str, findings: &mut Findings<'_>) -> Option<f64> {
+    if value.is_none() {
+        let hint = "give `supply`, `relief` and `leak`, or `oil`, from which they follow";
+        findings.refuse_with(&format!("{path}.{key}"), "missing", hint);
+    }
+    value
+}
+
+/// Supply push, relief push and leak damping of a plunger in oil.
+fn from_oil(
+    oil: &Oil,
+    (supply, relief, leak): (Option<Force>, Option<Force>, Option<Damping>),
+    path: &str,
+    findings: &mut Findings<'_>,
+) -> Option<(f64, f64, f64)> {
+    let direct = [("supply", supply.is_some()), ("relief", relief.is_some()), ("leak", leak.is_some())];
+    for (key, twice) in direct {
+        if twice {
+            findings.refuse_with(&format!("{path}.{key}"), "`oil` is given too", "keep one of them");
+        }
+    }
+    // F = p A,   A = π d²/4
+    let diameter = oil.diameter.0;
+    let area = 0.25 * std::f64::consts::PI * diameter * diameter;
+    let leak = Hydraulic::leak_damping(oil.viscosity.0, oil.length.0, diameter, oil.gap.0);
+    Some((oil.supply.0 * area, oil.relief.0 * area, leak))
+}

@@ -1,0 +1,120 @@
+//! Rails on which the chain slides.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{Contact, Motion};
+use crate::scene::quantity::{Angle, Length, Speed};
+
+/// A rail.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Guide {
+    /// Name, unique among sprockets and guides.
+    pub(crate) name: String,
+    /// Working face.
+    pub(crate) face: Face,
+    /// Which part of the chain touches it; absent: the rollers.
+    #[serde(default)]
+    pub(crate) touches: Touches,
+    /// What holds it; absent: bolted to the frame.
+    #[serde(default)]
+    pub(crate) support: Option<GuideSupport>,
+    /// Contact with the chain, where it differs from `contact.guides`.
+    #[serde(default)]
+    pub(crate) contact: Contact,
+}
+
+/// The working face of a guide.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub(crate) enum Face {
+    /// A straight bar whose ends curve away from the chain.
+    Bar {
+        /// Where the straight part begins (x, y) [m].
+        start: [Length; 2],
+        /// Where the straight part ends (x, y) [m].
+        end: [Length; 2],
+        /// Radius of the curved ends [m]; absent: a quarter of the straight length.
+        #[serde(default)]
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        end_radius: Option<Length>,
+        /// Angle of the curved ends [rad]; absent: 10°.
+        #[serde(default)]
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        end_angle: Option<Angle>,
+        /// Side of the line from `start` to `end` on which the material lies; absent: right,
+        /// which is the outside when the line runs with a counter-clockwise chain.
+        #[serde(default)]
+        material: TravelSide,
+    },
+    /// A polygon with rounded corners.
+    Points {
+        /// Corners (x, y) [m].
+        points: Vec<[Length; 2]>,
+        /// Radii at the inner corners [m], two fewer than points.
+        #[serde(default)]
+        radii: Vec<Length>,
+        /// Side of the path on which the material lies; absent: right.
+        #[serde(default)]
+        material: TravelSide,
+    },
+    /// A convex circular arc.
+    Arc {
+        /// Centre (x, y) [m].
+        centre: [Length; 2],
+        /// Radius [m].
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        radius: Length,
+        /// Angle at which the face begins [rad].
+        from: Angle,
+        /// Angle at which it ends [rad], counter-clockwise from `from`.
+        to: Angle,
+    },
+}
+
+/// Side of a path.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum TravelSide {
+    /// On the left of travel.
+    Left,
+    /// On the right of travel.
+    #[default]
+    Right,
+}
+
+/// Which part of the chain touches a guide.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Touches {
+    /// The rollers.
+    #[default]
+    Rollers,
+    /// Waisted link plates, with their eyes: circles of the plate height about the pins.
+    Eyes,
+    /// Straight-edged link plates, anywhere along the edge.
+    Plates,
+}
+
+/// What holds a guide.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub(crate) enum GuideSupport {
+    /// Bolted to the frame.
+    Fixed,
+    /// Moved in time.
+    Prescribed {
+        /// Displacement along x; absent: none.
+        #[serde(default)]
+        x: Motion<Length, Speed>,
+        /// Displacement along y; absent: none.
+        #[serde(default)]
+        y: Motion<Length, Speed>,
+    },
+    /// Carried by a tensioner.
+    Tensioner {
+        /// Name of the tensioner.
+        name: String,
+    },
+}

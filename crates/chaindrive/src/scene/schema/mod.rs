@@ -1,0 +1,171 @@
+//! The scene format, as types: the one source of truth for parsing, messages and the shipped schema.
+//!
+//! Every comment on a key becomes its description in `chaindrive.schema.json`. A family of choices
+//! is an enum whose members are told apart by `kind`; a member without further keys may be
+//! written as its bare name, `support = "fixed"`.
+
+mod chain;
+mod contact;
+mod guide;
+mod motion;
+mod route;
+mod sprocket;
+mod tensioner;
+
+pub(crate) use chain::{Chain, End, Scatter, Start};
+pub(crate) use contact::{Contact, Contacts, Elastic};
+pub(crate) use guide::{Face, Guide, GuideSupport, Touches, TravelSide};
+pub(crate) use motion::{Motion, Torque};
+pub(crate) use route::{Adjust, Method, Route, Run, Tighten};
+pub(crate) use sprocket::{GapForm, PathPiece, Seat, Side, Sprocket, Support, TipForm, Tooth};
+pub(crate) use tensioner::{Carrier, Push, Tensioner};
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+use serde_json::{Map, Value, json};
+
+use super::quantity::Acceleration;
+
+/// A chain drive: a chain, what it runs around, and how it starts.
+///
+/// Every quantity is a number in SI units or a text with a unit, such as "88.9 mm". Positions are
+/// (x, y) with x to the right and y up; angles are counter-clockwise.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "chaindrive scene")]
+pub(crate) struct SceneText {
+    /// Address of the schema, for editors; ignored.
+    #[serde(default, rename = "$schema")]
+    pub(crate) _schema: Option<String>,
+    /// What the scene shows, in a line.
+    #[serde(default)]
+    pub(crate) title: String,
+    /// Acceleration of gravity (x, y) [m/s²]; absent: 9.81 m/s² downward.
+    #[serde(default)]
+    pub(crate) gravity: Option<[Acceleration; 2]>,
+    /// Whether the drive settles into static equilibrium under gravity and load before t = 0;
+    /// absent: true.
+    #[serde(default = "settle")]
+    pub(crate) settle: bool,
+    /// The chain.
+    pub(crate) chain: Chain,
+    /// Contact laws that hold wherever a sprocket or guide does not give its own.
+    #[serde(default)]
+    pub(crate) contact: Contacts,
+    /// The sprockets, usually in the order in which the chain passes them.
+    #[serde(default)]
+    pub(crate) sprockets: Vec<Sprocket>,
+    /// Rails on which the chain slides.
+    #[serde(default)]
+    pub(crate) guides: Vec<Guide>,
+    /// Movable carriers that press sprockets or guides on the chain.
+    #[serde(default)]
+    pub(crate) tensioners: Vec<Tensioner>,
+    /// How a closed chain lies around its sprockets; absent: around all sprockets, in file order.
+    #[serde(default)]
+    pub(crate) route: Option<Route>,
+    /// What the front ends run and record unless told otherwise.
+    #[serde(default)]
+    pub(crate) run: Run,
+}
+
+fn settle() -> bool {
+    true
+}
+
+/// JSON Schema of the scene format (draft 2020-12), for editors and front ends.
+///
+/// Quantities carry their dimension as `x-dimension` and their SI unit as `x-unit`. The file
+/// `chaindrive.schema.json` is this value.
+pub fn schema() -> Value {
+    let mut schema = raw();
+    for_editors(&mut schema);
+    schema
+}
+
+/// The schema as derived, which the validator walks.
+pub(crate) fn raw() -> Value {
+    schemars::schema_for!(SceneText).to_value()
+}
+
+/// Brings the schema to what the validator accepts: no `null`, and short forms allowed.
+fn for_editors(schema: &mut Value) {
+    match schema {
+        Value::Object(object) => {
+            for value in object.values_mut() {
+                for_editors(value);
+            }
+            drop_null(object);
+            allow_bare_kinds(object);
+            allow_common_unit(object);
+        }
+        Value::Array(items) => items.iter_mut().for_each(for_editors),
+        _ => {}
+    }
+}
+
+fn drop_null(object: &mut Map<String, Value>) {
+    if let Some(Value::Array(types)) = object.get_mut("type") {
+        types.retain(|name| name != "null");
+        if let [only] = types.as_slice() {
+            let only = only.clone();
+            object.insert("type".into(), only);
+        }
+    }
+    if object.get("default") == Some(&Value::Null) {
+        object.remove("default");
+    }
+    if let Some(Value::Array(choices)) = object.get_mut("anyOf") {
+        choices.retain(|choice| *choice != json!({"type": "null"}));
+        if let [Value::Object(only)] = choices.as_slice() {
+            let only = only.clone();
+            object.remove("anyOf");
+            for (key, value) in only {
+                object.entry(key).or_insert(value);
+            }
+        }
+    }
+}
+
+/// `{ kind = "fixed" }` may be written `"fixed"`.
+fn allow_bare_kinds(object: &mut Map<String, Value>) {
+    let Some(Value::Array(members)) = object.get_mut("oneOf") else {
+        return;
+    };
+    let bare: Vec<Value> = members
+        .iter()
+        .filter(|member| member["required"] == json!(["kind"]))
+        .map(|member| member["properties"]["kind"]["const"].clone())
+        .collect();
+    if !bare.is_empty() {
+        members.push(json!({
+            "description": "A kind without further keys may be written as its bare name.",
+            "enum": bare,
+        }));
+    }
+}
+
+/// `["1 ms", "2 ms"]` may be written `{ unit = "ms", values = [1, 2] }`.
+fn allow_common_unit(object: &mut Map<String, Value>) {
+    if object.get("type") != Some(&json!("array"))
+        || object.get("items").and_then(|items| items.get("x-dimension")).is_none()
+    {
+        return;
+    }
+    let description = object.remove("description");
+    let list = Value::Object(std::mem::take(object));
+    let mut values = list.clone();
+    values["items"] = json!({"type": "number"});
+    if let Some(description) = description {
+        object.insert("description".into(), description);
+    }
+    object.insert(
+        "anyOf".into(),
+        json!([list, {
+            "type": "object",
+            "properties": {"unit": {"type": "string"}, "values": values},
+            "required": ["unit", "values"],
+            "additionalProperties": false,
+        }]),
+    );
+}

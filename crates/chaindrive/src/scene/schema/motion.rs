@@ -1,0 +1,135 @@
+//! Prescribed motions and shaft torques.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use crate::scene::quantity::{
+    Angle, AngularDamping, AngularSpeed, Frequency, QuadraticDamping, Ratio, Time, Torque as Moment,
+};
+
+/// A coordinate given in time, counted from the assembled position.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+#[schemars(rename = "Motion_of_{Position}")]
+pub(crate) enum Motion<Position, Rate> {
+    /// Held where it was assembled.
+    #[default]
+    Held,
+    /// A constant speed.
+    Constant {
+        /// Speed.
+        speed: Rate,
+    },
+    /// A speed that goes from one value to another without a jump of acceleration.
+    Ramp {
+        /// Speed before.
+        from: Rate,
+        /// Speed after.
+        to: Rate,
+        /// Time at which the change begins [s]; absent: 0.
+        #[serde(default)]
+        start: Time,
+        /// Duration of the change [s].
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        duration: Time,
+    },
+    /// A mean speed with sine terms, amplitude × (sin(2π f t + phase) − sin(phase)).
+    Harmonics {
+        /// Mean speed; absent: 0.
+        #[serde(default = "zero::<Rate>")]
+        speed: Rate,
+        /// The sine terms.
+        terms: Vec<Term<Position>>,
+    },
+    /// Values at given times, joined by a natural cubic spline.
+    Table {
+        /// Times [s], increasing.
+        times: Vec<Time>,
+        /// Position (an angle, or a length) at each of them.
+        values: Vec<Position>,
+    },
+}
+
+fn zero<Rate: for<'de> Deserialize<'de>>() -> Rate {
+    // Rates are newtypes of one number.
+    serde_json::from_value(0.0.into()).unwrap_or_else(|_| unreachable!("a rate is a number"))
+}
+
+/// One sine term of a motion.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Term_of_{Position}")]
+pub(crate) struct Term<Position> {
+    /// Amplitude (an angle, or a length).
+    pub(crate) amplitude: Position,
+    /// Frequency [Hz].
+    #[schemars(extend("minimum" = 0))]
+    pub(crate) frequency: Frequency,
+    /// Phase at t = 0 [rad]; absent: 0.
+    #[serde(default)]
+    pub(crate) phase: Angle,
+}
+
+/// A torque on a shaft, counter-clockwise positive.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub(crate) enum Torque {
+    /// A constant torque.
+    Constant {
+        /// Torque [N m].
+        torque: Moment,
+    },
+    /// A torque switched on softly, along a cubic.
+    Ramp {
+        /// Final torque [N m].
+        torque: Moment,
+        /// Time at which it begins [s]; absent: 0.
+        #[serde(default)]
+        start: Time,
+        /// Duration of the rise [s].
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        duration: Time,
+    },
+    /// A resistance that opposes the rotation, −linear ω − quadratic ω |ω|.
+    Resistance {
+        /// Linear coefficient [N m s]; absent: 0.
+        #[serde(default)]
+        #[schemars(extend("minimum" = 0))]
+        linear: AngularDamping,
+        /// Quadratic coefficient [N m s²]; absent: 0.
+        #[serde(default)]
+        #[schemars(extend("minimum" = 0))]
+        quadratic: QuadraticDamping,
+    },
+    /// A torque that repeats with the angle, amplitude × sin(order θ + phase).
+    Harmonic {
+        /// Amplitude [N m].
+        amplitude: Moment,
+        /// Periods per turn [–].
+        order: Ratio,
+        /// Phase [rad]; absent: 0.
+        #[serde(default)]
+        phase: Angle,
+    },
+    /// A torque over time, joined by a natural cubic spline.
+    TimeTable {
+        /// Times [s], increasing.
+        times: Vec<Time>,
+        /// Torque at each of them [N m].
+        torques: Vec<Moment>,
+    },
+    /// A torque over the angle within one turn, joined by a natural cubic spline.
+    AngleTable {
+        /// Angles [rad], increasing from 0 to a full turn.
+        angles: Vec<Angle>,
+        /// Torque at each of them [N m].
+        torques: Vec<Moment>,
+    },
+    /// A torque over the speed, joined by a natural cubic spline.
+    SpeedTable {
+        /// Speeds [rad/s], increasing.
+        speeds: Vec<AngularSpeed>,
+        /// Torque at each of them [N m].
+        torques: Vec<Moment>,
+    },
+}

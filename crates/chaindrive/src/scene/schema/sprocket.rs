@@ -1,0 +1,241 @@
+//! Sprockets, their teeth and what holds them.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{Contact, Motion, Torque};
+use crate::scene::quantity::{
+    Angle, AngularSpeed, Damping, Inertia, Length, Mass, Speed, Stiffness,
+};
+
+/// A toothed wheel.
+///
+/// With `motion` its angle is given in time; without, it turns freely with `inertia` under the
+/// chain, `drive` and `load`.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Sprocket {
+    /// Name, unique among sprockets and guides.
+    pub(crate) name: String,
+    /// Number of teeth.
+    #[schemars(extend("minimum" = 5, "maximum" = 600))]
+    pub(crate) teeth: u32,
+    /// Centre (x, y) [m].
+    pub(crate) centre: [Length; 2],
+    /// Side of the travelling chain on which the wheel lies; absent: left, where all wheels
+    /// inside a counter-clockwise loop are.
+    #[serde(default)]
+    pub(crate) side: Side,
+    /// Tooth form; absent: ISO 606 half-way between the extreme forms.
+    #[serde(default)]
+    pub(crate) tooth: Option<Tooth>,
+    /// Rotation given in time. Excludes `drive` and `load`.
+    #[serde(default)]
+    pub(crate) motion: Option<Motion<Angle, AngularSpeed>>,
+    /// Moment of inertia about the centre, shaft included [kg m²]; needed without `motion`.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) inertia: Option<Inertia>,
+    /// Torques that drive the shaft.
+    #[serde(default)]
+    pub(crate) drive: Vec<Torque>,
+    /// Torques that load the shaft.
+    #[serde(default)]
+    pub(crate) load: Vec<Torque>,
+    /// Mass [kg]; needed where the centre can move under forces.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) mass: Option<Mass>,
+    /// What holds the centre; absent: a fixed bearing.
+    #[serde(default)]
+    pub(crate) support: Option<Support>,
+    /// Contact with the rollers, where it differs from `contact.teeth`.
+    #[serde(default)]
+    pub(crate) contact: Contact,
+    /// Angle of one tooth gap [rad], for a wheel that no route passes; absent: 90°, upward.
+    #[serde(default)]
+    pub(crate) gap_angle: Option<Angle>,
+}
+
+/// Side of the travelling chain.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Side {
+    /// On the left: the chain turns counter-clockwise around the wheel.
+    #[default]
+    Left,
+    /// On the right: the chain turns clockwise around the wheel.
+    Right,
+}
+
+/// The profile of the teeth.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub(crate) enum Tooth {
+    /// The form of ISO 606, anywhere between its two extremes.
+    Iso606 {
+        /// Gap form between the minimum (0) and the maximum (1) [–], or "min", "mid", "max";
+        /// absent: mid.
+        #[serde(default)]
+        gap: GapForm,
+        /// Tip diameter; absent: mid.
+        #[serde(default)]
+        tip: TipForm,
+        /// Tip diameter [m], instead of `tip`.
+        #[serde(default)]
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        tip_diameter: Option<Length>,
+        /// Where the seat is centred; absent: bottom.
+        #[serde(default)]
+        seat: Seat,
+    },
+    /// Type II of ASME B29.1.
+    AsaTypeIi {
+        /// Tip diameter; absent: mid, the standard turned diameter.
+        #[serde(default)]
+        tip: TipForm,
+        /// Tip diameter [m], instead of `tip`.
+        #[serde(default)]
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        tip_diameter: Option<Length>,
+    },
+    /// A circular seat with straight flanks.
+    Circular {
+        /// Radius of the seat [m], at least that of the roller; absent: 0.505 roller diameters.
+        #[serde(default)]
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        seat_radius: Option<Length>,
+        /// Tip diameter; absent: mid.
+        #[serde(default)]
+        tip: TipForm,
+        /// Tip diameter [m], instead of `tip`.
+        #[serde(default)]
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        tip_diameter: Option<Length>,
+        /// Where the seat is centred; absent: bottom.
+        #[serde(default)]
+        seat: Seat,
+    },
+    /// A gap of lines and arcs, from the centre line of the tooth on the right through the seat to
+    /// that of the tooth on the left. The wheel's centre is (0, 0), the gap lies on the +y axis.
+    Path {
+        /// First point (x, y) [m].
+        from: [Length; 2],
+        /// Pieces, each from the end of the one before.
+        pieces: Vec<PathPiece>,
+    },
+    /// A measured gap, fitted by arcs; its frame and order are those of `path`.
+    Points {
+        /// Points (x, y) [m].
+        points: Vec<[Length; 2]>,
+        /// How far the arcs may stray from the points [m]; absent: 1/1000 of the pitch.
+        #[serde(default)]
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        tolerance: Option<Length>,
+    },
+}
+
+/// Gap form between the ISO extremes.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(transparent)]
+pub(crate) struct GapForm(pub(crate) f64);
+
+impl Default for GapForm {
+    fn default() -> Self {
+        Self(0.5)
+    }
+}
+
+impl JsonSchema for GapForm {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "GapForm".into()
+    }
+
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({
+            "type": ["number", "string"],
+            "x-dimension": "a pure number",
+            "x-unit": "1",
+            "x-words": {"min": 0.0, "mid": 0.5, "max": 1.0},
+            "examples": ["mid"],
+            "minimum": 0,
+            "maximum": 1,
+        })
+    }
+}
+
+/// Tip diameter within the limits of ISO 606.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum TipForm {
+    /// The smallest.
+    Min,
+    /// Half-way.
+    #[default]
+    Mid,
+    /// The largest.
+    Max,
+}
+
+/// Where the seat of a roller is centred.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Seat {
+    /// Rollers touch the bottom of the gap when they lie on the pitch circle.
+    #[default]
+    Bottom,
+    /// On the pitch circle: a tight chain sinks below it by the clearance.
+    Pitch,
+}
+
+/// One piece of a tooth gap.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub(crate) enum PathPiece {
+    /// A straight line.
+    Line {
+        /// Its end (x, y) [m].
+        to: [Length; 2],
+    },
+    /// A circular arc of less than a half turn.
+    Arc {
+        /// Its end (x, y) [m].
+        to: [Length; 2],
+        /// Its radius [m], positive where it turns left (counter-clockwise).
+        radius: Length,
+    },
+}
+
+/// What holds the centre of a sprocket.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub(crate) enum Support {
+    /// A fixed bearing.
+    Fixed,
+    /// A centre moved in time.
+    Prescribed {
+        /// Displacement along x; absent: none.
+        #[serde(default)]
+        x: Motion<Length, Speed>,
+        /// Displacement along y; absent: none.
+        #[serde(default)]
+        y: Motion<Length, Speed>,
+    },
+    /// Bearing springs and dampers, unstressed at the assembled centre. Needs `mass`.
+    Springs {
+        /// Stiffness along x and y [N/m].
+        stiffness: [Stiffness; 2],
+        /// Damping along x and y [N s/m]; absent: none.
+        #[serde(default)]
+        damping: [Damping; 2],
+    },
+    /// Carried by a tensioner. Needs `mass`.
+    Tensioner {
+        /// Name of the tensioner.
+        name: String,
+    },
+}

@@ -1,0 +1,309 @@
+//! A scene as a tree of values that know their line, whichever language it was written in.
+
+use serde_json::Value as Json;
+use toml_edit::{Item, TableLike, Value as Toml};
+
+use super::error::Problem;
+
+/// A value and the line it stands on.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Node {
+    pub(crate) line: Option<usize>,
+    pub(crate) value: Value,
+}
+
+/// What a value can be.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Value {
+    Truth(bool),
+    Integer(i64),
+    Float(f64),
+    Text(String),
+    List(Vec<Node>),
+    Table(Vec<Entry>),
+    /// A date, which no key of a scene takes.
+    Date,
+}
+
+/// One key of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Entry {
+    pub(crate) key: String,
+    pub(crate) line: Option<usize>,
+    pub(crate) node: Node,
+}
+
+impl Value {
+    /// Its type, as messages call it.
+    pub(crate) fn kind(&self) -> &'static str {
+        match self {
+            Self::Truth(_) => "true or false",
+            Self::Integer(_) => "a whole number",
+            Self::Float(_) => "a number",
+            Self::Text(_) => "a text",
+            Self::List(_) => "a list",
+            Self::Table(_) => "a table",
+            Self::Date => "a date",
+        }
+    }
+}
+
+impl Node {
+    /// Parses TOML, or JSON when the text begins with `{`.
+    pub(crate) fn parse(text: &str) -> Result<Self, Problem> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        if is_json(text) {
+            Self::parse_json(text)
+        } else {
+            Self::parse_toml(text)
+        }
+    }
+
+    /// Parses TOML.
+    pub(crate) fn parse_toml(text: &str) -> Result<Self, Problem> {
+        let lines = Lines::new(text);
+        let document = toml_edit::Document::parse(text).map_err(|error| {
+            let line = error.span().map(|span| lines.at(span.start));
+            Problem::new("", line, format!("not TOML: {}", one_line(error.message())))
+        })?;
+        Ok(lines.table(document.as_table(), Some(1)))
+    }
+
+    /// Parses JSON.
+    pub(crate) fn parse_json(text: &str) -> Result<Self, Problem> {
+        let json: Json = serde_json::from_str(text).map_err(|error| {
+            let message = error.to_string();
+            let message = message.split(" at line").next().unwrap_or_default();
+            Problem::new("", Some(error.line()), format!("not JSON: {message}"))
+        })?;
+        Ok(Self::from_json(&json))
+    }
+
+    /// The tree of a JSON value; entries that are `null` count as absent.
+    pub(crate) fn from_json(json: &Json) -> Self {
+        let value = match json {
+            // Only at the top and in lists; the validator refuses it there.
+            Json::Null => Value::Text("null".into()),
+            Json::Bool(truth) => Value::Truth(*truth),
+            Json::Number(number) => number
+                .as_i64()
+                .map_or_else(|| Value::Float(number.as_f64().unwrap_or(f64::NAN)), Value::Integer),
+            Json::String(text) => Value::Text(text.clone()),
+            Json::Array(items) => Value::List(items.iter().map(Self::from_json).collect()),
+            Json::Object(entries) => {
+                let entries = entries.iter().filter(|(_, json)| !json.is_null());
+                let entry = |(key, json): (&String, &Json)| Entry {
+                    key: key.clone(),
+                    line: None,
+                    node: Self::from_json(json),
+                };
+                Value::Table(entries.map(entry).collect())
+            }
+        };
+        Self { line: None, value }
+    }
+
+    /// As JSON, for serde. Numbers that are not finite become `null`; the validator has refused them.
+    pub(crate) fn to_json(&self) -> Json {
+        match &self.value {
+            Value::Truth(truth) => Json::Bool(*truth),
+            Value::Integer(number) => Json::from(*number),
+            Value::Float(number) => Json::from(*number),
+            Value::Text(text) => Json::String(text.clone()),
+            Value::List(items) => Json::Array(items.iter().map(Self::to_json).collect()),
+            Value::Table(entries) => {
+                let entries = entries.iter().map(|e| (e.key.clone(), e.node.to_json()));
+                Json::Object(entries.collect())
+            }
+            Value::Date => Json::Null,
+        }
+    }
+
+    /// The value under a key of a table.
+    pub(crate) fn get(&self, key: &str) -> Option<&Self> {
+        match &self.value {
+            Value::Table(entries) => entries.iter().find(|e| e.key == key).map(|e| &e.node),
+            _ => None,
+        }
+    }
+
+    /// Position of the list entry with this index or with this `name`.
+    pub(crate) fn position(&self, key: &str) -> Option<usize> {
+        let Value::List(items) = &self.value else {
+            return None;
+        };
+        let named = |item: &Self| {
+            item.get("name").is_some_and(|name| name.value == Value::Text(key.to_owned()))
+        };
+        items
+            .iter()
+            .position(named)
+            .or_else(|| key.parse().ok().filter(|&index| index < items.len()))
+    }
+
+    /// Follows a path as far as it leads: the path in its written form, with entries of lists by
+    /// index, and the line of the last value on it.
+    pub(crate) fn locate(&self, path: &str) -> (String, Option<usize>) {
+        let (mut node, mut line) = (Some(self), None);
+        let mut written = String::new();
+        for step in steps(path) {
+            let next = match node {
+                Some(parent) => match parent.position(&step) {
+                    Some(index) => {
+                        written.push_str(&format!("[{index}]"));
+                        match &parent.value {
+                            Value::List(items) => items.get(index),
+                            _ => None,
+                        }
+                    }
+                    None => {
+                        push_step(&mut written, &step);
+                        parent.get(&step)
+                    }
+                },
+                None => {
+                    push_step(&mut written, &step);
+                    None
+                }
+            };
+            line = next.map_or(line, |found| found.line.or(line));
+            node = next;
+        }
+        (written, line)
+    }
+}
+
+/// Whether a text is meant as JSON.
+pub(crate) fn is_json(text: &str) -> bool {
+    text.trim_start().starts_with('{')
+}
+
+/// The steps of a dotted path: `sprockets[1].teeth` is `sprockets`, `1`, `teeth`.
+pub(crate) fn steps(path: &str) -> impl Iterator<Item = String> + '_ {
+    path.split(['.', '[', ']']).map(|step| step.trim().to_owned()).filter(|step| !step.is_empty())
+}
+
+/// Appends a key to a path.
+pub(crate) fn push_step(path: &mut String, step: &str) {
+    if step.bytes().all(|b| b.is_ascii_digit()) {
+        path.push_str(&format!("[{step}]"));
+        return;
+    }
+    if !path.is_empty() {
+        path.push('.');
+    }
+    path.push_str(step);
+}
+
+fn one_line(message: &str) -> String {
+    message.lines().map(str::trim).collect::<Vec<_>>().join("; ")
+}
+
+/// Where the lines of a text begin.
+struct Lines {
+    starts: Vec<usize>,
+}
+
+impl Lines {
+    fn new(text: &str) -> Self {
+        let breaks = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
+        Self {
+            starts: std::iter::once(0).chain(breaks.map(|(at, _)| at + 1)).collect(),
+        }
+    }
+
+    /// Line of a byte, counted from 1.
+    fn at(&self, byte: usize) -> usize {
+        self.starts.partition_point(|&start| start <= byte)
+    }
+
+    fn table(&self, table: &dyn TableLike, line: Option<usize>) -> Node {
+        let entry = |(key, item): (&str, &Item)| {
+            let span = table.key(key).and_then(toml_edit::Key::span).or_else(|| item.span());
+            let line = span.map(|span| self.at(span.start)).or(line);
+            Entry {
+                key: key.to_owned(),
+                line,
+                node: self.item(item, line),
+            }
+        };
+        Node {
+            line,
+            value: Value::Table(table.iter().map(entry).collect()),
+        }
+    }
+
+    fn item(&self, item: &Item, line: Option<usize>) -> Node {
+        let line = item.span().map(|span| self.at(span.start)).or(line);
+        match item {
+            Item::None => Node {
+                line,
+                value: Value::Table(Vec::new()),
+            },
+            Item::Value(value) => self.value(value, line),
+            Item::Table(table) => self.table(table, line),
+            Item::ArrayOfTables(tables) => {
+                let node = |table: &toml_edit::Table| {
+                    let line = table.span().map(|span| self.at(span.start)).or(line);
+                    self.table(table, line)
+                };
+                Node {
+                    line,
+                    value: Value::List(tables.iter().map(node).collect()),
+                }
+            }
+        }
+    }
+
+    fn value(&self, value: &Toml, line: Option<usize>) -> Node {
+        let line = value.span().map(|span| self.at(span.start)).or(line);
+        let value = match value {
+            Toml::String(text) => Value::Text(text.value().clone()),
+            Toml::Integer(number) => Value::Integer(*number.value()),
+            Toml::Float(number) => Value::Float(*number.value()),
+            Toml::Boolean(truth) => Value::Truth(*truth.value()),
+            Toml::Datetime(_) => Value::Date,
+            Toml::Array(items) => {
+                Value::List(items.iter().map(|item| self.value(item, line)).collect())
+            }
+            Toml::InlineTable(table) => return self.table(table, line),
+        };
+        Node { line, value }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "title = 'x'\n\n[chain]\nlinks = 4\n\n[[sprockets]]\nname = 'crank'\nteeth = 23\n\n[[sprockets]]\nname = 'cam'\ntooth = { kind = 'iso606',\n  gap = 0.5 }\n";
+
+    #[test]
+    fn values_know_their_lines() {
+        let tree = Node::parse(TEXT).unwrap();
+        let line = |path| tree.locate(path).1;
+        assert_eq!(line("title"), Some(1));
+        assert_eq!(line("chain"), Some(3));
+        assert_eq!(line("chain.links"), Some(4));
+        assert_eq!(line("sprockets[1]"), Some(10));
+        assert_eq!(line("sprockets.crank.teeth"), Some(8));
+        assert_eq!(line("sprockets.cam.tooth.gap"), Some(13));
+        assert_eq!(tree.locate("sprockets.cam.teeth"), ("sprockets[1].teeth".into(), Some(10)));
+    }
+
+    #[test]
+    fn json_and_toml_make_the_same_tree() {
+        let json = r#"{"title": "x", "chain": {"links": 4, "mass": null}}"#;
+        let toml = "title = 'x'\nchain.links = 4\n";
+        let of = |text| Node::parse(text).unwrap().to_json();
+        assert_eq!(of(json), of(toml));
+    }
+
+    #[test]
+    fn syntax_errors_have_a_line() {
+        let problem = Node::parse("[chain]\npitch = = 3\n").unwrap_err();
+        assert_eq!(problem.line, Some(2));
+        let problem = Node::parse("{\"chain\": \n [1,}").unwrap_err();
+        assert_eq!(problem.line, Some(2), "{problem}");
+    }
+}

@@ -1,0 +1,441 @@
+//! Compares a tree with the schema, collects every problem, and rewrites quantities to SI.
+//!
+//! Afterwards serde can read the tree: what it would refuse has been refused here, with a place,
+//! a line and a hint.
+
+use serde_json::{Map, Value as Json};
+
+use super::error::Problem;
+use super::quantity::{CONTACT_STIFFNESS, Dimension};
+use super::suggest::{nearest, one_of};
+use super::tree::{Entry, Node, Value, push_step};
+
+/// Checks `tree` against `schema` and normalises it: quantities become SI numbers, bare names of
+/// kinds become tables.
+pub(crate) fn validate(tree: &mut Node, schema: &Json) -> Vec<Problem> {
+    let mut validator = Validator {
+        definitions: schema.get("$defs").and_then(Json::as_object),
+        problems: Vec::new(),
+    };
+    validator.visit(tree, schema, "", None);
+    validator.problems
+}
+
+struct Validator<'s> {
+    definitions: Option<&'s Map<String, Json>>,
+    problems: Vec<Problem>,
+}
+
+/// What a schema asks for, after references and optional wrappers.
+enum Expected<'s> {
+    Table(&'s Json),
+    List(&'s Json),
+    Kinds(&'s [Json]),
+    Words(Vec<&'s str>),
+    Quantity(&'s Json, &'static Dimension),
+    Integer,
+    Truth,
+    Text,
+    Anything,
+}
+
+impl<'s> Validator<'s> {
+    fn refuse(&mut self, problem: Problem) {
+        self.problems.push(problem);
+    }
+
+    /// `exponent` is that of the power law the value belongs to.
+    fn visit(&mut self, node: &mut Node, schema: &'s Json, path: &str, exponent: Option<f64>) {
+        let core = self.core(schema);
+        let before = self.problems.len();
+        match expected(core) {
+            Expected::Table(core) => self.table(node, core, path, None),
+            Expected::List(core) => self.list(node, core, path, exponent),
+            Expected::Kinds(members) => self.kinds(node, members, path),
+            Expected::Words(words) => self.word(node, &words, path),
+            Expected::Quantity(core, dimension) => {
+                self.quantity(node, core, dimension, path, exponent);
+            }
+            Expected::Integer => self.integer(node, path),
+            Expected::Truth => {
+                if !matches!(node.value, Value::Truth(_)) {
+                    self.wrong_type(node, path, "true or false");
+                }
+            }
+            Expected::Text => {
+                if !matches!(node.value, Value::Text(_)) {
+                    self.wrong_type(node, path, "a text");
+                }
+            }
+            Expected::Anything => {}
+        }
+        if self.problems.len() == before {
+            self.range(node, core, path);
+            if !std::ptr::eq(core, schema) {
+                self.range(node, schema, path);
+            }
+        }
+    }
+
+    /// Follows references, and drops the `null` that stands for an absent key.
+    fn core(&self, mut schema: &'s Json) -> &'s Json {
+        // References do not nest deeper than this.
+        for _ in 0..8 {
+            let reference = schema.get("$ref").and_then(Json::as_str);
+            let target = reference
+                .and_then(|text| text.rsplit('/').next())
+                .and_then(|name| self.definitions?.get(name));
+            let choices = schema.get("anyOf").and_then(Json::as_array);
+            let choice = choices.and_then(|list| list.iter().find(|s| s["type"] != "null"));
+            match target.or(choice) {
+                Some(next) => schema = next,
+                None => break,
+            }
+        }
+        schema
+    }
+
+    fn wrong_type(&mut self, node: &Node, path: &str, needed: &str) {
+        let found = match &node.value {
+            Value::Text(text) => format!("the text \"{}\"", shorten(text)),
+            Value::Integer(number) => format!("the number {number}"),
+            Value::Float(number) => format!("the number {number}"),
+            other => other.kind().to_owned(),
+        };
+        self.refuse(Problem::new(path, node.line, format!("found {found}, needed is {needed}")));
+    }
+
+    /// `kind` is the member of the family the table has been found to be.
+    fn table(&mut self, node: &mut Node, schema: &'s Json, path: &str, kind: Option<&str>) {
+        let line = node.line;
+        if !matches!(node.value, Value::Table(_)) {
+            self.wrong_type(node, path, "a table");
+            return;
+        }
+        let exponent = node.get("exponent").and_then(number);
+        let Value::Table(entries) = &mut node.value else {
+            return;
+        };
+        let nothing = Map::new();
+        let properties = schema.get("properties").and_then(Json::as_object).unwrap_or(&nothing);
+        let known: Vec<&str> = properties.keys().map(String::as_str).collect();
+        let mut meant = Vec::new();
+        let mut seen: Vec<String> = Vec::new();
+        for entry in entries.iter_mut() {
+            let place = below(path, &entry.key);
+            if seen.contains(&entry.key) {
+                let message = "stands twice";
+                self.refuse(Problem::new(&place, entry.line, message).hint("keep one of them"));
+            }
+            seen.push(entry.key.clone());
+            // A lookup by the schema's own lifetime, not that of the local default.
+            let property = schema.get("properties").and_then(|all| all.get(&entry.key));
+            match property {
+                Some(_) if entry.key == "kind" && kind.is_some() => {}
+                Some(property) => self.visit(&mut entry.node, property, &place, exponent),
+                None => {
+                    let (near, problem) = unknown_key(entry, &place, &known, kind);
+                    meant.extend(near);
+                    self.refuse(problem);
+                }
+            }
+        }
+        let required = schema.get("required").and_then(Json::as_array).into_iter().flatten();
+        for key in required.filter_map(Json::as_str) {
+            if seen.iter().any(|k| k == key) || meant.iter().any(|k| k == key) {
+                continue;
+            }
+            let place = below(path, key);
+            let problem = Problem::new(&place, line, "missing");
+            self.refuse(match description(&properties[key]) {
+                Some(text) => problem.hint(format!("give the {text}")),
+                None => problem,
+            });
+        }
+    }
+
+    fn list(&mut self, node: &mut Node, schema: &'s Json, path: &str, exponent: Option<f64>) {
+        let Some(items) = schema.get("items") else {
+            return;
+        };
+        let core = self.core(items);
+        if core.get("x-dimension").is_some() && matches!(node.value, Value::Table(_)) {
+            self.common_unit(node, path);
+        }
+        let line = node.line;
+        let Value::List(entries) = &mut node.value else {
+            self.wrong_type(node, path, "a list");
+            return;
+        };
+        let count = entries.len();
+        let bound = |key| schema.get(key).and_then(Json::as_u64);
+        let outside = |limit: Option<u64>| limit.is_some_and(|limit| limit != count as u64);
+        if let (Some(least), Some(most)) = (bound("minItems"), bound("maxItems"))
+            && (outside(Some(least)) && outside(Some(most)))
+        {
+            let message = format!("{count} values, needed are {least}");
+            self.refuse(Problem::new(path, line, message));
+        }
+        for (index, entry) in entries.iter_mut().enumerate() {
+            self.visit(entry, items, &below(path, &index.to_string()), exponent);
+        }
+    }
+
+    /// `{ unit = "ms", values = [1, 2] }` becomes `["1 ms", "2 ms"]`.
+    fn common_unit(&mut self, node: &mut Node, path: &str) {
+        let (unit, values) = match (node.get("unit"), node.get("values")) {
+            (Some(unit), Some(values)) => (unit.clone(), values.clone()),
+            _ => return,
+        };
+        let (Value::Text(unit), Value::List(mut values)) = (unit.value, values.value) else {
+            return;
+        };
+        for (index, value) in values.iter_mut().enumerate() {
+            let text = match &value.value {
+                Value::Integer(number) => format!("{number} {unit}"),
+                Value::Float(number) => format!("{number:e} {unit}"),
+                _ => {
+                    let place = below(&below(path, "values"), &index.to_string());
+                    self.wrong_type(value, &place, "a number, because the list has a unit");
+                    continue;
+                }
+            };
+            value.value = Value::Text(text);
+        }
+        node.value = Value::List(values);
+    }
+
+    fn kinds(&mut self, node: &mut Node, members: &'s [Json], path: &str) {
+        let names: Vec<&str> = members.iter().filter_map(kind_of).collect();
+        if let Value::Text(name) = &node.value {
+            // A bare name; what else its kind needs is reported as missing.
+            let kind = Entry {
+                key: "kind".into(),
+                line: node.line,
+                node: node.clone(),
+            };
+            if !matches_any(&names, name) {
+                let problem = Problem::new(path, node.line, format!("unknown kind `{}`", shorten(name)));
+                self.refuse(problem.hint(one_of(name, &names)));
+                return;
+            }
+            node.value = Value::Table(vec![kind]);
+        }
+        let line = node.line;
+        let Value::Table(entries) = &mut node.value else {
+            self.wrong_type(node, path, "a table with a `kind`");
+            return;
+        };
+        let Some(entry) = entries.iter_mut().find(|entry| entry.key == "kind") else {
+            let problem = Problem::new(&below(path, "kind"), line, "missing");
+            self.refuse(problem.hint(format!("the kinds are {}", names.join(", "))));
+            return;
+        };
+        let place = below(path, "kind");
+        let Value::Text(name) = &entry.node.value else {
+            let node = entry.node.clone();
+            self.wrong_type(&node, &place, "a text");
+            return;
+        };
+        let Some(member) = members.iter().find(|m| kind_of(m).is_some_and(|k| same(k, name))) else {
+            let message = format!("unknown kind `{}`", shorten(name));
+            let problem = Problem::new(&place, entry.node.line, message);
+            let hint = one_of(name, &names);
+            self.refuse(problem.hint(hint));
+            return;
+        };
+        let kind = kind_of(member).unwrap_or_default();
+        entry.node.value = Value::Text(kind.to_owned());
+        self.table(node, member, path, Some(kind));
+    }
+
+    fn word(&mut self, node: &mut Node, words: &[&str], path: &str) {
+        let Value::Text(text) = &node.value else {
+            self.wrong_type(node, path, &format!("one of {}", words.join(", ")));
+            return;
+        };
+        match words.iter().find(|word| same(word, text)) {
+            Some(word) => node.value = Value::Text((*word).to_owned()),
+            None => {
+                let message = format!("unknown value `{}`", shorten(text));
+                self.refuse(Problem::new(path, node.line, message).hint(one_of(text, words)));
+            }
+        }
+    }
+
+    fn quantity(
+        &mut self,
+        node: &mut Node,
+        schema: &Json,
+        dimension: &Dimension,
+        path: &str,
+        exponent: Option<f64>,
+    ) {
+        let value = match &node.value {
+            Value::Integer(_) | Value::Float(_) => number(node).unwrap_or(f64::NAN),
+            Value::Text(text) => {
+                let words = schema.get("x-words");
+                let word = words.and_then(|words| words.get(text)?.as_f64());
+                let exponent = exponent.filter(|_| dimension.name == CONTACT_STIFFNESS);
+                let read = || dimension.read(&shorten(text), exponent);
+                match word.map_or_else(read, Ok) {
+                    Ok(value) => value,
+                    Err(complaint) => {
+                        let problem = Problem::new(path, node.line, complaint.message);
+                        self.refuse(problem.hint(complaint.hint));
+                        return;
+                    }
+                }
+            }
+            _ => {
+                let needed = format!("{} such as \"{}\"", dimension.name, dimension.example);
+                self.wrong_type(node, path, &needed);
+                return;
+            }
+        };
+        if value.is_finite() {
+            node.value = Value::Float(value);
+        } else {
+            let problem = Problem::new(path, node.line, format!("{value} is not a finite number"));
+            let hint = format!("give {} such as \"{}\"", dimension.name, dimension.example);
+            self.refuse(problem.hint(hint));
+        }
+    }
+
+    fn integer(&mut self, node: &mut Node, path: &str) {
+        match node.value {
+            Value::Integer(_) => {}
+            #[expect(clippy::cast_possible_truncation, reason = "whole and small")]
+            Value::Float(number) if number.fract() == 0.0 && number.abs() < 1e15 => {
+                node.value = Value::Integer(number as i64);
+            }
+            _ => self.wrong_type(node, path, "a whole number"),
+        }
+    }
+
+    fn range(&mut self, node: &Node, schema: &Json, path: &str) {
+        let Some(value) = number(node) else {
+            return;
+        };
+        let limit = |key: &str| schema.get(key).and_then(Json::as_f64);
+        let unit = schema.get("x-unit").and_then(Json::as_str).filter(|unit| *unit != "1");
+        let unit = unit.map(|unit| format!(" [{unit}]")).unwrap_or_default();
+        let refusal = if limit("exclusiveMinimum").is_some_and(|least| value <= least) {
+            match limit("exclusiveMinimum") {
+                Some(0.0) => Some("positive".to_owned()),
+                least => Some(format!("more than {}", least.unwrap_or_default())),
+            }
+        } else if limit("minimum").is_some_and(|least| value < least) {
+            match limit("minimum") {
+                Some(0.0) => Some("not negative".to_owned()),
+                least => Some(format!("at least {}", least.unwrap_or_default())),
+            }
+        } else if limit("maximum").is_some_and(|most| value > most) {
+            Some(format!("at most {}", limit("maximum").unwrap_or_default()))
+        } else {
+            None
+        };
+        if let Some(allowed) = refusal {
+            let message = format!("{value}, must be {allowed}{unit}");
+            self.refuse(Problem::new(path, node.line, message));
+        }
+    }
+}
+
+fn expected(schema: &Json) -> Expected<'_> {
+    if let Some(name) = schema.get("x-dimension").and_then(Json::as_str)
+        && let Some(dimension) = Dimension::named(name)
+    {
+        return Expected::Quantity(schema, dimension);
+    }
+    if let Some(members) = schema.get("oneOf").and_then(Json::as_array) {
+        if members.iter().all(|member| kind_of(member).is_some()) {
+            return Expected::Kinds(members);
+        }
+        let words = members.iter().flat_map(words_of);
+        return Expected::Words(words.collect());
+    }
+    if schema.get("enum").is_some() {
+        return Expected::Words(words_of(schema).collect());
+    }
+    let kind = match schema.get("type") {
+        Some(Json::Array(kinds)) => kinds.iter().find_map(|kind| kind.as_str().filter(|k| *k != "null")),
+        kind => kind.and_then(Json::as_str),
+    };
+    match kind {
+        Some("object") => Expected::Table(schema),
+        Some("array") => Expected::List(schema),
+        Some("integer") => Expected::Integer,
+        Some("boolean") => Expected::Truth,
+        Some("string") => Expected::Text,
+        _ => Expected::Anything,
+    }
+}
+
+/// The `kind` of a member of a family.
+fn kind_of(member: &Json) -> Option<&str> {
+    member.get("properties")?.get("kind")?.get("const")?.as_str()
+}
+
+fn words_of(schema: &Json) -> impl Iterator<Item = &str> {
+    let listed = schema.get("enum").and_then(Json::as_array).into_iter().flatten();
+    listed.chain(schema.get("const")).filter_map(Json::as_str)
+}
+
+/// Whether two names agree; `rest_length` will do for `rest-length`.
+fn same(name: &str, written: &str) -> bool {
+    name == written || name == written.replace('_', "-")
+}
+
+fn matches_any(names: &[&str], written: &str) -> bool {
+    names.iter().any(|name| same(name, written))
+}
+
+fn number(node: &Node) -> Option<f64> {
+    match node.value {
+        Value::Integer(number) => Some(number as f64),
+        Value::Float(number) => Some(number),
+        _ => None,
+    }
+}
+
+fn unknown_key(
+    entry: &Entry,
+    place: &str,
+    known: &[&str],
+    kind: Option<&str>,
+) -> (Option<String>, Problem) {
+    let message = match kind {
+        Some(kind) => format!("unknown key; a `{kind}` has no `{}`", shorten(&entry.key)),
+        None => "unknown key".to_owned(),
+    };
+    let problem = Problem::new(place, entry.line, message);
+    let near = nearest(&entry.key, known).map(str::to_owned);
+    (near, problem.hint(one_of(&entry.key, known)))
+}
+
+/// First line of a description, to stand after "give the".
+fn description(schema: &Json) -> Option<String> {
+    let text = schema.get("description")?.as_str()?;
+    let sentence = text.split(['.', ';', ':', ',']).next()?.replace('\n', " ");
+    let mut letters = sentence.chars();
+    let first = letters.next()?.to_lowercase();
+    Some(first.chain(letters).collect())
+}
+
+/// A path with one more step.
+pub(crate) fn below(path: &str, step: &str) -> String {
+    let mut place = path.to_owned();
+    push_step(&mut place, &shorten(step));
+    place
+}
+
+/// A text cut to what fits in a message, on one line.
+pub(crate) fn shorten(text: &str) -> String {
+    let clean = text.chars().map(|c| if c.is_control() { ' ' } else { c });
+    let mut short: String = clean.take(60).collect();
+    if short.chars().count() < text.chars().count() {
+        short.push('…');
+    }
+    short
+}

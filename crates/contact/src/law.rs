@@ -1,0 +1,127 @@
+//! A normal force law: an elastic law and a dissipation.
+
+use serde::{Deserialize, Serialize};
+
+use crate::dissipation::Action;
+use crate::elastic::ElasticLaw;
+use crate::error::require;
+use crate::{Dissipation, Elastic, ParameterError};
+
+/// How two surfaces stand to each other at one instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Approach {
+    /// Penetration δ \[m\]: overlap of the surfaces, zero or negative across a gap.
+    pub penetration: f64,
+    /// Closing speed δ̇ \[m/s\], positive while the surfaces approach.
+    pub rate: f64,
+    /// Closing speed \[m/s\] at which this contact began; see [`interpolated_onset`](crate::interpolated_onset).
+    pub onset_rate: f64,
+}
+
+/// Normal force law of a contact.
+///
+/// ```text
+/// F = g(δ) clamp(1 + χ δ̇/v, 0, 1 + 4χ),   v = max(δ̇₀, v_c)     hysteretic
+/// F = max(0, g(δ) + c δ̇)                                        viscous
+/// ```
+///
+/// F is zero for δ ≤ 0 and never negative. The floor v_c is a parameter of the model: a contact
+/// that begins gently, in a pretensioned strand or at assembly, has δ̇₀ ≈ 0, and without the floor would be a rigid
+/// dashpot that neither reaches its static penetration nor lets go. Around a preload F₀ the
+/// damping ratio is ζ = χ F₀/(2 v m ω); v_c ≥ χ F₀/(2 m ω) keeps a resting contact from overdamping, and
+/// the damping constant χ g/v from setting the time step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Law {
+    /// Elastic law g(δ).
+    pub elastic: Elastic,
+    /// Dissipation on top of it.
+    pub dissipation: Dissipation,
+    /// Least speed at onset v_c \[m/s\] a hysteretic dissipation reckons with; positive.
+    pub onset_floor: f64,
+}
+
+impl Law {
+    /// Normal force F \[N\], compressive.
+    #[inline]
+    pub fn force(&self, approach: Approach) -> f64 {
+        self.dissipation.action().force(
+            self.elastic.force(approach.penetration),
+            approach.rate,
+            self.onset(approach),
+        )
+    }
+
+    /// Damping ∂F/∂δ̇ \[N s/m\], not negative; zero where a limit holds the force.
+    #[inline]
+    pub fn damping(&self, approach: Approach) -> f64 {
+        self.dissipation.action().slope(
+            self.elastic.force(approach.penetration),
+            approach.rate,
+            self.onset(approach),
+        )
+    }
+
+    /// Elastic part g \[N\] of the force at the penetration δ \[m\].
+    #[inline]
+    pub fn elastic_force(&self, penetration: f64) -> f64 {
+        self.elastic.force(penetration)
+    }
+
+    /// Tangent stiffness dg/dδ \[N/m\] of the elastic part.
+    #[inline]
+    pub fn stiffness(&self, penetration: f64) -> f64 {
+        self.elastic.stiffness(penetration)
+    }
+
+    /// Stored energy ∫ g dδ \[J\].
+    #[inline]
+    pub fn energy(&self, penetration: f64) -> f64 {
+        self.elastic.energy(penetration)
+    }
+
+    /// v = max(δ̇₀, v_c) \[m/s\].
+    #[inline]
+    fn onset(&self, approach: Approach) -> f64 {
+        approach.onset_rate.max(self.onset_floor)
+    }
+
+    /// Refuses parameters outside their range.
+    ///
+    /// # Errors
+    /// Names the first parameter outside its range.
+    pub fn check(&self) -> Result<(), ParameterError> {
+        self.elastic.check()?;
+        self.dissipation.check()?;
+        let floor = self.onset_floor;
+        require(
+            floor >= 0.0 && floor.is_finite(),
+            "onset_floor",
+            floor,
+            "zero or positive [m/s]",
+        )?;
+        // Only a hysteretic force divides by the speed at onset.
+        let divides = matches!(self.dissipation.action(), Action::Hysteretic { .. });
+        require(
+            floor > 0.0 || !divides,
+            "onset_floor",
+            floor,
+            "positive [m/s] with a hysteretic dissipation",
+        )
+    }
+
+    /// Every elastic specimen with every dissipation specimen, for tests and benchmarks.
+    pub fn specimens() -> Vec<Self> {
+        let mut laws = Vec::new();
+        for elastic in Elastic::specimens() {
+            for dissipation in Dissipation::specimens() {
+                laws.push(Self {
+                    elastic,
+                    dissipation,
+                    onset_floor: 1e-3,
+                });
+            }
+        }
+        laws
+    }
+}

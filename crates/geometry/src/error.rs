@@ -1,0 +1,189 @@
+//! What can be wrong with a shape.
+
+/// Why a shape cannot be built. Every message says what, where, and what is allowed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "each message names its fields")]
+pub enum GeometryError {
+    /// A number is infinite or not a number.
+    #[error("{what} = {value}, must be finite")]
+    NotFinite { what: &'static str, value: f64 },
+
+    /// A number lies outside its range.
+    #[error("{what} = {value}, must be {allowed}")]
+    OutOfRange {
+        what: &'static str,
+        value: f64,
+        allowed: &'static str,
+    },
+
+    /// An arc's ends do not lie on one circle about its centre.
+    #[error(
+        "the ends of the arc are {start_radius} m and {end_radius} m from its centre, must be equal"
+    )]
+    UnequalRadii { start_radius: f64, end_radius: f64 },
+
+    /// A curve needs at least one piece.
+    #[error("the curve has no pieces, needs at least one")]
+    NoPieces,
+
+    /// A piece is too short to have a direction.
+    #[error("piece {piece} is {length} m long, must exceed {least} m")]
+    ShortPiece {
+        piece: usize,
+        length: f64,
+        least: f64,
+    },
+
+    /// A piece has a number that is not finite, a radius that is not positive, or too wide a sweep.
+    #[error("piece {piece}: {source}")]
+    Piece {
+        piece: usize,
+        source: Box<GeometryError>,
+    },
+
+    /// Two neighbouring pieces do not meet.
+    #[error("the pieces before and after joint {joint} are {gap} m apart, allowed are {allowed} m")]
+    OpenJoint {
+        joint: usize,
+        gap: f64,
+        allowed: f64,
+    },
+
+    /// A closed curve runs clockwise, so that the material would lie outside.
+    #[error(
+        "the closed curve has a signed area of {area} m², must be positive (counter-clockwise)"
+    )]
+    Clockwise { area: f64 },
+
+    /// No such wheel.
+    #[error(
+        "a sprocket of {teeth} teeth is outside the range of its tooth form, {least} to {most}"
+    )]
+    Teeth { teeth: u32, least: u32, most: u32 },
+
+    /// The tooth form cannot be drawn with these numbers.
+    #[error("tooth form, {teeth} teeth: {what} is {value} m, must be {allowed}")]
+    ToothForm {
+        teeth: u32,
+        what: &'static str,
+        value: f64,
+        allowed: String,
+    },
+
+    /// A corner of a rail has no room for its rounding.
+    #[error(
+        "the rounding of corner {corner} takes {needed} m of its shorter side, there are {available} m"
+    )]
+    Rounding {
+        corner: usize,
+        needed: f64,
+        available: f64,
+    },
+
+    /// A list does not have the length another list asks for.
+    #[error("{what}: there are {got}, must be {expected}")]
+    Count {
+        what: &'static str,
+        got: usize,
+        expected: String,
+    },
+
+    /// Two neighbouring points coincide.
+    #[error("points {first} and {second} coincide, must be apart")]
+    Coincident { first: usize, second: usize },
+
+    /// A chain needs two wheels to run around.
+    #[error("the route has {wheels} wheels, needs at least two")]
+    TooFewWheels { wheels: usize },
+
+    /// A wheel of a route has a number that is out of range.
+    #[error("wheel {wheel}: {source}")]
+    Wheel {
+        wheel: usize,
+        source: Box<GeometryError>,
+    },
+
+    /// Two sprockets in one plane need more room.
+    #[error(
+        "wheels {first} and {second} overlap: their centres are {distance} m apart, must be more than {least} m; move one of them"
+    )]
+    WheelsOverlap {
+        first: usize,
+        second: usize,
+        distance: f64,
+        least: f64,
+    },
+
+    /// Two neighbours on the route have no common tangent on the sides asked for.
+    #[error(
+        "no straight span leads from wheel {from} to wheel {to}: their centres are {distance} m apart, must be more than {least} m; move one of them, or put it on the other side of the chain"
+    )]
+    NoTangent {
+        from: usize,
+        to: usize,
+        distance: f64,
+        least: f64,
+    },
+
+    /// The chain crosses itself, or misses a wheel.
+    #[error(
+        "the taut chain turns {turns:.0} times on its way round, must be once (+1 or -1): at wheel {wheel} it would wrap {wrap:.1} degrees; check the order of the wheels, and whether that wheel touches the chain on the side given"
+    )]
+    RouteTurns { turns: f64, wheel: usize, wrap: f64 },
+
+    /// Fewer links than a drive needs.
+    #[error("{links} links are too few, these wheels need more than {least:.2}")]
+    TooFewLinks { links: f64, least: f64 },
+
+    /// No way of laying the chain into the teeth was found.
+    #[error(
+        "no link count reaches from wheel {from} into a seat of wheel {to}; move one of them apart, or compare the pitch with the wheels"
+    )]
+    NoSeat { from: usize, to: usize },
+
+    /// The number of links does not fit the wheels.
+    #[error(
+        "{links} links do not close: the taut route takes {taut:.3}, so that the chain would be {} (slack {:+.3} mm); {below} links are {:.3} mm too short, {above} are {:.3} mm too long; take one of these, or move a wheel",
+        if *.slack > 0.0 { "too long" } else { "too short" }, .slack * 1e3, .short * 1e3, .long * 1e3
+    )]
+    DoesNotClose {
+        /// Links asked for.
+        links: u32,
+        /// Links of the taut route, at the most favourable place if wheels may move.
+        taut: f64,
+        /// Length of the chain beyond that of the route \[m\]; positive: too long.
+        slack: f64,
+        /// Next count below, and by how much it is too short \[m\].
+        below: u32,
+        short: f64,
+        /// Next count above, and by how much it is too long \[m\].
+        above: u32,
+        long: f64,
+    },
+}
+
+impl GeometryError {
+    /// Refuses a number that is infinite or not a number.
+    pub(crate) fn finite(what: &'static str, value: f64) -> Result<(), Self> {
+        if value.is_finite() {
+            Ok(())
+        } else {
+            Err(Self::NotFinite { what, value })
+        }
+    }
+
+    /// Refuses a number that is not finite and positive.
+    pub(crate) fn positive(what: &'static str, value: f64) -> Result<(), Self> {
+        Self::finite(what, value)?;
+        if value > 0.0 {
+            Ok(())
+        } else {
+            Err(Self::OutOfRange {
+                what,
+                value,
+                allowed: "positive",
+            })
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! Why a run cannot begin or go on.
+
+use std::fmt;
+
+/// What was found not to be finite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// A position.
+    Position,
+    /// A velocity.
+    Velocity,
+    /// An acceleration.
+    Acceleration,
+    /// A quantity integrated along with the motion, or its rate.
+    Quadrature,
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Position => "position",
+            Self::Velocity => "velocity",
+            Self::Acceleration => "acceleration",
+            Self::Quadrature => "quadrature",
+        })
+    }
+}
+
+/// Why a run cannot begin or go on. The state is then the last accepted one.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "each message names its fields")]
+pub enum IntegrationError {
+    /// A parameter of the method is outside its range.
+    #[error("{parameter} = {value}, must be {allowed}")]
+    Parameter {
+        parameter: &'static str,
+        value: f64,
+        allowed: &'static str,
+    },
+
+    /// The state does not have the shape the system expects.
+    #[error("the state has {found} {what}, the system {expected}")]
+    Shape {
+        what: &'static str,
+        found: usize,
+        expected: usize,
+    },
+
+    /// A fixed step that would be unstable from the start.
+    #[error("a step of {step:.3e} s is unstable with {method}; choose at most {limit:.3e} s")]
+    StepTooLarge {
+        step: f64,
+        limit: f64,
+        method: &'static str,
+    },
+
+    /// Stability or accuracy asks for steps that lead nowhere.
+    #[error(
+        "at t = {t} s the step fell to {step:.3e} s; the forces are too stiff or discontinuous, \
+         or the tolerances too tight"
+    )]
+    StepUnderflow { t: f64, step: f64 },
+
+    /// An evaluation or a step produced infinity or NaN.
+    #[error("at t = {t} s the {quantity} of degree of freedom {dof} is not finite")]
+    NotFinite {
+        t: f64,
+        dof: usize,
+        quantity: Quantity,
+    },
+}

@@ -1,0 +1,166 @@
+//! The family of methods.
+//!
+//! A Runge–Kutta method is one constant in `tableau.rs`; anything else is one file with an
+//! `attempt`. Enter it here and in `Kernel`; the compiler asks for the arms.
+
+use crate::runge_kutta::{self, RungeKutta};
+use crate::state::State;
+use crate::step_size::stable_step;
+use crate::stepper::Stepper;
+use crate::tableau::{DORMAND_PRINCE, RK4};
+use crate::verlet::{self, Verlet};
+use crate::{IntegrationError, SecondOrderSystem};
+
+/// A method of time stepping with its parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Method {
+    /// Velocity Verlet: second order, one evaluation per step.
+    Verlet {
+        /// Step h \[s\].
+        step: f64,
+    },
+    /// The classical Runge–Kutta method: fourth order, four evaluations per step.
+    Rk4 {
+        /// Step h \[s\].
+        step: f64,
+    },
+    /// The pair 5(4) of Dormand and Prince: the step follows the estimated error.
+    ///
+    /// A coordinate may err by `absolute + relative |q|` in a step, a velocity by
+    /// `absolute_rate + relative |v|`; the worst coordinate decides. Penetrations are small differences of large
+    /// coordinates: a relative tolerance of 1e-8 on a metre is 10 nm.
+    DormandPrince {
+        /// Relative tolerance \[–\].
+        relative: f64,
+        /// Absolute tolerance of positions, in their unit.
+        absolute: f64,
+        /// Absolute tolerance of velocities, in their unit.
+        absolute_rate: f64,
+        /// Largest step \[s\]; with infinite tolerances the method takes this step throughout.
+        max_step: f64,
+    },
+}
+
+/// Work space of a method.
+#[derive(Clone, Debug)]
+pub(crate) enum Kernel {
+    Verlet(Verlet),
+    RungeKutta(RungeKutta),
+}
+
+impl Method {
+    /// Name for messages and recordings.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Verlet { .. } => "Verlet",
+            Self::Rk4 { .. } => "Runge-Kutta 4",
+            Self::DormandPrince { .. } => "Dormand-Prince 5(4)",
+        }
+    }
+
+    /// Order of convergence on smooth problems.
+    pub fn order(&self) -> u32 {
+        match self {
+            Self::Verlet { .. } => 2,
+            Self::Rk4 { .. } => RK4.order,
+            Self::DormandPrince { .. } => DORMAND_PRINCE.order,
+        }
+    }
+
+    /// Largest stable h/τ of a fixed step, without reserve; none with error control.
+    pub fn stability_limit(&self) -> Option<f64> {
+        match self {
+            Self::Verlet { .. } => Some(verlet::LIMIT),
+            Self::Rk4 { .. } => Some(runge_kutta::RK4_LIMIT),
+            Self::DormandPrince { .. } => None,
+        }
+    }
+
+    /// Longest step \[s\] a run accepts at the time scale τ \[s\]: 0.9 of the stability limit.
+    pub fn longest_step(&self, time_scale: f64) -> f64 {
+        stable_step(self, time_scale)
+    }
+
+    /// Refuses parameters outside their range.
+    ///
+    /// # Errors
+    /// [`IntegrationError::Parameter`] names the first one.
+    pub fn check(&self) -> Result<(), IntegrationError> {
+        match *self {
+            Self::Verlet { step } | Self::Rk4 { step } => {
+                let allowed = step > 0.0 && step.is_finite();
+                require(allowed, "step", step, "positive [s]")
+            }
+            Self::DormandPrince {
+                relative,
+                absolute,
+                absolute_rate,
+                max_step,
+            } => {
+                require(relative >= 0.0, "relative", relative, "zero or positive")?;
+                require(absolute > 0.0, "absolute", absolute, "positive")?;
+                let rate = absolute_rate;
+                require(rate > 0.0, "absolute_rate", rate, "positive")?;
+                let allowed = max_step > 0.0 && max_step.is_finite();
+                require(allowed, "max_step", max_step, "positive [s]")
+            }
+        }
+    }
+
+    /// Starts a run: evaluates the accelerations of the state and commits it.
+    ///
+    /// # Errors
+    /// A parameter out of range, a state of the wrong shape, a step above
+    /// [`longest_step`](Self::longest_step), or accelerations that are not finite.
+    pub fn start<S: SecondOrderSystem>(
+        &self,
+        system: &mut S,
+        state: &mut State,
+    ) -> Result<Stepper<S>, IntegrationError> {
+        self.check()?;
+        Stepper::start(*self, system, state)
+    }
+
+    /// Every method, for tests; all take steps of about the same length \[s\].
+    pub fn specimens(step: f64) -> [Self; 3] {
+        [
+            Self::Verlet { step },
+            Self::Rk4 { step },
+            Self::DormandPrince {
+                relative: 1e-9,
+                absolute: 1e-9,
+                absolute_rate: 1e-9,
+                max_step: step,
+            },
+        ]
+    }
+
+    /// Work space for a system of this size.
+    pub(crate) fn kernel(&self, dofs: usize, quadratures: usize) -> Kernel {
+        match self {
+            Self::Verlet { .. } => Kernel::Verlet(Verlet::new(dofs)),
+            Self::Rk4 { .. } => Kernel::RungeKutta(RungeKutta::new(&RK4, dofs, quadratures)),
+            Self::DormandPrince { .. } => {
+                Kernel::RungeKutta(RungeKutta::new(&DORMAND_PRINCE, dofs, quadratures))
+            }
+        }
+    }
+}
+
+/// Lets a parameter pass or names it.
+fn require(
+    condition: bool,
+    parameter: &'static str,
+    value: f64,
+    allowed: &'static str,
+) -> Result<(), IntegrationError> {
+    if condition {
+        Ok(())
+    } else {
+        Err(IntegrationError::Parameter {
+            parameter,
+            value,
+            allowed,
+        })
+    }
+}

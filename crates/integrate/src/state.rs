@@ -1,0 +1,179 @@
+//! The accepted state and the one before it.
+
+use std::mem::swap;
+
+use crate::dense::{Interval, quintic};
+use crate::{IntegrationError, SecondOrderSystem};
+
+/// The accepted state, with the interval that led to it.
+///
+/// Fields are open for reading and for setting up a run. [`Method::start`](crate::Method::start) fills in the rest;
+/// change a state between steps and it has to be started again.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct State {
+    /// Time t \[s\].
+    pub t: f64,
+    /// Positions q `(dofs)`.
+    pub q: Vec<f64>,
+    /// Velocities q̇ `(dofs)`.
+    pub v: Vec<f64>,
+    /// Accelerations q̈ `(dofs)` the next step begins with; Verlet's are those at the predicted velocities.
+    pub a: Vec<f64>,
+    /// Quantities integrated along with the motion `(quadratures)`.
+    pub quadratures: Vec<f64>,
+    /// Rates of the quadratures the next step begins with.
+    pub(crate) rates: Vec<f64>,
+    /// The accepted state before this one.
+    pub(crate) previous: Snapshot,
+    /// Accelerations and rates at the end of the last step, if a jump has replaced them.
+    pub(crate) before_jump: (Vec<f64>, Vec<f64>),
+    /// Whether a jump has replaced them.
+    pub(crate) jumped: bool,
+}
+
+/// Buffers of one state: a candidate, or the accepted state before the present one.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Snapshot {
+    pub(crate) t: f64,
+    pub(crate) q: Vec<f64>,
+    pub(crate) v: Vec<f64>,
+    pub(crate) a: Vec<f64>,
+    pub(crate) quadratures: Vec<f64>,
+    pub(crate) rates: Vec<f64>,
+}
+
+impl Snapshot {
+    pub(crate) fn new(dofs: usize, quadratures: usize) -> Self {
+        Self {
+            t: 0.0,
+            q: vec![0.0; dofs],
+            v: vec![0.0; dofs],
+            a: vec![0.0; dofs],
+            quadratures: vec![0.0; quadratures],
+            rates: vec![0.0; quadratures],
+        }
+    }
+}
+
+impl State {
+    /// A state at time t \[s\] with positions and velocities `(dofs)`.
+    pub fn new(t: f64, q: Vec<f64>, v: Vec<f64>) -> Self {
+        Self {
+            t,
+            q,
+            v,
+            ..Self::default()
+        }
+    }
+
+    /// Beginning and end \[s\] of the interval [`at`](Self::at) covers: the last accepted step.
+    pub fn interval(&self) -> (f64, f64) {
+        (self.previous.t, self.t)
+    }
+
+    /// Positions and velocities `(dofs)` at a time \[s\] within the last accepted step.
+    ///
+    /// ```text
+    /// q(t) = the polynomial of fifth degree with q, q̇ and q̈ of both ends;  v = dq/dt
+    /// ```
+    ///
+    /// Position to sixth order in the step for a smooth motion and at least to the order of the method.
+    /// Times outside the [`interval`](Self::interval) are taken to its nearer end.
+    pub fn at(&self, t: f64, q: &mut [f64], v: &mut [f64]) {
+        let past = &self.previous;
+        let a = if self.jumped {
+            &self.before_jump.0
+        } else {
+            &self.a
+        };
+        let interval = Interval::new(past.t, self.t, t);
+        let weights = quintic(interval);
+        for i in 0..self.q.len() {
+            let ends = [past.q[i], self.q[i], past.v[i], self.v[i], past.a[i], a[i]];
+            (q[i], v[i]) = weights.apply(ends);
+        }
+    }
+
+    /// Quadratures at a time \[s\] within the last accepted step.
+    ///
+    /// ```text
+    /// the cubic with value and rate of both ends
+    /// ```
+    pub fn quadratures_at(&self, t: f64, quadratures: &mut [f64]) {
+        let past = &self.previous;
+        let rates = if self.jumped {
+            &self.before_jump.1
+        } else {
+            &self.rates
+        };
+        let interval = Interval::new(past.t, self.t, t);
+        for (i, value) in quadratures.iter_mut().enumerate() {
+            *value = interval.cubic(
+                past.quadratures[i],
+                self.quadratures[i],
+                past.rates[i],
+                rates[i],
+            );
+        }
+    }
+
+    /// Brings all buffers to the size of the system.
+    pub(crate) fn fit<S: SecondOrderSystem>(&mut self, system: &S) -> Result<(), IntegrationError> {
+        let (dofs, quadratures) = (system.dofs(), system.quadratures());
+        if self.quadratures.is_empty() {
+            self.quadratures.resize(quadratures, 0.0);
+        }
+        for (what, found, expected) in [
+            ("positions", self.q.len(), dofs),
+            ("velocities", self.v.len(), dofs),
+            ("quadratures", self.quadratures.len(), quadratures),
+        ] {
+            if found != expected {
+                return Err(IntegrationError::Shape {
+                    what,
+                    found,
+                    expected,
+                });
+            }
+        }
+        self.a.resize(dofs, 0.0);
+        self.rates.resize(quadratures, 0.0);
+        self.before_jump = (vec![0.0; dofs], vec![0.0; quadratures]);
+        self.jumped = false;
+        Ok(())
+    }
+
+    /// Makes the present state its own predecessor: the interval has no length.
+    pub(crate) fn forget(&mut self) {
+        self.previous = Snapshot {
+            t: self.t,
+            q: self.q.clone(),
+            v: self.v.clone(),
+            a: self.a.clone(),
+            quadratures: self.quadratures.clone(),
+            rates: self.rates.clone(),
+        };
+        self.jumped = false;
+    }
+
+    /// Makes a candidate the present state and the present one the previous; buffers change hands, nothing is copied.
+    pub(crate) fn accept(&mut self, candidate: &mut Snapshot) {
+        swap(&mut self.previous, candidate);
+        // The candidate now waits in `previous`; exchange it with the present state.
+        let past = &mut self.previous;
+        swap(&mut self.t, &mut past.t);
+        swap(&mut self.q, &mut past.q);
+        swap(&mut self.v, &mut past.v);
+        swap(&mut self.a, &mut past.a);
+        swap(&mut self.quadratures, &mut past.quadratures);
+        swap(&mut self.rates, &mut past.rates);
+        self.jumped = false;
+    }
+
+    /// Keeps the accelerations of the step's end for interpolation and makes room for fresh ones.
+    pub(crate) fn jump(&mut self) {
+        swap(&mut self.a, &mut self.before_jump.0);
+        swap(&mut self.rates, &mut self.before_jump.1);
+        self.jumped = true;
+    }
+}

@@ -1,0 +1,278 @@
+//! One accepted step after the other: try, inspect, perhaps retry, commit.
+
+use std::fmt;
+
+use crate::method::Kernel;
+use crate::runge_kutta::all_finite;
+use crate::state::{Snapshot, State};
+use crate::step_size::{Controller, FLOOR, Fixed, Tolerance, first_step, shortened, stable_step};
+use crate::{
+    Continuity, IntegrationError, Method, Moment, Quantity, SecondOrderSystem, Statistics, Verdict,
+};
+
+/// An accepted step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// Time \[s\] it began.
+    pub from: f64,
+    /// Time \[s\] it ended.
+    pub to: f64,
+    /// Candidates rejected on the way, by the system or by the error control.
+    pub rejections: u32,
+}
+
+/// Carries a state of one system forward. Made by [`Method::start`].
+pub struct Stepper<S: SecondOrderSystem> {
+    method: Method,
+    kernel: Kernel,
+    pace: Pace,
+    candidate: Snapshot,
+    record: S::Record,
+    statistics: Statistics,
+}
+
+impl<S: SecondOrderSystem> fmt::Debug for Stepper<S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Stepper")
+            .field("method", &self.method)
+            .field("pace", &self.pace)
+            .field("statistics", &self.statistics)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Who decides on the length of a step.
+#[derive(Clone, Copy, Debug)]
+enum Pace {
+    Fixed(Fixed),
+    Controlled(Controller),
+}
+
+impl<S: SecondOrderSystem> Stepper<S> {
+    /// See [`Method::start`].
+    pub(crate) fn start(
+        method: Method,
+        system: &mut S,
+        state: &mut State,
+    ) -> Result<Self, IntegrationError> {
+        state.fit(system)?;
+        let (dofs, quadratures) = (system.dofs(), system.quadratures());
+        let mut stepper = Self {
+            method,
+            kernel: method.kernel(dofs, quadratures),
+            pace: Pace::Fixed(Fixed::new(0.0)),
+            candidate: Snapshot::new(dofs, quadratures),
+            record: system.new_record(),
+            statistics: Statistics::default(),
+        };
+        stepper.evaluate(system, state)?;
+        let State { t, q, v, .. } = state;
+        if system.commit(*t, q, v, &mut stepper.record) == Continuity::Jump {
+            stepper.statistics.jumps += 1;
+            stepper.evaluate(system, state)?;
+        }
+        state.forget();
+        stepper.pace = first_pace(method, system.time_scale(), state)?;
+        Ok(stepper)
+    }
+
+    /// Takes one step: on return the state is the accepted one and the system has committed it.
+    ///
+    /// The end of the step is the method's choice; sample in between with [`State::at`].
+    ///
+    /// # Errors
+    /// [`IntegrationError::NotFinite`] if the motion or a force ceases to be a number,
+    /// [`IntegrationError::StepUnderflow`] if stability or accuracy ask for vanishing steps. State and system
+    /// stay at the last accepted state; the run cannot go on.
+    pub fn advance(&mut self, system: &mut S, state: &mut State) -> Result<Step, IntegrationError> {
+        let from = state.t;
+        let nominal = match &self.pace {
+            Pace::Fixed(fixed) => fixed.step(),
+            Pace::Controlled(controller) => controller.proposal,
+        };
+        let floor = FLOOR * nominal;
+        let (mut h, mut rejections, mut retries, mut cut_short) = (nominal, 0, 0, false);
+        let error = loop {
+            // Below this the clock would stand still, or the step be mostly rounding.
+            if h <= 4.0 * f64::EPSILON * from.abs() {
+                return Err(IntegrationError::StepUnderflow { t: from, step: h });
+            }
+            let error = self.attempt(system, state, h)?;
+            if error > 1.0 {
+                rejections += 1;
+                self.statistics.error_rejections += 1;
+                if let Pace::Controlled(controller) = &mut self.pace {
+                    h = controller.rejected(h, error);
+                }
+                continue;
+            }
+            match system.inspect(h, &self.record) {
+                Verdict::Retry { at_most } if h > floor * (1.0 + 1e-9) => {
+                    h = shortened(h, at_most, retries, floor);
+                    retries += 1;
+                    rejections += 1;
+                    cut_short = true;
+                    self.statistics.rejections += 1;
+                }
+                Verdict::Accept | Verdict::Retry { .. } => break error,
+            }
+        };
+        if let Pace::Controlled(controller) = &mut self.pace {
+            controller.accepted(h, error, cut_short);
+        }
+        self.accept(system, state, h)?;
+        Ok(Step {
+            from,
+            to: state.t,
+            rejections,
+        })
+    }
+
+    /// Counts so far.
+    pub fn statistics(&self) -> &Statistics {
+        &self.statistics
+    }
+
+    /// The method at work.
+    pub fn method(&self) -> Method {
+        self.method
+    }
+
+    /// Makes a candidate; returns its error in units of the tolerance, zero without error control.
+    fn attempt(&mut self, system: &S, state: &State, h: f64) -> Result<f64, IntegrationError> {
+        let (candidate, record) = (&mut self.candidate, &mut self.record);
+        let (finite, cost) = match &mut self.kernel {
+            Kernel::Verlet(kernel) => (kernel.attempt(system, state, h, candidate, record), 1),
+            Kernel::RungeKutta(kernel) => (
+                kernel.attempt(system, state, h, candidate, record),
+                kernel.cost(),
+            ),
+        };
+        self.statistics.evaluations += cost;
+        if !finite {
+            return Err(culprit(candidate));
+        }
+        Ok(match (&self.kernel, &self.pace) {
+            (Kernel::RungeKutta(kernel), Pace::Controlled(controller)) => {
+                kernel.error(state, h, candidate, controller.tolerance)
+            }
+            _ => 0.0,
+        })
+    }
+
+    /// Makes the candidate the state, commits it, and looks at the stability of what comes next.
+    fn accept(
+        &mut self,
+        system: &mut S,
+        state: &mut State,
+        h: f64,
+    ) -> Result<(), IntegrationError> {
+        state.accept(&mut self.candidate);
+        self.statistics.accept(h);
+        let State { t, q, v, .. } = state;
+        if system.commit(*t, q, v, &mut self.record) == Continuity::Jump {
+            self.statistics.jumps += 1;
+            state.jump();
+            self.evaluate(system, state)?;
+            if let Pace::Controlled(controller) = &mut self.pace {
+                controller.jumped();
+            }
+        }
+        if let Pace::Fixed(fixed) = &mut self.pace {
+            let limit = stable_step(&self.method, system.time_scale());
+            let Some(halvings) = fixed.adapt(limit) else {
+                let (t, step) = (state.t, fixed.step());
+                return Err(IntegrationError::StepUnderflow { t, step });
+            };
+            self.statistics.reductions += u64::from(halvings);
+        }
+        Ok(())
+    }
+
+    /// Accelerations and rates of the state itself.
+    fn evaluate(&mut self, system: &S, state: &mut State) -> Result<(), IntegrationError> {
+        let at = Moment {
+            t: state.t,
+            q: &state.q,
+            v: &state.v,
+        };
+        system.evaluate(at, &mut state.a, &mut state.rates, &mut self.record);
+        self.statistics.evaluations += 1;
+        if [&state.q, &state.v, &state.a, &state.rates]
+            .into_iter()
+            .all(|part| all_finite(part))
+        {
+            Ok(())
+        } else {
+            Err(first_not_finite(
+                state.t,
+                [&state.q, &state.v, &state.a, &state.rates],
+            ))
+        }
+    }
+}
+
+/// The pace a run begins with.
+fn first_pace(method: Method, time_scale: f64, state: &State) -> Result<Pace, IntegrationError> {
+    match method {
+        Method::Verlet { step } | Method::Rk4 { step } => {
+            let limit = stable_step(&method, time_scale);
+            if step <= limit {
+                Ok(Pace::Fixed(Fixed::new(step)))
+            } else {
+                let method = method.name();
+                Err(IntegrationError::StepTooLarge {
+                    step,
+                    limit,
+                    method,
+                })
+            }
+        }
+        Method::DormandPrince {
+            relative,
+            absolute,
+            absolute_rate,
+            max_step,
+        } => {
+            let tolerance = Tolerance {
+                relative,
+                absolute,
+                absolute_rate,
+            };
+            let longest = max_step.min(time_scale);
+            let first = first_step(tolerance, longest, &state.q, &state.v, &state.a);
+            let order = method.order();
+            let controller = Controller::new(tolerance, max_step, first, order);
+            Ok(Pace::Controlled(controller))
+        }
+    }
+}
+
+/// Names the first degree of freedom of a candidate that is not finite; accelerations first, since they infect the rest.
+fn culprit(candidate: &Snapshot) -> IntegrationError {
+    let Snapshot {
+        t,
+        q,
+        v,
+        a,
+        quadratures,
+        ..
+    } = candidate;
+    first_not_finite(*t, [q, v, a, quadratures])
+}
+
+/// Names the first entry that is not finite of positions, velocities, accelerations and quadratures.
+fn first_not_finite(t: f64, [q, v, a, quadratures]: [&Vec<f64>; 4]) -> IntegrationError {
+    let parts = [
+        (Quantity::Acceleration, a),
+        (Quantity::Position, q),
+        (Quantity::Velocity, v),
+        (Quantity::Quadrature, quadratures),
+    ];
+    let found = parts.into_iter().find_map(|(quantity, part)| {
+        let dof = part.iter().position(|value| !value.is_finite())?;
+        Some((quantity, dof))
+    });
+    let (quantity, dof) = found.unwrap_or((Quantity::Velocity, 0));
+    IntegrationError::NotFinite { t, dof, quantity }
+}

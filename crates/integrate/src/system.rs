@@ -1,0 +1,103 @@
+//! What a system has to answer in order to be stepped through time.
+
+/// Where an evaluation happens.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment<'a> {
+    /// Time t \[s\].
+    pub t: f64,
+    /// Positions q `(dofs)`.
+    pub q: &'a [f64],
+    /// Velocities q̇ `(dofs)`.
+    pub v: &'a [f64],
+}
+
+/// Judgement on a candidate step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Verdict {
+    /// The step may be taken.
+    Accept,
+    /// The step went too far.
+    Retry {
+        /// Estimate of the longest acceptable step \[s\].
+        ///
+        /// A hint: the next try is no longer than 0.9 of the last, from the third on no
+        /// longer than half of it, and never below a thousandth of the nominal step, where every
+        /// step is accepted. Anything that is not a positive number counts as zero.
+        at_most: f64,
+    },
+}
+
+/// Whether the accelerations of an accepted state survive its commit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Continuity {
+    /// They do: the next step uses them as they are.
+    Smooth,
+    /// They do not: the next step begins with a fresh evaluation.
+    Jump,
+}
+
+/// A system of second order with memory.
+///
+/// ```text
+/// q̈ = a(t, q, q̇; memory)
+/// ```
+///
+/// Memory is whatever the forces depend on besides t, q and q̇: the speed at which a contact
+/// began, the gap a roller sits in. It is constant during a step and advances in
+/// [`commit`](Self::commit) only. Constraints, if any, are already satisfied by a.
+pub trait SecondOrderSystem {
+    /// What one evaluation leaves behind for [`inspect`](Self::inspect) and [`commit`](Self::commit): work space, gaps and rates of contacts.
+    type Record;
+
+    /// A record large enough for every evaluation of this system.
+    fn new_record(&self) -> Self::Record;
+
+    /// Number of degrees of freedom.
+    fn dofs(&self) -> usize;
+
+    /// Number of scalar quantities integrated along with the motion, such as the work of a motor.
+    fn quadratures(&self) -> usize {
+        0
+    }
+
+    /// Accelerations a `(dofs)` and the rates of the quadratures `(quadratures)` at a moment.
+    ///
+    /// Pure: called several times a step, on trial states too. Must write every entry of `a` and `rates`, and may
+    /// leave anything in the record. Verlet asks with velocities predicted to first order.
+    fn evaluate(&self, at: Moment<'_>, a: &mut [f64], rates: &mut [f64], record: &mut Self::Record);
+
+    /// Judges a candidate step of size h \[s\] by the evaluation at its end.
+    fn inspect(&self, h: f64, end: &Self::Record) -> Verdict {
+        let _ = (h, end);
+        Verdict::Accept
+    }
+
+    /// Takes an accepted state and the record of its evaluation.
+    ///
+    /// The only method that changes memory; it may swap with the record, and may project q and v. Called
+    /// once for the initial state, then once after each accepted step, never for a rejected one. Values it writes must be
+    /// finite; if they move the state by more than rounding the answer is [`Continuity::Jump`].
+    fn commit(
+        &mut self,
+        t: f64,
+        q: &mut [f64],
+        v: &mut [f64],
+        end: &mut Self::Record,
+    ) -> Continuity {
+        let _ = (t, q, v, end);
+        Continuity::Smooth
+    }
+
+    /// Time scale τ \[s\] of the fastest mode in the present state; infinity when unknown.
+    ///
+    /// ```text
+    /// τ = 1/ω                    undamped mode of frequency ω
+    /// τ = 1/(λ + √(λ² + ω²))     mode with damping λ = c/m
+    /// ```
+    ///
+    /// h = 2τ is then the exact limit of Verlet, which lags the velocity and tolerates half the
+    /// damping other methods do, and a safe one for Runge–Kutta. Asked after each accepted step: keep it a field.
+    fn time_scale(&self) -> f64 {
+        f64::INFINITY
+    }
+}

@@ -1,0 +1,249 @@
+//! Where the rollers lie before anything pulls at them.
+
+use chaindrive_geometry::{
+    ArcSpline, Closing, Piece, Point, Side, Vector, Wheel, WheelKind, close_by_motion,
+    close_by_strain,
+};
+
+use super::{Fitting, slack};
+use crate::drive::{
+    Adjust, Fit, Guide, GuideSupport, Layout, Parts, Stop, Support, Tighten, Touches,
+};
+use crate::system::Laid;
+use crate::{AssemblyError, Carrier, Chain, Drive};
+
+/// Strain of a chain laid straight below which it is taken as slack rather than compressed.
+const SLACK: f64 = -1e-6;
+
+/// Lays the chain as the drive's layout says.
+pub(super) fn lay(drive: &Drive) -> Result<(Laid, Option<Fitting>), AssemblyError> {
+    match &drive.layout {
+        Layout::Points { positions, .. } => {
+            let parts = drive.parts().clone();
+            let laid = Laid {
+                gap_angles: parts.sprockets.iter().map(|s| s.gap_angle).collect(),
+                route: Vec::new(),
+                positions: positions.clone(),
+                parts,
+            };
+            Ok((laid, None))
+        }
+        Layout::Route { stops, phase, fit } => around(drive.parts(), stops, *phase, fit),
+    }
+}
+
+fn around(
+    parts: &Parts,
+    stops: &[Stop],
+    phase: f64,
+    fit: &Fit,
+) -> Result<(Laid, Option<Fitting>), AssemblyError> {
+    let chain = &parts.chain;
+    let pitch = chain.lengths.iter().sum::<f64>() / chain.links() as f64;
+    let links = u32::try_from(chain.links()).map_err(|_| AssemblyError::Layout {
+        problem: format!("{} links are more than a chain can have", chain.links()),
+    })?;
+    let mean_stiffness =
+        chain.links() as f64 / chain.stiffness.iter().map(|k| 1.0 / k).sum::<f64>();
+    // ε₀ = T₀ / (k p)
+    let tightening = fit.pretension / (mean_stiffness * pitch);
+    let by_travel = fit.tighten == Tighten::Travel;
+
+    let (travel, moved, closing, strain) = match &fit.adjust {
+        Adjust::Nothing => {
+            let wheels = wheels(parts, stops)?;
+            let (strain, closing) = close_by_strain(&wheels, pitch, links, phase)?;
+            (0.0, parts.clone(), closing, strain)
+        }
+        adjust => {
+            let strain = if by_travel { tightening } else { 0.0 };
+            let within = match adjust {
+                Adjust::Sprocket { within, .. } | Adjust::Tensioner { within, .. } => *within,
+                Adjust::Nothing => 0.0,
+            };
+            // The wheels move without failing where the parts at rest have made wheels.
+            wheels(parts, stops)?;
+            let mut moving = |travel: f64| {
+                let moved = shifted(parts, adjust, travel);
+                wheels(&moved, stops).unwrap_or_default()
+            };
+            let range = (-within, within);
+            let (travel, _, closing) =
+                close_by_motion(pitch, strain, links, phase, &mut moving, range)?;
+            (travel, shifted(parts, adjust, travel), closing, strain)
+        }
+    };
+    let wheels = wheels(&moved, stops)?;
+    let slack = strain < SLACK && fit.pretension <= 0.0;
+    let (positions, closing) = if slack {
+        let closing = Closing::march(&wheels, pitch, phase)?;
+        let down = parts.gravity;
+        (
+            slack::sagging(&wheels, &closing, pitch, links, down)?,
+            closing,
+        )
+    } else {
+        let places = closing.positions(&wheels, pitch * (1.0 + strain))?;
+        (
+            places.into_iter().map(|place| place.position).collect(),
+            closing,
+        )
+    };
+
+    let mut gap_angles: Vec<f64> = moved.sprockets.iter().map(|s| s.gap_angle).collect();
+    let mut route = Vec::new();
+    for (stop, seat) in stops.iter().zip(&closing.seats) {
+        if let Stop::Sprocket(index) = stop {
+            gap_angles[*index] = seat.first_angle;
+            route.push(*index);
+        }
+    }
+    let mut moved = moved;
+    if fit.pretension > 0.0 && !by_travel {
+        // ℓ₀ = p (1 + ε) / (1 + ε₀): the laid chain then carries T₀ in every link.
+        let scale = (1.0 + strain) / (1.0 + tightening);
+        for length in &mut moved.chain.lengths {
+            *length *= scale;
+        }
+    }
+    let fitting = Fitting {
+        seated: closing.seats.iter().map(|seat| seat.pitches).collect(),
+        spans: closing.spans.clone(),
+        strain,
+        travel,
+    };
+    let laid = Laid {
+        parts: moved,
+        positions,
+        gap_angles,
+        route,
+    };
+    Ok((laid, Some(fitting)))
+}
+
+/// The stops as wheels of the route.
+fn wheels(parts: &Parts, stops: &[Stop]) -> Result<Vec<Wheel>, AssemblyError> {
+    let centre = |stop: &Stop| match stop {
+        Stop::Sprocket(i) => parts.sprockets[*i].centre,
+        Stop::Guide(i) => {
+            let pieces = parts.guides[*i].face.pieces();
+            pieces[pieces.len() / 2].point(0.5)
+        }
+    };
+    stops
+        .iter()
+        .enumerate()
+        .map(|(place, stop)| match stop {
+            Stop::Sprocket(index) => {
+                let sprocket = &parts.sprockets[*index];
+                Ok(Wheel {
+                    centre: sprocket.centre,
+                    radius: sprocket.gap.pitch_radius,
+                    side: sprocket.side,
+                    kind: WheelKind::Toothed {
+                        teeth: sprocket.gap.teeth,
+                    },
+                })
+            }
+            Stop::Guide(index) => {
+                let before = centre(&stops[(place + stops.len() - 1) % stops.len()]);
+                let after = centre(&stops[(place + 1) % stops.len()]);
+                guide_wheel(&parts.guides[*index], &parts.chain, after - before)
+            }
+        })
+        .collect()
+}
+
+/// The longest bulging arc of a guide as a smooth wheel of the route.
+fn guide_wheel(guide: &Guide, chain: &Chain, travel: Vector) -> Result<Wheel, AssemblyError> {
+    let arcs = guide.face.pieces().iter().filter_map(|piece| match piece {
+        Piece::Arc(arc) if arc.sweep > 0.0 => Some(arc),
+        _ => None,
+    });
+    let longest = arcs.max_by(|a, b| (a.radius * a.sweep).total_cmp(&(b.radius * b.sweep)));
+    let arc = longest.ok_or_else(|| AssemblyError::Guide {
+        guide: guide.name.clone(),
+        problem: "has no bulging arc that a chain could follow; give its face one, or take it off the route".into(),
+    })?;
+    let half_pitch = 0.5 * chain.pitch;
+    let radius = match guide.touches {
+        Touches::Rollers => arc.radius + 0.5 * chain.roller_diameter,
+        Touches::Eyes => arc.radius + 0.5 * chain.plate_height,
+        // R_v = √((R_g + h/2)² + (p/2)²)
+        Touches::Plates => (arc.radius + 0.5 * chain.plate_height).hypot(half_pitch),
+    };
+    let middle = arc.start_angle + 0.5 * arc.sweep;
+    let normal = Vector::new(middle.cos(), middle.sin());
+    // The chain passes on the side of the normal: the wheel lies left where that is the right.
+    let normal_is_left = travel.x * normal.y - travel.y * normal.x > 0.0;
+    Ok(Wheel {
+        centre: arc.centre,
+        radius,
+        side: if normal_is_left {
+            Side::Right
+        } else {
+            Side::Left
+        },
+        kind: WheelKind::Smooth,
+    })
+}
+
+/// The parts with the adjusted body, and all it carries, moved by `travel`.
+fn shifted(parts: &Parts, adjust: &Adjust, travel: f64) -> Parts {
+    let mut parts = parts.clone();
+    match adjust {
+        Adjust::Nothing => {}
+        Adjust::Sprocket {
+            sprocket,
+            direction,
+            ..
+        } => {
+            parts.sprockets[*sprocket].centre += direction.normalize() * travel;
+        }
+        Adjust::Tensioner { tensioner, .. } => {
+            let carrier = parts.tensioners[*tensioner].carrier;
+            let place = |p: Point| carried(&carrier, p, travel);
+            for sprocket in &mut parts.sprockets {
+                if sprocket.support == Support::Tensioner(*tensioner) {
+                    sprocket.centre = place(sprocket.centre);
+                }
+            }
+            for guide in &mut parts.guides {
+                if guide.support == GuideSupport::Tensioner(*tensioner) {
+                    guide.face = moved_face(&guide.face, &carrier, travel);
+                }
+            }
+            if let Carrier::Arm {
+                plunger: Some(plunger),
+                ..
+            } = &mut parts.tensioners[*tensioner].carrier
+            {
+                plunger.at = place(plunger.at);
+            }
+        }
+    }
+    parts
+}
+
+fn carried(carrier: &Carrier, p: Point, travel: f64) -> Point {
+    match carrier {
+        Carrier::Slider { direction } => p + direction * travel,
+        Carrier::Arm { pivot, .. } => {
+            let arm = p - pivot;
+            let (s, c) = travel.sin_cos();
+            pivot + Vector::new(c * arm.x - s * arm.y, s * arm.x + c * arm.y)
+        }
+    }
+}
+
+fn moved_face(face: &ArcSpline, carrier: &Carrier, travel: f64) -> ArcSpline {
+    let pieces = face.pieces().iter().map(|piece| match carrier {
+        Carrier::Slider { direction } => piece.translated(direction * travel),
+        Carrier::Arm { pivot, .. } => piece
+            .translated(-pivot.coords)
+            .rotated(travel)
+            .translated(pivot.coords),
+    });
+    // A rigid motion keeps every property that was checked when the face was made.
+    ArcSpline::open(&pieces.collect::<Vec<_>>()).unwrap_or_else(|_| face.clone())
+}

@@ -1,0 +1,260 @@
+//! Contact terms of the static balance, from the scalar form of the profiles.
+
+use chaindrive_geometry::{Point, Vector};
+use nalgebra::SVector;
+
+use super::{Sum, at_rest};
+use crate::contact::{Contacts, Frame, PlateContact, Shape};
+use crate::profile::Probe;
+use crate::system::{RailContact, RailSupport, Slide, WheelRotation, WheelSupport};
+use crate::{Carrier, System};
+
+/// State entries that place a body: its angle, and its centre by (entry, derivative, second
+/// derivative) of the centre with respect to the entry.
+#[derive(Clone, Default)]
+struct Mount {
+    angle: Option<usize>,
+    centre: Vec<(usize, Vector, Vector)>,
+}
+
+/// Adds the energies of all closed contacts.
+pub(super) fn add_contacts(system: &System, q: &[f64], sum: &mut Sum<'_>) {
+    let still = vec![0.0; q.len()];
+    let at = at_rest(q, &still);
+    for (index, wheel) in system.wheels.iter().enumerate() {
+        let course = wheel.course(0.0, q, &still);
+        let (origin, _, _) = wheel.centre_course(0.0, q, &still, &system.slides);
+        let frame = Frame {
+            origin,
+            turn: [course.position.cos(), course.position.sin()],
+            velocity: Vector::zeros(),
+            spin: 0.0,
+        };
+        let mut mount = Mount::default();
+        if let WheelRotation::Free { dof, .. } = wheel.rotation {
+            mount.angle = Some(dof);
+        }
+        match &wheel.support {
+            WheelSupport::Springs { dof, .. } => {
+                mount.centre = vec![
+                    (*dof, Vector::x(), Vector::zeros()),
+                    (dof + 1, Vector::y(), Vector::zeros()),
+                ];
+            }
+            WheelSupport::Carried(slide) => {
+                mount.centre = carried(&system.slides[*slide], origin);
+            }
+            WheelSupport::Fixed | WheelSupport::Prescribed { .. } => {}
+        }
+        sum.balance.contacts[index] = add_circles(system, &wheel.contacts, &frame, &mount, q, sum);
+    }
+    for rail in &system.rails {
+        let frame = rail.frame(at.t, at.q, at.v, &system.slides);
+        let mut mount = Mount::default();
+        if let RailSupport::Carried(index) = &rail.support {
+            let slide = &system.slides[*index];
+            match (&slide.carrier, slide.dof) {
+                (Carrier::Slider { .. }, Some(_)) => mount.centre = carried(slide, frame.origin),
+                (Carrier::Arm { .. }, dof) => mount.angle = dof,
+                _ => {}
+            }
+        }
+        match &rail.contact {
+            RailContact::Circles(contacts) => {
+                add_circles(system, contacts, &frame, &mount, q, sum);
+            }
+            RailContact::Plates(plates) => add_plates(system, plates, &frame, &mount, q, sum),
+        }
+    }
+}
+
+/// How a carried centre moves with its carrier.
+fn carried(slide: &Slide, place: Point) -> Vec<(usize, Vector, Vector)> {
+    let Some(dof) = slide.dof else {
+        return Vec::new();
+    };
+    match &slide.carrier {
+        Carrier::Slider { direction } => vec![(dof, *direction, Vector::zeros())],
+        Carrier::Arm { pivot, .. } => {
+            let arm = place - pivot;
+            vec![(dof, Vector::new(-arm.y, arm.x), -arm)]
+        }
+    }
+}
+
+fn add_circles(
+    system: &System,
+    contacts: &Contacts,
+    frame: &Frame,
+    mount: &Mount,
+    q: &[f64],
+    sum: &mut Sum<'_>,
+) -> usize {
+    let n = system.stride;
+    let mut closed = 0;
+    contacts.for_each_slot(|_, roller| {
+        let place = Point::new(q[roller], q[n + roller]);
+        for probe in contacts.probes(frame, place) {
+            if probe.gap < 0.0 {
+                closed += 1;
+                let law = &contacts.surface.law;
+                let push = Push {
+                    force: law.elastic_force(-probe.gap),
+                    stiffness: law.stiffness(-probe.gap),
+                };
+                let pins = [(roller, 1.0)];
+                add_one(&pins, place - frame.origin, &probe, push, mount, n, sum);
+            }
+        }
+    });
+    closed
+}
+
+fn add_plates(
+    system: &System,
+    plates: &PlateContact,
+    frame: &Frame,
+    mount: &Mount,
+    q: &[f64],
+    sum: &mut Sum<'_>,
+) {
+    let n = system.stride;
+    let place = |i: usize| Point::new(q[i], q[n + i]);
+    for link in 0..system.links.count {
+        let pins = [link, (link + 1) % system.rollers];
+        let [a, b] = pins.map(|pin| frame.local(place(pin), plates.reference));
+        let mut point = plates.nearest(a, b);
+        if point.probe.gap >= 0.0 {
+            continue;
+        }
+        let law = &plates.surface.law;
+        let push = Push {
+            force: point.weight * law.elastic_force(-point.probe.gap),
+            stiffness: point.weight * law.stiffness(-point.probe.gap),
+        };
+        // The plate rolls on the face: its flat edge adds no curvature of its own to first order.
+        point.probe.bend = 0.0;
+        point.probe.normal = frame.outward(point.probe.normal);
+        let d = (place(pins[0]) - frame.origin) * (1.0 - point.share)
+            + (place(pins[1]) - frame.origin) * point.share;
+        let shares = [(pins[0], 1.0 - point.share), (pins[1], point.share)];
+        add_one(&shares, d, &point.probe, push, mount, n, sum);
+    }
+}
+
+/// Elastic force and tangent stiffness of one contact.
+#[derive(Clone, Copy)]
+struct Push {
+    force: f64,
+    stiffness: f64,
+}
+
+/// Adds one contact: g(δ) J Jᵀ′ and the geometric terms.
+///
+/// ```text
+/// J = ∂δ/∂(x, y, θ, c) = (m, −m·(ẑ×d), −m),    m = −n
+/// H = k J Jᵀ + F S,   S_xx = κ t tᵀ,   S_xθ = ẑ×m − κ (t·ẑ×d) t,   S_θθ = κ (t·ẑ×d)² − m·d
+/// ```
+fn add_one(
+    pins: &[(usize, f64)],
+    d: Vector,
+    probe: &Probe,
+    push: Push,
+    mount: &Mount,
+    n: usize,
+    sum: &mut Sum<'_>,
+) {
+    let m = -probe.normal;
+    let t = Vector::new(-m.y, m.x);
+    let kappa = -probe.bend;
+    let around = Vector::new(-d.y, d.x);
+    let lever = t.dot(&around);
+    let turned = t;
+
+    // Entries that move the contact: gradient of δ, and coefficients of (x, θ) for the geometry.
+    let mut moves: Vec<(usize, f64, Vector, f64)> = Vec::new();
+    for &(pin, share) in pins {
+        for axis in 0..2 {
+            let unit = if axis == 0 { Vector::x() } else { Vector::y() } * share;
+            moves.push((pin + axis * n, m.dot(&unit), unit, 0.0));
+        }
+    }
+    for (entry, derivative, _) in &mount.centre {
+        moves.push((*entry, -m.dot(derivative), -derivative, 0.0));
+    }
+    if let Some(entry) = mount.angle {
+        moves.push((entry, -m.dot(&around), Vector::zeros(), 1.0));
+    }
+    let mixed: Vector = turned - t * (kappa * lever);
+    let twice = kappa * lever * lever - m.dot(&d);
+    for (i, (entry, slope, shift, turn)) in moves.iter().enumerate() {
+        sum.force(*entry, push.force * slope);
+        for (other, other_slope, other_shift, other_turn) in &moves {
+            let geometry = kappa * t.dot(shift) * t.dot(other_shift)
+                + mixed.dot(shift) * other_turn
+                + mixed.dot(other_shift) * turn
+                + twice * turn * other_turn;
+            sum.stiffen(
+                *entry,
+                *other,
+                push.stiffness * slope * other_slope + push.force * geometry,
+            );
+        }
+        debug_assert!(i < 8, "a contact moves with a handful of entries");
+    }
+    for (entry, _, second) in &mount.centre {
+        sum.stiffen(*entry, *entry, -push.force * m.dot(second));
+    }
+}
+
+impl Contacts {
+    /// The surfaces that a roller at `place` faces: one, or both halves of a narrow gap; normals
+    /// in the world.
+    pub(crate) fn probes(&self, frame: &Frame, place: Point) -> Vec<Probe> {
+        let d = place - frame.origin;
+        let [c, s] = frame.turn;
+        match &self.shape {
+            Shape::Rail {
+                profile, reference, ..
+            } => {
+                let mut probe = profile.probe(frame.local(place, *reference), self.radius);
+                probe.normal = frame.outward(probe.normal);
+                vec![probe]
+            }
+            Shape::Teeth(teeth) => {
+                let reach = teeth.tip_radius + self.radius;
+                if d.norm_squared() > reach * reach {
+                    return Vec::new();
+                }
+                let pitch = std::f64::consts::TAU / f64::from(teeth.count);
+                let w = Vector::new(c * d.x + s * d.y, c * d.y - s * d.x);
+                let axis = (w.y.atan2(w.x) / pitch).round() * pitch;
+                let (es, ec) = axis.sin_cos();
+                let (x, y) = (w.x * es - w.y * ec, w.x * ec + w.y * es);
+                let world = |mut probe: Probe, side: f64| {
+                    let v = SVector::<f64, 2>::new(side * probe.normal.x, probe.normal.y);
+                    // gap x axis = y axis turned by −90°
+                    let in_wheel = Vector::new(v.x * es + v.y * ec, v.y * es - v.x * ec);
+                    probe.normal = frame.outward(in_wheel);
+                    probe
+                };
+                if teeth.halves.two_sided {
+                    let halves = [(1.0, &teeth.halves.right), (-1.0, &teeth.halves.left)];
+                    let found = halves.into_iter().filter_map(|(side, half)| {
+                        let probe = half.probe(Point::new(side * x, y), self.radius);
+                        let seat = probe.feature == 0 && half.features[0].sign < 0.0;
+                        (!seat || side * x >= 0.0).then(|| world(probe, side))
+                    });
+                    found.collect()
+                } else {
+                    let side = if x > 0.0 { 1.0 } else { -1.0 };
+                    let probe = teeth
+                        .halves
+                        .right
+                        .probe(Point::new(x.abs(), y), self.radius);
+                    vec![world(probe, side)]
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! The particle chain: point masses at the rollers, joined by spring-damper links.
+
+use crate::DriveError;
+
+/// How the two ends of the chain are joined.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ends {
+    /// The last link returns to roller 0: as many rollers as links.
+    Closed,
+    /// A strand with one roller more than links; what happens at its first and last roller.
+    Open([End; 2]),
+}
+
+/// What happens at one end of an open strand.
+#[derive(Clone, Debug, PartialEq)]
+pub enum End {
+    /// The end roller moves freely.
+    Free,
+    /// The end roller stays where it was laid.
+    Fixed,
+    /// The end roller follows a motion from where it was laid.
+    Driven {
+        /// Displacement along x \[m\].
+        x: crate::Motion,
+        /// Displacement along y \[m\].
+        y: crate::Motion,
+    },
+    /// A constant force pulls at the end roller.
+    Pulled {
+        /// Force \[N\], (x, y).
+        force: chaindrive_geometry::Vector,
+    },
+}
+
+/// A chain of `links` spring-damper links between point masses.
+///
+/// ```text
+/// T = k (ℓ − p) + d ℓ̇          along the link, tension positive
+/// ```
+///
+/// Link i joins roller i and roller i + 1 (for a closed chain, the last one returns to roller 0).
+/// The spring acts in tension and in compression: a strand that is pushed folds, as a
+/// chain does, because its joints carry no moment.
+///
+/// # Source
+/// The lumped model of S. L. Pedersen, J. M. Hansen and J. A. C. Ambrósio, *Multibody Syst.
+/// Dyn.* **12**, 2004, 285–301.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chain {
+    /// Nominal pitch \[m\], positive: what the sprockets are cut for.
+    pub pitch: f64,
+    /// Unstressed length of every link \[m\], (links,): wear and scatter live here.
+    pub lengths: Vec<f64>,
+    /// Stiffness of every link \[N/m\], (links,), positive.
+    pub stiffness: Vec<f64>,
+    /// Damping of every link \[N s/m\], (links,), not negative.
+    pub damping: Vec<f64>,
+    /// Mass at every roller \[kg\], (rollers,), positive.
+    pub masses: Vec<f64>,
+    /// Roller diameter \[m\], positive.
+    pub roller_diameter: f64,
+    /// Height of the link plates \[m\], positive: what a guide for plates touches.
+    pub plate_height: f64,
+    /// How the ends are joined.
+    pub ends: Ends,
+}
+
+impl Chain {
+    /// Number of links.
+    pub fn links(&self) -> usize {
+        self.lengths.len()
+    }
+
+    /// Number of rollers.
+    pub fn rollers(&self) -> usize {
+        match self.ends {
+            Ends::Closed => self.links(),
+            Ends::Open(_) => self.links() + 1,
+        }
+    }
+
+    /// Whether the last link returns to roller 0.
+    pub fn is_closed(&self) -> bool {
+        self.ends == Ends::Closed
+    }
+
+    /// Names every parameter out of range.
+    pub fn problems(&self) -> Vec<DriveError> {
+        let mut problems = Vec::new();
+        let mut need = |ok: bool, path: String, value: f64, allowed: &'static str| {
+            problems.extend(DriveError::require(ok, &path, value, allowed).err());
+        };
+        let positive = |value: f64| value > 0.0 && value.is_finite();
+        let least = if self.is_closed() { 3 } else { 1 };
+        need(
+            self.links() >= least,
+            "chain.links".into(),
+            self.links() as f64,
+            "at least 3 in a closed chain, 1 in a strand",
+        );
+        need(
+            positive(self.pitch),
+            "chain.pitch".into(),
+            self.pitch,
+            "positive [m]",
+        );
+        need(
+            positive(self.roller_diameter),
+            "chain.roller_diameter".into(),
+            self.roller_diameter,
+            "positive [m]",
+        );
+        need(
+            positive(self.plate_height),
+            "chain.plate_height".into(),
+            self.plate_height,
+            "positive [m]",
+        );
+        let counts = [
+            ("stiffness", self.stiffness.len(), self.links()),
+            ("damping", self.damping.len(), self.links()),
+            ("masses", self.masses.len(), self.rollers()),
+        ];
+        for (name, found, wanted) in counts {
+            need(
+                found == wanted,
+                format!("chain.{name}"),
+                found as f64,
+                "one value for every link (stiffness, damping) or roller (masses)",
+            );
+        }
+        type Range = fn(f64) -> bool;
+        let arrays: [(&str, &[f64], Range, &'static str); 4] = [
+            ("lengths", &self.lengths, |v| v > 0.0, "positive [m]"),
+            ("stiffness", &self.stiffness, |v| v > 0.0, "positive [N/m]"),
+            (
+                "damping",
+                &self.damping,
+                |v| v >= 0.0,
+                "not negative [N s/m]",
+            ),
+            ("masses", &self.masses, |v| v > 0.0, "positive [kg]"),
+        ];
+        for (name, values, inside, allowed) in arrays {
+            let bad = values.iter().position(|&v| !(v.is_finite() && inside(v)));
+            if let Some(i) = bad {
+                need(false, format!("chain.{name}[{i}]"), values[i], allowed);
+            }
+        }
+        problems
+    }
+}

@@ -1,0 +1,294 @@
+//! Cross-checks between the parts of a drive.
+
+use std::collections::HashSet;
+
+use chaindrive_geometry::{Point, Vector};
+
+use crate::drive::{
+    Adjust, GuideSupport, Layout, Parts, Rotation, Sprocket, Stop, Support, Surface,
+};
+use crate::{DriveError, Ends};
+
+/// Every reason why `parts` is not a drive.
+pub(crate) fn problems(parts: &Parts) -> Vec<DriveError> {
+    let mut found = parts.chain.problems();
+    for sprocket in &parts.sprockets {
+        found.extend(sprocket_problems(sprocket, parts.tensioners.len()));
+    }
+    for guide in &parts.guides {
+        let place = format!("guides.{}", guide.name);
+        found.extend(surface_problems(&guide.surface, &place));
+        match &guide.support {
+            GuideSupport::Fixed => {}
+            GuideSupport::Prescribed { x, y } => {
+                found.extend(x.check(&format!("{place}.support.x")).err());
+                found.extend(y.check(&format!("{place}.support.y")).err());
+            }
+            GuideSupport::Tensioner(index) => {
+                found.extend(reference(
+                    &place,
+                    "tensioner",
+                    *index,
+                    parts.tensioners.len(),
+                ));
+            }
+        }
+    }
+    for tensioner in &parts.tensioners {
+        found.extend(tensioner.problems());
+    }
+    found.extend(finite(parts.gravity, "gravity"));
+    found.extend(duplicate_names(parts));
+    found.extend(overlaps(&parts.sprockets));
+    found.extend(layout_problems(parts));
+    found
+}
+
+fn sprocket_problems(sprocket: &Sprocket, tensioners: usize) -> Vec<DriveError> {
+    let place = format!("sprockets.{}", sprocket.name);
+    let mut found = surface_problems(&sprocket.surface, &place);
+    let mut need = |ok: bool, what: &str, value: f64, allowed: &'static str| {
+        found.extend(DriveError::require(ok, &format!("{place}.{what}"), value, allowed).err());
+    };
+    let positive = |value: f64| value > 0.0 && value.is_finite();
+    let not_negative = |value: f64| value >= 0.0 && value.is_finite();
+    let free = matches!(sprocket.rotation, Rotation::Free { .. });
+    need(
+        not_negative(sprocket.inertia) && (!free || sprocket.inertia > 0.0),
+        "inertia",
+        sprocket.inertia,
+        "positive [kg m²] where the sprocket turns freely, not negative elsewhere",
+    );
+    let floats = matches!(sprocket.support, Support::Springs { .. });
+    need(
+        not_negative(sprocket.mass) && (!floats || sprocket.mass > 0.0),
+        "mass",
+        sprocket.mass,
+        "positive [kg] where the centre is free, not negative elsewhere",
+    );
+    need(
+        sprocket.gap_angle.is_finite(),
+        "gap_angle",
+        sprocket.gap_angle,
+        "finite [rad]",
+    );
+    if let Support::Springs { stiffness, damping } = &sprocket.support {
+        for (axis, (k, c)) in ["x", "y"].iter().zip(stiffness.iter().zip(damping)) {
+            need(
+                not_negative(*k),
+                &format!("support.stiffness.{axis}"),
+                *k,
+                "not negative [N/m]",
+            );
+            need(
+                not_negative(*c),
+                &format!("support.damping.{axis}"),
+                *c,
+                "not negative [N s/m]",
+            );
+        }
+        need(
+            positive(sprocket.mass),
+            "mass",
+            sprocket.mass,
+            "positive [kg]",
+        );
+    }
+    match &sprocket.support {
+        Support::Prescribed { x, y } => {
+            found.extend(x.check(&format!("{place}.support.x")).err());
+            found.extend(y.check(&format!("{place}.support.y")).err());
+        }
+        Support::Tensioner(index) => {
+            found.extend(reference(&place, "tensioner", *index, tensioners));
+        }
+        Support::Fixed | Support::Springs { .. } => {}
+    }
+    match &sprocket.rotation {
+        Rotation::Prescribed(motion) => {
+            found.extend(motion.check(&format!("{place}.motion")).err());
+        }
+        Rotation::Free { drive, load } => {
+            for (name, torques) in [("drive", drive), ("load", load)] {
+                for (i, torque) in torques.iter().enumerate() {
+                    found.extend(torque.check(&format!("{place}.{name}[{i}]")).err());
+                }
+            }
+        }
+    }
+    found.extend(finite(sprocket.centre.coords, &format!("{place}.centre")));
+    found
+}
+
+fn surface_problems(surface: &Surface, place: &str) -> Vec<DriveError> {
+    let law = |source| DriveError::Law {
+        path: format!("{place}.contact"),
+        source,
+    };
+    let mut found = Vec::new();
+    found.extend(surface.law.check().map_err(law).err());
+    found.extend(surface.friction.check().map_err(law).err());
+    found
+}
+
+fn finite(v: Vector, path: &str) -> Option<DriveError> {
+    let bad = v.iter().copied().find(|value| !value.is_finite())?;
+    DriveError::require(false, path, bad, "finite").err()
+}
+
+fn reference(path: &str, kind: &'static str, index: usize, known: usize) -> Option<DriveError> {
+    (index >= known).then(|| DriveError::Reference {
+        path: path.to_owned(),
+        kind,
+        index,
+        known,
+    })
+}
+
+fn duplicate_names(parts: &Parts) -> Vec<DriveError> {
+    let names = parts.sprockets.iter().map(|s| ("sprockets", &s.name));
+    let names = names.chain(parts.guides.iter().map(|g| ("guides", &g.name)));
+    let names = names.chain(parts.tensioners.iter().map(|t| ("tensioners", &t.name)));
+    let mut seen = HashSet::new();
+    names
+        .filter(|entry| !seen.insert(*entry))
+        .map(|(kind, name)| DriveError::Conflict {
+            path: kind.to_owned(),
+            problem: format!("two of them are named `{name}`; names must differ"),
+        })
+        .collect()
+}
+
+/// Sprockets whose teeth would cut into each other.
+fn overlaps(sprockets: &[Sprocket]) -> Vec<DriveError> {
+    let mut found = Vec::new();
+    for (i, first) in sprockets.iter().enumerate() {
+        for second in &sprockets[i + 1..] {
+            let distance = (first.centre - second.centre).norm();
+            let overlap = first.gap.tip_radius + second.gap.tip_radius - distance;
+            if overlap > 0.0 {
+                found.push(DriveError::Overlap {
+                    first: first.name.clone(),
+                    second: second.name.clone(),
+                    overlap,
+                });
+            }
+        }
+    }
+    found
+}
+
+fn layout_problems(parts: &Parts) -> Vec<DriveError> {
+    let conflict = |path: &str, problem: String| DriveError::Conflict {
+        path: path.to_owned(),
+        problem,
+    };
+    match &parts.layout {
+        Layout::Points {
+            positions,
+            velocities,
+        } => {
+            let rollers = parts.chain.rollers();
+            let mut found = Vec::new();
+            for (name, count) in [
+                ("positions", positions.len()),
+                ("velocities", velocities.len()),
+            ] {
+                if count != rollers {
+                    found.push(conflict(
+                        "chain.start",
+                        format!("{count} {name} for {rollers} rollers; give one for each"),
+                    ));
+                }
+            }
+            let numbers = positions
+                .iter()
+                .map(|p: &Point| p.coords)
+                .chain(velocities.iter().copied());
+            found.extend(numbers.filter_map(|v| finite(v, "chain.start")).take(1));
+            found
+        }
+        Layout::Route { stops, phase, fit } => {
+            let mut found = Vec::new();
+            if parts.chain.ends != Ends::Closed {
+                found.push(conflict(
+                    "route",
+                    "an open strand has no route; lay it by `start`".into(),
+                ));
+            }
+            if stops.len() < 2 {
+                found.push(conflict(
+                    "route.stops",
+                    "a loop needs at least two stops".into(),
+                ));
+            }
+            let mut seen = HashSet::new();
+            for stop in stops {
+                if !seen.insert(*stop) {
+                    found.push(conflict("route.stops", format!("{stop:?} stands twice")));
+                }
+                found.extend(match *stop {
+                    Stop::Sprocket(i) => reference("route", "sprocket", i, parts.sprockets.len()),
+                    Stop::Guide(i) => reference("route", "guide", i, parts.guides.len()),
+                });
+            }
+            if !matches!(stops.first(), Some(Stop::Sprocket(_)) | None) {
+                found.push(conflict(
+                    "route.stops",
+                    "the first stop must be a sprocket".into(),
+                ));
+            }
+            found.extend(
+                DriveError::require(
+                    (0.0..=1.0).contains(phase),
+                    "route.phase",
+                    *phase,
+                    "between 0 and 1",
+                )
+                .err(),
+            );
+            found.extend(
+                DriveError::require(
+                    fit.pretension >= 0.0 && fit.pretension.is_finite(),
+                    "route.pretension",
+                    fit.pretension,
+                    "not negative [N]",
+                )
+                .err(),
+            );
+            let within = match fit.adjust {
+                Adjust::Nothing => 1.0,
+                Adjust::Sprocket {
+                    sprocket, within, ..
+                } => {
+                    found.extend(reference(
+                        "route.adjust",
+                        "sprocket",
+                        sprocket,
+                        parts.sprockets.len(),
+                    ));
+                    within
+                }
+                Adjust::Tensioner { tensioner, within } => {
+                    found.extend(reference(
+                        "route.adjust",
+                        "tensioner",
+                        tensioner,
+                        parts.tensioners.len(),
+                    ));
+                    within
+                }
+            };
+            found.extend(
+                DriveError::require(
+                    within > 0.0 && within.is_finite(),
+                    "route.adjust.within",
+                    within,
+                    "positive",
+                )
+                .err(),
+            );
+            found
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! Contact of the rollers with one body: windows, memory and the kernel over them.
+//!
+//! Only rollers near the body are looked at: contiguous runs of them, padded to whole lanes and
+//! renewed every few dozen steps, with a margin that no roller can cross meanwhile. For each
+//! such slot the contact remembers, since the last accepted state, the gap, the closing speed
+//! and, while closed, the inverse of the speed at touch.
+
+mod kernel;
+mod plates;
+mod window;
+
+use chaindrive_contact::{Elastic, Friction, Law, dissipation::Action};
+use chaindrive_geometry::{Point, Vector};
+
+pub(crate) use kernel::Wrench;
+pub(crate) use plates::{PlateContact, PlateTouch};
+pub(crate) use window::{Places, Run};
+
+use crate::drive::Surface;
+use crate::profile::{GapHalves, Profile};
+
+/// The position and motion of the frame in which a profile is given.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame {
+    /// Origin: wheel centre, pivot of an arm, or displaced origin of a rail \[m\].
+    pub(crate) origin: Point,
+    /// Cosine and sine of the rotation.
+    pub(crate) turn: [f64; 2],
+    /// Velocity of the origin \[m/s\].
+    pub(crate) velocity: Vector,
+    /// Angular speed \[rad/s\].
+    pub(crate) spin: f64,
+}
+
+/// What the profile looks like.
+#[derive(Clone, Debug)]
+pub(crate) enum Shape {
+    /// z equal gaps around a wheel; the frame's origin is the wheel centre.
+    Teeth(Teeth),
+    /// One row of features, given about the frame's reference origin.
+    Rail {
+        profile: Profile,
+        /// Where the frame's origin lies in the profile's own coordinates.
+        reference: Point,
+        /// Box around the face in its own coordinates (low, high).
+        bounds: [Point; 2],
+    },
+}
+
+/// The teeth of a wheel.
+#[derive(Clone, Debug)]
+pub(crate) struct Teeth {
+    pub(crate) halves: GapHalves,
+    pub(crate) count: u32,
+    /// tan(π/z): where the next gap begins.
+    pub(crate) tan_half: f64,
+    /// cos and sin of 2π/z.
+    pub(crate) pitch_turn: [f64; 2],
+    /// Tip radius \[m\].
+    pub(crate) tip_radius: f64,
+}
+
+/// All contacts of the chain's rollers with one body.
+#[derive(Clone, Debug)]
+pub(crate) struct Contacts {
+    pub(crate) shape: Shape,
+    pub(crate) surface: Surface,
+    /// Radius of the touching circles \[m\].
+    pub(crate) radius: f64,
+    /// Runs of rollers that can touch.
+    pub(crate) runs: Vec<Run>,
+    /// Number of slots, whole lanes.
+    pub(crate) slots: usize,
+    /// Gap axis of each slot in the wheel frame (teeth only).
+    pub(crate) axis_x: Vec<f64>,
+    pub(crate) axis_y: Vec<f64>,
+    /// State of each slot at the last accepted step, for one or two sides.
+    pub(crate) memory: Touch,
+}
+
+/// Contact state per slot; two-sided profiles hold the left side behind the right one.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Touch {
+    /// Inverse of the closing speed at touch \[s/m\]; zero while open.
+    pub(crate) inverse_onset: Vec<f64>,
+    /// Gap \[m\].
+    pub(crate) gap: Vec<f64>,
+    /// Closing speed \[m/s\].
+    pub(crate) closing: Vec<f64>,
+    /// Normal force \[N\].
+    pub(crate) force: Vec<f64>,
+}
+
+impl Touch {
+    pub(crate) fn resize(&mut self, slots: usize) {
+        for values in [
+            &mut self.inverse_onset,
+            &mut self.gap,
+            &mut self.closing,
+            &mut self.force,
+        ] {
+            values.resize(slots, 0.0);
+        }
+    }
+}
+
+/// The law, taken apart into what the kernel needs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LawNumbers {
+    /// χ of a hysteretic law, otherwise zero.
+    pub(crate) factor: f64,
+    /// Viscous damping, otherwise zero \[N s/m\].
+    pub(crate) damping: f64,
+    /// Floor of the speed at touch \[m/s\], positive.
+    pub(crate) floor: f64,
+    /// Friction coefficient, zero without friction.
+    pub(crate) friction: f64,
+    /// Square of the regularising slip speed \[m²/s²\].
+    pub(crate) slip_speed_squared: f64,
+}
+
+impl LawNumbers {
+    pub(crate) fn new(surface: &Surface) -> Self {
+        let (factor, damping) = match surface.law.dissipation.action() {
+            Action::None => (0.0, 0.0),
+            Action::Hysteretic { factor } => (factor, 0.0),
+            Action::Viscous { damping } => (0.0, damping),
+        };
+        let (friction, slip_speed) = match surface.friction {
+            Friction::None => (0.0, 1.0),
+            Friction::Coulomb(coulomb) => (coulomb.coefficient, coulomb.slip_speed),
+        };
+        Self {
+            factor,
+            damping,
+            // Without hysteresis the speed at touch is only kept, never used.
+            floor: surface.law.onset_floor.max(f64::MIN_POSITIVE.sqrt()),
+            friction,
+            slip_speed_squared: slip_speed * slip_speed,
+        }
+    }
+}
+
+impl Contacts {
+    pub(crate) fn new(shape: Shape, surface: Surface, radius: f64) -> Self {
+        Self {
+            shape,
+            surface,
+            radius,
+            runs: Vec::new(),
+            slots: 0,
+            axis_x: Vec::new(),
+            axis_y: Vec::new(),
+            memory: Touch::default(),
+        }
+    }
+
+    /// Number of sides that a slot looks at.
+    pub(crate) fn sides(&self) -> usize {
+        match &self.shape {
+            Shape::Teeth(teeth) if teeth.halves.two_sided => 2,
+            Shape::Teeth(_) | Shape::Rail { .. } => 1,
+        }
+    }
+
+    /// Largest tangent stiffness \[N/m\] and damping \[N s/m\] of one contact at `depth` \[m\]
+    /// with a touch as slow as the floor.
+    pub(crate) fn hardest(&self, depth: f64) -> (f64, f64) {
+        let law: &Law = &self.surface.law;
+        let numbers = LawNumbers::new(&self.surface);
+        let stiffness = law.stiffness(depth.max(shallow(&law.elastic)));
+        // ∂F/∂δ̇ = χ g/v_in + c
+        let damping = numbers.factor * law.elastic_force(depth) / numbers.floor + numbers.damping;
+        (stiffness, damping)
+    }
+
+    /// Sum of the elastic energies of all closed slots \[J\].
+    pub(crate) fn stored(&self, touch: &Touch) -> f64 {
+        let law = &self.surface.law;
+        touch
+            .gap
+            .iter()
+            .filter(|&&gap| gap < 0.0)
+            .map(|&gap| law.energy(-gap))
+            .sum()
+    }
+}
+
+/// A depth at which laws that start softly have some stiffness \[m\].
+fn shallow(elastic: &Elastic) -> f64 {
+    match elastic {
+        Elastic::Power(_) | Elastic::Johnson(_) => 1e-7,
+    }
+}

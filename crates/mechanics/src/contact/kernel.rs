@@ -1,0 +1,499 @@
+//! The inner loop: eight rollers against one profile.
+
+use chaindrive_contact::Elastic;
+use chaindrive_contact::dissipation::RATIO_LIMIT;
+use chaindrive_contact::elastic::ElasticLaw;
+
+use super::{Contacts, Frame, LawNumbers, Shape, Teeth, Touch};
+use crate::lanes::{LANES, Lane, Mask};
+use crate::profile::Profile;
+use crate::system::Rollers;
+
+/// What the rollers do to a body, and what the step control wants to know.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Wrench {
+    /// Force on the body \[N\].
+    pub(crate) force: [f64; 2],
+    /// Moment about the frame's origin \[N m\].
+    pub(crate) moment: f64,
+    /// Power dissipated normal to the surface \[W\].
+    pub(crate) normal_loss: f64,
+    /// Power dissipated by friction \[W\].
+    pub(crate) friction_loss: f64,
+    /// Deepest penetration \[m\].
+    pub(crate) depth: f64,
+    /// Largest damping −∂F/∂ġ \[N s/m\].
+    pub(crate) damping: f64,
+    /// Deepest penetration of a contact that opened this step \[m\].
+    pub(crate) first_depth: f64,
+    /// Smallest share of the step after which such a contact began.
+    pub(crate) first_share: f64,
+}
+
+/// An elastic law on lanes; the depth is not negative.
+pub(crate) trait LaneElastic: Copy {
+    fn force(self, depth: Lane) -> Lane;
+}
+
+/// g = K δ
+#[derive(Clone, Copy)]
+struct Linear(f64);
+
+/// g = K δ √δ
+#[derive(Clone, Copy)]
+struct Hertz(f64);
+
+/// Any law, one lane after the other.
+#[derive(Clone, Copy)]
+struct General(Elastic);
+
+impl LaneElastic for Linear {
+    #[inline(always)]
+    fn force(self, depth: Lane) -> Lane {
+        Lane::splat(self.0) * depth
+    }
+}
+
+impl LaneElastic for Hertz {
+    #[inline(always)]
+    fn force(self, depth: Lane) -> Lane {
+        Lane::splat(self.0) * depth * depth.sqrt()
+    }
+}
+
+impl LaneElastic for General {
+    #[inline(always)]
+    fn force(self, depth: Lane) -> Lane {
+        let mut out = depth.0;
+        for value in &mut out {
+            if *value > 0.0 {
+                *value = self.0.force(*value);
+            }
+        }
+        Lane(out)
+    }
+}
+
+impl Contacts {
+    /// Adds the contact accelerations to `rollers` and returns what the body receives.
+    ///
+    /// Reads the memory of the last accepted state, writes the state here into `touch`.
+    #[inline(always)]
+    pub(crate) fn act(
+        &self,
+        frame: &Frame,
+        rollers: &mut Rollers<'_>,
+        touch: &mut Touch,
+    ) -> Wrench {
+        touch.resize(self.slots * self.sides());
+        match self.surface.law.elastic {
+            Elastic::Power(power) if is(power.exponent, 1.5) => {
+                self.dispatch(Hertz(power.stiffness), frame, rollers, touch)
+            }
+            Elastic::Power(power) if is(power.exponent, 1.0) => {
+                self.dispatch(Linear(power.stiffness), frame, rollers, touch)
+            }
+            elastic => self.dispatch(General(elastic), frame, rollers, touch),
+        }
+    }
+
+    #[inline(always)]
+    fn dispatch<E: LaneElastic>(
+        &self,
+        elastic: E,
+        frame: &Frame,
+        rollers: &mut Rollers<'_>,
+        touch: &mut Touch,
+    ) -> Wrench {
+        let numbers = LawNumbers::new(&self.surface);
+        if numbers.friction > 0.0 {
+            self.sweep::<E, true>(elastic, &numbers, frame, rollers, touch)
+        } else {
+            self.sweep::<E, false>(elastic, &numbers, frame, rollers, touch)
+        }
+    }
+
+    #[inline(always)]
+    fn sweep<E: LaneElastic, const FRICTION: bool>(
+        &self,
+        elastic: E,
+        numbers: &LawNumbers,
+        frame: &Frame,
+        rollers: &mut Rollers<'_>,
+        touch: &mut Touch,
+    ) -> Wrench {
+        let mut sums = Sums::new();
+        let mut slot = 0;
+        for run in &self.runs {
+            for offset in (0..run.count).step_by(LANES) {
+                let here = Here {
+                    slot,
+                    roller: run.start + offset,
+                    valid: Mask::first(run.count - offset),
+                };
+                self.lane::<E, FRICTION>(elastic, numbers, frame, here, rollers, touch, &mut sums);
+                slot += LANES;
+            }
+        }
+        sums.total()
+    }
+
+    #[inline(always)]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the inner loop, split for reading only"
+    )]
+    fn lane<E: LaneElastic, const FRICTION: bool>(
+        &self,
+        elastic: E,
+        numbers: &LawNumbers,
+        frame: &Frame,
+        here: Here,
+        rollers: &mut Rollers<'_>,
+        touch: &mut Touch,
+        sums: &mut Sums,
+    ) {
+        let i = here.roller;
+        // d = q − o,   u = v − v_o − ω ẑ × d
+        let dx = Lane::load(rollers.x, i) - Lane::splat(frame.origin.x);
+        let dy = Lane::load(rollers.y, i) - Lane::splat(frame.origin.y);
+        let spin = Lane::splat(frame.spin);
+        let motion = Motion {
+            ux: Lane::load(rollers.vx, i) - Lane::splat(frame.velocity.x) + spin * dy,
+            uy: Lane::load(rollers.vy, i) - Lane::splat(frame.velocity.y) - spin * dx,
+            dx,
+            dy,
+            spin,
+        };
+        match &self.shape {
+            Shape::Teeth(teeth) => {
+                let reach = teeth.tip_radius + self.radius;
+                let near = Lane::splat(reach * reach).greater(dx * dx + dy * dy) & here.valid;
+                let place = self.fold(teeth, frame, here.slot, dx, dy);
+                if teeth.halves.two_sided {
+                    for (side, half) in [(1.0, &teeth.halves.right), (-1.0, &teeth.halves.left)] {
+                        let sign = Lane::splat(side);
+                        let mut found = look(half, sign * place.x, place.y, self.radius);
+                        // A seat across the axis belongs to the right half alone.
+                        let wrong = Lane::splat(0.0).greater(sign * place.x) & found.in_first;
+                        let off_seat = half.features[0].sign < 0.0;
+                        let keep = Lane::splat(1.0);
+                        found.gap = if off_seat {
+                            wrong.select(keep, found.gap)
+                        } else {
+                            found.gap
+                        };
+                        found.nx = sign * found.nx;
+                        let hit = place.world(found, near);
+                        let slot = if side > 0.0 {
+                            here.slot
+                        } else {
+                            self.slots + here.slot
+                        };
+                        self.respond::<E, FRICTION>(
+                            elastic, numbers, &motion, hit, slot, i, rollers, touch, sums,
+                        );
+                    }
+                } else {
+                    let zero = Lane::splat(0.0);
+                    let sign = place
+                        .x
+                        .greater(zero)
+                        .select(Lane::splat(1.0), Lane::splat(-1.0));
+                    let mut found = look(&teeth.halves.right, place.x.abs(), place.y, self.radius);
+                    found.nx = sign * found.nx;
+                    let hit = place.world(found, near);
+                    self.respond::<E, FRICTION>(
+                        elastic, numbers, &motion, hit, here.slot, i, rollers, touch, sums,
+                    );
+                }
+            }
+            Shape::Rail {
+                profile, reference, ..
+            } => {
+                // q' = reference + Rᵀ d
+                let (c, s) = (Lane::splat(frame.turn[0]), Lane::splat(frame.turn[1]));
+                let x = c * dx + s * dy + Lane::splat(reference.x);
+                let y = c * dy - s * dx + Lane::splat(reference.y);
+                let found = look(profile, x, y, self.radius);
+                let hit = Hit {
+                    gap: found.gap,
+                    nx: c * found.nx - s * found.ny,
+                    ny: s * found.nx + c * found.ny,
+                    near: here.valid,
+                };
+                self.respond::<E, FRICTION>(
+                    elastic, numbers, &motion, hit, here.slot, i, rollers, touch, sums,
+                );
+            }
+        }
+    }
+
+    /// The rollers in the frames of the gaps they are nearest to.
+    #[inline(always)]
+    fn fold(&self, teeth: &Teeth, frame: &Frame, slot: usize, dx: Lane, dy: Lane) -> Place {
+        let (c, s) = (Lane::splat(frame.turn[0]), Lane::splat(frame.turn[1]));
+        let ex = Lane::load(&self.axis_x, slot);
+        let ey = Lane::load(&self.axis_y, slot);
+        // a = R(θ) e,   x = d × a,   y = d · a
+        let ax = c * ex - s * ey;
+        let ay = s * ex + c * ey;
+        let x = dx * ay - dy * ax;
+        let y = dx * ax + dy * ay;
+        // Beyond the middle of a tooth the next gap is meant: turn the axis by one pitch.
+        let beyond = x.abs().greater(y * Lane::splat(teeth.tan_half));
+        let (one, zero) = (Lane::splat(1.0), Lane::splat(0.0));
+        let sign = x.greater(zero).select(one, -one);
+        let cp = beyond.select(Lane::splat(teeth.pitch_turn[0]), one);
+        let sp = beyond.select(sign * Lane::splat(teeth.pitch_turn[1]), zero);
+        let ax2 = cp * ax + sp * ay;
+        let ay2 = cp * ay - sp * ax;
+        Place {
+            x: dx * ay2 - dy * ax2,
+            y: dx * ax2 + dy * ay2,
+            ax: ax2,
+            ay: ay2,
+        }
+    }
+
+    /// Force, memory and sums of one lane of candidate contacts.
+    #[inline(always)]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the inner loop, split for reading only"
+    )]
+    fn respond<E: LaneElastic, const FRICTION: bool>(
+        &self,
+        elastic: E,
+        numbers: &LawNumbers,
+        motion: &Motion,
+        hit: Hit,
+        slot: usize,
+        roller: usize,
+        rollers: &mut Rollers<'_>,
+        touch: &mut Touch,
+        sums: &mut Sums,
+    ) {
+        let zero = Lane::splat(0.0);
+        let gap = hit.near.select(hit.gap, Lane::splat(1.0));
+        // δ̇ = −n·u
+        let closing = -(hit.nx * motion.ux + hit.ny * motion.uy);
+        gap.store(&mut touch.gap, slot);
+        closing.store(&mut touch.closing, slot);
+        let depth = (-gap).max(zero);
+        let closed = depth.greater(zero);
+        if !closed.any() {
+            zero.store(&mut touch.inverse_onset, slot);
+            zero.store(&mut touch.force, slot);
+            return;
+        }
+        let before = Lane::load(&self.memory.inverse_onset, slot);
+        let mut inverse = closed.select(before, zero);
+        let fresh = closed & Lane::splat(f64::MIN_POSITIVE).greater(before);
+        if fresh.any() {
+            // v = v_a + s (v_b − v_a),   s = g_a/(g_a − g_b)
+            let gap_before = Lane::load(&self.memory.gap, slot).max(zero);
+            let closing_before = Lane::load(&self.memory.closing, slot);
+            let share = gap_before * (gap_before + depth).recip();
+            let onset = closing_before + share * (closing - closing_before);
+            let inverse_onset = onset.max(Lane::splat(numbers.floor)).recip();
+            inverse = fresh.select(inverse_onset, inverse);
+            let fresh_depth = fresh.select(depth, zero);
+            sums.first_depth = sums.first_depth.max(fresh_depth);
+            sums.first_share = sums.first_share.min(fresh.select(share, Lane::splat(1.0)));
+        }
+        inverse.store(&mut touch.inverse_onset, slot);
+
+        // F = max(0, g + χ g min(δ̇/v, 4) + c δ̇)
+        let stored = elastic.force(depth);
+        let ratio = (closing * inverse).min(Lane::splat(RATIO_LIMIT));
+        let damping = Lane::splat(numbers.factor) * stored;
+        let viscous = Lane::splat(numbers.damping) * closing;
+        let raw = stored + damping * ratio + viscous;
+        let force = closed.select(raw.max(zero), zero);
+        force.store(&mut touch.force, slot);
+
+        let (tx, ty) = (-hit.ny, hit.nx);
+        let (mut fx, mut fy) = (force * hit.nx, force * hit.ny);
+        // M = −d × F
+        let mut moment = motion.dy * fx - motion.dx * fy;
+        if FRICTION {
+            // slip = t·u + ω r,   f = −μ F slip/√(slip² + v_s²)
+            let radius = Lane::splat(self.radius);
+            let slip = tx * motion.ux + ty * motion.uy + motion.spin * radius;
+            let reach = (slip * slip + Lane::splat(numbers.slip_speed_squared)).sqrt();
+            let rub = -(Lane::splat(numbers.friction) * force * slip * reach.recip());
+            fx += rub * tx;
+            fy += rub * ty;
+            // M = −(d − r n) × F
+            moment = motion.dy * fx - motion.dx * fy + rub * radius;
+            sums.friction_loss += -(rub * slip);
+        }
+        let inverse_mass = Lane::load(rollers.inverse_mass, roller);
+        (Lane::load(rollers.ax, roller) + fx * inverse_mass).store(rollers.ax, roller);
+        (Lane::load(rollers.ay, roller) + fy * inverse_mass).store(rollers.ay, roller);
+
+        sums.fx += -fx;
+        sums.fy += -fy;
+        sums.moment += moment;
+        sums.normal_loss += (force - closed.select(stored, zero)) * closing;
+        sums.depth = sums.depth.max(depth);
+        sums.damping = sums.damping.max(damping * inverse);
+    }
+}
+
+#[inline(always)]
+#[expect(clippy::float_cmp, reason = "an exponent is chosen, not computed")]
+fn is(exponent: f64, value: f64) -> bool {
+    exponent == value
+}
+
+/// The surface that each lane faces, in the frame of the profile.
+#[inline(always)]
+fn look(profile: &Profile, x: Lane, y: Lane, radius: f64) -> Found {
+    let zero = Lane::splat(0.0);
+    let first = &profile.features[0];
+    let mut cx = Lane::splat(first.centre.x);
+    let mut cy = Lane::splat(first.centre.y);
+    let mut r = Lane::splat(first.radius);
+    let mut sign = Lane::splat(first.sign);
+    let mut mx = Lane::splat(first.straight.x);
+    let mut my = Lane::splat(first.straight.y);
+    let mut passed = Mask::first(LANES);
+    let mut in_first = Mask::first(LANES);
+    for (index, f) in profile.features.iter().enumerate().skip(1) {
+        let ahead = (x - Lane::splat(f.start.x)) * Lane::splat(f.along.x)
+            + (y - Lane::splat(f.start.y)) * Lane::splat(f.along.y);
+        if index == 1 {
+            in_first = zero.greater(ahead);
+        }
+        passed = passed & ahead.greater(zero);
+        cx = passed.select(Lane::splat(f.centre.x), cx);
+        cy = passed.select(Lane::splat(f.centre.y), cy);
+        r = passed.select(Lane::splat(f.radius), r);
+        sign = passed.select(Lane::splat(f.sign), sign);
+        if profile.has_straights {
+            mx = passed.select(Lane::splat(f.straight.x), mx);
+            my = passed.select(Lane::splat(f.straight.y), my);
+        }
+    }
+    let (ex, ey) = (x - cx, y - cy);
+    let distance = (ex * ex + ey * ey)
+        .max(Lane::splat(f64::MIN_POSITIVE))
+        .sqrt();
+    let scale = sign * distance.recip();
+    let contact_radius = Lane::splat(radius);
+    let mut found = Found {
+        // g = ±(|q − c| − R) − r
+        gap: sign * (distance - r) - contact_radius,
+        nx: scale * ex,
+        ny: scale * ey,
+        in_first,
+    };
+    if profile.has_straights {
+        // g = n·(q − p) − r
+        let straight = (mx * mx + my * my).greater(zero);
+        let gap = mx * ex + my * ey - contact_radius;
+        found.gap = straight.select(gap, found.gap);
+        found.nx = straight.select(mx, found.nx);
+        found.ny = straight.select(my, found.ny);
+    }
+    found
+}
+
+/// Where a lane of slots stands.
+#[derive(Clone, Copy)]
+struct Here {
+    slot: usize,
+    roller: usize,
+    valid: Mask,
+}
+
+/// Velocity relative to the body at the roller centres, and the lever arms.
+struct Motion {
+    ux: Lane,
+    uy: Lane,
+    dx: Lane,
+    dy: Lane,
+    spin: Lane,
+}
+
+/// Roller centres in gap frames, and the gap axes in the world.
+struct Place {
+    x: Lane,
+    y: Lane,
+    ax: Lane,
+    ay: Lane,
+}
+
+impl Place {
+    #[inline(always)]
+    fn world(&self, found: Found, near: Mask) -> Hit {
+        // The gap's x axis is its y axis turned by −90°.
+        Hit {
+            gap: found.gap,
+            nx: found.nx * self.ay + found.ny * self.ax,
+            ny: found.ny * self.ay - found.nx * self.ax,
+            near,
+        }
+    }
+}
+
+struct Found {
+    gap: Lane,
+    nx: Lane,
+    ny: Lane,
+    in_first: Mask,
+}
+
+struct Hit {
+    gap: Lane,
+    nx: Lane,
+    ny: Lane,
+    near: Mask,
+}
+
+/// Lane-wise sums over all slots of a body.
+struct Sums {
+    fx: Lane,
+    fy: Lane,
+    moment: Lane,
+    normal_loss: Lane,
+    friction_loss: Lane,
+    depth: Lane,
+    damping: Lane,
+    first_depth: Lane,
+    first_share: Lane,
+}
+
+impl Sums {
+    #[inline(always)]
+    fn new() -> Self {
+        let zero = Lane::splat(0.0);
+        Self {
+            fx: zero,
+            fy: zero,
+            moment: zero,
+            normal_loss: zero,
+            friction_loss: zero,
+            depth: zero,
+            damping: zero,
+            first_depth: zero,
+            first_share: Lane::splat(1.0),
+        }
+    }
+
+    #[inline(always)]
+    fn total(&self) -> Wrench {
+        Wrench {
+            force: [self.fx.sum(), self.fy.sum()],
+            moment: self.moment.sum(),
+            normal_loss: self.normal_loss.sum(),
+            friction_loss: self.friction_loss.sum(),
+            depth: self.depth.largest(),
+            damping: self.damping.largest(),
+            first_depth: self.first_depth.largest(),
+            first_share: -(-self.first_share).largest(),
+        }
+    }
+}

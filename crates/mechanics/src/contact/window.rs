@@ -1,0 +1,169 @@
+//! Which rollers can touch a body before the windows are renewed.
+
+use chaindrive_geometry::Point;
+
+use super::{Contacts, Frame, Shape, Teeth, Touch};
+use crate::lanes::padded;
+
+/// A run of consecutive rollers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Run {
+    /// First roller.
+    pub(crate) start: usize,
+    /// Number of rollers.
+    pub(crate) count: usize,
+}
+
+/// Where the rollers are.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Places<'a> {
+    pub(crate) x: &'a [f64],
+    pub(crate) y: &'a [f64],
+    /// Number of rollers, ghosts not counted.
+    pub(crate) count: usize,
+}
+
+/// A slot that no roller held before: open, and far.
+const FAR: f64 = 1.0;
+
+impl Contacts {
+    /// Looks for the rollers within `margin` \[m\] of touching, and carries the memory over.
+    pub(crate) fn renew(&mut self, frame: &Frame, places: Places<'_>, margin: f64) {
+        let runs = self.near_runs(frame, places, margin);
+        let slots = runs.iter().map(|run| padded(run.count)).sum();
+        let mut memory = Touch::default();
+        memory.resize(slots * self.sides());
+        memory.gap.fill(FAR);
+        let mut axes = (vec![1.0; slots], vec![0.0; slots]);
+        for_each_slot(&runs, |slot, roller| {
+            let old = self.slot_of(roller);
+            if let Some(old) = old {
+                for side in 0..self.sides() {
+                    let (to, from) = (side * slots + slot, side * self.slots + old);
+                    memory.inverse_onset[to] = self.memory.inverse_onset[from];
+                    memory.gap[to] = self.memory.gap[from];
+                    memory.closing[to] = self.memory.closing[from];
+                    memory.force[to] = self.memory.force[from];
+                }
+            }
+            if let Shape::Teeth(teeth) = &self.shape {
+                let start = old.map(|old| [self.axis_x[old], self.axis_y[old]]);
+                let d = [
+                    places.x[roller] - frame.origin.x,
+                    places.y[roller] - frame.origin.y,
+                ];
+                [axes.0[slot], axes.1[slot]] = gap_axis(teeth, frame.turn, d, start);
+            }
+        });
+        self.runs = runs;
+        self.slots = slots;
+        self.memory = memory;
+        (self.axis_x, self.axis_y) = axes;
+    }
+
+    fn near_runs(&self, frame: &Frame, places: Places<'_>, margin: f64) -> Vec<Run> {
+        let [c, s] = frame.turn;
+        let near = |x: f64, y: f64| {
+            let (dx, dy) = (x - frame.origin.x, y - frame.origin.y);
+            match &self.shape {
+                Shape::Teeth(teeth) => {
+                    let reach = teeth.tip_radius + self.radius + margin;
+                    dx * dx + dy * dy < reach * reach
+                }
+                Shape::Rail {
+                    reference, bounds, ..
+                } => {
+                    let reach = self.radius + margin;
+                    let local = [c * dx + s * dy + reference.x, c * dy - s * dx + reference.y];
+                    (0..2).all(|axis| {
+                        local[axis] > bounds[0][axis] - reach
+                            && local[axis] < bounds[1][axis] + reach
+                    })
+                }
+            }
+        };
+        let mut runs: Vec<Run> = Vec::new();
+        for roller in 0..places.count {
+            if near(places.x[roller], places.y[roller]) {
+                match runs.last_mut() {
+                    Some(run) if run.start + run.count == roller => run.count += 1,
+                    _ => runs.push(Run {
+                        start: roller,
+                        count: 1,
+                    }),
+                }
+            }
+        }
+        runs
+    }
+
+    /// The slot that holds `roller`, if any.
+    pub(crate) fn slot_of(&self, roller: usize) -> Option<usize> {
+        let mut base = 0;
+        for run in &self.runs {
+            if (run.start..run.start + run.count).contains(&roller) {
+                return Some(base + roller - run.start);
+            }
+            base += padded(run.count);
+        }
+        None
+    }
+
+    /// Calls `visit` with (slot, roller) for every slot in use.
+    pub(crate) fn for_each_slot(&self, visit: impl FnMut(usize, usize)) {
+        for_each_slot(&self.runs, visit);
+    }
+}
+
+fn for_each_slot(runs: &[Run], mut visit: impl FnMut(usize, usize)) {
+    let mut base = 0;
+    for run in runs {
+        for k in 0..run.count {
+            visit(base + k, run.start + k);
+        }
+        base += padded(run.count);
+    }
+}
+
+/// Axis, in the wheel frame, of the gap nearest to the roller at `d` from the centre.
+fn gap_axis(teeth: &Teeth, turn: [f64; 2], d: [f64; 2], start: Option<[f64; 2]>) -> [f64; 2] {
+    let [c, s] = turn;
+    let w = [c * d[0] + s * d[1], c * d[1] - s * d[0]];
+    if let Some(e) = start {
+        let (x, y) = (w[0] * e[1] - w[1] * e[0], w[0] * e[0] + w[1] * e[1]);
+        if x.abs() <= y * teeth.tan_half {
+            return e;
+        }
+    }
+    let pitch = std::f64::consts::TAU / f64::from(teeth.count);
+    let angle = (w[1].atan2(w[0]) / pitch).round() * pitch;
+    [angle.cos(), angle.sin()]
+}
+
+/// The frame of a body that neither moves nor turns.
+impl Frame {
+    pub(crate) fn fixed() -> Self {
+        Self {
+            origin: Point::origin(),
+            turn: [1.0, 0.0],
+            velocity: chaindrive_geometry::Vector::zeros(),
+            spin: 0.0,
+        }
+    }
+
+    /// Position in the frame's coordinates, relative to `reference`.
+    pub(crate) fn local(&self, at: Point, reference: Point) -> Point {
+        let d = at - self.origin;
+        let [c, s] = self.turn;
+        Point::new(
+            c * d.x + s * d.y + reference.x,
+            c * d.y - s * d.x + reference.y,
+        )
+    }
+
+    /// Direction in the world of a direction in the frame.
+    pub(crate) fn outward(&self, v: chaindrive_geometry::Vector) -> chaindrive_geometry::Vector {
+        let [c, s] = self.turn;
+        chaindrive_geometry::Vector::new(c * v.x - s * v.y, s * v.x + c * v.y)
+    }
+}

@@ -1,0 +1,247 @@
+//! A drive: everything that stays constant during a run, valid by construction.
+
+use chaindrive_contact::{Friction, Law};
+use chaindrive_geometry::{ArcSpline, Point, Side, ToothGap, Vector};
+
+use crate::{Chain, DriveError, Motion, Tensioner, Torque};
+
+/// How two surfaces push and rub on each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface {
+    /// Normal force law.
+    pub law: Law,
+    /// Friction law.
+    pub friction: Friction,
+}
+
+/// A toothed wheel.
+#[derive(Clone, Debug)]
+pub struct Sprocket {
+    /// Name, unique in the drive.
+    pub name: String,
+    /// Tooth gap: number of teeth, pitch circle and profile.
+    pub gap: ToothGap,
+    /// Side of the travelling chain on which the wheel lies.
+    pub side: Side,
+    /// Centre in the assembled position \[m\].
+    pub centre: Point,
+    /// How it turns.
+    pub rotation: Rotation,
+    /// What holds its centre.
+    pub support: Support,
+    /// Moment of inertia about the centre, shaft included \[kg m²\]; positive when free.
+    pub inertia: f64,
+    /// Mass \[kg\]; positive when the centre is free to move.
+    pub mass: f64,
+    /// Contact with the rollers.
+    pub surface: Surface,
+    /// Angle of one gap axis at assembly \[rad\] for wheels that no route passes over; along a
+    /// route the closing of the chain decides.
+    pub gap_angle: f64,
+}
+
+/// How a sprocket turns.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Rotation {
+    /// The angle is given in time \[rad\].
+    Prescribed(Motion),
+    /// The angle follows from inertia, chain and torques.
+    Free {
+        /// Torques that drive the shaft.
+        drive: Vec<Torque>,
+        /// Torques that load the shaft.
+        load: Vec<Torque>,
+    },
+}
+
+/// What holds the centre of a sprocket.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Support {
+    /// A fixed bearing.
+    Fixed,
+    /// A centre moved in time by (x, y) \[m\]: the active tensioner.
+    Prescribed {
+        /// Displacement along x.
+        x: Motion,
+        /// Displacement along y.
+        y: Motion,
+    },
+    /// Bearing springs and dampers along x and y, unstressed at the assembled centre.
+    Springs {
+        /// Stiffness (x, y) \[N/m\], not negative.
+        stiffness: [f64; 2],
+        /// Damping (x, y) \[N s/m\], not negative.
+        damping: [f64; 2],
+    },
+    /// Carried by a tensioner.
+    Tensioner(usize),
+}
+
+/// A rail on which the chain slides.
+#[derive(Clone, Debug)]
+pub struct Guide {
+    /// Name, unique in the drive.
+    pub name: String,
+    /// Working face in the assembled position; material on the left of travel.
+    pub face: ArcSpline,
+    /// What holds it.
+    pub support: GuideSupport,
+    /// Which part of the chain touches it.
+    pub touches: Touches,
+    /// Contact with the chain.
+    pub surface: Surface,
+}
+
+/// What holds a guide.
+#[derive(Clone, Debug, PartialEq)]
+pub enum GuideSupport {
+    /// Bolted to the frame.
+    Fixed,
+    /// Moved in time by (x, y) \[m\].
+    Prescribed {
+        /// Displacement along x.
+        x: Motion,
+        /// Displacement along y.
+        y: Motion,
+    },
+    /// Carried by a tensioner.
+    Tensioner(usize),
+}
+
+/// Which part of the chain touches a guide.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Touches {
+    /// The rollers, as circles of the roller diameter.
+    Rollers,
+    /// Waisted link plates, with their eyes: circles of the plate height about the pins.
+    Eyes,
+    /// Straight-edged link plates, anywhere along the edge.
+    Plates,
+}
+
+/// One body that a closed chain wraps, in path order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Stop {
+    /// A sprocket.
+    Sprocket(usize),
+    /// A guide whose longest convex arc the chain follows.
+    Guide(usize),
+}
+
+/// Where the chain lies when the run begins.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Layout {
+    /// Taut around sprockets and curved guides.
+    Route {
+        /// The bodies in path order.
+        stops: Vec<Stop>,
+        /// Where the first wheel stands within its half-tooth window, 0 to 1; 0.5 is symmetric.
+        phase: f64,
+        /// How the loop is fitted and tightened.
+        fit: Fit,
+    },
+    /// Rollers at given places with given velocities.
+    Points {
+        /// Positions \[m\], (rollers,).
+        positions: Vec<Point>,
+        /// Velocities \[m/s\], (rollers,).
+        velocities: Vec<Vector>,
+    },
+}
+
+/// How a closed chain is fitted to its sprockets.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// What is moved until the links close without stress.
+    pub adjust: Adjust,
+    /// Tension of every link before gravity and load \[N\], not negative.
+    pub pretension: f64,
+    /// How the pretension is made.
+    pub tighten: Tighten,
+}
+
+/// What is moved until the given number of links closes without stress.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Adjust {
+    /// Nothing: the centres are as they are. A small misfit becomes strain of all links; an
+    /// excess of length becomes sag of the span that runs to the first stop.
+    Nothing,
+    /// A sprocket, along a direction.
+    Sprocket {
+        /// Its index.
+        sprocket: usize,
+        /// Direction, of any length.
+        direction: Vector,
+        /// How far it may move either way \[m\], positive.
+        within: f64,
+    },
+    /// A tensioner, along its travel.
+    Tensioner {
+        /// Its index.
+        tensioner: usize,
+        /// How far it may move either way \[m, or rad for an arm\], positive.
+        within: f64,
+    },
+}
+
+/// How the pretension is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tighten {
+    /// The links are made shorter by the strain of the pretension.
+    RestLength,
+    /// The adjusted body moves on until the chain carries the pretension.
+    Travel,
+}
+
+/// A drive as described, not yet checked.
+#[derive(Clone, Debug)]
+pub struct Parts {
+    /// The chain.
+    pub chain: Chain,
+    /// Sprockets.
+    pub sprockets: Vec<Sprocket>,
+    /// Guides.
+    pub guides: Vec<Guide>,
+    /// Tensioners.
+    pub tensioners: Vec<Tensioner>,
+    /// Where the chain lies at the start.
+    pub layout: Layout,
+    /// Whether the drive settles into static equilibrium under gravity and load before it runs.
+    pub settle: bool,
+    /// Gravity \[m/s²\], (x, y).
+    pub gravity: Vector,
+}
+
+/// A drive that can be assembled: the parts, checked.
+#[derive(Clone, Debug)]
+pub struct Drive {
+    parts: Parts,
+}
+
+impl Drive {
+    /// Checks the parts.
+    ///
+    /// # Errors
+    /// Every problem found, not only the first.
+    pub fn new(parts: Parts) -> Result<Self, Vec<DriveError>> {
+        let problems = crate::check::problems(&parts);
+        if problems.is_empty() {
+            Ok(Self { parts })
+        } else {
+            Err(problems)
+        }
+    }
+
+    /// The parts.
+    pub fn parts(&self) -> &Parts {
+        &self.parts
+    }
+}
+
+impl std::ops::Deref for Drive {
+    type Target = Parts;
+
+    fn deref(&self) -> &Parts {
+        &self.parts
+    }
+}

@@ -1,0 +1,201 @@
+//! The energy ledger: what is stored, what is lost, what comes in.
+//!
+//! ```text
+//! residual = (kinetic + stored)(t) − (kinetic + stored)(0) − supplied + dissipated
+//! ```
+//!
+//! Stores are functions of the state; flows are powers that the time stepping integrates along
+//! with the motion, each from the force element's own law, so that the residual tests both.
+
+/// Forms of energy that a state holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Store {
+    /// Kinetic energy of the rollers.
+    Chain,
+    /// Kinetic energy of the sprockets, rotation and centre.
+    Sprockets,
+    /// Kinetic energy of the tensioners.
+    Carriers,
+    /// Stretch of the links.
+    Links,
+    /// Indentation of rollers and teeth.
+    Teeth,
+    /// Indentation of chain and guides.
+    Guides,
+    /// Weight.
+    Gravity,
+    /// Bearing springs.
+    Supports,
+    /// Tensioner springs.
+    Tensioners,
+}
+
+/// Powers that change the energy of the drive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flow {
+    /// Loss in the link dampers.
+    LinkLoss,
+    /// Loss in roller-tooth impacts.
+    ToothLoss,
+    /// Loss in chain-guide impacts.
+    GuideLoss,
+    /// Loss by friction.
+    FrictionLoss,
+    /// Loss in bearing dampers.
+    SupportLoss,
+    /// Loss in tensioners.
+    TensionerLoss,
+    /// Work of prescribed rotations.
+    Driver,
+    /// Work of prescribed centres, guides and chain ends.
+    Motions,
+    /// Work of driving torques and of forces on chain ends.
+    DriveTorque,
+    /// Work of load torques, negative while they resist.
+    Load,
+}
+
+impl Store {
+    /// All stores, in the order of [`Energy::stores`].
+    pub const ALL: [Self; 9] = [
+        Self::Chain,
+        Self::Sprockets,
+        Self::Carriers,
+        Self::Links,
+        Self::Teeth,
+        Self::Guides,
+        Self::Gravity,
+        Self::Supports,
+        Self::Tensioners,
+    ];
+
+    /// Whether it is energy of motion.
+    pub fn is_kinetic(self) -> bool {
+        matches!(self, Self::Chain | Self::Sprockets | Self::Carriers)
+    }
+
+    /// Name in results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Chain => "chain_kinetic",
+            Self::Sprockets => "sprockets_kinetic",
+            Self::Carriers => "tensioners_kinetic",
+            Self::Links => "links_stored",
+            Self::Teeth => "teeth_stored",
+            Self::Guides => "guides_stored",
+            Self::Gravity => "gravity_stored",
+            Self::Supports => "supports_stored",
+            Self::Tensioners => "tensioners_stored",
+        }
+    }
+}
+
+impl Flow {
+    /// All flows, in the order of [`Energy::flows`].
+    pub const ALL: [Self; 10] = [
+        Self::LinkLoss,
+        Self::ToothLoss,
+        Self::GuideLoss,
+        Self::FrictionLoss,
+        Self::SupportLoss,
+        Self::TensionerLoss,
+        Self::Driver,
+        Self::Motions,
+        Self::DriveTorque,
+        Self::Load,
+    ];
+
+    /// Whether the flow takes energy away.
+    pub fn is_loss(self) -> bool {
+        matches!(
+            self,
+            Self::LinkLoss
+                | Self::ToothLoss
+                | Self::GuideLoss
+                | Self::FrictionLoss
+                | Self::SupportLoss
+                | Self::TensionerLoss
+        )
+    }
+
+    /// Name in results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::LinkLoss => "links_dissipated",
+            Self::ToothLoss => "teeth_dissipated",
+            Self::GuideLoss => "guides_dissipated",
+            Self::FrictionLoss => "friction_dissipated",
+            Self::SupportLoss => "supports_dissipated",
+            Self::TensionerLoss => "tensioners_dissipated",
+            Self::Driver => "driver_supplied",
+            Self::Motions => "motions_supplied",
+            Self::DriveTorque => "torques_supplied",
+            Self::Load => "load_supplied",
+        }
+    }
+}
+
+/// The ledger at one instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// Energies \[J\] in the order of [`Store::ALL`].
+    pub stores: [f64; Store::ALL.len()],
+    /// Energies that have flowed since the start \[J\] in the order of [`Flow::ALL`].
+    pub flows: [f64; Flow::ALL.len()],
+}
+
+impl Energy {
+    /// One store \[J\].
+    pub fn store(&self, store: Store) -> f64 {
+        self.stores[store as usize]
+    }
+
+    /// One flow \[J\].
+    pub fn flow(&self, flow: Flow) -> f64 {
+        self.flows[flow as usize]
+    }
+
+    /// Kinetic energy \[J\].
+    pub fn kinetic(&self) -> f64 {
+        Store::ALL
+            .iter()
+            .filter(|s| s.is_kinetic())
+            .map(|&s| self.store(s))
+            .sum()
+    }
+
+    /// Potential energy \[J\].
+    pub fn stored(&self) -> f64 {
+        Store::ALL
+            .iter()
+            .filter(|s| !s.is_kinetic())
+            .map(|&s| self.store(s))
+            .sum()
+    }
+
+    /// Energy lost since the start \[J\].
+    pub fn dissipated(&self) -> f64 {
+        Flow::ALL
+            .iter()
+            .filter(|f| f.is_loss())
+            .map(|&f| self.flow(f))
+            .sum()
+    }
+
+    /// Energy supplied since the start, loads subtracted \[J\].
+    pub fn supplied(&self) -> f64 {
+        Flow::ALL
+            .iter()
+            .filter(|f| !f.is_loss())
+            .map(|&f| self.flow(f))
+            .sum()
+    }
+
+    /// Energy unaccounted for since `start` \[J\]: the error of the time stepping.
+    pub fn residual(&self, start: &Self) -> f64 {
+        // R = ΔE_kin + ΔE_pot − W_in + W_loss
+        (self.kinetic() - start.kinetic()) + (self.stored() - start.stored())
+            - (self.supplied() - start.supplied())
+            + (self.dissipated() - start.dissipated())
+    }
+}

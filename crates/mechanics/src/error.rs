@@ -1,0 +1,98 @@
+//! Why a drive cannot be built, assembled or evaluated.
+
+use chaindrive_contact::ParameterError;
+use chaindrive_geometry::GeometryError;
+
+/// Why a description is not a drive. Every variant names the place.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "each message names its fields")]
+pub enum DriveError {
+    /// A number outside its meaning.
+    #[error("{path} = {value}, must be {allowed}")]
+    Parameter {
+        path: String,
+        value: f64,
+        allowed: &'static str,
+    },
+
+    /// A contact or friction law refuses one of its parameters.
+    #[error("{path}.{source}")]
+    Law {
+        path: String,
+        source: ParameterError,
+    },
+
+    /// A table of a motion or torque is not usable.
+    #[error("table: {problem}")]
+    Table { problem: String },
+
+    /// Two bodies occupy the same place.
+    #[error(
+        "sprockets `{first}` and `{second}` overlap by {:.1} mm; move the centres apart",
+        .overlap * 1e3
+    )]
+    Overlap {
+        first: String,
+        second: String,
+        overlap: f64,
+    },
+
+    /// An index refers to nothing.
+    #[error("{path} refers to {kind} {index}, but there are {known}")]
+    Reference {
+        path: String,
+        kind: &'static str,
+        index: usize,
+        known: usize,
+    },
+
+    /// Parts that do not go together.
+    #[error("{path}: {problem}")]
+    Conflict { path: String, problem: String },
+}
+
+impl DriveError {
+    /// `Ok` when the condition holds, otherwise the parameter error.
+    ///
+    /// # Errors
+    /// [`DriveError::Parameter`] when `ok` is false.
+    pub fn require(ok: bool, path: &str, value: f64, allowed: &'static str) -> Result<(), Self> {
+        if ok {
+            return Ok(());
+        }
+        Err(Self::Parameter {
+            path: path.to_owned(),
+            value,
+            allowed,
+        })
+    }
+}
+
+/// Why a valid drive could not be brought into its initial state.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "each message names its fields")]
+pub enum AssemblyError {
+    /// The chain does not lie around its sprockets.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
+
+    /// Newton's iteration for the static state ended without converging.
+    #[error(
+        "static equilibrium not found while applying {stage}: residual {residual:.1e} of the chain tension after {iterations} iterations; raise the pretension, or start with `settle = false`"
+    )]
+    NoEquilibrium {
+        stage: &'static str,
+        residual: f64,
+        iterations: usize,
+    },
+
+    /// A guide cannot carry the kernel's search along its face.
+    #[error("guide `{guide}`: {problem}")]
+    Guide { guide: String, problem: String },
+
+    /// The chain does not lie between the parts as described.
+    #[error("{problem}")]
+    Layout { problem: String },
+}

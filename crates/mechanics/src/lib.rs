@@ -1,0 +1,46 @@
+//! Chain, sprockets, guides and tensioners, and the forces between them.
+//!
+//! A [`Drive`] is a checked description; [`Drive::assemble`] lays the chain, finds the static
+//! state and compiles everything into a [`System`] of flat arrays that the time stepping of
+//! `chaindrive-integrate` advances.
+//!
+//! | model | file | degrees of freedom |
+//! |---|---|---|
+//! | particle chain | [`Chain`] | 2 per roller |
+//! | sprocket, free to turn | [`Sprocket`] | 1 |
+//! | sprocket centre on springs | [`Support::Springs`] | 2 |
+//! | tensioner: slider or arm | [`Tensioner`] | 1 |
+//! | guide | [`Guide`] | 0 |
+//!
+//! SI units and radians throughout; counter-clockwise positive; tension positive; normals point
+//! out of the material; penetration positive.
+
+mod assembly;
+mod chain;
+mod check;
+mod contact;
+mod drive;
+mod energy;
+mod error;
+mod lanes;
+mod links;
+mod motion;
+mod observe;
+mod profile;
+mod system;
+mod tensioner;
+mod torque;
+
+pub use assembly::{Assembled, Statics};
+pub use chain::{Chain, End, Ends};
+pub use drive::{
+    Adjust, Drive, Fit, Guide, GuideSupport, Layout, Parts, Rotation, Sprocket, Stop, Support,
+    Surface, Tighten, Touches,
+};
+pub use energy::{Energy, Flow, Store};
+pub use error::{AssemblyError, DriveError};
+pub use motion::{Course, Harmonic, Motion, Table};
+pub use observe::Observation;
+pub use system::{Record, System};
+pub use tensioner::{Carrier, Hydraulic, Plunger, Push, PushForce, Spring, Tensioner};
+pub use torque::{Argument, Torque};

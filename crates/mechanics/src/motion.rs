@@ -1,0 +1,342 @@
+//! Motions prescribed in time: a scalar position with its rate and acceleration.
+
+use crate::DriveError;
+
+/// Position, rate and acceleration of a prescribed coordinate at one instant.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Course {
+    /// Position x \[m or rad\].
+    pub position: f64,
+    /// Rate ẋ \[m/s or rad/s\].
+    pub rate: f64,
+    /// Acceleration ẍ \[m/s² or rad/s²\].
+    pub acceleration: f64,
+}
+
+/// One sine term of a harmonic motion: A sin(2π f t + φ).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Harmonic {
+    /// Amplitude A \[m or rad\].
+    pub amplitude: f64,
+    /// Frequency f \[Hz\], not negative.
+    pub frequency: f64,
+    /// Phase φ at t = 0 \[rad\].
+    pub phase: f64,
+}
+
+/// A coordinate as a function of time, with x(0) counted from the assembled position.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Motion {
+    /// x = 0: held where it was assembled.
+    Held,
+    /// x = s t.
+    Constant {
+        /// Rate s \[m/s or rad/s\].
+        rate: f64,
+    },
+    /// The rate goes from one value to another along a cubic, with no jump of acceleration
+    /// at either end.
+    Ramp {
+        /// Rate before the ramp \[m/s or rad/s\].
+        from: f64,
+        /// Rate after the ramp \[m/s or rad/s\].
+        to: f64,
+        /// Time at which the ramp begins \[s\].
+        start: f64,
+        /// Duration of the ramp \[s\], positive.
+        duration: f64,
+    },
+    /// x = s t + Σ Aᵢ (sin(2π fᵢ t + φᵢ) − sin φᵢ).
+    Harmonics {
+        /// Mean rate s \[m/s or rad/s\].
+        rate: f64,
+        /// The sine terms.
+        terms: Vec<Harmonic>,
+    },
+    /// Positions at given times, joined by a natural cubic spline.
+    Table(Table),
+}
+
+impl Motion {
+    /// Position, rate and acceleration at time `t` \[s\].
+    pub fn at(&self, t: f64) -> Course {
+        match self {
+            Self::Held => Course::default(),
+            Self::Constant { rate } => Course {
+                position: rate * t,
+                rate: *rate,
+                acceleration: 0.0,
+            },
+            Self::Ramp {
+                from,
+                to,
+                start,
+                duration,
+            } => ramp(*from, *to, *start, *duration, t),
+            Self::Harmonics { rate, terms } => terms.iter().fold(
+                Course {
+                    position: rate * t,
+                    rate: *rate,
+                    acceleration: 0.0,
+                },
+                |sum, term| {
+                    // x = A (sin(2π f t + φ) − sin φ)
+                    let circular = std::f64::consts::TAU * term.frequency;
+                    let (sine, cosine) = (circular * t + term.phase).sin_cos();
+                    Course {
+                        position: sum.position + term.amplitude * (sine - term.phase.sin()),
+                        rate: sum.rate + term.amplitude * circular * cosine,
+                        acceleration: sum.acceleration
+                            - term.amplitude * circular * circular * sine,
+                    }
+                },
+            ),
+            Self::Table(table) => table.at(t),
+        }
+    }
+
+    /// Names the first parameter that is not finite or out of range.
+    ///
+    /// # Errors
+    /// [`DriveError::Parameter`] with `name` as the place.
+    pub fn check(&self, name: &str) -> Result<(), DriveError> {
+        let finite = |what: &str, value: f64| {
+            DriveError::require(
+                value.is_finite(),
+                &format!("{name}.{what}"),
+                value,
+                "finite",
+            )
+        };
+        match self {
+            Self::Held | Self::Table(_) => Ok(()),
+            Self::Constant { rate } => finite("rate", *rate),
+            Self::Ramp {
+                from,
+                to,
+                start,
+                duration,
+            } => {
+                finite("from", *from)?;
+                finite("to", *to)?;
+                finite("start", *start)?;
+                DriveError::require(
+                    *duration > 0.0 && duration.is_finite(),
+                    &format!("{name}.duration"),
+                    *duration,
+                    "positive [s]",
+                )
+            }
+            Self::Harmonics { rate, terms } => {
+                finite("rate", *rate)?;
+                terms.iter().try_for_each(|term| {
+                    finite("amplitude", term.amplitude)?;
+                    finite("phase", term.phase)?;
+                    DriveError::require(
+                        term.frequency >= 0.0 && term.frequency.is_finite(),
+                        &format!("{name}.frequency"),
+                        term.frequency,
+                        "not negative [Hz]",
+                    )
+                })
+            }
+        }
+    }
+}
+
+fn ramp(from: f64, to: f64, start: f64, duration: f64, t: f64) -> Course {
+    let change = to - from;
+    let s = ((t - start) / duration).clamp(0.0, 1.0);
+    let after = (t - start - duration).max(0.0);
+    // ẋ = from + Δ (3 s² − 2 s³),  s = (t − start) / duration
+    Course {
+        position: from * t + change * (duration * (s * s * s - 0.5 * s.powi(4)) + after)
+            - offset_before_zero(change, start, duration),
+        rate: from + change * s * s * (3.0 - 2.0 * s),
+        acceleration: if s > 0.0 && s < 1.0 {
+            change * 6.0 * s * (1.0 - s) / duration
+        } else {
+            0.0
+        },
+    }
+}
+
+/// Value of the ramp's integral at t = 0, so that x(0) = 0 also for ramps that began earlier.
+fn offset_before_zero(change: f64, start: f64, duration: f64) -> f64 {
+    let s = (-start / duration).clamp(0.0, 1.0);
+    let after = (-start - duration).max(0.0);
+    change * (duration * (s * s * s - 0.5 * s.powi(4)) + after)
+}
+
+/// A natural cubic spline through (tᵢ, xᵢ): twice continuously differentiable.
+///
+/// Outside its times the coordinate goes on at the rate of the nearest end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    times: Vec<f64>,
+    values: Vec<f64>,
+    /// Second derivatives at the knots.
+    curvatures: Vec<f64>,
+}
+
+impl Table {
+    /// Joins `values` \[m or rad\] at `times` \[s\].
+    ///
+    /// # Errors
+    /// Fewer than two points, lengths that differ, times that do not increase, or numbers that
+    /// are not finite.
+    pub fn new(times: Vec<f64>, values: Vec<f64>) -> Result<Self, DriveError> {
+        let n = times.len();
+        if n < 2 || n != values.len() {
+            return Err(DriveError::Table {
+                problem: format!(
+                    "{n} times and {} values; give at least two of each, and as many",
+                    values.len()
+                ),
+            });
+        }
+        if let Some(i) = (0..n).find(|&i| !(times[i].is_finite() && values[i].is_finite())) {
+            return Err(DriveError::Table {
+                problem: format!("entry {i} is not finite"),
+            });
+        }
+        if let Some(i) = (1..n).find(|&i| times[i] <= times[i - 1]) {
+            return Err(DriveError::Table {
+                problem: format!("times must increase, but entry {i} does not"),
+            });
+        }
+        let curvatures = natural_spline(&times, &values);
+        Ok(Self {
+            times,
+            values,
+            curvatures,
+        })
+    }
+
+    /// The curve at `t`, not shifted.
+    pub fn value(&self, t: f64) -> Course {
+        let n = self.times.len();
+        let (first, last) = (self.times[0], self.times[n - 1]);
+        if t < first || t > last {
+            let edge = self.value(t.clamp(first, last));
+            let beyond = t - t.clamp(first, last);
+            return Course {
+                position: edge.position + edge.rate * beyond,
+                rate: edge.rate,
+                acceleration: 0.0,
+            };
+        }
+        let i = self
+            .times
+            .partition_point(|&knot| knot <= t)
+            .clamp(1, n - 1);
+        let width = self.times[i] - self.times[i - 1];
+        let b = (t - self.times[i - 1]) / width;
+        let a = 1.0 - b;
+        let (x0, x1) = (self.values[i - 1], self.values[i]);
+        let (m0, m1) = (self.curvatures[i - 1], self.curvatures[i]);
+        // x = a x₀ + b x₁ + ((a³ − a) m₀ + (b³ − b) m₁) w²/6
+        Course {
+            position: a * x0
+                + b * x1
+                + ((a * a * a - a) * m0 + (b * b * b - b) * m1) * width * width / 6.0,
+            rate: (x1 - x0) / width
+                + ((3.0 * b * b - 1.0) * m1 - (3.0 * a * a - 1.0) * m0) * width / 6.0,
+            acceleration: a * m0 + b * m1,
+        }
+    }
+
+    fn at(&self, t: f64) -> Course {
+        let course = self.value(t);
+        Course {
+            position: course.position - self.value(0.0).position,
+            ..course
+        }
+    }
+}
+
+/// Second derivatives of the natural spline, by the tridiagonal recurrence.
+fn natural_spline(times: &[f64], values: &[f64]) -> Vec<f64> {
+    let n = times.len();
+    let mut curvature = vec![0.0; n];
+    let mut upper = vec![0.0; n];
+    for i in 1..n - 1 {
+        let (w0, w1) = (times[i] - times[i - 1], times[i + 1] - times[i]);
+        // w₀ m₋ + 2 (w₀ + w₁) m + w₁ m₊ = 6 (Δ₊/w₁ − Δ₋/w₀)
+        let jump = 6.0 * ((values[i + 1] - values[i]) / w1 - (values[i] - values[i - 1]) / w0);
+        let pivot = 2.0 * (w0 + w1) - w0 * upper[i - 1];
+        upper[i] = w1 / pivot;
+        curvature[i] = (jump - w0 * curvature[i - 1]) / pivot;
+    }
+    for i in (1..n - 1).rev() {
+        curvature[i] -= upper[i] * curvature[i + 1];
+    }
+    curvature
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn motions() -> Vec<Motion> {
+        let times: Vec<f64> = (0..9).map(|i| 0.1 * f64::from(i)).collect();
+        let values = times.iter().map(|t| (3.0 * t).sin()).collect();
+        vec![
+            Motion::Constant { rate: -13.3 },
+            Motion::Ramp {
+                from: 1.0,
+                to: -4.0,
+                start: 0.2,
+                duration: 0.5,
+            },
+            Motion::Ramp {
+                from: 0.0,
+                to: 4.0,
+                start: -0.2,
+                duration: 0.5,
+            },
+            Motion::Harmonics {
+                rate: 2.0,
+                terms: vec![Harmonic {
+                    amplitude: 0.01,
+                    frequency: 7.0,
+                    phase: 0.4,
+                }],
+            },
+            Motion::Table(Table::new(times, values).unwrap()),
+        ]
+    }
+
+    #[test]
+    fn rate_and_acceleration_are_derivatives_and_motion_starts_at_zero() {
+        let h = 1e-5;
+        for motion in motions() {
+            assert!(motion.at(0.0).position.abs() < 1e-15, "{motion:?}");
+            for i in 1..40 {
+                let t = 0.0173 * f64::from(i);
+                let (before, now, after) = (motion.at(t - h), motion.at(t), motion.at(t + h));
+                let rate = (after.position - before.position) / (2.0 * h);
+                let acceleration = (after.rate - before.rate) / (2.0 * h);
+                assert!((rate - now.rate).abs() < 1e-6, "{motion:?} at {t}");
+                assert!(
+                    (acceleration - now.acceleration).abs() < 1e-3,
+                    "{motion:?} at {t}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn spline_reproduces_a_straight_line() {
+        let table = Table::new(vec![0.0, 0.3, 1.0], vec![1.0, 1.6, 3.0]).unwrap();
+        let course = table.value(0.77);
+        assert!((course.position - 2.54).abs() < 1e-14);
+        assert!(course.acceleration.abs() < 1e-13);
+    }
+
+    #[test]
+    fn a_table_that_goes_back_in_time_is_refused() {
+        let problem = Table::new(vec![0.0, 1.0, 0.5], vec![0.0; 3]).unwrap_err();
+        assert!(problem.to_string().contains("entry 2"));
+    }
+}

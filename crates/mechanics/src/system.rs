@@ -1,0 +1,532 @@
+//! The compiled drive: flat arrays, evaluated by the time stepping.
+//!
+//! ```text
+//! q = [ x of the rollers | y of the rollers | sprocket angles, centres, tensioners ]
+//! ```
+//!
+//! The roller arrays are padded to whole lanes. Behind the last roller of a closed chain stand
+//! copies of the first ones; they are given the accelerations of their originals and so follow
+//! them bit by bit, and the loops never wrap around.
+
+mod bodies;
+mod build;
+
+use chaindrive_geometry::{Point, Vector};
+use chaindrive_integrate::{Continuity, Moment, SecondOrderSystem, Verdict};
+use pulp::Arch;
+
+pub(crate) use bodies::{
+    Anchor, Rail, RailContact, RailSupport, Slide, Wheel, WheelRotation, WheelSupport,
+};
+pub(crate) use build::Laid;
+
+use crate::contact::{Frame, Places, PlateTouch, Touch, Wrench};
+use crate::energy::Flow;
+use crate::links::{Links, Pulls};
+use crate::motion::Course;
+use crate::{End, Motion};
+
+/// A drive ready to move.
+#[derive(Clone, Debug)]
+pub struct System {
+    pub(crate) links: Links,
+    pub(crate) rollers: usize,
+    /// Distance from the x to the y block of the state.
+    pub(crate) stride: usize,
+    pub(crate) dofs: usize,
+    /// Masses \[kg\] and inverse masses \[1/kg\] of the rollers; held ends have none of the latter.
+    pub(crate) masses: Vec<f64>,
+    pub(crate) inverse_masses: Vec<f64>,
+    pub(crate) gravity: Vector,
+    pub(crate) wheels: Vec<Wheel>,
+    pub(crate) rails: Vec<Rail>,
+    pub(crate) slides: Vec<Slide>,
+    pub(crate) ends: Vec<HeldEnd>,
+    pub(crate) pitch: f64,
+    /// Sprockets in path order, for the naming of spans.
+    pub(crate) route: Vec<usize>,
+    /// ω² of the links alone and twice their damping rate.
+    pub(crate) link_rates: [f64; 2],
+    time_scale: f64,
+    /// Deepest first penetration accepted \[m\], when steps are to be rejected for it.
+    onset_depth: Option<f64>,
+    /// When the windows are renewed: latest time, and accepted steps to go.
+    renew: (f64, u32),
+    arch: Arch,
+}
+
+/// An end roller whose motion or load is given.
+#[derive(Clone, Debug)]
+pub(crate) struct HeldEnd {
+    pub(crate) roller: usize,
+    pub(crate) end: End,
+    /// Where it was laid.
+    pub(crate) place: Point,
+}
+
+/// What one evaluation leaves behind: contact states, work space and what the bodies felt.
+#[derive(Clone, Debug, Default)]
+pub struct Record {
+    pub(crate) teeth: Vec<Touch>,
+    pub(crate) circles: Vec<Touch>,
+    pub(crate) plates: Vec<Vec<PlateTouch>>,
+    pub(crate) wheel_wrenches: Vec<Wrench>,
+    pub(crate) rail_wrenches: Vec<Wrench>,
+    pulls: Pulls,
+}
+
+/// The rollers' part of a state, and of its accelerations.
+#[derive(Debug)]
+pub(crate) struct Rollers<'a> {
+    pub(crate) x: &'a [f64],
+    pub(crate) y: &'a [f64],
+    pub(crate) vx: &'a [f64],
+    pub(crate) vy: &'a [f64],
+    pub(crate) ax: &'a mut [f64],
+    pub(crate) ay: &'a mut [f64],
+    pub(crate) inverse_mass: &'a [f64],
+}
+
+impl Rollers<'_> {
+    #[inline(always)]
+    pub(crate) fn place(&self, roller: usize) -> Point {
+        Point::new(self.x[roller], self.y[roller])
+    }
+
+    #[inline(always)]
+    pub(crate) fn velocity(&self, roller: usize) -> Vector {
+        Vector::new(self.vx[roller], self.vy[roller])
+    }
+
+    /// Adds a force \[N\] on one roller; a ghost index means its original.
+    pub(crate) fn push(&mut self, roller: usize, force: Vector) {
+        self.ax[roller] += force.x * self.inverse_mass[roller];
+        self.ay[roller] += force.y * self.inverse_mass[roller];
+    }
+}
+
+/// Accepted steps after which the windows are renewed at the latest.
+const STEPS_PER_WINDOW: u32 = 64;
+
+impl System {
+    /// Rejects steps in which a contact begins deeper than `depth` \[m\]; `None` accepts any.
+    pub fn set_onset_depth(&mut self, depth: Option<f64>) {
+        self.onset_depth = depth;
+    }
+
+    /// Number of rollers.
+    pub fn rollers(&self) -> usize {
+        self.rollers
+    }
+
+    /// Number of links.
+    pub fn links(&self) -> usize {
+        self.links.count
+    }
+
+    /// Degrees of freedom that move: rollers that are not held count two.
+    pub fn free_dofs(&self) -> usize {
+        2 * (0..self.rollers)
+            .filter(|&i| self.inverse_masses[i] > 0.0)
+            .count()
+            + (self.dofs - 2 * self.stride)
+    }
+
+    /// Rollers that were tested against some body in the present windows, and bodies.
+    pub fn candidates(&self) -> usize {
+        let teeth = self.wheels.iter().map(|w| &w.contacts);
+        let circles = self.rails.iter().filter_map(|rail| match &rail.contact {
+            RailContact::Circles(contacts) => Some(contacts),
+            RailContact::Plates(_) => None,
+        });
+        teeth
+            .chain(circles)
+            .flat_map(|c| &c.runs)
+            .map(|run| run.count)
+            .sum()
+    }
+
+    pub(crate) fn view<'a>(&'a self, q: &'a [f64], v: &'a [f64], a: &'a mut [f64]) -> Rollers<'a> {
+        let n = self.stride;
+        let (ax, rest) = a.split_at_mut(n);
+        Rollers {
+            x: &q[..n],
+            y: &q[n..2 * n],
+            vx: &v[..n],
+            vy: &v[n..2 * n],
+            ax,
+            ay: &mut rest[..n],
+            inverse_mass: &self.inverse_masses,
+        }
+    }
+
+    /// Frame of a wheel and the course of its angle.
+    #[inline(always)]
+    pub(crate) fn wheel_frame(&self, wheel: &Wheel, at: Moment<'_>) -> (Frame, Course, Vector) {
+        let course = wheel.course(at.t, at.q, at.v);
+        let (origin, velocity, acceleration) = wheel.centre_course(at.t, at.q, at.v, &self.slides);
+        let frame = Frame {
+            origin,
+            turn: wheel.anchor.turn(course.position),
+            velocity,
+            spin: course.rate,
+        };
+        (frame, course, acceleration)
+    }
+
+    #[inline(always)]
+    fn forces(&self, at: Moment<'_>, a: &mut [f64], rates: &mut [f64], record: &mut Record) {
+        rates.fill(0.0);
+        a[2 * self.stride..].fill(0.0);
+        let mut rollers = self.view(at.q, at.v, a);
+        let gravity = [self.gravity.x, self.gravity.y];
+        rates[Flow::LinkLoss as usize] = self.links.act(&mut rollers, &mut record.pulls, gravity);
+        for (i, wheel) in self.wheels.iter().enumerate() {
+            let (frame, _, _) = self.wheel_frame(wheel, at);
+            let wrench = wheel
+                .contacts
+                .act(&frame, &mut rollers, &mut record.teeth[i]);
+            rates[Flow::ToothLoss as usize] += wrench.normal_loss;
+            rates[Flow::FrictionLoss as usize] += wrench.friction_loss;
+            record.wheel_wrenches[i] = wrench;
+        }
+        for (i, rail) in self.rails.iter().enumerate() {
+            let frame = rail.frame(at.t, at.q, at.v, &self.slides);
+            let wrench = match &rail.contact {
+                RailContact::Circles(contacts) => {
+                    contacts.act(&frame, &mut rollers, &mut record.circles[i])
+                }
+                RailContact::Plates(plates) => plates.act(
+                    &frame,
+                    &mut rollers,
+                    self.links.count,
+                    &mut record.plates[i],
+                ),
+            };
+            rates[Flow::GuideLoss as usize] += wrench.normal_loss;
+            rates[Flow::FrictionLoss as usize] += wrench.friction_loss;
+            record.rail_wrenches[i] = wrench;
+        }
+    }
+
+    /// Accelerations of everything but the rollers, and the powers that go with them.
+    fn bodies(&self, at: Moment<'_>, a: &mut [f64], rates: &mut [f64], record: &Record) {
+        for (wheel, wrench) in self.wheels.iter().zip(&record.wheel_wrenches) {
+            let (frame, course, acceleration) = self.wheel_frame(wheel, at);
+            match &wheel.rotation {
+                WheelRotation::Prescribed(_) => {
+                    // P = (J α − M) ω
+                    let torque = wheel.inertia * course.acceleration - wrench.moment;
+                    rates[Flow::Driver as usize] += torque * course.rate;
+                }
+                WheelRotation::Free { dof, drive, load } => {
+                    let sum = |torques: &[crate::Torque]| -> f64 {
+                        let angle = course.position - wheel.angle;
+                        torques.iter().map(|m| m.at(at.t, angle, course.rate)).sum()
+                    };
+                    let (driving, loading) = (sum(drive), sum(load));
+                    rates[Flow::DriveTorque as usize] += driving * course.rate;
+                    rates[Flow::Load as usize] += loading * course.rate;
+                    // J α = M + M_drive + M_load
+                    a[*dof] = (wrench.moment + driving + loading) / wheel.inertia;
+                }
+            }
+            match &wheel.support {
+                WheelSupport::Fixed => {}
+                WheelSupport::Prescribed { .. } => {
+                    // P = (m a − F − m g)·v
+                    let force = Vector::new(wrench.force[0], wrench.force[1]);
+                    let needed = (acceleration - self.gravity) * wheel.mass - force;
+                    rates[Flow::Motions as usize] += needed.dot(&frame.velocity);
+                }
+                WheelSupport::Springs {
+                    dof,
+                    stiffness,
+                    damping,
+                } => {
+                    for axis in 0..2 {
+                        let away = frame.origin[axis] - wheel.centre[axis];
+                        let speed = frame.velocity[axis];
+                        // m a = F + m g − k x − c ẋ
+                        let force =
+                            wrench.force[axis] - stiffness[axis] * away - damping[axis] * speed;
+                        a[dof + axis] = force / wheel.mass + self.gravity[axis];
+                        rates[Flow::SupportLoss as usize] += damping[axis] * speed * speed;
+                    }
+                }
+                WheelSupport::Carried(index) => {
+                    let slide = &self.slides[*index];
+                    if let Some(dof) = slide.dof {
+                        a[dof] += slide.project(wrench.force, frame.origin);
+                    }
+                }
+            }
+        }
+        for (rail, wrench) in self.rails.iter().zip(&record.rail_wrenches) {
+            match &rail.support {
+                RailSupport::Fixed => {}
+                RailSupport::Prescribed { .. } => {
+                    let frame = rail.frame(at.t, at.q, at.v, &self.slides);
+                    let force = Vector::new(wrench.force[0], wrench.force[1]);
+                    rates[Flow::Motions as usize] -= force.dot(&frame.velocity);
+                }
+                RailSupport::Carried(index) => {
+                    let slide = &self.slides[*index];
+                    if let Some(dof) = slide.dof {
+                        // A rail on an arm has the pivot as its origin: the moment is about it.
+                        a[dof] += match &slide.carrier {
+                            crate::Carrier::Slider { .. } => {
+                                slide.project(wrench.force, Point::origin())
+                            }
+                            crate::Carrier::Arm { .. } => wrench.moment,
+                        };
+                    }
+                }
+            }
+        }
+        for slide in &self.slides {
+            let Some(dof) = slide.dof else { continue };
+            let pose = slide.pose(at.q, at.v);
+            let (extension, lever) = slide.carrier.extension(pose.coordinate);
+            let push = slide.push.force(extension, lever * pose.rate);
+            rates[Flow::TensionerLoss as usize] -= push.damping * lever * pose.rate;
+            let mut force = a[dof] + (push.elastic + push.damping) * lever;
+            for (mass, at_rest) in &slide.weights {
+                let (place, _) = slide.carry(pose, *at_rest);
+                let weight = self.gravity * *mass;
+                force += slide.project([weight.x, weight.y], place);
+            }
+            a[dof] = force / slide.inertia;
+        }
+    }
+
+    /// Accelerations of the end rollers whose motion or load is given.
+    fn hold_ends(&self, at: Moment<'_>, a: &mut [f64], rates: &mut [f64]) {
+        let n = self.stride;
+        for held in &self.ends {
+            let i = held.roller;
+            match &held.end {
+                End::Free => {}
+                End::Fixed => {
+                    a[i] = 0.0;
+                    a[n + i] = 0.0;
+                }
+                End::Driven { x, y } => {
+                    let (x, y) = (x.at(at.t), y.at(at.t));
+                    a[i] = x.acceleration;
+                    a[n + i] = y.acceleration;
+                    let needed =
+                        self.end_force(at, held, Vector::new(x.acceleration, y.acceleration));
+                    rates[Flow::Motions as usize] += needed.x * x.rate + needed.y * y.rate;
+                }
+                End::Pulled { force } => {
+                    a[i] += force.x * self.inverse_masses[i];
+                    a[n + i] += force.y * self.inverse_masses[i];
+                    rates[Flow::DriveTorque as usize] += force.x * at.v[i] + force.y * at.v[n + i];
+                }
+            }
+        }
+    }
+
+    /// Force that a support exerts on a held end roller \[N\].
+    fn end_force(&self, at: Moment<'_>, held: &HeldEnd, acceleration: Vector) -> Vector {
+        let mut none = vec![0.0; self.dofs];
+        let rollers = self.view(at.q, at.v, &mut none);
+        let (link, inward) = if held.roller == 0 {
+            (0, 1.0)
+        } else {
+            (held.roller - 1, -1.0)
+        };
+        let along = (rollers.place(link + 1) - rollers.place(link)).normalize() * inward;
+        let pull = along * self.links.tension(&rollers, link);
+        // F = m (a − g) − T
+        (acceleration - self.gravity) * self.masses[held.roller] - pull
+    }
+
+    /// Lays the contact windows and takes the state as the first accepted one.
+    pub(crate) fn start(&mut self, t: f64, q: &mut [f64], v: &mut [f64]) {
+        for wheel in &mut self.wheels {
+            wheel.anchor = Anchor::at(wheel.course(t, q, v).position);
+        }
+        self.renew_windows(Moment { t, q, v });
+        let mut record = self.new_record();
+        let mut a = vec![0.0; self.dofs];
+        let mut rates = vec![0.0; Flow::ALL.len()];
+        self.evaluate(Moment { t, q, v }, &mut a, &mut rates, &mut record);
+        self.commit(t, q, v, &mut record);
+    }
+
+    fn renew_windows(&mut self, at: Moment<'_>) {
+        let n = self.stride;
+        let (vx, vy) = (&at.v[..self.rollers], &at.v[n..n + self.rollers]);
+        let fastest = vx
+            .iter()
+            .zip(vy)
+            .map(|(x, y)| x * x + y * y)
+            .fold(0.0, f64::max)
+            .sqrt();
+        let mut speed = fastest;
+        let margin = 0.5 * self.pitch;
+        let places = Places {
+            x: &at.q[..n],
+            y: &at.q[n..2 * n],
+            count: self.rollers,
+        };
+        for i in 0..self.wheels.len() {
+            let course = self.wheels[i].course(at.t, at.q, at.v);
+            self.wheels[i].anchor = Anchor::at(course.position);
+            let (frame, _, _) = self.wheel_frame(&self.wheels[i], at);
+            let rim = course.rate.abs() * self.wheels[i].pitch_radius + frame.velocity.norm();
+            speed = speed.max(fastest + rim);
+            self.wheels[i].contacts.renew(&frame, places, margin);
+        }
+        for i in 0..self.rails.len() {
+            let frame = self.rails[i].frame(at.t, at.q, at.v, &self.slides);
+            if let RailContact::Circles(contacts) = &mut self.rails[i].contact {
+                contacts.renew(&frame, places, margin);
+            }
+        }
+        // No roller may cross half the margin before the next look.
+        self.renew = (
+            at.t + 0.5 * margin / speed.max(f64::MIN_POSITIVE),
+            STEPS_PER_WINDOW,
+        );
+    }
+
+    /// 1/ω of the stiffest mode as estimated from the links, the deepest contact and the damping.
+    ///
+    /// ```text
+    /// ω_s = D + √(D² + ω²),   ω² = max Σ k/m + max k_c/m,   D = Σ d/m
+    /// ```
+    ///
+    /// The damping rate enters because Verlet's predicted velocity limits h D to 1.
+    fn stiffest(&self, record: &Record) -> f64 {
+        let lightest = self.inverse_masses.iter().copied().fold(0.0, f64::max);
+        let [mut squared, mut damping] = self.link_rates;
+        let (mut contact, mut drag) = (0.0_f64, 0.0_f64);
+        for (wheel, wrench) in self.wheels.iter().zip(&record.wheel_wrenches) {
+            let (stiffness, _) = wheel.contacts.hardest(wrench.depth);
+            let free = matches!(wheel.rotation, WheelRotation::Free { .. });
+            let seated: usize = wheel.contacts.runs.iter().map(|run| run.count).sum();
+            let radius = wheel.pitch_radius;
+            let shared = if free {
+                radius * radius / wheel.inertia * seated as f64
+            } else {
+                0.0
+            };
+            contact = contact.max(stiffness * (lightest + shared));
+            drag = drag.max(wrench.damping * (lightest + shared));
+        }
+        for (rail, wrench) in self.rails.iter().zip(&record.rail_wrenches) {
+            let surface = match &rail.contact {
+                RailContact::Circles(contacts) => &contacts.surface,
+                RailContact::Plates(plates) => &plates.surface,
+            };
+            contact = contact.max(surface.law.stiffness(wrench.depth) * lightest);
+            drag = drag.max(wrench.damping * lightest);
+        }
+        squared += contact;
+        damping += drag;
+        for slide in &self.slides {
+            let light = 1.0 / slide.inertia;
+            squared = squared.max(slide.push.stiffness() * light);
+            damping = damping.max(slide.push.damping() * light);
+        }
+        1.0 / (damping + (damping * damping + squared).sqrt())
+    }
+}
+
+impl SecondOrderSystem for System {
+    type Record = Record;
+
+    fn new_record(&self) -> Record {
+        let touches = |count: usize| vec![Touch::default(); count];
+        Record {
+            teeth: touches(self.wheels.len()),
+            circles: touches(self.rails.len()),
+            plates: vec![Vec::new(); self.rails.len()],
+            wheel_wrenches: vec![Wrench::default(); self.wheels.len()],
+            rail_wrenches: vec![Wrench::default(); self.rails.len()],
+            pulls: self.links.pulls(),
+        }
+    }
+
+    fn dofs(&self) -> usize {
+        self.dofs
+    }
+
+    fn quadratures(&self) -> usize {
+        Flow::ALL.len()
+    }
+
+    fn evaluate(&self, at: Moment<'_>, a: &mut [f64], rates: &mut [f64], record: &mut Record) {
+        self.arch.dispatch(|| self.forces(at, a, rates, record));
+        self.bodies(at, a, rates, record);
+        if self.links.closed {
+            let n = self.stride;
+            for ghost in self.rollers..n {
+                a[ghost] = a[ghost % self.rollers];
+                a[n + ghost] = a[n + ghost % self.rollers];
+            }
+        } else {
+            self.hold_ends(at, a, rates);
+            let n = self.stride;
+            a[self.rollers..n].fill(0.0);
+            a[n + self.rollers..2 * n].fill(0.0);
+        }
+    }
+
+    fn inspect(&self, h: f64, end: &Record) -> Verdict {
+        let Some(allowed) = self.onset_depth else {
+            return Verdict::Accept;
+        };
+        let wrenches = end.wheel_wrenches.iter().chain(&end.rail_wrenches);
+        let mut share = f64::INFINITY;
+        for wrench in wrenches.filter(|w| w.first_depth > allowed) {
+            // Land with the gap half the allowed depth beyond touch, by the secant.
+            let beyond = 0.5 * allowed / wrench.first_depth;
+            share = share.min(wrench.first_share + (1.0 - wrench.first_share) * beyond);
+        }
+        if share < 1.0 {
+            Verdict::Retry { at_most: h * share }
+        } else {
+            Verdict::Accept
+        }
+    }
+
+    fn commit(&mut self, t: f64, q: &mut [f64], v: &mut [f64], end: &mut Record) -> Continuity {
+        for (wheel, touch) in self.wheels.iter_mut().zip(&mut end.teeth) {
+            std::mem::swap(&mut wheel.contacts.memory, touch);
+        }
+        for (i, rail) in self.rails.iter_mut().enumerate() {
+            match &mut rail.contact {
+                RailContact::Circles(contacts) => {
+                    std::mem::swap(&mut contacts.memory, &mut end.circles[i]);
+                }
+                RailContact::Plates(plates) => {
+                    std::mem::swap(&mut plates.memory, &mut end.plates[i]);
+                }
+            }
+        }
+        self.time_scale = self.stiffest(end);
+        let n = self.stride;
+        for held in &self.ends {
+            if let End::Driven { x, y } = &held.end {
+                let (x, y): (Course, Course) = (Motion::at(x, t), y.at(t));
+                q[held.roller] = held.place.x + x.position;
+                q[n + held.roller] = held.place.y + y.position;
+                v[held.roller] = x.rate;
+                v[n + held.roller] = y.rate;
+            }
+        }
+        self.renew.1 = self.renew.1.saturating_sub(1);
+        if t >= self.renew.0 || self.renew.1 == 0 {
+            self.renew_windows(Moment { t, q, v });
+        }
+        Continuity::Smooth
+    }
+
+    fn time_scale(&self) -> f64 {
+        self.time_scale
+    }
+}

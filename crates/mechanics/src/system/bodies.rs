@@ -1,0 +1,264 @@
+//! Wheels, rails and carriers, compiled: where they are, how they move, what they feel.
+
+use chaindrive_geometry::{Point, Vector};
+
+use crate::contact::{Contacts, Frame, PlateContact};
+use crate::motion::Course;
+use crate::{Carrier, Motion, Push, Torque};
+
+/// A sprocket in the system.
+#[derive(Clone, Debug)]
+pub(crate) struct Wheel {
+    pub(crate) name: String,
+    pub(crate) contacts: Contacts,
+    /// Centre and gap angle at assembly.
+    pub(crate) centre: Point,
+    pub(crate) angle: f64,
+    pub(crate) rotation: WheelRotation,
+    pub(crate) support: WheelSupport,
+    pub(crate) inertia: f64,
+    pub(crate) mass: f64,
+    pub(crate) teeth: u32,
+    pub(crate) pitch_radius: f64,
+    pub(crate) pitch: f64,
+    /// +1 where the chain turns counter-clockwise around the wheel.
+    pub(crate) sense: f64,
+    /// Angle with known cosine and sine, renewed with the windows.
+    pub(crate) anchor: Anchor,
+}
+
+/// How a wheel turns.
+#[derive(Clone, Debug)]
+pub(crate) enum WheelRotation {
+    Prescribed(Motion),
+    Free {
+        dof: usize,
+        drive: Vec<Torque>,
+        load: Vec<Torque>,
+    },
+}
+
+/// What holds a wheel's centre.
+#[derive(Clone, Debug)]
+pub(crate) enum WheelSupport {
+    Fixed,
+    Prescribed {
+        x: Motion,
+        y: Motion,
+    },
+    /// Degrees of freedom `dof` (x) and `dof + 1` (y).
+    Springs {
+        dof: usize,
+        stiffness: [f64; 2],
+        damping: [f64; 2],
+    },
+    Carried(usize),
+}
+
+/// A guide in the system.
+#[derive(Clone, Debug)]
+pub(crate) struct Rail {
+    pub(crate) name: String,
+    pub(crate) contact: RailContact,
+    pub(crate) support: RailSupport,
+}
+
+/// What touches a rail.
+#[derive(Clone, Debug)]
+pub(crate) enum RailContact {
+    Circles(Contacts),
+    Plates(PlateContact),
+}
+
+/// What holds a rail.
+#[derive(Clone, Debug)]
+pub(crate) enum RailSupport {
+    Fixed,
+    Prescribed { x: Motion, y: Motion },
+    Carried(usize),
+}
+
+/// A tensioner in the system.
+#[derive(Clone, Debug)]
+pub(crate) struct Slide {
+    pub(crate) name: String,
+    pub(crate) carrier: Carrier,
+    pub(crate) push: Push,
+    /// Inertia with all that it carries \[kg or kg m²\].
+    pub(crate) inertia: f64,
+    /// Degree of freedom; none while locked.
+    pub(crate) dof: Option<usize>,
+    /// Masses that it carries and where they are at assembly, itself included for a slider.
+    pub(crate) weights: Vec<(f64, Point)>,
+}
+
+/// An angle whose cosine and sine are known.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Anchor {
+    angle: f64,
+    turn: [f64; 2],
+}
+
+impl Anchor {
+    pub(crate) fn at(angle: f64) -> Self {
+        Self {
+            angle,
+            turn: [angle.cos(), angle.sin()],
+        }
+    }
+
+    /// Cosine and sine of an angle near the anchor, without a trigonometric function.
+    ///
+    /// Taylor's series to the twelfth power: exact to rounding for |Δ| ≤ 0.35.
+    #[inline(always)]
+    pub(crate) fn turn(&self, angle: f64) -> [f64; 2] {
+        let d = angle - self.angle;
+        if d.abs() > 0.35 {
+            return [angle.cos(), angle.sin()];
+        }
+        let s = d * d;
+        // cos Δ = 1 − Δ²/2 + …,   sin Δ = Δ − Δ³/6 + …
+        let cosine = 1.0
+            - s / 2.0
+                * (1.0
+                    - s / 12.0
+                        * (1.0
+                            - s / 30.0 * (1.0 - s / 56.0 * (1.0 - s / 90.0 * (1.0 - s / 132.0)))));
+        let sine = d
+            * (1.0
+                - s / 6.0
+                    * (1.0 - s / 20.0 * (1.0 - s / 42.0 * (1.0 - s / 72.0 * (1.0 - s / 110.0)))));
+        let [c, si] = self.turn;
+        [c * cosine - si * sine, si * cosine + c * sine]
+    }
+}
+
+/// Where a carrier is.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Pose {
+    pub(crate) coordinate: f64,
+    pub(crate) rate: f64,
+}
+
+impl Slide {
+    pub(crate) fn pose(&self, q: &[f64], v: &[f64]) -> Pose {
+        self.dof.map_or_else(Pose::default, |dof| Pose {
+            coordinate: q[dof],
+            rate: v[dof],
+        })
+    }
+
+    /// Place and velocity of a point that is at `at` when s = 0.
+    pub(crate) fn carry(&self, pose: Pose, at: Point) -> (Point, Vector) {
+        match &self.carrier {
+            Carrier::Slider { direction } => {
+                (at + direction * pose.coordinate, direction * pose.rate)
+            }
+            Carrier::Arm { pivot, .. } => {
+                let (s, c) = pose.coordinate.sin_cos();
+                let arm = at - pivot;
+                let turned = Vector::new(c * arm.x - s * arm.y, s * arm.x + c * arm.y);
+                (pivot + turned, Vector::new(-turned.y, turned.x) * pose.rate)
+            }
+        }
+    }
+
+    /// Generalised force of a force at a carried point.
+    pub(crate) fn project(&self, force: [f64; 2], at: Point) -> f64 {
+        match &self.carrier {
+            Carrier::Slider { direction } => direction.x * force[0] + direction.y * force[1],
+            Carrier::Arm { pivot, .. } => {
+                let arm = at - pivot;
+                arm.x * force[1] - arm.y * force[0]
+            }
+        }
+    }
+}
+
+impl Wheel {
+    /// Angle of the first gap axis and its rates at time `t`.
+    #[inline(always)]
+    pub(crate) fn course(&self, t: f64, q: &[f64], v: &[f64]) -> Course {
+        match &self.rotation {
+            WheelRotation::Prescribed(motion) => {
+                let course = motion.at(t);
+                Course {
+                    position: self.angle + course.position,
+                    ..course
+                }
+            }
+            WheelRotation::Free { dof, .. } => Course {
+                position: q[*dof],
+                rate: v[*dof],
+                acceleration: 0.0,
+            },
+        }
+    }
+
+    /// Place, velocity and prescribed acceleration of the centre.
+    #[inline(always)]
+    pub(crate) fn centre_course(
+        &self,
+        t: f64,
+        q: &[f64],
+        v: &[f64],
+        slides: &[Slide],
+    ) -> (Point, Vector, Vector) {
+        let still = Vector::zeros();
+        match &self.support {
+            WheelSupport::Fixed => (self.centre, still, still),
+            WheelSupport::Prescribed { x, y } => {
+                let (x, y) = (x.at(t), y.at(t));
+                (
+                    self.centre + Vector::new(x.position, y.position),
+                    Vector::new(x.rate, y.rate),
+                    Vector::new(x.acceleration, y.acceleration),
+                )
+            }
+            WheelSupport::Springs { dof, .. } => (
+                Point::new(q[*dof], q[dof + 1]),
+                Vector::new(v[*dof], v[dof + 1]),
+                still,
+            ),
+            WheelSupport::Carried(index) => {
+                let slide = &slides[*index];
+                let (place, velocity) = slide.carry(slide.pose(q, v), self.centre);
+                (place, velocity, still)
+            }
+        }
+    }
+}
+
+impl Rail {
+    /// The frame of the face, and its reference origin, at time `t`.
+    pub(crate) fn frame(&self, t: f64, q: &[f64], v: &[f64], slides: &[Slide]) -> Frame {
+        match &self.support {
+            RailSupport::Fixed => Frame::fixed(),
+            RailSupport::Prescribed { x, y } => {
+                let (x, y) = (x.at(t), y.at(t));
+                Frame {
+                    origin: Point::new(x.position, y.position),
+                    velocity: Vector::new(x.rate, y.rate),
+                    ..Frame::fixed()
+                }
+            }
+            RailSupport::Carried(index) => {
+                let slide = &slides[*index];
+                let pose = slide.pose(q, v);
+                match &slide.carrier {
+                    Carrier::Slider { direction } => Frame {
+                        origin: Point::origin() + direction * pose.coordinate,
+                        velocity: direction * pose.rate,
+                        ..Frame::fixed()
+                    },
+                    Carrier::Arm { pivot, .. } => Frame {
+                        origin: *pivot,
+                        turn: [pose.coordinate.cos(), pose.coordinate.sin()],
+                        velocity: Vector::zeros(),
+                        spin: pose.rate,
+                    },
+                }
+            }
+        }
+    }
+}

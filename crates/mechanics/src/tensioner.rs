@@ -1,0 +1,175 @@
+//! Tensioners: a carrier with one degree of freedom and the force that drives it outward.
+
+mod hydraulic;
+mod spring;
+
+use chaindrive_geometry::{Point, Vector};
+
+pub use hydraulic::Hydraulic;
+pub use spring::Spring;
+
+use crate::DriveError;
+
+/// A body with one coordinate s that carries sprockets or guides and presses them on the chain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tensioner {
+    /// Name, unique in the drive.
+    pub name: String,
+    /// How it moves.
+    pub carrier: Carrier,
+    /// Mass of a slider \[kg\] or moment of inertia of an arm about its pivot \[kg m²\], without
+    /// the sprockets it carries; positive.
+    pub inertia: f64,
+    /// What pushes it.
+    pub push: Push,
+}
+
+/// How a tensioner moves. At assembly s = 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Carrier {
+    /// A straight slide; s is the travel \[m\].
+    Slider {
+        /// Direction of travel for positive s; unit vector.
+        direction: Vector,
+    },
+    /// An arm about a pivot; s is the angle \[rad\], counter-clockwise.
+    Arm {
+        /// Pivot \[m\].
+        pivot: Point,
+        /// Where and along which unit vector a plunger pushes; without one the push is a
+        /// torque about the pivot.
+        plunger: Option<Plunger>,
+    },
+}
+
+/// A plunger that pushes on an arm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plunger {
+    /// Point of the arm on which it pushes, at assembly \[m\].
+    pub at: Point,
+    /// Direction of the push; unit vector.
+    pub direction: Vector,
+}
+
+/// The law of the push F(x, ẋ), x being the extension since assembly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Push {
+    /// The carrier stays where it was assembled.
+    Locked,
+    /// Spring and damper.
+    Spring(Spring),
+    /// One-way hydraulic plunger.
+    Hydraulic(Hydraulic),
+}
+
+/// The force of a push, taken apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PushForce {
+    /// Part that derives from stored energy \[N or N m\].
+    pub elastic: f64,
+    /// Part that dissipates \[N or N m\].
+    pub damping: f64,
+}
+
+impl Push {
+    /// Force \[N, or N m for a bare arm\] at extension x \[m or rad\] and rate ẋ.
+    pub fn force(&self, x: f64, rate: f64) -> PushForce {
+        match self {
+            Self::Locked => PushForce::default(),
+            Self::Spring(spring) => spring.force(x, rate),
+            Self::Hydraulic(hydraulic) => hydraulic.force(x, rate),
+        }
+    }
+
+    /// Stored energy \[J\] relative to x = 0.
+    pub fn energy(&self, x: f64) -> f64 {
+        match self {
+            Self::Locked => 0.0,
+            Self::Spring(spring) => spring.energy(x),
+            Self::Hydraulic(hydraulic) => hydraulic.energy(x),
+        }
+    }
+
+    /// Stiffness −∂F/∂x of the elastic part \[N/m or N m/rad\].
+    pub fn stiffness(&self) -> f64 {
+        match self {
+            Self::Locked => 0.0,
+            Self::Spring(spring) => spring.stiffness,
+            Self::Hydraulic(hydraulic) => hydraulic.stiffness,
+        }
+    }
+
+    /// Largest damping −∂F/∂ẋ \[N s/m or N m s\].
+    pub fn damping(&self) -> f64 {
+        match self {
+            Self::Locked => 0.0,
+            Self::Spring(spring) => spring.damping,
+            Self::Hydraulic(hydraulic) => hydraulic.leak.max(hydraulic.extending),
+        }
+    }
+}
+
+impl Carrier {
+    /// Extension of the push and its lever ∂x/∂s at coordinate `s`.
+    pub fn extension(&self, s: f64) -> (f64, f64) {
+        match self {
+            Self::Slider { .. } | Self::Arm { plunger: None, .. } => (s, 1.0),
+            Self::Arm {
+                pivot,
+                plunger: Some(Plunger { at, direction }),
+            } => {
+                let arm = at - pivot;
+                let (sine, cosine) = s.sin_cos();
+                let turned =
+                    Vector::new(cosine * arm.x - sine * arm.y, sine * arm.x + cosine * arm.y);
+                // x = d·(R(s) r − r),   ∂x/∂s = d·(ẑ × R(s) r)
+                let x = direction.dot(&(turned - arm));
+                let lever = direction.dot(&Vector::new(-turned.y, turned.x));
+                (x, lever)
+            }
+        }
+    }
+}
+
+impl Tensioner {
+    /// Names every parameter out of range.
+    pub fn problems(&self) -> Vec<DriveError> {
+        let place = |what: &str| format!("tensioners.{}.{what}", self.name);
+        let mut problems = Vec::new();
+        if self.push != Push::Locked {
+            problems.extend(
+                DriveError::require(
+                    self.inertia > 0.0 && self.inertia.is_finite(),
+                    &place("inertia"),
+                    self.inertia,
+                    "positive [kg, or kg m² for an arm]",
+                )
+                .err(),
+            );
+        }
+        let unit = |v: &Vector| (v.norm() - 1.0).abs() < 1e-9;
+        let direction = match &self.carrier {
+            Carrier::Slider { direction } => Some(direction),
+            Carrier::Arm { plunger, .. } => plunger.as_ref().map(|p| &p.direction),
+        };
+        if let Some(direction) = direction {
+            problems.extend(
+                DriveError::require(
+                    unit(direction),
+                    &place("direction"),
+                    direction.norm(),
+                    "a unit vector",
+                )
+                .err(),
+            );
+        }
+        match &self.push {
+            Push::Locked => {}
+            Push::Spring(spring) => problems.extend(spring.check(&place("push")).err()),
+            Push::Hydraulic(hydraulic) => {
+                problems.extend(hydraulic.check(&place("push")).err());
+            }
+        }
+        problems
+    }
+}
