@@ -1,1 +1,35 @@
-//! Placeholder.
+//! The open simulator of roller chain drives.
+//!
+//! A [`Scene`] is what somebody wrote; [`Scene::drive`] checks it and makes a [`Drive`];
+//! a [`Simulation`] moves it and hands out one [`Observation`] after the other, which a
+//! [`Recording`] keeps.
+//!
+//! ```
+//! use chaindrive::{Channel, Recording, Run, Scene, Simulation};
+//!
+//! let drive = Scene::preset("spinning_ring")?.drive()?;
+//! let run = Run { until: 5e-3, every: 1e-3, ..Run::default() };
+//! let mut simulation = Simulation::start(&drive, &run)?;
+//! let mut recording = Recording::new(&[Channel::LinkTension], simulation.system());
+//! while let Some(sample) = simulation.next_sample()? {
+//!     recording.push(sample);
+//! }
+//! assert_eq!(recording.len(), 6);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod describe;
+mod error;
+pub mod record;
+mod run;
+pub mod scene;
+mod simulate;
+
+pub use chaindrive_integrate::{Method, Statistics};
+pub use chaindrive_mechanics::{Assembled, Drive, Energy, Flow, Observation, Store};
+pub use describe::Description;
+pub use error::SimulationError;
+pub use record::{Axis, Channel, Recording, Summary};
+pub use run::{Run, Stepping};
+pub use scene::Scene;
+pub use simulate::Simulation;

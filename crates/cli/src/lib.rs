@@ -1,1 +1,95 @@
-//! Placeholder.
+//! The `chaindrive` command as a library, so that the Python package runs the same one.
+//!
+//! Data goes to stdout, everything else to stderr.
+//!
+//! | exit code | meaning |
+//! |---|---|
+//! | 0 | done |
+//! | 1 | the simulation failed; a result keeps the samples so far and says so |
+//! | 2 | bad input; nothing was written |
+//! | 3 | the result could not be written |
+//! | 130 | interrupted; a result keeps the samples so far and says so |
+
+mod commands;
+mod csv;
+mod failure;
+mod progress;
+mod request;
+mod stdout;
+
+use std::ffi::OsString;
+
+use clap::{Parser, Subcommand};
+
+use commands::{check, describe, lists, run as run_command};
+
+/// Exit code of a run that was stopped by Ctrl-C.
+pub const INTERRUPTED: u8 = 130;
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0    done
+  1    the simulation failed; a result keeps the samples so far and says so
+  2    bad input; nothing was written
+  3    the result could not be written
+  130  interrupted; a result keeps the samples so far and says so";
+
+/// Simulates roller chain drives that are described in scene files.
+#[derive(Debug, Parser)]
+#[command(name = "chaindrive", version, after_help = EXIT_CODES)]
+struct Command {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    Run(run_command::Arguments),
+    Check(check::Arguments),
+    Describe(describe::Arguments),
+    Scenes(lists::Scenes),
+    /// Prints the JSON Schema of scene files.
+    Schema,
+    /// Lists what a run can record.
+    Channels,
+}
+
+/// Runs the command with its arguments, the program's name first, and returns the exit code.
+///
+/// `interrupted` is asked after every sample whether the user wants the run to stop; the
+/// samples so far are then kept.
+///
+/// # Example
+///
+/// ```
+/// let code = chaindrive_cli::run(["chaindrive", "check", "spinning_ring"], &|| false);
+/// assert_eq!(code, 0);
+/// ```
+pub fn run<A>(arguments: impl IntoIterator<Item = A>, interrupted: &dyn Fn() -> bool) -> u8
+where
+    A: Into<OsString> + Clone,
+{
+    let command = match Command::try_parse_from(arguments) {
+        Ok(command) => command,
+        Err(error) => {
+            // Help goes to stdout, complaints to stderr; a closed pipe is nobody's problem.
+            let _ = error.print();
+            return u8::try_from(error.exit_code()).unwrap_or(failure::BAD_INPUT);
+        }
+    };
+    let done = match &command.verb {
+        Verb::Run(arguments) => run_command::run(arguments, interrupted),
+        Verb::Check(arguments) => check::check(arguments),
+        Verb::Describe(arguments) => describe::describe(arguments),
+        Verb::Scenes(arguments) => lists::scenes(arguments),
+        Verb::Schema => lists::schema(),
+        Verb::Channels => lists::channels(),
+    };
+    match done {
+        Ok(()) => 0,
+        Err(failure) => {
+            eprintln!("{failure}");
+            failure.exit_code()
+        }
+    }
+}

@@ -8,7 +8,8 @@
 ///
 /// Gaps g \[m\] are positive before contact, rates \[m/s\] positive while closing. Sampling the
 /// speed at the first state in contact instead would make every method of time stepping first order;
-/// the interpolation restores the order of the smooth problem up to second order in the step.
+/// the interpolation is of second order. The rate now already bears what the contact has slowed it down by, so an
+/// onset deep into a long step reads a little low.
 ///
 /// s is held in \[0, 1\]: without a gap before (g_a ≤ 0: a contact present from the start) the answer is the
 /// speed before, without contact now the speed now. Never negative, finite for finite arguments.

@@ -50,7 +50,7 @@ pub enum ToothForm {
     },
     /// Circular seat with straight flanks tangent to it, for comparison with simpler models.
     ///
-    /// The flanks leave the seat where those of the middle ISO gap do: 65° − 45°/z from its
+    /// The flanks leave the seat where those of the maximum ISO gap do: 60° − 45°/z from its
     /// lowest point.
     Circular {
         /// Seat radius \[m\], at least that of the roller.

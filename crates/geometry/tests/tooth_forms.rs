@@ -340,7 +340,6 @@ fn links_swing_out_freely() {
                         wheel.nearest(centre, f64::INFINITY).unwrap().distance - 0.5 * d1
                     })
                     .fold(f64::INFINITY, f64::min);
-                println!("{name} {teeth} {form:?}: {least:.2e}");
                 assert!(least > -1e-12, "{name} {teeth} {form:?}: {least:e}");
             }
         }

@@ -54,6 +54,7 @@
 
 mod dense;
 mod error;
+mod finite;
 mod method;
 mod runge_kutta;
 mod state;

@@ -1,5 +1,6 @@
 //! Explicit Runge–Kutta methods on any tableau, for systems of second order.
 
+use crate::finite::Watch;
 use crate::state::{Snapshot, State};
 use crate::step_size::Tolerance;
 use crate::tableau::Tableau;
@@ -81,7 +82,11 @@ impl RungeKutta {
             v: &to.v,
         };
         system.evaluate(end, &mut to.a, &mut to.rates, record);
-        all_finite(&to.q) & all_finite(&to.v) & all_finite(&to.a) & all_finite(&to.quadratures)
+        let mut watch = Watch::default();
+        for part in [&to.q, &to.v, &to.a, &to.quadratures] {
+            watch.see_all(part);
+        }
+        watch.all_finite()
     }
 
     /// Estimated error of a candidate in units of the tolerance; the worst coordinate counts.
@@ -129,9 +134,4 @@ fn combine(
             }
         }
     }
-}
-
-/// Whether no entry is infinite or NaN; without a branch, so that it runs in lanes.
-pub(crate) fn all_finite(values: &[f64]) -> bool {
-    values.iter().fold(true, |ok, value| ok & value.is_finite())
 }

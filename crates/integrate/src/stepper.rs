@@ -2,8 +2,8 @@
 
 use std::fmt;
 
+use crate::finite::Watch;
 use crate::method::Kernel;
-use crate::runge_kutta::all_finite;
 use crate::state::{Snapshot, State};
 use crate::step_size::{Controller, FLOOR, Fixed, Tolerance, first_step, shortened, stable_step};
 use crate::{
@@ -198,16 +198,15 @@ impl<S: SecondOrderSystem> Stepper<S> {
         };
         system.evaluate(at, &mut state.a, &mut state.rates, &mut self.record);
         self.statistics.evaluations += 1;
-        if [&state.q, &state.v, &state.a, &state.rates]
-            .into_iter()
-            .all(|part| all_finite(part))
-        {
+        let parts = [&state.q, &state.v, &state.a, &state.rates];
+        let mut watch = Watch::default();
+        for part in parts {
+            watch.see_all(part);
+        }
+        if watch.all_finite() {
             Ok(())
         } else {
-            Err(first_not_finite(
-                state.t,
-                [&state.q, &state.v, &state.a, &state.rates],
-            ))
+            Err(first_not_finite(state.t, parts))
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Velocity Verlet with velocities predicted for the force evaluation.
 
+use crate::finite::Watch;
 use crate::state::{Snapshot, State};
 use crate::{Moment, SecondOrderSystem};
 
@@ -45,49 +46,50 @@ impl Verlet {
         record: &mut S::Record,
     ) -> bool {
         to.t = from.t + h;
-        let mut finite = drift(h, from, &mut to.q, &mut self.predicted);
+        let mut watch = Watch::default();
+        drift(h, from, &mut to.q, &mut self.predicted, &mut watch);
         let end = Moment {
             t: to.t,
             q: &to.q,
             v: &self.predicted,
         };
         system.evaluate(end, &mut to.a, &mut to.rates, record);
-        finite &= kick(h, from, &to.a, &mut to.v);
+        kick(h, from, &to.a, &mut to.v, &mut watch);
         // The trapezoidal rule: y⁺ = y + ½ h (r + r⁺)
         for (i, y) in to.quadratures.iter_mut().enumerate() {
             *y = from.quadratures[i] + 0.5 * h * (from.rates[i] + to.rates[i]);
-            finite &= y.is_finite();
+            watch.see(*y);
         }
-        finite
+        watch.all_finite()
     }
 }
 
-/// Positions and predicted velocities; false if a position is not finite.
+/// Positions and predicted velocities.
 #[inline]
-fn drift(h: f64, from: &State, q: &mut [f64], predicted: &mut [f64]) -> bool {
+fn drift(h: f64, from: &State, q: &mut [f64], predicted: &mut [f64], watch: &mut Watch) {
     let n = q.len();
     let (q0, v0, a0) = (&from.q[..n], &from.v[..n], &from.a[..n]);
     let predicted = &mut predicted[..n];
-    let mut finite = true;
+    let mut seen = *watch;
     for i in 0..n {
         // q⁺ = q + h v + ½ h² a,   v* = v + h a
         q[i] = q0[i] + h * (v0[i] + 0.5 * h * a0[i]);
         predicted[i] = v0[i] + h * a0[i];
-        finite &= q[i].is_finite();
+        seen.see(q[i]);
     }
-    finite
+    *watch = seen;
 }
 
-/// Velocities; false if one is not finite.
+/// Velocities.
 #[inline]
-fn kick(h: f64, from: &State, a: &[f64], v: &mut [f64]) -> bool {
+fn kick(h: f64, from: &State, a: &[f64], v: &mut [f64], watch: &mut Watch) {
     let n = v.len();
     let (v0, a0, a) = (&from.v[..n], &from.a[..n], &a[..n]);
-    let mut finite = true;
+    let mut seen = *watch;
     for i in 0..n {
         // v⁺ = v + ½ h (a + a⁺)
         v[i] = v0[i] + 0.5 * h * (a0[i] + a[i]);
-        finite &= v[i].is_finite();
+        seen.see(v[i]);
     }
-    finite
+    *watch = seen;
 }

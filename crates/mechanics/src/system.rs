@@ -13,7 +13,7 @@ mod build;
 
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Continuity, Moment, SecondOrderSystem, Verdict};
-use pulp::Arch;
+use pulp::{Arch, NullaryFnOnce};
 
 pub(crate) use bodies::{
     Anchor, Rail, RailContact, RailSupport, Slide, Wheel, WheelRotation, WheelSupport,
@@ -181,28 +181,51 @@ impl System {
         let mut rollers = self.view(at.q, at.v, a);
         let gravity = [self.gravity.x, self.gravity.y];
         rates[Flow::LinkLoss as usize] = self.links.act(&mut rollers, &mut record.pulls, gravity);
-        for (i, wheel) in self.wheels.iter().enumerate() {
-            let (frame, _, _) = self.wheel_frame(wheel, at);
-            let wrench = wheel
-                .contacts
-                .act(&frame, &mut rollers, &mut record.teeth[i]);
-            rates[Flow::ToothLoss as usize] += wrench.normal_loss;
-            rates[Flow::FrictionLoss as usize] += wrench.friction_loss;
-            record.wheel_wrenches[i] = wrench;
-        }
-        for (i, rail) in self.rails.iter().enumerate() {
-            let frame = rail.frame(at.t, at.q, at.v, &self.slides);
-            let wrench = match &rail.contact {
-                RailContact::Circles(contacts) => {
-                    contacts.act(&frame, &mut rollers, &mut record.circles[i])
-                }
-                RailContact::Plates(plates) => plates.act(
-                    &frame,
-                    &mut rollers,
-                    self.links.count,
-                    &mut record.plates[i],
-                ),
+        // One call of the kernel serves wheels and rails: it is inlined, and long.
+        let wheels = self.wheels.len();
+        for i in 0..wheels + self.rails.len() {
+            let (frame, contacts, touch) = if i < wheels {
+                let wheel = &self.wheels[i];
+                let (frame, _, _) = self.wheel_frame(wheel, at);
+                (frame, &wheel.contacts, &mut record.teeth[i])
+            } else {
+                let rail = &self.rails[i - wheels];
+                let RailContact::Circles(contacts) = &rail.contact else {
+                    continue;
+                };
+                let frame = rail.frame(at.t, at.q, at.v, &self.slides);
+                (frame, contacts, &mut record.circles[i - wheels])
             };
+            let wrench = contacts.act(&frame, &mut rollers, touch);
+            let loss = if i < wheels {
+                Flow::ToothLoss
+            } else {
+                Flow::GuideLoss
+            };
+            rates[loss as usize] += wrench.normal_loss;
+            rates[Flow::FrictionLoss as usize] += wrench.friction_loss;
+            if i < wheels {
+                record.wheel_wrenches[i] = wrench;
+            } else {
+                record.rail_wrenches[i - wheels] = wrench;
+            }
+        }
+    }
+
+    /// Contacts of link plates with guides.
+    fn plate_forces(&self, at: Moment<'_>, a: &mut [f64], rates: &mut [f64], record: &mut Record) {
+        let mut rollers = self.view(at.q, at.v, a);
+        for (i, rail) in self.rails.iter().enumerate() {
+            let RailContact::Plates(plates) = &rail.contact else {
+                continue;
+            };
+            let frame = rail.frame(at.t, at.q, at.v, &self.slides);
+            let wrench = plates.act(
+                &frame,
+                &mut rollers,
+                self.links.count,
+                &mut record.plates[i],
+            );
             rates[Flow::GuideLoss as usize] += wrench.normal_loss;
             rates[Flow::FrictionLoss as usize] += wrench.friction_loss;
             record.rail_wrenches[i] = wrench;
@@ -436,6 +459,25 @@ impl System {
     }
 }
 
+/// The kernels as one call, compiled for every kind of processor.
+struct Forces<'a> {
+    system: &'a System,
+    at: Moment<'a>,
+    a: &'a mut [f64],
+    rates: &'a mut [f64],
+    record: &'a mut Record,
+}
+
+impl NullaryFnOnce for Forces<'_> {
+    type Output = ();
+
+    // A call that is not inlined would be compiled for the oldest processor only.
+    #[inline(always)]
+    fn call(self) {
+        self.system.forces(self.at, self.a, self.rates, self.record);
+    }
+}
+
 impl SecondOrderSystem for System {
     type Record = Record;
 
@@ -460,7 +502,14 @@ impl SecondOrderSystem for System {
     }
 
     fn evaluate(&self, at: Moment<'_>, a: &mut [f64], rates: &mut [f64], record: &mut Record) {
-        self.arch.dispatch(|| self.forces(at, a, rates, record));
+        self.arch.dispatch(Forces {
+            system: self,
+            at,
+            a: &mut *a,
+            rates: &mut *rates,
+            record: &mut *record,
+        });
+        self.plate_forces(at, a, rates, record);
         self.bodies(at, a, rates, record);
         if self.links.closed {
             let n = self.stride;

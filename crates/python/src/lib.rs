@@ -1,1 +1,46 @@
-//! Placeholder.
+//! `chaindrive._core`: what Python sees of the simulator.
+//!
+//! Nothing here computes. Every function converts its arguments, calls the library and converts
+//! the answer back; what users meet is the Python package around it.
+
+mod drawing;
+mod drive;
+mod errors;
+mod kinematics;
+mod law;
+mod run;
+
+/// The compiled core of the package; use `chaindrive` instead.
+#[pyo3::pymodule(name = "_core")]
+mod core {
+    use std::cell::Cell;
+
+    use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use crate::drive::{Drive, presets, schema};
+    #[pymodule_export]
+    use crate::kinematics::{centre_distance_for, links_for, polygon_action};
+    #[pymodule_export]
+    use crate::law::Law;
+    #[pymodule_export]
+    use crate::run::{channels, methods, simulate};
+
+    #[pymodule_export]
+    #[expect(non_upper_case_globals, reason = "the name that Python expects")]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
+
+    /// Runs the command line with its arguments, the program's name first; returns the exit code.
+    #[pyfunction]
+    fn _cli(py: Python<'_>, arguments: Vec<String>) -> u8 {
+        py.detach(|| {
+            let asked = Cell::new(false);
+            let interrupted = || {
+                // A signal is reported once.
+                asked.set(asked.get() || Python::attach(|py| py.check_signals().is_err()));
+                asked.get()
+            };
+            chaindrive_cli::run(arguments, &interrupted)
+        })
+    }
+}

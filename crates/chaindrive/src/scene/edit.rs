@@ -18,7 +18,10 @@ impl Scene {
     /// # Errors
     /// A path that leads nowhere; otherwise those of [`Scene::from_text`].
     pub fn replace(&self, path: &str, value: &str) -> Result<Self, SceneError> {
-        let toml = value.trim().parse::<Toml>().unwrap_or_else(|_| Toml::from(value.trim()));
+        let toml = value
+            .trim()
+            .parse::<Toml>()
+            .unwrap_or_else(|_| Toml::from(value.trim()));
         if is_json(&self.text) {
             self.put(path, &json_of(&toml), toml)
         } else {
@@ -80,7 +83,11 @@ impl Scene {
             keys.push(Key::Index(index));
         }
         if keys.is_empty() {
-            return Err(self.refuse(path, "the path is empty", Some("such as `chain.links`".into())));
+            return Err(self.refuse(
+                path,
+                "the path is empty",
+                Some("such as `chain.links`".into()),
+            ));
         }
         Ok(keys)
     }
@@ -107,7 +114,10 @@ fn put_json(root: &mut Json, keys: &[Key], value: &Json) -> Option<()> {
                 if place.is_null() {
                     *place = Json::Object(serde_json::Map::new());
                 }
-                place.as_object_mut()?.entry(name.as_str()).or_insert(Json::Null)
+                place
+                    .as_object_mut()?
+                    .entry(name.as_str())
+                    .or_insert(Json::Null)
             }
         };
     }
@@ -132,31 +142,30 @@ fn put_toml(root: &mut Item, keys: &[Key], value: Toml) -> Option<()> {
             put_toml(item, rest, value)
         }
         Key::Index(index) => match root {
-            Item::ArrayOfTables(tables) => match rest.split_first() {
-                Some((Key::Name(name), rest)) => {
-                    let item = tables.get_mut(*index)?.entry(name).or_insert(Item::None);
-                    if item.is_none() && !rest.is_empty() {
-                        *item = Item::Value(Toml::InlineTable(toml_edit::InlineTable::new()));
-                    }
-                    put_toml(item, rest, value)
-                }
-                // A whole entry: its keys one by one, so that the table keeps its heading.
-                _ => {
-                    let Toml::InlineTable(entries) = value else {
-                        return None;
-                    };
-                    let table = tables.get_mut(*index)?;
-                    table.clear();
-                    for (key, value) in &entries {
-                        table.insert(key, Item::Value(value.clone()));
-                    }
-                    Some(())
-                }
-            },
+            Item::ArrayOfTables(tables) => put_in_table(tables.get_mut(*index)?, rest, value),
             Item::Value(list) => put_inline(list, keys, value),
             _ => None,
         },
     }
+}
+
+/// Puts a value into an entry of an array of tables, which keeps its heading.
+fn put_in_table(table: &mut toml_edit::Table, keys: &[Key], value: Toml) -> Option<()> {
+    if let Some((Key::Name(name), rest)) = keys.split_first() {
+        let item = table.entry(name).or_insert(Item::None);
+        if item.is_none() && !rest.is_empty() {
+            *item = Item::Value(Toml::InlineTable(toml_edit::InlineTable::new()));
+        }
+        return put_toml(item, rest, value);
+    }
+    let Toml::InlineTable(entries) = value else {
+        return None;
+    };
+    table.clear();
+    for (key, value) in &entries {
+        table.insert(key, Item::Value(value.clone()));
+    }
+    Some(())
 }
 
 fn put_inline(place: &mut Toml, keys: &[Key], value: Toml) -> Option<()> {
@@ -170,7 +179,10 @@ fn put_inline(place: &mut Toml, keys: &[Key], value: Toml) -> Option<()> {
         Key::Index(index) => place.as_array_mut()?.get_mut(*index)?,
         Key::Name(name) => {
             let empty = || Toml::InlineTable(toml_edit::InlineTable::new());
-            place.as_inline_table_mut()?.entry(name).or_insert_with(empty)
+            place
+                .as_inline_table_mut()?
+                .entry(name)
+                .or_insert_with(empty)
         }
     };
     put_inline(next, rest, value)
@@ -195,7 +207,9 @@ fn toml_of(json: &Json) -> Option<Toml> {
         Json::String(text) => text.as_str().into(),
         Json::Array(items) => Toml::Array(items.iter().filter_map(toml_of).collect()),
         Json::Object(entries) => {
-            let entries = entries.iter().filter_map(|(key, value)| Some((key, toml_of(value)?)));
+            let entries = entries
+                .iter()
+                .filter_map(|(key, value)| Some((key, toml_of(value)?)));
             Toml::InlineTable(entries.map(|(key, value)| (key.as_str(), value)).collect())
         }
     })
@@ -209,8 +223,9 @@ fn json_of(toml: &Toml) -> Json {
         Toml::Boolean(truth) => (*truth.value()).into(),
         Toml::Datetime(date) => date.value().to_string().into(),
         Toml::Array(items) => items.iter().map(json_of).collect(),
-        Toml::InlineTable(entries) => {
-            entries.iter().map(|(key, value)| (key.to_owned(), json_of(value))).collect()
-        }
+        Toml::InlineTable(entries) => entries
+            .iter()
+            .map(|(key, value)| (key.to_owned(), json_of(value)))
+            .collect(),
     }
 }

@@ -52,6 +52,7 @@
 
 mod edit;
 mod error;
+mod expected;
 mod presets;
 mod quantity;
 mod read;
@@ -98,7 +99,8 @@ impl Scene {
     /// # Errors
     /// Everything that is wrong with the text.
     pub fn from_toml(text: &str, name: &str) -> Result<Self, SceneError> {
-        let tree = Node::parse_toml(text).map_err(|problem| SceneError::new(name, vec![problem]))?;
+        let tree =
+            Node::parse_toml(text).map_err(|problem| SceneError::new(name, vec![problem]))?;
         Self::from_tree(tree, text, name)
     }
 
@@ -107,7 +109,8 @@ impl Scene {
     /// # Errors
     /// Everything that is wrong with the text.
     pub fn from_json(text: &str, name: &str) -> Result<Self, SceneError> {
-        let tree = Node::parse_json(text).map_err(|problem| SceneError::new(name, vec![problem]))?;
+        let tree =
+            Node::parse_json(text).map_err(|problem| SceneError::new(name, vec![problem]))?;
         Self::from_tree(tree, text, name)
     }
 
@@ -120,7 +123,10 @@ impl Scene {
         let content = SceneText::deserialize(normalised.to_json()).map_err(|error| {
             // The validator has let something pass that serde does not: our mistake, not the user's.
             let problem = Problem::new("", None, format!("the scene could not be read: {error}"));
-            SceneError::new(name, vec![problem.hint("please report this scene as a bug")])
+            SceneError::new(
+                name,
+                vec![problem.hint("please report this scene as a bug")],
+            )
         })?;
         Ok(Self {
             name: name.to_owned(),
@@ -162,6 +168,8 @@ impl Scene {
             every: run.every.map(|time| time.0),
             method: run.method.map(schema::Method::name),
             step: run.step.map(|time| time.0),
+            tolerance: run.tolerance.map(|ratio| ratio.0),
+            onset_depth: run.onset_depth.map(|depth| depth.0),
             record: run.record.clone().unwrap_or_default(),
         }
     }
@@ -178,6 +186,10 @@ pub struct RunDefaults {
     pub method: Option<&'static str>,
     /// Step of a method with a fixed step \[s\].
     pub step: Option<f64>,
+    /// Relative tolerance of a method under error control \[–\].
+    pub tolerance: Option<f64>,
+    /// Deepest penetration at which a contact may begin \[m\].
+    pub onset_depth: Option<f64>,
     /// Channels to record; empty when the scene leaves them open.
     pub record: Vec<String>,
 }

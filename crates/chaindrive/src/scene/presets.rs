@@ -58,13 +58,14 @@ impl Scene {
     /// # Errors
     /// No scene has this name.
     pub fn preset(name: &str) -> Result<Self, SceneError> {
-        match PRESETS.iter().find(|(known, ..)| *known == name) {
-            Some((name, _, text)) => Self::from_toml(text, name),
-            None => {
-                let known = NAMES.map(|(known, _)| known);
-                let problem = Problem::new("", None, "there is no embedded scene of this name");
-                Err(SceneError::new(name, vec![problem.hint(one_of(name, &known))]))
-            }
-        }
+        let Some((name, _, text)) = PRESETS.iter().find(|(known, ..)| *known == name) else {
+            let known = NAMES.map(|(known, _)| known);
+            let problem = Problem::new("", None, "there is no embedded scene of this name");
+            return Err(SceneError::new(
+                name,
+                vec![problem.hint(one_of(name, &known))],
+            ));
+        };
+        Self::from_toml(text, name)
     }
 }

@@ -40,9 +40,9 @@ macro_rules! quantities {
             $(#[$doc])*
             #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
             #[serde(transparent)]
-            pub struct $type(
+            pub(crate) struct $type(
                 /// The value in SI units.
-                pub f64,
+                pub(crate) f64,
             );
 
             impl JsonSchema for $type {
@@ -132,7 +132,10 @@ impl Dimension {
         let complain = |message: String, hint: String| Complaint { message, hint };
         let such_as = || format!("write {} such as \"{}\"", self.name, self.example);
         let Some((number, rest)) = split_number(text) else {
-            return Err(complain(format!("`{text}` does not begin with a number"), such_as()));
+            return Err(complain(
+                format!("`{text}` does not begin with a number"),
+                such_as(),
+            ));
         };
         if rest.starts_with(',') {
             return Err(complain(
@@ -141,7 +144,7 @@ impl Dimension {
             ));
         }
         let unit = if rest.trim().is_empty() {
-            if self.powers != [0.0; 4] {
+            if !Powers(self.powers).matches(Powers::default()) {
                 return Err(complain(
                     format!("`{text}` has no unit"),
                     format!("{}, or the bare number {number} [{}]", such_as(), self.unit),
@@ -154,21 +157,28 @@ impl Dimension {
                     format!("unknown unit `{symbol}` in `{text}`"),
                     format!("{}; the units are {}", such_as(), unit::known()),
                 ),
-                UnitProblem::Grammar(reason) => {
-                    complain(format!("`{}` is not a unit: {reason}", rest.trim()), such_as())
-                }
+                UnitProblem::Grammar(reason) => complain(
+                    format!("`{}` is not a unit: {reason}", rest.trim()),
+                    such_as(),
+                ),
             })?
         };
         if !self.fits(unit.powers, exponent) {
             let hint = self.hint_for(unit.powers, exponent);
             let name = name_of(unit.powers);
-            return Err(complain(format!("`{text}` is {name}, needed is {}", self.name), hint));
+            return Err(complain(
+                format!("`{text}` is {name}, needed is {}", self.name),
+                hint,
+            ));
         }
         let value = shift_decimal(number, unit.decade) * unit.factor;
         if value.is_finite() {
             Ok(value)
         } else {
-            Err(complain(format!("`{text}` is not a finite number"), such_as()))
+            Err(complain(
+                format!("`{text}` is not a finite number"),
+                such_as(),
+            ))
         }
     }
 
@@ -192,7 +202,8 @@ impl Dimension {
         let turning = Powers([0.0, 0.0, -1.0, 1.0]);
         match self.name {
             "an angular speed" if found.matches(per_second) => {
-                "1/s and Hz count events; write radians or turns, \"10 rad/s\" or \"1500 rpm\"".into()
+                "1/s and Hz count events; write radians or turns, \"10 rad/s\" or \"1500 rpm\""
+                    .into()
             }
             "a frequency" if found.matches(turning) => {
                 "a speed of rotation is not a frequency; write \"25 Hz\" for 1500 rpm".into()
@@ -259,7 +270,6 @@ mod tests {
     }
 
     #[test]
-    #[expect(clippy::float_cmp, reason = "decimal prefixes must not cost a rounding")]
     fn decimals_are_exact() {
         assert_eq!(read("a length", "88.9 mm"), Ok(0.0889));
         assert_eq!(read("a length", "88.9mm"), Ok(0.0889));
@@ -287,19 +297,39 @@ mod tests {
     #[test]
     fn complaints_say_what_to_write() {
         let table = [
-            ("an angular speed", "12 mm", "`12 mm` is a length, needed is an angular speed", "1500 rpm"),
+            (
+                "an angular speed",
+                "12 mm",
+                "`12 mm` is a length, needed is an angular speed",
+                "1500 rpm",
+            ),
             ("an angular speed", "10 1/s", "is a frequency", "10 rad/s"),
             ("an angular speed", "10 Hz", "is a frequency", "rad/s"),
             ("a frequency", "1500 rpm", "is an angular speed", "25 Hz"),
-            ("a length", "12 furlong", "unknown unit `furlong`", "the units are m g s"),
+            (
+                "a length",
+                "12 furlong",
+                "unknown unit `furlong`",
+                "the units are m g s",
+            ),
             ("a length", "12", "has no unit", "the bare number 12 [m]"),
             ("a length", "12,7 mm", "has a comma", "point"),
             ("a length", "mm", "does not begin with a number", "88.9 mm"),
-            ("a length", "nan mm", "does not begin with a number", "88.9 mm"),
+            (
+                "a length",
+                "nan mm",
+                "does not begin with a number",
+                "88.9 mm",
+            ),
             ("a length", "1e999 m", "not a finite number", "88.9 mm"),
             ("a length", "", "does not begin with a number", "88.9 mm"),
             ("a torque", "5 kW", "is a power", "5 kN m"),
-            ("a damping", "5 N/m s", "what stands under `/`", "2.97 kN s/m"),
+            (
+                "a damping",
+                "5 N/m s",
+                "what stands under `/`",
+                "2.97 kN s/m",
+            ),
             ("a mass", "2 kg m2", "write powers as `^2`", "3.01 kg"),
             ("a pure number", "3 mm", "is a length", "3 %"),
         ];
@@ -321,7 +351,11 @@ mod tests {
     #[test]
     fn examples_are_valid() {
         for dimension in DIMENSIONS {
-            assert!(dimension.read(dimension.example, None).is_ok(), "{}", dimension.name);
+            assert!(
+                dimension.read(dimension.example, None).is_ok(),
+                "{}",
+                dimension.name
+            );
         }
     }
 }

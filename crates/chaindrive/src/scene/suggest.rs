@@ -7,7 +7,9 @@ pub(crate) fn nearest<'k>(written: &str, known: &[&'k str]) -> Option<&'k str> {
     known
         .iter()
         .map(|name| (strsim::damerau_levenshtein(&wanted, &plain(name)), *name))
-        .filter(|(distance, name)| *distance <= name.len().min(wanted.len()) / 3 + 1 && *distance < name.len())
+        .filter(|(distance, name)| {
+            *distance <= name.len().min(wanted.len()) / 3 + 1 && *distance < name.len()
+        })
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, name)| name)
 }
@@ -28,7 +30,12 @@ mod tests {
     #[test]
     fn typing_errors_are_recognised() {
         let known = ["teeth", "centre", "motion", "inertia", "name"];
-        for (written, meant) in [("teth", "teeth"), ("center", "centre"), ("Motion", "motion"), ("intertia", "inertia")] {
+        for (written, meant) in [
+            ("teth", "teeth"),
+            ("center", "centre"),
+            ("Motion", "motion"),
+            ("intertia", "inertia"),
+        ] {
             assert_eq!(nearest(written, &known), Some(meant));
         }
         assert_eq!(nearest("xyzzy", &known), None);

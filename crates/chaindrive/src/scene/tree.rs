@@ -85,9 +85,10 @@ impl Node {
             // Only at the top and in lists; the validator refuses it there.
             Json::Null => Value::Text("null".into()),
             Json::Bool(truth) => Value::Truth(*truth),
-            Json::Number(number) => number
-                .as_i64()
-                .map_or_else(|| Value::Float(number.as_f64().unwrap_or(f64::NAN)), Value::Integer),
+            Json::Number(number) => number.as_i64().map_or_else(
+                || Value::Float(number.as_f64().unwrap_or(f64::NAN)),
+                Value::Integer,
+            ),
             Json::String(text) => Value::Text(text.clone()),
             Json::Array(items) => Value::List(items.iter().map(Self::from_json).collect()),
             Json::Object(entries) => {
@@ -133,7 +134,8 @@ impl Node {
             return None;
         };
         let named = |item: &Self| {
-            item.get("name").is_some_and(|name| name.value == Value::Text(key.to_owned()))
+            item.get("name")
+                .is_some_and(|name| name.value == Value::Text(key.to_owned()))
         };
         items
             .iter()
@@ -147,27 +149,15 @@ impl Node {
         let (mut node, mut line) = (Some(self), None);
         let mut written = String::new();
         for step in steps(path) {
-            let next = match node {
-                Some(parent) => match parent.position(&step) {
-                    Some(index) => {
-                        written.push_str(&format!("[{index}]"));
-                        match &parent.value {
-                            Value::List(items) => items.get(index),
-                            _ => None,
-                        }
-                    }
-                    None => {
-                        push_step(&mut written, &step);
-                        parent.get(&step)
-                    }
-                },
-                None => {
-                    push_step(&mut written, &step);
-                    None
-                }
-            };
-            line = next.map_or(line, |found| found.line.or(line));
-            node = next;
+            let index = node.and_then(|list| list.position(&step));
+            if let (Some(index), Some(Value::List(items))) = (index, node.map(|n| &n.value)) {
+                push_step(&mut written, &index.to_string());
+                node = items.get(index);
+            } else {
+                push_step(&mut written, &step);
+                node = node.and_then(|table| table.get(&step));
+            }
+            line = node.and_then(|found| found.line).or(line);
         }
         (written, line)
     }
@@ -180,13 +170,17 @@ pub(crate) fn is_json(text: &str) -> bool {
 
 /// The steps of a dotted path: `sprockets[1].teeth` is `sprockets`, `1`, `teeth`.
 pub(crate) fn steps(path: &str) -> impl Iterator<Item = String> + '_ {
-    path.split(['.', '[', ']']).map(|step| step.trim().to_owned()).filter(|step| !step.is_empty())
+    path.split(['.', '[', ']'])
+        .map(|step| step.trim().to_owned())
+        .filter(|step| !step.is_empty())
 }
 
 /// Appends a key to a path.
 pub(crate) fn push_step(path: &mut String, step: &str) {
     if step.bytes().all(|b| b.is_ascii_digit()) {
-        path.push_str(&format!("[{step}]"));
+        path.push('[');
+        path.push_str(step);
+        path.push(']');
         return;
     }
     if !path.is_empty() {
@@ -196,7 +190,11 @@ pub(crate) fn push_step(path: &mut String, step: &str) {
 }
 
 fn one_line(message: &str) -> String {
-    message.lines().map(str::trim).collect::<Vec<_>>().join("; ")
+    message
+        .lines()
+        .map(str::trim)
+        .collect::<Vec<_>>()
+        .join("; ")
 }
 
 /// Where the lines of a text begin.
@@ -208,7 +206,9 @@ impl Lines {
     fn new(text: &str) -> Self {
         let breaks = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
         Self {
-            starts: std::iter::once(0).chain(breaks.map(|(at, _)| at + 1)).collect(),
+            starts: std::iter::once(0)
+                .chain(breaks.map(|(at, _)| at + 1))
+                .collect(),
         }
     }
 
@@ -219,7 +219,10 @@ impl Lines {
 
     fn table(&self, table: &dyn TableLike, line: Option<usize>) -> Node {
         let entry = |(key, item): (&str, &Item)| {
-            let span = table.key(key).and_then(toml_edit::Key::span).or_else(|| item.span());
+            let span = table
+                .key(key)
+                .and_then(toml_edit::Key::span)
+                .or_else(|| item.span());
             let line = span.map(|span| self.at(span.start)).or(line);
             Entry {
                 key: key.to_owned(),
@@ -288,7 +291,10 @@ mod tests {
         assert_eq!(line("sprockets[1]"), Some(10));
         assert_eq!(line("sprockets.crank.teeth"), Some(8));
         assert_eq!(line("sprockets.cam.tooth.gap"), Some(13));
-        assert_eq!(tree.locate("sprockets.cam.teeth"), ("sprockets[1].teeth".into(), Some(10)));
+        assert_eq!(
+            tree.locate("sprockets.cam.teeth"),
+            ("sprockets[1].teeth".into(), Some(10))
+        );
     }
 
     #[test]

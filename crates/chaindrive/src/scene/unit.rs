@@ -12,7 +12,10 @@ pub(crate) struct Powers(pub(crate) [f64; 4]);
 impl Powers {
     /// Whether both have the same powers, up to rounding of fractional ones.
     pub(crate) fn matches(self, other: Self) -> bool {
-        self.0.iter().zip(other.0).all(|(a, b)| (a - b).abs() < 1e-9)
+        self.0
+            .iter()
+            .zip(other.0)
+            .all(|(a, b)| (a - b).abs() < 1e-9)
     }
 
     /// The powers without the radian.
@@ -275,7 +278,10 @@ fn raise(unit: Unit, power: f64) -> Unit {
     let decade = f64::from(unit.decade) * power;
     // Half powers of ten (kN/mm^1.5) go into the factor.
     let whole = decade.trunc();
-    #[expect(clippy::cast_possible_truncation, reason = "prefixes and powers are small")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "prefixes and powers are small"
+    )]
     Unit {
         decade: whole as i32,
         factor: unit.factor.powf(power) * 10_f64.powf(decade - whole),
@@ -340,10 +346,29 @@ mod tests {
     #[test]
     fn what_is_no_unit() {
         for text in ["mn", "furlong", "kmm", "Kg", "mrpm", "n"] {
-            assert!(matches!(parse(text), Err(UnitProblem::Unknown(_))), "{text}");
+            assert!(
+                matches!(parse(text), Err(UnitProblem::Unknown(_))),
+                "{text}"
+            );
         }
-        for text in ["N/m s", "m^", "m^x", "(N", "N)", "m2", "1", "1 m", "/", "N//m", "((((((m))))))", "m^99"] {
-            assert!(matches!(parse(text), Err(UnitProblem::Grammar(_))), "{text}");
+        for text in [
+            "N/m s",
+            "m^",
+            "m^x",
+            "(N",
+            "N)",
+            "m2",
+            "1",
+            "1 m",
+            "/",
+            "N//m",
+            "((((((m))))))",
+            "m^99",
+        ] {
+            assert!(
+                matches!(parse(text), Err(UnitProblem::Grammar(_))),
+                "{text}"
+            );
         }
     }
 }

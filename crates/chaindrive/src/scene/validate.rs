@@ -6,6 +6,7 @@
 use serde_json::{Map, Value as Json};
 
 use super::error::Problem;
+use super::expected::{Expected, Reading, description, kind_of};
 use super::quantity::{CONTACT_STIFFNESS, Dimension};
 use super::suggest::{nearest, one_of};
 use super::tree::{Entry, Node, Value, push_step};
@@ -14,7 +15,7 @@ use super::tree::{Entry, Node, Value, push_step};
 /// kinds become tables.
 pub(crate) fn validate(tree: &mut Node, schema: &Json) -> Vec<Problem> {
     let mut validator = Validator {
-        definitions: schema.get("$defs").and_then(Json::as_object),
+        schema: Reading::new(schema),
         problems: Vec::new(),
     };
     validator.visit(tree, schema, "", None);
@@ -22,21 +23,8 @@ pub(crate) fn validate(tree: &mut Node, schema: &Json) -> Vec<Problem> {
 }
 
 struct Validator<'s> {
-    definitions: Option<&'s Map<String, Json>>,
+    schema: Reading<'s>,
     problems: Vec<Problem>,
-}
-
-/// What a schema asks for, after references and optional wrappers.
-enum Expected<'s> {
-    Table(&'s Json),
-    List(&'s Json),
-    Kinds(&'s [Json]),
-    Words(Vec<&'s str>),
-    Quantity(&'s Json, &'static Dimension),
-    Integer,
-    Truth,
-    Text,
-    Anything,
 }
 
 impl<'s> Validator<'s> {
@@ -46,9 +34,9 @@ impl<'s> Validator<'s> {
 
     /// `exponent` is that of the power law the value belongs to.
     fn visit(&mut self, node: &mut Node, schema: &'s Json, path: &str, exponent: Option<f64>) {
-        let core = self.core(schema);
+        let core = self.schema.core(schema);
         let before = self.problems.len();
-        match expected(core) {
+        match Expected::of(core) {
             Expected::Table(core) => self.table(node, core, path, None),
             Expected::List(core) => self.list(node, core, path, exponent),
             Expected::Kinds(members) => self.kinds(node, members, path),
@@ -77,24 +65,6 @@ impl<'s> Validator<'s> {
         }
     }
 
-    /// Follows references, and drops the `null` that stands for an absent key.
-    fn core(&self, mut schema: &'s Json) -> &'s Json {
-        // References do not nest deeper than this.
-        for _ in 0..8 {
-            let reference = schema.get("$ref").and_then(Json::as_str);
-            let target = reference
-                .and_then(|text| text.rsplit('/').next())
-                .and_then(|name| self.definitions?.get(name));
-            let choices = schema.get("anyOf").and_then(Json::as_array);
-            let choice = choices.and_then(|list| list.iter().find(|s| s["type"] != "null"));
-            match target.or(choice) {
-                Some(next) => schema = next,
-                None => break,
-            }
-        }
-        schema
-    }
-
     fn wrong_type(&mut self, node: &Node, path: &str, needed: &str) {
         let found = match &node.value {
             Value::Text(text) => format!("the text \"{}\"", shorten(text)),
@@ -102,7 +72,11 @@ impl<'s> Validator<'s> {
             Value::Float(number) => format!("the number {number}"),
             other => other.kind().to_owned(),
         };
-        self.refuse(Problem::new(path, node.line, format!("found {found}, needed is {needed}")));
+        self.refuse(Problem::new(
+            path,
+            node.line,
+            format!("found {found}, needed is {needed}"),
+        ));
     }
 
     /// `kind` is the member of the family the table has been found to be.
@@ -117,7 +91,10 @@ impl<'s> Validator<'s> {
             return;
         };
         let nothing = Map::new();
-        let properties = schema.get("properties").and_then(Json::as_object).unwrap_or(&nothing);
+        let properties = schema
+            .get("properties")
+            .and_then(Json::as_object)
+            .unwrap_or(&nothing);
         let known: Vec<&str> = properties.keys().map(String::as_str).collect();
         let mut meant = Vec::new();
         let mut seen: Vec<String> = Vec::new();
@@ -140,7 +117,11 @@ impl<'s> Validator<'s> {
                 }
             }
         }
-        let required = schema.get("required").and_then(Json::as_array).into_iter().flatten();
+        let required = schema
+            .get("required")
+            .and_then(Json::as_array)
+            .into_iter()
+            .flatten();
         for key in required.filter_map(Json::as_str) {
             if seen.iter().any(|k| k == key) || meant.iter().any(|k| k == key) {
                 continue;
@@ -158,7 +139,7 @@ impl<'s> Validator<'s> {
         let Some(items) = schema.get("items") else {
             return;
         };
-        let core = self.core(items);
+        let core = self.schema.core(items);
         if core.get("x-dimension").is_some() && matches!(node.value, Value::Table(_)) {
             self.common_unit(node, path);
         }
@@ -215,7 +196,8 @@ impl<'s> Validator<'s> {
                 node: node.clone(),
             };
             if !matches_any(&names, name) {
-                let problem = Problem::new(path, node.line, format!("unknown kind `{}`", shorten(name)));
+                let problem =
+                    Problem::new(path, node.line, format!("unknown kind `{}`", shorten(name)));
                 self.refuse(problem.hint(one_of(name, &names)));
                 return;
             }
@@ -237,7 +219,10 @@ impl<'s> Validator<'s> {
             self.wrong_type(&node, &place, "a text");
             return;
         };
-        let Some(member) = members.iter().find(|m| kind_of(m).is_some_and(|k| same(k, name))) else {
+        let Some(member) = members
+            .iter()
+            .find(|m| kind_of(m).is_some_and(|k| same(k, name)))
+        else {
             let message = format!("unknown kind `{}`", shorten(name));
             let problem = Problem::new(&place, entry.node.line, message);
             let hint = one_of(name, &names);
@@ -254,12 +239,11 @@ impl<'s> Validator<'s> {
             self.wrong_type(node, path, &format!("one of {}", words.join(", ")));
             return;
         };
-        match words.iter().find(|word| same(word, text)) {
-            Some(word) => node.value = Value::Text((*word).to_owned()),
-            None => {
-                let message = format!("unknown value `{}`", shorten(text));
-                self.refuse(Problem::new(path, node.line, message).hint(one_of(text, words)));
-            }
+        if let Some(word) = words.iter().find(|word| same(word, text)) {
+            node.value = Value::Text((*word).to_owned());
+        } else {
+            let message = format!("unknown value `{}`", shorten(text));
+            self.refuse(Problem::new(path, node.line, message).hint(one_of(text, words)));
         }
     }
 
@@ -318,7 +302,10 @@ impl<'s> Validator<'s> {
             return;
         };
         let limit = |key: &str| schema.get(key).and_then(Json::as_f64);
-        let unit = schema.get("x-unit").and_then(Json::as_str).filter(|unit| *unit != "1");
+        let unit = schema
+            .get("x-unit")
+            .and_then(Json::as_str)
+            .filter(|unit| *unit != "1");
         let unit = unit.map(|unit| format!(" [{unit}]")).unwrap_or_default();
         let refusal = if limit("exclusiveMinimum").is_some_and(|least| value <= least) {
             match limit("exclusiveMinimum") {
@@ -340,46 +327,6 @@ impl<'s> Validator<'s> {
             self.refuse(Problem::new(path, node.line, message));
         }
     }
-}
-
-fn expected(schema: &Json) -> Expected<'_> {
-    if let Some(name) = schema.get("x-dimension").and_then(Json::as_str)
-        && let Some(dimension) = Dimension::named(name)
-    {
-        return Expected::Quantity(schema, dimension);
-    }
-    if let Some(members) = schema.get("oneOf").and_then(Json::as_array) {
-        if members.iter().all(|member| kind_of(member).is_some()) {
-            return Expected::Kinds(members);
-        }
-        let words = members.iter().flat_map(words_of);
-        return Expected::Words(words.collect());
-    }
-    if schema.get("enum").is_some() {
-        return Expected::Words(words_of(schema).collect());
-    }
-    let kind = match schema.get("type") {
-        Some(Json::Array(kinds)) => kinds.iter().find_map(|kind| kind.as_str().filter(|k| *k != "null")),
-        kind => kind.and_then(Json::as_str),
-    };
-    match kind {
-        Some("object") => Expected::Table(schema),
-        Some("array") => Expected::List(schema),
-        Some("integer") => Expected::Integer,
-        Some("boolean") => Expected::Truth,
-        Some("string") => Expected::Text,
-        _ => Expected::Anything,
-    }
-}
-
-/// The `kind` of a member of a family.
-fn kind_of(member: &Json) -> Option<&str> {
-    member.get("properties")?.get("kind")?.get("const")?.as_str()
-}
-
-fn words_of(schema: &Json) -> impl Iterator<Item = &str> {
-    let listed = schema.get("enum").and_then(Json::as_array).into_iter().flatten();
-    listed.chain(schema.get("const")).filter_map(Json::as_str)
 }
 
 /// Whether two names agree; `rest_length` will do for `rest-length`.
@@ -412,15 +359,6 @@ fn unknown_key(
     let problem = Problem::new(place, entry.line, message);
     let near = nearest(&entry.key, known).map(str::to_owned);
     (near, problem.hint(one_of(&entry.key, known)))
-}
-
-/// First line of a description, to stand after "give the".
-fn description(schema: &Json) -> Option<String> {
-    let text = schema.get("description")?.as_str()?;
-    let sentence = text.split(['.', ';', ':', ',']).next()?.replace('\n', " ");
-    let mut letters = sentence.chars();
-    let first = letters.next()?.to_lowercase();
-    Some(first.chain(letters).collect())
 }
 
 /// A path with one more step.

@@ -6,8 +6,9 @@ use crate::{GeometryError, Point, Vector};
 
 /// Draws the gap.
 ///
-/// The seat spans β = 65° − 45°/z either side of its lowest point, as in the middle gap of
-/// ISO 606, so the flanks open by 90° − β against the gap axis.
+/// The seat spans β = 60° − 45°/z either side of its lowest point, as in the maximum gap of
+/// ISO 606, so the flanks open by 90° − β against the gap axis: enough for a link to
+/// swing out without convex flanks.
 pub(super) fn draw(
     wheel: &Wheel,
     seat_radius: f64,
@@ -28,7 +29,7 @@ pub(super) fn draw(
     if root_radius <= 0.0 {
         return Err(wheel.refuse("the root radius", root_radius, "positive".into()));
     }
-    let beta = (65.0 - 45.0 / wheel.z).to_radians();
+    let beta = (60.0 - 45.0 / wheel.z).to_radians();
     let (sine, cosine) = beta.sin_cos();
     let start = Point::new(0.0, height) + Vector::new(-sine, -cosine) * seat_radius;
     let flank = Flank::Line(start, Vector::new(-cosine, sine));

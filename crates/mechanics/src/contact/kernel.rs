@@ -30,48 +30,46 @@ pub(crate) struct Wrench {
     pub(crate) first_share: f64,
 }
 
-/// An elastic law on lanes; the depth is not negative.
-pub(crate) trait LaneElastic: Copy {
-    fn force(self, depth: Lane) -> Lane;
+/// An elastic law on lanes, chosen once per body; the depth is not negative.
+#[derive(Clone, Copy)]
+enum LaneElastic {
+    /// g = K δ
+    Linear(f64),
+    /// g = K δ √δ
+    Hertz(f64),
+    /// Any law, one lane after the other.
+    General(Elastic),
 }
 
-/// g = K δ
-#[derive(Clone, Copy)]
-struct Linear(f64);
-
-/// g = K δ √δ
-#[derive(Clone, Copy)]
-struct Hertz(f64);
-
-/// Any law, one lane after the other.
-#[derive(Clone, Copy)]
-struct General(Elastic);
-
-impl LaneElastic for Linear {
-    #[inline(always)]
-    fn force(self, depth: Lane) -> Lane {
-        Lane::splat(self.0) * depth
-    }
-}
-
-impl LaneElastic for Hertz {
-    #[inline(always)]
-    fn force(self, depth: Lane) -> Lane {
-        Lane::splat(self.0) * depth * depth.sqrt()
-    }
-}
-
-impl LaneElastic for General {
-    #[inline(always)]
-    fn force(self, depth: Lane) -> Lane {
-        let mut out = depth.0;
-        for value in &mut out {
-            if *value > 0.0 {
-                *value = self.0.force(*value);
-            }
+impl LaneElastic {
+    fn new(law: Elastic) -> Self {
+        match law {
+            Elastic::Power(power) if is(power.exponent, 1.0) => Self::Linear(power.stiffness),
+            Elastic::Power(power) if is(power.exponent, 1.5) => Self::Hertz(power.stiffness),
+            law => Self::General(law),
         }
-        Lane(out)
     }
+
+    #[inline(always)]
+    fn force(self, depth: Lane) -> Lane {
+        match self {
+            Self::Linear(stiffness) => Lane::splat(stiffness) * depth,
+            Self::Hertz(stiffness) => Lane::splat(stiffness) * depth * depth.sqrt(),
+            Self::General(law) => one_by_one(law, depth),
+        }
+    }
+}
+
+/// Kept out of line: a general law is too long to be copied into every kernel.
+#[inline(never)]
+fn one_by_one(law: Elastic, depth: Lane) -> Lane {
+    let mut out = depth.0;
+    for value in &mut out {
+        if *value > 0.0 {
+            *value = law.force(*value);
+        }
+    }
+    Lane(out)
 }
 
 impl Contacts {
@@ -86,42 +84,10 @@ impl Contacts {
         touch: &mut Touch,
     ) -> Wrench {
         touch.resize(self.slots * self.sides());
-        match self.surface.law.elastic {
-            Elastic::Power(power) if is(power.exponent, 1.5) => {
-                self.dispatch(Hertz(power.stiffness), frame, rollers, touch)
-            }
-            Elastic::Power(power) if is(power.exponent, 1.0) => {
-                self.dispatch(Linear(power.stiffness), frame, rollers, touch)
-            }
-            elastic => self.dispatch(General(elastic), frame, rollers, touch),
-        }
-    }
-
-    #[inline(always)]
-    fn dispatch<E: LaneElastic>(
-        &self,
-        elastic: E,
-        frame: &Frame,
-        rollers: &mut Rollers<'_>,
-        touch: &mut Touch,
-    ) -> Wrench {
-        let numbers = LawNumbers::new(&self.surface);
-        if numbers.friction > 0.0 {
-            self.sweep::<E, true>(elastic, &numbers, frame, rollers, touch)
-        } else {
-            self.sweep::<E, false>(elastic, &numbers, frame, rollers, touch)
-        }
-    }
-
-    #[inline(always)]
-    fn sweep<E: LaneElastic, const FRICTION: bool>(
-        &self,
-        elastic: E,
-        numbers: &LawNumbers,
-        frame: &Frame,
-        rollers: &mut Rollers<'_>,
-        touch: &mut Touch,
-    ) -> Wrench {
+        let law = Response {
+            elastic: LaneElastic::new(self.surface.law.elastic),
+            numbers: LawNumbers::new(&self.surface),
+        };
         let mut sums = Sums::new();
         let mut slot = 0;
         for run in &self.runs {
@@ -131,7 +97,7 @@ impl Contacts {
                     roller: run.start + offset,
                     valid: Mask::first(run.count - offset),
                 };
-                self.lane::<E, FRICTION>(elastic, numbers, frame, here, rollers, touch, &mut sums);
+                self.lane(&law, frame, here, rollers, touch, &mut sums);
                 slot += LANES;
             }
         }
@@ -139,14 +105,9 @@ impl Contacts {
     }
 
     #[inline(always)]
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "the inner loop, split for reading only"
-    )]
-    fn lane<E: LaneElastic, const FRICTION: bool>(
+    fn lane(
         &self,
-        elastic: E,
-        numbers: &LawNumbers,
+        law: &Response,
         frame: &Frame,
         here: Here,
         rollers: &mut Rollers<'_>,
@@ -165,67 +126,63 @@ impl Contacts {
             dy,
             spin,
         };
-        match &self.shape {
+        let (place, near) = match &self.shape {
             Shape::Teeth(teeth) => {
                 let reach = teeth.tip_radius + self.radius;
                 let near = Lane::splat(reach * reach).greater(dx * dx + dy * dy) & here.valid;
-                let place = self.fold(teeth, frame, here.slot, dx, dy);
-                if teeth.halves.two_sided {
-                    for (side, half) in [(1.0, &teeth.halves.right), (-1.0, &teeth.halves.left)] {
-                        let sign = Lane::splat(side);
-                        let mut found = look(half, sign * place.x, place.y, self.radius);
-                        // A seat across the axis belongs to the right half alone.
-                        let wrong = Lane::splat(0.0).greater(sign * place.x) & found.in_first;
-                        let off_seat = half.features[0].sign < 0.0;
-                        let keep = Lane::splat(1.0);
-                        found.gap = if off_seat {
-                            wrong.select(keep, found.gap)
-                        } else {
-                            found.gap
-                        };
-                        found.nx = sign * found.nx;
-                        let hit = place.world(found, near);
-                        let slot = if side > 0.0 {
-                            here.slot
-                        } else {
-                            self.slots + here.slot
-                        };
-                        self.respond::<E, FRICTION>(
-                            elastic, numbers, &motion, hit, slot, i, rollers, touch, sums,
-                        );
-                    }
-                } else {
-                    let zero = Lane::splat(0.0);
-                    let sign = place
-                        .x
-                        .greater(zero)
-                        .select(Lane::splat(1.0), Lane::splat(-1.0));
-                    let mut found = look(&teeth.halves.right, place.x.abs(), place.y, self.radius);
-                    found.nx = sign * found.nx;
-                    let hit = place.world(found, near);
-                    self.respond::<E, FRICTION>(
-                        elastic, numbers, &motion, hit, here.slot, i, rollers, touch, sums,
-                    );
+                (self.fold(teeth, frame, here.slot, dx, dy), near)
+            }
+            Shape::Rail { reference, .. } => {
+                // q' = reference + Rᵀ d; the frame's y axis is (−s, c)
+                let (c, s) = (Lane::splat(frame.turn[0]), Lane::splat(frame.turn[1]));
+                let place = Place {
+                    x: c * dx + s * dy + Lane::splat(reference.x),
+                    y: c * dy - s * dx + Lane::splat(reference.y),
+                    ax: -s,
+                    ay: c,
+                };
+                (place, here.valid)
+            }
+        };
+        for side in 0..self.sides() {
+            let face = self.face(side, &place);
+            let mut found = look(face.profile, face.sign * place.x, place.y, self.radius);
+            if face.seat_across {
+                // A seat across the axis belongs to the right half alone.
+                let wrong = Lane::splat(0.0).greater(face.sign * place.x) & found.in_first;
+                found.gap = wrong.select(Lane::splat(1.0), found.gap);
+            }
+            found.nx = face.sign * found.nx;
+            let hit = place.world(found, near);
+            let slot = side * self.slots + here.slot;
+            self.respond(law, &motion, hit, slot, i, rollers, touch, sums);
+        }
+    }
+
+    /// What a side of the slots looks at: the whole rail, the half of a symmetric gap on the
+    /// roller's side, or one half of a gap that must be looked at twice.
+    #[inline(always)]
+    fn face(&self, side: usize, place: &Place) -> Face<'_> {
+        let (one, zero) = (Lane::splat(1.0), Lane::splat(0.0));
+        match &self.shape {
+            Shape::Rail { profile, .. } => Face {
+                profile,
+                sign: one,
+                seat_across: false,
+            },
+            Shape::Teeth(teeth) if teeth.halves.two_sided => {
+                let profile = [&teeth.halves.right, &teeth.halves.left][side];
+                Face {
+                    profile,
+                    sign: if side == 0 { one } else { -one },
+                    seat_across: profile.features[0].sign < 0.0,
                 }
             }
-            Shape::Rail {
-                profile, reference, ..
-            } => {
-                // q' = reference + Rᵀ d
-                let (c, s) = (Lane::splat(frame.turn[0]), Lane::splat(frame.turn[1]));
-                let x = c * dx + s * dy + Lane::splat(reference.x);
-                let y = c * dy - s * dx + Lane::splat(reference.y);
-                let found = look(profile, x, y, self.radius);
-                let hit = Hit {
-                    gap: found.gap,
-                    nx: c * found.nx - s * found.ny,
-                    ny: s * found.nx + c * found.ny,
-                    near: here.valid,
-                };
-                self.respond::<E, FRICTION>(
-                    elastic, numbers, &motion, hit, here.slot, i, rollers, touch, sums,
-                );
-            }
+            Shape::Teeth(teeth) => Face {
+                profile: &teeth.halves.right,
+                sign: place.x.greater(zero).select(one, -one),
+                seat_across: false,
+            },
         }
     }
 
@@ -262,10 +219,9 @@ impl Contacts {
         clippy::too_many_arguments,
         reason = "the inner loop, split for reading only"
     )]
-    fn respond<E: LaneElastic, const FRICTION: bool>(
+    fn respond(
         &self,
-        elastic: E,
-        numbers: &LawNumbers,
+        law: &Response,
         motion: &Motion,
         hit: Hit,
         slot: usize,
@@ -274,6 +230,7 @@ impl Contacts {
         touch: &mut Touch,
         sums: &mut Sums,
     ) {
+        let Response { elastic, numbers } = law;
         let zero = Lane::splat(0.0);
         let gap = hit.near.select(hit.gap, Lane::splat(1.0));
         // δ̇ = −n·u
@@ -317,7 +274,7 @@ impl Contacts {
         let (mut fx, mut fy) = (force * hit.nx, force * hit.ny);
         // M = −d × F
         let mut moment = motion.dy * fx - motion.dx * fy;
-        if FRICTION {
+        if numbers.friction > 0.0 {
             // slip = t·u + ω r,   f = −μ F slip/√(slip² + v_s²)
             let radius = Lane::splat(self.radius);
             let slip = tx * motion.ux + ty * motion.uy + motion.spin * radius;
@@ -399,6 +356,20 @@ fn look(profile: &Profile, x: Lane, y: Lane, radius: f64) -> Found {
         found.ny = straight.select(my, found.ny);
     }
     found
+}
+
+/// How a body answers to indentation.
+struct Response {
+    elastic: LaneElastic,
+    numbers: LawNumbers,
+}
+
+/// The profile that a lane looks at.
+struct Face<'a> {
+    profile: &'a Profile,
+    /// Mirrors x so that the profile's half is at x ≥ 0.
+    sign: Lane,
+    seat_across: bool,
 }
 
 /// Where a lane of slots stands.

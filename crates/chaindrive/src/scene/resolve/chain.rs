@@ -4,7 +4,7 @@ use chaindrive_mechanics::{Chain, End, Ends};
 
 use super::scatter::Normal;
 use super::{Findings, motion};
-use crate::scene::schema::{self, Scatter};
+use crate::scene::schema;
 
 /// Roller diameter \[pitches\] of a strand that touches nothing.
 const UNTOUCHED_ROLLER: f64 = 0.6;
@@ -22,9 +22,21 @@ pub(super) fn resolve(
     let links = text.links as usize;
     let rollers = links + usize::from(text.ends.is_some());
     let lengths = lengths(text, links, findings);
-    let given = text.masses.as_ref().map(|all| all.iter().map(|m| m.0).collect());
-    let masses = each(("mass", "masses"), text.mass.map(|m| m.0), given, rollers, findings);
-    let given = text.stiffnesses.as_ref().map(|all| all.iter().map(|k| k.0).collect());
+    let given = text
+        .masses
+        .as_ref()
+        .map(|all| all.iter().map(|m| m.0).collect());
+    let masses = each(
+        ("mass", "masses"),
+        text.mass.map(|m| m.0),
+        given,
+        rollers,
+        findings,
+    );
+    let given = text
+        .stiffnesses
+        .as_ref()
+        .map(|all| all.iter().map(|k| k.0).collect());
     let single = text.stiffness.map(|k| k.0);
     let stiffness = each(("stiffness", "stiffnesses"), single, given, links, findings);
     let roller_diameter = match text.roller_diameter {
@@ -37,32 +49,34 @@ pub(super) fn resolve(
         None => UNTOUCHED_ROLLER * text.pitch.0,
     };
     if text.damping.is_some() && text.damping_ratio.is_some() {
-        findings.refuse_with("chain.damping_ratio", "`damping` is given too", "keep one of them");
+        findings.refuse_with(
+            "chain.damping_ratio",
+            "`damping` is given too",
+            "keep one of them",
+        );
     }
     let ends = ends(text, findings);
 
-    let scatter = text.scatter.clone().unwrap_or(Scatter {
-        pitch: Default::default(),
-        mass: Default::default(),
-        stiffness: Default::default(),
-        seed: 0,
-    });
+    let scatter = text.scatter.clone().unwrap_or_default();
     let vary = |values: Vec<f64>, deviation: f64, stream: u32, scale: Option<f64>| -> Vec<f64> {
         let mut normal = Normal::new(scatter.seed, stream);
-        let varied = values.into_iter().map(|v| v + deviation * scale.unwrap_or(v) * normal.next());
+        let varied = values
+            .into_iter()
+            .map(|v| v + deviation * scale.unwrap_or(v) * normal.next());
         varied.collect()
     };
     let lengths = vary(lengths?, scatter.pitch.0, 0, Some(text.pitch.0));
     let masses = vary(masses?, scatter.mass.0, 1, None);
     let stiffness = vary(stiffness?, scatter.stiffness.0, 2, None);
-    let damping = match text.damping {
-        Some(damping) => vec![damping.0; links],
-        None => {
-            let ratio = text.damping_ratio.map_or(DAMPING_RATIO, |ratio| ratio.0);
-            // c = 2 ζ √(k m)
-            let pairs = stiffness.iter().zip(&masses);
-            pairs.map(|(k, m)| 2.0 * ratio * (k * m).max(0.0).sqrt()).collect()
-        }
+    let damping = if let Some(damping) = text.damping {
+        vec![damping.0; links]
+    } else {
+        let ratio = text.damping_ratio.map_or(DAMPING_RATIO, |ratio| ratio.0);
+        // c = 2 ζ √(k m)
+        let pairs = stiffness.iter().zip(&masses);
+        pairs
+            .map(|(k, m)| 2.0 * ratio * (k * m).max(0.0).sqrt())
+            .collect()
     };
     Some(Chain {
         pitch: text.pitch.0,
@@ -71,7 +85,9 @@ pub(super) fn resolve(
         damping,
         masses,
         roller_diameter,
-        plate_height: text.plate_height.map_or(PLATE * roller_diameter, |height| height.0),
+        plate_height: text
+            .plate_height
+            .map_or(PLATE * roller_diameter, |height| height.0),
         ends: ends?,
     })
 }
@@ -79,7 +95,10 @@ pub(super) fn resolve(
 fn lengths(text: &schema::Chain, links: usize, findings: &mut Findings<'_>) -> Option<Vec<f64>> {
     let worn = 1.0 + text.elongation.0;
     if let Some(pitches) = &text.pitches {
-        for (key, given) in [("inner_pitch", text.inner_pitch), ("outer_pitch", text.outer_pitch)] {
+        for (key, given) in [
+            ("inner_pitch", text.inner_pitch),
+            ("outer_pitch", text.outer_pitch),
+        ] {
             if given.is_some() {
                 let path = format!("chain.{key}");
                 findings.refuse_with(&path, "`pitches` is given too", "keep one of them");
@@ -119,8 +138,10 @@ fn each(
         (None, Some(values)) if values.len() == count => Some(values),
         (None, Some(values)) => {
             let part = if many == "masses" { "roller" } else { "link" };
-            let message =
-                format!("{} values, needed are {count}, one for every {part}", values.len());
+            let message = format!(
+                "{} values, needed are {count}, one for every {part}",
+                values.len()
+            );
             findings.refuse(&format!("chain.{many}"), message);
             None
         }

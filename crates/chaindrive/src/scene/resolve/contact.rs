@@ -65,7 +65,11 @@ pub(super) fn surface(
         (Some(_), Some(_)) => {
             let place = format!("{place}.damping");
             // The common contact is completed for every body; say it once.
-            if !findings.problems.iter().any(|problem| problem.path == place) {
+            if !findings
+                .problems
+                .iter()
+                .any(|problem| problem.path == place)
+            {
                 findings.refuse_with(&place, "`restitution` is given too", "keep one of them");
             }
             return None;
@@ -75,17 +79,23 @@ pub(super) fn surface(
             restitution: restitution.map_or(fallback.restitution, |e| e.0),
         }),
     };
-    let friction = own.friction.or(common.friction).map_or(Friction::None, |friction| {
-        Friction::Coulomb(Coulomb {
-            coefficient: friction.coefficient.0,
-            slip_speed: friction.slip_speed.0,
-        })
-    });
+    let friction = own
+        .friction
+        .or(common.friction)
+        .map_or(Friction::None, |friction| {
+            Friction::Coulomb(Coulomb {
+                coefficient: friction.coefficient.0,
+                slip_speed: friction.slip_speed.0,
+            })
+        });
     Some(Surface {
         law: Law {
             elastic,
             dissipation,
-            onset_floor: own.onset_floor.or(common.onset_floor).map_or(ONSET_FLOOR, |v| v.0),
+            onset_floor: own
+                .onset_floor
+                .or(common.onset_floor)
+                .map_or(ONSET_FLOOR, |v| v.0),
         },
         friction,
     })
@@ -133,7 +143,11 @@ fn elastic(
             let radius = radius.map_or(roller, |r| r.0);
             let other = hollow(radius, other_radius.map(|r| r.0))?;
             let modulus = steel(modulus.0, poisson.0);
-            Elastic::Power(Power::hertz_pair(radius, other.unwrap_or(f64::INFINITY), modulus))
+            Elastic::Power(Power::hertz_pair(
+                radius,
+                other.unwrap_or(f64::INFINITY),
+                modulus,
+            ))
         }
         schema::Elastic::Johnson {
             length,
@@ -148,13 +162,15 @@ fn elastic(
             let modulus = steel(modulus.0, poisson.0);
             if let (Some(_), Some(_)) = (clearance, other) {
                 let hint = "keep one of them";
-                findings.refuse_with(&format!("{path}.clearance"), "`other_radius` is given too", hint);
+                findings.refuse_with(
+                    &format!("{path}.clearance"),
+                    "`other_radius` is given too",
+                    hint,
+                );
                 return None;
             }
             Elastic::Johnson(match (clearance, other) {
-                (Some(clearance), _) => {
-                    Johnson::internal(clearance.0, 0.0, length.0, modulus)
-                }
+                (Some(clearance), _) => Johnson::internal(clearance.0, 0.0, length.0, modulus),
                 (None, None) => Johnson::flat(radius, length.0, modulus),
                 (None, Some(other)) if other < 0.0 => {
                     Johnson::internal(-other, radius, length.0, modulus)

@@ -43,7 +43,9 @@ fn parts(scene: &SceneText, names: &Names<'_>, findings: &mut Findings<'_>) -> O
     let touched = !(scene.sprockets.is_empty() && scene.guides.is_empty());
     let chain = chain::resolve(&scene.chain, touched, findings);
     let tensioners = tensioner::resolve_all(scene, findings);
-    let gravity = scene.gravity.map_or_else(|| Vector::new(0.0, -9.81), |[x, y]| Vector::new(x.0, y.0));
+    let gravity = scene
+        .gravity
+        .map_or_else(|| Vector::new(0.0, -9.81), |[x, y]| Vector::new(x.0, y.0));
     let chain = chain?;
     let sprockets = sprocket::resolve_all(scene, names, &chain, findings);
     let guides = guide::resolve_all(scene, names, &chain, findings);
@@ -74,8 +76,16 @@ impl<'s> Names<'s> {
             tensioners: scene.tensioners.iter().map(|t| t.name.as_str()).collect(),
         };
         let place = |list: &str, index: usize| format!("{list}[{index}].name");
-        let stops = names.sprockets.iter().enumerate().map(|(i, name)| (place("sprockets", i), *name));
-        let guides = names.guides.iter().enumerate().map(|(i, name)| (place("guides", i), *name));
+        let stops = names
+            .sprockets
+            .iter()
+            .enumerate()
+            .map(|(i, name)| (place("sprockets", i), *name));
+        let guides = names
+            .guides
+            .iter()
+            .enumerate()
+            .map(|(i, name)| (place("guides", i), *name));
         let tensioners = names.tensioners.iter().enumerate();
         let tensioners = tensioners.map(|(i, name)| (place("tensioners", i), *name));
         findings.unique(stops.chain(guides));
@@ -103,18 +113,25 @@ impl Findings<'_> {
 
     fn refuse_with(&mut self, path: &str, message: impl Into<String>, hint: impl Into<String>) {
         let (path, line) = self.tree.locate(path);
-        self.problems.push(Problem::new(&path, line, message).hint(hint));
+        self.problems
+            .push(Problem::new(&path, line, message).hint(hint));
     }
 
     /// The value, or its error as a problem of `path`.
     fn keep<T, E: std::fmt::Display>(&mut self, path: &str, result: Result<T, E>) -> Option<T> {
-        result.map_err(|error| self.refuse(path, error.to_string())).ok()
+        result
+            .map_err(|error| self.refuse(path, error.to_string()))
+            .ok()
     }
 
     fn lookup(&mut self, names: &[&str], kind: &str, name: &str, path: &str) -> Option<usize> {
         let found = names.iter().position(|known| *known == name);
         if found.is_none() {
-            self.refuse_with(path, format!("no {kind} is named `{name}`"), one_of(name, names));
+            self.refuse_with(
+                path,
+                format!("no {kind} is named `{name}`"),
+                one_of(name, names),
+            );
         }
         found
     }
@@ -152,7 +169,10 @@ impl Findings<'_> {
             } => self.refuse(&path, format!("{value}, must be {allowed}")),
             DriveError::Law { path, source } => {
                 let path = format!("{path}.{}", source.parameter);
-                self.refuse(&path, format!("{}, must be {}", source.value, source.allowed));
+                self.refuse(
+                    &path,
+                    format!("{}, must be {}", source.value, source.allowed),
+                );
             }
             DriveError::Overlap {
                 first,

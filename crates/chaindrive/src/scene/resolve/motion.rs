@@ -48,7 +48,7 @@ fn resolve<P: Copy, R: Copy>(
             duration: duration.0,
         },
         schema::Motion::Harmonics { speed, terms } => Motion::Harmonics {
-            rate: rate(*speed),
+            rate: speed.map_or(0.0, &rate),
             terms: terms
                 .iter()
                 .map(|term| Harmonic {
@@ -73,8 +73,9 @@ pub(super) fn torques(
     findings: &mut Findings<'_>,
 ) -> Option<Vec<Torque>> {
     let torques = list.iter().enumerate();
-    let torques: Vec<_> =
-        torques.map(|(i, text)| torque(text, &format!("{path}[{i}]"), findings)).collect();
+    let torques: Vec<_> = torques
+        .map(|(i, text)| torque(text, &format!("{path}[{i}]"), findings))
+        .collect();
     torques.into_iter().collect()
 }
 
@@ -108,9 +109,12 @@ fn torque(text: &schema::Torque, path: &str, findings: &mut Findings<'_>) -> Opt
             order: order.0,
             phase: phase.0,
         }),
-        schema::Torque::TimeTable { times, torques } => {
-            over(Argument::Time, times.iter().map(|t| t.0).collect(), torques, "times")
-        }
+        schema::Torque::TimeTable { times, torques } => over(
+            Argument::Time,
+            times.iter().map(|t| t.0).collect(),
+            torques,
+            "times",
+        ),
         schema::Torque::AngleTable { angles, torques } => {
             let angles: Vec<f64> = angles.iter().map(|angle| angle.0).collect();
             let least = angles.iter().copied().fold(f64::INFINITY, f64::min);
@@ -128,9 +132,12 @@ fn torque(text: &schema::Torque, path: &str, findings: &mut Findings<'_>) -> Opt
             }
             Some(resolved)
         }
-        schema::Torque::SpeedTable { speeds, torques } => {
-            over(Argument::Speed, speeds.iter().map(|s| s.0).collect(), torques, "speeds")
-        }
+        schema::Torque::SpeedTable { speeds, torques } => over(
+            Argument::Speed,
+            speeds.iter().map(|s| s.0).collect(),
+            torques,
+            "speeds",
+        ),
     }
 }
 

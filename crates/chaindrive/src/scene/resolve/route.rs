@@ -71,16 +71,27 @@ fn stops(route: &Route, names: &Names<'_>, findings: &mut Findings<'_>) -> Optio
         let path = format!("route.stops[{i}]");
         let sprocket = names.sprockets.iter().position(|known| known == name);
         let guide = || names.guides.iter().position(|known| known == name);
-        let stop = sprocket.map(Stop::Sprocket).or_else(|| guide().map(Stop::Guide));
+        let stop = sprocket
+            .map(Stop::Sprocket)
+            .or_else(|| guide().map(Stop::Guide));
         let Some(stop) = stop else {
-            let known: Vec<&str> = names.sprockets.iter().chain(&names.guides).copied().collect();
+            let known: Vec<&str> = names
+                .sprockets
+                .iter()
+                .chain(&names.guides)
+                .copied()
+                .collect();
             let message = format!("no sprocket or guide is named `{name}`");
             findings.refuse_with(&path, message, one_of(name, &known));
             complete = false;
             continue;
         };
         if found.contains(&stop) {
-            findings.refuse_with(&path, format!("`{name}` stands twice"), "the chain passes it once");
+            findings.refuse_with(
+                &path,
+                format!("`{name}` stands twice"),
+                "the chain passes it once",
+            );
         } else if i == 0 && sprocket.is_none() {
             let hint = "begin the list with any of the sprockets";
             findings.refuse_with(&path, "the first stop must be a sprocket", hint);
@@ -102,10 +113,14 @@ fn adjust(
 ) -> Option<Adjust> {
     let path = "route.adjust.name";
     let carried = |index: usize| matches!(scene.tensioners[index].carrier, Carrier::Slider { .. });
-    let mut tensioner = |name: &str, slides: bool, findings: &mut Findings<'_>| {
+    let tensioner = |name: &str, slides: bool, findings: &mut Findings<'_>| {
         let index = names.tensioner(name, path, findings)?;
         if carried(index) != slides {
-            let (is, other) = if slides { ("an arm", "arm") } else { ("a slider", "slider") };
+            let (is, other) = if slides {
+                ("an arm", "arm")
+            } else {
+                ("a slider", "slider")
+            };
             let hint = format!("take `kind = \"{other}\"`");
             findings.refuse_with(path, format!("`{name}` is {is}"), hint);
             return None;

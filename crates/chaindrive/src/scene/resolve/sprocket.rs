@@ -18,7 +18,16 @@ pub(super) fn resolve_all(
         .sprockets
         .iter()
         .enumerate()
-        .map(|(i, text)| resolve(text, &format!("sprockets[{i}]"), scene, names, chain, findings))
+        .map(|(i, text)| {
+            resolve(
+                text,
+                &format!("sprockets[{i}]"),
+                scene,
+                names,
+                chain,
+                findings,
+            )
+        })
         .collect();
     sprockets.into_iter().collect()
 }
@@ -40,7 +49,11 @@ fn resolve(
     );
     let gap = form.and_then(|form| {
         let gap = ToothGap::new(text.teeth, chain.pitch, chain.roller_diameter, &form);
-        let place = if text.tooth.is_some() { "tooth" } else { "teeth" };
+        let place = if text.tooth.is_some() {
+            "tooth"
+        } else {
+            "teeth"
+        };
         findings.keep(&format!("{path}.{place}"), gap)
     });
     let rotation = rotation(text, path, findings);
@@ -80,15 +93,12 @@ fn resolve(
     })
 }
 
-fn rotation(
-    text: &schema::Sprocket,
-    path: &str,
-    findings: &mut Findings<'_>,
-) -> Option<Rotation> {
+fn rotation(text: &schema::Sprocket, path: &str, findings: &mut Findings<'_>) -> Option<Rotation> {
     if let Some(given) = &text.motion {
         for (key, torques) in [("drive", &text.drive), ("load", &text.load)] {
             if !torques.is_empty() {
-                let hint = "keep one of them: a prescribed motion supplies whatever torque it takes";
+                let hint =
+                    "keep one of them: a prescribed motion supplies whatever torque it takes";
                 findings.refuse_with(&format!("{path}.{key}"), "`motion` is given too", hint);
             }
         }

@@ -46,9 +46,15 @@ pub(super) fn layout(
             if let Some(velocities) = velocities {
                 count("velocities", velocities.len());
             }
-            let velocity = |given: &Vec<_>| given.iter().map(|[x, y]: &[crate::scene::quantity::Speed; 2]| Vector::new(x.0, y.0)).collect();
-            let velocities =
-                velocities.as_ref().map_or_else(|| vec![Vector::zeros(); rollers], velocity);
+            let velocity = |given: &Vec<_>| {
+                given
+                    .iter()
+                    .map(|[x, y]: &[crate::scene::quantity::Speed; 2]| Vector::new(x.0, y.0))
+                    .collect()
+            };
+            let velocities = velocities
+                .as_ref()
+                .map_or_else(|| vec![Vector::zeros(); rollers], velocity);
             (positions.iter().copied().map(point).collect(), velocities)
         }
     };
@@ -93,10 +99,16 @@ fn hang(from: Point, to: Point, chain: &Chain, gravity: Vector) -> Vec<Point> {
     if links * length <= distance || chain.links() < 2 {
         return line(from, to, chain);
     }
-    let along = chord.try_normalize(f64::MIN_POSITIVE).unwrap_or_else(Vector::x);
+    let along = chord
+        .try_normalize(f64::MIN_POSITIVE)
+        .unwrap_or_else(Vector::x);
     // The side to which gravity pulls; downward without gravity.
     let left = Vector::new(-along.y, along.x);
-    let pull = if gravity.norm() > 0.0 { gravity } else { -Vector::y() };
+    let pull = if gravity.norm() > 0.0 {
+        gravity
+    } else {
+        -Vector::y()
+    };
     let side = if pull.dot(&left) > 0.0 { 1.0 } else { -1.0 };
     // D falls from N ℓ at α = 0 to nothing at α = π/N.
     let (mut low, mut high) = (0.0, PI / links);
@@ -136,8 +148,11 @@ fn spin(
 ) -> Option<(Vec<Point>, Vec<Vector>)> {
     let links = chain.links() as f64;
     let mean = |values: &[f64]| values.iter().sum::<f64>() / links;
-    let (rest, stiffness, mass) =
-        (mean(&chain.lengths), mean(&chain.stiffness), mean(&chain.masses));
+    let (rest, stiffness, mass) = (
+        mean(&chain.lengths),
+        mean(&chain.stiffness),
+        mean(&chain.masses),
+    );
     let half = (PI / links).sin();
     let left = stiffness - mass * speed * speed / (4.0 * half * half);
     if left <= 0.0 {

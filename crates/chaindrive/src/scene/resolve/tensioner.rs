@@ -3,7 +3,6 @@
 use chaindrive_mechanics::{Carrier, Hydraulic, Plunger, Push, Spring, Tensioner};
 
 use super::{Findings, point};
-use crate::scene::quantity::{Damping, Force};
 use crate::scene::schema::{self, GuideSupport, Oil, SceneText, Support};
 
 pub(super) fn resolve_all(
@@ -13,9 +12,10 @@ pub(super) fn resolve_all(
     let mut tensioners = Vec::new();
     for (i, text) in scene.tensioners.iter().enumerate() {
         let path = format!("tensioners[{i}]");
-        let sprockets = scene.sprockets.iter().any(
-            |s| matches!(&s.support, Some(Support::Tensioner { name }) if *name == text.name),
-        );
+        let sprockets = scene
+            .sprockets
+            .iter()
+            .any(|s| matches!(&s.support, Some(Support::Tensioner { name }) if *name == text.name));
         let guides = scene.guides.iter().any(
             |g| matches!(&g.support, Some(GuideSupport::Tensioner { name }) if *name == text.name),
         );
@@ -28,11 +28,7 @@ pub(super) fn resolve_all(
     tensioners.into_iter().collect()
 }
 
-fn resolve(
-    text: &schema::Tensioner,
-    path: &str,
-    findings: &mut Findings<'_>,
-) -> Option<Tensioner> {
+fn resolve(text: &schema::Tensioner, path: &str, findings: &mut Findings<'_>) -> Option<Tensioner> {
     let (carrier, inertia, key) = match &text.carrier {
         schema::Carrier::Slider { direction, mass } => {
             let direction = findings.direction(&format!("{path}.carrier.direction"), *direction);
@@ -47,7 +43,10 @@ fn resolve(
             let plunger = match plunger {
                 None => Some(None),
                 Some(plunger) => findings
-                    .direction(&format!("{path}.carrier.plunger.direction"), plunger.direction)
+                    .direction(
+                        &format!("{path}.carrier.plunger.direction"),
+                        plunger.direction,
+                    )
                     .map(|direction| {
                         Some(Plunger {
                             at: point(plunger.at),
@@ -82,7 +81,12 @@ fn push(
     findings: &mut Findings<'_>,
 ) -> Option<Push> {
     let turns = matches!(text, schema::Push::TorsionSpring { .. });
-    if bare_arm && matches!(text, schema::Push::Spring { .. } | schema::Push::Hydraulic { .. }) {
+    if bare_arm
+        && matches!(
+            text,
+            schema::Push::Spring { .. } | schema::Push::Hydraulic { .. }
+        )
+    {
         let hint = "give the arm a `plunger`, or take a `torsion-spring`";
         findings.refuse_with(path, "a force needs a place on the arm", hint);
         return None;
@@ -121,17 +125,19 @@ fn push(
             leak,
             oil,
         } => {
+            let direct = (supply.map(|f| f.0), relief.map(|f| f.0), leak.map(|c| c.0));
             let (supply, relief, leak) = match oil {
-                Some(oil) => from_oil(oil, (*supply, *relief, *leak), path, findings)?,
-                None => (
-                    given(supply.map(|f| f.0), "supply", path, findings)?,
-                    given(relief.map(|f| f.0), "relief", path, findings)?,
-                    given(leak.map(|c| c.0), "leak", path, findings)?,
-                ),
+                Some(oil) => from_oil(oil, direct, path, findings),
+                None => complete(direct, path, findings)?,
             };
             if relief < supply {
+                let key = if oil.is_some() {
+                    "oil.relief"
+                } else {
+                    "relief"
+                };
                 let message = "the relief valve opens below the supply pressure";
-                findings.refuse(&format!("{path}.{}", if oil.is_some() { "oil.relief" } else { "relief" }), message);
+                findings.refuse(&format!("{path}.{key}"), message);
                 return None;
             }
             Some(Push::Hydraulic(Hydraulic {
@@ -146,30 +152,39 @@ fn push(
     }
 }
 
-fn given(value: Option<f64>, key: &str, path: &str, findings: &mut Findings<'_>) -> Option<f64> {
-    if value.is_none() {
-        let hint = "give `supply`, `relief` and `leak`, or `oil`, from which they follow";
-        findings.refuse_with(&format!("{path}.{key}"), "missing", hint);
+/// Supply push \[N\], relief push \[N\] and leak damping \[N s/m\] as given.
+type Direct = (Option<f64>, Option<f64>, Option<f64>);
+
+fn complete(
+    (supply, relief, leak): Direct,
+    path: &str,
+    findings: &mut Findings<'_>,
+) -> Option<(f64, f64, f64)> {
+    for (key, value) in [("supply", supply), ("relief", relief), ("leak", leak)] {
+        if value.is_none() {
+            let hint = "give `supply`, `relief` and `leak`, or `oil`, from which they follow";
+            findings.refuse_with(&format!("{path}.{key}"), "missing", hint);
+        }
     }
-    value
+    Some((supply?, relief?, leak?))
 }
 
 /// Supply push, relief push and leak damping of a plunger in oil.
 fn from_oil(
     oil: &Oil,
-    (supply, relief, leak): (Option<Force>, Option<Force>, Option<Damping>),
+    (supply, relief, leak): Direct,
     path: &str,
     findings: &mut Findings<'_>,
-) -> Option<(f64, f64, f64)> {
-    let direct = [("supply", supply.is_some()), ("relief", relief.is_some()), ("leak", leak.is_some())];
-    for (key, twice) in direct {
-        if twice {
-            findings.refuse_with(&format!("{path}.{key}"), "`oil` is given too", "keep one of them");
+) -> (f64, f64, f64) {
+    for (key, value) in [("supply", supply), ("relief", relief), ("leak", leak)] {
+        if value.is_some() {
+            let hint = "keep one of them";
+            findings.refuse_with(&format!("{path}.{key}"), "`oil` is given too", hint);
         }
     }
     // F = p A,   A = π d²/4
     let diameter = oil.diameter.0;
     let area = 0.25 * std::f64::consts::PI * diameter * diameter;
     let leak = Hydraulic::leak_damping(oil.viscosity.0, oil.length.0, diameter, oil.gap.0);
-    Some((oil.supply.0 * area, oil.relief.0 * area, leak))
+    (oil.supply.0 * area, oil.relief.0 * area, leak)
 }

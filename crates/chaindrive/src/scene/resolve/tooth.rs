@@ -120,7 +120,11 @@ fn arc(start: Point, end: Point, radius: f64) -> Result<Piece, GeometryError> {
     }
     let left = chord.try_normalize(0.0).unwrap_or_default();
     let left = chaindrive_geometry::Vector::new(-left.y, left.x);
-    let turn = if radius > 0.0 { Turn::Left } else { Turn::Right };
+    let turn = if radius > 0.0 {
+        Turn::Left
+    } else {
+        Turn::Right
+    };
     let centre = start + 0.5 * chord + left * (height.sqrt() * radius.signum());
     Arc::between(start, end, centre, turn).map(Piece::Arc)
 }

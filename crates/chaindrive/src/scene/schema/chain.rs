@@ -4,9 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::Motion;
-use crate::scene::quantity::{
-    AngularSpeed, Damping, Force, Length, Mass, Ratio, Speed, Stiffness,
-};
+use crate::scene::quantity::{AngularSpeed, Damping, Force, Length, Mass, Ratio, Speed, Stiffness};
 
 /// The chain: point masses at the rollers, joined by links that are springs with dampers.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
@@ -77,7 +75,7 @@ pub(crate) struct Chain {
 }
 
 /// Random differences between links: normal, each with a relative standard deviation.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Scatter {
     /// Standard deviation of the link length over the pitch [–].

@@ -12,13 +12,13 @@ mod route;
 mod sprocket;
 mod tensioner;
 
-pub(crate) use chain::{Chain, End, Scatter, Start};
+pub(crate) use chain::{Chain, End, Start};
 pub(crate) use contact::{Contact, Contacts, Elastic};
 pub(crate) use guide::{Face, Guide, GuideSupport, Touches, TravelSide};
 pub(crate) use motion::{Motion, Torque};
 pub(crate) use route::{Adjust, Method, Route, Run, Tighten};
 pub(crate) use sprocket::{GapForm, PathPiece, Seat, Side, Sprocket, Support, TipForm, Tooth};
-pub(crate) use tensioner::{Carrier, Push, Tensioner};
+pub(crate) use tensioner::{Carrier, Oil, Push, Tensioner};
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -148,7 +148,10 @@ fn allow_bare_kinds(object: &mut Map<String, Value>) {
 /// `["1 ms", "2 ms"]` may be written `{ unit = "ms", values = [1, 2] }`.
 fn allow_common_unit(object: &mut Map<String, Value>) {
     if object.get("type") != Some(&json!("array"))
-        || object.get("items").and_then(|items| items.get("x-dimension")).is_none()
+        || object
+            .get("items")
+            .and_then(|items| items.get("x-dimension"))
+            .is_none()
     {
         return;
     }

@@ -36,8 +36,8 @@ pub(crate) enum Motion<Position, Rate> {
     /// A mean speed with sine terms, amplitude × (sin(2π f t + phase) − sin(phase)).
     Harmonics {
         /// Mean speed; absent: 0.
-        #[serde(default = "zero::<Rate>")]
-        speed: Rate,
+        #[serde(default)]
+        speed: Option<Rate>,
         /// The sine terms.
         terms: Vec<Term<Position>>,
     },
@@ -48,11 +48,6 @@ pub(crate) enum Motion<Position, Rate> {
         /// Position (an angle, or a length) at each of them.
         values: Vec<Position>,
     },
-}
-
-fn zero<Rate: for<'de> Deserialize<'de>>() -> Rate {
-    // Rates are newtypes of one number.
-    serde_json::from_value(0.0.into()).unwrap_or_else(|_| unreachable!("a rate is a number"))
 }
 
 /// One sine term of a motion.

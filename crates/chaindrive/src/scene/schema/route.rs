@@ -93,6 +93,15 @@ pub(crate) struct Run {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) step: Option<Time>,
+    /// Relative tolerance of a method under error control [–].
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
+    pub(crate) tolerance: Option<Ratio>,
+    /// Deepest penetration at which a contact may begin [m]: deeper steps are shortened; absent:
+    /// contacts begin wherever the step lands.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) onset_depth: Option<Length>,
     /// Channels to record.
     #[serde(default)]
     pub(crate) record: Option<Vec<String>>,

@@ -1,0 +1,79 @@
+# Everything happens in .venv and target; nothing has to be active or installed beforehand but
+# Python 3.11 or newer and a Rust toolchain.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+
+# What the wheel is made of.
+SOURCES := Cargo.toml Cargo.lock pyproject.toml \
+	$(shell find crates -type f \( -path '*/src/*' -o -path '*/scenes/*' -o -name Cargo.toml \)) \
+	$(shell find python -type f \( -name '*.py' -o -name '*.pyi' -o -name py.typed \))
+
+# Cargo builds the bindings for the interpreter in .venv, whatever else is on the path.
+export PYO3_PYTHON := $(abspath $(BIN)/python)
+
+.DEFAULT_GOAL := help
+.PHONY: help setup run test check check-rust check-python test-rust test-python bench validation docs clean
+# A build that failed leaves no stamp behind.
+.DELETE_ON_ERROR:
+
+help: ## Show this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-13s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+setup: $(VENV)/installed ## Make .venv and build and install the package in it
+
+run: setup ## Simulate one second of the marine engine drive; results go to results/
+	$(BIN)/python examples/marine_engine.py
+
+test: check test-rust test-python ## Run all checks and tests
+
+check: check-rust check-python ## Check format, lints, documentation and types
+
+check-rust: $(VENV)/ready
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets -- -D warnings
+	RUSTDOCFLAGS='-D warnings' cargo doc --workspace --no-deps --quiet
+
+check-python: setup
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/python -m mypy.stubtest chaindrive._core --mypy-config-file pyproject.toml
+
+test-rust:
+	cargo test --quiet
+
+test-python: setup
+	$(BIN)/pytest
+
+bench: ## Measure kernels and steps
+	cargo bench
+
+validation: setup ## Run the slow studies as well
+	cargo test --release -- --include-ignored
+	$(BIN)/pytest -m 'slow or not slow'
+
+docs: ## Build the reference of the Rust crates in target/doc
+	RUSTDOCFLAGS='-D warnings' cargo doc --workspace --no-deps
+
+clean: ## Remove everything that was built
+	rm -rf $(VENV) target results dist
+
+# Virtual environment with the tools.
+$(VENV)/ready: pyproject.toml
+	@command -v cargo >/dev/null || { echo "cargo is missing: install a Rust toolchain, see https://rustup.rs" >&2; exit 1; }
+	@command -v $(PYTHON) >/dev/null || { echo "$(PYTHON) is missing: install Python 3.11 or newer, or name one: make PYTHON=…" >&2; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "$(PYTHON) is older than 3.11; name a newer one: make PYTHON=…" >&2; exit 1; }
+	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || { echo "$(PYTHON) cannot make virtual environments with pip: install its venv package (Debian, Ubuntu: python3-venv)" >&2; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade pip
+	$(BIN)/python -m pip install --quiet --group dev
+	@touch $@
+
+# The wheel, as a user would get it.
+$(VENV)/installed: $(VENV)/ready $(SOURCES)
+	rm -rf target/wheels/chaindrive-*.whl
+	$(BIN)/maturin build --release --quiet --interpreter $(BIN)/python --out target/wheels
+	$(BIN)/python -m pip install --quiet --force-reinstall --no-deps target/wheels/chaindrive-*.whl
+	@touch $@

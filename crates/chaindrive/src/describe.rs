@@ -1,0 +1,250 @@
+//! What a scene will be simulated as, before it is: route, statics, model, time scales, cost.
+//!
+//! Everything is read off the assembled drive or follows from geometry alone; only the cost is
+//! measured, by a few hundred steps. Front ends print a [`Description`] as text or as JSON.
+
+mod cost;
+mod polygon;
+mod route;
+mod text;
+
+use chaindrive_geometry::mesh_frequency;
+use chaindrive_integrate::{Moment, SecondOrderSystem};
+use chaindrive_mechanics::{
+    Assembled, Chain, Drive, Flow, GuideSupport, Observation, Rotation, Statics,
+};
+use serde::Serialize;
+
+pub use cost::Cost;
+pub use polygon::PolygonPair;
+pub use route::{SpanAtRest, StopFacts, spans_at_rest};
+
+use crate::{Run, SimulationError};
+
+/// A drive and a run, described.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Description {
+    /// The chain.
+    pub chain: ChainFacts,
+    /// How the chain was fitted; absent when it does not run around sprockets.
+    pub closing: Option<Closing>,
+    /// The bodies of the route, in path order.
+    pub stops: Vec<StopFacts>,
+    /// The spans of the route after the last static stage, in path order.
+    pub spans: Vec<SpanAtRest>,
+    /// The static states on the way to the start.
+    pub statics: Vec<StaticStage>,
+    /// What moves and what touches.
+    pub model: Model,
+    /// How fast things happen.
+    pub time_scales: TimeScales,
+    /// Exact polygonal kinematics of neighbouring sprockets on the same side of the chain.
+    pub polygon: Vec<PolygonPair>,
+    /// Method, steps and run time.
+    pub cost: Cost,
+}
+
+/// The chain in numbers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ChainFacts {
+    /// Number of links.
+    pub links: usize,
+    /// Nominal pitch \[m\].
+    pub pitch: f64,
+    /// Mass per length \[kg/m\].
+    pub mass_per_length: f64,
+    /// Axial stiffness of one link \[N/m\], mean.
+    pub link_stiffness: f64,
+    /// Axial stiffness k p \[N\]: force over strain.
+    pub axial_stiffness: f64,
+    /// Speed of longitudinal waves \[m/s\].
+    pub longitudinal_wave_speed: f64,
+    /// Speed of transverse waves at the least and the greatest static tension of a span \[m/s\].
+    pub transverse_wave_speeds: Option<[f64; 2]>,
+}
+
+/// How the chain was fitted.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Closing {
+    /// Strain of the links as laid \[–\].
+    pub strain: f64,
+    /// Travel of the adjusted body \[m, or rad\].
+    pub travel: f64,
+}
+
+/// A static state on the way to the start.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StaticStage {
+    /// What had been applied: pretension, gravity or load.
+    pub stage: &'static str,
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Largest force out of balance, relative to the largest link tension.
+    pub residual: f64,
+    /// Mean tension of every span \[N\], in path order.
+    pub span_tensions: Vec<f64>,
+}
+
+/// What moves and what touches.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Model {
+    /// Degrees of freedom that move.
+    pub degrees_of_freedom: usize,
+    /// Rollers.
+    pub rollers: usize,
+    /// Pairs of a roller and a body near enough to be tested for contact at the start.
+    pub candidates: usize,
+    /// Sprockets that turn freely, and those whose rotation is given.
+    pub free_sprockets: usize,
+    /// See `free_sprockets`.
+    pub driven_sprockets: usize,
+    /// Guides that stand still, and those that move.
+    pub fixed_guides: usize,
+    /// See `fixed_guides`.
+    pub moving_guides: usize,
+    /// Tensioners.
+    pub tensioners: usize,
+    /// What the scene leaves out.
+    pub absent: Vec<&'static str>,
+}
+
+/// How fast things happen at the start.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TimeScales {
+    /// 1/ω of the stiffest mode \[s\].
+    pub stiffest: f64,
+    /// Speed of the fastest roller \[m/s\].
+    pub chain_speed: f64,
+    /// Frequency \[Hz\] at which rollers seat on every sprocket.
+    pub mesh_frequencies: Vec<(String, f64)>,
+}
+
+impl Description {
+    /// Assembles the drive, reads it off, and takes a few hundred steps to see what they cost.
+    ///
+    /// # Errors
+    /// As [`Simulation::start`](crate::Simulation::start).
+    pub fn of(drive: &Drive, run: &Run) -> Result<Self, SimulationError> {
+        run.check()?;
+        let assembled = drive.assemble()?;
+        let start = at_start(&assembled);
+        let system = &assembled.system;
+        let spans = spans_at_rest(drive, &assembled);
+        let stage = |statics: &Statics| StaticStage {
+            stage: statics.stage,
+            iterations: statics.iterations,
+            residual: statics.residual,
+            span_tensions: route::tensions(drive, &assembled, &statics.tensions),
+        };
+        let speed = |x: f64, y: f64| x.hypot(y);
+        let speeds = start
+            .roller_vx
+            .iter()
+            .zip(&start.roller_vy)
+            .map(|(x, y)| speed(*x, *y));
+        let meshing = drive.sprockets.iter().zip(&start.sprocket_speed);
+        let mesh = meshing.map(|(s, speed)| (s.name.clone(), mesh_frequency(s.gap.teeth, *speed)));
+        Ok(Self {
+            chain: chain_facts(&drive.chain, &spans),
+            closing: assembled.fitting.as_ref().map(|fitting| Closing {
+                strain: fitting.strain,
+                travel: fitting.travel,
+            }),
+            stops: route::stops(drive, &assembled, &start),
+            statics: assembled.statics.iter().map(stage).collect(),
+            model: model(drive, &assembled),
+            time_scales: TimeScales {
+                stiffest: system.time_scale(),
+                chain_speed: speeds.fold(0.0, f64::max),
+                mesh_frequencies: mesh.collect(),
+            },
+            polygon: polygon::pairs(drive, &start),
+            cost: cost::measure(&assembled, run)?,
+            spans,
+        })
+    }
+}
+
+/// Everything that can be read off the assembled drive.
+fn at_start(assembled: &Assembled) -> Observation {
+    let system = &assembled.system;
+    let at = Moment {
+        t: 0.0,
+        q: &assembled.q,
+        v: &assembled.v,
+    };
+    let mut start = Observation::default();
+    let flows = [0.0; Flow::ALL.len()];
+    system.observe(at, &flows, &mut system.new_record(), &mut start);
+    start
+}
+
+fn chain_facts(chain: &Chain, spans: &[SpanAtRest]) -> ChainFacts {
+    let links = chain.links() as f64;
+    let mass = chain.masses.iter().sum::<f64>() / chain.masses.len() as f64;
+    // Springs in series: the harmonic mean.
+    let stiffness = links / chain.stiffness.iter().map(|k| 1.0 / k).sum::<f64>();
+    let mass_per_length = mass / chain.pitch;
+    let tensions = || {
+        spans
+            .iter()
+            .map(|span| span.tension)
+            .filter(|tension| *tension > 0.0)
+    };
+    let (least, most) = (tensions().reduce(f64::min), tensions().reduce(f64::max));
+    ChainFacts {
+        links: chain.links(),
+        pitch: chain.pitch,
+        mass_per_length,
+        link_stiffness: stiffness,
+        axial_stiffness: stiffness * chain.pitch,
+        // c = p √(k/m)
+        longitudinal_wave_speed: chain.pitch * (stiffness / mass).sqrt(),
+        // c = √(T/μ)
+        transverse_wave_speeds: least
+            .zip(most)
+            .map(|(a, b)| [a, b].map(|tension| (tension / mass_per_length).sqrt())),
+    }
+}
+
+fn model(drive: &Drive, assembled: &Assembled) -> Model {
+    use chaindrive_contact::Friction;
+    let free = drive
+        .sprockets
+        .iter()
+        .filter(|s| matches!(s.rotation, Rotation::Free { .. }));
+    let fixed = drive
+        .guides
+        .iter()
+        .filter(|guide| guide.support == GuideSupport::Fixed);
+    let (free, fixed) = (free.count(), fixed.count());
+    let surfaces = drive.sprockets.iter().map(|s| &s.surface);
+    let mut surfaces = surfaces.chain(drive.guides.iter().map(|guide| &guide.surface));
+    let lacks = [
+        (drive.sprockets.is_empty(), "sprockets"),
+        (drive.guides.is_empty(), "guides"),
+        (drive.tensioners.is_empty(), "tensioners"),
+        (surfaces.all(|s| s.friction == Friction::None), "friction"),
+        (
+            drive.chain.damping.iter().all(|d| *d <= 0.0),
+            "damping of the links",
+        ),
+        (drive.gravity.norm() <= 0.0, "gravity"),
+        (!drive.settle, "settling before the start"),
+    ];
+    Model {
+        degrees_of_freedom: assembled.system.free_dofs(),
+        rollers: assembled.system.rollers(),
+        candidates: assembled.system.candidates(),
+        free_sprockets: free,
+        driven_sprockets: drive.sprockets.len() - free,
+        fixed_guides: fixed,
+        moving_guides: drive.guides.len() - fixed,
+        tensioners: drive.tensioners.len(),
+        absent: lacks
+            .iter()
+            .filter(|(lacking, _)| *lacking)
+            .map(|(_, name)| *name)
+            .collect(),
+    }
+}

@@ -1,0 +1,78 @@
+//! What a run will cost, by taking its first steps.
+
+use chaindrive_integrate::{Method, SecondOrderSystem};
+use chaindrive_mechanics::Assembled;
+use serde::Serialize;
+
+use crate::{Run, Simulation, SimulationError};
+
+/// Method, steps and run time.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Cost {
+    /// Name of the method.
+    pub method: &'static str,
+    /// Step \[s\]: the fixed one, or the mean one measured.
+    pub step: f64,
+    /// Whether the step follows the error.
+    pub adaptive: bool,
+    /// Simulated time \[s\].
+    pub until: f64,
+    /// Samples, the first and the last included.
+    pub samples: f64,
+    /// Steps expected.
+    pub steps: f64,
+    /// Wall time of a step \[s\], measured.
+    pub time_per_step: f64,
+    /// Wall time expected, recording not counted \[s\].
+    pub run_time: f64,
+    /// Wall time over simulated time \[–\]: below 1 is faster than real time.
+    pub real_time_ratio: f64,
+    /// Steps measured.
+    pub measured: u64,
+}
+
+/// Steps to warm up with, and to measure.
+const WARM_UP: f64 = 100.0;
+const MEASURED: f64 = 400.0;
+
+pub(super) fn measure(assembled: &Assembled, run: &Run) -> Result<Cost, SimulationError> {
+    let method = run.method(&assembled.system);
+    let (step, adaptive) = match method {
+        Method::Verlet { step } | Method::Rk4 { step } => (step, false),
+        Method::DormandPrince { max_step, .. } => {
+            (max_step.min(assembled.system.time_scale()), true)
+        }
+    };
+    // Never beyond the end of the run: what comes later may not even be defined.
+    let measured = (MEASURED * step).min(0.8 * run.until);
+    let warm_up = (WARM_UP * step).min(0.2 * run.until);
+    let trial = |until: f64| Run {
+        until,
+        every: until,
+        step: Some(run.step.unwrap_or(if adaptive { run.every } else { step })),
+        ..run.clone()
+    };
+    let mut warming = Simulation::from_assembled(assembled.clone(), &trial(warm_up))?;
+    while warming.next_sample()?.is_some() {}
+    let mut simulation = Simulation::from_assembled(assembled.clone(), &trial(measured))?;
+    while simulation.next_sample()?.is_some() {}
+
+    let taken = simulation.statistics().steps.max(1);
+    let time_per_step = simulation.stepping_time() / taken as f64;
+    let mean_step = simulation.time() / taken as f64;
+    let step = if adaptive { mean_step } else { step };
+    let steps = (run.until / step).ceil();
+    let run_time = steps * time_per_step;
+    Ok(Cost {
+        method: method.name(),
+        step,
+        adaptive,
+        until: run.until,
+        samples: (run.until / run.every * (1.0 + 1e-12)).floor() + 1.0,
+        steps,
+        time_per_step,
+        run_time,
+        real_time_ratio: run_time / run.until,
+        measured: taken,
+    })
+}

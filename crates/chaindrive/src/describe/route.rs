@@ -1,0 +1,160 @@
+//! The route: what sits where, and what the spans carry at rest.
+
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+use chaindrive_geometry::{Point, Route, Wheel};
+use chaindrive_mechanics::{Assembled, Drive, Layout, Observation, Stop};
+use serde::Serialize;
+
+use super::at_start;
+
+/// A body of the route.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StopFacts {
+    /// Name of the sprocket or guide.
+    pub name: String,
+    /// Teeth; none for a guide.
+    pub teeth: Option<u32>,
+    /// Pitches seated: one less than the rollers on it.
+    pub pitches: u32,
+    /// Wrap angle \[rad\] between the points of tangency; of the seated pitches where a guide is
+    /// on the route, and none on a guide.
+    pub wrap: Option<f64>,
+}
+
+/// A span between two stops, at rest under all loads.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SpanAtRest {
+    /// Name, "from-to".
+    pub name: String,
+    /// Number of links.
+    pub pitches: usize,
+    /// Distance between the last roller before and the first roller behind \[m\].
+    pub length: f64,
+    /// Mean tension of its links \[N\].
+    pub tension: f64,
+    /// First transverse frequency \[Hz\] while the chain stands; none without tension.
+    ///
+    /// ```text
+    /// f = √(T/μ) / 2L
+    /// ```
+    pub frequency: Option<f64>,
+}
+
+/// The spans of the route, with their tension before the run begins.
+pub fn spans_at_rest(drive: &Drive, assembled: &Assembled) -> Vec<SpanAtRest> {
+    let start = at_start(assembled);
+    let tensions = assembled
+        .statics
+        .last()
+        .map_or(&start.link_tension, |last| &last.tensions);
+    let chain = &drive.chain;
+    let masses = chain.masses.iter().sum::<f64>() / chain.masses.len() as f64;
+    let mass_per_length = masses / chain.pitch;
+    let place = |roller: usize| {
+        let i = roller % start.roller_x.len();
+        Point::new(start.roller_x[i], start.roller_y[i])
+    };
+    let span = |(name, links): (String, Range<usize>)| {
+        let tension = mean(&tensions[links.clone()]);
+        let length = (place(links.end) - place(links.start)).norm();
+        SpanAtRest {
+            name,
+            pitches: links.len(),
+            length,
+            tension,
+            // f = √(T/μ) / 2L
+            frequency: (tension > 0.0).then(|| (tension / mass_per_length).sqrt() / (2.0 * length)),
+        }
+    };
+    ranges(drive, assembled).into_iter().map(span).collect()
+}
+
+/// Mean of some link tensions over every span \[N\].
+pub(super) fn tensions(drive: &Drive, assembled: &Assembled, links: &[f64]) -> Vec<f64> {
+    let spans = ranges(drive, assembled);
+    spans
+        .into_iter()
+        .map(|(_, range)| mean(&links[range]))
+        .collect()
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Name and links of every span: roller 0 is the first on the first stop.
+fn ranges(drive: &Drive, assembled: &Assembled) -> Vec<(String, Range<usize>)> {
+    let (Layout::Route { stops, .. }, Some(fitting)) = (&drive.layout, &assembled.fitting) else {
+        return Vec::new();
+    };
+    let links = drive.chain.links();
+    let mut at = 0;
+    let mut ranges = Vec::with_capacity(stops.len());
+    for (i, (seated, span)) in fitting.seated.iter().zip(&fitting.spans).enumerate() {
+        let from = (at + *seated as usize).min(links);
+        // A slack chain carries its excess in the last span.
+        let last = i + 1 == stops.len();
+        at = if last {
+            links
+        } else {
+            (from + *span as usize).min(links)
+        };
+        let next = &stops[(i + 1) % stops.len()];
+        ranges.push((
+            format!("{}-{}", name(drive, &stops[i]), name(drive, next)),
+            from..at,
+        ));
+    }
+    ranges
+}
+
+fn name<'d>(drive: &'d Drive, stop: &Stop) -> &'d str {
+    match *stop {
+        Stop::Sprocket(i) => &drive.sprockets[i].name,
+        Stop::Guide(i) => &drive.guides[i].name,
+    }
+}
+
+/// The bodies of the route.
+pub(super) fn stops(drive: &Drive, assembled: &Assembled, start: &Observation) -> Vec<StopFacts> {
+    let (Layout::Route { stops, .. }, Some(fitting)) = (&drive.layout, &assembled.fitting) else {
+        return Vec::new();
+    };
+    let taut = taut(drive, stops, start);
+    let facts = |(i, stop): (usize, &Stop)| {
+        let pitches = fitting.seated[i];
+        let teeth = match *stop {
+            Stop::Sprocket(index) => Some(drive.sprockets[index].gap.teeth),
+            Stop::Guide(_) => None,
+        };
+        let seated = teeth.map(|z| f64::from(pitches) * TAU / f64::from(z));
+        StopFacts {
+            name: name(drive, stop).to_owned(),
+            teeth,
+            pitches,
+            wrap: taut.as_ref().map_or(seated, |route| Some(route.wraps[i])),
+        }
+    };
+    stops.iter().enumerate().map(facts).collect()
+}
+
+/// The smooth route around the sprockets where they stand; none where a guide takes part.
+fn taut(drive: &Drive, stops: &[Stop], start: &Observation) -> Option<Route> {
+    let wheel = |stop: &Stop| match *stop {
+        Stop::Sprocket(i) => {
+            let sprocket = &drive.sprockets[i];
+            let centre = Point::new(start.sprocket_x[i], start.sprocket_y[i]);
+            Some(Wheel::toothed(
+                centre,
+                sprocket.gap.teeth,
+                drive.chain.pitch,
+                sprocket.side,
+            ))
+        }
+        Stop::Guide(_) => None,
+    };
+    let wheels: Option<Vec<Wheel>> = stops.iter().map(wheel).collect();
+    Route::taut(&wheels?).ok()
+}

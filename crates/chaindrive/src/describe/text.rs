@@ -1,0 +1,212 @@
+//! A description as text.
+
+use std::fmt;
+
+use super::{Description, Model, SpanAtRest};
+
+impl fmt::Display for Description {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.chain(f)?;
+        self.route(f)?;
+        self.statics(f)?;
+        self.model.fmt(f)?;
+        self.time_scales(f)?;
+        self.polygon(f)?;
+        self.cost(f)
+    }
+}
+
+impl Description {
+    fn chain(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let chain = &self.chain;
+        writeln!(f, "chain")?;
+        row(
+            f,
+            "links",
+            &format!("{} of {:.4} mm", chain.links, chain.pitch * 1e3),
+        )?;
+        row(
+            f,
+            "mass per length",
+            &format!("{:.4} kg/m", chain.mass_per_length),
+        )?;
+        let stiffness = format!(
+            "{:.4e} N/m a link, {:.4e} N a unit of strain",
+            chain.link_stiffness, chain.axial_stiffness
+        );
+        row(f, "axial stiffness", &stiffness)?;
+        let along = format!("{:.0} m/s along", chain.longitudinal_wave_speed);
+        let waves = match chain.transverse_wave_speeds {
+            Some([least, most]) => format!("{along}, {least:.1} to {most:.1} m/s across, at rest"),
+            None => along,
+        };
+        row(f, "wave speeds", &waves)
+    }
+
+    fn route(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(closing) = &self.closing else {
+            return Ok(());
+        };
+        writeln!(f, "route                      teeth   pitches   wrap [deg]")?;
+        for stop in &self.stops {
+            let dash = || "–".to_owned();
+            let teeth = stop.teeth.map_or_else(dash, |teeth| teeth.to_string());
+            let wrap = stop
+                .wrap
+                .map_or_else(dash, |wrap| format!("{:.2}", wrap.to_degrees()));
+            writeln!(
+                f,
+                "  {:22} {teeth:>7}  {:>8}  {wrap:>11}",
+                stop.name, stop.pitches
+            )?;
+        }
+        writeln!(
+            f,
+            "spans at rest            pitches   length [m]   tension [N]   first frequency [Hz]"
+        )?;
+        for SpanAtRest {
+            name,
+            pitches,
+            length,
+            tension,
+            frequency,
+        } in &self.spans
+        {
+            let frequency = frequency.map_or_else(|| "–".to_owned(), |f| format!("{f:.2}"));
+            writeln!(
+                f,
+                "  {name:22} {pitches:>7}   {length:>10.4}   {tension:>11.1}   {frequency:>20}"
+            )?;
+        }
+        let closing = format!(
+            "strain {:.3e} as laid, adjusted by {:.4} mm (or mrad)",
+            closing.strain,
+            closing.travel * 1e3
+        );
+        row(f, "closing", &closing)
+    }
+
+    fn statics(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.statics.is_empty() {
+            return Ok(());
+        }
+        writeln!(
+            f,
+            "statics                  iterations   residual   span tensions [N]"
+        )?;
+        for stage in &self.statics {
+            let tensions = stage
+                .span_tensions
+                .iter()
+                .map(|tension| format!("{tension:.1}"));
+            let tensions = tensions.collect::<Vec<_>>().join("  ");
+            writeln!(
+                f,
+                "  {:22} {:>10}   {:>8.1e}   {tensions}",
+                stage.stage, stage.iterations, stage.residual
+            )?;
+        }
+        Ok(())
+    }
+
+    fn time_scales(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let scales = &self.time_scales;
+        writeln!(f, "time scales")?;
+        row(
+            f,
+            "stiffest mode",
+            &format!("1/ω = {:.3e} s", scales.stiffest),
+        )?;
+        row(f, "chain speed", &format!("{:.3} m/s", scales.chain_speed))?;
+        for (name, frequency) in &scales.mesh_frequencies {
+            row(f, &format!("mesh of {name}"), &format!("{frequency:.3} Hz"))?;
+        }
+        Ok(())
+    }
+
+    fn polygon(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.polygon.is_empty() {
+            return Ok(());
+        }
+        writeln!(
+            f,
+            "polygon action of every strand, were it tight; the wheel it runs onto drives"
+        )?;
+        for pair in &self.polygon {
+            let ratio = |ratio: f64| (ratio / pair.mean_ratio - 1.0) * 100.0;
+            let text = format!(
+                "ratio {:.5} {:+.4} to {:+.4} %, error {:.3e} rad peak to peak, seating at {:.4} m/s, {:.2} Hz",
+                pair.mean_ratio,
+                ratio(pair.least_ratio),
+                ratio(pair.greatest_ratio),
+                pair.transmission_error,
+                pair.seating_velocity,
+                pair.mesh_frequency
+            );
+            row(f, &format!("{} ← {}", pair.driver, pair.driven), &text)?;
+        }
+        Ok(())
+    }
+
+    fn cost(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let cost = &self.cost;
+        writeln!(f, "run")?;
+        let mean = if cost.adaptive { "about " } else { "" };
+        row(
+            f,
+            "method",
+            &format!("{}, step {mean}{:.3e} s", cost.method, cost.step),
+        )?;
+        let extent = format!(
+            "{} s in {:.0} steps, {:.0} samples",
+            cost.until, cost.steps, cost.samples
+        );
+        row(f, "extent", &extent)?;
+        let time = format!(
+            "about {}, {:.3} s for a second simulated; {} a step, mean of {}",
+            duration(cost.run_time),
+            cost.real_time_ratio,
+            duration(cost.time_per_step),
+            cost.measured
+        );
+        row(f, "run time", &time)
+    }
+}
+
+impl fmt::Display for Model {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "model")?;
+        let freedom = format!(
+            "{}, of {} rollers and",
+            self.degrees_of_freedom, self.rollers
+        );
+        let bodies = format!(
+            "{freedom} {} free sprockets ({} driven), {} tensioners",
+            self.free_sprockets, self.driven_sprockets, self.tensioners
+        );
+        row(f, "degrees of freedom", &bodies)?;
+        let guides = format!("{} fixed, {} moving", self.fixed_guides, self.moving_guides);
+        row(f, "guides", &guides)?;
+        row(
+            f,
+            "contact candidates",
+            &format!("{} rollers near a body", self.candidates),
+        )?;
+        if self.absent.is_empty() {
+            return Ok(());
+        }
+        row(f, "absent", &self.absent.join(", "))
+    }
+}
+
+fn row(f: &mut fmt::Formatter<'_>, name: &str, text: &str) -> fmt::Result {
+    writeln!(f, "  {name:22} {text}")
+}
+
+/// A duration in a unit that leaves a few digits before the point.
+fn duration(seconds: f64) -> String {
+    let units = [(1.0, "s"), (1e-3, "ms"), (1e-6, "µs")];
+    let fitting = units.into_iter().find(|(unit, _)| seconds >= *unit);
+    let (unit, name) = fitting.unwrap_or((1e-9, "ns"));
+    format!("{:.1} {name}", seconds / unit)
+}

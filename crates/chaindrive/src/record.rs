@@ -1,0 +1,92 @@
+//! Recordings: labelled columns with units, and the story of how they came about.
+
+mod channel;
+mod summary;
+mod zarr;
+
+use chaindrive_mechanics::{Energy, Flow, Observation, Store, System};
+
+pub use channel::{Axis, Channel};
+pub use summary::{ForceStatistics, SpanStatistics, Summary};
+pub use zarr::{Ending, Existing, Provenance, WriteError, ZarrWriter};
+
+/// One channel of a recording.
+#[derive(Clone, Debug)]
+pub struct Column {
+    /// What it holds.
+    pub channel: Channel,
+    /// Entries a sample: the length of the channel's axis, or 1.
+    pub width: usize,
+    /// Samples one after the other, (time, width).
+    pub values: Vec<f64>,
+}
+
+/// Samples of a run in memory.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    /// Sample times \[s\], (time,).
+    pub time: Vec<f64>,
+    /// The channels recorded.
+    pub columns: Vec<Column>,
+    start: Option<Energy>,
+}
+
+impl Recording {
+    /// An empty recording of some channels of a system.
+    pub fn new(channels: &[Channel], system: &System) -> Self {
+        let column = |&channel: &Channel| Column {
+            channel,
+            width: labels(channel.axis(), system).map_or(1, |labels| labels.len()),
+            values: Vec::new(),
+        };
+        Self {
+            time: Vec::new(),
+            columns: channels.iter().map(column).collect(),
+            start: None,
+        }
+    }
+
+    /// Appends one sample.
+    pub fn push(&mut self, sample: &Observation) {
+        let start = *self.start.get_or_insert(sample.energy);
+        self.time.push(sample.time);
+        for column in &mut self.columns {
+            column.channel.read(sample, &start, &mut column.values);
+        }
+    }
+
+    /// Removes all samples but keeps the reference of the energy residual: for writers that
+    /// hand on one chunk after the other.
+    pub fn clear(&mut self) {
+        self.time.clear();
+        for column in &mut self.columns {
+            column.values.clear();
+        }
+    }
+
+    /// Number of samples held.
+    pub fn len(&self) -> usize {
+        self.time.len()
+    }
+
+    /// Whether no sample is held.
+    pub fn is_empty(&self) -> bool {
+        self.time.is_empty()
+    }
+}
+
+/// Labels along an axis: names, or numbers from 0 for rollers and links; `None` for a scalar.
+pub fn labels(axis: Axis, system: &System) -> Option<Vec<String>> {
+    let numbers = |count: usize| (0..count).map(|i| i.to_string()).collect();
+    match axis {
+        Axis::None => None,
+        Axis::Roller => Some(numbers(system.rollers())),
+        Axis::Link => Some(numbers(system.links())),
+        Axis::Span => Some(system.span_names()),
+        Axis::Sprocket => Some(system.sprocket_names()),
+        Axis::Guide => Some(system.guide_names()),
+        Axis::Tensioner => Some(system.tensioner_names()),
+        Axis::Store => Some(Store::ALL.iter().map(|s| s.name().to_owned()).collect()),
+        Axis::Flow => Some(Flow::ALL.iter().map(|f| f.name().to_owned()).collect()),
+    }
+}

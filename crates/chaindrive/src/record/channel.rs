@@ -1,0 +1,220 @@
+//! The channels: what a run can record, with names, units and dimensions.
+
+use chaindrive_mechanics::{Energy, Flow, Observation, Store};
+
+use crate::SimulationError;
+
+/// What the entries of a channel belong to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// One number a sample.
+    None,
+    /// One a roller.
+    Roller,
+    /// One a link.
+    Link,
+    /// One a span between consecutive sprockets.
+    Span,
+    /// One a sprocket.
+    Sprocket,
+    /// One a guide.
+    Guide,
+    /// One a tensioner.
+    Tensioner,
+    /// One a form of stored or kinetic energy.
+    Store,
+    /// One a flow of energy.
+    Flow,
+}
+
+impl Axis {
+    /// All axes with labels.
+    pub const ALL: [Self; 8] = [
+        Self::Roller,
+        Self::Link,
+        Self::Span,
+        Self::Sprocket,
+        Self::Guide,
+        Self::Tensioner,
+        Self::Store,
+        Self::Flow,
+    ];
+
+    /// Name of the dimension; none for a scalar channel.
+    pub fn name(self) -> Option<&'static str> {
+        match self {
+            Self::None => None,
+            Self::Roller => Some("roller"),
+            Self::Link => Some("link"),
+            Self::Span => Some("span"),
+            Self::Sprocket => Some("sprocket"),
+            Self::Guide => Some("guide"),
+            Self::Tensioner => Some("tensioner"),
+            Self::Store => Some("store"),
+            Self::Flow => Some("flow"),
+        }
+    }
+}
+
+macro_rules! channels {
+    ($($(#[$doc:meta])* $variant:ident, $name:literal, $unit:literal, $axis:ident, $text:literal;)*) => {
+        /// A quantity that can be recorded.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Channel {
+            $(#[doc = $text] $variant,)*
+        }
+
+        impl Channel {
+            /// All channels.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),*];
+
+            /// Name in results.
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name),* }
+            }
+
+            /// SI unit.
+            pub fn unit(self) -> &'static str {
+                match self { $(Self::$variant => $unit),* }
+            }
+
+            /// What the entries belong to.
+            pub fn axis(self) -> Axis {
+                match self { $(Self::$variant => Axis::$axis),* }
+            }
+
+            /// One line of description.
+            pub fn description(self) -> &'static str {
+                match self { $(Self::$variant => $text),* }
+            }
+        }
+    };
+}
+
+channels! {
+    SpanTension, "span_tension", "N", Span, "mean tension of the links between two sprockets";
+    LinkTension, "link_tension", "N", Link, "tension of every link, damping included";
+    ContactForce, "contact_force", "N", Roller, "normal force between roller and teeth";
+    ContactDepth, "contact_depth", "m", Sprocket, "deepest indentation on the sprocket";
+    Contacts, "contacts", "1", Sprocket, "number of closed contacts on the sprocket";
+    RollerX, "roller_x", "m", Roller, "roller centre, x";
+    RollerY, "roller_y", "m", Roller, "roller centre, y";
+    RollerVx, "roller_vx", "m/s", Roller, "roller velocity, x";
+    RollerVy, "roller_vy", "m/s", Roller, "roller velocity, y";
+    SprocketAngle, "sprocket_angle", "rad", Sprocket, "rotation since the start, counter-clockwise";
+    SprocketSpeed, "sprocket_speed", "rad/s", Sprocket, "angular speed, counter-clockwise";
+    SprocketTorque, "sprocket_torque", "N m", Sprocket, "torque of the chain on the sprocket";
+    SprocketForceX, "sprocket_force_x", "N", Sprocket, "resultant of the chain on the sprocket, x";
+    SprocketForceY, "sprocket_force_y", "N", Sprocket, "resultant of the chain on the sprocket, y";
+    SprocketX, "sprocket_x", "m", Sprocket, "sprocket centre, x";
+    SprocketY, "sprocket_y", "m", Sprocket, "sprocket centre, y";
+    GuideForceX, "guide_force_x", "N", Guide, "resultant of the chain on the guide, x";
+    GuideForceY, "guide_force_y", "N", Guide, "resultant of the chain on the guide, y";
+    TensionerPosition, "tensioner_position", "1", Tensioner, "travel [m] of a slider or angle [rad] of an arm";
+    TensionerForce, "tensioner_force", "N", Tensioner, "push of the tensioner [N], or torque [N m] of a bare arm";
+    EnergyKinetic, "energy_kinetic", "J", None, "kinetic energy";
+    EnergyStored, "energy_stored", "J", None, "potential energy of springs, contacts and weight";
+    EnergyDissipated, "energy_dissipated", "J", None, "energy lost since the start";
+    EnergySupplied, "energy_supplied", "J", None, "energy supplied since the start, loads subtracted";
+    EnergyResidual, "energy_residual", "J", None, "energy unaccounted for since the start";
+    EnergyStores, "energy_stores", "J", Store, "energy by form";
+    EnergyFlows, "energy_flows", "J", Flow, "energy that has flowed since the start, by element";
+}
+
+impl Channel {
+    /// What a run records unless asked otherwise.
+    pub const DEFAULT: [Self; 12] = [
+        Self::SpanTension,
+        Self::ContactForce,
+        Self::RollerX,
+        Self::RollerY,
+        Self::SprocketAngle,
+        Self::SprocketSpeed,
+        Self::SprocketTorque,
+        Self::EnergyKinetic,
+        Self::EnergyStored,
+        Self::EnergyDissipated,
+        Self::EnergySupplied,
+        Self::EnergyResidual,
+    ];
+
+    /// The channel of a name.
+    ///
+    /// # Errors
+    /// [`SimulationError::UnknownChannel`] with the nearest name.
+    pub fn from_name(name: &str) -> Result<Self, SimulationError> {
+        let found = Self::ALL
+            .iter()
+            .copied()
+            .find(|channel| channel.name() == name);
+        found.ok_or_else(|| {
+            let near = |c: &&Self| strsim::jaro_winkler(c.name(), name);
+            let best = Self::ALL.iter().max_by(|a, b| near(a).total_cmp(&near(b)));
+            SimulationError::UnknownChannel {
+                name: name.to_owned(),
+                suggestion: best.filter(|c| near(c) > 0.8).map(|c| c.name().to_owned()),
+                known: Self::ALL
+                    .iter()
+                    .map(|c| c.name())
+                    .collect::<Vec<_>>()
+                    .join(", "),
+            }
+        })
+    }
+
+    /// The channels of some names, each once: `all` of them, or the default ones of no names.
+    ///
+    /// # Errors
+    /// As [`Channel::from_name`].
+    pub fn from_names(names: &[impl AsRef<str>]) -> Result<Vec<Self>, SimulationError> {
+        if names.is_empty() {
+            return Ok(Self::DEFAULT.to_vec());
+        }
+        let mut channels = Vec::new();
+        for name in names {
+            let named = match name.as_ref() {
+                "all" => Self::ALL.to_vec(),
+                name => vec![Self::from_name(name)?],
+            };
+            let new = named
+                .into_iter()
+                .filter(|channel| !channels.contains(channel));
+            channels.extend(new.collect::<Vec<_>>());
+        }
+        Ok(channels)
+    }
+
+    /// Appends the entries of one sample; `start` is the energy of the first sample.
+    pub fn read(self, sample: &Observation, start: &Energy, to: &mut Vec<f64>) {
+        let energy = &sample.energy;
+        match self {
+            Self::SpanTension => to.extend(&sample.span_tension),
+            Self::LinkTension => to.extend(&sample.link_tension),
+            Self::ContactForce => to.extend(&sample.contact_force),
+            Self::ContactDepth => to.extend(&sample.contact_depth),
+            Self::Contacts => to.extend(&sample.contacts),
+            Self::RollerX => to.extend(&sample.roller_x),
+            Self::RollerY => to.extend(&sample.roller_y),
+            Self::RollerVx => to.extend(&sample.roller_vx),
+            Self::RollerVy => to.extend(&sample.roller_vy),
+            Self::SprocketAngle => to.extend(&sample.sprocket_angle),
+            Self::SprocketSpeed => to.extend(&sample.sprocket_speed),
+            Self::SprocketTorque => to.extend(&sample.sprocket_torque),
+            Self::SprocketForceX => to.extend(&sample.sprocket_force_x),
+            Self::SprocketForceY => to.extend(&sample.sprocket_force_y),
+            Self::SprocketX => to.extend(&sample.sprocket_x),
+            Self::SprocketY => to.extend(&sample.sprocket_y),
+            Self::GuideForceX => to.extend(&sample.guide_force_x),
+            Self::GuideForceY => to.extend(&sample.guide_force_y),
+            Self::TensionerPosition => to.extend(&sample.tensioner_position),
+            Self::TensionerForce => to.extend(&sample.tensioner_force),
+            Self::EnergyKinetic => to.push(energy.kinetic()),
+            Self::EnergyStored => to.push(energy.stored()),
+            Self::EnergyDissipated => to.push(energy.dissipated()),
+            Self::EnergySupplied => to.push(energy.supplied()),
+            Self::EnergyResidual => to.push(energy.residual(start)),
+            Self::EnergyStores => to.extend(Store::ALL.map(|store| energy.store(store))),
+            Self::EnergyFlows => to.extend(Flow::ALL.map(|flow| energy.flow(flow))),
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! The short account that ends every run.
+
+use std::fmt;
+
+use chaindrive_mechanics::{Energy, Observation};
+use hdrhistogram::Histogram;
+
+use crate::Simulation;
+
+/// Collects statistics sample by sample, in bounded memory.
+#[derive(Clone, Debug)]
+pub struct Summary {
+    /// Spans of the route.
+    pub spans: Vec<SpanStatistics>,
+    forces: Histogram<u64>,
+    largest_force: f64,
+    start: Option<Energy>,
+    last: Energy,
+    /// Largest energy residual in magnitude \[J\].
+    pub residual: f64,
+    /// Samples seen.
+    pub samples: u64,
+}
+
+/// Tension of one span over the run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpanStatistics {
+    /// Name, "from-to".
+    pub name: String,
+    /// Least and greatest sample \[N\].
+    pub least: f64,
+    /// See `least`.
+    pub greatest: f64,
+    sum: f64,
+    sum_of_squares: f64,
+    count: f64,
+}
+
+impl SpanStatistics {
+    /// Time mean \[N\].
+    pub fn mean(&self) -> f64 {
+        self.sum / self.count
+    }
+
+    /// Standard deviation \[N\].
+    pub fn deviation(&self) -> f64 {
+        (self.sum_of_squares / self.count - self.mean().powi(2))
+            .max(0.0)
+            .sqrt()
+    }
+}
+
+/// Percentiles of the roller-tooth forces of all closed contacts \[N\].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ForceStatistics {
+    /// Median.
+    pub p50: f64,
+    /// 90th percentile.
+    pub p90: f64,
+    /// 99th percentile.
+    pub p99: f64,
+    /// Largest sample.
+    pub max: f64,
+}
+
+/// Forces are counted in millinewtons, to three digits.
+const COUNTS_PER_NEWTON: f64 = 1e3;
+
+impl Summary {
+    /// An empty summary for a run.
+    ///
+    /// # Panics
+    /// Never: three significant digits is a resolution that the histogram accepts.
+    pub fn new(simulation: &Simulation) -> Self {
+        let span = |name| SpanStatistics {
+            name,
+            least: f64::INFINITY,
+            greatest: f64::NEG_INFINITY,
+            sum: 0.0,
+            sum_of_squares: 0.0,
+            count: 0.0,
+        };
+        Self {
+            spans: simulation
+                .system()
+                .span_names()
+                .into_iter()
+                .map(span)
+                .collect(),
+            forces: Histogram::new(3).expect("three digits are between one and five"),
+            largest_force: 0.0,
+            start: None,
+            last: Energy::default(),
+            residual: 0.0,
+            samples: 0,
+        }
+    }
+
+    /// Takes in one sample.
+    pub fn push(&mut self, sample: &Observation) {
+        for (span, &tension) in self.spans.iter_mut().zip(&sample.span_tension) {
+            if tension.is_finite() {
+                span.least = span.least.min(tension);
+                span.greatest = span.greatest.max(tension);
+                span.sum += tension;
+                span.sum_of_squares += tension * tension;
+                span.count += 1.0;
+            }
+        }
+        for &force in sample.contact_force.iter().filter(|force| **force > 0.0) {
+            self.largest_force = self.largest_force.max(force);
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "forces are positive and far below 2^64 mN"
+            )]
+            let count = (force * COUNTS_PER_NEWTON) as u64;
+            self.forces.record(count.max(1)).ok();
+        }
+        let start = *self.start.get_or_insert(sample.energy);
+        let residual = sample.energy.residual(&start);
+        if residual.abs() > self.residual.abs() {
+            self.residual = residual;
+        }
+        self.last = sample.energy;
+        self.samples += 1;
+    }
+
+    /// Percentiles of the contact forces; zero when nothing touched.
+    pub fn forces(&self) -> ForceStatistics {
+        let quantile = |q: f64| self.forces.value_at_quantile(q) as f64 / COUNTS_PER_NEWTON;
+        if self.forces.is_empty() {
+            return ForceStatistics::default();
+        }
+        ForceStatistics {
+            p50: quantile(0.5),
+            p90: quantile(0.9),
+            p99: quantile(0.99),
+            max: self.largest_force,
+        }
+    }
+
+    /// Energy put in by drivers, motions and driving torques since the start \[J\].
+    pub fn energy_supplied(&self) -> f64 {
+        use chaindrive_mechanics::Flow;
+        let start = self.start.unwrap_or_default();
+        [Flow::Driver, Flow::Motions, Flow::DriveTorque]
+            .iter()
+            .map(|&flow| (self.last.flow(flow) - start.flow(flow)).abs())
+            .sum()
+    }
+
+    /// Energy lost since the start \[J\].
+    pub fn energy_dissipated(&self) -> f64 {
+        self.last.dissipated() - self.start.unwrap_or_default().dissipated()
+    }
+
+    /// The account with the counts and speed of the run.
+    pub fn report<'a>(&'a self, simulation: &'a Simulation) -> Report<'a> {
+        Report {
+            summary: self,
+            simulation,
+        }
+    }
+}
+
+/// A summary as text.
+#[derive(Debug)]
+pub struct Report<'a> {
+    summary: &'a Summary,
+    simulation: &'a Simulation,
+}
+
+impl fmt::Display for Report<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            summary,
+            simulation,
+        } = self;
+        let statistics = simulation.statistics();
+        let time = simulation.time();
+        if !summary.spans.is_empty() {
+            writeln!(
+                f,
+                "span tension [N]            mean        std      least   greatest"
+            )?;
+            for span in &summary.spans {
+                writeln!(
+                    f,
+                    "  {:22} {:>9.1}  {:>9.1}  {:>9.1}  {:>9.1}",
+                    span.name,
+                    span.mean(),
+                    span.deviation(),
+                    span.least,
+                    span.greatest
+                )?;
+            }
+        }
+        let forces = summary.forces();
+        if forces.max > 0.0 {
+            writeln!(
+                f,
+                "contact force [N]        p50 {:.0}  p90 {:.0}  p99 {:.0}  max {:.0}",
+                forces.p50, forces.p90, forces.p99, forces.max
+            )?;
+        }
+        let supplied = summary.energy_supplied();
+        let relative = if supplied > 0.0 {
+            format!(
+                ", {:.1e} of it unaccounted for",
+                (summary.residual / supplied).abs()
+            )
+        } else {
+            String::new()
+        };
+        writeln!(
+            f,
+            "energy [J]               supplied {supplied:.4e}{relative}; residual {:.2e}, dissipated {:.4e}",
+            summary.residual,
+            summary.energy_dissipated()
+        )?;
+        let steps = statistics.steps.max(1) as f64;
+        writeln!(
+            f,
+            "stepping                 {} with {} steps of {:.3e} to {:.3e} s, {} rejected, {} reduced",
+            simulation.method().name(),
+            statistics.steps,
+            statistics.smallest_step,
+            statistics.largest_step,
+            statistics.rejections + statistics.error_rejections,
+            statistics.reductions
+        )?;
+        let wall = simulation.stepping_time();
+        write!(
+            f,
+            "speed                    {:.1} × real time, {:.2} ns per link and step, {:.3} s for {time:.4} s",
+            time / wall,
+            wall * 1e9 / steps / simulation.system().links() as f64,
+            wall
+        )
+    }
+}

@@ -1,0 +1,165 @@
+//! What a result says about itself: the attributes of the group.
+//!
+//! All are texts, numbers, or lists of these, so that they survive a conversion to netCDF, which
+//! knows neither truth values nor tables.
+
+use chaindrive_integrate::Method;
+use serde_json::{Map, Value};
+
+use super::FORMAT;
+use crate::{Run, Scene, Simulation};
+
+/// Where a run came from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Provenance {
+    /// What the scene shows, in a line.
+    pub title: String,
+    /// The text that reproduces the scene, changes included.
+    pub scene: String,
+    /// File or preset it was read from.
+    pub scene_name: String,
+    /// Settings of the run.
+    pub run: Run,
+}
+
+impl Provenance {
+    /// The provenance of a scene that is run.
+    pub fn of(scene: &Scene, run: &Run) -> Self {
+        Self {
+            title: scene.title().to_owned(),
+            scene: scene.text().to_owned(),
+            scene_name: scene.name().to_owned(),
+            run: run.clone(),
+        }
+    }
+}
+
+/// How a run ended.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Ending {
+    /// It has not.
+    #[default]
+    None,
+    /// The end was reached.
+    Complete,
+    /// Somebody stopped it.
+    Interrupted,
+    /// The simulation could not go on; with the reason.
+    Failed(String),
+}
+
+impl Ending {
+    fn status(&self) -> &'static str {
+        match self {
+            Self::None => "running",
+            Self::Complete => "complete",
+            Self::Interrupted => "interrupted",
+            Self::Failed(_) => "failed",
+        }
+    }
+}
+
+/// The attributes at a commit.
+pub(super) fn attributes(
+    provenance: &Provenance,
+    simulation: &Simulation,
+    samples: u64,
+    ending: &Ending,
+) -> Map<String, Value> {
+    let mut story = Story(Map::new());
+    story.text("title", &provenance.title);
+    story.text("format", FORMAT);
+    story.text("chaindrive_version", env!("CARGO_PKG_VERSION"));
+    story.text("status", ending.status());
+    story.count("complete", u64::from(*ending == Ending::Complete));
+    if let Ending::Failed(reason) = ending {
+        story.text("failure", reason);
+    }
+    story.text("scene_name", &provenance.scene_name);
+    story.text("scene", &provenance.scene);
+
+    story.number("until", provenance.run.until);
+    story.number("every", provenance.run.every);
+    story.number("time_reached", simulation.time());
+    story.count("samples", samples);
+    method(&mut story, simulation.method());
+    if let Some(depth) = provenance.run.onset_depth {
+        story.number("onset_depth", depth);
+    }
+    let statistics = simulation.statistics();
+    story.count("steps", statistics.steps);
+    story.count("rejections", statistics.rejections);
+    story.count("error_rejections", statistics.error_rejections);
+    story.count("reductions", statistics.reductions);
+    story.count("evaluations", statistics.evaluations);
+    story.count("jumps", statistics.jumps);
+    story.number("smallest_step", statistics.smallest_step);
+    story.number("largest_step", statistics.largest_step);
+    story.number("stepping_time", simulation.stepping_time());
+    story.number("energy_residual_last", simulation.energy_residual());
+    assembly(&mut story, simulation);
+    story.0
+}
+
+fn method(story: &mut Story, method: Method) {
+    story.text("method", method.name());
+    story.count("method_order", u64::from(method.order()));
+    match method {
+        Method::Verlet { step } | Method::Rk4 { step } => story.number("step", step),
+        Method::DormandPrince {
+            relative,
+            absolute,
+            absolute_rate,
+            max_step,
+        } => {
+            story.number("relative_tolerance", relative);
+            story.number("absolute_tolerance", absolute);
+            story.number("absolute_rate_tolerance", absolute_rate);
+            story.number("max_step", max_step);
+        }
+    }
+}
+
+fn assembly(story: &mut Story, simulation: &Simulation) {
+    let (system, assembled) = (simulation.system(), simulation.assembled());
+    story.count("links", system.links() as u64);
+    story.count("rollers", system.rollers() as u64);
+    story.count("degrees_of_freedom", system.free_dofs() as u64);
+    if let Some(fitting) = &assembled.fitting {
+        story.number("closing_strain", fitting.strain);
+        story.number("closing_travel", fitting.travel);
+        story.list("pitches_seated", fitting.seated.iter().copied());
+        story.list("pitches_in_spans", fitting.spans.iter().copied());
+    }
+    if !assembled.statics.is_empty() {
+        let statics = &assembled.statics;
+        story.list("static_stages", statics.iter().map(|s| s.stage));
+        story.list("static_iterations", statics.iter().map(|s| s.iterations));
+        story.list("static_residuals", statics.iter().map(|s| s.residual));
+    }
+}
+
+/// Attributes in the order of their telling.
+struct Story(Map<String, Value>);
+
+impl Story {
+    fn text(&mut self, name: &str, text: &str) {
+        self.0.insert(name.into(), text.into());
+    }
+
+    fn count(&mut self, name: &str, count: u64) {
+        self.0.insert(name.into(), count.into());
+    }
+
+    /// A number; JSON has none for infinity, such as the smallest of no steps.
+    fn number(&mut self, name: &str, number: f64) {
+        if number.is_finite() {
+            self.0.insert(name.into(), number.into());
+        }
+    }
+
+    fn list<T: Into<Value>>(&mut self, name: &str, items: impl IntoIterator<Item = T>) {
+        let items = items.into_iter().map(Into::into).collect();
+        self.0.insert(name.into(), Value::Array(items));
+    }
+}

@@ -1,0 +1,165 @@
+//! One array of a result: filled sample by sample, written chunk by chunk.
+
+use chaindrive_mechanics::System;
+use serde_json::{Map, Value};
+use zarrs::array::CodecOptions;
+use zarrs::array::codec::ZstdCodec;
+use zarrs::array::{Array, ArrayBuilder, ArrayMetadataOptions, data_type};
+use zarrs::storage::ReadableWritableListableStorageTraits;
+
+use super::error::Fault;
+use super::target::Storage;
+use crate::record::{Axis, labels};
+
+/// An array of the store.
+pub(super) type StoredArray = Array<dyn ReadableWritableListableStorageTraits>;
+
+/// Numbers in a chunk, 1 MiB of them, and samples at most.
+const NUMBERS_PER_CHUNK: usize = 1 << 17;
+const SAMPLES_PER_CHUNK: usize = 1 << 14;
+
+/// Level of the compression: what is zero or constant shrinks at any level, the rest at none.
+const ZSTD_LEVEL: i32 = 3;
+
+/// An array that grows with time.
+pub(super) struct Track {
+    pub(super) name: &'static str,
+    array: StoredArray,
+    /// Entries a sample.
+    width: usize,
+    /// Samples a chunk.
+    samples: usize,
+    /// Index of the chunk in work, and its samples so far.
+    chunk: u64,
+    pending: Vec<f64>,
+    /// Numbers of the chunk in work that are in the store.
+    stored: usize,
+}
+
+impl Track {
+    pub(super) fn new(
+        storage: &Storage,
+        name: &'static str,
+        axis: Axis,
+        system: &System,
+        attributes: Map<String, Value>,
+    ) -> Result<Self, Fault> {
+        let labels = labels(axis, system);
+        let width = labels.as_ref().map_or(1, Vec::len);
+        let samples = (NUMBERS_PER_CHUNK / width.max(1)).clamp(1, SAMPLES_PER_CHUNK);
+        let mut shape = vec![0];
+        let mut chunk = vec![samples as u64];
+        if labels.is_some() {
+            shape.push(width as u64);
+            chunk.push(width.max(1) as u64);
+        }
+        let dimensions = ["time"].into_iter().chain(axis.name());
+        let array = ArrayBuilder::new(shape, chunk, data_type::float64(), f64::NAN)
+            .dimension_names(Some(dimensions))
+            .attributes(attributes)
+            .bytes_to_bytes_codecs(vec![std::sync::Arc::new(ZstdCodec::new(ZSTD_LEVEL, true))])
+            .build(storage.clone(), &format!("/{name}"))?;
+        Ok(Self {
+            name,
+            array,
+            width,
+            samples,
+            chunk: 0,
+            pending: Vec::new(),
+            stored: 0,
+        })
+    }
+
+    /// Takes one sample, written by `read`; stores the chunk when it is full.
+    pub(super) fn push(&mut self, read: impl FnOnce(&mut Vec<f64>)) -> Result<(), Fault> {
+        read(&mut self.pending);
+        if self.width > 0 && self.pending.len() >= self.samples * self.width {
+            self.store()?;
+            self.pending.clear();
+            self.stored = 0;
+            self.chunk += 1;
+        }
+        Ok(())
+    }
+
+    /// Stores the chunk in work, filled up with NaN.
+    pub(super) fn store(&mut self) -> Result<(), Fault> {
+        let held = self.pending.len();
+        if held == self.stored {
+            return Ok(());
+        }
+        let mut place = vec![self.chunk];
+        if self.array.dimensionality() > 1 {
+            place.push(0);
+        }
+        self.pending.resize(self.samples * self.width, f64::NAN);
+        // A chunk of nothing but NaN is stored as well: the readers need not know why it is missing.
+        let options = CodecOptions::default().with_store_empty_chunks(true);
+        let stored = self
+            .array
+            .store_chunk_opt(&place, self.pending.as_slice(), &options);
+        self.pending.truncate(held);
+        stored?;
+        self.stored = held;
+        Ok(())
+    }
+
+    /// Makes the array as long as there are samples; takes effect with its metadata.
+    pub(super) fn set_length(&mut self, samples: u64) -> Result<(), Fault> {
+        let mut shape = self.array.shape().to_vec();
+        shape[0] = samples;
+        self.array.set_shape(shape)?;
+        Ok(())
+    }
+
+    pub(super) fn metadata(&self) -> Result<Value, Fault> {
+        metadata(&self.array)
+    }
+
+    pub(super) fn store_metadata(&self) -> Result<(), Fault> {
+        store_metadata(&self.array)
+    }
+}
+
+/// Writes the labels of an axis, which do not change, and returns the array's metadata.
+pub(super) fn store_labels(
+    storage: &Storage,
+    name: &'static str,
+    axis: Axis,
+    labels: &[String],
+) -> Result<Value, Fault> {
+    let count = labels.len() as u64;
+    let numbers = matches!(axis, Axis::Roller | Axis::Link);
+    let (shape, chunk) = (vec![count], vec![count.max(1)]);
+    let mut builder = if numbers {
+        ArrayBuilder::new(shape, chunk, data_type::int64(), 0_i64)
+    } else {
+        ArrayBuilder::new(shape, chunk, data_type::string(), "")
+    };
+    let array = builder
+        .dimension_names(Some([name]))
+        .build(storage.clone(), &format!("/{name}"))?;
+    if count > 0 {
+        let options = CodecOptions::default().with_store_empty_chunks(true);
+        if numbers {
+            let numbers: Vec<i64> = (0..).take(labels.len()).collect();
+            array.store_chunk_opt(&[0], numbers, &options)?;
+        } else {
+            array.store_chunk_opt(&[0], labels.to_vec(), &options)?;
+        }
+    }
+    store_metadata(&array)?;
+    metadata(&array)
+}
+
+fn plain() -> ArrayMetadataOptions {
+    ArrayMetadataOptions::default().with_include_zarrs_metadata(false)
+}
+
+fn metadata(array: &StoredArray) -> Result<Value, Fault> {
+    Ok(serde_json::to_value(array.metadata_opt(&plain()))?)
+}
+
+fn store_metadata(array: &StoredArray) -> Result<(), Fault> {
+    Ok(array.store_metadata_opt(&plain())?)
+}

@@ -1,0 +1,145 @@
+//! What to run: how long, how often to sample, by which method.
+
+use chaindrive_integrate::{Method, SecondOrderSystem};
+use chaindrive_mechanics::System;
+
+use crate::SimulationError;
+use crate::scene::RunDefaults;
+
+/// Settings of one run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// End \[s\], positive.
+    pub until: f64,
+    /// Interval between samples \[s\], positive.
+    pub every: f64,
+    /// Method of time stepping.
+    pub stepping: Stepping,
+    /// Step \[s\] of the fixed-step methods; chosen from the stiffest mode when absent.
+    pub step: Option<f64>,
+    /// Relative tolerance of the adaptive method.
+    pub tolerance: f64,
+    /// Deepest penetration at which a contact may begin \[m\]; deeper steps are rejected and
+    /// shortened. Absent: contacts begin wherever the step lands.
+    pub onset_depth: Option<f64>,
+}
+
+impl Default for Run {
+    fn default() -> Self {
+        Self {
+            until: 1.0,
+            every: 1e-3,
+            stepping: Stepping::Verlet,
+            step: None,
+            tolerance: 1e-6,
+            onset_depth: None,
+        }
+    }
+}
+
+/// Methods of time stepping.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Stepping {
+    /// Velocity Verlet: one evaluation a step, no drift; the workhorse.
+    #[default]
+    Verlet,
+    /// The classical Runge–Kutta method: for reference runs on smooth stretches.
+    Rk4,
+    /// Dormand and Prince's embedded pair with error control.
+    DormandPrince,
+}
+
+impl Stepping {
+    /// All methods.
+    pub const ALL: [Self; 3] = [Self::Verlet, Self::Rk4, Self::DormandPrince];
+
+    /// Name in scene files, on the command line and in results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Verlet => "verlet",
+            Self::Rk4 => "rk4",
+            Self::DormandPrince => "dormand-prince",
+        }
+    }
+
+    /// The method of a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|method| method.name() == name)
+    }
+}
+
+/// Default steps in units of 1/ω of the stiffest mode. Verlet is stable to 2; contacts stiffen
+/// as they are pressed, and accuracy asks for a quarter of that anyway.
+const VERLET_STEP: f64 = 0.5;
+const RK4_STEP: f64 = 0.5;
+
+impl Run {
+    /// The run that a scene suggests; what it leaves open is as in [`Run::default`].
+    pub fn suggested(by: &RunDefaults) -> Self {
+        let default = Self::default();
+        Self {
+            until: by.until.unwrap_or(default.until),
+            every: by.every.unwrap_or(default.every),
+            stepping: by.method.and_then(Stepping::from_name).unwrap_or_default(),
+            step: by.step,
+            tolerance: by.tolerance.unwrap_or(default.tolerance),
+            onset_depth: by.onset_depth,
+        }
+    }
+
+    /// Names the first setting out of range.
+    ///
+    /// # Errors
+    /// [`SimulationError::Setting`].
+    pub fn check(&self) -> Result<(), SimulationError> {
+        let positive = |name: &'static str, value: f64| {
+            if value > 0.0 && value.is_finite() {
+                Ok(())
+            } else {
+                Err(SimulationError::Setting {
+                    name,
+                    value,
+                    allowed: "positive",
+                })
+            }
+        };
+        positive("until", self.until)?;
+        positive("every", self.every)?;
+        positive("tolerance", self.tolerance)?;
+        self.step.map_or(Ok(()), |step| positive("step", step))?;
+        self.onset_depth
+            .map_or(Ok(()), |depth| positive("onset_depth", depth))?;
+        if self.until / self.every > 1e9 {
+            return Err(SimulationError::Setting {
+                name: "every",
+                value: self.every,
+                allowed: "at least a billionth of `until`",
+            });
+        }
+        Ok(())
+    }
+
+    /// The method for a system, with a default step where none is given.
+    pub fn method(&self, system: &System) -> Method {
+        let scale = system.time_scale();
+        let step = |factor: f64| {
+            self.step
+                .unwrap_or_else(|| (factor * scale).min(self.every))
+        };
+        match self.stepping {
+            Stepping::Verlet => Method::Verlet {
+                step: step(VERLET_STEP),
+            },
+            Stepping::Rk4 => Method::Rk4 {
+                step: step(RK4_STEP),
+            },
+            Stepping::DormandPrince => Method::DormandPrince {
+                relative: self.tolerance,
+                // Micrometres and millimetres per second matter at a tolerance of 1e-6.
+                absolute: self.tolerance,
+                absolute_rate: self.tolerance * 1e3,
+                max_step: self.step.unwrap_or(self.every),
+            },
+        }
+    }
+}

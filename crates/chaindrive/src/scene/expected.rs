@@ -1,0 +1,111 @@
+//! What the schema expects of a value: the part of JSON Schema that the format's types produce.
+
+use serde_json::{Map, Value as Json};
+
+use super::quantity::Dimension;
+
+/// What a schema asks for, after references and optional wrappers.
+pub(crate) enum Expected<'s> {
+    Table(&'s Json),
+    List(&'s Json),
+    Kinds(&'s [Json]),
+    Words(Vec<&'s str>),
+    Quantity(&'s Json, &'static Dimension),
+    Integer,
+    Truth,
+    Text,
+    Anything,
+}
+
+impl<'s> Expected<'s> {
+    /// What a schema, freed of references, asks for.
+    pub(crate) fn of(schema: &'s Json) -> Self {
+        if let Some(name) = schema.get("x-dimension").and_then(Json::as_str)
+            && let Some(dimension) = Dimension::named(name)
+        {
+            return Expected::Quantity(schema, dimension);
+        }
+        if let Some(members) = schema.get("oneOf").and_then(Json::as_array) {
+            if members.iter().all(|member| kind_of(member).is_some()) {
+                return Expected::Kinds(members);
+            }
+            let words = members.iter().flat_map(words_of);
+            return Expected::Words(words.collect());
+        }
+        if schema.get("enum").is_some() {
+            return Expected::Words(words_of(schema).collect());
+        }
+        let kind = match schema.get("type") {
+            Some(Json::Array(kinds)) => kinds
+                .iter()
+                .find_map(|kind| kind.as_str().filter(|k| *k != "null")),
+            kind => kind.and_then(Json::as_str),
+        };
+        match kind {
+            Some("object") => Expected::Table(schema),
+            Some("array") => Expected::List(schema),
+            Some("integer") => Expected::Integer,
+            Some("boolean") => Expected::Truth,
+            Some("string") => Expected::Text,
+            _ => Expected::Anything,
+        }
+    }
+}
+
+/// A schema with its named definitions.
+pub(crate) struct Reading<'s> {
+    definitions: Option<&'s Map<String, Json>>,
+}
+
+impl<'s> Reading<'s> {
+    pub(crate) fn new(schema: &'s Json) -> Self {
+        Self {
+            definitions: schema.get("$defs").and_then(Json::as_object),
+        }
+    }
+
+    /// Follows references, and drops the `null` that stands for an absent key.
+    pub(crate) fn core(&self, mut schema: &'s Json) -> &'s Json {
+        // References do not nest deeper than this.
+        for _ in 0..8 {
+            let reference = schema.get("$ref").and_then(Json::as_str);
+            let target = reference
+                .and_then(|text| text.rsplit('/').next())
+                .and_then(|name| self.definitions?.get(name));
+            let choices = schema.get("anyOf").and_then(Json::as_array);
+            let choice = choices.and_then(|list| list.iter().find(|s| s["type"] != "null"));
+            match target.or(choice) {
+                Some(next) => schema = next,
+                None => break,
+            }
+        }
+        schema
+    }
+}
+
+/// The `kind` of a member of a family.
+pub(crate) fn kind_of(member: &Json) -> Option<&str> {
+    member
+        .get("properties")?
+        .get("kind")?
+        .get("const")?
+        .as_str()
+}
+
+fn words_of(schema: &Json) -> impl Iterator<Item = &str> {
+    let listed = schema
+        .get("enum")
+        .and_then(Json::as_array)
+        .into_iter()
+        .flatten();
+    listed.chain(schema.get("const")).filter_map(Json::as_str)
+}
+
+/// First line of a description, to stand after "give the".
+pub(crate) fn description(schema: &Json) -> Option<String> {
+    let text = schema.get("description")?.as_str()?;
+    let sentence = text.split(['.', ';', ':', ',']).next()?.replace('\n', " ");
+    let mut letters = sentence.chars();
+    let first = letters.next()?.to_lowercase();
+    Some(first.chain(letters).collect())
+}

@@ -1,0 +1,165 @@
+//! The loop: step, sample, stop.
+
+use std::time::Instant;
+
+use chaindrive_integrate::{Method, Moment, State, Statistics, Stepper};
+use chaindrive_mechanics::{Assembled, Drive, Energy, Observation, Record, System};
+
+use crate::SimulationError;
+use crate::run::Run;
+
+/// A run in progress: ask it for one sample after the other.
+///
+/// Steps are chosen by the method alone; samples are interpolated between them, so recording
+/// more or less does not change the motion.
+///
+/// # Example
+///
+/// ```
+/// use chaindrive::{Run, Scene, Simulation};
+///
+/// let drive = Scene::preset("spinning_ring")?.drive()?;
+/// let run = Run { until: 0.01, every: 1e-3, ..Run::default() };
+/// let mut simulation = Simulation::start(&drive, &run)?;
+/// while let Some(sample) = simulation.next_sample()? {
+///     assert!(sample.link_tension.iter().all(|tension| *tension > 0.0));
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Simulation {
+    system: System,
+    state: State,
+    stepper: Stepper<System>,
+    assembled: Assembled,
+    until: f64,
+    every: f64,
+    next: u64,
+    observation: Observation,
+    record: Record,
+    buffers: [Vec<f64>; 3],
+    start_energy: Option<Energy>,
+    stepping_time: f64,
+}
+
+impl Simulation {
+    /// Assembles the drive and starts the clock at t = 0.
+    ///
+    /// # Errors
+    /// [`SimulationError`] when the drive does not assemble, a setting is out of range, or the
+    /// step asked for is unstable.
+    pub fn start(drive: &Drive, run: &Run) -> Result<Self, SimulationError> {
+        run.check()?;
+        Self::from_assembled(drive.assemble()?, run)
+    }
+
+    /// Starts from a drive already assembled.
+    ///
+    /// # Errors
+    /// As [`Simulation::start`].
+    pub fn from_assembled(assembled: Assembled, run: &Run) -> Result<Self, SimulationError> {
+        run.check()?;
+        let mut system = assembled.system.clone();
+        let mut state = State::new(0.0, assembled.q.clone(), assembled.v.clone());
+        let method = run.method(&system);
+        system.set_onset_depth(run.onset_depth);
+        let stepper = method.start(&mut system, &mut state)?;
+        let dofs = state.q.len();
+        let record = chaindrive_integrate::SecondOrderSystem::new_record(&system);
+        Ok(Self {
+            buffers: [
+                vec![0.0; dofs],
+                vec![0.0; dofs],
+                vec![0.0; state.quadratures.len()],
+            ],
+            system,
+            state,
+            stepper,
+            assembled,
+            until: run.until,
+            every: run.every,
+            next: 0,
+            observation: Observation::default(),
+            record,
+            start_energy: None,
+            stepping_time: 0.0,
+        })
+    }
+
+    /// Advances to the next sample; `None` once the end is reached.
+    ///
+    /// # Errors
+    /// [`SimulationError::Integration`] when the motion ceases to be finite. The samples taken
+    /// so far stay valid.
+    pub fn next_sample(&mut self) -> Result<Option<&Observation>, SimulationError> {
+        // Counted, not summed: the thousandth sample is at 1000 Δt to the last bit.
+        let time = self.next as f64 * self.every;
+        if time > self.until * (1.0 + 1e-12) {
+            return Ok(None);
+        }
+        let begin = Instant::now();
+        while self.state.t < time {
+            self.stepper.advance(&mut self.system, &mut self.state)?;
+        }
+        self.stepping_time += begin.elapsed().as_secs_f64();
+        self.sample(time);
+        self.next += 1;
+        Ok(Some(&self.observation))
+    }
+
+    fn sample(&mut self, time: f64) {
+        let [q, v, flows] = &mut self.buffers;
+        self.state.at(time, q, v);
+        self.state.quadratures_at(time, flows);
+        let at = Moment { t: time, q, v };
+        self.system
+            .observe(at, flows, &mut self.record, &mut self.observation);
+        self.start_energy.get_or_insert(self.observation.energy);
+    }
+
+    /// The last sample.
+    pub fn observation(&self) -> &Observation {
+        &self.observation
+    }
+
+    /// Energy unaccounted for at the last sample \[J\].
+    pub fn energy_residual(&self) -> f64 {
+        let start = self.start_energy.unwrap_or(self.observation.energy);
+        self.observation.energy.residual(&start)
+    }
+
+    /// Share of the run that is done, 0 to 1.
+    pub fn progress(&self) -> f64 {
+        (self.state.t / self.until).clamp(0.0, 1.0)
+    }
+
+    /// Time reached \[s\].
+    pub fn time(&self) -> f64 {
+        self.state.t
+    }
+
+    /// The system in its present state.
+    pub fn system(&self) -> &System {
+        &self.system
+    }
+
+    /// How the drive was assembled.
+    pub fn assembled(&self) -> &Assembled {
+        &self.assembled
+    }
+
+    /// Counts of the time stepping.
+    pub fn statistics(&self) -> &Statistics {
+        self.stepper.statistics()
+    }
+
+    /// The method with its step or tolerances.
+    pub fn method(&self) -> Method {
+        self.stepper.method()
+    }
+
+    /// Wall time spent in stepping, sampling not counted \[s\].
+    pub fn stepping_time(&self) -> f64 {
+        self.stepping_time
+    }
+}

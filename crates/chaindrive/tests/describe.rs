@@ -1,0 +1,76 @@
+//! Descriptions agree with closed forms.
+
+use chaindrive::{Description, Run, Scene};
+
+fn describe(preset: &str) -> Description {
+    let scene = Scene::preset(preset).unwrap();
+    let run = Run::suggested(&scene.run_defaults());
+    Description::of(&scene.drive().unwrap(), &run).unwrap()
+}
+
+#[track_caller]
+fn close(found: f64, expected: f64, relative: f64) {
+    let error = (found - expected).abs();
+    assert!(
+        error <= relative * expected.abs(),
+        "{found} instead of {expected}"
+    );
+}
+
+#[test]
+fn the_marine_engine() {
+    let it = describe("marine_engine");
+    assert_eq!(it.chain.links, 122);
+    close(it.chain.mass_per_length, 3.01 / 0.0889, 1e-12);
+    close(
+        it.chain.longitudinal_wave_speed,
+        0.0889 * (815e6_f64 / 3.01).sqrt(),
+        1e-12,
+    );
+
+    // A loop turns once: the wraps of sprockets that are all inside add up to a full turn.
+    let wraps: f64 = it.stops.iter().filter_map(|stop| stop.wrap).sum();
+    close(wraps, std::f64::consts::TAU, 1e-9);
+    let pitches = |seated: u32, spans: usize| seated as usize + spans;
+    let seated = it.stops.iter().map(|stop| stop.pitches).sum();
+    assert_eq!(
+        pitches(seated, it.spans.iter().map(|span| span.pitches).sum()),
+        122
+    );
+    for span in &it.spans {
+        // f = √(T/μ) / 2L
+        let speed = (span.tension / it.chain.mass_per_length).sqrt();
+        close(span.frequency.unwrap(), speed / (2.0 * span.length), 1e-12);
+    }
+
+    // The load of 5 kN m on 48 teeth hangs between the two strands of the camshaft.
+    let radius = 0.5 * 0.0889 / (std::f64::consts::PI / 48.0).sin();
+    let across = it.spans[0].tension - it.spans[1].tension;
+    let weight = 9.81 * it.chain.mass_per_length * (it.spans[0].length + it.spans[1].length);
+    assert!(
+        (across - 5e3 / radius).abs() < weight,
+        "{across} N, {weight} N of it may be weight"
+    );
+
+    let (name, mesh) = &it.time_scales.mesh_frequencies[0];
+    assert_eq!(name, "crank");
+    close(*mesh, 48.0 * 127.0 / 60.0, 1e-12);
+    assert_eq!(it.polygon.len(), 4);
+    for pair in &it.polygon {
+        assert!(pair.least_ratio < pair.mean_ratio && pair.mean_ratio < pair.greatest_ratio);
+    }
+    assert!(it.cost.steps > 1e3 && it.cost.run_time > 0.0);
+}
+
+#[test]
+fn a_drive_without_a_route() {
+    let it = describe("spinning_ring");
+    assert!(it.stops.is_empty() && it.spans.is_empty() && it.polygon.is_empty());
+    assert_eq!(it.model.degrees_of_freedom, 40);
+    assert!(it.model.absent.contains(&"sprockets"));
+    let text = it.to_string();
+    assert!(
+        text.contains("absent                 sprockets, guides"),
+        "{text}"
+    );
+}

@@ -1,0 +1,257 @@
+//! Results on disk hold what a recording in memory holds, bit for bit.
+
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use chaindrive::record::{Ending, Existing, Provenance, WriteError, ZarrWriter};
+use chaindrive::{Channel, Recording, Run, Scene, Simulation};
+use object_store::local::LocalFileSystem;
+use zarrs::array::{Array, ArrayMetadata};
+use zarrs::group::Group;
+use zarrs::storage::ReadableStorageTraits;
+use zarrs::storage::storage_adapter::async_to_sync::{
+    AsyncToSyncBlockOn, AsyncToSyncStorageAdapter,
+};
+use zarrs_object_store::AsyncObjectStore;
+
+struct OnThisThread;
+
+impl AsyncToSyncBlockOn for OnThisThread {
+    fn block_on<F: Future>(&self, future: F) -> F::Output {
+        pollster::block_on(future)
+    }
+}
+
+type Reader = Arc<dyn ReadableStorageTraits>;
+
+fn reader(path: &Path) -> Reader {
+    let files = LocalFileSystem::new_with_prefix(path).unwrap();
+    let store = Arc::new(AsyncObjectStore::new(files));
+    Arc::new(AsyncToSyncStorageAdapter::new(store, OnThisThread))
+}
+
+fn numbers(store: &Reader, name: &str) -> (Vec<u64>, Vec<f64>) {
+    let array = Array::open(store.clone(), &format!("/{name}")).unwrap();
+    let values = array.retrieve_array_subset(&array.subset_all()).unwrap();
+    (array.shape().to_vec(), values)
+}
+
+fn attribute(store: &Reader, name: &str) -> serde_json::Value {
+    let group = Group::open(store.clone(), "/").unwrap();
+    group.attributes().get(name).cloned().unwrap_or_default()
+}
+
+fn ring(until: f64) -> (Scene, Run, Simulation) {
+    let scene = Scene::preset("spinning_ring").unwrap();
+    let run = Run {
+        until,
+        every: 1e-5,
+        ..Run::default()
+    };
+    let simulation = Simulation::start(&scene.drive().unwrap(), &run).unwrap();
+    (scene, run, simulation)
+}
+
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|value| value.to_bits()).collect()
+}
+
+/// Both scalars of 16 384 samples a chunk and arrays of 6 553 go over the end of a chunk.
+#[test]
+fn what_is_stored_is_what_was_sampled() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("ring.zarr");
+    let channels = Channel::from_names(&["all"]).unwrap();
+    let (scene, run, mut simulation) = ring(0.17);
+    let mut recording = Recording::new(&channels, simulation.system());
+    let provenance = Provenance::of(&scene, &run);
+    let mut writer =
+        ZarrWriter::create(&path, &simulation, &channels, provenance, Existing::Keep).unwrap();
+    while let Some(sample) = simulation.next_sample().unwrap() {
+        recording.push(sample);
+        writer.push(&simulation).unwrap();
+        // Partial chunks that are written again and again.
+        if recording.len().is_multiple_of(5000) {
+            writer.flush(&simulation).unwrap();
+        }
+    }
+    writer.finish(&simulation, &Ending::Complete).unwrap();
+
+    let store = reader(&path);
+    let samples = recording.len() as u64;
+    assert_eq!(samples, 17_001);
+    assert_eq!(numbers(&store, "time"), (vec![samples], recording.time));
+    for column in &recording.columns {
+        let (shape, values) = numbers(&store, column.channel.name());
+        assert_eq!(shape[0], samples);
+        assert_eq!(
+            bits(&values),
+            bits(&column.values),
+            "{}",
+            column.channel.name()
+        );
+    }
+    assert_eq!(attribute(&store, "complete"), 1);
+    assert_eq!(attribute(&store, "samples"), samples);
+    assert_eq!(attribute(&store, "scene"), scene.text());
+    assert_eq!(attribute(&store, "steps"), simulation.statistics().steps);
+}
+
+/// A reader never sees arrays of different lengths, whenever it looks.
+#[test]
+fn the_group_document_holds_all_lengths() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("ring.zarr");
+    let (scene, run, mut simulation) = ring(1e-3);
+    let channels = [Channel::LinkTension, Channel::EnergyKinetic];
+    let provenance = Provenance::of(&scene, &run);
+    let mut writer =
+        ZarrWriter::create(&path, &simulation, &channels, provenance, Existing::Keep).unwrap();
+    let lengths = || -> Vec<u64> {
+        let text = fs::read(path.join("zarr.json")).unwrap();
+        let group: serde_json::Value = serde_json::from_slice(&text).unwrap();
+        let arrays = &group["consolidated_metadata"]["metadata"];
+        let length = |name: &str| arrays[name]["shape"][0].as_u64().unwrap();
+        ["time", "link_tension", "energy_kinetic"]
+            .map(length)
+            .to_vec()
+    };
+    assert_eq!(lengths(), [0, 0, 0]);
+    for _ in 0..10 {
+        simulation.next_sample().unwrap();
+        writer.push(&simulation).unwrap();
+    }
+    assert_eq!(
+        lengths(),
+        [0, 0, 0],
+        "nothing is seen before it is committed"
+    );
+    writer.flush(&simulation).unwrap();
+    assert_eq!(lengths(), [10, 10, 10]);
+
+    // A run that is killed here leaves ten samples and says that it was running.
+    drop(writer);
+    let store = reader(&path);
+    assert_eq!(attribute(&store, "status"), "running");
+    assert_eq!(attribute(&store, "complete"), 0);
+    let (_, energy) = numbers(&store, "energy_kinetic");
+    assert!(energy.iter().all(|value| value.is_finite()));
+}
+
+/// Lengths and values as one document tells them, while another thread commits without a pause.
+#[test]
+fn a_reader_at_any_time_sees_whole_samples() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("ring.zarr");
+    let (scene, run, mut simulation) = ring(1.0);
+    let channels = [Channel::LinkTension, Channel::EnergyKinetic];
+    let provenance = Provenance::of(&scene, &run);
+    let mut writer =
+        ZarrWriter::create(&path, &simulation, &channels, provenance, Existing::Keep).unwrap();
+    let done = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        let looks = scope.spawn(|| {
+            let (mut looks, mut longest) = (0, 0);
+            while !done.load(Ordering::Relaxed) {
+                longest = look(&path).max(longest);
+                looks += 1;
+            }
+            (looks, longest)
+        });
+        for _ in 0..200 {
+            for _ in 0..50 {
+                simulation.next_sample().unwrap();
+                writer.push(&simulation).unwrap();
+            }
+            writer.flush(&simulation).unwrap();
+        }
+        done.store(true, Ordering::Relaxed);
+        let (looks, longest) = looks.join().unwrap();
+        assert!(
+            looks > 5 && longest > 0,
+            "{looks} looks, at most {longest} samples"
+        );
+    });
+    assert_eq!(look(&path), 10_000);
+}
+
+/// Opens the store as xarray does, by the group document alone; returns the number of samples.
+fn look(path: &Path) -> u64 {
+    let text = fs::read(path.join("zarr.json")).unwrap();
+    let group: serde_json::Value = serde_json::from_slice(&text).unwrap();
+    let store = reader(path);
+    let samples = group["attributes"]["samples"].as_u64().unwrap();
+    for name in ["time", "link_tension", "energy_kinetic"] {
+        let metadata = &group["consolidated_metadata"]["metadata"][name];
+        assert_eq!(metadata["shape"][0], samples, "{name}");
+        let metadata: ArrayMetadata = serde_json::from_value(metadata.clone()).unwrap();
+        let at = format!("/{name}");
+        let array = Array::new_with_metadata(store.clone(), &at, metadata).unwrap();
+        // Chunk by chunk, each file opened once: for a part of a chunk zarrs asks for the size first.
+        let mut left = array.shape().iter().product::<u64>() as usize;
+        for chunk in 0..array.chunk_grid_shape()[0] {
+            let place = [chunk, 0];
+            let chunk = array
+                .retrieve_chunk::<Vec<f64>>(&place[..array.dimensionality()])
+                .unwrap();
+            let held = left.min(chunk.len());
+            assert!(
+                chunk[..held].iter().all(|v| v.is_finite()),
+                "{name} of {samples} samples"
+            );
+            left -= held;
+        }
+        assert_eq!(left, 0);
+    }
+    samples
+}
+
+#[test]
+fn only_results_are_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("ring.zarr");
+    let (scene, run, simulation) = ring(1e-3);
+    let create = |existing| {
+        let channels = [Channel::LinkTension];
+        ZarrWriter::create(
+            &path,
+            &simulation,
+            &channels,
+            Provenance::of(&scene, &run),
+            existing,
+        )
+    };
+    create(Existing::Keep).unwrap();
+    assert!(matches!(
+        create(Existing::Keep),
+        Err(WriteError::Exists { .. })
+    ));
+    // What a killed run may leave behind does not stand in the way.
+    fs::write(path.join("zarr.json#1"), "{").unwrap();
+    create(Existing::Replace).unwrap();
+    assert!(!path.join("zarr.json#1").exists());
+
+    fs::write(path.join("thesis.tex"), "three years").unwrap();
+    let refused = create(Existing::Replace).unwrap_err();
+    assert!(
+        refused
+            .to_string()
+            .contains("`thesis.tex` in this folder is not of chaindrive")
+    );
+    assert!(path.join("time/zarr.json").exists(), "nothing was touched");
+
+    fs::remove_file(path.join("zarr.json")).unwrap();
+    assert!(matches!(
+        create(Existing::Replace),
+        Err(WriteError::Foreign { .. })
+    ));
+    fs::remove_dir_all(&path).unwrap();
+    fs::write(&path, "a file").unwrap();
+    assert!(matches!(
+        create(Existing::Replace),
+        Err(WriteError::Foreign { .. })
+    ));
+    assert_eq!(fs::read_to_string(&path).unwrap(), "a file");
+}

@@ -1,0 +1,7 @@
+//! The verbs.
+
+pub(crate) mod check;
+pub(crate) mod describe;
+pub(crate) mod lists;
+pub(crate) mod output;
+pub(crate) mod run;

@@ -1,0 +1,52 @@
+//! `chaindrive check`: are these scenes sound?
+
+use clap::Args;
+
+use crate::failure::Failure;
+use crate::request::load;
+use crate::stdout::print;
+
+/// Reads scenes, assembles their drives, and reports everything that is wrong.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// Scene files, `-` for stdin, or names of embedded scenes
+    #[arg(value_name = "SCENE|PRESET", required = true)]
+    scenes: Vec<String>,
+}
+
+pub(crate) fn check(arguments: &Arguments) -> Result<(), Failure> {
+    let mut wrong = 0;
+    for name in &arguments.scenes {
+        match sound(name) {
+            Ok(what) => print(format_args!("{name}: {what}"))?,
+            Err(failure) => {
+                eprintln!("{failure}");
+                wrong += 1;
+            }
+        }
+    }
+    let scenes = arguments.scenes.len();
+    if wrong == 0 {
+        Ok(())
+    } else {
+        Err(Failure::Scenes { wrong, scenes })
+    }
+}
+
+/// What a sound scene holds.
+fn sound(name: &str) -> Result<String, Failure> {
+    let scene = load(name)?;
+    let drive = scene.drive()?;
+    let assembled = drive.assemble().map_err(|error| Failure::Start {
+        scene: scene.name().to_owned(),
+        source: error.into(),
+    })?;
+    Ok(format!(
+        "sound; {} links, {} sprockets, {} guides, {} tensioners, {} degrees of freedom",
+        drive.chain.links(),
+        drive.sprockets.len(),
+        drive.guides.len(),
+        drive.tensioners.len(),
+        assembled.system.free_dofs()
+    ))
+}

@@ -1,0 +1,86 @@
+//! Where the samples of a run go: nowhere, a Zarr store or a CSV file.
+
+use std::path::{Path, PathBuf};
+
+use chaindrive::record::{Ending, Existing, Provenance, ZarrWriter};
+use chaindrive::{Channel, Simulation};
+
+use crate::csv::CsvWriter;
+use crate::failure::Failure;
+
+/// Where the samples go, by the name asked for.
+#[derive(Debug)]
+pub(crate) enum Target {
+    Nowhere,
+    Zarr(PathBuf),
+    Csv(PathBuf),
+}
+
+impl Target {
+    /// The extension decides.
+    pub(crate) fn of(path: Option<&Path>) -> Result<Self, Failure> {
+        let Some(path) = path else {
+            return Ok(Self::Nowhere);
+        };
+        match path.extension().and_then(|extension| extension.to_str()) {
+            Some("zarr") => Ok(Self::Zarr(path.to_owned())),
+            Some("csv") => Ok(Self::Csv(path.to_owned())),
+            _ => Err(Failure::Argument(format!(
+                "{}: the name must end in .zarr or .csv",
+                path.display()
+            ))),
+        }
+    }
+
+    /// Begins the result.
+    pub(crate) fn begin(
+        self,
+        simulation: &Simulation,
+        channels: &[Channel],
+        provenance: Provenance,
+        existing: Existing,
+    ) -> Result<Output, Failure> {
+        Ok(match self {
+            Self::Nowhere => Output::Nowhere,
+            Self::Zarr(path) => {
+                let writer = ZarrWriter::create(&path, simulation, channels, provenance, existing)?;
+                Output::Zarr(Box::new(writer))
+            }
+            Self::Csv(path) => {
+                Output::Csv(CsvWriter::create(&path, simulation, channels, existing)?)
+            }
+        })
+    }
+}
+
+/// A result in the making.
+#[derive(Debug)]
+pub(crate) enum Output {
+    Nowhere,
+    Zarr(Box<ZarrWriter>),
+    Csv(CsvWriter),
+}
+
+impl Output {
+    /// Takes the last sample of the simulation.
+    pub(crate) fn push(&mut self, simulation: &Simulation) -> Result<(), Failure> {
+        match self {
+            Self::Nowhere => Ok(()),
+            Self::Zarr(writer) => Ok(writer.push(simulation)?),
+            Self::Csv(writer) => writer.push(simulation),
+        }
+    }
+
+    /// Ends the result, and says in it how the run ended.
+    pub(crate) fn finish(self, simulation: &Simulation, ending: &Ending) -> Result<(), Failure> {
+        match self {
+            Self::Nowhere => Ok(()),
+            Self::Zarr(writer) => Ok(writer.finish(simulation, ending)?),
+            Self::Csv(writer) => writer.finish(match ending {
+                Ending::Complete => None,
+                Ending::Failed(reason) => Some(reason),
+                Ending::None | Ending::Interrupted => Some("interrupted"),
+            }),
+        }
+    }
+}

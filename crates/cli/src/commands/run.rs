@@ -1,0 +1,134 @@
+//! `chaindrive run`: simulate a scene, write the samples, end with a summary.
+
+use std::path::PathBuf;
+
+use chaindrive::describe::spans_at_rest;
+use chaindrive::record::{Ending, Existing, Provenance};
+use chaindrive::{Drive, Simulation, Summary};
+use clap::Args;
+
+use super::output::{Output, Target};
+use crate::failure::Failure;
+use crate::progress::Progress;
+use crate::request::{RunArguments, SceneArguments};
+use crate::stdout::print;
+
+/// Simulates a scene and ends with a summary.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+
+    #[command(flatten)]
+    run: RunArguments,
+
+    /// Where the samples go: a Zarr store (.zarr), readable while the run goes on, or a table (.csv)
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<PathBuf>,
+
+    /// Replaces an earlier result of the same name
+    #[arg(long)]
+    overwrite: bool,
+
+    /// Prints errors only
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
+    let target = Target::of(arguments.output.as_deref())?;
+    let (scene, run, channels) = arguments.run.apply(arguments.scene.load()?)?;
+    let drive = scene.drive()?;
+    let mut simulation = Simulation::start(&drive, &run).map_err(|source| Failure::Start {
+        scene: scene.name().to_owned(),
+        source,
+    })?;
+    let existing = if arguments.overwrite {
+        Existing::Replace
+    } else {
+        Existing::Keep
+    };
+    let output = target.begin(
+        &simulation,
+        &channels,
+        Provenance::of(&scene, &run),
+        existing,
+    )?;
+
+    let mut summary = Summary::new(&simulation);
+    let ending = drive_to_the_end(
+        &mut simulation,
+        output,
+        &mut summary,
+        arguments.quiet,
+        interrupted,
+    )?;
+    if !arguments.quiet && summary.samples > 0 {
+        print(at_rest(&drive, &simulation) + &summary.report(&simulation).to_string())?;
+    }
+    match ending {
+        Stop::End => Ok(()),
+        Stop::Interrupted => Err(Failure::Interrupted),
+        Stop::Failed(source) => Err(Failure::Simulation {
+            scene: scene.name().to_owned(),
+            source,
+        }),
+    }
+}
+
+/// Why the loop stopped.
+enum Stop {
+    End,
+    Interrupted,
+    Failed(chaindrive::SimulationError),
+}
+
+/// Samples until the end, and ends the result.
+fn drive_to_the_end(
+    simulation: &mut Simulation,
+    mut output: Output,
+    summary: &mut Summary,
+    quiet: bool,
+    interrupted: &dyn Fn() -> bool,
+) -> Result<Stop, Failure> {
+    let mut progress = Progress::new(quiet);
+    let stop = loop {
+        match simulation.next_sample() {
+            Ok(Some(sample)) => summary.push(sample),
+            Ok(None) => break Stop::End,
+            Err(error) => break Stop::Failed(error),
+        }
+        output.push(simulation)?;
+        progress.show(simulation);
+        if interrupted() {
+            break Stop::Interrupted;
+        }
+    };
+    drop(progress);
+    let ending = match &stop {
+        Stop::End => Ending::Complete,
+        Stop::Interrupted => Ending::Interrupted,
+        Stop::Failed(error) => Ending::Failed(error.to_string()),
+    };
+    output.finish(simulation, &ending)?;
+    Ok(stop)
+}
+
+/// The span tensions before the start, as the first lines of the summary.
+fn at_rest(drive: &Drive, simulation: &Simulation) -> String {
+    let assembled = simulation.assembled();
+    if assembled.statics.is_empty() {
+        return String::new();
+    }
+    let spans = spans_at_rest(drive, assembled);
+    let line = |(name, tension): (String, f64)| format!("  {name:22} {tension:>9.1}\n");
+    let lines = spans
+        .into_iter()
+        .map(|span| line((span.name, span.tension)));
+    let lines: String = lines.collect();
+    if lines.is_empty() {
+        lines
+    } else {
+        format!("span tension at rest [N]\n{lines}")
+    }
+}

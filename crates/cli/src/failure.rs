@@ -1,0 +1,74 @@
+//! How a command ends when it does not end well.
+
+use chaindrive::SimulationError;
+use chaindrive::record::WriteError;
+use chaindrive::scene::SceneError;
+
+/// Exit code of bad input; also that of arguments the parser refuses.
+pub(crate) const BAD_INPUT: u8 = 2;
+
+/// Why a command did not do what was asked.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Failure {
+    /// The scene is wrong; its message has a line a problem.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+
+    /// An argument is wrong.
+    #[error("{0}")]
+    Argument(String),
+
+    /// Several scenes were looked at, and some are wrong; the messages are out.
+    #[error("{wrong} of {scenes} scenes are wrong")]
+    Scenes { wrong: usize, scenes: usize },
+
+    /// The run could not begin.
+    #[error("{scene}: {source}")]
+    Start {
+        scene: String,
+        source: SimulationError,
+    },
+
+    /// The run could not go on.
+    #[error("{scene}: {source}")]
+    Simulation {
+        scene: String,
+        source: SimulationError,
+    },
+
+    /// The result could not be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+
+    /// The result could not be written.
+    #[error("{path}: {source}")]
+    File {
+        path: String,
+        source: std::io::Error,
+    },
+
+    /// The target is taken.
+    #[error("{path}: {found}; choose another name{hint}")]
+    Taken {
+        path: String,
+        found: &'static str,
+        hint: &'static str,
+    },
+
+    /// The user stopped the run.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl Failure {
+    pub(crate) fn exit_code(&self) -> u8 {
+        match self {
+            Self::Simulation { .. } => 1,
+            Self::Scene(_) | Self::Argument(_) | Self::Scenes { .. } | Self::Start { .. } => {
+                BAD_INPUT
+            }
+            Self::Write(_) | Self::File { .. } | Self::Taken { .. } => 3,
+            Self::Interrupted => crate::INTERRUPTED,
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! What to run: a scene, changes to it, and settings that are changes as well.
+//!
+//! Settings such as `--until` are written into the `[run]` table of the scene, where they are
+//! checked with their units like everything else; the text that a result carries then reproduces
+//! the run.
+
+use std::io::Read;
+use std::path::Path;
+
+use chaindrive::scene::presets;
+use chaindrive::{Channel, Run, Scene, Stepping};
+use clap::Args;
+use serde_json::Value;
+
+use crate::failure::Failure;
+
+/// A scene and what is changed in it.
+#[derive(Debug, Args)]
+pub(crate) struct SceneArguments {
+    /// Scene file (TOML or JSON, `-` for stdin) or name of an embedded scene
+    #[arg(value_name = "SCENE|PRESET")]
+    scene: String,
+
+    /// Replaces a value of the scene, such as chain.links=80 or "sprockets.crank.motion.speed=-90 rpm"; may be repeated
+    #[arg(long, value_name = "PATH=VALUE")]
+    set: Vec<String>,
+}
+
+/// What to run; absent settings are those of the scene.
+#[derive(Debug, Args)]
+pub(crate) struct RunArguments {
+    /// End of the run, such as "1 s" or 1
+    #[arg(long, value_name = "TIME")]
+    until: Option<String>,
+
+    /// Time between two samples, such as "0.1 ms"
+    #[arg(long, value_name = "TIME")]
+    every: Option<String>,
+
+    /// Method of time stepping
+    #[arg(long, value_parser = Stepping::ALL.map(Stepping::name))]
+    method: Option<String>,
+
+    /// Step of a method with a fixed step, longest step of an adaptive one
+    #[arg(long, value_name = "TIME")]
+    step: Option<String>,
+
+    /// Relative tolerance of an adaptive method
+    #[arg(long, value_name = "RATIO")]
+    tolerance: Option<String>,
+
+    /// Deepest penetration at which a contact may begin, such as "1 um"; deeper steps are taken again, shorter
+    #[arg(long, value_name = "LENGTH")]
+    onset_depth: Option<String>,
+
+    /// Channels to record, separated by commas, or all; `chaindrive channels` lists them
+    #[arg(long, value_name = "CHANNELS", value_delimiter = ',')]
+    record: Vec<String>,
+}
+
+/// Reads a scene file, stdin or an embedded scene.
+pub(crate) fn load(name: &str) -> Result<Scene, Failure> {
+    if name == "-" {
+        let mut text = String::new();
+        let read = std::io::stdin().read_to_string(&mut text);
+        read.map_err(|error| Failure::Argument(format!("stdin cannot be read: {error}")))?;
+        return Ok(Scene::from_text(&text, "stdin")?);
+    }
+    let path = Path::new(name);
+    let preset = presets().iter().any(|(known, _)| *known == name);
+    let looks_like_a_file = path.extension().is_some() || path.components().count() > 1;
+    if path.is_file() || (looks_like_a_file && !preset) {
+        Ok(Scene::read(path)?)
+    } else {
+        Ok(Scene::preset(name)?)
+    }
+}
+
+impl SceneArguments {
+    /// The scene with its changes.
+    pub(crate) fn load(&self) -> Result<Scene, Failure> {
+        let mut scene = load(&self.scene)?;
+        for change in &self.set {
+            let Some((path, value)) = change.split_once('=') else {
+                return Err(Failure::Argument(format!(
+                    "--set {change}: a path and a value are needed, such as chain.links=80"
+                )));
+            };
+            scene = scene.replace(path.trim(), value.trim())?;
+        }
+        Ok(scene)
+    }
+}
+
+impl RunArguments {
+    /// Writes the settings into the scene and reads all of them from there.
+    pub(crate) fn apply(&self, mut scene: Scene) -> Result<(Scene, Run, Vec<Channel>), Failure> {
+        let settings = [
+            ("run.until", &self.until),
+            ("run.every", &self.every),
+            ("run.method", &self.method),
+            ("run.step", &self.step),
+            ("run.tolerance", &self.tolerance),
+            ("run.onset_depth", &self.onset_depth),
+        ];
+        for (path, value) in settings {
+            if let Some(value) = value {
+                scene = scene.replace(path, value)?;
+            }
+        }
+        let names = self
+            .record
+            .iter()
+            .map(|name| name.trim())
+            .filter(|name| !name.is_empty());
+        let names: Vec<Value> = names.map(Value::from).collect();
+        if !names.is_empty() {
+            scene = scene.replace_json("run.record", &Value::Array(names))?;
+        }
+        let wanted = scene.run_defaults();
+        let run = Run::suggested(&wanted);
+        let wrong = |error| Failure::Start {
+            scene: scene.name().to_owned(),
+            source: error,
+        };
+        run.check().map_err(wrong)?;
+        let channels = Channel::from_names(&wanted.record).map_err(wrong)?;
+        Ok((scene, run, channels))
+    }
+}

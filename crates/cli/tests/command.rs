@@ -1,0 +1,359 @@
+//! Every verb of the command, its exit codes, and what it leaves on disk.
+
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+
+fn chaindrive(folder: &Path) -> Command {
+    let mut command = Command::cargo_bin("chaindrive").unwrap();
+    command.current_dir(folder);
+    command
+}
+
+/// Runs the command and returns exit code, stdout and stderr.
+fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let output = chaindrive(folder).args(arguments).output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (
+        output.status.code().unwrap(),
+        text(output.stdout),
+        text(output.stderr),
+    )
+}
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+fn group(path: &Path) -> serde_json::Value {
+    serde_json::from_slice(&fs::read(path.join("zarr.json")).unwrap()).unwrap()
+}
+
+#[test]
+fn a_run_writes_a_store_and_ends_with_a_summary() {
+    let folder = folder();
+    let at = folder.path();
+    let (code, out, err) = run(
+        at,
+        &[
+            "run",
+            "spinning_ring",
+            "--until",
+            "5 ms",
+            "--every",
+            "0.001",
+            "-o",
+            "ring.zarr",
+        ],
+    );
+    assert_eq!(code, 0, "{err}");
+    assert!(
+        out.contains("energy [J]") && out.contains("× real time"),
+        "{out}"
+    );
+    assert_eq!(err, "", "nothing but errors in a pipe");
+    let group = group(&at.join("ring.zarr"));
+    let attributes = &group["attributes"];
+    assert_eq!(attributes["complete"], 1);
+    assert_eq!(attributes["samples"], 6);
+    let scene = attributes["scene"].as_str().unwrap();
+    assert!(
+        scene.contains("until = \"5 ms\""),
+        "the text reproduces the run: {scene}"
+    );
+    assert_eq!(attributes["chaindrive_version"], env!("CARGO_PKG_VERSION"));
+}
+
+#[test]
+fn a_run_writes_a_table() {
+    let folder = folder();
+    let at = folder.path();
+    let arguments = [
+        "run",
+        "spinning_ring",
+        "--until",
+        "2 ms",
+        "--every",
+        "1 ms",
+        "-q",
+    ];
+    let record = ["--record", "energy_kinetic,link_tension", "-o", "ring.csv"];
+    let (code, out, err) = run(at, &[arguments.as_slice(), &record].concat());
+    assert_eq!((code, out.as_str(), err.as_str()), (0, "", ""));
+    let table = fs::read_to_string(at.join("ring.csv")).unwrap();
+    let lines: Vec<&str> = table.lines().collect();
+    assert!(lines[0].starts_with("time,energy_kinetic,link_tension[0],link_tension[1],"));
+    assert_eq!(lines.len(), 4);
+    let row: Vec<f64> = lines[3]
+        .split(',')
+        .map(|cell| cell.parse().unwrap())
+        .collect();
+    assert_eq!(row.len(), 22);
+    assert!(
+        (row[0] - 2e-3).abs() < 1e-15 && (row[2] - 215.92).abs() < 0.1,
+        "{row:?}"
+    );
+}
+
+#[test]
+fn changes_reach_the_run() {
+    let folder = folder();
+    let at = folder.path();
+    let short = ["run", "spinning_ring", "--until", "1 ms", "--every", "1 ms"];
+    let (code, ..) = run(
+        at,
+        &[
+            &short[..],
+            &[
+                "--set",
+                "chain.links=24",
+                "--record",
+                "all",
+                "-o",
+                "ring.zarr",
+            ],
+        ]
+        .concat(),
+    );
+    assert_eq!(code, 0);
+    let group = group(&at.join("ring.zarr"));
+    assert_eq!(group["attributes"]["links"], 24);
+    let arrays = &group["consolidated_metadata"]["metadata"];
+    assert_eq!(arrays["link_tension"]["shape"], serde_json::json!([2, 24]));
+    assert_eq!(arrays["link_tension"]["attributes"]["units"], "N");
+
+    let (code, _, err) = run(at, &[&short[..], &["--set", "chain.lynx=24"]].concat());
+    assert_eq!(code, 2);
+    assert!(err.contains("lynx"), "{err}");
+    let (code, _, err) = run(at, &[&short[..], &["--set", "chain.links"]].concat());
+    assert_eq!(code, 2);
+    assert!(err.contains("such as chain.links=80"), "{err}");
+}
+
+#[test]
+fn every_method_runs() {
+    let folder = folder();
+    for (method, name) in [
+        ("verlet", "Verlet"),
+        ("rk4", "Runge-Kutta 4"),
+        ("dormand-prince", "Dormand-Prince 5(4)"),
+    ] {
+        let arguments = [
+            "run",
+            "spinning_ring",
+            "--until",
+            "1 ms",
+            "--method",
+            method,
+        ];
+        let (code, out, err) = run(folder.path(), &arguments);
+        assert_eq!(code, 0, "{err}");
+        assert!(out.contains(name), "{out}");
+    }
+}
+
+#[test]
+fn bad_input_exits_2_and_leaves_nothing() {
+    let folder = folder();
+    let at = folder.path();
+    fs::write(at.join("bad.toml"), "[chain]\npitch = \"12 rpm\"\n").unwrap();
+    let wrong: &[&[&str]] = &[
+        &["run", "bad.toml", "-o", "x.zarr"],
+        &["run", "missing.toml", "-o", "x.zarr"],
+        &["run", "spinning_rng", "-o", "x.zarr"],
+        &["run", "spinning_ring", "--until", "1 mm", "-o", "x.zarr"],
+        &["run", "spinning_ring", "--until", "-1", "-o", "x.zarr"],
+        &["run", "spinning_ring", "--every", "0", "-o", "x.zarr"],
+        &[
+            "run",
+            "spinning_ring",
+            "--record",
+            "link_tensoin",
+            "-o",
+            "x.zarr",
+        ],
+        &["run", "spinning_ring", "--step", "1 s", "-o", "x.zarr"],
+        &[
+            "run",
+            "spinning_ring",
+            "--method",
+            "leapfrog",
+            "-o",
+            "x.zarr",
+        ],
+        &["run", "spinning_ring", "-o", "x.hdf5"],
+        &["run"],
+        &["check", "bad.toml"],
+        &["describe", "bad.toml"],
+        &["scenes", "nothing"],
+    ];
+    for arguments in wrong {
+        let (code, out, err) = run(at, arguments);
+        assert_eq!(code, 2, "{arguments:?}: {err}");
+        assert_eq!(out, "", "{arguments:?}");
+        assert!(
+            !err.is_empty() && !err.contains("panicked"),
+            "{arguments:?}: {err}"
+        );
+    }
+    let left: Vec<_> = fs::read_dir(at)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name())
+        .collect();
+    assert_eq!(left, ["bad.toml"]);
+}
+
+#[test]
+fn messages_name_file_line_and_place() {
+    let folder = folder();
+    let at = folder.path();
+    fs::write(at.join("bad.toml"), "[chain]\npitch = \"12 rpm\"\n").unwrap();
+    let (_, _, err) = run(at, &["check", "bad.toml"]);
+    assert!(
+        err.contains("bad.toml:2: chain.pitch: `12 rpm` is an angular speed"),
+        "{err}"
+    );
+    let (_, _, err) = run(at, &["run", "spinning_ring", "--record", "link_tensoin"]);
+    assert!(err.contains("did you mean `link_tension`?"), "{err}");
+}
+
+#[test]
+fn results_are_not_overwritten_unasked() {
+    let folder = folder();
+    let at = folder.path();
+    for name in ["ring.zarr", "ring.csv"] {
+        let arguments = ["run", "spinning_ring", "--until", "1 ms", "-q", "-o", name];
+        assert_eq!(run(at, &arguments).0, 0);
+        let (code, _, err) = run(at, &arguments);
+        assert_eq!(code, 3);
+        assert!(err.contains("already a result"), "{err}");
+        let (code, _, err) = run(at, &[&arguments[..], &["--overwrite"]].concat());
+        assert_eq!(code, 0, "{err}");
+    }
+    fs::create_dir(at.join("notes.zarr")).unwrap();
+    fs::write(at.join("notes.zarr/thesis.tex"), "three years").unwrap();
+    fs::write(at.join("notes.csv"), "three,years\n").unwrap();
+    for name in ["notes.zarr", "notes.csv"] {
+        let arguments = [
+            "run",
+            "spinning_ring",
+            "--until",
+            "1 ms",
+            "--overwrite",
+            "-o",
+            name,
+        ];
+        assert_eq!(run(at, &arguments).0, 3);
+    }
+    assert_eq!(
+        fs::read_to_string(at.join("notes.csv")).unwrap(),
+        "three,years\n"
+    );
+    assert!(at.join("notes.zarr/thesis.tex").exists());
+}
+
+#[test]
+fn a_place_that_cannot_be_written_exits_3() {
+    let folder = folder();
+    let at = folder.path();
+    fs::write(at.join("file"), "").unwrap();
+    for name in ["file/ring.zarr", "file/ring.csv", "none/ring.csv"] {
+        let (code, out, err) = run(at, &["run", "spinning_ring", "--until", "1 ms", "-o", name]);
+        assert_eq!(code, 3, "{err}");
+        assert_eq!(out, "");
+        assert!(err.starts_with(name), "{err}");
+    }
+}
+
+#[test]
+fn scenes_come_from_stdin_too() {
+    let folder = folder();
+    let (_, text, _) = run(folder.path(), &["scenes", "spinning_ring"]);
+    let output = chaindrive(folder.path())
+        .args(["check", "-"])
+        .write_stdin(text)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0));
+}
+
+#[test]
+fn the_lists() {
+    let folder = folder();
+    let at = folder.path();
+    let (code, out, _) = run(at, &["scenes"]);
+    assert!(code == 0 && out.contains("marine_engine"));
+    let (code, out, _) = run(at, &["scenes", "hanging_chain"]);
+    assert!(code == 0 && out.contains("[chain]"));
+    let (code, out, _) = run(at, &["schema"]);
+    let schema: serde_json::Value = serde_json::from_str(&out).unwrap();
+    assert!(code == 0 && schema["properties"]["chain"].is_object());
+    let (code, out, _) = run(at, &["channels"]);
+    assert!(code == 0 && out.contains("span_tension") && out.contains("N m"));
+    let (code, out, _) = run(at, &["--help"]);
+    assert!(code == 0 && out.contains("130  interrupted"), "{out}");
+}
+
+#[test]
+fn every_preset_is_sound() {
+    let folder = folder();
+    let (_, names, _) = run(folder.path(), &["scenes"]);
+    let names: Vec<&str> = names
+        .lines()
+        .filter_map(|line| line.split(' ').next())
+        .collect();
+    let (code, out, err) = run(folder.path(), &[&["check"], &names[..]].concat());
+    assert_eq!((code, out.lines().count()), (0, names.len()), "{err}");
+}
+
+#[test]
+fn a_description_is_text_or_json() {
+    let folder = folder();
+    let (code, out, err) = run(folder.path(), &["describe", "marine_two_sprockets"]);
+    assert_eq!(code, 0, "{err}");
+    for word in [
+        "wave speeds",
+        "spans at rest",
+        "statics",
+        "polygon action",
+        "run time",
+    ] {
+        assert!(out.contains(word), "{out}");
+    }
+    let (code, out, _) = run(
+        folder.path(),
+        &["describe", "marine_two_sprockets", "--json"],
+    );
+    let it: serde_json::Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(code, 0);
+    assert_eq!(it["polygon"].as_array().unwrap().len(), 2);
+    assert!(it["cost"]["steps"].as_f64().unwrap() > 0.0);
+}
+
+#[test]
+fn the_marine_engine_runs() {
+    let folder = folder();
+    let at = folder.path();
+    let (code, out, err) = run(
+        at,
+        &[
+            "run",
+            "marine_engine",
+            "--until",
+            "0.02 s",
+            "-o",
+            "engine.zarr",
+        ],
+    );
+    assert_eq!(code, 0, "{err}");
+    for word in [
+        "span tension at rest [N]",
+        "crank-camshaft",
+        "contact force [N]",
+        "ns per link",
+    ] {
+        assert!(out.contains(word), "{out}");
+    }
+    assert_eq!(group(&at.join("engine.zarr"))["attributes"]["samples"], 101);
+}

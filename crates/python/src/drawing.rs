@@ -1,0 +1,89 @@
+//! Polylines of a drive, for plots.
+
+use chaindrive::{Drive, Run, Simulation};
+use chaindrive_geometry::{ArcSpline, Piece, Point};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::errors::OrRaise;
+
+/// Chords along one arc of a tooth or guide.
+const CHORDS: u32 = 8;
+
+/// What can be drawn of a drive, settled or as it was laid.
+pub(crate) fn of<'py>(
+    py: Python<'py>,
+    drive: &Drive,
+    settled: bool,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (rollers, centres) = py.detach(|| {
+        if settled {
+            let mut simulation = Simulation::start(drive, &Run::default()).or_raise()?;
+            simulation.next_sample().or_raise()?;
+            let sample = simulation.observation();
+            let pairs = |x: &[f64], y: &[f64]| -> Vec<Point> {
+                x.iter().zip(y).map(|(&x, &y)| Point::new(x, y)).collect()
+            };
+            Ok::<_, PyErr>((
+                pairs(&sample.roller_x, &sample.roller_y),
+                pairs(&sample.sprocket_x, &sample.sprocket_y),
+            ))
+        } else {
+            let (rollers, _) = drive.layout_positions().or_raise()?;
+            Ok((
+                rollers,
+                drive
+                    .sprockets
+                    .iter()
+                    .map(|sprocket| sprocket.centre)
+                    .collect(),
+            ))
+        }
+    })?;
+
+    let sprockets = PyDict::new(py);
+    for (sprocket, centre) in drive.sprockets.iter().zip(centres) {
+        let gap = &sprocket.gap;
+        let drawn = PyDict::new(py);
+        drawn.set_item("teeth", gap.teeth)?;
+        drawn.set_item("pitch_radius", gap.pitch_radius)?;
+        drawn.set_item("tip_radius", gap.tip_radius)?;
+        drawn.set_item("centre", points(py, &[centre])?.reshape([2])?)?;
+        drawn.set_item(
+            "outline",
+            points(py, &polyline(&gap.outline().or_raise()?))?,
+        )?;
+        sprockets.set_item(&sprocket.name, drawn)?;
+    }
+    let guides = PyDict::new(py);
+    for guide in &drive.guides {
+        guides.set_item(&guide.name, points(py, &polyline(&guide.face))?)?;
+    }
+    let answer = PyDict::new(py);
+    answer.set_item("rollers", points(py, &rollers)?)?;
+    answer.set_item("closed", drive.chain.is_closed())?;
+    answer.set_item("pitch", drive.chain.pitch)?;
+    answer.set_item("roller_diameter", drive.chain.roller_diameter)?;
+    answer.set_item("sprockets", sprockets)?;
+    answer.set_item("guides", guides)?;
+    Ok(answer)
+}
+
+fn polyline(curve: &ArcSpline) -> Vec<Point> {
+    let mut line: Vec<Point> = curve.pieces().iter().take(1).map(Piece::start).collect();
+    for piece in curve.pieces() {
+        match piece {
+            Piece::Segment(segment) => line.push(segment.end),
+            Piece::Arc(arc) => line
+                .extend((1..=CHORDS).map(|chord| arc.point(f64::from(chord) / f64::from(CHORDS)))),
+        }
+    }
+    line
+}
+
+/// Points as an array (points, 2).
+fn points<'py>(py: Python<'py>, points: &[Point]) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let flat: Vec<f64> = points.iter().flat_map(|point| [point.x, point.y]).collect();
+    PyArray1::from_vec(py, flat).reshape([points.len(), 2])
+}

@@ -1,0 +1,213 @@
+//! Drives: from text, changed, assembled.
+
+use std::path::PathBuf;
+
+use chaindrive::scene::{self, Scene};
+use chaindrive::{Channel, Description, Run, Stepping};
+use numpy::PyArray1;
+use pyo3::exceptions::PyKeyError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::drawing;
+use crate::errors::{OrRaise, parameter};
+use crate::law::Law;
+
+/// Name, link tensions and closed contacts of a static stage.
+type StaticStage<'py> = (&'static str, Bound<'py, PyArray1<f64>>, Vec<usize>);
+
+/// A scene and the drive it describes.
+#[pyclass(frozen, module = "chaindrive._core")]
+#[derive(Debug)]
+pub(crate) struct Drive {
+    pub(crate) scene: Scene,
+    pub(crate) drive: chaindrive::Drive,
+}
+
+impl Drive {
+    fn new(scene: Scene) -> PyResult<Self> {
+        let drive = scene.drive().or_raise()?;
+        Ok(Self { scene, drive })
+    }
+
+    /// The run the scene suggests.
+    fn run(&self) -> Run {
+        let (suggested, fallback) = (self.scene.run_defaults(), Run::default());
+        Run {
+            until: suggested.until.unwrap_or(fallback.until),
+            every: suggested.every.unwrap_or(fallback.every),
+            stepping: suggested
+                .method
+                .and_then(Stepping::from_name)
+                .unwrap_or_default(),
+            step: suggested.step,
+            ..fallback
+        }
+    }
+}
+
+#[pymethods]
+impl Drive {
+    /// Reads a scene file.
+    #[staticmethod]
+    fn read(path: PathBuf) -> PyResult<Self> {
+        Self::new(Scene::read(path).or_raise()?)
+    }
+
+    /// Reads TOML, or JSON when the text begins with a brace.
+    #[staticmethod]
+    fn from_text(text: &str, name: &str) -> PyResult<Self> {
+        Self::new(Scene::from_text(text, name).or_raise()?)
+    }
+
+    /// Reads TOML.
+    #[staticmethod]
+    fn from_toml(text: &str, name: &str) -> PyResult<Self> {
+        Self::new(Scene::from_toml(text, name).or_raise()?)
+    }
+
+    /// The embedded scene of this name.
+    #[staticmethod]
+    fn preset(name: &str) -> PyResult<Self> {
+        Self::new(Scene::preset(name).or_raise()?)
+    }
+
+    /// A new drive with values replaced: pairs of a dotted path and a JSON text.
+    fn replace(&self, changes: Vec<(String, String)>) -> PyResult<Self> {
+        let mut scene = self.scene.clone();
+        for (path, json) in changes {
+            let value = serde_json::from_str(&json)
+                .map_err(|error| parameter(format!("{path}: {error}"), &path, "a value of JSON"))?;
+            scene = scene.replace_json(&path, &value).or_raise()?;
+        }
+        Self::new(scene)
+    }
+
+    /// The text that reproduces the drive.
+    #[getter]
+    fn text(&self) -> &str {
+        self.scene.text()
+    }
+
+    /// What messages call it: its file or preset.
+    #[getter]
+    fn name(&self) -> &str {
+        self.scene.name()
+    }
+
+    /// What it shows, in a line.
+    #[getter]
+    fn title(&self) -> &str {
+        self.scene.title()
+    }
+
+    /// Number of links.
+    #[getter]
+    fn links(&self) -> usize {
+        self.drive.chain.links()
+    }
+
+    /// Names of the sprockets.
+    #[getter]
+    fn sprockets(&self) -> Vec<String> {
+        self.drive
+            .sprockets
+            .iter()
+            .map(|sprocket| sprocket.name.clone())
+            .collect()
+    }
+
+    /// Names of the guides.
+    #[getter]
+    fn guides(&self) -> Vec<String> {
+        self.drive
+            .guides
+            .iter()
+            .map(|guide| guide.name.clone())
+            .collect()
+    }
+
+    /// Names of the tensioners.
+    #[getter]
+    fn tensioners(&self) -> Vec<String> {
+        self.drive
+            .tensioners
+            .iter()
+            .map(|tensioner| tensioner.name.clone())
+            .collect()
+    }
+
+    /// What to run and record unless told otherwise.
+    fn run_defaults<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let run = self.run();
+        let answer = PyDict::new(py);
+        answer.set_item("until", run.until)?;
+        answer.set_item("every", run.every)?;
+        answer.set_item("method", run.stepping.name())?;
+        answer.set_item("step", run.step)?;
+        answer.set_item("tolerance", run.tolerance)?;
+        let mut record = self.scene.run_defaults().record;
+        if record.is_empty() {
+            record = Channel::DEFAULT
+                .iter()
+                .map(|channel| channel.name().to_owned())
+                .collect();
+        }
+        answer.set_item("record", record)?;
+        Ok(answer)
+    }
+
+    /// The contact law of a sprocket or guide.
+    fn law(&self, body: &str) -> PyResult<Law> {
+        let sprockets = self
+            .drive
+            .sprockets
+            .iter()
+            .map(|sprocket| (&sprocket.name, &sprocket.surface));
+        let guides = self
+            .drive
+            .guides
+            .iter()
+            .map(|guide| (&guide.name, &guide.surface));
+        let found = sprockets.chain(guides).find(|(name, _)| *name == body);
+        let (_, surface) = found.ok_or_else(|| PyKeyError::new_err(body.to_owned()))?;
+        Ok(Law(surface.law))
+    }
+
+    /// What the drive will be simulated as: as a text, and as JSON.
+    fn describe(&self, py: Python<'_>) -> PyResult<(String, String)> {
+        let description = py
+            .detach(|| Description::of(&self.drive, &self.run()))
+            .or_raise()?;
+        let json = serde_json::to_string(&description)
+            .map_err(|error| parameter(error.to_string(), "description", "finite"))?;
+        Ok((description.to_string(), json))
+    }
+
+    /// Link tensions and closed contacts after every static stage.
+    fn statics<'py>(&self, py: Python<'py>) -> PyResult<Vec<StaticStage<'py>>> {
+        let assembled = py.detach(|| self.drive.assemble()).or_raise()?;
+        let stages = assembled.statics.into_iter().map(|stage| {
+            let tensions = PyArray1::from_vec(py, stage.tensions);
+            (stage.stage, tensions, stage.contacts)
+        });
+        Ok(stages.collect())
+    }
+
+    /// Polylines of what can be drawn.
+    fn drawing<'py>(&self, py: Python<'py>, settled: bool) -> PyResult<Bound<'py, PyDict>> {
+        drawing::of(py, &self.drive, settled)
+    }
+}
+
+/// Name and one-line description of every embedded scene.
+#[pyfunction]
+pub(crate) fn presets() -> Vec<(&'static str, &'static str)> {
+    scene::presets().to_vec()
+}
+
+/// JSON Schema of the scene format, as JSON.
+#[pyfunction]
+pub(crate) fn schema() -> String {
+    scene::schema().to_string()
+}

@@ -1,0 +1,137 @@
+//! Errors of the library as exceptions of `chaindrive.errors`.
+
+use chaindrive::SimulationError;
+use chaindrive::record::WriteError;
+use chaindrive::scene::SceneError;
+use chaindrive_contact::ParameterError;
+use chaindrive_geometry::GeometryError;
+use chaindrive_integrate::IntegrationError;
+use chaindrive_mechanics::AssemblyError;
+use pyo3::PyErr;
+
+/// The exception classes; their rust names would clash with those of the errors.
+mod python {
+    pyo3::import_exception!(chaindrive.errors, AssemblyError);
+    pyo3::import_exception!(chaindrive.errors, IntegrationError);
+    pyo3::import_exception!(chaindrive.errors, ParameterError);
+    pyo3::import_exception!(chaindrive.errors, SceneError);
+    pyo3::import_exception!(chaindrive.errors, SimulationError);
+    pyo3::import_exception!(chaindrive.errors, WriteError);
+}
+
+/// What becomes a Python exception.
+pub(crate) trait IntoException {
+    /// The exception, with the place and the hint where they are known.
+    fn exception(self) -> PyErr;
+}
+
+/// `result.or_raise()?` in functions called by Python.
+pub(crate) trait OrRaise<T> {
+    /// The value, or the error as an exception.
+    fn or_raise(self) -> Result<T, PyErr>;
+}
+
+impl<T, E: IntoException> OrRaise<T> for Result<T, E> {
+    fn or_raise(self) -> Result<T, PyErr> {
+        self.map_err(IntoException::exception)
+    }
+}
+
+impl IntoException for SceneError {
+    fn exception(self) -> PyErr {
+        let message = self.to_string();
+        let problems: Vec<_> = self
+            .problems
+            .into_iter()
+            .map(|problem| (problem.path, problem.line, problem.message, problem.hint))
+            .collect();
+        python::SceneError::new_err((message, problems, self.source_name))
+    }
+}
+
+impl IntoException for ParameterError {
+    fn exception(self) -> PyErr {
+        parameter(self.to_string(), self.parameter, self.allowed)
+    }
+}
+
+impl IntoException for GeometryError {
+    fn exception(self) -> PyErr {
+        let message = self.to_string();
+        match self {
+            Self::NotFinite { what, .. } => parameter(message, what, "finite"),
+            Self::OutOfRange { what, allowed, .. } => parameter(message, what, allowed),
+            _ => python::ParameterError::new_err((message,)),
+        }
+    }
+}
+
+impl IntoException for AssemblyError {
+    fn exception(self) -> PyErr {
+        let message = self.to_string();
+        match self {
+            Self::Guide { guide, .. } => {
+                python::AssemblyError::new_err((message, format!("guides.{guide}")))
+            }
+            _ => python::AssemblyError::new_err((message,)),
+        }
+    }
+}
+
+impl IntoException for IntegrationError {
+    fn exception(self) -> PyErr {
+        let message = self.to_string();
+        match self {
+            Self::Parameter {
+                parameter: name,
+                allowed,
+                ..
+            } => parameter(message, name, allowed),
+            Self::StepTooLarge { limit, .. } => python::IntegrationError::new_err((
+                message,
+                "step",
+                format!("at most {limit:.3e} s"),
+            )),
+            _ => python::IntegrationError::new_err((message,)),
+        }
+    }
+}
+
+impl IntoException for SimulationError {
+    fn exception(self) -> PyErr {
+        let message = self.to_string();
+        match self {
+            Self::Assembly(error) => error.exception(),
+            Self::Integration(error) => error.exception(),
+            Self::Setting { name, allowed, .. } => parameter(message, name, allowed),
+            Self::UnknownChannel { suggestion, .. } => python::ParameterError::new_err((
+                message,
+                "record",
+                suggestion.map(|name| format!("did you mean `{name}`?")),
+            )),
+            _ => python::SimulationError::new_err((message,)),
+        }
+    }
+}
+
+impl IntoException for WriteError {
+    fn exception(self) -> PyErr {
+        let message = self.to_string();
+        match self {
+            Self::Exists { path } => python::WriteError::new_err((
+                message,
+                path,
+                "give `overwrite=True`, or another name",
+            )),
+            Self::Foreign { path, .. } | Self::Io { path, .. } | Self::Store { path, .. } => {
+                python::WriteError::new_err((message, path))
+            }
+            _ => python::WriteError::new_err((message,)),
+        }
+    }
+}
+
+/// A `ParameterError` that names the parameter and what it may be.
+pub(crate) fn parameter(message: String, name: &str, allowed: &str) -> PyErr {
+    python::ParameterError::new_err((message, name.to_owned(), format!("must be {allowed}")))
+}

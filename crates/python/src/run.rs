@@ -1,0 +1,232 @@
+//! Runs: without the interpreter's lock, stopped by Ctrl-C, results handed over without a copy.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use chaindrive::record::{self, Ending, Existing, Provenance, Recording, ZarrWriter};
+use chaindrive::{Axis, Channel, Method, Run, Simulation, Stepping, Summary};
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::drive::Drive;
+use crate::errors::{OrRaise, parameter};
+
+/// Between two looks at signals.
+const PATIENCE: Duration = Duration::from_millis(50);
+
+/// Runs a drive and returns its recording: time, columns, labels and attributes.
+#[pyfunction]
+#[pyo3(signature = (drive, channels, *, until, every, method, step, tolerance, onset_depth, output, overwrite, progress))]
+#[expect(clippy::too_many_arguments, reason = "keywords in Python")]
+pub(crate) fn simulate<'py>(
+    py: Python<'py>,
+    drive: &Drive,
+    channels: Vec<String>,
+    until: f64,
+    every: f64,
+    method: &str,
+    step: Option<f64>,
+    tolerance: f64,
+    onset_depth: Option<f64>,
+    output: Option<PathBuf>,
+    overwrite: bool,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let names = channels
+        .iter()
+        .map(|name| Channel::from_name(name).or_raise());
+    let channels = names.collect::<PyResult<Vec<_>>>()?;
+    let run = Run {
+        until,
+        every,
+        stepping: stepping(method)?,
+        step,
+        tolerance,
+        onset_depth,
+    };
+    let output = output.map(|path| {
+        let existing = if overwrite {
+            Existing::Replace
+        } else {
+            Existing::Keep
+        };
+        (path, existing)
+    });
+    let (simulation, recording, summary) =
+        py.detach(|| carry_out(drive, &run, &channels, output, progress.as_ref()))?;
+    let answer = PyDict::new(py);
+    answer.set_item("labels", labels(py, &channels, &simulation)?)?;
+    answer.set_item("attributes", attributes(py, &simulation, &summary)?)?;
+    let samples = recording.len();
+    answer.set_item("time", PyArray1::from_vec(py, recording.time))?;
+    let columns = PyDict::new(py);
+    for column in recording.columns {
+        let values = PyArray1::from_vec(py, column.values);
+        let values = match column.channel.axis() {
+            Axis::None => values.into_any(),
+            _ => values.reshape([samples, column.width])?.into_any(),
+        };
+        columns.set_item(column.channel.name(), values)?;
+    }
+    answer.set_item("columns", columns)?;
+    Ok(answer)
+}
+
+fn stepping(name: &str) -> PyResult<Stepping> {
+    Stepping::from_name(name).ok_or_else(|| {
+        let known = Stepping::ALL.map(Stepping::name).join(", ");
+        let message = format!("no method is named `{name}`; there are {known}");
+        parameter(message, "method", &format!("one of {known}"))
+    })
+}
+
+fn carry_out(
+    drive: &Drive,
+    run: &Run,
+    channels: &[Channel],
+    output: Option<(PathBuf, Existing)>,
+    progress: Option<&Py<PyAny>>,
+) -> PyResult<(Simulation, Recording, Summary)> {
+    let mut simulation = Simulation::start(&drive.drive, run).or_raise()?;
+    let mut summary = Summary::new(&simulation);
+    let Some((path, existing)) = output else {
+        let mut recording = Recording::new(channels, simulation.system());
+        advance(&mut simulation, &mut summary, progress, |simulation| {
+            recording.push(simulation.observation());
+            Ok(())
+        })?;
+        return Ok((simulation, recording, summary));
+    };
+    // On disk; nothing is kept in memory.
+    let recording = Recording::new(&[], simulation.system());
+    let provenance = Provenance::of(&drive.scene, run);
+    let mut writer =
+        ZarrWriter::create(&path, &simulation, channels, provenance, existing).or_raise()?;
+    let outcome = advance(&mut simulation, &mut summary, progress, |simulation| {
+        writer.push(simulation).or_raise()
+    });
+    let ending = match &outcome {
+        Ok(()) => Ending::Complete,
+        Err(error) => Python::attach(|py| {
+            if error.is_instance_of::<PyKeyboardInterrupt>(py) {
+                Ending::Interrupted
+            } else {
+                Ending::Failed(error.value(py).to_string())
+            }
+        }),
+    };
+    let finished = writer.finish(&simulation, &ending).or_raise();
+    outcome.and(finished)?;
+    Ok((simulation, recording, summary))
+}
+
+/// Takes sample after sample to the end of the run.
+fn advance(
+    simulation: &mut Simulation,
+    summary: &mut Summary,
+    progress: Option<&Py<PyAny>>,
+    mut keep: impl FnMut(&Simulation) -> PyResult<()>,
+) -> PyResult<()> {
+    let mut looked = Instant::now();
+    while simulation.next_sample().or_raise()?.is_some() {
+        summary.push(simulation.observation());
+        keep(simulation)?;
+        if looked.elapsed() > PATIENCE {
+            look(progress, simulation.progress())?;
+            looked = Instant::now();
+        }
+    }
+    look(progress, simulation.progress())
+}
+
+/// Lets Python handle signals and tells it how far the run is.
+fn look(progress: Option<&Py<PyAny>>, share: f64) -> PyResult<()> {
+    Python::attach(|py| {
+        py.check_signals()?;
+        progress.map_or(Ok(()), |tell| tell.call1(py, (share,)).map(drop))
+    })
+}
+
+/// Labels of every axis that a channel uses.
+fn labels<'py>(
+    py: Python<'py>,
+    channels: &[Channel],
+    simulation: &Simulation,
+) -> PyResult<Bound<'py, PyDict>> {
+    let answer = PyDict::new(py);
+    for axis in channels.iter().map(|channel| channel.axis()) {
+        if let (Some(name), Some(labels)) = (axis.name(), record::labels(axis, simulation.system()))
+        {
+            match axis {
+                Axis::Roller | Axis::Link => answer.set_item(name, labels.len())?,
+                _ => answer.set_item(name, labels)?,
+            }
+        }
+    }
+    Ok(answer)
+}
+
+/// How the run came about and what it cost.
+fn attributes<'py>(
+    py: Python<'py>,
+    simulation: &Simulation,
+    summary: &Summary,
+) -> PyResult<Bound<'py, PyDict>> {
+    let answer = PyDict::new(py);
+    let statistics = simulation.statistics();
+    let (time, wall) = (simulation.time(), simulation.stepping_time());
+    let link_steps = statistics.steps.max(1) as f64 * simulation.system().links() as f64;
+    match simulation.method() {
+        Method::Verlet { step } | Method::Rk4 { step } => answer.set_item("step", step)?,
+        Method::DormandPrince {
+            relative, max_step, ..
+        } => {
+            answer.set_item("relative_tolerance", relative)?;
+            answer.set_item("max_step", max_step)?;
+        }
+    }
+    answer.set_item("steps", statistics.steps)?;
+    answer.set_item("rejections", statistics.rejections)?;
+    answer.set_item("error_rejections", statistics.error_rejections)?;
+    answer.set_item("reductions", statistics.reductions)?;
+    answer.set_item("evaluations", statistics.evaluations)?;
+    answer.set_item("jumps", statistics.jumps)?;
+    answer.set_item("smallest_step", statistics.smallest_step)?;
+    answer.set_item("largest_step", statistics.largest_step)?;
+    answer.set_item("samples", summary.samples)?;
+    answer.set_item("time_reached", time)?;
+    answer.set_item("energy_supplied", summary.energy_supplied())?;
+    answer.set_item("energy_dissipated", summary.energy_dissipated())?;
+    answer.set_item("energy_residual_largest", summary.residual)?;
+    answer.set_item("contact_force_largest", summary.forces().max)?;
+    answer.set_item("stepping_time", wall)?;
+    answer.set_item("real_time_factor", time / wall)?;
+    answer.set_item("ns_per_link_step", wall * 1e9 / link_steps)?;
+    answer.set_item("summary", summary.report(simulation).to_string())?;
+    Ok(answer)
+}
+
+/// Name, unit, dimension, description and whether a run records it by default, of every channel.
+#[pyfunction]
+pub(crate) fn channels(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
+    PyList::new(
+        py,
+        Channel::ALL.iter().map(|channel| {
+            (
+                channel.name(),
+                channel.unit(),
+                channel.axis().name(),
+                channel.description(),
+                Channel::DEFAULT.contains(channel),
+            )
+        }),
+    )
+}
+
+/// Names of the methods of time stepping.
+#[pyfunction]
+pub(crate) fn methods() -> Vec<&'static str> {
+    Stepping::ALL.map(Stepping::name).to_vec()
+}

@@ -1,0 +1,51 @@
+"""Simulator of roller chain drives: sprockets, guides, tensioners and the chain between them.
+
+    >>> import chaindrive as cd
+    >>> drive = cd.scenes.spinning_ring()
+    >>> run = cd.simulate(drive, until=0.01, record=["link_tension"])
+    >>> run["link_tension"].dims
+    ('time', 'link')
+
+A `Drive` is read from a scene file (`load`), from text, from a dict or from `scenes`; `simulate`
+moves it and returns an `xarray.Dataset` with names, units and provenance. Quantities are in SI
+units throughout; scene files may carry units of their own. Counter-clockwise angles, tensions and
+penetrations are positive.
+"""
+
+from chaindrive import errors, kinematics, plot, scenes
+from chaindrive._core import __version__
+from chaindrive.channels import channels
+from chaindrive.drive import Drive, load, schema
+from chaindrive.errors import (
+    AssemblyError,
+    ChaindriveError,
+    IntegrationError,
+    ParameterError,
+    SceneError,
+    SimulationError,
+    WriteError,
+)
+from chaindrive.law import Law, law
+from chaindrive.simulation import simulate
+
+__all__ = [
+    "AssemblyError",
+    "ChaindriveError",
+    "Drive",
+    "IntegrationError",
+    "Law",
+    "ParameterError",
+    "SceneError",
+    "SimulationError",
+    "WriteError",
+    "__version__",
+    "channels",
+    "errors",
+    "kinematics",
+    "law",
+    "load",
+    "plot",
+    "scenes",
+    "schema",
+    "simulate",
+]

@@ -1,0 +1,42 @@
+"""What a run can record."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from chaindrive import _core
+
+__all__ = ["Channel", "channels"]
+
+
+class Channel(NamedTuple):
+    """A quantity that can be recorded."""
+
+    unit: str
+    """SI unit."""
+    dims: tuple[str, ...]
+    """Dimensions in a dataset, ``time`` first."""
+    description: str
+    """One line of description."""
+    default: bool
+    """Whether a run records it unless told otherwise."""
+
+
+def channels() -> dict[str, Channel]:
+    """Everything a run can record, by name.
+
+    Returns
+    -------
+    dict of str to Channel
+        Unit, dimensions and description of every channel.
+
+    Examples
+    --------
+    >>> import chaindrive as cd
+    >>> cd.channels()["span_tension"].unit
+    'N'
+    """
+    return {
+        name: Channel(unit, ("time",) if dim is None else ("time", dim), description, default)
+        for name, unit, dim, description, default in _core.channels()
+    }

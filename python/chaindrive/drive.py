@@ -1,0 +1,305 @@
+"""Drives: read, built, changed, described."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Callable, Mapping
+from os import PathLike, fspath
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+import xarray as xr
+
+from chaindrive import _core
+from chaindrive.errors import ParameterError
+from chaindrive.law import Law
+
+if TYPE_CHECKING:
+    from typing import Self
+
+__all__ = ["Drive", "load", "schema"]
+
+
+class Drive:
+    """A chain drive: a scene that was checked, ready to be simulated.
+
+    Made by `load`, `Drive.from_toml`, `Drive.from_dict` or one of `chaindrive.scenes`; immutable.
+    Drives compare by their text and can be pickled.
+
+    Examples
+    --------
+    >>> import chaindrive as cd
+    >>> drive = cd.scenes.marine_engine()
+    >>> drive.links
+    122
+    >>> drive.replace({"sprockets.crank.motion.speed": "-80 rpm"}).links
+    122
+    """
+
+    __slots__ = ("_inner",)
+    _inner: _core.Drive
+
+    def __init__(self) -> None:
+        raise TypeError("use chaindrive.load, Drive.from_toml, Drive.from_dict or a preset")
+
+    @classmethod
+    def _of(cls, core: _core.Drive) -> Self:
+        drive = cls.__new__(cls)
+        object.__setattr__(drive, "_inner", core)
+        return drive
+
+    @classmethod
+    def from_toml(cls, text: str, name: str = "scene") -> Self:
+        """Read a scene from TOML.
+
+        Parameters
+        ----------
+        text
+            The scene.
+        name
+            What messages call it.
+
+        Raises
+        ------
+        SceneError
+            With everything that is wrong, each with its line.
+        """
+        return cls._of(_core.Drive.from_toml(text, name))
+
+    @classmethod
+    def from_dict(cls, scene: Mapping[str, Any], name: str = "scene") -> Self:
+        """Build a scene from a dict with the keys of a scene file.
+
+        Parameters
+        ----------
+        scene
+            Numbers are in SI units, texts may carry a unit (``"88.9 mm"``). NumPy arrays and
+            scalars stand for lists and numbers, so that a measured motion or profile can be put
+            in as it is.
+        name
+            What messages call it.
+
+        Raises
+        ------
+        SceneError
+            With everything that is wrong, each with its path.
+        """
+        return cls._of(_core.Drive.from_text(_json(scene, name), name))
+
+    def replace(self, changes: Mapping[str, Any]) -> Drive:
+        """Return a new drive with some values of its scene replaced.
+
+        Parameters
+        ----------
+        changes
+            Values by dotted path; entries of lists by name or index: ``"chain.links"``,
+            ``"sprockets.camshaft.inertia"``, ``"sprockets[1].load"``. Values as in `from_dict`.
+
+        Raises
+        ------
+        SceneError
+            A path leads nowhere, or the new scene is not a drive.
+        """
+        pairs = [(path, _json(value, path)) for path, value in changes.items()]
+        return Drive._of(self._inner.replace(pairs))
+
+    @property
+    def text(self) -> str:
+        """The text that reproduces the drive, in TOML or JSON as it was written."""
+        return self._inner.text
+
+    @property
+    def name(self) -> str:
+        """What messages call the drive: its file or preset."""
+        return self._inner.name
+
+    @property
+    def title(self) -> str:
+        """What the scene shows, in a line; may be empty."""
+        return self._inner.title
+
+    @property
+    def links(self) -> int:
+        """Number of links."""
+        return self._inner.links
+
+    @property
+    def sprockets(self) -> list[str]:
+        """Names of the sprockets."""
+        return self._inner.sprockets
+
+    @property
+    def guides(self) -> list[str]:
+        """Names of the guides."""
+        return self._inner.guides
+
+    @property
+    def tensioners(self) -> list[str]:
+        """Names of the tensioners."""
+        return self._inner.tensioners
+
+    @property
+    def run_defaults(self) -> dict[str, Any]:
+        """What `simulate` does unless told otherwise: until, every, method, step and record."""
+        return self._inner.run_defaults()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the scene as a dict, as it was written: quantities keep their units."""
+        is_json = self.text.lstrip("\ufeff \t\r\n").startswith("{")
+        read = json.loads if is_json else tomllib.loads
+        return cast("dict[str, Any]", read(self.text.removeprefix("\ufeff")))
+
+    def describe(self) -> Description:
+        """Describe what will be simulated: route, statics, model, time scales, cost.
+
+        Returns
+        -------
+        Description
+            A dict of the facts in SI units that prints as a text. The cost is measured by a few
+            hundred steps of the run that the scene suggests.
+
+        Raises
+        ------
+        AssemblyError
+            The drive does not close or settle.
+        """
+        text, facts = self._inner.describe()
+        return Description(json.loads(facts), text)
+
+    def statics(self) -> xr.Dataset:
+        """Return the static states on the way to the start of a run.
+
+        Returns
+        -------
+        xarray.Dataset
+            ``link_tension`` (stage, link) and ``span_tension`` (stage, span) [N], and the
+            number of closed ``contacts`` (stage, sprocket). The stages are those the drive has
+            of ``pretension``, ``gravity`` and ``load``; none when it starts without settling.
+
+        Raises
+        ------
+        AssemblyError
+            The drive does not close or settle.
+        """
+        stages = self._inner.statics()
+        facts = self.describe()
+        spans = [span["name"] for span in facts["spans"]]
+        span_tensions = [stage["span_tensions"] for stage in facts["statics"]]
+        count = len(stages)
+        shape = (count, self.links)
+        tensions = np.reshape([tension for _, tension, _ in stages], shape)
+        contacts = np.reshape([closed for *_, closed in stages], (count, len(self.sprockets)))
+        force = {"units": "N"}
+        return xr.Dataset(
+            {
+                "link_tension": (
+                    ("stage", "link"),
+                    tensions,
+                    force | {"long_name": "static tension of every link"},
+                ),
+                "span_tension": (
+                    ("stage", "span"),
+                    np.reshape(np.asarray(span_tensions, dtype=float), (count, len(spans))),
+                    force | {"long_name": "mean static tension of every span"},
+                ),
+                "contacts": (
+                    ("stage", "sprocket"),
+                    contacts,
+                    {"units": "1", "long_name": "number of closed contacts on the sprocket"},
+                ),
+            },
+            coords={
+                "stage": [stage for stage, *_ in stages],
+                "link": np.arange(self.links),
+                "span": spans,
+                "sprocket": self.sprockets,
+            },
+            attrs={"scene": self.text},
+        )
+
+    def law(self, body: str) -> Law:
+        """Return the contact law of a sprocket or guide, by name.
+
+        Raises
+        ------
+        KeyError
+            No sprocket or guide has this name.
+        """
+        return Law._of(self._inner.law(body))
+
+    def __repr__(self) -> str:
+        bodies = ", ".join([*self.sprockets, *self.guides, *self.tensioners]) or "nothing around it"
+        return f"<chaindrive.Drive {self.name!r}: {self.links} links; {bodies}>"
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Drive) and (self.name, self.text) == (other.name, other.text)
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.text))
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"a Drive does not change; see Drive.replace for {name!r}")
+
+    def __reduce__(self) -> tuple[Callable[[str, str], Drive], tuple[str, str]]:
+        return _from_text, (self.text, self.name)
+
+
+class Description(dict[str, Any]):
+    """Facts about a drive in SI units; prints as a text."""
+
+    def __init__(self, facts: Mapping[str, Any], text: str) -> None:
+        super().__init__(facts)
+        self._text = text
+
+    def __str__(self) -> str:
+        return self._text
+
+    __repr__ = __str__
+
+
+def load(path: str | PathLike[str]) -> Drive:
+    """Read a scene file, TOML or JSON.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Returns
+    -------
+    Drive
+
+    Raises
+    ------
+    SceneError
+        The file cannot be read, or with everything that is wrong in it.
+    """
+    return Drive._of(_core.Drive.read(fspath(path)))
+
+
+def schema() -> dict[str, Any]:
+    """Return the JSON Schema of scene files (draft 2020-12), for editors and programs."""
+    return cast("dict[str, Any]", json.loads(_core.schema()))
+
+
+def _from_text(text: str, name: str) -> Drive:
+    return Drive._of(_core.Drive.from_text(text, name))
+
+
+def _json(value: Any, path: str) -> str:
+    try:
+        return json.dumps(value, default=_plain, allow_nan=False)
+    except (TypeError, ValueError) as error:
+        hint = "a number, text, truth value, list, dict or NumPy array of finite numbers"
+        raise ParameterError(f"{path}: {error}", path, hint) from error
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    if isinstance(value, xr.DataArray):
+        return value.to_numpy().tolist()
+    if isinstance(value, PathLike):
+        return fspath(value)
+    raise TypeError(f"{type(value).__name__} has no place in a scene")

@@ -1,0 +1,108 @@
+"""What can go wrong, as exceptions under `ChaindriveError`.
+
+Every exception carries `path`, the place it speaks of, and `hint`, what to try, where they are
+known; otherwise they are None.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+__all__ = [
+    "AssemblyError",
+    "ChaindriveError",
+    "IntegrationError",
+    "ParameterError",
+    "Problem",
+    "SceneError",
+    "SimulationError",
+    "WriteError",
+]
+
+
+class Problem(NamedTuple):
+    """One thing to mend in a scene."""
+
+    path: str
+    """Place in the scene, such as ``sprockets[1].teeth``; empty for the text as a whole."""
+    line: int | None
+    """Line of the text, counted from 1; None in JSON, which carries no lines."""
+    message: str
+    """What is wrong, with the offending value."""
+    hint: str | None
+    """What is allowed, or what to try."""
+
+
+class ChaindriveError(Exception):
+    """Anything this package refuses or fails to do.
+
+    Attributes
+    ----------
+    path : str or None
+        The place: a path in a scene, a parameter, a file.
+    hint : str or None
+        What is allowed, or what to try.
+    """
+
+    path: str | None
+    hint: str | None
+
+    def __init__(self, message: str, path: str | None = None, hint: str | None = None) -> None:
+        super().__init__(message)
+        self.path = path
+        self.hint = hint
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+class SceneError(ChaindriveError, ValueError):
+    """A text is not a scene, or a scene not a drive.
+
+    Attributes
+    ----------
+    problems : list of Problem
+        Everything that was found, in the order of the text; at least one.
+    source : str or None
+        File, preset or whatever the text was called.
+    path, hint : str or None
+        Those of the first problem.
+    """
+
+    problems: list[Problem]
+    source: str | None
+
+    def __init__(
+        self,
+        message: str,
+        problems: Iterable[tuple[str, int | None, str, str | None]] = (),
+        source: str | None = None,
+    ) -> None:
+        self.problems = [Problem(*problem) for problem in problems]
+        self.source = source
+        first = self.problems[0] if self.problems else Problem("", None, message, None)
+        super().__init__(message, first.path, first.hint)
+
+
+class ParameterError(ChaindriveError, ValueError):
+    """An argument is outside its range; `path` names it, `hint` says what is allowed."""
+
+
+class SimulationError(ChaindriveError, RuntimeError):
+    """A simulation could not start or go on."""
+
+
+class AssemblyError(SimulationError):
+    """A valid drive could not be brought into its initial state: it does not close or settle."""
+
+
+class IntegrationError(SimulationError):
+    """The time stepping failed: an unstable step, or a motion that ceased to be finite."""
+
+
+class WriteError(ChaindriveError, OSError):
+    """Results could not be written; `path` is the file."""
+
+    def __init__(self, message: str, path: object = None, hint: str | None = None) -> None:
+        super().__init__(message, None if path is None else str(path), hint)

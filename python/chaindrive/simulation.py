@@ -1,0 +1,194 @@
+"""Runs: a drive in, a labelled dataset out."""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from collections.abc import Callable, Iterable
+from os import PathLike, fspath
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from chaindrive import _core
+from chaindrive.channels import channels
+from chaindrive.drive import Drive
+
+__all__ = ["simulate"]
+
+
+def simulate(
+    drive: Drive,
+    *,
+    until: float | None = None,
+    every: float | None = None,
+    record: str | Iterable[str] | None = None,
+    method: str | None = None,
+    step: float | None = None,
+    tolerance: float | None = None,
+    onset_depth: float | None = None,
+    output: str | PathLike[str] | None = None,
+    overwrite: bool = False,
+    progress: bool | Callable[[float], object] = False,
+) -> xr.Dataset:
+    """Simulate a drive and return what was recorded.
+
+    The interpreter is free for other threads meanwhile, and Ctrl-C stops the run.
+
+    Parameters
+    ----------
+    drive
+        What to simulate.
+    until
+        End of the run [s]. This and the next four come from the scene when absent.
+    every
+        Interval between samples [s]. Samples are interpolated: more of them do not change the
+        motion.
+    record
+        Names of channels, see `channels`; ``"all"`` for all of them.
+    method
+        ``"verlet"``, ``"rk4"`` or ``"dormand-prince"``.
+    step
+        Step of the fixed-step methods, longest step of the adaptive one [s]; chosen from the
+        stiffest mode when neither the scene nor the caller gives it.
+    tolerance
+        Relative tolerance of the adaptive method [–].
+    onset_depth
+        Deepest penetration at which a contact may begin [m]: deeper steps are rejected and
+        shortened. Absent: contacts begin wherever a step lands.
+    output
+        Zarr store to stream the recording into, ``"run.zarr"``. It can be opened while the run
+        goes on; memory stays bounded, and the dataset returned reads from the store. Takes the
+        extra ``zarr``.
+    overwrite
+        Whether an earlier result at `output` may be replaced.
+    progress
+        True for a line on stderr, or a function called with the share done, 0 to 1.
+
+    Returns
+    -------
+    xarray.Dataset
+        One variable a channel, (time,) or (time, labels), with ``units`` and ``long_name``. The
+        attributes tell how it came about: ``scene`` (a text that reproduces the drive),
+        ``chaindrive_version``, ``method``, ``step``, counts of steps, rejections and evaluations,
+        ``energy_supplied`` and ``energy_residual_largest`` [J], ``wall_time`` [s],
+        ``real_time_factor``, ``ns_per_link_step``, and a ``summary`` to print.
+
+    Raises
+    ------
+    ParameterError
+        A setting out of range or a channel that does not exist.
+    AssemblyError
+        The drive does not close or settle.
+    IntegrationError
+        The step is unstable, or the motion ceases to be finite.
+    WriteError
+        The output exists or cannot be written.
+
+    Examples
+    --------
+    >>> import chaindrive as cd
+    >>> run = cd.simulate(cd.scenes.spinning_ring(), until=2e-3, every=1e-3, record="link_tension")
+    >>> run["link_tension"].shape
+    (3, 20)
+    """
+    defaults = drive.run_defaults
+    if output is not None:
+        _require_zarr()
+    names = _names(defaults["record"] if record is None else record)
+    settings: dict[str, Any] = {
+        "until": defaults["until"] if until is None else until,
+        "every": defaults["every"] if every is None else every,
+        "method": defaults["method"] if method is None else method,
+        # The step of the scene goes with the method of the scene.
+        "step": defaults["step"] if step is None and method is None else step,
+        "tolerance": defaults["tolerance"] if tolerance is None else tolerance,
+    }
+    start = time.perf_counter()
+    line = _Line()
+    tell = progress if callable(progress) else line if progress else None
+    try:
+        result = _core.simulate(
+            drive._inner,
+            names,
+            **settings,
+            onset_depth=onset_depth,
+            output=None if output is None else fspath(output),
+            overwrite=overwrite,
+            progress=tell,
+        )
+    finally:
+        line.close()
+    attributes = {
+        "title": drive.title,
+        "format": "chaindrive",
+        "chaindrive_version": _core.__version__,
+        "scene_name": drive.name,
+        "scene": drive.text,
+        "until": settings["until"],
+        "every": settings["every"],
+        "method": settings["method"],
+        **result["attributes"],
+        "wall_time": time.perf_counter() - start,
+    }
+    if output is not None:
+        stored: xr.Dataset = xr.open_zarr(fspath(output), chunks=None)
+        return stored.assign_attrs(stored.attrs | attributes)
+    return _dataset(result, attributes)
+
+
+def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:
+    known = channels()
+    variables = {}
+    for name, values in result["columns"].items():
+        about = {"units": known[name].unit, "long_name": known[name].description}
+        variables[name] = (known[name].dims, values, about)
+    coordinates: dict[str, Any] = {
+        dim: np.arange(labels) if isinstance(labels, int) else np.asarray(labels, dtype=np.str_)
+        for dim, labels in result["labels"].items()
+    }
+    coordinates["time"] = ("time", result["time"], {"units": "s", "long_name": "time"})
+    # Infinity has no place in files; it stands for the least of no steps.
+    finite = {
+        name: value
+        for name, value in attributes.items()
+        if not isinstance(value, float) or math.isfinite(value)
+    }
+    return xr.Dataset(variables, coords=coordinates, attrs=finite)
+
+
+def _names(record: str | Iterable[str]) -> list[str]:
+    if record == "all":
+        return list(channels())
+    names = [record] if isinstance(record, str) else list(record)
+    return list(dict.fromkeys(names))
+
+
+def _require_zarr() -> None:
+    try:
+        import zarr  # noqa: F401
+    except ImportError as error:
+        message = "`output` takes the package zarr: pip install 'chaindrive[zarr]'"
+        raise ImportError(message) from error
+
+
+class _Line:
+    """One line on stderr, rewritten in place; silent when stderr is not a terminal."""
+
+    def __init__(self) -> None:
+        self._visible = sys.stderr.isatty()
+        self._start = time.perf_counter()
+        self._begun = False
+
+    def __call__(self, share: float) -> None:
+        if self._visible:
+            self._begun = True
+            elapsed = time.perf_counter() - self._start
+            sys.stderr.write(f"\r{share:6.1%}  {elapsed:6.1f} s")
+            sys.stderr.flush()
+
+    def close(self) -> None:
+        if self._begun:
+            sys.stderr.write("\n")

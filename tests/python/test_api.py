@@ -1,0 +1,196 @@
+"""The public surface: drives from everywhere, changed, described, sent around, drawn."""
+
+import copy
+import json
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import chaindrive as cd
+
+TWO_SPROCKETS = {
+    "title": "Two sprockets",
+    "chain": {
+        "pitch": "25.4 mm",
+        "links": 78,
+        "mass": "68.8 g",
+        "stiffness": "161 MN/m",
+        "roller_diameter": "15.88 mm",
+    },
+    "sprockets": [
+        {
+            "name": "driver",
+            "teeth": 19,
+            "centre": ["0 mm", "0 mm"],
+            "motion": {"kind": "constant", "speed": "300 rpm"},
+        },
+        {
+            "name": "driven",
+            "teeth": 19,
+            "centre": ["749.3 mm", "0 mm"],
+            "inertia": "0.05 kg m^2",
+            "load": [{"kind": "constant", "torque": "-40 N m"}],
+        },
+    ],
+}
+
+
+def test_all_names_are_there():
+    for name in cd.__all__:
+        assert getattr(cd, name) is not None
+
+
+@pytest.mark.parametrize("name", cd.scenes.presets())
+def test_every_preset_has_a_function(name):
+    preset = getattr(cd.scenes, name)
+    drive = preset()
+    assert name in dir(cd.scenes)
+    assert drive.name == name
+    assert drive.title
+    assert name in repr(drive)
+    assert cd.scenes.presets()[name] in preset.__doc__
+    assert drive.to_dict()["chain"]["links"] == drive.links
+
+
+def test_a_file_reads_as_its_text(tmp_path):
+    text = cd.scenes.industrial_16b().text
+    file = tmp_path / "drive.toml"
+    file.write_text(text, encoding="utf-8")
+    assert cd.load(file).text == text
+    assert cd.load(str(file)).text == cd.Drive.from_toml(text).text
+
+
+def test_a_dict_is_a_scene():
+    drive = cd.Drive.from_dict(TWO_SPROCKETS)
+    assert drive.sprockets == ["driver", "driven"]
+    assert drive.to_dict() == TWO_SPROCKETS
+    assert drive.replace({"chain.links": 80}).to_dict()["chain"]["links"] == 80
+
+
+def test_replace_makes_another_drive():
+    drive = cd.scenes.marine_engine()
+    other = drive.replace({"sprockets.crank.motion.speed": "-80 rpm", "route.pretension": 20e3})
+    assert drive.to_dict()["route"]["pretension"] == "15 kN"
+    assert other.to_dict()["route"]["pretension"] == 20e3
+    assert other.to_dict()["sprockets"][0]["motion"]["speed"] == "-80 rpm"
+    assert other != drive
+    with pytest.raises(AttributeError):
+        drive.links = 3
+
+
+def test_arrays_stand_for_lists():
+    times = np.linspace(0.0, 1.0, 11)
+    motion = {"kind": "table", "times": times, "values": np.float32(30.0) * times**2}
+    drive = cd.Drive.from_dict(TWO_SPROCKETS).replace({"sprockets.driver.motion": motion})
+    assert drive.to_dict()["sprockets"][0]["motion"]["times"] == times.tolist()
+    toml = cd.scenes.industrial_16b()
+    assert toml.replace({"chain.links": np.int64(toml.links)}).links == toml.links
+
+
+def test_drives_travel():
+    drive = cd.scenes.timing_drive()
+    assert pickle.loads(pickle.dumps(drive)) == drive
+    assert copy.deepcopy(drive) == drive
+    assert hash(copy.copy(drive)) == hash(drive)
+
+
+def test_description_is_a_dict_and_a_text():
+    description = cd.scenes.marine_engine().describe()
+    assert description["chain"]["links"] == 122
+    assert "crank" in str(description)
+    json.dumps(description)
+
+
+def test_schema_is_a_schema():
+    assert "chain" in cd.schema()["properties"]
+
+
+def test_defaults_come_from_the_scene():
+    run = cd.simulate(cd.scenes.spinning_ring())
+    assert run.attrs["until"] == 0.05
+    assert run.sizes["time"] == 501
+
+
+def test_progress_goes_from_nothing_to_one():
+    shares = []
+    cd.simulate(cd.scenes.marine_engine(), until=0.02, every=1e-4, progress=shares.append)
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
+
+
+def test_an_exception_in_progress_stops_the_run():
+    def refuse(share):
+        raise LookupError(share)
+
+    with pytest.raises(LookupError):
+        cd.simulate(cd.scenes.spinning_ring(), progress=refuse)
+
+
+def test_other_threads_go_on_during_a_run():
+    counted = 0
+    done = threading.Event()
+
+    def simulate():
+        cd.simulate(cd.scenes.marine_engine(), until=0.1, every=0.05)
+        done.set()
+
+    thread = threading.Thread(target=simulate)
+    thread.start()
+    while not done.is_set():
+        counted += 1
+        time.sleep(1e-3)
+    thread.join()
+    assert counted > 10
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_ctrl_c_stops_a_run():
+    code = (
+        "import chaindrive as cd\n"
+        "drive = cd.scenes.marine_engine()\n"
+        "print('ready', flush=True)\n"
+        "cd.simulate(drive, until=1e5, every=1e-3, record='energy_residual')\n"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout.readline() == "ready\n"
+        time.sleep(1.0)
+        process.send_signal(signal.SIGINT)
+        _, complaint = process.communicate(timeout=5.0)
+    assert "KeyboardInterrupt" in complaint
+
+
+def test_plots_draw(tmp_path):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    from matplotlib import pyplot as plt
+
+    drive = cd.scenes.marine_engine()
+    channels = ["span_tension", "link_tension", "roller_x", "roller_y"]
+    run = cd.simulate(drive, until=4e-3, every=1e-3, record=channels)
+    ax = cd.plot.layout(drive)
+    assert {text.get_text() for text in ax.texts} >= {"crank", "camshaft", "tensioner", "idler"}
+    assert len(cd.plot.tension(run).lines) == 4
+    assert "0.002" in cd.plot.frame(run, 0.0021).get_title()
+    for number in plt.get_fignums():
+        plt.figure(number).savefig(tmp_path / f"{number}.png")
+    plt.close("all")
+    with pytest.raises(KeyError, match="roller_x"):
+        cd.plot.frame(run.drop_vars("roller_x"), 0.0)
+
+
+def test_layout_puts_rollers_into_gaps():
+    drawing = cd.scenes.marine_engine()._inner.drawing(True)
+    crank = drawing["sprockets"]["crank"]
+    turn = cd.plot._turn(drawing["rollers"], crank["centre"], crank, drawing["pitch"])
+    x, y = (drawing["rollers"] - crank["centre"]).T
+    seated = np.abs(np.hypot(x, y) - crank["pitch_radius"]) < 1e-3
+    phase = crank["teeth"] * (np.arctan2(y, x)[seated] - np.pi / 2 - turn) / (2 * np.pi)
+    np.testing.assert_allclose(phase, np.round(phase), atol=0.02)

@@ -1,0 +1,64 @@
+"""The command that comes with the package, and the example scripts."""
+
+import os
+import subprocess
+import sys
+import sysconfig
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+ROOT = Path(__file__).resolve().parents[2]
+COMMAND = Path(sysconfig.get_path("scripts")) / "chaindrive"
+
+
+def run(*arguments, **settings):
+    return subprocess.run(
+        [str(argument) for argument in arguments],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+        **settings,
+    )
+
+
+@pytest.mark.parametrize("command", [[COMMAND], [sys.executable, "-m", "chaindrive"]])
+def test_help_and_version(command):
+    told = run(*command, "--version")
+    assert told.returncode == 0
+    assert told.stdout.startswith("chaindrive ")
+    assert "run" in run(*command, "--help").stdout
+
+
+def test_check_and_its_exit_codes():
+    assert run(COMMAND, "check", "spinning_ring").returncode == 0
+    wrong = run(COMMAND, "check", "spining_ring")
+    assert wrong.returncode != 0
+    assert "spinning_ring" in wrong.stderr
+
+
+def test_run_writes_a_store(tmp_path):
+    pytest.importorskip("zarr")
+    store = tmp_path / "ring.zarr"
+    done = run(COMMAND, "run", "spinning_ring", "--until", "2 ms", "--output", store)
+    assert done.returncode == 0, done.stderr
+    assert xr.open_zarr(store, chunks=None).sizes["time"] > 1
+
+
+@pytest.mark.parametrize("script", sorted((ROOT / "examples").glob("*.py")), ids=lambda p: p.stem)
+def test_examples_run(script, tmp_path):
+    environment = os.environ | {"MPLBACKEND": "Agg"}
+    done = run(
+        sys.executable,
+        script,
+        "--until",
+        "0.01",
+        "--results",
+        tmp_path,
+        cwd=tmp_path,
+        env=environment,
+    )
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / f"{script.stem}.png").stat().st_size > 10_000

@@ -1,0 +1,140 @@
+"""Datasets: dimensions, units, labels, provenance, and numbers that are known."""
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import chaindrive as cd
+
+# The ring of the scene, in SI units.
+LINKS, PITCH, MASS, STIFFNESS, SPEED = 20, 12.7e-3, 8.89e-3, 100e3, 400.0
+
+
+@pytest.fixture(scope="module")
+def marine():
+    return cd.simulate(cd.scenes.marine_engine(), until=5e-3, every=1e-3, record="all")
+
+
+def test_ring_is_stretched_by_its_rotation():
+    """T = k (l − p) with l = k p / (k − m ω² / (4 sin²(π/N)))."""
+    length = (
+        STIFFNESS * PITCH / (STIFFNESS - MASS * SPEED**2 / (4.0 * math.sin(math.pi / LINKS) ** 2))
+    )
+    expected = STIFFNESS * (length - PITCH)
+    run = cd.simulate(
+        cd.scenes.spinning_ring(), record="link_tension", every=1e-3, method="rk4", step=1e-6
+    )
+    np.testing.assert_allclose(run["link_tension"], expected, rtol=1e-9)
+
+
+@pytest.mark.parametrize("method", ["verlet", "rk4", "dormand-prince"])
+def test_every_method_keeps_the_ring_turning(method):
+    channels = ["roller_x", "roller_y", "energy_residual"]
+    run = cd.simulate(
+        cd.scenes.spinning_ring(), until=5e-3, every=1e-3, record=channels, method=method
+    )
+    radius = np.hypot(run["roller_x"], run["roller_y"])
+    np.testing.assert_allclose(radius, float(radius[0, 0]), rtol=1e-3)
+    assert run.attrs["method"] == method
+
+
+def test_every_channel_is_recorded_with_its_dimensions_and_unit(marine):
+    for name, channel in cd.channels().items():
+        assert marine[name].dims == channel.dims
+        assert marine[name].attrs["units"] == channel.unit
+        assert marine[name].attrs["long_name"] == channel.description
+        assert marine[name].dtype == np.float64
+    assert set(marine.data_vars) == set(cd.channels())
+
+
+def test_coordinates_carry_names(marine):
+    assert list(marine["sprocket"].to_numpy()) == ["crank", "camshaft", "tensioner", "idler"]
+    assert marine["span"].to_numpy()[0] == "crank-camshaft"
+    assert list(marine["link"].to_numpy()) == list(range(122))
+    assert marine["time"].attrs == {"units": "s", "long_name": "time"}
+    np.testing.assert_array_equal(marine["time"], np.arange(6) * 1e-3)
+    assert float(marine["span_tension"].sel(span="idler-crank", time=0.0)) > 0.0
+
+
+def test_arrays_are_contiguous_and_writable(marine):
+    tension = marine["link_tension"].to_numpy()
+    assert tension.flags.c_contiguous
+    assert tension.flags.writeable
+
+
+def test_default_channels_are_those_of_the_scene():
+    run = cd.simulate(cd.scenes.marine_engine(), until=1e-3, every=1e-3)
+    defaults = cd.scenes.marine_engine().run_defaults["record"]
+    assert list(run.data_vars) == defaults
+    assert "span_tension" in run
+
+
+def test_provenance_reproduces_the_run():
+    drive = cd.scenes.marine_engine().replace({"sprockets.crank.motion.speed": "-100 rpm"})
+    run = cd.simulate(drive, until=2e-3, every=1e-3, record="link_tension")
+    story = run.attrs
+    assert story["chaindrive_version"] == cd.__version__
+    assert story["title"] == drive.title
+    assert story["steps"] > 0
+    assert story["step"] > 0.0
+    for name in ("real_time_factor", "ns_per_link_step", "wall_time", "stepping_time"):
+        assert story[name] > 0.0
+    assert math.isfinite(story["energy_supplied"])
+    assert "span tension" in story["summary"]
+    again = cd.simulate(
+        cd.Drive.from_toml(story["scene"]),
+        until=story["until"],
+        every=story["every"],
+        record="link_tension",
+        method=story["method"],
+    )
+    xr.testing.assert_identical(again["link_tension"], run["link_tension"])
+
+
+def test_energy_is_accounted_for(marine):
+    residual = np.abs(marine["energy_residual"]).max()
+    assert float(residual) < 1e-3 * float(marine["energy_kinetic"][0])
+
+
+def test_statics_of_the_marine_engine():
+    drive = cd.scenes.marine_engine()
+    statics = drive.statics()
+    assert list(statics["stage"].to_numpy()) == ["pretension", "gravity", "load"]
+    assert statics["link_tension"].sizes == {"stage": 3, "link": 122}
+    assert statics["link_tension"].attrs["units"] == "N"
+    # Spans are means of link tensions.
+    last = statics.sel(stage="load")
+    assert last["span_tension"].min() >= last["link_tension"].min()
+    assert last["span_tension"].max() <= last["link_tension"].max()
+    run = cd.simulate(drive, until=1e-4, every=1e-4, record="span_tension")
+    np.testing.assert_allclose(run["span_tension"][0], last["span_tension"], rtol=1e-2)
+    assert statics["contacts"].sel(stage="load").min() > 0
+
+
+def test_a_drive_that_does_not_settle_has_no_statics():
+    assert cd.scenes.spinning_ring().statics().sizes["stage"] == 0
+
+
+def test_results_can_be_written_as_netcdf_attributes(marine):
+    for value in marine.attrs.values():
+        assert isinstance(value, str | int | float | list)
+
+
+def test_zarr_holds_what_memory_holds(tmp_path):
+    pytest.importorskip("zarr")
+    drive = cd.scenes.marine_engine()
+    settings = {"until": 5e-3, "every": 1e-3, "record": ["span_tension", "roller_x", "contacts"]}
+    memory = cd.simulate(drive, **settings)
+    disk = cd.simulate(drive, **settings, output=tmp_path / "run.zarr")
+    xr.testing.assert_equal(disk.load(), memory)
+    for name in memory.variables:
+        assert disk[name].attrs == memory[name].attrs, name
+    costs = {"wall_time", "stepping_time", "real_time_factor", "ns_per_link_step", "summary"}
+    for name in set(memory.attrs) - costs:
+        assert disk.attrs[name] == memory.attrs[name], name
+    with pytest.raises(cd.WriteError) as caught:
+        cd.simulate(drive, **settings, output=tmp_path / "run.zarr")
+    assert "overwrite" in caught.value.hint
+    cd.simulate(drive, **settings, output=tmp_path / "run.zarr", overwrite=True)
