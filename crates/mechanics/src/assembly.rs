@@ -11,6 +11,7 @@ use crate::drive::Layout;
 use crate::{AssemblyError, Drive, System};
 
 pub use relax::Statics;
+pub(crate) use relax::{Curvature, curvature};
 
 /// A drive ready to move.
 #[derive(Clone, Debug)]

@@ -4,6 +4,10 @@ use crate::DriveError;
 
 /// How the two ends of the chain are joined.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a drive holds one, and a box would show in every scene"
+)]
 pub enum Ends {
     /// The last link returns to roller 0: as many rollers as links.
     Closed,
@@ -64,6 +68,9 @@ pub struct Chain {
     /// How the ends are joined.
     pub ends: Ends,
 }
+
+/// Whether a value is in its range.
+type Range = fn(f64) -> bool;
 
 impl Chain {
     /// Number of links.
@@ -129,7 +136,6 @@ impl Chain {
                 "one value for every link (stiffness, damping) or roller (masses)",
             );
         }
-        type Range = fn(f64) -> bool;
         let arrays: [(&str, &[f64], Range, &'static str); 4] = [
             ("lengths", &self.lengths, |v| v > 0.0, "positive [m]"),
             ("stiffness", &self.stiffness, |v| v > 0.0, "positive [N/m]"),

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use chaindrive_geometry::{Point, Vector};
 
 use crate::drive::{
-    Adjust, GuideSupport, Layout, Parts, Rotation, Sprocket, Stop, Support, Surface,
+    Adjust, Fit, GuideSupport, Layout, Parts, Rotation, Sprocket, Stop, Support, Surface,
 };
 use crate::{DriveError, Ends};
 
@@ -247,48 +247,54 @@ fn layout_problems(parts: &Parts) -> Vec<DriveError> {
                 )
                 .err(),
             );
-            found.extend(
-                DriveError::require(
-                    fit.pretension >= 0.0 && fit.pretension.is_finite(),
-                    "route.pretension",
-                    fit.pretension,
-                    "not negative [N]",
-                )
-                .err(),
-            );
-            let within = match fit.adjust {
-                Adjust::Nothing => 1.0,
-                Adjust::Sprocket {
-                    sprocket, within, ..
-                } => {
-                    found.extend(reference(
-                        "route.adjust",
-                        "sprocket",
-                        sprocket,
-                        parts.sprockets.len(),
-                    ));
-                    within
-                }
-                Adjust::Tensioner { tensioner, within } => {
-                    found.extend(reference(
-                        "route.adjust",
-                        "tensioner",
-                        tensioner,
-                        parts.tensioners.len(),
-                    ));
-                    within
-                }
-            };
-            found.extend(
-                DriveError::require(
-                    within > 0.0 && within.is_finite(),
-                    "route.adjust.within",
-                    within,
-                    "positive",
-                )
-                .err(),
-            );
+            found.extend(fit_problems(fit, parts));
             found
         }
     }
+}
+
+fn fit_problems(fit: &Fit, parts: &Parts) -> Vec<DriveError> {
+    let mut found = Vec::new();
+    found.extend(
+        DriveError::require(
+            fit.pretension >= 0.0 && fit.pretension.is_finite(),
+            "route.pretension",
+            fit.pretension,
+            "not negative [N]",
+        )
+        .err(),
+    );
+    let within = match fit.adjust {
+        Adjust::Nothing => 1.0,
+        Adjust::Sprocket {
+            sprocket, within, ..
+        } => {
+            found.extend(reference(
+                "route.adjust",
+                "sprocket",
+                sprocket,
+                parts.sprockets.len(),
+            ));
+            within
+        }
+        Adjust::Tensioner { tensioner, within } => {
+            found.extend(reference(
+                "route.adjust",
+                "tensioner",
+                tensioner,
+                parts.tensioners.len(),
+            ));
+            within
+        }
+    };
+    found.extend(
+        DriveError::require(
+            within > 0.0 && within.is_finite(),
+            "route.adjust.within",
+            within,
+            "positive",
+        )
+        .err(),
+    );
+    found
 }

@@ -88,6 +88,12 @@ pub enum AssemblyError {
         iterations: usize,
     },
 
+    /// A linearisation was asked for away from equilibrium.
+    #[error(
+        "the modes need a static state, but forces are out of balance by {residual:.1e} of the chain tension; let the drive settle"
+    )]
+    NotStatic { residual: f64 },
+
     /// A guide cannot carry the kernel's search along its face.
     #[error("guide `{guide}`: {problem}")]
     Guide { guide: String, problem: String },

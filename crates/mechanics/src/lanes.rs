@@ -1,12 +1,14 @@
-//! Eight numbers at a time.
+//! Several numbers at a time, as many as the processor's registers hold.
 //!
-//! Plain arrays with inlined loops: compiled inside a dispatched function they become vector
-//! instructions of whatever width the processor has, and give the same bits on all of them,
-//! because no operation is fused or reordered.
+//! A kernel is written once, generic over [`Simd`], and compiled for every kind of processor;
+//! which one runs is decided when the system is built. No operation is fused, and sums are taken
+//! in a fixed order: the same machine gives the same bits.
 
 use std::ops::{Add, AddAssign, BitAnd, Mul, Neg, Sub};
 
-/// Number of lanes.
+use pulp::Simd;
+
+/// Largest number of lanes of any processor: what arrays are padded to.
 pub(crate) const LANES: usize = 8;
 
 /// `n` rounded up to whole lanes.
@@ -14,167 +16,174 @@ pub(crate) const fn padded(n: usize) -> usize {
     n.div_ceil(LANES) * LANES
 }
 
-/// Eight numbers.
+/// The processor's vector unit: makes lanes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Lane(pub(crate) [f64; LANES]);
+pub(crate) struct Wide<S: Simd>(pub(crate) S);
 
-/// Eight truth values, all bits set where true.
+/// Numbers side by side.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Mask([u64; LANES]);
+pub(crate) struct Lane<S: Simd> {
+    simd: S,
+    v: S::f64s,
+}
 
-impl Lane {
+/// Truth values side by side.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mask<S: Simd> {
+    simd: S,
+    m: S::m64s,
+}
+
+impl<S: Simd> Wide<S> {
+    /// Number of lanes of this processor; divides [`LANES`].
+    pub(crate) const COUNT: usize = S::F64_LANES;
+
     #[inline(always)]
-    pub(crate) fn splat(value: f64) -> Self {
-        Self([value; LANES])
+    fn lane(self, v: S::f64s) -> Lane<S> {
+        Lane { simd: self.0, v }
     }
 
-    /// The eight numbers from `start` on.
     #[inline(always)]
-    pub(crate) fn load(slice: &[f64], start: usize) -> Self {
-        let mut lane = [0.0; LANES];
-        lane.copy_from_slice(&slice[start..start + LANES]);
-        Self(lane)
+    pub(crate) fn splat(self, value: f64) -> Lane<S> {
+        self.lane(self.0.splat_f64s(value))
+    }
+
+    /// The numbers from `start` on.
+    #[inline(always)]
+    pub(crate) fn load(self, slice: &[f64], start: usize) -> Lane<S> {
+        let (whole, _) = S::as_simd_f64s(&slice[start..start + Self::COUNT]);
+        self.lane(whole[0])
+    }
+
+    /// True in the first `count` lanes.
+    #[inline(always)]
+    pub(crate) fn first(self, count: usize) -> Mask<S> {
+        const PLACES: [f64; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+        self.splat(count as f64).greater(self.load(&PLACES, 0))
+    }
+}
+
+impl<S: Simd> Lane<S> {
+    #[inline(always)]
+    fn with(self, v: S::f64s) -> Self {
+        Self { simd: self.simd, v }
     }
 
     #[inline(always)]
     pub(crate) fn store(self, slice: &mut [f64], start: usize) {
-        slice[start..start + LANES].copy_from_slice(&self.0);
-    }
-
-    #[inline(always)]
-    fn map(self, f: impl Fn(f64) -> f64) -> Self {
-        let mut out = self.0;
-        for value in &mut out {
-            *value = f(*value);
-        }
-        Self(out)
-    }
-
-    #[inline(always)]
-    fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        let mut out = self.0;
-        for (value, o) in out.iter_mut().zip(other.0) {
-            *value = f(*value, o);
-        }
-        Self(out)
+        let (whole, _) = S::as_mut_simd_f64s(&mut slice[start..start + Wide::<S>::COUNT]);
+        whole[0] = self.v;
     }
 
     #[inline(always)]
     pub(crate) fn sqrt(self) -> Self {
-        self.map(f64::sqrt)
+        self.with(self.simd.sqrt_f64s(self.v))
     }
 
     #[inline(always)]
     pub(crate) fn abs(self) -> Self {
-        self.map(f64::abs)
+        self.with(self.simd.abs_f64s(self.v))
     }
 
     #[inline(always)]
     pub(crate) fn recip(self) -> Self {
-        self.map(|v| 1.0 / v)
+        let one = self.simd.splat_f64s(1.0);
+        self.with(self.simd.div_f64s(one, self.v))
     }
 
     #[inline(always)]
     pub(crate) fn max(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a > b { a } else { b })
+        self.with(self.simd.max_f64s(self.v, other.v))
     }
 
     #[inline(always)]
     pub(crate) fn min(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a < b { a } else { b })
+        self.with(self.simd.min_f64s(self.v, other.v))
     }
 
     #[inline(always)]
-    pub(crate) fn greater(self, other: Self) -> Mask {
-        let mut mask = [0; LANES];
-        for i in 0..LANES {
-            mask[i] = if self.0[i] > other.0[i] { u64::MAX } else { 0 };
+    pub(crate) fn greater(self, other: Self) -> Mask<S> {
+        Mask {
+            simd: self.simd,
+            m: self.simd.greater_than_f64s(self.v, other.v),
         }
-        Mask(mask)
     }
 
-    /// Sum of the lanes, always in the same order.
+    /// Applies a function to one lane after the other.
+    #[inline(always)]
+    pub(crate) fn one_by_one(self, f: impl Fn(f64) -> f64) -> Self {
+        let mut numbers = [0.0; LANES];
+        self.store(&mut numbers, 0);
+        for value in &mut numbers[..Wide::<S>::COUNT] {
+            *value = f(*value);
+        }
+        Wide(self.simd).load(&numbers, 0)
+    }
+
+    /// Sum of the lanes.
     #[inline(always)]
     pub(crate) fn sum(self) -> f64 {
-        let [a, b, c, d, e, f, g, h] = self.0;
-        ((a + e) + (c + g)) + ((b + f) + (d + h))
+        self.simd.reduce_sum_f64s(self.v)
     }
 
     /// Largest lane.
     #[inline(always)]
     pub(crate) fn largest(self) -> f64 {
-        self.0
-            .iter()
-            .fold(f64::NEG_INFINITY, |m, &v| if v > m { v } else { m })
+        self.simd.reduce_max_f64s(self.v)
     }
 }
 
-impl Mask {
-    /// True in the first `count` lanes.
+impl<S: Simd> Mask<S> {
     #[inline(always)]
-    pub(crate) fn first(count: usize) -> Self {
-        let mut mask = [0; LANES];
-        for (i, value) in mask.iter_mut().enumerate() {
-            *value = if i < count { u64::MAX } else { 0 };
-        }
-        Self(mask)
-    }
-
-    #[inline(always)]
-    pub(crate) fn select(self, yes: Lane, no: Lane) -> Lane {
-        let mut out = no.0;
-        for i in 0..LANES {
-            out[i] = if self.0[i] != 0 { yes.0[i] } else { no.0[i] };
-        }
-        Lane(out)
+    pub(crate) fn select(self, yes: Lane<S>, no: Lane<S>) -> Lane<S> {
+        yes.with(self.simd.select_f64s(self.m, yes.v, no.v))
     }
 
     #[inline(always)]
     pub(crate) fn any(self) -> bool {
-        self.0.iter().fold(0, |any, &v| any | v) != 0
+        self.simd.first_true_m64s(self.m) < Wide::<S>::COUNT
     }
 }
 
-impl BitAnd for Mask {
+impl<S: Simd> BitAnd for Mask<S> {
     type Output = Self;
 
     #[inline(always)]
     fn bitand(self, other: Self) -> Self {
-        let mut out = self.0;
-        for i in 0..LANES {
-            out[i] &= other.0[i];
+        Self {
+            simd: self.simd,
+            m: self.simd.and_m64s(self.m, other.m),
         }
-        Self(out)
     }
 }
 
 macro_rules! elementwise {
-    ($trait:ident, $method:ident, $op:tt) => {
-        impl $trait for Lane {
+    ($trait:ident, $method:ident, $operation:ident) => {
+        impl<S: Simd> $trait for Lane<S> {
             type Output = Self;
 
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                self.zip(other, |a, b| a $op b)
+                self.with(self.simd.$operation(self.v, other.v))
             }
         }
     };
 }
 
-elementwise!(Add, add, +);
-elementwise!(Sub, sub, -);
-elementwise!(Mul, mul, *);
+elementwise!(Add, add, add_f64s);
+elementwise!(Sub, sub, sub_f64s);
+elementwise!(Mul, mul, mul_f64s);
 
-impl Neg for Lane {
+impl<S: Simd> Neg for Lane<S> {
     type Output = Self;
 
     #[inline(always)]
     fn neg(self) -> Self {
-        self.map(|v| -v)
+        self.with(self.simd.neg_f64s(self.v))
     }
 }
 
-impl AddAssign for Lane {
+impl<S: Simd> AddAssign for Lane<S> {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;

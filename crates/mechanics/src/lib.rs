@@ -24,6 +24,7 @@ mod energy;
 mod error;
 mod lanes;
 mod links;
+mod modes;
 mod motion;
 mod observe;
 mod profile;
@@ -39,6 +40,7 @@ pub use drive::{
 };
 pub use energy::{Energy, Flow, Store};
 pub use error::{AssemblyError, DriveError};
+pub use modes::{Mode, Modes};
 pub use motion::{Course, Harmonic, Motion, Table};
 pub use observe::Observation;
 pub use system::{Record, System};

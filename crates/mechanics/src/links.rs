@@ -1,7 +1,9 @@
 //! The forces of the links on the rollers.
 
+use pulp::Simd;
+
 use crate::Chain;
-use crate::lanes::{LANES, Lane, padded};
+use crate::lanes::{LANES, Wide, padded};
 use crate::system::Rollers;
 
 /// The links in flat arrays, padded to whole lanes with links of no stiffness.
@@ -59,26 +61,26 @@ impl Links {
     /// Sets the accelerations of the rollers to gravity and the links' pulls, and returns the
     /// power \[W\] lost in the dampers.
     #[inline(always)]
-    pub(crate) fn act(
+    pub(crate) fn act<S: Simd>(
         &self,
+        w: Wide<S>,
         rollers: &mut Rollers<'_>,
         pulls: &mut Pulls,
         gravity: [f64; 2],
     ) -> f64 {
-        let mut loss = Lane::splat(0.0);
-        for i in (0..self.rest.len()).step_by(LANES) {
-            let dx = Lane::load(rollers.x, i + 1) - Lane::load(rollers.x, i);
-            let dy = Lane::load(rollers.y, i + 1) - Lane::load(rollers.y, i);
-            let ux = Lane::load(rollers.vx, i + 1) - Lane::load(rollers.vx, i);
-            let uy = Lane::load(rollers.vy, i + 1) - Lane::load(rollers.vy, i);
+        let mut loss = w.splat(0.0);
+        for i in (0..self.rest.len()).step_by(Wide::<S>::COUNT) {
+            let dx = w.load(rollers.x, i + 1) - w.load(rollers.x, i);
+            let dy = w.load(rollers.y, i + 1) - w.load(rollers.y, i);
+            let ux = w.load(rollers.vx, i + 1) - w.load(rollers.vx, i);
+            let uy = w.load(rollers.vy, i + 1) - w.load(rollers.vy, i);
             let length = (dx * dx + dy * dy).sqrt();
             let inverse = length.recip();
             // ℓ̇ = d·u/ℓ
             let rate = (dx * ux + dy * uy) * inverse;
-            let drag = Lane::load(&self.damping, i) * rate;
+            let drag = w.load(&self.damping, i) * rate;
             // T = k (ℓ − p) + d ℓ̇
-            let tension =
-                Lane::load(&self.stiffness, i) * (length - Lane::load(&self.rest, i)) + drag;
+            let tension = w.load(&self.stiffness, i) * (length - w.load(&self.rest, i)) + drag;
             let scale = tension * inverse;
             (scale * dx).store(&mut pulls.x, i + 1);
             (scale * dy).store(&mut pulls.y, i + 1);
@@ -94,13 +96,13 @@ impl Links {
         } else {
             0.0
         };
-        for i in (0..self.rest.len()).step_by(LANES) {
+        for i in (0..self.rest.len()).step_by(Wide::<S>::COUNT) {
             // m a = T₊ u₊ − T₋ u₋ + m g
-            let inverse_mass = Lane::load(rollers.inverse_mass, i);
-            let fx = Lane::load(&pulls.x, i + 1) - Lane::load(&pulls.x, i);
-            let fy = Lane::load(&pulls.y, i + 1) - Lane::load(&pulls.y, i);
-            (fx * inverse_mass + Lane::splat(gravity[0])).store(rollers.ax, i);
-            (fy * inverse_mass + Lane::splat(gravity[1])).store(rollers.ay, i);
+            let inverse_mass = w.load(rollers.inverse_mass, i);
+            let fx = w.load(&pulls.x, i + 1) - w.load(&pulls.x, i);
+            let fy = w.load(&pulls.y, i + 1) - w.load(&pulls.y, i);
+            (fx * inverse_mass + w.splat(gravity[0])).store(rollers.ax, i);
+            (fy * inverse_mass + w.splat(gravity[1])).store(rollers.ay, i);
         }
         loss.sum()
     }

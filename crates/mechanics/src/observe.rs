@@ -115,7 +115,7 @@ impl System {
         }
         self.observe_sprockets(at, record, out);
         self.observe_spans(out);
-        self.observe_guides(record, out);
+        Self::observe_guides(record, out);
         self.observe_tensioners(at, out);
         out.energy = self.energy(at, flows, record);
     }
@@ -220,7 +220,7 @@ impl System {
             .map(|(_, k)| (seated[k], seated[(k + count - 1) % count]))
     }
 
-    fn observe_guides(&self, record: &Record, out: &mut Observation) {
+    fn observe_guides(record: &Record, out: &mut Observation) {
         out.guide_force_x.clear();
         out.guide_force_y.clear();
         for wrench in &record.rail_wrenches {

@@ -13,7 +13,7 @@ mod build;
 
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Continuity, Moment, SecondOrderSystem, Verdict};
-use pulp::{Arch, NullaryFnOnce};
+use pulp::{Arch, Simd, WithSimd};
 
 pub(crate) use bodies::{
     Anchor, Rail, RailContact, RailSupport, Slide, Wheel, WheelRotation, WheelSupport,
@@ -22,6 +22,7 @@ pub(crate) use build::Laid;
 
 use crate::contact::{Frame, Places, PlateTouch, Touch, Wrench};
 use crate::energy::Flow;
+use crate::lanes::Wide;
 use crate::links::{Links, Pulls};
 use crate::motion::Course;
 use crate::{End, Motion};
@@ -175,12 +176,20 @@ impl System {
     }
 
     #[inline(always)]
-    fn forces(&self, at: Moment<'_>, a: &mut [f64], rates: &mut [f64], record: &mut Record) {
+    fn forces<S: Simd>(
+        &self,
+        w: Wide<S>,
+        at: Moment<'_>,
+        a: &mut [f64],
+        rates: &mut [f64],
+        record: &mut Record,
+    ) {
         rates.fill(0.0);
         a[2 * self.stride..].fill(0.0);
         let mut rollers = self.view(at.q, at.v, a);
         let gravity = [self.gravity.x, self.gravity.y];
-        rates[Flow::LinkLoss as usize] = self.links.act(&mut rollers, &mut record.pulls, gravity);
+        rates[Flow::LinkLoss as usize] =
+            self.links.act(w, &mut rollers, &mut record.pulls, gravity);
         // One call of the kernel serves wheels and rails: it is inlined, and long.
         let wheels = self.wheels.len();
         for i in 0..wheels + self.rails.len() {
@@ -196,7 +205,7 @@ impl System {
                 let frame = rail.frame(at.t, at.q, at.v, &self.slides);
                 (frame, contacts, &mut record.circles[i - wheels])
             };
-            let wrench = contacts.act(&frame, &mut rollers, touch);
+            let wrench = contacts.act(w, &frame, &mut rollers, touch);
             let loss = if i < wheels {
                 Flow::ToothLoss
             } else {
@@ -468,13 +477,14 @@ struct Forces<'a> {
     record: &'a mut Record,
 }
 
-impl NullaryFnOnce for Forces<'_> {
+impl WithSimd for Forces<'_> {
     type Output = ();
 
     // A call that is not inlined would be compiled for the oldest processor only.
     #[inline(always)]
-    fn call(self) {
-        self.system.forces(self.at, self.a, self.rates, self.record);
+    fn with_simd<S: Simd>(self, simd: S) {
+        self.system
+            .forces(Wide(simd), self.at, self.a, self.rates, self.record);
     }
 }
 

@@ -12,7 +12,7 @@ mod contact;
 
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use nalgebra_sparse::factorization::CscCholesky;
 use nalgebra_sparse::{CooMatrix, CscMatrix};
 
@@ -67,14 +67,15 @@ pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Static
     };
     if taut {
         let found = newton.solve(q, at, 300);
-        *q = newton.accept(found, "pretension", &mut statics)?;
+        *q = Newton::accept(found, "pretension", &mut statics)?;
     }
     let stages: [(&'static str, bool); 2] = [
         ("gravity", system.gravity != Vector::zeros()),
         ("load", has_load(system)),
     ];
     for (stage, present) in stages {
-        if !present && !(stage == "load" && statics.is_empty()) {
+        let only = stage == "load" && statics.is_empty();
+        if !(present || only) {
             continue;
         }
         // A slack chain has no stiffness across itself until its weight is on it.
@@ -91,14 +92,14 @@ pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Static
             if found.residual < ACCEPTED {
                 share = next;
                 step *= 1.8;
-                *q = found.q.clone();
+                q.clone_from(&found.q);
                 if share >= 1.0 {
-                    newton.accept(found, stage, &mut statics)?;
+                    Newton::accept(found, stage, &mut statics)?;
                 }
             } else {
                 step *= 0.35;
                 if step < 1e-6 {
-                    newton.accept(found, stage, &mut statics)?;
+                    Newton::accept(found, stage, &mut statics)?;
                 }
             }
         }
@@ -115,6 +116,46 @@ pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Static
         }
     }
     Ok(statics)
+}
+
+/// Second derivatives of the energy at a state under full gravity and load.
+#[derive(Clone, Debug)]
+pub(crate) struct Curvature {
+    /// State entry of every row.
+    pub(crate) entries: Vec<usize>,
+    /// ∂²E/∂q², rows and columns as in `entries`.
+    pub(crate) hessian: DMatrix<f64>,
+    /// Largest force out of balance, relative to the largest link tension.
+    pub(crate) residual: f64,
+}
+
+/// The Hessian with which [`settle`] iterates, dense.
+pub(crate) fn curvature(system: &System, q: &[f64]) -> Curvature {
+    let unknowns = Unknowns::new(system);
+    let newton = Newton {
+        system,
+        unknowns: &unknowns,
+    };
+    let full = Load {
+        gravity: 1.0,
+        torque: 1.0,
+    };
+    let balance = newton.balance(q, full);
+    let mut hessian = DMatrix::zeros(unknowns.count, unknowns.count);
+    for &(i, j, value) in &balance.entries {
+        hessian[(i, j)] += value;
+    }
+    let mut entries = vec![0; unknowns.count];
+    for (entry, row) in unknowns.row.iter().enumerate() {
+        if let Some(row) = row {
+            entries[*row] = entry;
+        }
+    }
+    Curvature {
+        entries,
+        hessian,
+        residual: newton.residual(&balance),
+    }
 }
 
 fn weight(system: &System) -> f64 {
@@ -230,12 +271,11 @@ struct Newton<'a> {
 
 impl Newton<'_> {
     fn accept(
-        &self,
         found: Found,
         stage: &'static str,
         statics: &mut Vec<Statics>,
     ) -> Result<Vec<f64>, AssemblyError> {
-        if !(found.residual < ACCEPTED) {
+        if found.residual >= ACCEPTED || found.residual.is_nan() {
             return Err(AssemblyError::NoEquilibrium {
                 stage,
                 residual: found.residual,

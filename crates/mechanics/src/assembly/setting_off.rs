@@ -38,10 +38,10 @@ pub(super) fn along_route(system: &System, stops: &[Stop], q: &[f64], v: &mut [f
 
     let mut seats: Vec<Option<usize>> = vec![None; system.rollers];
     for (index, wheel) in system.wheels.iter().enumerate() {
-        if let WheelRotation::Free { dof, .. } = wheel.rotation {
-            if system.route.contains(&index) {
-                v[dof] = wheel.sense * speed * pitch_angle(system, wheel);
-            }
+        if let WheelRotation::Free { dof, .. } = wheel.rotation
+            && system.route.contains(&index)
+        {
+            v[dof] = wheel.sense * speed * pitch_angle(system, wheel);
         }
         if let WheelSupport::Springs { dof, .. } = wheel.support {
             v[dof] = 0.0;

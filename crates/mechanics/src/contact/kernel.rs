@@ -3,9 +3,10 @@
 use chaindrive_contact::Elastic;
 use chaindrive_contact::dissipation::RATIO_LIMIT;
 use chaindrive_contact::elastic::ElasticLaw;
+use pulp::Simd;
 
 use super::{Contacts, Frame, LawNumbers, Shape, Teeth, Touch};
-use crate::lanes::{LANES, Lane, Mask};
+use crate::lanes::{Lane, Mask, Wide};
 use crate::profile::Profile;
 use crate::system::Rollers;
 
@@ -51,25 +52,19 @@ impl LaneElastic {
     }
 
     #[inline(always)]
-    fn force(self, depth: Lane) -> Lane {
+    fn force<S: Simd>(self, w: Wide<S>, depth: Lane<S>) -> Lane<S> {
         match self {
-            Self::Linear(stiffness) => Lane::splat(stiffness) * depth,
-            Self::Hertz(stiffness) => Lane::splat(stiffness) * depth * depth.sqrt(),
-            Self::General(law) => one_by_one(law, depth),
+            Self::Linear(stiffness) => w.splat(stiffness) * depth,
+            Self::Hertz(stiffness) => w.splat(stiffness) * depth * depth.sqrt(),
+            Self::General(law) => depth.one_by_one(|depth| general(law, depth)),
         }
     }
 }
 
 /// Kept out of line: a general law is too long to be copied into every kernel.
 #[inline(never)]
-fn one_by_one(law: Elastic, depth: Lane) -> Lane {
-    let mut out = depth.0;
-    for value in &mut out {
-        if *value > 0.0 {
-            *value = law.force(*value);
-        }
-    }
-    Lane(out)
+fn general(law: Elastic, depth: f64) -> f64 {
+    if depth > 0.0 { law.force(depth) } else { 0.0 }
 }
 
 impl Contacts {
@@ -77,8 +72,9 @@ impl Contacts {
     ///
     /// Reads the memory of the last accepted state, writes the state here into `touch`.
     #[inline(always)]
-    pub(crate) fn act(
+    pub(crate) fn act<S: Simd>(
         &self,
+        w: Wide<S>,
         frame: &Frame,
         rollers: &mut Rollers<'_>,
         touch: &mut Touch,
@@ -88,40 +84,41 @@ impl Contacts {
             elastic: LaneElastic::new(self.surface.law.elastic),
             numbers: LawNumbers::new(&self.surface),
         };
-        let mut sums = Sums::new();
+        let mut sums = Sums::new(w);
         let mut slot = 0;
         for run in &self.runs {
-            for offset in (0..run.count).step_by(LANES) {
+            for offset in (0..run.count).step_by(Wide::<S>::COUNT) {
                 let here = Here {
                     slot,
                     roller: run.start + offset,
-                    valid: Mask::first(run.count - offset),
+                    valid: w.first(run.count - offset),
                 };
-                self.lane(&law, frame, here, rollers, touch, &mut sums);
-                slot += LANES;
+                self.lane(w, &law, frame, here, rollers, touch, &mut sums);
+                slot += Wide::<S>::COUNT;
             }
         }
         sums.total()
     }
 
     #[inline(always)]
-    fn lane(
+    fn lane<S: Simd>(
         &self,
+        w: Wide<S>,
         law: &Response,
         frame: &Frame,
-        here: Here,
+        here: Here<S>,
         rollers: &mut Rollers<'_>,
         touch: &mut Touch,
-        sums: &mut Sums,
+        sums: &mut Sums<S>,
     ) {
         let i = here.roller;
         // d = q − o,   u = v − v_o − ω ẑ × d
-        let dx = Lane::load(rollers.x, i) - Lane::splat(frame.origin.x);
-        let dy = Lane::load(rollers.y, i) - Lane::splat(frame.origin.y);
-        let spin = Lane::splat(frame.spin);
+        let dx = w.load(rollers.x, i) - w.splat(frame.origin.x);
+        let dy = w.load(rollers.y, i) - w.splat(frame.origin.y);
+        let spin = w.splat(frame.spin);
         let motion = Motion {
-            ux: Lane::load(rollers.vx, i) - Lane::splat(frame.velocity.x) + spin * dy,
-            uy: Lane::load(rollers.vy, i) - Lane::splat(frame.velocity.y) - spin * dx,
+            ux: w.load(rollers.vx, i) - w.splat(frame.velocity.x) + spin * dy,
+            uy: w.load(rollers.vy, i) - w.splat(frame.velocity.y) - spin * dx,
             dx,
             dy,
             spin,
@@ -129,15 +126,15 @@ impl Contacts {
         let (place, near) = match &self.shape {
             Shape::Teeth(teeth) => {
                 let reach = teeth.tip_radius + self.radius;
-                let near = Lane::splat(reach * reach).greater(dx * dx + dy * dy) & here.valid;
-                (self.fold(teeth, frame, here.slot, dx, dy), near)
+                let near = w.splat(reach * reach).greater(dx * dx + dy * dy) & here.valid;
+                (self.fold(w, teeth, frame, here.slot, dx, dy), near)
             }
             Shape::Rail { reference, .. } => {
                 // q' = reference + Rᵀ d; the frame's y axis is (−s, c)
-                let (c, s) = (Lane::splat(frame.turn[0]), Lane::splat(frame.turn[1]));
+                let (c, s) = (w.splat(frame.turn[0]), w.splat(frame.turn[1]));
                 let place = Place {
-                    x: c * dx + s * dy + Lane::splat(reference.x),
-                    y: c * dy - s * dx + Lane::splat(reference.y),
+                    x: c * dx + s * dy + w.splat(reference.x),
+                    y: c * dy - s * dx + w.splat(reference.y),
                     ax: -s,
                     ay: c,
                 };
@@ -145,25 +142,25 @@ impl Contacts {
             }
         };
         for side in 0..self.sides() {
-            let face = self.face(side, &place);
-            let mut found = look(face.profile, face.sign * place.x, place.y, self.radius);
+            let face = self.face(w, side, &place);
+            let mut found = look(w, face.profile, face.sign * place.x, place.y, self.radius);
             if face.seat_across {
                 // A seat across the axis belongs to the right half alone.
-                let wrong = Lane::splat(0.0).greater(face.sign * place.x) & found.in_first;
-                found.gap = wrong.select(Lane::splat(1.0), found.gap);
+                let wrong = w.splat(0.0).greater(face.sign * place.x) & found.in_first;
+                found.gap = wrong.select(w.splat(1.0), found.gap);
             }
             found.nx = face.sign * found.nx;
-            let hit = place.world(found, near);
+            let hit = place.world(&found, near);
             let slot = side * self.slots + here.slot;
-            self.respond(law, &motion, hit, slot, i, rollers, touch, sums);
+            self.respond(w, law, &motion, &hit, slot, i, rollers, touch, sums);
         }
     }
 
     /// What a side of the slots looks at: the whole rail, the half of a symmetric gap on the
     /// roller's side, or one half of a gap that must be looked at twice.
     #[inline(always)]
-    fn face(&self, side: usize, place: &Place) -> Face<'_> {
-        let (one, zero) = (Lane::splat(1.0), Lane::splat(0.0));
+    fn face<S: Simd>(&self, w: Wide<S>, side: usize, place: &Place<S>) -> Face<'_, S> {
+        let (one, zero) = (w.splat(1.0), w.splat(0.0));
         match &self.shape {
             Shape::Rail { profile, .. } => Face {
                 profile,
@@ -188,21 +185,29 @@ impl Contacts {
 
     /// The rollers in the frames of the gaps they are nearest to.
     #[inline(always)]
-    fn fold(&self, teeth: &Teeth, frame: &Frame, slot: usize, dx: Lane, dy: Lane) -> Place {
-        let (c, s) = (Lane::splat(frame.turn[0]), Lane::splat(frame.turn[1]));
-        let ex = Lane::load(&self.axis_x, slot);
-        let ey = Lane::load(&self.axis_y, slot);
+    fn fold<S: Simd>(
+        &self,
+        w: Wide<S>,
+        teeth: &Teeth,
+        frame: &Frame,
+        slot: usize,
+        dx: Lane<S>,
+        dy: Lane<S>,
+    ) -> Place<S> {
+        let (c, s) = (w.splat(frame.turn[0]), w.splat(frame.turn[1]));
+        let ex = w.load(&self.axis_x, slot);
+        let ey = w.load(&self.axis_y, slot);
         // a = R(θ) e,   x = d × a,   y = d · a
         let ax = c * ex - s * ey;
         let ay = s * ex + c * ey;
         let x = dx * ay - dy * ax;
         let y = dx * ax + dy * ay;
         // Beyond the middle of a tooth the next gap is meant: turn the axis by one pitch.
-        let beyond = x.abs().greater(y * Lane::splat(teeth.tan_half));
-        let (one, zero) = (Lane::splat(1.0), Lane::splat(0.0));
+        let beyond = x.abs().greater(y * w.splat(teeth.tan_half));
+        let (one, zero) = (w.splat(1.0), w.splat(0.0));
         let sign = x.greater(zero).select(one, -one);
-        let cp = beyond.select(Lane::splat(teeth.pitch_turn[0]), one);
-        let sp = beyond.select(sign * Lane::splat(teeth.pitch_turn[1]), zero);
+        let cp = beyond.select(w.splat(teeth.pitch_turn[0]), one);
+        let sp = beyond.select(sign * w.splat(teeth.pitch_turn[1]), zero);
         let ax2 = cp * ax + sp * ay;
         let ay2 = cp * ay - sp * ax;
         Place {
@@ -219,20 +224,21 @@ impl Contacts {
         clippy::too_many_arguments,
         reason = "the inner loop, split for reading only"
     )]
-    fn respond(
+    fn respond<S: Simd>(
         &self,
+        w: Wide<S>,
         law: &Response,
-        motion: &Motion,
-        hit: Hit,
+        motion: &Motion<S>,
+        hit: &Hit<S>,
         slot: usize,
         roller: usize,
         rollers: &mut Rollers<'_>,
         touch: &mut Touch,
-        sums: &mut Sums,
+        sums: &mut Sums<S>,
     ) {
         let Response { elastic, numbers } = law;
-        let zero = Lane::splat(0.0);
-        let gap = hit.near.select(hit.gap, Lane::splat(1.0));
+        let zero = w.splat(0.0);
+        let gap = hit.near.select(hit.gap, w.splat(1.0));
         // δ̇ = −n·u
         let closing = -(hit.nx * motion.ux + hit.ny * motion.uy);
         gap.store(&mut touch.gap, slot);
@@ -244,28 +250,28 @@ impl Contacts {
             zero.store(&mut touch.force, slot);
             return;
         }
-        let before = Lane::load(&self.memory.inverse_onset, slot);
+        let before = w.load(&self.memory.inverse_onset, slot);
         let mut inverse = closed.select(before, zero);
-        let fresh = closed & Lane::splat(f64::MIN_POSITIVE).greater(before);
+        let fresh = closed & w.splat(f64::MIN_POSITIVE).greater(before);
         if fresh.any() {
             // v = v_a + s (v_b − v_a),   s = g_a/(g_a − g_b)
-            let gap_before = Lane::load(&self.memory.gap, slot).max(zero);
-            let closing_before = Lane::load(&self.memory.closing, slot);
+            let gap_before = w.load(&self.memory.gap, slot).max(zero);
+            let closing_before = w.load(&self.memory.closing, slot);
             let share = gap_before * (gap_before + depth).recip();
             let onset = closing_before + share * (closing - closing_before);
-            let inverse_onset = onset.max(Lane::splat(numbers.floor)).recip();
+            let inverse_onset = onset.max(w.splat(numbers.floor)).recip();
             inverse = fresh.select(inverse_onset, inverse);
             let fresh_depth = fresh.select(depth, zero);
             sums.first_depth = sums.first_depth.max(fresh_depth);
-            sums.first_share = sums.first_share.min(fresh.select(share, Lane::splat(1.0)));
+            sums.first_share = sums.first_share.min(fresh.select(share, w.splat(1.0)));
         }
         inverse.store(&mut touch.inverse_onset, slot);
 
         // F = max(0, g + χ g min(δ̇/v, 4) + c δ̇)
-        let stored = elastic.force(depth);
-        let ratio = (closing * inverse).min(Lane::splat(RATIO_LIMIT));
-        let damping = Lane::splat(numbers.factor) * stored;
-        let viscous = Lane::splat(numbers.damping) * closing;
+        let stored = elastic.force(w, depth);
+        let ratio = (closing * inverse).min(w.splat(RATIO_LIMIT));
+        let damping = w.splat(numbers.factor) * stored;
+        let viscous = w.splat(numbers.damping) * closing;
         let raw = stored + damping * ratio + viscous;
         let force = closed.select(raw.max(zero), zero);
         force.store(&mut touch.force, slot);
@@ -276,19 +282,19 @@ impl Contacts {
         let mut moment = motion.dy * fx - motion.dx * fy;
         if numbers.friction > 0.0 {
             // slip = t·u + ω r,   f = −μ F slip/√(slip² + v_s²)
-            let radius = Lane::splat(self.radius);
+            let radius = w.splat(self.radius);
             let slip = tx * motion.ux + ty * motion.uy + motion.spin * radius;
-            let reach = (slip * slip + Lane::splat(numbers.slip_speed_squared)).sqrt();
-            let rub = -(Lane::splat(numbers.friction) * force * slip * reach.recip());
+            let reach = (slip * slip + w.splat(numbers.slip_speed_squared)).sqrt();
+            let rub = -(w.splat(numbers.friction) * force * slip * reach.recip());
             fx += rub * tx;
             fy += rub * ty;
             // M = −(d − r n) × F
             moment = motion.dy * fx - motion.dx * fy + rub * radius;
             sums.friction_loss += -(rub * slip);
         }
-        let inverse_mass = Lane::load(rollers.inverse_mass, roller);
-        (Lane::load(rollers.ax, roller) + fx * inverse_mass).store(rollers.ax, roller);
-        (Lane::load(rollers.ay, roller) + fy * inverse_mass).store(rollers.ay, roller);
+        let inverse_mass = w.load(rollers.inverse_mass, roller);
+        (w.load(rollers.ax, roller) + fx * inverse_mass).store(rollers.ax, roller);
+        (w.load(rollers.ay, roller) + fy * inverse_mass).store(rollers.ay, roller);
 
         sums.fx += -fx;
         sums.fy += -fy;
@@ -307,39 +313,37 @@ fn is(exponent: f64, value: f64) -> bool {
 
 /// The surface that each lane faces, in the frame of the profile.
 #[inline(always)]
-fn look(profile: &Profile, x: Lane, y: Lane, radius: f64) -> Found {
-    let zero = Lane::splat(0.0);
+fn look<S: Simd>(w: Wide<S>, profile: &Profile, x: Lane<S>, y: Lane<S>, radius: f64) -> Found<S> {
+    let zero = w.splat(0.0);
     let first = &profile.features[0];
-    let mut cx = Lane::splat(first.centre.x);
-    let mut cy = Lane::splat(first.centre.y);
-    let mut r = Lane::splat(first.radius);
-    let mut sign = Lane::splat(first.sign);
-    let mut mx = Lane::splat(first.straight.x);
-    let mut my = Lane::splat(first.straight.y);
-    let mut passed = Mask::first(LANES);
-    let mut in_first = Mask::first(LANES);
+    let mut cx = w.splat(first.centre.x);
+    let mut cy = w.splat(first.centre.y);
+    let mut r = w.splat(first.radius);
+    let mut sign = w.splat(first.sign);
+    let mut mx = w.splat(first.straight.x);
+    let mut my = w.splat(first.straight.y);
+    let mut passed = w.first(Wide::<S>::COUNT);
+    let mut in_first = w.first(Wide::<S>::COUNT);
     for (index, f) in profile.features.iter().enumerate().skip(1) {
-        let ahead = (x - Lane::splat(f.start.x)) * Lane::splat(f.along.x)
-            + (y - Lane::splat(f.start.y)) * Lane::splat(f.along.y);
+        let ahead = (x - w.splat(f.start.x)) * w.splat(f.along.x)
+            + (y - w.splat(f.start.y)) * w.splat(f.along.y);
         if index == 1 {
             in_first = zero.greater(ahead);
         }
         passed = passed & ahead.greater(zero);
-        cx = passed.select(Lane::splat(f.centre.x), cx);
-        cy = passed.select(Lane::splat(f.centre.y), cy);
-        r = passed.select(Lane::splat(f.radius), r);
-        sign = passed.select(Lane::splat(f.sign), sign);
+        cx = passed.select(w.splat(f.centre.x), cx);
+        cy = passed.select(w.splat(f.centre.y), cy);
+        r = passed.select(w.splat(f.radius), r);
+        sign = passed.select(w.splat(f.sign), sign);
         if profile.has_straights {
-            mx = passed.select(Lane::splat(f.straight.x), mx);
-            my = passed.select(Lane::splat(f.straight.y), my);
+            mx = passed.select(w.splat(f.straight.x), mx);
+            my = passed.select(w.splat(f.straight.y), my);
         }
     }
     let (ex, ey) = (x - cx, y - cy);
-    let distance = (ex * ex + ey * ey)
-        .max(Lane::splat(f64::MIN_POSITIVE))
-        .sqrt();
+    let distance = (ex * ex + ey * ey).max(w.splat(f64::MIN_POSITIVE)).sqrt();
     let scale = sign * distance.recip();
-    let contact_radius = Lane::splat(radius);
+    let contact_radius = w.splat(radius);
     let mut found = Found {
         // g = ±(|q − c| − R) − r
         gap: sign * (distance - r) - contact_radius,
@@ -365,41 +369,41 @@ struct Response {
 }
 
 /// The profile that a lane looks at.
-struct Face<'a> {
+struct Face<'a, S: Simd> {
     profile: &'a Profile,
     /// Mirrors x so that the profile's half is at x ≥ 0.
-    sign: Lane,
+    sign: Lane<S>,
     seat_across: bool,
 }
 
 /// Where a lane of slots stands.
 #[derive(Clone, Copy)]
-struct Here {
+struct Here<S: Simd> {
     slot: usize,
     roller: usize,
-    valid: Mask,
+    valid: Mask<S>,
 }
 
 /// Velocity relative to the body at the roller centres, and the lever arms.
-struct Motion {
-    ux: Lane,
-    uy: Lane,
-    dx: Lane,
-    dy: Lane,
-    spin: Lane,
+struct Motion<S: Simd> {
+    ux: Lane<S>,
+    uy: Lane<S>,
+    dx: Lane<S>,
+    dy: Lane<S>,
+    spin: Lane<S>,
 }
 
 /// Roller centres in gap frames, and the gap axes in the world.
-struct Place {
-    x: Lane,
-    y: Lane,
-    ax: Lane,
-    ay: Lane,
+struct Place<S: Simd> {
+    x: Lane<S>,
+    y: Lane<S>,
+    ax: Lane<S>,
+    ay: Lane<S>,
 }
 
-impl Place {
+impl<S: Simd> Place<S> {
     #[inline(always)]
-    fn world(&self, found: Found, near: Mask) -> Hit {
+    fn world(&self, found: &Found<S>, near: Mask<S>) -> Hit<S> {
         // The gap's x axis is its y axis turned by −90°.
         Hit {
             gap: found.gap,
@@ -410,37 +414,37 @@ impl Place {
     }
 }
 
-struct Found {
-    gap: Lane,
-    nx: Lane,
-    ny: Lane,
-    in_first: Mask,
+struct Found<S: Simd> {
+    gap: Lane<S>,
+    nx: Lane<S>,
+    ny: Lane<S>,
+    in_first: Mask<S>,
 }
 
-struct Hit {
-    gap: Lane,
-    nx: Lane,
-    ny: Lane,
-    near: Mask,
+struct Hit<S: Simd> {
+    gap: Lane<S>,
+    nx: Lane<S>,
+    ny: Lane<S>,
+    near: Mask<S>,
 }
 
-/// Lane-wise sums over all slots of a body.
-struct Sums {
-    fx: Lane,
-    fy: Lane,
-    moment: Lane,
-    normal_loss: Lane,
-    friction_loss: Lane,
-    depth: Lane,
-    damping: Lane,
-    first_depth: Lane,
-    first_share: Lane,
+/// Lane<S>-wise sums over all slots of a body.
+struct Sums<S: Simd> {
+    fx: Lane<S>,
+    fy: Lane<S>,
+    moment: Lane<S>,
+    normal_loss: Lane<S>,
+    friction_loss: Lane<S>,
+    depth: Lane<S>,
+    damping: Lane<S>,
+    first_depth: Lane<S>,
+    first_share: Lane<S>,
 }
 
-impl Sums {
+impl<S: Simd> Sums<S> {
     #[inline(always)]
-    fn new() -> Self {
-        let zero = Lane::splat(0.0);
+    fn new(w: Wide<S>) -> Self {
+        let zero = w.splat(0.0);
         Self {
             fx: zero,
             fy: zero,
@@ -450,7 +454,7 @@ impl Sums {
             depth: zero,
             damping: zero,
             first_depth: zero,
-            first_share: Lane::splat(1.0),
+            first_share: w.splat(1.0),
         }
     }
 

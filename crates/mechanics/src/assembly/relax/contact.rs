@@ -132,13 +132,113 @@ fn add_plates(
             force: point.weight * law.elastic_force(-point.probe.gap),
             stiffness: point.weight * law.stiffness(-point.probe.gap),
         };
-        // The plate rolls on the face: its flat edge adds no curvature of its own to first order.
-        point.probe.bend = 0.0;
         point.probe.normal = frame.outward(point.probe.normal);
-        let d = (place(pins[0]) - frame.origin) * (1.0 - point.share)
-            + (place(pins[1]) - frame.origin) * point.share;
-        let shares = [(pins[0], 1.0 - point.share), (pins[1], point.share)];
-        add_one(&shares, d, &point.probe, push, mount, n, sum);
+        let ends = pins.map(place);
+        let d =
+            (ends[0] - frame.origin) * (1.0 - point.share) + (ends[1] - frame.origin) * point.share;
+        if point.share > 0.0 && point.share < 1.0 {
+            let edge = Edge {
+                pins,
+                ends,
+                share: point.share,
+                d,
+            };
+            add_edge(&edge, &point.probe, push, mount, n, sum);
+        } else {
+            let eye = pins[usize::from(point.share > 0.5)];
+            add_one(&[(eye, 1.0)], d, &point.probe, push, mount, n, sum);
+        }
+    }
+}
+
+/// One state entry: how it moves the touching point, the line and the frame.
+struct Move {
+    entry: usize,
+    shift: Vector,
+    relative: Vector,
+    line_turn: f64,
+    frame_turn: f64,
+}
+
+/// A plate that touches a rail between its pins.
+struct Edge {
+    pins: [usize; 2],
+    ends: [Point; 2],
+    share: f64,
+    /// Touching point on the pin line, from the frame's origin.
+    d: Vector,
+}
+
+/// Adds the contact of a straight edge that rolls on a bulging face.
+///
+/// ```text
+/// D = distance of the pin line from the arc's centre, dφ its rotation, P the touching point
+/// d²D = −2 dφ (u·dP) − D dφ²,     u along the line, ẑ × u = n
+/// ```
+///
+/// A frame that turns by dθ adds 2 dθ (ẑ×n)·dP − dθ² n·d to the second variation.
+fn add_edge(edge: &Edge, probe: &Probe, push: Push, mount: &Mount, n: usize, sum: &mut Sum<'_>) {
+    let normal = probe.normal;
+    let u = Vector::new(normal.y, -normal.x);
+    let across = Vector::new(-normal.y, normal.x);
+    let distance = 1.0 / probe.bend;
+    let line = edge.ends[1] - edge.ends[0];
+    let length = line.norm();
+    let perpendicular = Vector::new(-line.y, line.x) / (length * length);
+    let around = Vector::new(-edge.d.y, edge.d.x);
+    let shares = [1.0 - edge.share, edge.share];
+
+    let mut moves = Vec::new();
+    for (k, (&pin, share)) in edge.pins.iter().zip(shares).enumerate() {
+        for (axis, unit) in [Vector::x(), Vector::y()].into_iter().enumerate() {
+            let turn = perpendicular.dot(&unit) * if k == 0 { -1.0 } else { 1.0 };
+            moves.push(Move {
+                entry: pin + axis * n,
+                shift: unit * share,
+                relative: unit * share,
+                line_turn: turn,
+                frame_turn: 0.0,
+            });
+        }
+    }
+    for (entry, derivative, _) in &mount.centre {
+        moves.push(Move {
+            entry: *entry,
+            shift: -derivative,
+            relative: -derivative,
+            line_turn: 0.0,
+            frame_turn: 0.0,
+        });
+    }
+    if let Some(entry) = mount.angle {
+        moves.push(Move {
+            entry,
+            shift: Vector::zeros(),
+            relative: -around,
+            line_turn: -1.0,
+            frame_turn: 1.0,
+        });
+    }
+    for a in &moves {
+        // δ = −g: a motion along the normal opens the gap
+        let slope = -normal.dot(&a.relative);
+        sum.force(a.entry, push.force * slope);
+        for b in &moves {
+            let gap = -(a.line_turn * u.dot(&b.relative) + b.line_turn * u.dot(&a.relative))
+                - distance * a.line_turn * b.line_turn
+                + a.frame_turn * across.dot(&b.shift)
+                + b.frame_turn * across.dot(&a.shift)
+                - a.frame_turn * b.frame_turn * normal.dot(&edge.d);
+            let other = -normal.dot(&b.relative);
+            sum.stiffen(
+                a.entry,
+                b.entry,
+                push.stiffness * slope * other - push.force * gap,
+            );
+        }
+    }
+    for (entry, _, second) in &mount.centre {
+        sum.stiffen(*entry, *entry, push.force * normal.dot(second));
     }
 }
 

@@ -1,0 +1,135 @@
+//! The rules of `docs/architecture.md` that a machine can check.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let Ok(entries) = fs::read_dir(folder) else {
+        return found;
+    };
+    for entry in entries.flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            found.extend(sources(&path));
+        } else if path.extension().is_some_and(|e| e == "rs" || e == "py") {
+            found.push(path);
+        }
+    }
+    found
+}
+
+fn project_files() -> Vec<PathBuf> {
+    ["crates", "python", "tests", "examples"]
+        .iter()
+        .flat_map(|folder| sources(&root().join(folder)))
+        .filter(|path| !path.components().any(|part| part.as_os_str() == "target"))
+        .collect()
+}
+
+/// Which crates of the workspace each crate may name.
+#[test]
+fn arrows_point_down() {
+    let allowed: [(&str, &[&str]); 6] = [
+        ("geometry", &[]),
+        ("contact", &[]),
+        ("integrate", &[]),
+        ("mechanics", &["geometry", "contact", "integrate"]),
+        (
+            "chaindrive",
+            &["geometry", "contact", "integrate", "mechanics"],
+        ),
+        ("cli", &["chaindrive"]),
+    ];
+    for (folder, may) in allowed {
+        let manifest = fs::read_to_string(root().join("crates").join(folder).join("Cargo.toml"))
+            .expect("every crate has a manifest");
+        let dependencies = manifest
+            .split("[dependencies]")
+            .nth(1)
+            .map_or("", |rest| rest.split("\n[").next().unwrap_or(rest));
+        for line in dependencies.lines() {
+            let Some(name) = line.split(['.', ' ', '=']).next() else {
+                continue;
+            };
+            let short = match name {
+                "chaindrive" => "chaindrive",
+                _ => match name.strip_prefix("chaindrive-") {
+                    Some(short) => short,
+                    None => continue,
+                },
+            };
+            assert!(may.contains(&short), "{folder} must not depend on {short}");
+        }
+    }
+}
+
+#[test]
+fn parry_stays_in_its_adapter() {
+    for path in sources(&root().join("crates")) {
+        let text = fs::read_to_string(&path).expect("sources are text");
+        let inside = path.components().any(|part| {
+            let part = part.as_os_str().to_string_lossy();
+            part.starts_with("parry") || part == "tests" || part == "benches"
+        });
+        assert!(
+            inside || !text.contains("parry2d_f64::"),
+            "{}",
+            path.display()
+        );
+    }
+}
+
+#[test]
+fn mechanics_reads_no_file_clock_or_chance() {
+    for path in sources(&root().join("crates/mechanics/src")) {
+        let text = fs::read_to_string(&path).expect("sources are text");
+        for forbidden in [
+            "std::fs",
+            "std::time",
+            "std::thread",
+            "rand::",
+            "println!",
+            "static mut",
+        ] {
+            assert!(
+                !text.contains(forbidden),
+                "{} in {}",
+                forbidden,
+                path.display()
+            );
+        }
+    }
+}
+
+#[test]
+fn modules_open_with_a_line_and_fit_one_sitting() {
+    let drawers = [
+        "utils", "util", "common", "helpers", "helper", "misc", "manager",
+    ];
+    for path in project_files() {
+        let text = fs::read_to_string(&path).expect("sources are text");
+        let name = path
+            .file_stem()
+            .map(|s| s.to_string_lossy().into_owned())
+            .unwrap_or_default();
+        assert!(
+            !drawers.contains(&name.as_str()),
+            "{} is a drawer",
+            path.display()
+        );
+        let lines = text.lines().count();
+        assert!(lines <= 600, "{} has {lines} lines", path.display());
+        if path.extension().is_some_and(|e| e == "rs") {
+            assert!(
+                text.starts_with("//!"),
+                "{} does not say what it is",
+                path.display()
+            );
+        }
+    }
+}
