@@ -71,9 +71,11 @@ $(VENV)/ready: pyproject.toml
 	$(BIN)/python -m pip install --quiet --group dev
 	@touch $@
 
-# The wheel, as a user would get it.
+# The wheel, as a user would get it. The stamp is as old as the start of the build: what changes
+# meanwhile is built the next time.
 $(VENV)/installed: $(VENV)/ready $(SOURCES)
+	@touch $@.begun
 	rm -rf target/wheels/chaindrive-*.whl
 	$(BIN)/maturin build --release --quiet --interpreter $(BIN)/python --out target/wheels
 	$(BIN)/python -m pip install --quiet --force-reinstall --no-deps target/wheels/chaindrive-*.whl
-	@touch $@
+	@mv $@.begun $@

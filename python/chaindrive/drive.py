@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from chaindrive import _core
 from chaindrive.errors import ParameterError
@@ -217,6 +218,45 @@ class Drive:
             },
             attrs={"scene": self.text},
         )
+
+    def modes(self) -> xr.Dataset:
+        """Return natural frequencies and mode shapes about the static state.
+
+        Small free vibrations of the drive at rest: closed contacts count with their tangent
+        stiffness, damping and chain speed not at all.
+
+        Returns
+        -------
+        xarray.Dataset
+            ``frequency`` (mode) [Hz], ascending, negative where the state is unstable; the shapes
+            ``roller_x``, ``roller_y`` (mode, roller), ``sprocket_x``, ``sprocket_y`` (mode,
+            sprocket) and ``tensioner_position`` (mode, tensioner) [m/√kg] and ``sprocket_angle``
+            (mode, sprocket) [rad/√kg], of unit modal mass.
+
+        Raises
+        ------
+        AssemblyError
+            The drive does not close or settle, or starts without settling.
+        """
+        found = self._inner.modes()
+        frequency = found.pop("frequency")
+        about = {"units": "Hz", "long_name": "natural frequency"}
+        variables: dict[str, Any] = {"frequency": ("mode", frequency, about)}
+        for name, values in found.items():
+            unit = "rad/kg^0.5" if name == "sprocket_angle" else "m/kg^0.5"
+            about = {"units": unit, "long_name": f"mode shape, {name.replace('_', ' ')}"}
+            variables[name] = (("mode", name.split("_")[0]), values, about)
+        coordinates = {
+            "mode": np.arange(frequency.size),
+            "roller": np.arange(found["roller_x"].shape[1]),
+            "sprocket": np.asarray(self.sprockets, dtype=np.str_),
+            "tensioner": np.asarray(self.tensioners, dtype=np.str_),
+        }
+        return xr.Dataset(variables, coords=coordinates, attrs={"scene": self.text})
+
+    def natural_frequencies(self) -> NDArray[np.float64]:
+        """Return the natural frequencies about the static state [Hz], (modes,); see `modes`."""
+        return self._inner.modes()["frequency"]
 
     def law(self, body: str) -> Law:
         """Return the contact law of a sprocket or guide, by name.

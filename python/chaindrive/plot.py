@@ -173,7 +173,7 @@ def _links(
 
     path = np.concatenate([rollers, rollers[:1]]) if closed else rollers
     segments = np.stack([path[:-1], path[1:]], axis=1)
-    look: dict[str, Any] = {"linewidths": 2.5, "capstyle": "round", "zorder": 3}
+    look: dict[str, Any] = {"linewidths": 2.5, "capstyle": "round", "zorder": 5}
     if tensions is None:
         ax.add_collection(LineCollection(list(segments), colors=_CHAIN, **look))
         return
@@ -212,8 +212,20 @@ def _bodies(
     for name, face in drawing["guides"].items():
         ax.plot(face[:, 0], face[:, 1], color=_GUIDE, linewidth=2.0, zorder=2)
         if names:
-            middle = face[len(face) // 2]
-            ax.annotate(name, (middle[0], middle[1]), color=_GUIDE, fontsize=7, ha="center")
+            # Halfway along the face, on the side away from the loop.
+            length = np.insert(np.cumsum(np.hypot(*np.diff(face, axis=0).T)), 0, 0.0)
+            x, y = (float(np.interp(0.5 * length[-1], length, axis)) for axis in face.T)
+            right = x > rollers[:, 0].mean()
+            ax.annotate(
+                name,
+                (x, y),
+                xytext=(10 if right else -10, 0),
+                textcoords="offset points",
+                color=_GUIDE,
+                fontsize=7,
+                ha="left" if right else "right",
+                va="center",
+            )
     radius = 0.5 * drawing["roller_diameter"]
     circles = PatchCollection([Circle((x, y), radius) for x, y in rollers], zorder=4)
     circles.set(facecolor="white", edgecolor=_OUTLINE, linewidth=0.5)

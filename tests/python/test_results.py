@@ -113,6 +113,26 @@ def test_statics_of_the_marine_engine():
     assert statics["contacts"].sel(stage="load").min() > 0
 
 
+def test_modes_of_a_hanging_chain():
+    """Two degrees of freedom a free roller, all stable, shapes of unit modal mass φᵀ M φ = 1."""
+    drive = cd.scenes.hanging_chain()
+    modes = drive.modes()
+    frequency = modes["frequency"].to_numpy()
+    assert frequency.size == 2 * (drive.links - 1)
+    assert (frequency > 0.0).all()
+    assert (np.diff(frequency) >= 0.0).all()
+    np.testing.assert_array_equal(drive.natural_frequencies(), frequency)
+    moving = (modes["roller_x"] ** 2 + modes["roller_y"] ** 2).sum("roller")
+    np.testing.assert_allclose(8.89e-3 * moving, 1.0, rtol=1e-9)
+    assert float(abs(modes["roller_x"].isel(roller=0)).max()) == 0.0
+    assert modes["frequency"].attrs["units"] == "Hz"
+
+
+def test_a_drive_that_is_not_at_rest_has_no_modes():
+    with pytest.raises(cd.AssemblyError):
+        cd.scenes.spinning_ring().modes()
+
+
 def test_a_drive_that_does_not_settle_has_no_statics():
     assert cd.scenes.spinning_ring().statics().sizes["stage"] == 0
 

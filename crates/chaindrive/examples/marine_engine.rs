@@ -1,26 +1,19 @@
-//! The marine engine drive for one second: `cargo run --release --example marine_engine`.
+//! A preset for one second, with its summary:
+//! `cargo run --release --example marine_engine [PRESET]`.
+
+use std::io::Write;
 
 use chaindrive::{Run, Scene, Simulation, Summary};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let name = std::env::args()
-        .nth(1)
-        .unwrap_or_else(|| "marine_engine".into());
-    let drive = Scene::preset(&name)?.drive()?;
-    let run = Run {
-        until: 1.0,
-        every: 1e-3,
-        step: std::env::args().nth(2).and_then(|s| s.parse().ok()),
-        ..Run::default()
-    };
-    let mut simulation = Simulation::start(&drive, &run)?;
-    for s in &simulation.assembled().statics {
-        println!("{} {} {:.1e}", s.stage, s.iterations, s.residual);
-    }
+    let name = std::env::args().nth(1);
+    let scene = Scene::preset(name.as_deref().unwrap_or("marine_engine"))?;
+    let run = Run::suggested(&scene.run_defaults());
+    let mut simulation = Simulation::start(&scene.drive()?, &run)?;
     let mut summary = Summary::new(&simulation);
     while let Some(sample) = simulation.next_sample()? {
         summary.push(sample);
     }
-    println!("{}", summary.report(&simulation));
+    writeln!(std::io::stdout(), "{}", summary.report(&simulation))?;
     Ok(())
 }

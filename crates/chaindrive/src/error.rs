@@ -17,7 +17,7 @@ pub enum SimulationError {
     },
 
     /// A channel that does not exist.
-    #[error("no channel is named `{name}`{}; there are {known}", hint(.suggestion))]
+    #[error("no channel is named `{name}`{}; there are {known}", hint(.suggestion.as_deref()))]
     UnknownChannel {
         name: String,
         suggestion: Option<String>,
@@ -33,8 +33,6 @@ pub enum SimulationError {
     Integration(#[from] IntegrationError),
 }
 
-fn hint(suggestion: &Option<String>) -> String {
-    suggestion
-        .as_ref()
-        .map_or_else(String::new, |name| format!(" (did you mean `{name}`?)"))
+fn hint(suggestion: Option<&str>) -> String {
+    suggestion.map_or_else(String::new, |name| format!(" (did you mean `{name}`?)"))
 }

@@ -26,7 +26,7 @@ pub mod scene;
 mod simulate;
 
 pub use chaindrive_integrate::{Method, Statistics};
-pub use chaindrive_mechanics::{Assembled, Drive, Energy, Flow, Observation, Store};
+pub use chaindrive_mechanics::{Assembled, Drive, Energy, Flow, Mode, Modes, Observation, Store};
 pub use describe::Description;
 pub use error::SimulationError;
 pub use record::{Axis, Channel, Recording, Summary};

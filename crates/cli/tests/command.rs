@@ -1,4 +1,5 @@
 //! Every verb of the command, its exit codes, and what it leaves on disk.
+#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use std::fs;
 use std::path::Path;
@@ -251,6 +252,40 @@ fn results_are_not_overwritten_unasked() {
         "three,years\n"
     );
     assert!(at.join("notes.zarr/thesis.tex").exists());
+}
+
+/// A shaft under a torque that no machine has: the sample at t = 0 is all there is.
+#[test]
+fn a_failing_run_keeps_its_samples_and_exits_1() {
+    let folder = folder();
+    let at = folder.path();
+    let load = "sprockets.camshaft.load=[{ kind = 'constant', torque = '1e200 N m' }]";
+    for name in ["drive.zarr", "drive.csv"] {
+        let scene = ["run", "marine_two_sprockets", "--until", "1 ms", "-o", name];
+        let changes = ["--set", "settle=false", "--set", load];
+        let (code, _, err) = run(at, &[&scene[..], &changes].concat());
+        assert_eq!(code, 1, "{err}");
+        assert!(err.contains("is not finite"), "{err}");
+    }
+    let attributes = &group(&at.join("drive.zarr"))["attributes"];
+    assert_eq!(attributes["status"], "failed");
+    assert_eq!(attributes["complete"], 0);
+    assert_eq!(attributes["samples"], 1);
+    assert!(
+        attributes["failure"]
+            .as_str()
+            .unwrap()
+            .contains("is not finite")
+    );
+    let table = fs::read_to_string(at.join("drive.csv")).unwrap();
+    assert_eq!(table.lines().count(), 3);
+    assert!(
+        table
+            .lines()
+            .last()
+            .unwrap()
+            .starts_with("# incomplete: at t = ")
+    );
 }
 
 #[test]

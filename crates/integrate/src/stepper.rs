@@ -48,6 +48,9 @@ enum Pace {
     Controlled(Controller),
 }
 
+/// Share of the longest step below which an adaptive method gives up.
+const LEAST_SHARE: f64 = 1e-12;
+
 impl<S: SecondOrderSystem> Stepper<S> {
     /// See [`Method::start`].
     pub(crate) fn start(
@@ -91,10 +94,15 @@ impl<S: SecondOrderSystem> Stepper<S> {
             Pace::Controlled(controller) => controller.proposal,
         };
         let floor = FLOOR * nominal;
+        let longest = match &self.pace {
+            Pace::Fixed(_) => 0.0,
+            Pace::Controlled(controller) => controller.max_step,
+        };
+        let least = (4.0 * f64::EPSILON * from.abs()).max(LEAST_SHARE * longest);
         let (mut h, mut rejections, mut retries, mut cut_short) = (nominal, 0, 0, false);
         let error = loop {
-            // Below this the clock would stand still, or the step be mostly rounding.
-            if h <= 4.0 * f64::EPSILON * from.abs() {
+            // Below this the clock would stand still, or the end never come into sight.
+            if h <= least {
                 return Err(IntegrationError::StepUnderflow { t: from, step: h });
             }
             let error = self.attempt(system, state, h)?;

@@ -234,3 +234,95 @@ fn narrow(half: &Profile, roller_radius: f64) -> bool {
     let crosses = seat.straight == Vector::zeros() && seat.centre.x.abs() < 1e-9;
     !crosses || (seat.sign < 0.0 && seat.radius <= roller_radius)
 }
+
+#[cfg(test)]
+mod tests {
+    use chaindrive_geometry::{ArcSpline, Seat, Segment, Tip, ToothForm, ToothGap};
+
+    use super::*;
+
+    /// Points on a grid over one gap, from the root to above the tips.
+    fn grid(gap: &ToothGap) -> Vec<Point> {
+        let half = std::f64::consts::PI / f64::from(gap.teeth);
+        let mut points = Vec::new();
+        for i in -40..=40 {
+            for k in 0..=60 {
+                let angle = half * f64::from(i) / 40.5;
+                let share = f64::from(k) / 60.0;
+                let low = gap.root_radius + 0.3 * gap.roller_diameter;
+                let high = gap.tip_radius + 0.6 * gap.roller_diameter;
+                let radius = low + (high - low) * share;
+                points.push(Point::new(radius * angle.sin(), radius * angle.cos()));
+            }
+        }
+        points
+    }
+
+    /// Passing from feature to feature finds what an exhaustive search over the exact outline finds,
+    /// wherever a roller is near the surface.
+    #[test]
+    fn features_find_the_nearest_surface() {
+        let chain = (0.0889, 0.05398);
+        let iso = |gap| ToothForm::Iso606 {
+            gap,
+            tip: Tip::Mid,
+            seat: Seat::Bottom,
+        };
+        let forms = [
+            iso(0.0),
+            iso(0.5),
+            iso(1.0),
+            ToothForm::AsaTypeII { tip: Tip::Mid },
+            ToothForm::Circular {
+                seat_radius: 0.02726,
+                tip: Tip::Mid,
+                seat: Seat::Bottom,
+            },
+        ];
+        for form in &forms {
+            for teeth in [9, 24, 48, 120] {
+                let gap = ToothGap::new(teeth, chain.0, chain.1, form).unwrap();
+                let halves = GapHalves::new(gap.pieces(), 0.5 * chain.1);
+                assert!(!halves.two_sided, "{form:?} with {teeth} teeth");
+                let outline = ArcSpline::open(gap.pieces()).unwrap();
+                let mut compared = 0;
+                for q in grid(&gap) {
+                    let foot = outline.nearest(q, 10.0).unwrap();
+                    if foot.distance < 0.3 * chain.1 || foot.distance > 0.7 * chain.1 {
+                        continue;
+                    }
+                    compared += 1;
+                    let probe = halves.right.probe(Point::new(q.x.abs(), q.y), 0.0);
+                    let error = (probe.gap - foot.distance).abs();
+                    assert!(error < 1e-12, "{form:?}, {teeth} teeth, {q:?}: {error}");
+                    let side = if q.x > 0.0 { 1.0 } else { -1.0 };
+                    let normal = Vector::new(side * probe.normal.x, probe.normal.y);
+                    assert!(
+                        (normal - foot.normal).norm() < 1e-9,
+                        "{form:?}, {teeth}, {q:?}"
+                    );
+                }
+                assert!(
+                    compared > 300,
+                    "{compared} points of {form:?} with {teeth} teeth"
+                );
+            }
+        }
+    }
+
+    /// A roller in a V lies on both flanks: both halves see it, each its own.
+    #[test]
+    fn a_narrow_gap_is_looked_at_twice() {
+        let flank = |x: f64| Point::new(x, 0.6 + x.abs());
+        let pieces = [
+            Piece::Segment(Segment::new(flank(0.04), flank(0.0))),
+            Piece::Segment(Segment::new(flank(0.0), flank(-0.04))),
+        ];
+        let halves = GapHalves::new(&pieces, 0.01);
+        assert!(halves.two_sided);
+        let above = Point::new(0.0, 0.6 + 0.01 * std::f64::consts::SQRT_2);
+        for half in [&halves.right, &halves.left] {
+            assert!(half.probe(above, 0.01).gap.abs() < 1e-15);
+        }
+    }
+}

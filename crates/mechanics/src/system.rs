@@ -460,7 +460,8 @@ impl System {
         squared += contact;
         damping += drag;
         for slide in &self.slides {
-            let light = 1.0 / slide.inertia;
+            let (_, lever) = slide.carrier.extension(0.0);
+            let light = lever * lever / slide.inertia;
             squared = squared.max(slide.push.stiffness() * light);
             damping = damping.max(slide.push.damping() * light);
         }

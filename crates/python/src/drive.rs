@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use chaindrive::scene::{self, Scene};
-use chaindrive::{Channel, Description, Run, Stepping};
-use numpy::PyArray1;
+use chaindrive::{Channel, Description, Mode, Run, Stepping};
+use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -192,6 +192,35 @@ impl Drive {
             (stage.stage, tensions, stage.contacts)
         });
         Ok(stages.collect())
+    }
+
+    /// Natural frequencies and mode shapes about the static state.
+    fn modes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let found = py.detach(|| {
+            self.drive
+                .assemble()
+                .and_then(|assembled| assembled.modes())
+        });
+        let modes = found.or_raise()?.modes;
+        let count = modes.len();
+        let answer = PyDict::new(py);
+        let frequencies = modes.iter().map(|mode| mode.frequency).collect();
+        answer.set_item("frequency", PyArray1::from_vec(py, frequencies))?;
+        let shape = |name: &str, of: &dyn Fn(&Mode) -> &[f64]| {
+            let values: Vec<f64> = modes.iter().flat_map(of).copied().collect();
+            let width = values.len().checked_div(count).unwrap_or(0);
+            answer.set_item(
+                name,
+                PyArray1::from_vec(py, values).reshape([count, width])?,
+            )
+        };
+        shape("roller_x", &|mode| &mode.roller_x)?;
+        shape("roller_y", &|mode| &mode.roller_y)?;
+        shape("sprocket_angle", &|mode| &mode.sprocket_angle)?;
+        shape("sprocket_x", &|mode| &mode.sprocket_x)?;
+        shape("sprocket_y", &|mode| &mode.sprocket_y)?;
+        shape("tensioner_position", &|mode| &mode.tensioner_position)?;
+        Ok(answer)
     }
 
     /// Polylines of what can be drawn.

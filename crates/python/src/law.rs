@@ -42,7 +42,7 @@ impl Law {
         rate: Values<'py>,
         onset_rate: Values<'py>,
     ) -> Answer<'py> {
-        self.over(py, &penetration, &rate, &onset_rate, |approach| {
+        along(py, [penetration, rate, onset_rate], |approach| {
             self.0.force(approach)
         })
     }
@@ -55,7 +55,7 @@ impl Law {
         rate: Values<'py>,
         onset_rate: Values<'py>,
     ) -> Answer<'py> {
-        self.over(py, &penetration, &rate, &onset_rate, |approach| {
+        along(py, [penetration, rate, onset_rate], |approach| {
             self.0.damping(approach)
         })
     }
@@ -77,26 +77,22 @@ impl Law {
     }
 }
 
-impl Law {
-    fn over<'py>(
-        &self,
-        py: Python<'py>,
-        penetration: &Values<'py>,
-        rate: &Values<'py>,
-        onset_rate: &Values<'py>,
-        evaluate: impl Fn(Approach) -> f64,
-    ) -> Answer<'py> {
-        let (penetration, rate) = (penetration.as_array(), rate.as_array());
-        let approaches = penetration.iter().zip(rate).zip(onset_rate.as_array());
-        let values: Vec<f64> = approaches
-            .map(|((&penetration, &rate), &onset_rate)| {
-                evaluate(Approach {
-                    penetration,
-                    rate,
-                    onset_rate,
-                })
+/// Evaluates a function of the approach along arrays of one length.
+fn along<'py>(
+    py: Python<'py>,
+    [penetration, rate, onset_rate]: [Values<'py>; 3],
+    evaluate: impl Fn(Approach) -> f64,
+) -> Answer<'py> {
+    let (penetration, rate) = (penetration.as_array(), rate.as_array());
+    let approaches = penetration.iter().zip(rate).zip(onset_rate.as_array());
+    let values: Vec<f64> = approaches
+        .map(|((&penetration, &rate), &onset_rate)| {
+            evaluate(Approach {
+                penetration,
+                rate,
+                onset_rate,
             })
-            .collect();
-        values.into_pyarray(py)
-    }
+        })
+        .collect();
+    values.into_pyarray(py)
 }

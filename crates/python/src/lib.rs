@@ -3,6 +3,11 @@
 //! Nothing here computes. Every function converts its arguments, calls the library and converts
 //! the answer back; what users meet is the Python package around it.
 
+#![expect(
+    clippy::needless_pass_by_value,
+    reason = "Python hands over its arguments; references to them cannot be extracted"
+)]
+
 mod drawing;
 mod drive;
 mod errors;

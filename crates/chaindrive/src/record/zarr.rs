@@ -19,8 +19,8 @@
 //! Whenever the process dies, the group document describes chunks that are there. Files are not
 //! synchronised with the disk one by one: a result outlives the program, not a power cut.
 //!
-//! A reader has to take a chunk by opening its file once, as `zarr-python` does. One that asks for
-//! the size first, as `zarrs` does for parts of a chunk, can find another file of another size;
+//! A reader has to open the file of a chunk once, as `zarr-python` does. One that asks for its size
+//! first, as `zarrs` does through its adapter of asynchronous stores, may then find another file;
 //! once the run has ended this does not matter.
 
 mod error;

@@ -46,9 +46,9 @@ impl Target {
                 let writer = ZarrWriter::create(&path, simulation, channels, provenance, existing)?;
                 Output::Zarr(Box::new(writer))
             }
-            Self::Csv(path) => {
-                Output::Csv(CsvWriter::create(&path, simulation, channels, existing)?)
-            }
+            Self::Csv(path) => Output::Csv(Box::new(CsvWriter::create(
+                &path, simulation, channels, existing,
+            )?)),
         })
     }
 }
@@ -58,7 +58,7 @@ impl Target {
 pub(crate) enum Output {
     Nowhere,
     Zarr(Box<ZarrWriter>),
-    Csv(CsvWriter),
+    Csv(Box<CsvWriter>),
 }
 
 impl Output {

@@ -55,7 +55,9 @@ pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Static
     let mut statics = Vec::new();
     let taut = {
         let tensions = tensions(system, q);
-        tensions.iter().sum::<f64>() > 1e-6 * weight(system)
+        let links = tensions.len();
+        let slack = (1e-6 * weight(system)).max(1e3 * links as f64 * rounding(system, q));
+        tensions.iter().sum::<f64>() > slack
     };
     let mut at = Load {
         gravity: 0.0,
@@ -154,13 +156,22 @@ pub(crate) fn curvature(system: &System, q: &[f64]) -> Curvature {
     Curvature {
         entries,
         hessian,
-        residual: newton.residual(&balance),
+        residual: newton.residual(q, &balance),
     }
 }
 
 fn weight(system: &System) -> f64 {
     let mass: f64 = system.masses[..system.rollers].iter().sum();
     (mass * system.gravity.norm()).max(1e-9)
+}
+
+/// Force \[N\] that the rounding of coordinates alone may leave in a link.
+fn rounding(system: &System, q: &[f64]) -> f64 {
+    let farthest = q[..2 * system.stride]
+        .iter()
+        .fold(0.0_f64, |m, x| m.max(x.abs()));
+    let stiffest = system.links.stiffness.iter().copied().fold(0.0, f64::max);
+    4.0 * f64::EPSILON * farthest * stiffest
 }
 
 fn has_load(system: &System) -> bool {
@@ -313,7 +324,7 @@ impl Newton<'_> {
         let mut q = start.to_vec();
         let mut shift = 1e-7 * stiffness;
         let mut balance = self.balance(&q, load);
-        let mut residual = self.residual(&balance);
+        let mut residual = self.residual(&q, &balance);
         let mut best = (residual, q.clone());
         let mut iterations = 0;
         while iterations < most && residual > CONVERGED {
@@ -332,7 +343,7 @@ impl Newton<'_> {
                 }
             }
             balance = self.balance(&q, load);
-            let now = self.residual(&balance);
+            let now = self.residual(&q, &balance);
             if !now.is_finite() {
                 break;
             }
@@ -363,13 +374,15 @@ impl Newton<'_> {
         }
     }
 
-    fn residual(&self, balance: &Balance) -> f64 {
+    fn residual(&self, q: &[f64], balance: &Balance) -> f64 {
         let tension = balance.tensions.iter().fold(0.0_f64, |m, t| m.max(t.abs()));
         let mass = self.system.masses[..self.system.rollers]
             .iter()
             .copied()
             .fold(0.0, f64::max);
-        let scale = tension.max(mass * self.system.gravity.norm()).max(1e-9);
+        // What rounding leaves in an unloaded chain is accepted.
+        let floor = (rounding(self.system, q) / ACCEPTED).max(1e-9);
+        let scale = tension.max(mass * self.system.gravity.norm()).max(floor);
         let scaled = balance.gradient.iter().zip(&self.unknowns.scale);
         scaled
             .map(|(g, lever)| (g / lever.sqrt()).abs())

@@ -101,6 +101,10 @@ impl Contacts {
     }
 
     #[inline(always)]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the inner loop, split for reading only"
+    )]
     fn lane<S: Simd>(
         &self,
         w: Wide<S>,

@@ -24,7 +24,8 @@ pub(crate) fn parts(law: Law) -> Parts {
     };
     let sprockets = wheels.map(|(name, x, y, teeth, inertia)| Sprocket {
         name: name.into(),
-        gap: ToothGap::new(teeth, pitch, roller_diameter, &form).unwrap(),
+        gap: ToothGap::new(teeth, pitch, roller_diameter, &form)
+            .expect("the tooth form fits the chain"),
         side: Side::Left,
         centre: Point::new(x, y),
         rotation: if name == "crank" {
