@@ -40,11 +40,13 @@ def plot(drive: cd.Drive, run, path: Path) -> None:
     figure = plt.figure(figsize=(12, 7), layout="constrained")
     panels = figure.subplot_mosaic([["layout", "tension"], ["layout", "contact"]])
     cd.plot.layout(drive, ax=panels["layout"])
-    cd.plot.tension(run, ax=panels["tension"])
+    settled = run.isel(time=slice(-len(run.time) // 10, None))
+    cd.plot.tension(settled, ax=panels["tension"])
+    panels["tension"].set_title("span tensions, the last tenth of the run")
     force = run["contact_force"].isel(roller=0)  # (time,) N: one roller on its way around
     force.plot(ax=panels["contact"], linewidth=0.8)
     panels["contact"].set_title("contact force of roller 0")
-    figure.savefig(path, dpi=150)
+    figure.savefig(path, dpi=110)
 
 
 if __name__ == "__main__":

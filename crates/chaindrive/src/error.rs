@@ -1,7 +1,7 @@
 //! Why a simulation could not start or go on.
 
-use chaindrive_integrate::IntegrationError;
-use chaindrive_mechanics::AssemblyError;
+use chaindrive_integrate::{IntegrationError, Quantity};
+use chaindrive_mechanics::{AssemblyError, Flow, System};
 
 /// Why a simulation stopped.
 #[derive(Debug, thiserror::Error)]
@@ -31,6 +31,33 @@ pub enum SimulationError {
     /// The time stepping failed.
     #[error(transparent)]
     Integration(#[from] IntegrationError),
+
+    /// The motion ceased to be finite.
+    #[error(
+        "at t = {t:.6} s the {quantity} of {place} is no longer finite; try a smaller step, or look for a contact or damping that is too stiff for its mass"
+    )]
+    NotFinite {
+        t: f64,
+        place: String,
+        quantity: String,
+    },
+}
+
+impl SimulationError {
+    /// The error of a step, with the place in the drive instead of the number of a coordinate.
+    pub(crate) fn stepping(error: IntegrationError, system: &System) -> Self {
+        match error {
+            IntegrationError::NotFinite { t, dof, quantity } => Self::NotFinite {
+                t,
+                place: match quantity {
+                    Quantity::Quadrature => format!("the energy flow `{}`", Flow::ALL[dof].name()),
+                    _ => system.place(dof),
+                },
+                quantity: quantity.to_string(),
+            },
+            other => Self::Integration(other),
+        }
+    }
 }
 
 fn hint(suggestion: Option<&str>) -> String {

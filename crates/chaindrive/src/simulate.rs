@@ -1,6 +1,6 @@
 //! The loop: step, sample, stop.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use chaindrive_integrate::{Method, Moment, State, Statistics, Stepper};
 use chaindrive_mechanics::{Assembled, Drive, Energy, Observation, Record, System};
@@ -41,6 +41,9 @@ pub struct Simulation {
     start_energy: Option<Energy>,
     stepping_time: f64,
 }
+
+/// Steps between two looks at the clock.
+const STEPS_PER_LOOK: usize = 64;
 
 impl Simulation {
     /// Assembles the drive and starts the clock at t = 0.
@@ -97,14 +100,34 @@ impl Simulation {
         if time > self.until * (1.0 + 1e-12) {
             return Ok(None);
         }
-        let begin = Instant::now();
-        while self.state.t < time {
-            self.stepper.advance(&mut self.system, &mut self.state)?;
-        }
-        self.stepping_time += begin.elapsed().as_secs_f64();
+        while !self.advance(Duration::MAX)? {}
         self.sample(time);
         self.next += 1;
         Ok(Some(&self.observation))
+    }
+
+    /// Steps towards the next sample for at most about `budget` of wall time; tells whether the
+    /// sample is reached, or the run at its end.
+    ///
+    /// For callers that look at something else in between, whatever the interval of the samples.
+    ///
+    /// # Errors
+    /// As [`Simulation::next_sample`].
+    pub fn advance(&mut self, budget: Duration) -> Result<bool, SimulationError> {
+        let time = (self.next as f64 * self.every).min(self.until);
+        let begin = Instant::now();
+        while self.state.t < time && begin.elapsed() < budget {
+            for _ in 0..STEPS_PER_LOOK {
+                if self.state.t >= time {
+                    break;
+                }
+                self.stepper
+                    .advance(&mut self.system, &mut self.state)
+                    .map_err(|error| SimulationError::stepping(error, &self.system))?;
+            }
+        }
+        self.stepping_time += begin.elapsed().as_secs_f64();
+        Ok(self.state.t >= time)
     }
 
     fn sample(&mut self, time: f64) {

@@ -251,7 +251,7 @@ fn slow_drive(kinematics: &str, seating: &str, teeth: u32, distance: f64, links:
         teeth,
         distance,
         links,
-        torque: 4.0,
+        torque: 1.0,
     };
     let action = drive.action();
     let period = TAU / f64::from(teeth);

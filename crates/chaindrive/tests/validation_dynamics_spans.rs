@@ -112,9 +112,10 @@ fn moving(length: f64, tension: f64, line_mass: f64, v: f64, expected: f64) -> f
     let (periods, height) = (6.0, 0.8 * pitch);
     let until = periods / expected;
     let behind = ((v * until / pitch).ceil() + 4.0) * pitch;
-    let count = (4..)
-        .find(|count| f64::from(count - 4) * pitch >= behind + length)
-        .unwrap_or_default();
+    let mut count: u32 = 4;
+    while f64::from(count - 4) * pitch < behind + length {
+        count += 1;
+    }
     let amplitude = 1e-4 * length;
     let state = |i: u32| {
         let x = f64::from(i) * pitch - behind;
@@ -128,7 +129,12 @@ fn moving(length: f64, tension: f64, line_mass: f64, v: f64, expected: f64) -> f
         }
     };
     let mut guides = String::new();
-    for (x, side) in [(0.0, -1.0), (0.0, 1.0), (length, -1.0), (length, 1.0)] {
+    for (name, x, side) in [
+        ("in-below", 0.0, -1.0),
+        ("in-above", 0.0, 1.0),
+        ("out-below", length, -1.0),
+        ("out-above", length, 1.0),
+    ] {
         let radius = 0.1 * pitch;
         // Pressed on by a little, so that the span never parts from the rods.
         let y = side * (0.5 * height + radius - 1e-6 * pitch);
@@ -136,7 +142,7 @@ fn moving(length: f64, tension: f64, line_mass: f64, v: f64, expected: f64) -> f
             guides,
             r#"
             [[guides]]
-            name = "rod {x} {side}"
+            name = "{name}"
             touches = "plates"
             face = {{ kind = "arc", centre = [{x}, {y}], radius = {radius}, from = {from}, to = {to} }}
             "#,

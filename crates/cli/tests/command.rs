@@ -265,7 +265,7 @@ fn a_failing_run_keeps_its_samples_and_exits_1() {
         let changes = ["--set", "settle=false", "--set", load];
         let (code, _, err) = run(at, &[&scene[..], &changes].concat());
         assert_eq!(code, 1, "{err}");
-        assert!(err.contains("is not finite"), "{err}");
+        assert!(err.contains("no longer finite"), "{err}");
     }
     let attributes = &group(&at.join("drive.zarr"))["attributes"];
     assert_eq!(attributes["status"], "failed");
@@ -275,7 +275,7 @@ fn a_failing_run_keeps_its_samples_and_exits_1() {
         attributes["failure"]
             .as_str()
             .unwrap()
-            .contains("is not finite")
+            .contains("no longer finite")
     );
     let table = fs::read_to_string(at.join("drive.csv")).unwrap();
     assert_eq!(table.lines().count(), 3);

@@ -139,8 +139,8 @@ fn height_after_a_hundred_bounces_with_error_control() {
     for row in reference() {
         let method = Method::DormandPrince {
             relative: 0.0,
-            absolute: 1e-8 * row.penetration,
-            absolute_rate: 1e-10 * row.impact_speed,
+            absolute: 1e-9 * row.penetration,
+            absolute_rate: 1e-11 * row.impact_speed,
             max_step: 1e-3,
         };
         let found = bounce(&row, method, 1e-3 * row.penetration, 100);

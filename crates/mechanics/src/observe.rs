@@ -83,6 +83,33 @@ impl System {
         self.slides.iter().map(|slide| slide.name.clone()).collect()
     }
 
+    /// Where in the drive a coordinate of the state belongs, in words.
+    pub fn place(&self, dof: usize) -> String {
+        let n = self.stride;
+        if dof < 2 * n {
+            let axis = if dof < n { "x" } else { "y" };
+            return format!("roller {} along {axis}", dof % n % self.rollers);
+        }
+        let wheel = self
+            .wheels
+            .iter()
+            .find_map(|wheel| match (&wheel.rotation, &wheel.support) {
+                (WheelRotation::Free { dof: angle, .. }, _) if *angle == dof => {
+                    Some(format!("the angle of sprocket `{}`", wheel.name))
+                }
+                (_, WheelSupport::Springs { dof: centre, .. })
+                    if (*centre..centre + 2).contains(&dof) =>
+                {
+                    Some(format!("the centre of sprocket `{}`", wheel.name))
+                }
+                _ => None,
+            });
+        let slide = self.slides.iter().find(|slide| slide.dof == Some(dof));
+        wheel
+            .or_else(|| slide.map(|slide| format!("tensioner `{}`", slide.name)))
+            .unwrap_or_else(|| format!("coordinate {dof}"))
+    }
+
     /// Reads everything off a state between or at accepted steps.
     ///
     /// Evaluates the forces once, on `record` as work space; the system does not change.

@@ -130,7 +130,13 @@ fn advance(
     mut keep: impl FnMut(&Simulation) -> PyResult<()>,
 ) -> PyResult<()> {
     let mut looked = Instant::now();
-    while simulation.next_sample().or_raise()?.is_some() {
+    loop {
+        while !simulation.advance(PATIENCE).or_raise()? {
+            look(progress, simulation.progress())?;
+        }
+        if simulation.next_sample().or_raise()?.is_none() {
+            break;
+        }
         summary.push(simulation.observation());
         keep(simulation)?;
         if looked.elapsed() > PATIENCE {

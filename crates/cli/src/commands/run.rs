@@ -1,6 +1,7 @@
 //! `chaindrive run`: simulate a scene, write the samples, end with a summary.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use chaindrive::describe::spans_at_rest;
 use chaindrive::record::{Ending, Existing, Provenance};
@@ -83,6 +84,9 @@ enum Stop {
     Failed(chaindrive::SimulationError),
 }
 
+/// Wall time between two looks at progress and interrupts while no sample is due.
+const LOOK: Duration = Duration::from_millis(100);
+
 /// Samples until the end, and ends the result.
 fn drive_to_the_end(
     simulation: &mut Simulation,
@@ -93,6 +97,17 @@ fn drive_to_the_end(
 ) -> Result<Stop, Failure> {
     let mut progress = Progress::new(quiet);
     let stop = loop {
+        match simulation.advance(LOOK) {
+            Ok(true) => {}
+            Ok(false) => {
+                progress.show(simulation);
+                if interrupted() {
+                    break Stop::Interrupted;
+                }
+                continue;
+            }
+            Err(error) => break Stop::Failed(error),
+        }
         match simulation.next_sample() {
             Ok(Some(sample)) => summary.push(sample),
             Ok(None) => break Stop::End,
