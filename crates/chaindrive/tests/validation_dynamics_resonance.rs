@@ -100,87 +100,176 @@ fn v14_speed_of_direct_resonance() {
     assert!((rpm(peak) / expected - 1.0).abs() < case.number("tolerance.relative"));
 }
 
-/// Range of the driven wheel's motion over that of the kinematic one, and of the tension \[N\].
-fn forced(case: &Reference, rpm: f64) -> (f64, f64) {
+/// A drive of case V15: a light chain in seats of the rollers' own radius, an upper span that is the
+/// spring, and a lower one that hangs.
+struct Spring<'a> {
+    case: &'a Reference,
+    /// Stiffness of a link \[N/m\].
+    stiffness: f64,
+    /// Speed of the driver \[rad/s\].
+    speed: f64,
+    /// Mean tension of the upper span \[N\].
+    tension: f64,
+    /// Resistance of the driven shaft \[N m s\].
+    viscous: f64,
+    /// Where in a tooth the wheels begin.
+    phase: f64,
+}
+
+impl Spring<'_> {
+    fn text(&self, ramp: f64, until: f64, every: f64) -> String {
+        let input = |name: &str| self.case.number(&format!("inputs.{name}"));
+        let (teeth, pitch) = (input("z1"), input("pitch"));
+        let radius = 0.5 * pitch / (PI / teeth).sin();
+        format!(
+            r#"
+            settle = false
+            [chain]
+            pitch = {pitch}
+            links = {links}
+            mass = 1e-4
+            stiffness = {stiffness}
+            damping_ratio = 0.05
+            roller_diameter = {roller}
+            [contact.teeth]
+            law = {{ kind = "linear", stiffness = 2e8 }}
+            damping = 20
+            [[sprockets]]
+            name = "driver"
+            teeth = {teeth}
+            tooth = {{ kind = "circular", seat_radius = {seat} }}
+            centre = [0, 0]
+            motion = {{ kind = "constant", speed = {speed} }}
+            [[sprockets]]
+            name = "driven"
+            teeth = {teeth}
+            tooth = {{ kind = "circular", seat_radius = {seat} }}
+            centre = [{distance}, 0]
+            inertia = {inertia}
+            load = [
+                {{ kind = "ramp", torque = {load}, duration = {ramp} }},
+                {{ kind = "resistance", linear = {viscous} }},
+            ]
+            [route]
+            stops = ["driven", "driver"]
+            phase = {phase}
+            [run]
+            until = {until}
+            every = {every}
+            "#,
+            links = (teeth + 2.0 * input("C") / pitch).round(),
+            stiffness = self.stiffness,
+            roller = 0.6 * pitch,
+            seat = 0.3 * pitch,
+            speed = self.speed,
+            distance = input("C") - 1e-4,
+            inertia = input("J2"),
+            load = self.viscous * self.speed - self.tension * radius,
+            viscous = self.viscous,
+            phase = self.phase,
+        )
+    }
+}
+
+/// Stiffness \[N/m\] of the span with the seated links at its ends, from the rest under two loads.
+fn span_stiffness(case: &Reference, stiffness: f64) -> f64 {
     let input = |name: &str| case.number(&format!("inputs.{name}"));
-    let (teeth, pitch, inertia) = (input("z1"), input("pitch"), input("J2"));
-    let radius = 0.5 * pitch / (PI / teeth).sin();
+    let radius = 0.5 * input("pitch") / (PI / input("z1")).sin();
+    let rest = |phase: f64, tension: f64| {
+        let viscous = 2.0 * input("wn") * input("J2");
+        let spring = Spring {
+            case,
+            stiffness,
+            speed: 0.0,
+            tension,
+            viscous,
+            phase,
+        };
+        let mut angle = 0.0;
+        run(&spring.text(5e-3, 0.03, 0.03), |sample| {
+            angle = sample.sprocket_angle[1];
+        });
+        angle
+    };
+    let give = |phase: f64| radius * (rest(phase, 200.0) - rest(phase, 300.0)) / 100.0;
+    1.0 / mean(&[0.125, 0.375, 0.625, 0.875].map(give))
+}
+
+/// Range of the motion of the driven wheel against the driver's, and of the tension \[N\].
+fn forced(case: &Reference, stiffness: f64, rpm: f64) -> (f64, f64) {
+    let input = |name: &str| case.number(&format!("inputs.{name}"));
+    let decay = input("zeta") * input("wn");
+    // On the wheel instead of along the span, where it would act on every link's own vibration too:
+    // the difference is of the second order in ζ.
+    let viscous = 2.0 * decay * input("J2");
     let speed = rpm * TAU / 60.0;
-    let span = input("C") / pitch;
-    // The seated links at both ends give as much as one and a half free ones.
-    let stiffness = input("k_span") * (span + 1.5);
-    let damping = 2.0 * input("zeta") * input("wn") * inertia / radius.powi(2) * (span + 1.5);
-    let tension = 250.0;
-    let period = 60.0 / (teeth * rpm);
-    // Three times the decay time of the free vibration, in whole teeth.
-    let settled = (3.0 / (input("zeta") * input("wn")) / period).ceil() * period;
-    let text = format!(
-        r#"
-        settle = false
-        [chain]
-        pitch = {pitch}
-        links = {links}
-        mass = 1e-3
-        stiffness = {stiffness}
-        damping = {damping}
-        roller_diameter = {roller}
-        [contact.teeth]
-        law = {{ kind = "linear", stiffness = 2e8 }}
-        damping = 100
-        [[sprockets]]
-        name = "driver"
-        teeth = {teeth}
-        tooth = {{ kind = "circular", seat_radius = {seat} }}
-        centre = [0, 0]
-        motion = {{ kind = "constant", speed = {speed} }}
-        [[sprockets]]
-        name = "driven"
-        teeth = {teeth}
-        tooth = {{ kind = "circular", seat_radius = {seat} }}
-        centre = [{distance}, 0]
-        inertia = {inertia}
-        load = [{{ kind = "ramp", torque = {load}, duration = {ramp} }}]
-        [route]
-        stops = ["driven", "driver"]
-        [run]
-        until = {until}
-        every = {every}
-        "#,
-        links = (teeth + 2.0 * span).round(),
-        roller = 0.6 * pitch,
-        seat = 0.3 * pitch,
-        distance = input("C") - 1e-4,
-        load = -tension * radius,
-        ramp = 0.3 * settled,
-        until = settled + 4.0 * period,
-        every = period / 200.0,
-    );
+    let period = 60.0 / (input("z1") * rpm);
+    // Eight times the decay time of the free vibration, in whole teeth.
+    let settled = (8.0 / decay / period).ceil() * period;
+    let spring = Spring {
+        case,
+        stiffness,
+        speed,
+        tension: 250.0,
+        viscous,
+        phase: 0.5,
+    };
+    let text = spring.text(0.4 * settled, settled + 6.0 * period, 0.01 * period);
     let (mut motion, mut pull) = (Vec::new(), Vec::new());
     run(&text, |sample| {
         if sample.time > settled - 1e-9 {
-            motion.push(sample.sprocket_angle[1] - sample.sprocket_angle[0]);
+            motion.push((sample.sprocket_angle[1], sample.sprocket_angle[0]));
             pull.push(sample.span_tension[0].max(sample.span_tension[1]));
         }
     });
-    (range(&motion), range(&pull))
+    // Driver and mean of the driven wheel turn alike.
+    let motion: Vec<f64> = motion.iter().map(|(b, a)| b - a).collect();
+    // The mean over six teeth, phase by phase.
+    let cycle = |values: &[f64]| {
+        let phase = |i| {
+            values
+                .iter()
+                .skip(i)
+                .step_by(100)
+                .copied()
+                .collect::<Vec<_>>()
+        };
+        range(&(0..100).map(|i| mean(&phase(i))).collect::<Vec<_>>())
+    };
+    (cycle(&motion), cycle(&pull))
 }
 
+/// `cargo test --release -p chaindrive --test validation_dynamics_resonance -- --ignored`
 #[test]
-#[ignore = "four slow runs"]
+#[ignore = "slow runs"]
 fn v15_forced_vibration_of_the_driven_wheel() {
     let case = Reference::read("V15");
     let free = Reference::read("K03").number("expected.summary.te_ptp_rad");
+    let wanted = case.number("inputs.k_span");
+    // Links of 20.5 in the span and some of the seated ones; then what is missing.
+    let mut stiffness = 22.0 * wanted;
+    for _ in 0..2 {
+        let found = span_stiffness(&case, stiffness);
+        println!("V15: links of {stiffness:.4e} N/m make a span of {found:.4e} N/m");
+        stiffness *= wanted / found;
+    }
     let rows = case.table("inputs.rows");
-    let expected = case.table("expected.rows");
-    for (row, expected) in rows.iter().zip(expected) {
-        if ![0.5, 0.8, 1.3, 2.0].contains(&row[0]) {
+    let allowed = case.number("tolerance.relative");
+    let mut judged = Vec::new();
+    for (row, expected) in rows.iter().zip(case.table("expected.rows")) {
+        // Below, a higher harmonic of the excitation is near resonance and decides alone: not
+        // judged. At resonance the amplitude is the damping.
+        if ![0.8, 1.3, 2.0].contains(&row[0]) {
             continue;
         }
-        let (motion, pull) = forced(&case, expected[0]);
+        let (motion, pull) = forced(&case, stiffness, expected[0]);
         let errors = [motion / free / expected[2] - 1.0, pull / expected[3] - 1.0];
         println!(
             "V15: r = {}: motion {:.1e}, ripple {:.1e}",
             row[0], errors[0], errors[1]
         );
+        judged.push((row[0], errors));
     }
+    let good = |(_, errors): &(f64, [f64; 2])| errors.iter().all(|e| e.abs() < allowed);
+    assert!(judged.iter().all(good), "{judged:?}");
 }
