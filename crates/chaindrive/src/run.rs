@@ -68,6 +68,16 @@ impl Stepping {
     }
 }
 
+impl From<Method> for Stepping {
+    fn from(method: Method) -> Self {
+        match method {
+            Method::Verlet { .. } => Self::Verlet,
+            Method::Rk4 { .. } => Self::Rk4,
+            Method::DormandPrince { .. } => Self::DormandPrince,
+        }
+    }
+}
+
 /// Default steps in units of 1/ω of the stiffest mode. Verlet is stable to 2; contacts stiffen
 /// as they are pressed, and accuracy asks for a quarter of that anyway.
 const VERLET_STEP: f64 = 0.5;

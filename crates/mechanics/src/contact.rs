@@ -9,7 +9,7 @@ mod kernel;
 mod plates;
 mod window;
 
-use chaindrive_contact::{Elastic, Friction, Law, dissipation::Action};
+use chaindrive_contact::{Friction, dissipation::Action};
 use chaindrive_geometry::{Point, Vector};
 
 pub(crate) use kernel::Wrench;
@@ -163,17 +163,6 @@ impl Contacts {
         }
     }
 
-    /// Largest tangent stiffness \[N/m\] and damping \[N s/m\] of one contact at `depth` \[m\]
-    /// with a touch as slow as the floor.
-    pub(crate) fn hardest(&self, depth: f64) -> (f64, f64) {
-        let law: &Law = &self.surface.law;
-        let numbers = LawNumbers::new(&self.surface);
-        let stiffness = law.stiffness(depth.max(shallow(&law.elastic)));
-        // ∂F/∂δ̇ = χ g/v_in + c
-        let damping = numbers.factor * law.elastic_force(depth) / numbers.floor + numbers.damping;
-        (stiffness, damping)
-    }
-
     /// Sum of the elastic energies of all closed slots \[J\].
     pub(crate) fn stored(&self, touch: &Touch) -> f64 {
         let law = &self.surface.law;
@@ -187,8 +176,11 @@ impl Contacts {
 }
 
 /// A depth at which laws that start softly have some stiffness \[m\].
-fn shallow(elastic: &Elastic) -> f64 {
-    match elastic {
-        Elastic::Power(_) | Elastic::Johnson(_) => 1e-7,
+const SHALLOW: f64 = 1e-7;
+
+impl Surface {
+    /// Tangent stiffness of a contact of some depth \[N/m\], for the choice of the step.
+    pub(crate) fn stiffness(&self, depth: f64) -> f64 {
+        self.law.stiffness(depth.max(SHALLOW))
     }
 }

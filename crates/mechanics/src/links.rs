@@ -1,5 +1,6 @@
 //! The forces of the links on the rollers.
 
+use chaindrive_geometry::{Point, Vector};
 use pulp::Simd;
 
 use crate::Chain;
@@ -107,10 +108,10 @@ impl Links {
         loss.sum()
     }
 
-    /// Length and tension of one link.
-    pub(crate) fn tension(&self, rollers: &Rollers<'_>, link: usize) -> f64 {
-        let d = rollers.place(link + 1) - rollers.place(link);
-        let u = rollers.velocity(link + 1) - rollers.velocity(link);
+    /// Tension of one link between two pins with their velocities \[N\].
+    pub(crate) fn tension(&self, link: usize, pins: [(Point, Vector); 2]) -> f64 {
+        let d = pins[1].0 - pins[0].0;
+        let u = pins[1].1 - pins[0].1;
         let length = d.norm();
         // T = k (ℓ − p) + d ℓ̇
         self.stiffness[link] * (length - self.rest[link]) + self.damping[link] * d.dot(&u) / length

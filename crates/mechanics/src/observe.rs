@@ -134,12 +134,11 @@ impl System {
         copy(&mut out.roller_y, &at.q[n..n + count]);
         copy(&mut out.roller_vx, &at.v[..count]);
         copy(&mut out.roller_vy, &at.v[n..n + count]);
-        {
-            let rollers = self.view(at.q, at.v, &mut a);
-            let tensions = (0..self.links.count).map(|link| self.links.tension(&rollers, link));
-            out.link_tension.clear();
-            out.link_tension.extend(tensions);
-        }
+        out.link_tension.clear();
+        out.link_tension.extend((0..self.links.count).map(|link| {
+            self.links
+                .tension(link, [self.pin(at, link), self.pin(at, link + 1)])
+        }));
         self.observe_sprockets(at, record, out);
         self.observe_spans(out);
         Self::observe_guides(record, out);

@@ -110,8 +110,8 @@ channels! {
     SprocketY, "sprocket_y", "m", Sprocket, "sprocket centre, y";
     GuideForceX, "guide_force_x", "N", Guide, "resultant of the chain on the guide, x";
     GuideForceY, "guide_force_y", "N", Guide, "resultant of the chain on the guide, y";
-    TensionerPosition, "tensioner_position", "1", Tensioner, "travel [m] of a slider or angle [rad] of an arm";
-    TensionerForce, "tensioner_force", "N", Tensioner, "push of the tensioner [N], or torque [N m] of a bare arm";
+    TensionerPosition, "tensioner_position", "1", Tensioner, "travel of a slider in m, or angle of an arm in rad";
+    TensionerForce, "tensioner_force", "N", Tensioner, "push of the tensioner in N, or torque of a bare arm in N m";
     EnergyKinetic, "energy_kinetic", "J", None, "kinetic energy";
     EnergyStored, "energy_stored", "J", None, "potential energy of springs, contacts and weight";
     EnergyDissipated, "energy_dissipated", "J", None, "energy lost since the start";

@@ -7,7 +7,7 @@ use chaindrive_integrate::Method;
 use serde_json::{Map, Value};
 
 use super::FORMAT;
-use crate::{Run, Scene, Simulation};
+use crate::{Run, Scene, Simulation, Stepping};
 
 /// Where a run came from.
 #[derive(Clone, Debug, PartialEq)]
@@ -102,7 +102,7 @@ pub(super) fn attributes(
 }
 
 fn method(story: &mut Story, method: Method) {
-    story.text("method", method.name());
+    story.text("method", Stepping::from(method).name());
     story.count("method_order", u64::from(method.order()));
     match method {
         Method::Verlet { step } | Method::Rk4 { step } => story.number("step", step),
