@@ -246,6 +246,16 @@ impl Table {
         }
     }
 
+    /// Straight lines between the points, the end values beyond the ends.
+    pub fn polyline(&self, t: f64) -> f64 {
+        let last = self.times.len() - 1;
+        let i = self.times.partition_point(|&knot| knot <= t).clamp(1, last);
+        let share = (t - self.times[i - 1]) / (self.times[i] - self.times[i - 1]);
+        let share = share.clamp(0.0, 1.0);
+        // x = (1 − s) x₀ + s x₁
+        (1.0 - share) * self.values[i - 1] + share * self.values[i]
+    }
+
     fn at(&self, t: f64) -> Course {
         let course = self.value(t);
         Course {
@@ -332,6 +342,20 @@ mod tests {
         let course = table.value(0.77);
         assert!((course.position - 2.54).abs() < 1e-14);
         assert!(course.acceleration.abs() < 1e-13);
+    }
+
+    #[test]
+    fn polyline_neither_overshoots_nor_leaves_its_ends() {
+        let table = Table::new(vec![0.0, 1.0, 1.5, 4.0], vec![0.0, 1.0, 0.0, 0.0]).unwrap();
+        for (t, x) in [
+            (-1.0, 0.0),
+            (0.25, 0.25),
+            (1.25, 0.5),
+            (2.0, 0.0),
+            (9.0, 0.0),
+        ] {
+            assert!((table.polyline(t) - x).abs() < 1e-15, "{t}");
+        }
     }
 
     #[test]

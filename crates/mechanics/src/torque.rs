@@ -29,7 +29,8 @@ pub enum Torque {
         /// Phase φ \[rad\].
         phase: f64,
     },
-    /// A curve over time, angle or speed.
+    /// Straight lines between points over time, angle or speed: a torque never overshoots its table.
+    /// Beyond the ends the torque of the nearest end holds.
     Table {
         /// The argument of the curve.
         over: Argument,
@@ -75,7 +76,7 @@ impl Torque {
                     Argument::Angle => angle.rem_euclid(TAU),
                     Argument::Speed => speed,
                 };
-                curve.value(argument).position
+                curve.polyline(argument)
             }
             Self::Ramp {
                 torque,

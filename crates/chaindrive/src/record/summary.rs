@@ -233,7 +233,7 @@ impl fmt::Display for Report<'_> {
         let wall = simulation.stepping_time();
         write!(
             f,
-            "speed                    {:.1} × real time, {:.2} ns per link and step, {:.3} s for {time:.4} s",
+            "speed                    {:.3} × real time, {:.2} ns per link and step, {:.3} s for {time:.4} s",
             time / wall,
             wall * 1e9 / steps / simulation.system().links() as f64,
             wall

@@ -106,21 +106,21 @@ pub(crate) enum Torque {
         #[serde(default)]
         phase: Angle,
     },
-    /// A torque over time, joined by a natural cubic spline.
+    /// A torque over time, along straight lines, held beyond the ends.
     TimeTable {
         /// Times [s], increasing.
         times: Vec<Time>,
         /// Torque at each of them [N m].
         torques: Vec<Moment>,
     },
-    /// A torque over the angle within one turn, joined by a natural cubic spline.
+    /// A torque over the angle within one turn, along straight lines.
     AngleTable {
         /// Angles [rad], increasing from 0 to a full turn.
         angles: Vec<Angle>,
         /// Torque at each of them [N m].
         torques: Vec<Moment>,
     },
-    /// A torque over the speed, joined by a natural cubic spline.
+    /// A torque over the speed, along straight lines, held beyond the ends.
     SpeedTable {
         /// Speeds [rad/s], increasing.
         speeds: Vec<AngularSpeed>,
