@@ -115,6 +115,8 @@ pub(crate) struct LawNumbers {
     pub(crate) floor: f64,
     /// Friction coefficient, zero without friction.
     pub(crate) friction: f64,
+    /// Slope of the friction force at rest per normal force, μ/v_s \[s/m\].
+    pub(crate) friction_slope: f64,
     /// Square of the regularising slip speed \[m²/s²\].
     pub(crate) slip_speed_squared: f64,
 }
@@ -136,6 +138,7 @@ impl LawNumbers {
             // Without hysteresis the speed at touch is only kept, never used.
             floor: surface.law.onset_floor.max(f64::MIN_POSITIVE.sqrt()),
             friction,
+            friction_slope: friction / slip_speed,
             slip_speed_squared: slip_speed * slip_speed,
         }
     }

@@ -47,6 +47,8 @@ pub struct System {
     pub(crate) pitch: f64,
     /// Sprockets in path order, for the naming of spans.
     pub(crate) route: Vec<usize>,
+    /// Inverse mass of the lightest roller \[1/kg\].
+    pub(crate) lightest: f64,
     /// ω² of the links alone and twice their damping rate.
     pub(crate) link_rates: [f64; 2],
     time_scale: f64,
@@ -310,32 +312,31 @@ impl System {
     ///
     /// The damping rate enters because Verlet's predicted velocity limits h D to 1.
     fn stiffest(&self, record: &Record) -> f64 {
-        let lightest = self.inverse_masses.iter().copied().fold(0.0, f64::max);
         let [mut squared, mut damping] = self.link_rates;
         let (mut contact, mut drag) = (0.0_f64, 0.0_f64);
         for (wheel, wrench) in self.wheels.iter().zip(&record.wheel_wrenches) {
             let stiffness = wheel.contacts.surface.stiffness(wrench.depth);
-            let free = matches!(wheel.rotation, WheelRotation::Free { .. });
             let seated: usize = wheel.contacts.runs.iter().map(|run| run.count).sum();
-            let radius = wheel.pitch_radius;
-            let shared = if free {
-                radius * radius / wheel.inertia * seated as f64
-            } else {
-                0.0
-            };
-            contact = contact.max(stiffness * (lightest + shared));
-            drag = drag.max(wrench.damping * (lightest + shared));
+            let mobility = wheel.mobility(&self.slides);
+            let shared = mobility * seated as f64;
+            contact = contact.max(stiffness * (self.lightest + shared));
+            drag = drag.max(wrench.damping * (self.lightest + shared));
         }
         for (rail, wrench) in self.rails.iter().zip(&record.rail_wrenches) {
             let surface = match &rail.contact {
                 RailContact::Circles(contacts) => &contacts.surface,
                 RailContact::Plates(plates) => &plates.surface,
             };
-            contact = contact.max(surface.stiffness(wrench.depth) * lightest);
-            drag = drag.max(wrench.damping * lightest);
+            contact = contact.max(surface.stiffness(wrench.depth) * self.lightest);
+            drag = drag.max(wrench.damping * self.lightest);
         }
         squared += contact;
         damping += drag;
+        for wheel in &self.wheels {
+            let [own, drag] = wheel.own_rates();
+            squared = squared.max(own);
+            damping = damping.max(drag);
+        }
         for slide in &self.slides {
             let (_, lever) = slide.carrier.extension(0.0);
             let light = lever * lever / slide.inertia;

@@ -89,6 +89,14 @@ impl Torque {
         }
     }
 
+    /// Linear resistance −∂M/∂ω at rest \[N m s\].
+    pub(crate) fn drag(&self) -> f64 {
+        match self {
+            Self::Resistance { linear, .. } => *linear,
+            _ => 0.0,
+        }
+    }
+
     /// Names the first parameter out of range.
     ///
     /// # Errors

@@ -23,7 +23,7 @@ pub(crate) struct Wrench {
     pub(crate) friction_loss: f64,
     /// Deepest penetration \[m\].
     pub(crate) depth: f64,
-    /// Largest damping −∂F/∂ġ \[N s/m\].
+    /// Largest damping of one contact, along the normal and across \[N s/m\].
     pub(crate) damping: f64,
     /// Deepest penetration of a contact that opened this step \[m\].
     pub(crate) first_depth: f64,
@@ -305,7 +305,10 @@ impl Contacts {
         sums.moment += moment;
         sums.normal_loss += (force - closed.select(stored, zero)) * closing;
         sums.depth = sums.depth.max(depth);
-        sums.damping = sums.damping.max(damping * inverse);
+        // −∂F/∂ġ = χ g/v + c, and μ F/v_s across
+        let normal = damping * inverse + closed.select(w.splat(numbers.damping), zero);
+        let across = w.splat(numbers.friction_slope) * force;
+        sums.damping = sums.damping.max(normal + across);
     }
 }
 

@@ -160,7 +160,8 @@ impl PlateContact {
                 wrench.normal_loss += (state.force - stored) * closing;
                 wrench.friction_loss -= rub * slip;
                 wrench.depth = wrench.depth.max(-gap);
-                wrench.damping = wrench.damping.max(law.damping(approach));
+                let across = self.surface.friction.damping(state.force, 0.0);
+                wrench.damping = wrench.damping.max(law.damping(approach) + across);
             }
             touch[link] = state;
         }

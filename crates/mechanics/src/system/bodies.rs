@@ -229,6 +229,47 @@ impl Wheel {
     }
 }
 
+impl Wheel {
+    /// How easily a force at the teeth moves the rim \[1/kg\]: R²/J of a free shaft, 1/m of a free
+    /// centre.
+    pub(crate) fn mobility(&self, slides: &[Slide]) -> f64 {
+        let turning = match self.rotation {
+            WheelRotation::Prescribed(_) => 0.0,
+            WheelRotation::Free { .. } => self.pitch_radius * self.pitch_radius / self.inertia,
+        };
+        let moving = match &self.support {
+            WheelSupport::Fixed | WheelSupport::Prescribed { .. } => 0.0,
+            WheelSupport::Springs { .. } => 1.0 / self.mass,
+            WheelSupport::Carried(index) => {
+                let slide = &slides[*index];
+                let arm = match &slide.carrier {
+                    Carrier::Slider { .. } => 1.0,
+                    Carrier::Arm { pivot, .. } => (self.centre - pivot).norm_squared(),
+                };
+                slide.dof.map_or(0.0, |_| arm / slide.inertia)
+            }
+        };
+        turning + moving
+    }
+
+    /// ω² and damping rate of the wheel on its own bearing and shaft.
+    pub(crate) fn own_rates(&self) -> [f64; 2] {
+        let mut rates = [0.0_f64; 2];
+        if let WheelSupport::Springs {
+            stiffness, damping, ..
+        } = &self.support
+        {
+            rates[0] = stiffness[0].max(stiffness[1]) / self.mass;
+            rates[1] = damping[0].max(damping[1]) / self.mass;
+        }
+        if let WheelRotation::Free { drive, load, .. } = &self.rotation {
+            let drag: f64 = drive.iter().chain(load).map(Torque::drag).sum();
+            rates[1] = rates[1].max(drag / self.inertia);
+        }
+        rates
+    }
+}
+
 impl Rail {
     /// The frame of the face, and its reference origin, at time `t`.
     pub(crate) fn frame(&self, t: f64, q: &[f64], v: &[f64], slides: &[Slide]) -> Frame {

@@ -66,6 +66,7 @@ impl System {
         pad(&mut inverse_masses, stride, chain.is_closed());
 
         let mut system = Self {
+            lightest: inverse_masses.iter().copied().fold(0.0, f64::max),
             link_rates: link_rates(&links, &inverse_masses, rollers),
             links,
             rollers,
