@@ -64,13 +64,15 @@ fn around(
             // The wheels move without failing where the parts at rest have made wheels.
             wheels(parts, stops)?;
             let mut moving = |travel: f64| {
-                let moved = shifted(parts, adjust, travel);
-                wheels(&moved, stops).unwrap_or_default()
+                // No wheels at all is an error of the closing, never a wrong place.
+                shifted(parts, adjust, travel)
+                    .and_then(|moved| wheels(&moved, stops))
+                    .unwrap_or_default()
             };
             let range = (-within, within);
             let (travel, _, closing) =
                 close_by_motion(pitch, strain, links, phase, &mut moving, range)?;
-            (travel, shifted(parts, adjust, travel), closing, strain)
+            (travel, shifted(parts, adjust, travel)?, closing, strain)
         }
     };
     let wheels = wheels(&moved, stops)?;
@@ -189,7 +191,7 @@ fn guide_wheel(guide: &Guide, chain: &Chain, travel: Vector) -> Result<Wheel, As
 }
 
 /// The parts with the adjusted body, and all it carries, moved by `travel`.
-fn shifted(parts: &Parts, adjust: &Adjust, travel: f64) -> Parts {
+fn shifted(parts: &Parts, adjust: &Adjust, travel: f64) -> Result<Parts, AssemblyError> {
     let mut parts = parts.clone();
     match adjust {
         Adjust::Nothing => {}
@@ -210,7 +212,7 @@ fn shifted(parts: &Parts, adjust: &Adjust, travel: f64) -> Parts {
             }
             for guide in &mut parts.guides {
                 if guide.support == GuideSupport::Tensioner(*tensioner) {
-                    guide.face = moved_face(&guide.face, &carrier, travel);
+                    guide.face = moved_face(&guide.face, &carrier, travel)?;
                 }
             }
             if let Carrier::Arm {
@@ -222,7 +224,7 @@ fn shifted(parts: &Parts, adjust: &Adjust, travel: f64) -> Parts {
             }
         }
     }
-    parts
+    Ok(parts)
 }
 
 fn carried(carrier: &Carrier, p: Point, travel: f64) -> Point {
@@ -236,7 +238,11 @@ fn carried(carrier: &Carrier, p: Point, travel: f64) -> Point {
     }
 }
 
-fn moved_face(face: &ArcSpline, carrier: &Carrier, travel: f64) -> ArcSpline {
+fn moved_face(
+    face: &ArcSpline,
+    carrier: &Carrier,
+    travel: f64,
+) -> Result<ArcSpline, AssemblyError> {
     let pieces = face.pieces().iter().map(|piece| match carrier {
         Carrier::Slider { direction } => piece.translated(direction * travel),
         Carrier::Arm { pivot, .. } => piece
@@ -244,6 +250,5 @@ fn moved_face(face: &ArcSpline, carrier: &Carrier, travel: f64) -> ArcSpline {
             .rotated(travel)
             .translated(pivot.coords),
     });
-    // A rigid motion keeps every property that was checked when the face was made.
-    ArcSpline::open(&pieces.collect::<Vec<_>>()).unwrap_or_else(|_| face.clone())
+    Ok(ArcSpline::open(&pieces.collect::<Vec<_>>())?)
 }

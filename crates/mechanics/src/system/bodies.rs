@@ -303,3 +303,21 @@ impl Rail {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_anchor_turns_as_exactly_as_the_functions() {
+        for start in [-250.0, 0.0, 1.3] {
+            let anchor = Anchor::at(start);
+            for i in -40..=40 {
+                let angle = start + 0.01 * f64::from(i);
+                let [cosine, sine] = anchor.turn(angle);
+                assert!((cosine - angle.cos()).abs() < 4e-16, "{start}, {i}");
+                assert!((sine - angle.sin()).abs() < 4e-16, "{start}, {i}");
+            }
+        }
+    }
+}

@@ -269,7 +269,6 @@ fn add_one(
     let kappa = -probe.bend;
     let around = Vector::new(-d.y, d.x);
     let lever = t.dot(&around);
-    let turned = t;
 
     // Entries that move the contact: gradient of δ, and coefficients of (x, θ) for the geometry.
     let mut moves: Vec<(usize, f64, Vector, f64)> = Vec::new();
@@ -285,9 +284,9 @@ fn add_one(
     if let Some(entry) = mount.angle {
         moves.push((entry, -m.dot(&around), Vector::zeros(), 1.0));
     }
-    let mixed: Vector = turned - t * (kappa * lever);
+    let mixed = t * (1.0 - kappa * lever);
     let twice = kappa * lever * lever - m.dot(&d);
-    for (i, (entry, slope, shift, turn)) in moves.iter().enumerate() {
+    for (entry, slope, shift, turn) in &moves {
         sum.force(*entry, push.force * slope);
         for (other, other_slope, other_shift, other_turn) in &moves {
             let geometry = kappa * t.dot(shift) * t.dot(other_shift)
@@ -300,7 +299,6 @@ fn add_one(
                 push.stiffness * slope * other_slope + push.force * geometry,
             );
         }
-        debug_assert!(i < 8, "a contact moves with a handful of entries");
     }
     for (entry, _, second) in &mount.centre {
         sum.stiffen(*entry, *entry, -push.force * m.dot(second));
