@@ -2,12 +2,16 @@
 
 use std::hint::black_box;
 
-use chaindrive_contact::elastic::ElasticLaw;
+use chaindrive_contact::dissipation::LankaraniNikravesh;
+use chaindrive_contact::elastic::{ElasticLaw, Power};
 use chaindrive_contact::{Approach, Dissipation, Elastic, Friction, Law};
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
+use serde::Serialize;
 
 /// Contacts in one batch; the time per element is that of one evaluation.
 const BATCH: u32 = 1024;
+
+type Group<'a> = BenchmarkGroup<'a, criterion::measurement::WallTime>;
 
 fn approaches() -> Vec<Approach> {
     (0..BATCH)
@@ -22,58 +26,99 @@ fn approaches() -> Vec<Approach> {
         .collect()
 }
 
+fn group<'a>(criterion: &'a mut Criterion, name: &str) -> Group<'a> {
+    let mut group = criterion.benchmark_group(name);
+    group.throughput(Throughput::Elements(u64::from(BATCH)));
+    group
+}
+
 fn laws(criterion: &mut Criterion) {
     let approaches = approaches();
-    let mut group = criterion.benchmark_group("force");
-    group.throughput(Throughput::Elements(u64::from(BATCH)));
-    for law in Law::specimens() {
-        group.bench_function(name(&law), |b| {
-            let law = black_box(law);
-            b.iter(|| -> f64 { approaches.iter().map(|at| law.force(*at)).sum() });
-        });
-    }
-    group.finish();
+    let lossy = Dissipation::LankaraniNikravesh(LankaraniNikravesh { restitution: 0.9 });
 
-    let mut group = criterion.benchmark_group("elastic");
-    group.throughput(Throughput::Elements(u64::from(BATCH)));
+    let mut elastics = group(criterion, "elastic");
     for elastic in Elastic::specimens() {
-        let elastic = black_box(elastic);
-        group.bench_function(format!("stiffness {}", elastic_name(&elastic)), |b| {
-            b.iter(|| -> f64 {
-                approaches
-                    .iter()
-                    .map(|at| elastic.stiffness(at.penetration))
-                    .sum()
-            });
+        let name = elastic_name(&elastic);
+        let law = black_box(elastic);
+        elastics.bench_function(format!("{name} force"), |b| {
+            b.iter(|| -> f64 { approaches.iter().map(|at| law.force(at.penetration)).sum() });
         });
+        elastics.bench_function(format!("{name} energy"), |b| {
+            b.iter(|| -> f64 { approaches.iter().map(|at| law.energy(at.penetration)).sum() });
+        });
+        respond(&mut elastics, &name, with(elastic, lossy), &approaches);
     }
+    elastics.finish();
+
+    let mut dissipations = group(criterion, "dissipation");
+    let hertz = Elastic::Power(Power {
+        stiffness: 6.61e10,
+        exponent: 1.5,
+    });
+    for dissipation in Dissipation::specimens() {
+        let name = kind(&dissipation);
+        let law = with(hertz, dissipation);
+        let asked = black_box(law);
+        dissipations.bench_function(format!("{name} force"), |b| {
+            b.iter(|| -> f64 { approaches.iter().map(|at| asked.force(*at)).sum() });
+        });
+        respond(&mut dissipations, &name, law, &approaches);
+    }
+    dissipations.finish();
+
+    let mut frictions = group(criterion, "friction");
     for friction in Friction::specimens() {
-        let friction = black_box(friction);
-        group.bench_function(format!("{friction:?}"), |b| {
-            b.iter(|| -> f64 {
-                approaches
-                    .iter()
-                    .map(|at| friction.force(1e3, at.rate))
-                    .sum()
-            });
+        let name = kind(&friction);
+        let law = black_box(friction);
+        frictions.bench_function(format!("{name} force"), |b| {
+            b.iter(|| -> f64 { approaches.iter().map(|at| law.force(1e3, at.rate)).sum() });
         });
     }
-    group.finish();
+    frictions.finish();
+}
+
+/// Force, stiffness and damping of the prepared law.
+fn respond(group: &mut Group<'_>, name: &str, law: Law, approaches: &[Approach]) {
+    let law = black_box(law.prepared());
+    group.bench_function(format!("{name} respond"), |b| {
+        b.iter(|| -> f64 {
+            approaches
+                .iter()
+                .map(|at| {
+                    let response = law.respond(*at);
+                    response.force + response.stiffness + response.damping
+                })
+                .sum()
+        });
+    });
+}
+
+fn with(elastic: Elastic, dissipation: Dissipation) -> Law {
+    Law {
+        elastic,
+        dissipation,
+        onset_floor: 1e-3,
+    }
 }
 
 fn elastic_name(elastic: &Elastic) -> String {
-    match elastic {
-        Elastic::Power(power) => format!("power {}", power.exponent),
-        Elastic::Johnson(johnson) => format!("Johnson D = {:.1} mm", johnson.length_scale * 1e3),
-    }
+    let parameters = serde_json::to_value(elastic).expect("parameters are numbers");
+    let detail = match elastic {
+        Elastic::Power(power) => format!(" n = {}", power.exponent),
+        _ => parameters["length_scale"]
+            .as_f64()
+            .map_or(String::new(), |d| format!(" D = {:.2} mm", 1e3 * d)),
+    };
+    kind(elastic) + &detail
 }
 
-fn name(law: &Law) -> String {
-    let elastic = elastic_name(&law.elastic);
-    match law.dissipation {
-        Dissipation::None => elastic,
-        Dissipation::LankaraniNikravesh(member) => format!("{elastic}, e = {}", member.restitution),
-        Dissipation::Viscous(_) => format!("{elastic}, viscous"),
+/// The name of a member in files.
+fn kind(member: &impl Serialize) -> String {
+    let parameters = serde_json::to_value(member).expect("parameters are numbers");
+    let kind = parameters["kind"].as_str().expect("members have a name");
+    match parameters["restitution"].as_f64() {
+        Some(restitution) => format!("{kind} e = {restitution}"),
+        None => kind.to_owned(),
     }
 }
 

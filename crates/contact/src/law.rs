@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::dissipation::Action;
-use crate::elastic::ElasticLaw;
+use crate::elastic::{Curve, ElasticLaw};
 use crate::error::require;
 use crate::{Dissipation, Elastic, ParameterError};
 
@@ -16,6 +16,19 @@ pub struct Approach {
     pub rate: f64,
     /// Closing speed \[m/s\] at which this contact began; see [`interpolated_onset`](crate::interpolated_onset).
     pub onset_rate: f64,
+}
+
+/// What a contact answers to an approach, from one evaluation of its elastic law.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Response {
+    /// Normal force F \[N\], compressive, never negative.
+    pub force: f64,
+    /// Elastic part g \[N\].
+    pub elastic: f64,
+    /// Stiffness ∂F/∂δ \[N/m\] at constant closing speed; zero where the contact would pull.
+    pub stiffness: f64,
+    /// Damping ∂F/∂δ̇ \[N s/m\], not negative; zero where a limit holds the force.
+    pub damping: f64,
 }
 
 /// Normal force law of a contact.
@@ -42,6 +55,21 @@ pub struct Law {
 }
 
 impl Law {
+    /// The law with all its constants worked out, for loops.
+    pub fn prepared(&self) -> Prepared {
+        Prepared {
+            curve: self.elastic.curve(),
+            action: self.dissipation.action(),
+            onset_floor: self.onset_floor,
+        }
+    }
+
+    /// Force, stiffness and damping at once; in a loop ask the [prepared](Self::prepared) law.
+    #[inline]
+    pub fn respond(&self, approach: Approach) -> Response {
+        self.prepared().respond(approach)
+    }
+
     /// Normal force F \[N\], compressive.
     #[inline]
     pub fn force(&self, approach: Approach) -> f64 {
@@ -123,5 +151,51 @@ impl Law {
             }
         }
         laws
+    }
+}
+
+/// A [`Law`] with its constants worked out: what a kernel keeps.
+///
+/// A linear spring costs no power and no logarithm, Hertz's law a square root, a fitted power one power, a
+/// logarithmic law two logarithms; the factor of the dissipation is a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prepared {
+    curve: Curve,
+    action: Action,
+    onset_floor: f64,
+}
+
+impl Prepared {
+    /// Force, stiffness and damping from one evaluation of the elastic law.
+    #[inline]
+    pub fn respond(&self, approach: Approach) -> Response {
+        let (elastic, slope) = self.curve.pair(approach.penetration);
+        // v = max(δ̇₀, v_c)
+        let onset = approach.onset_rate.max(self.onset_floor);
+        let [force, stiffness, damping] = self.action.respond(elastic, slope, approach.rate, onset);
+        Response {
+            force,
+            elastic,
+            stiffness,
+            damping,
+        }
+    }
+
+    /// Stored energy ∫ g dδ \[J\].
+    #[inline]
+    pub fn energy(&self, penetration: f64) -> f64 {
+        self.curve.energy(penetration)
+    }
+
+    /// What the dissipation does, its constants worked out.
+    #[inline]
+    pub fn action(&self) -> Action {
+        self.action
+    }
+
+    /// Least speed at onset v_c \[m/s\].
+    #[inline]
+    pub fn onset_floor(&self) -> f64 {
+        self.onset_floor
     }
 }

@@ -4,12 +4,14 @@
 //!
 //! | choice | members | answers |
 //! |---|---|---|
-//! | [`Elastic`] | [`Power`](elastic::Power), [`Johnson`](elastic::Johnson) | force g(δ), tangent stiffness, stored energy |
-//! | [`Dissipation`] | none, [`LankaraniNikravesh`](dissipation::LankaraniNikravesh), [`Viscous`](dissipation::Viscous) | what the closing speed makes of g |
+//! | [`Elastic`] | [linear, Hertz, power](elastic::Power), [Johnson](elastic::Johnson) and [its relatives](elastic) | force g(δ), tangent stiffness, stored energy |
+//! | [`Dissipation`] | none, [nine hysteretic factors](dissipation), [Kelvin–Voigt](dissipation::Viscous) | what the closing speed makes of g |
 //! | [`Friction`] | none, [`Coulomb`](friction::Coulomb) | tangential force from normal force and slip |
 //!
 //! A [`Law`] joins an elastic law and a dissipation; a Kelvin–Voigt element, for example, is a linear
-//! [`Power`](elastic::Power) with a [`Viscous`](dissipation::Viscous) damper.
+//! [`Power`](elastic::Power) with a [`Viscous`](dissipation::Viscous) damper. Kernels keep the law
+//! [`Prepared`] and take force, stiffness and damping from one [`Response`]; the laws of two cylinders are built
+//! from their geometry by [`CylinderLaw::between`](elastic::CylinderLaw::between).
 //!
 //! # Conventions
 //!
@@ -49,6 +51,6 @@ pub use dissipation::Dissipation;
 pub use elastic::Elastic;
 pub use error::ParameterError;
 pub use friction::Friction;
-pub use law::{Approach, Law};
+pub use law::{Approach, Law, Prepared, Response};
 pub use material::Elasticity;
 pub use onset::interpolated_onset;

@@ -44,8 +44,56 @@ pub fn delivered(factor: f64) -> f64 {
     y / factor
 }
 
+/// Damping factor χ \[–\] with which a free impact delivers the restitution e \[–\]; the inverse of [`delivered`].
+///
+/// ```text
+/// χ (1 + e) = ln[(1 + χ)/(1 − χ e)]
+/// ```
+///
+/// Zero for e ≥ 1, infinite for e ≤ 0; relative error below 1e-15/(1 − e).
+///
+/// # Example
+///
+/// ```
+/// use chaindrive_contact::restitution::{delivered, factor_for};
+///
+/// let factor = factor_for(0.7);
+/// assert!((factor - 0.634_83).abs() < 1e-5);
+/// assert!((delivered(factor) - 0.7).abs() < 1e-14);
+/// ```
+pub fn factor_for(restitution: f64) -> f64 {
+    let e = restitution;
+    if e >= 1.0 {
+        return 0.0;
+    }
+    if e <= 0.0 {
+        return f64::INFINITY;
+    }
+    // A start within 1 %, right in both limits: χ → 1/e for small e, 3(1 − e)/2 for e near 1.
+    let numerator = 1.0 + e * (0.731_936 + e * (0.707_291 * e - 1.875_356));
+    let mut factor = (1.0 - e) / e * numerator / (1.0 - 0.624_086 * e);
+    for _ in 0..30 {
+        let change = if e < 0.3 {
+            // χ e = 1 − (1 + χ) E,   E = exp[−χ (1 + e)]: here 1 − χe itself is lost to rounding
+            let decay = (-factor * (1.0 + e)).exp();
+            let excess = factor * e - 1.0 + (1.0 + factor) * decay;
+            excess / (e + decay * (1.0 - (1.0 + factor) * (1.0 + e)))
+        } else {
+            // −χe − ln(1 − χe) = χ − ln(1 + χ)
+            let y = factor * e;
+            let excess = logarithmic_excess(-y) - logarithmic_excess(factor);
+            excess / (e * y / (1.0 - y) - factor / (1.0 + factor))
+        };
+        factor -= change;
+        if change.abs() <= 1e-15 * factor {
+            break;
+        }
+    }
+    factor
+}
+
 /// x − ln(1 + x), without cancellation near zero.
-fn logarithmic_excess(x: f64) -> f64 {
+pub(crate) fn logarithmic_excess(x: f64) -> f64 {
     if x.abs() > 0.02 {
         return x - x.ln_1p();
     }
@@ -76,6 +124,24 @@ mod tests {
         let small = 1e-6;
         assert!((delivered(small) - (1.0 - 2.0 / 3.0 * small)).abs() < 1e-11);
         assert!((delivered(50.0) * 50.0 - 1.0).abs() < 1e-12);
+    }
+
+    /// There and back, from almost plastic to almost elastic, and both limits.
+    #[test]
+    fn inverse_of_the_inverse() {
+        for i in 1..1000 {
+            let e = 1e-3 * f64::from(i);
+            let factor = factor_for(e);
+            let error = delivered(factor) - e;
+            assert!(error.abs() < 2e-14, "e = {e}: {factor}, {error:e}");
+        }
+        for tiny in [1e-300, 1e-9, 1e-3] {
+            assert!((factor_for(tiny) * tiny - 1.0).abs() < 1e-15);
+        }
+        let loss = 1e-6;
+        let series = 1.5 * loss;
+        assert!((factor_for(1.0 - loss) / series - 1.0).abs() < 1e-5);
+        assert!(factor_for(1.0).abs() < f64::MIN_POSITIVE);
     }
 
     /// Series and logarithm meet.

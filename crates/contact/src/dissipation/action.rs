@@ -63,6 +63,37 @@ impl Action {
         }
     }
 
+    /// Force \[N\], stiffness ∂F/∂δ \[N/m\] at constant rate and damping ∂F/∂δ̇ \[N s/m\] from the elastic
+    /// force \[N\] and its slope \[N/m\]; a derivative is zero where a limit holds the force against it.
+    #[inline]
+    pub fn respond(self, elastic: f64, slope: f64, rate: f64, onset: f64) -> [f64; 3] {
+        match self {
+            Self::None => [elastic, slope, 0.0],
+            Self::Hysteretic { factor } => {
+                // F = g D,   ∂F/∂δ = k D,   ∂F/∂δ̇ = χ g/v,   D = clamp(1 + χ δ̇/v, 0, 1 + 4χ)
+                let inverse = 1.0 / onset;
+                let ratio = rate * inverse;
+                let share = (1.0 + factor * ratio.min(RATIO_LIMIT)).max(0.0);
+                let free = ratio < RATIO_LIMIT && share > 0.0;
+                let damping = if free {
+                    factor * elastic * inverse
+                } else {
+                    0.0
+                };
+                [elastic * share, slope * share, damping]
+            }
+            Self::Viscous { damping } => {
+                // F = max(0, g + c δ̇)
+                let force = elastic + damping * rate;
+                if elastic > 0.0 && force > 0.0 {
+                    [force, slope, damping]
+                } else {
+                    [0.0, 0.0, 0.0]
+                }
+            }
+        }
+    }
+
     /// Slope ∂F/∂δ̇ \[N s/m\] at the same arguments; zero where a limit holds the force.
     #[inline]
     pub fn slope(self, elastic: f64, rate: f64, onset: f64) -> f64 {

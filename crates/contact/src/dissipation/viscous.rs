@@ -1,4 +1,4 @@
-//! A dashpot beside the elastic law.
+//! A dashpot beside the elastic law: Kelvin and Voigt's element.
 
 use serde::{Deserialize, Serialize};
 

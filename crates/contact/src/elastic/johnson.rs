@@ -1,40 +1,27 @@
 //! Parallel cylinders after Johnson, solved explicitly for the force.
 
-use std::f64::consts::{E, PI};
-
 use serde::{Deserialize, Serialize};
 
-use super::ElasticLaw;
-use super::lambert::minus_w_lower;
-use crate::ParameterError;
-use crate::error::require_positive;
-
-/// Fraction of δ_max at which the law goes on as a straight line.
-const KNEE: f64 = 0.9;
-
-/// u at the knee: the root of u − ln u = 1 − ln 0.9.
-const KNEE_RATIO: f64 = 1.531_811_608_389_611_6;
-
-/// Depth below which logarithms would overflow \[m\]; far below an atom.
-const LEAST_DEPTH: f64 = 1e-290;
+use super::logarithmic::follows_the_logarithm;
 
 /// Johnson's law for two parallel cylinders, inside or outside one another.
 ///
 /// ```text
-/// δ = p [ln(D/p) − 1],   p = g/(π E* L)
+/// δ = p [ln(D/p) − 1],   p = g/(π E* L),   D = 4ΔR
 ///
 /// g = π E* L δ/u,   k = π E* L/(u − 1),   U = π E* L p² (2u − 1)/4,
 /// u = −W₋₁(−e δ/D),  that is  u − ln u = 1 + ln(δ_max/δ),   δ_max = D/e²
 /// ```
 ///
-/// D = 4ΔR, with ΔR the clearance of a pin in its bushing or the sum of the radii of two
+/// ΔR is the clearance of a pin in its bushing or the sum of the radii of two
 /// cylinders side by side. Written with Lambert's function the law needs no iteration on the force.
 ///
 /// The theory supposes a contact narrow against the radii: the force is 2 % too large at δ = 0.10 ΔR and
 /// 4.5 % at 0.16 ΔR. Its stiffness is infinite at δ_max = 0.541 ΔR and there is no force
 /// beyond. **From 0.9 δ_max on the law continues as its own tangent**, with the stiffness 1.88 π E* L: force,
 /// stiffness and energy are continuous, the force keeps growing, and a collision that is too hard yields a
-/// large number and not NaN. Results from that range are no prediction.
+/// large number and not NaN. Results from that range are no prediction. A pin pressed deep into
+/// its hole is [`Conformal`](super::Conformal)'s.
 ///
 /// # Source
 /// K. L. Johnson, *Contact Mechanics*, Cambridge University Press, 1985, section 5.6; form for a pair:
@@ -56,7 +43,7 @@ impl Johnson {
     /// D = 4 (R_hole − R_pin)
     /// ```
     ///
-    /// A pin without clearance gives D ≤ 0, which [`check`](ElasticLaw::check) refuses.
+    /// A pin without clearance gives D ≤ 0, which [`check`](super::ElasticLaw::check) refuses.
     pub fn internal(hole: f64, pin: f64, length: f64, composite_modulus: f64) -> Self {
         Self {
             // D = 4 (R_hole − R_pin)
@@ -87,79 +74,11 @@ impl Johnson {
     /// Exact on a rigid flat. The approach of an elastic half-plane grows without bound with
     /// the depth it is measured to; the same D then stands for a depth of
     /// 2R exp[½ (ν/(1−ν) − 1)], 1.5 R in steel: a rail about as thick as the roller.
+    /// [`Cylinders::on_curve`](super::Cylinders::on_curve) takes the depth as a parameter.
     pub fn flat(radius: f64, length: f64, composite_modulus: f64) -> Self {
         // D = 4 R
         Self::external(radius, 0.0, length, composite_modulus)
     }
-
-    /// Penetration δ_max = D/e² \[m\] at which the theory ends.
-    pub fn greatest_penetration(self) -> f64 {
-        self.length_scale / (E * E)
-    }
-
-    /// Stiffness π E* L \[N/m\] all others are measured with.
-    fn scale(self) -> f64 {
-        PI * self.modulus_length
-    }
-
-    /// u = δ/p up to the knee, where it is constant from.
-    #[inline]
-    fn ratio(self, penetration: f64) -> f64 {
-        // u − ln u = 1 + ln(δ_max/δ)
-        minus_w_lower((self.greatest_penetration() / penetration.max(LEAST_DEPTH)).ln())
-    }
 }
 
-impl ElasticLaw for Johnson {
-    #[inline]
-    fn force(&self, penetration: f64) -> f64 {
-        let knee = KNEE * self.greatest_penetration();
-        if penetration <= 0.0 {
-            0.0
-        } else if penetration < knee {
-            // g = π E* L δ/u
-            self.scale() * penetration / self.ratio(penetration)
-        } else {
-            // g = g_k + k_k (δ − δ_k)
-            self.scale() * (knee / KNEE_RATIO + (penetration - knee) / (KNEE_RATIO - 1.0))
-        }
-    }
-
-    #[inline]
-    fn stiffness(&self, penetration: f64) -> f64 {
-        let knee = KNEE * self.greatest_penetration();
-        if penetration <= 0.0 {
-            0.0
-        } else if penetration < knee {
-            // k = π E* L/(u − 1)
-            self.scale() / (self.ratio(penetration) - 1.0)
-        } else {
-            self.scale() / (KNEE_RATIO - 1.0)
-        }
-    }
-
-    #[inline]
-    fn energy(&self, penetration: f64) -> f64 {
-        let knee = KNEE * self.greatest_penetration();
-        if penetration <= 0.0 {
-            return 0.0;
-        }
-        let depth = penetration.min(knee);
-        let ratio = if penetration < knee {
-            self.ratio(depth)
-        } else {
-            KNEE_RATIO
-        };
-        // U = π E* L p² (2u − 1)/4,   p = δ/u
-        let p = depth / ratio;
-        let below = self.scale() * p * p * (2.0 * ratio - 1.0) / 4.0;
-        // U = U_k + ½ (g_k + g) (δ − δ_k)
-        let beyond = penetration - depth;
-        below + self.scale() * beyond * (p + 0.5 * beyond / (ratio - 1.0))
-    }
-
-    fn check(&self) -> Result<(), ParameterError> {
-        require_positive("length_scale", self.length_scale, "positive [m]")?;
-        require_positive("modulus_length", self.modulus_length, "positive [N/m]")
-    }
-}
+follows_the_logarithm!(Johnson);

@@ -105,6 +105,17 @@ impl ElasticLaw for Power {
         self.force(penetration) * penetration / (self.exponent + 1.0)
     }
 
+    #[inline]
+    fn pair(&self, penetration: f64) -> (f64, f64) {
+        if penetration > 0.0 {
+            // g = K δ δⁿ⁻¹,   k = n K δⁿ⁻¹
+            let secant = self.stiffness * self.lower_power(penetration);
+            (secant * penetration, self.exponent * secant)
+        } else {
+            (0.0, 0.0)
+        }
+    }
+
     fn check(&self) -> Result<(), ParameterError> {
         require_positive("stiffness", self.stiffness, "positive [N/mⁿ]")?;
         require(

@@ -1,0 +1,72 @@
+//! Elastic laws with their constants worked out, for loops.
+
+use super::logarithmic::Logarithmic;
+use super::{Conformal, ElasticLaw, Power};
+
+/// What is left of an elastic law once its member has supplied the constants.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Curve {
+    /// g = K δ
+    Linear(f64),
+    /// g = K δ √δ
+    Hertz(f64),
+    /// g = K δⁿ
+    Power(Power),
+    /// δ = p [ln(D/p) − 1]
+    Logarithmic(Logarithmic),
+    /// The same with the term of wide contacts.
+    Conformal(Conformal),
+}
+
+impl Curve {
+    /// A power law by its exponent.
+    #[expect(
+        clippy::float_cmp,
+        reason = "an exponent is a chosen constant, not the result of arithmetic"
+    )]
+    pub(super) fn of_power(power: Power) -> Self {
+        if power.exponent == 1.0 {
+            Self::Linear(power.stiffness)
+        } else if power.exponent == 1.5 {
+            Self::Hertz(power.stiffness)
+        } else {
+            Self::Power(power)
+        }
+    }
+
+    /// Force g \[N\] and stiffness dg/dδ \[N/m\] at the penetration δ \[m\].
+    #[inline]
+    pub(crate) fn pair(self, penetration: f64) -> (f64, f64) {
+        match self {
+            Self::Linear(stiffness) if penetration > 0.0 => (stiffness * penetration, stiffness),
+            Self::Hertz(stiffness) if penetration > 0.0 => {
+                // g = K √δ δ,   k = 1.5 K √δ
+                let secant = stiffness * penetration.sqrt();
+                (secant * penetration, 1.5 * secant)
+            }
+            Self::Linear(_) | Self::Hertz(_) => (0.0, 0.0),
+            Self::Power(power) => power.pair(penetration),
+            Self::Logarithmic(curve) => curve.pair(penetration),
+            Self::Conformal(law) => law.pair(penetration),
+        }
+    }
+
+    /// Stored energy \[J\] at the penetration δ \[m\].
+    #[inline]
+    pub(crate) fn energy(self, penetration: f64) -> f64 {
+        match self {
+            Self::Linear(stiffness) => Power::linear(stiffness).energy(penetration),
+            Self::Hertz(stiffness) => {
+                let exponent = 1.5;
+                let power = Power {
+                    stiffness,
+                    exponent,
+                };
+                power.energy(penetration)
+            }
+            Self::Power(power) => power.energy(penetration),
+            Self::Logarithmic(curve) => curve.energy(penetration),
+            Self::Conformal(law) => law.energy(penetration),
+        }
+    }
+}

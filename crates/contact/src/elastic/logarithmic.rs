@@ -1,0 +1,168 @@
+//! The curve behind every logarithmic law of two parallel cylinders, solved explicitly for the force.
+
+use std::f64::consts::{E, PI};
+
+use super::lambert::minus_w_lower;
+
+/// Fraction of δ_max at which a law goes on as a straight line.
+const KNEE: f64 = 0.9;
+
+/// u at the knee: the root of u − ln u = 1 − ln 0.9.
+const KNEE_RATIO: f64 = 1.531_811_608_389_611_6;
+
+/// Depth below which logarithms would overflow \[m\]; far below an atom.
+const LEAST_DEPTH: f64 = 1e-290;
+
+/// Penetration as load times logarithm of load, with the length D that tells the laws apart.
+///
+/// ```text
+/// δ = p [ln(D/p) − 1],   p = g/(π E* L)
+///
+/// g = π E* L δ/u,   k = π E* L/(u − 1),   U = π E* L p² (2u − 1)/4,
+/// u = −W₋₁(−e δ/D),  that is  u − ln u = 1 + ln(δ_max/δ),   δ_max = D/e²
+/// ```
+///
+/// From 0.9 δ_max on it continues as its own tangent, with the stiffness 1.88 π E* L.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Logarithmic {
+    /// π E* L \[N/m\], what all stiffnesses are measured with.
+    scale: f64,
+    /// δ_max \[m\].
+    end: f64,
+    /// 0.9 δ_max \[m\].
+    knee: f64,
+}
+
+impl Logarithmic {
+    /// The curve of the length D \[m\] and the modulus E* L \[N/m\].
+    #[inline]
+    pub(super) fn new(length_scale: f64, modulus_length: f64) -> Self {
+        let end = greatest_penetration(length_scale);
+        Self {
+            scale: PI * modulus_length,
+            end,
+            knee: KNEE * end,
+        }
+    }
+
+    /// u = δ/p below the knee.
+    #[inline]
+    fn ratio(self, penetration: f64) -> f64 {
+        // u − ln u = 1 + ln(δ_max/δ)
+        minus_w_lower((self.end / penetration.max(LEAST_DEPTH)).ln())
+    }
+
+    /// Force beyond the knee: g = g_k + k_k (δ − δ_k).
+    #[inline]
+    fn straight(self, penetration: f64) -> f64 {
+        self.scale * (self.knee / KNEE_RATIO + (penetration - self.knee) / (KNEE_RATIO - 1.0))
+    }
+
+    #[inline]
+    pub(super) fn force(self, penetration: f64) -> f64 {
+        if penetration <= 0.0 {
+            0.0
+        } else if penetration < self.knee {
+            // g = π E* L δ/u
+            self.scale * penetration / self.ratio(penetration)
+        } else {
+            self.straight(penetration)
+        }
+    }
+
+    #[inline]
+    pub(super) fn stiffness(self, penetration: f64) -> f64 {
+        self.pair(penetration).1
+    }
+
+    /// Force and stiffness from one u.
+    #[inline]
+    pub(super) fn pair(self, penetration: f64) -> (f64, f64) {
+        if penetration <= 0.0 {
+            (0.0, 0.0)
+        } else if penetration < self.knee {
+            // g = π E* L δ/u,   k = π E* L/(u − 1)
+            let u = self.ratio(penetration);
+            (self.scale * penetration / u, self.scale / (u - 1.0))
+        } else {
+            (self.straight(penetration), self.scale / (KNEE_RATIO - 1.0))
+        }
+    }
+
+    #[inline]
+    pub(super) fn energy(self, penetration: f64) -> f64 {
+        if penetration <= 0.0 {
+            return 0.0;
+        }
+        let depth = penetration.min(self.knee);
+        let ratio = if penetration < self.knee {
+            self.ratio(depth)
+        } else {
+            KNEE_RATIO
+        };
+        // U = π E* L p² (2u − 1)/4,   p = δ/u
+        let p = depth / ratio;
+        let below = self.scale * p * p * (2.0 * ratio - 1.0) / 4.0;
+        // U = U_k + ½ (g_k + g) (δ − δ_k)
+        let beyond = penetration - depth;
+        below + self.scale * beyond * (p + 0.5 * beyond / (ratio - 1.0))
+    }
+}
+
+/// δ_max = D/e² \[m\], where the stiffness of the curve becomes infinite.
+#[inline]
+pub(super) fn greatest_penetration(length_scale: f64) -> f64 {
+    length_scale / (E * E)
+}
+
+/// What a law with a `length_scale` and a `modulus_length` owes as an elastic law.
+macro_rules! follows_the_logarithm {
+    ($law:ty) => {
+        impl $law {
+            /// Penetration δ_max = D/e² \[m\] at which the theory ends.
+            pub fn greatest_penetration(self) -> f64 {
+                $crate::elastic::logarithmic::greatest_penetration(self.length_scale)
+            }
+
+            /// The curve with its constants worked out.
+            #[inline]
+            pub(super) fn curve(self) -> $crate::elastic::logarithmic::Logarithmic {
+                $crate::elastic::logarithmic::Logarithmic::new(
+                    self.length_scale,
+                    self.modulus_length,
+                )
+            }
+        }
+
+        impl $crate::elastic::ElasticLaw for $law {
+            #[inline]
+            fn force(&self, penetration: f64) -> f64 {
+                self.curve().force(penetration)
+            }
+
+            #[inline]
+            fn stiffness(&self, penetration: f64) -> f64 {
+                self.curve().stiffness(penetration)
+            }
+
+            #[inline]
+            fn energy(&self, penetration: f64) -> f64 {
+                self.curve().energy(penetration)
+            }
+
+            #[inline]
+            fn pair(&self, penetration: f64) -> (f64, f64) {
+                self.curve().pair(penetration)
+            }
+
+            fn check(&self) -> Result<(), $crate::ParameterError> {
+                use $crate::error::require_positive;
+
+                require_positive("length_scale", self.length_scale, "positive [m]")?;
+                require_positive("modulus_length", self.modulus_length, "positive [N/m]")
+            }
+        }
+    };
+}
+
+pub(super) use follows_the_logarithm;
