@@ -9,6 +9,18 @@ pub(crate) struct Interval {
     s: f64,
 }
 
+/// How to read positions and velocities between two accepted states: what the ends know at the order of the method.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Interpolation {
+    /// From q, v and a of both ends.
+    #[default]
+    Quintic,
+    /// From q and v of both ends.
+    Cubic,
+    /// Positions from positions, velocities from velocities.
+    Linear,
+}
+
 /// Weights of the ends of an interval in the position and the velocity at one place.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Weights {
@@ -35,8 +47,46 @@ impl Interval {
     }
 }
 
+impl Interpolation {
+    /// Weights at a place of an interval.
+    pub(crate) fn weights(self, at: Interval) -> Weights {
+        match self {
+            Self::Quintic => quintic(at),
+            Self::Cubic => cubic(at),
+            Self::Linear => linear(at),
+        }
+    }
+}
+
+/// Straight lines.
+fn linear(Interval { s, .. }: Interval) -> Weights {
+    // q = (1 − s) q₀ + s q₁,  v = (1 − s) v₀ + s v₁
+    let r = 1.0 - s;
+    Weights {
+        position: [r, s, 0.0, 0.0, 0.0, 0.0],
+        velocity: [0.0, 0.0, r, s, 0.0, 0.0],
+    }
+}
+
+/// Hermite's basis of third degree, scaled to the interval.
+fn cubic(Interval { h, s }: Interval) -> Weights {
+    let r = 1.0 - s;
+    // Position of the end: s² (3 − 2 s); its slope is 6 s r.
+    let end = s * s * (3.0 - 2.0 * s);
+    let slope = 6.0 * s * r;
+    Weights {
+        position: [1.0 - end, end, h * s * r * r, -h * r * s * s, 0.0, 0.0],
+        velocity: if h > 0.0 {
+            let (first, last) = (r * (1.0 - 3.0 * s), s * (1.0 - 3.0 * r));
+            [-slope / h, slope / h, first, last, 0.0, 0.0]
+        } else {
+            [0.0, 0.0, 0.0, 1.0, 0.0, 0.0]
+        },
+    }
+}
+
 /// Hermite's basis of fifth degree, scaled to the interval; ends in the order q₀ q₁ v₀ v₁ a₀ a₁.
-pub(crate) fn quintic(Interval { h, s }: Interval) -> Weights {
+fn quintic(Interval { h, s }: Interval) -> Weights {
     let r = 1.0 - s;
     // Position of the end: s³ (10 − 15 s + 6 s²); its slope is 30 s² r².
     let end = s * s * s * (10.0 - s * (15.0 - 6.0 * s));
@@ -86,16 +136,19 @@ impl Weights {
 mod tests {
     use super::*;
 
-    /// Every polynomial of fifth degree is reproduced, with its derivative.
+    /// Every polynomial up to the degree of the basis is reproduced, with its derivative.
     #[test]
-    fn fifth_degree_is_exact() {
+    fn polynomials_are_exact() {
         let (from, to) = (0.3, 0.8);
-        for degree in 0..=5 {
+        let quintic = (0..=5).map(|degree| (Interpolation::Quintic, degree));
+        let cubic = (0..=3).map(|degree| (Interpolation::Cubic, degree));
+        let linear = (0..=1).map(|degree| (Interpolation::Linear, degree));
+        for (interpolation, degree) in quintic.chain(cubic).chain(linear) {
             let q = |t: f64| t.powi(degree);
             let v = |t: f64| f64::from(degree) * t.powi(degree - 1);
             let a = |t: f64| f64::from(degree * (degree - 1)) * t.powi(degree - 2);
             for t in [0.3, 0.35, 0.5, 0.77, 0.8] {
-                let weights = quintic(Interval::new(from, to, t));
+                let weights = interpolation.weights(Interval::new(from, to, t));
                 let (position, velocity) =
                     weights.apply([q(from), q(to), v(from), v(to), a(from), a(to)]);
                 assert!((position - q(t)).abs() < 1e-15, "degree {degree}, t {t}");

@@ -47,6 +47,13 @@ pub enum IntegrationError {
         expected: usize,
     },
 
+    /// An implicit method for a system without [`solve`](crate::SecondOrderSystem::solve).
+    #[error(
+        "{method} is an implicit method, and this system does not solve the equations of an implicit \
+         step; choose Verlet, Runge-Kutta 4 or Dormand-Prince 5(4)"
+    )]
+    Unsupported { method: &'static str },
+
     /// A fixed step that would be unstable from the start.
     #[error("a step of {step:.3e} s is unstable with {method}; choose at most {limit:.3e} s")]
     StepTooLarge {
@@ -55,7 +62,7 @@ pub enum IntegrationError {
         method: &'static str,
     },
 
-    /// Stability or accuracy asks for steps that lead nowhere.
+    /// Stability, accuracy or Newton's iteration asks for steps that lead nowhere.
     #[error(
         "at t = {t} s the step fell to {step:.3e} s; the forces are too stiff or discontinuous, \
          or the tolerances too tight"

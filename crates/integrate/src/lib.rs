@@ -14,8 +14,12 @@
 //! | `Verlet` | 2 | 1 | h = 2 τ | the default for chains: cheapest at a per cent, energy stays bounded |
 //! | `Rk4` | 4 | 4 | h = 2.78 τ | fixed steps at a per mille and below |
 //! | `DormandPrince` | 5 | 6 | by error control | references, and motions with quiet stretches |
+//! | `ImplicitDamping` | 1 | 1, and 1 solution | h = 2/ω | damping far stiffer than the springs |
+//! | `GeneralizedAlpha` | 2 | 2 or more, each with a solution | every h | stiff modes that need not be resolved |
 //!
-//! τ is the [`time_scale`](SecondOrderSystem::time_scale) of the system. Fixed steps keep a tenth in
+//! τ is the [`time_scale`](SecondOrderSystem::time_scale) of the system, 1/ω its
+//! [`undamped_time_scale`](SecondOrderSystem::undamped_time_scale). The implicit methods need a system that can
+//! [`solve`](SecondOrderSystem::solve). Fixed steps keep a tenth in
 //! reserve: a step above 0.9 of the limit is refused at the start and halved during a run.
 //!
 //! Forces are evaluated with `&self` and memory advances with `&mut self` in
@@ -55,6 +59,8 @@
 mod dense;
 mod error;
 mod finite;
+mod generalized_alpha;
+mod implicit_damping;
 mod method;
 mod runge_kutta;
 mod state;
@@ -70,4 +76,4 @@ pub use method::Method;
 pub use state::State;
 pub use statistics::Statistics;
 pub use stepper::{Step, Stepper};
-pub use system::{Continuity, Moment, SecondOrderSystem, Verdict};
+pub use system::{Continuity, Moment, SecondOrderSystem, Verdict, Weights};

@@ -3,6 +3,9 @@
 //! A Runge–Kutta method is one constant in `tableau.rs`; anything else is one file with an
 //! `attempt`. Enter it here and in `Kernel`; the compiler asks for the arms.
 
+use crate::dense::Interpolation;
+use crate::generalized_alpha::GeneralizedAlpha;
+use crate::implicit_damping;
 use crate::runge_kutta::{self, RungeKutta};
 use crate::state::State;
 use crate::step_size::stable_step;
@@ -39,6 +42,42 @@ pub enum Method {
         /// Largest step \[s\]; with infinite tolerances the method takes this step throughout.
         max_step: f64,
     },
+    /// Damping implicit, stiffness explicit: first order, one evaluation and one solution of linear equations per step.
+    ///
+    /// For damping far stiffer than the springs. Without damping it is the symplectic Euler method, whose
+    /// energy does not drift.
+    ImplicitDamping {
+        /// Step h \[s\].
+        step: f64,
+    },
+    /// Generalized-α: implicit, second order, stable with every step on linear problems.
+    ///
+    /// Two evaluations and solutions of linear equations per step, more for forces that are not linear. A step that
+    /// Newton's iteration does not solve is tried again with half the length.
+    GeneralizedAlpha {
+        /// Step h \[s\].
+        step: f64,
+        /// Share ρ of its amplitude that a mode with ωh → ∞ keeps per step, 0 to 1 \[–\].
+        spectral_radius: f64,
+    },
+}
+
+/// What became of an attempt to make a candidate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    /// A candidate to judge.
+    Done,
+    /// Infinity or NaN.
+    NotFinite,
+    /// The equations of the step were not solved.
+    NoSolution,
+}
+
+impl Outcome {
+    /// A candidate, if it is finite.
+    pub(crate) fn of(finite: bool) -> Self {
+        if finite { Self::Done } else { Self::NotFinite }
+    }
 }
 
 /// Work space of a method.
@@ -46,6 +85,25 @@ pub enum Method {
 pub(crate) enum Kernel {
     Verlet(Verlet),
     RungeKutta(RungeKutta),
+    /// The candidate is all the space it needs.
+    ImplicitDamping,
+    GeneralizedAlpha(GeneralizedAlpha),
+}
+
+impl Kernel {
+    /// Takes note that the candidate is accepted.
+    pub(crate) fn accept(&mut self) {
+        if let Self::GeneralizedAlpha(kernel) = self {
+            kernel.accept();
+        }
+    }
+
+    /// Takes note of accelerations that do not follow from the step before.
+    pub(crate) fn restart(&mut self, a: &[f64]) {
+        if let Self::GeneralizedAlpha(kernel) = self {
+            kernel.restart(a);
+        }
+    }
 }
 
 impl Method {
@@ -55,28 +113,49 @@ impl Method {
             Self::Verlet { .. } => "Verlet",
             Self::Rk4 { .. } => "Runge-Kutta 4",
             Self::DormandPrince { .. } => "Dormand-Prince 5(4)",
+            Self::ImplicitDamping { .. } => "implicit damping",
+            Self::GeneralizedAlpha { .. } => "generalized alpha",
         }
     }
 
     /// Order of convergence on smooth problems.
     pub fn order(&self) -> u32 {
         match self {
-            Self::Verlet { .. } => 2,
+            Self::ImplicitDamping { .. } => 1,
+            Self::Verlet { .. } | Self::GeneralizedAlpha { .. } => 2,
             Self::Rk4 { .. } => RK4.order,
             Self::DormandPrince { .. } => DORMAND_PRINCE.order,
         }
     }
 
-    /// Largest stable h/τ of a fixed step, without reserve; none with error control.
+    /// Whether the method needs a system that can [`solve`](SecondOrderSystem::solve).
+    pub fn is_implicit(&self) -> bool {
+        match self {
+            Self::Verlet { .. } | Self::Rk4 { .. } | Self::DormandPrince { .. } => false,
+            Self::ImplicitDamping { .. } | Self::GeneralizedAlpha { .. } => true,
+        }
+    }
+
+    /// The time scale τ \[s\] of a system that limits the steps of this method.
+    pub fn time_scale<S: SecondOrderSystem>(&self, system: &S) -> f64 {
+        if self.is_implicit() {
+            system.undamped_time_scale()
+        } else {
+            system.time_scale()
+        }
+    }
+
+    /// Largest stable h/τ of a fixed step, without reserve; none with error control or without a limit.
     pub fn stability_limit(&self) -> Option<f64> {
         match self {
             Self::Verlet { .. } => Some(verlet::LIMIT),
             Self::Rk4 { .. } => Some(runge_kutta::RK4_LIMIT),
-            Self::DormandPrince { .. } => None,
+            Self::ImplicitDamping { .. } => Some(implicit_damping::LIMIT),
+            Self::DormandPrince { .. } | Self::GeneralizedAlpha { .. } => None,
         }
     }
 
-    /// Longest step \[s\] a run accepts at the time scale τ \[s\]: 0.9 of the stability limit.
+    /// Longest step \[s\] a run accepts at the [time scale](Self::time_scale) τ \[s\]: 0.9 of the stability limit.
     pub fn longest_step(&self, time_scale: f64) -> f64 {
         stable_step(self, time_scale)
     }
@@ -86,10 +165,21 @@ impl Method {
     /// # Errors
     /// [`IntegrationError::Parameter`] names the first one.
     pub fn check(&self) -> Result<(), IntegrationError> {
+        let fixed = |step: f64| {
+            let allowed = step > 0.0 && step.is_finite();
+            require(allowed, "step", step, "positive [s]")
+        };
         match *self {
-            Self::Verlet { step } | Self::Rk4 { step } => {
-                let allowed = step > 0.0 && step.is_finite();
-                require(allowed, "step", step, "positive [s]")
+            Self::Verlet { step } | Self::Rk4 { step } | Self::ImplicitDamping { step } => {
+                fixed(step)
+            }
+            Self::GeneralizedAlpha {
+                step,
+                spectral_radius: radius,
+            } => {
+                fixed(step)?;
+                let allowed = (0.0..=1.0).contains(&radius);
+                require(allowed, "spectral_radius", radius, "between 0 and 1")
             }
             Self::DormandPrince {
                 relative,
@@ -110,18 +200,22 @@ impl Method {
     /// Starts a run: evaluates the accelerations of the state and commits it.
     ///
     /// # Errors
-    /// A parameter out of range, a state of the wrong shape, a step above
-    /// [`longest_step`](Self::longest_step), or accelerations that are not finite.
+    /// A parameter out of range, an implicit method for a system that cannot solve, a state of the wrong shape, a
+    /// step above [`longest_step`](Self::longest_step), or accelerations that are not finite.
     pub fn start<S: SecondOrderSystem>(
         &self,
         system: &mut S,
         state: &mut State,
     ) -> Result<Stepper<S>, IntegrationError> {
         self.check()?;
+        if self.is_implicit() && !system.can_solve() {
+            let method = self.name();
+            return Err(IntegrationError::Unsupported { method });
+        }
         Stepper::start(*self, system, state)
     }
 
-    /// Every method, for tests; all take steps of about the same length \[s\].
+    /// Every explicit method, for tests; all take steps of about the same length \[s\].
     pub fn specimens(step: f64) -> [Self; 3] {
         [
             Self::Verlet { step },
@@ -135,6 +229,28 @@ impl Method {
         ]
     }
 
+    /// Every implicit method, for tests; all take steps of the same length \[s\].
+    pub fn implicit_specimens(step: f64) -> [Self; 2] {
+        [
+            Self::ImplicitDamping { step },
+            Self::GeneralizedAlpha {
+                step,
+                spectral_radius: 0.8,
+            },
+        ]
+    }
+
+    /// How to read between the states it accepts.
+    pub(crate) fn interpolation(&self) -> Interpolation {
+        match self {
+            Self::Verlet { .. } | Self::Rk4 { .. } | Self::DormandPrince { .. } => {
+                Interpolation::Quintic
+            }
+            Self::ImplicitDamping { .. } => Interpolation::Linear,
+            Self::GeneralizedAlpha { .. } => Interpolation::Cubic,
+        }
+    }
+
     /// Work space for a system of this size.
     pub(crate) fn kernel(&self, dofs: usize, quadratures: usize) -> Kernel {
         match self {
@@ -143,6 +259,10 @@ impl Method {
             Self::DormandPrince { .. } => {
                 Kernel::RungeKutta(RungeKutta::new(&DORMAND_PRINCE, dofs, quadratures))
             }
+            Self::ImplicitDamping { .. } => Kernel::ImplicitDamping,
+            Self::GeneralizedAlpha {
+                spectral_radius, ..
+            } => Kernel::GeneralizedAlpha(GeneralizedAlpha::new(*spectral_radius, dofs)),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::mem::swap;
 
-use crate::dense::{Interval, quintic};
+use crate::dense::{Interpolation, Interval};
 use crate::{IntegrationError, SecondOrderSystem};
 
 /// The accepted state, with the interval that led to it.
@@ -29,6 +29,8 @@ pub struct State {
     pub(crate) before_jump: (Vec<f64>, Vec<f64>),
     /// Whether a jump has replaced them.
     pub(crate) jumped: bool,
+    /// How to read between the accepted states, as the method wants it.
+    pub(crate) interpolation: Interpolation,
 }
 
 /// Buffers of one state: a candidate, or the accepted state before the present one.
@@ -51,6 +53,14 @@ impl Snapshot {
             a: vec![0.0; dofs],
             quadratures: vec![0.0; quadratures],
             rates: vec![0.0; quadratures],
+        }
+    }
+
+    /// Quadratures of a candidate h \[s\] after a state, by the trapezoidal rule.
+    pub(crate) fn trapezoidal(&mut self, from: &State, h: f64) {
+        for (i, y) in self.quadratures.iter_mut().enumerate() {
+            // y⁺ = y + ½ h (r + r⁺)
+            *y = from.quadratures[i] + 0.5 * h * (from.rates[i] + self.rates[i]);
         }
     }
 }
@@ -78,6 +88,9 @@ impl State {
     /// ```
     ///
     /// Position to sixth order in the step for a smooth motion and at least to the order of the method.
+    /// Implicit methods leave the accelerations out, since a stiff mode they damp is not resolved:
+    /// generalized-α is read by the cubic with q and q̇ of both ends, implicit damping by straight lines, q and q̇ each
+    /// by its own, since its q̇ is the mean of the step before and makes any curve through both overshoot.
     /// Times outside the [`interval`](Self::interval) are taken to its nearer end.
     pub fn at(&self, t: f64, q: &mut [f64], v: &mut [f64]) {
         let past = &self.previous;
@@ -87,7 +100,7 @@ impl State {
             &self.a
         };
         let interval = Interval::new(past.t, self.t, t);
-        let weights = quintic(interval);
+        let weights = self.interpolation.weights(interval);
         for i in 0..self.q.len() {
             let ends = [past.q[i], self.q[i], past.v[i], self.v[i], past.a[i], a[i]];
             (q[i], v[i]) = weights.apply(ends);

@@ -11,6 +11,10 @@ pub struct Statistics {
     pub error_rejections: u64,
     /// Evaluations of the accelerations, that of the initial state included.
     pub evaluations: u64,
+    /// Linear equations solved by implicit methods.
+    pub solves: u64,
+    /// Candidates given up because they could not be solved for.
+    pub newton_failures: u64,
     /// Commits that called for a fresh evaluation.
     pub jumps: u64,
     /// Halvings of a fixed step that stability asked for.
@@ -28,6 +32,8 @@ impl Default for Statistics {
             rejections: 0,
             error_rejections: 0,
             evaluations: 0,
+            solves: 0,
+            newton_failures: 0,
             jumps: 0,
             reductions: 0,
             smallest_step: f64::INFINITY,

@@ -174,7 +174,7 @@ pub(crate) fn first_step(
     (0.01 * size / rate).clamp(1e-4 * longest, longest)
 }
 
-/// Longest stable step \[s\] of a method with fixed steps, its reserve included; infinite with error control.
+/// Longest stable step \[s\] of a method with fixed steps, its reserve included; infinite without a limit.
 pub(crate) fn stable_step(method: &Method, time_scale: f64) -> f64 {
     match method.stability_limit() {
         Some(limit) => SAFETY * limit * time_scale,

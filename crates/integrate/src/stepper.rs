@@ -3,7 +3,8 @@
 use std::fmt;
 
 use crate::finite::Watch;
-use crate::method::Kernel;
+use crate::implicit_damping;
+use crate::method::{Kernel, Outcome};
 use crate::state::{Snapshot, State};
 use crate::step_size::{Controller, FLOOR, Fixed, Tolerance, first_step, shortened, stable_step};
 use crate::{
@@ -75,7 +76,9 @@ impl<S: SecondOrderSystem> Stepper<S> {
             stepper.evaluate(system, state)?;
         }
         state.forget();
-        stepper.pace = first_pace(method, system.time_scale(), state)?;
+        state.interpolation = method.interpolation();
+        stepper.kernel.restart(&state.a);
+        stepper.pace = first_pace(method, method.time_scale(system), state)?;
         Ok(stepper)
     }
 
@@ -85,8 +88,8 @@ impl<S: SecondOrderSystem> Stepper<S> {
     ///
     /// # Errors
     /// [`IntegrationError::NotFinite`] if the motion or a force ceases to be a number,
-    /// [`IntegrationError::StepUnderflow`] if stability or accuracy ask for vanishing steps. State and system
-    /// stay at the last accepted state; the run cannot go on.
+    /// [`IntegrationError::StepUnderflow`] if stability or accuracy ask for vanishing steps, or if an implicit step cannot
+    /// be solved even with a thousandth of the nominal length. State and system stay at the last accepted state; the run cannot go on.
     pub fn advance(&mut self, system: &mut S, state: &mut State) -> Result<Step, IntegrationError> {
         let from = state.t;
         let nominal = match &self.pace {
@@ -105,7 +108,17 @@ impl<S: SecondOrderSystem> Stepper<S> {
             if h <= least {
                 return Err(IntegrationError::StepUnderflow { t: from, step: h });
             }
-            let error = self.attempt(system, state, h)?;
+            // The record of the accepted state survives until the first candidate.
+            let fresh = rejections == 0;
+            let Some(error) = self.attempt(system, state, h, fresh)? else {
+                if h <= floor * (1.0 + 1e-9) {
+                    return Err(IntegrationError::StepUnderflow { t: from, step: h });
+                }
+                h = (0.5 * h).max(floor);
+                rejections += 1;
+                cut_short = true;
+                continue;
+            };
             if error > 1.0 {
                 rejections += 1;
                 self.statistics.error_rejections += 1;
@@ -146,26 +159,47 @@ impl<S: SecondOrderSystem> Stepper<S> {
         self.method
     }
 
-    /// Makes a candidate; returns its error in units of the tolerance, zero without error control.
-    fn attempt(&mut self, system: &S, state: &State, h: f64) -> Result<f64, IntegrationError> {
-        let (candidate, record) = (&mut self.candidate, &mut self.record);
-        let (finite, cost) = match &mut self.kernel {
-            Kernel::Verlet(kernel) => (kernel.attempt(system, state, h, candidate, record), 1),
-            Kernel::RungeKutta(kernel) => (
-                kernel.attempt(system, state, h, candidate, record),
-                kernel.cost(),
-            ),
+    /// Makes a candidate; returns its error in units of the tolerance, zero without error control, or nothing if
+    /// the equations of the step were not solved. `fresh`: the record belongs to the accepted state.
+    fn attempt(
+        &mut self,
+        system: &S,
+        state: &State,
+        h: f64,
+        fresh: bool,
+    ) -> Result<Option<f64>, IntegrationError> {
+        let (to, record) = (&mut self.candidate, &mut self.record);
+        let counts = &mut self.statistics;
+        let outcome = match &mut self.kernel {
+            Kernel::Verlet(kernel) => {
+                counts.evaluations += 1;
+                Outcome::of(kernel.attempt(system, state, h, to, record))
+            }
+            Kernel::RungeKutta(kernel) => {
+                counts.evaluations += kernel.cost();
+                Outcome::of(kernel.attempt(system, state, h, to, record))
+            }
+            Kernel::ImplicitDamping => {
+                implicit_damping::attempt(system, state, h, fresh, to, record, counts)
+            }
+            Kernel::GeneralizedAlpha(kernel) => {
+                kernel.attempt(system, state, h, to, record, counts)
+            }
         };
-        self.statistics.evaluations += cost;
-        if !finite {
-            return Err(culprit(candidate));
+        match outcome {
+            Outcome::Done => {}
+            Outcome::NotFinite => return Err(culprit(to)),
+            Outcome::NoSolution => {
+                counts.newton_failures += 1;
+                return Ok(None);
+            }
         }
-        Ok(match (&self.kernel, &self.pace) {
+        Ok(Some(match (&self.kernel, &self.pace) {
             (Kernel::RungeKutta(kernel), Pace::Controlled(controller)) => {
-                kernel.error(state, h, candidate, controller.tolerance)
+                kernel.error(state, h, to, controller.tolerance)
             }
             _ => 0.0,
-        })
+        }))
     }
 
     /// Makes the candidate the state, commits it, and looks at the stability of what comes next.
@@ -176,18 +210,20 @@ impl<S: SecondOrderSystem> Stepper<S> {
         h: f64,
     ) -> Result<(), IntegrationError> {
         state.accept(&mut self.candidate);
+        self.kernel.accept();
         self.statistics.accept(h);
         let State { t, q, v, .. } = state;
         if system.commit(*t, q, v, &mut self.record) == Continuity::Jump {
             self.statistics.jumps += 1;
             state.jump();
             self.evaluate(system, state)?;
+            self.kernel.restart(&state.a);
             if let Pace::Controlled(controller) = &mut self.pace {
                 controller.jumped();
             }
         }
         if let Pace::Fixed(fixed) = &mut self.pace {
-            let limit = stable_step(&self.method, system.time_scale());
+            let limit = stable_step(&self.method, self.method.time_scale(system));
             let Some(halvings) = fixed.adapt(limit) else {
                 let (t, step) = (state.t, fixed.step());
                 return Err(IntegrationError::StepUnderflow { t, step });
@@ -222,7 +258,10 @@ impl<S: SecondOrderSystem> Stepper<S> {
 /// The pace a run begins with.
 fn first_pace(method: Method, time_scale: f64, state: &State) -> Result<Pace, IntegrationError> {
     match method {
-        Method::Verlet { step } | Method::Rk4 { step } => {
+        Method::Verlet { step }
+        | Method::Rk4 { step }
+        | Method::ImplicitDamping { step }
+        | Method::GeneralizedAlpha { step, .. } => {
             let limit = stable_step(&method, time_scale);
             if step <= limit {
                 Ok(Pace::Fixed(Fixed::new(step)))

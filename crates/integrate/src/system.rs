@@ -11,6 +11,15 @@ pub struct Moment<'a> {
     pub v: &'a [f64],
 }
 
+/// Weights of damping and stiffness in the matrix of an implicit step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weights {
+    /// Weight c of the damping \[s\].
+    pub damping: f64,
+    /// Weight k of the stiffness \[s²\].
+    pub stiffness: f64,
+}
+
 /// Judgement on a candidate step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
@@ -99,5 +108,32 @@ pub trait SecondOrderSystem {
     /// damping other methods do, and a safe one for Runge–Kutta. Asked after each accepted step: keep it a field.
     fn time_scale(&self) -> f64 {
         f64::INFINITY
+    }
+
+    /// Time scale 1/ω \[s\] of the fastest mode without its damping, for methods that treat damping implicitly.
+    ///
+    /// Asked after each accepted step: keep it a field.
+    fn undamped_time_scale(&self) -> f64 {
+        self.time_scale()
+    }
+
+    /// Whether [`solve`](Self::solve) is there: implicit methods need it.
+    fn can_solve(&self) -> bool {
+        false
+    }
+
+    /// Solves the linear equations of an implicit step in place; false if there is no solution.
+    ///
+    /// ```text
+    /// x ← (M + c C + k K)⁻¹ M x,   C = −∂f/∂q̇,   K = −∂f/∂q,   f = M a
+    /// ```
+    ///
+    /// C and K are those at the moment `record` was last evaluated at. Work space and factors may be
+    /// kept in the record; what [`inspect`](Self::inspect) and [`commit`](Self::commit) read there must stay, and a
+    /// commit that swaps with the record must leave C and K in it. Approximate C and K are allowed: Newton's
+    /// iteration then converges more slowly.
+    fn solve(&self, weights: Weights, record: &mut Self::Record, x: &mut [f64]) -> bool {
+        let _ = (weights, record, x);
+        false
     }
 }

@@ -4,7 +4,7 @@
 mod problems;
 
 use chaindrive_integrate::{Method, State};
-use problems::{Driven, Kepler, Oscillator, Smooth, fixed, run};
+use problems::{Driven, Kepler, Oscillator, Smooth, all_methods, fixed, run};
 
 /// Steps after which a method is in its asymptotic range and far from rounding.
 fn coarsest(method: Method) -> u32 {
@@ -12,6 +12,8 @@ fn coarsest(method: Method) -> u32 {
         Method::Verlet { .. } => 400,
         Method::Rk4 { .. } => 160,
         Method::DormandPrince { .. } => 240,
+        Method::ImplicitDamping { .. } => 1600,
+        Method::GeneralizedAlpha { .. } => 800,
     }
 }
 
@@ -22,7 +24,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 
 /// Largest distance from the truth at eight instants; a single one may hide an error by chance.
 fn assert_orders<P: Smooth>(name: &str, problem: &P) {
-    for method in Method::specimens(1.0) {
+    for method in all_methods(1.0) {
         let precise = run(problem, Method::specimens(1.0)[2], 6400);
         let error = |n| {
             let pairs = run(problem, method, n).into_iter().zip(&precise);
@@ -66,7 +68,7 @@ fn on_a_driven_damped_pendulum() {
 /// Work and dissipation, integrated along, close the energy at the order of the method.
 #[test]
 fn of_the_energy_ledger() {
-    for method in Method::specimens(1.0) {
+    for method in all_methods(1.0) {
         let n = coarsest(method);
         let start = {
             let State { q, v, .. } = Driven.start();
@@ -96,7 +98,7 @@ fn of_the_energy_ledger() {
 /// Between accepted states the interpolation is as good as the states.
 #[test]
 fn between_the_steps() {
-    for method in Method::specimens(1.0) {
+    for method in all_methods(1.0) {
         let error = |n: u32| {
             let (mut q, mut v) = ([0.0], [0.0]);
             let step = Oscillator.duration() / f64::from(n);

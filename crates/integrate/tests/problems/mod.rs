@@ -3,7 +3,7 @@
 
 pub(crate) mod bounce;
 
-use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State};
+use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Weights};
 
 /// A smooth motion whose end is known.
 pub(crate) trait Smooth: SecondOrderSystem + Clone {
@@ -25,7 +25,21 @@ pub(crate) fn fixed(method: Method, step: f64) -> Method {
             absolute_rate: f64::INFINITY,
             max_step: step,
         },
+        Method::ImplicitDamping { .. } => Method::ImplicitDamping { step },
+        Method::GeneralizedAlpha {
+            spectral_radius, ..
+        } => Method::GeneralizedAlpha {
+            step,
+            spectral_radius,
+        },
     }
+}
+
+/// Every method, explicit and implicit.
+pub(crate) fn all_methods(step: f64) -> [Method; 5] {
+    let [a, b, c] = Method::specimens(step);
+    let [d, e] = Method::implicit_specimens(step);
+    [a, b, c, d, e]
 }
 
 /// The states at eight instants of a run in a number of equal steps.
@@ -62,6 +76,13 @@ impl SecondOrderSystem for Oscillator {
     fn time_scale(&self) -> f64 {
         1.0
     }
+    fn can_solve(&self) -> bool {
+        true
+    }
+    fn solve(&self, weights: Weights, (): &mut (), x: &mut [f64]) -> bool {
+        x[0] /= 1.0 + weights.stiffness;
+        true
+    }
 }
 
 impl Smooth for Oscillator {
@@ -90,15 +111,39 @@ impl Kepler {
 }
 
 impl SecondOrderSystem for Kepler {
-    type Record = ();
-    fn new_record(&self) {}
+    /// The matrix K, symmetric: xx, xy, yy.
+    type Record = [f64; 3];
+    fn new_record(&self) -> [f64; 3] {
+        [0.0; 3]
+    }
     fn dofs(&self) -> usize {
         2
     }
-    fn evaluate(&self, at: Moment<'_>, a: &mut [f64], _: &mut [f64], (): &mut ()) {
-        let cube = at.q[0].hypot(at.q[1]).powi(3);
-        a[0] = -at.q[0] / cube;
-        a[1] = -at.q[1] / cube;
+    fn evaluate(&self, at: Moment<'_>, a: &mut [f64], _: &mut [f64], stiffness: &mut [f64; 3]) {
+        let (x, y) = (at.q[0], at.q[1]);
+        let r = x.hypot(y);
+        let cube = r.powi(3);
+        a[0] = -x / cube;
+        a[1] = -y / cube;
+        // K = I/r³ − 3 q qᵀ/r⁵
+        let fifth = cube * r * r;
+        *stiffness = [
+            1.0 / cube - 3.0 * x * x / fifth,
+            -3.0 * x * y / fifth,
+            1.0 / cube - 3.0 * y * y / fifth,
+        ];
+    }
+    fn can_solve(&self) -> bool {
+        true
+    }
+    fn solve(&self, weights: Weights, stiffness: &mut [f64; 3], b: &mut [f64]) -> bool {
+        let [xx, xy, yy] = stiffness.map(|entry| weights.stiffness * entry);
+        let (xx, yy) = (1.0 + xx, 1.0 + yy);
+        let determinant = xx * yy - xy * xy;
+        let x = (yy * b[0] - xy * b[1]) / determinant;
+        b[1] = (xx * b[1] - xy * b[0]) / determinant;
+        b[0] = x;
+        true
     }
 }
 
@@ -144,20 +189,31 @@ impl Driven {
 }
 
 impl SecondOrderSystem for Driven {
-    type Record = ();
-    fn new_record(&self) {}
+    /// Damping C and stiffness K.
+    type Record = (f64, f64);
+    fn new_record(&self) -> (f64, f64) {
+        (0.0, 0.0)
+    }
     fn dofs(&self) -> usize {
         1
     }
     fn quadratures(&self) -> usize {
         2
     }
-    fn evaluate(&self, at: Moment<'_>, a: &mut [f64], rates: &mut [f64], (): &mut ()) {
+    fn evaluate(&self, at: Moment<'_>, a: &mut [f64], rates: &mut [f64], linear: &mut (f64, f64)) {
         let (q, v) = (at.q[0], at.v[0]);
+        *linear = (Self::DAMPING * (1.0 + 3.0 * v * v), q.cos());
         let damping = Self::DAMPING * v * (1.0 + v * v);
         a[0] = -q.sin() - damping + Self::drive(at.t);
         rates[0] = Self::drive(at.t) * v;
         rates[1] = damping * v;
+    }
+    fn can_solve(&self) -> bool {
+        true
+    }
+    fn solve(&self, weights: Weights, (c, k): &mut (f64, f64), x: &mut [f64]) -> bool {
+        x[0] /= 1.0 + weights.damping * *c + weights.stiffness * *k;
+        true
     }
 }
 
