@@ -7,8 +7,8 @@ mod slack;
 
 use chaindrive_geometry::Point;
 
-use crate::drive::Layout;
-use crate::{AssemblyError, Drive, System};
+use crate::drive::{Layout, Parts};
+use crate::{AssemblyError, ChainModel, Drive, Joint, RigidLinks, System, linkage};
 
 pub use relax::Statics;
 pub(crate) use relax::{Curvature, curvature};
@@ -65,6 +65,9 @@ impl Drive {
             }
         }
         setting_off::ghosts(&system, &mut v);
+        if let ChainModel::Rigid(links) = &laid.parts.chain.model {
+            (system, q, v) = self.with_links(system, &laid.parts, links, &q, &v)?;
+        }
         system.start(0.0, &mut q, &mut v);
         Ok(Assembled {
             system,
@@ -73,6 +76,30 @@ impl Drive {
             statics,
             fitting,
         })
+    }
+
+    /// Puts rigid links where the particles are, and settles the joints.
+    fn with_links(
+        &self,
+        system: System,
+        parts: &Parts,
+        links: &RigidLinks,
+        q: &[f64],
+        v: &[f64],
+    ) -> Result<(System, Vec<f64>, Vec<f64>), AssemblyError> {
+        let mut converted = linkage::build::convert(system, parts, links, q, v);
+        let (system, q) = (&mut converted.system, &mut converted.q);
+        let still = vec![0.0; q.len()];
+        system.start(0.0, q, &mut still.clone());
+        if self.settle && matches!(links.joint, Joint::Clearance(_)) {
+            let pretension = match &parts.layout {
+                Layout::Route { fit, .. } => fit.pretension,
+                Layout::Points { .. } => 0.0,
+            };
+            let stiffness = parts.chain.stiffness[0];
+            linkage::settle::settle(system, q, pretension, stiffness)?;
+        }
+        Ok((converted.system, converted.q, converted.v))
     }
 
     /// Lays the chain only, without settling: roller positions \[m\], (rollers,), and the fitting.

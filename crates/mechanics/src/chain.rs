@@ -1,6 +1,6 @@
 //! The particle chain: point masses at the rollers, joined by spring-damper links.
 
-use crate::DriveError;
+use crate::{ChainModel, DriveError};
 
 /// How the two ends of the chain are joined.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,6 +67,9 @@ pub struct Chain {
     pub plate_height: f64,
     /// How the ends are joined.
     pub ends: Ends,
+    /// What it is made of. Rigid links take their lengths from `lengths`; stiffness, damping and
+    /// masses are then those of the particle chain that serves to lay and settle them.
+    pub model: ChainModel,
 }
 
 /// Whether a value is in its range.
@@ -152,6 +155,9 @@ impl Chain {
             if let Some(i) = bad {
                 need(false, format!("chain.{name}[{i}]"), values[i], allowed);
             }
+        }
+        if let ChainModel::Rigid(links) = &self.model {
+            problems.extend(links.problems());
         }
         problems
     }

@@ -7,11 +7,19 @@ use chaindrive_geometry::{Point, Vector};
 use crate::drive::{
     Adjust, Fit, GuideSupport, Layout, Parts, Rotation, Sprocket, Stop, Support, Surface,
 };
-use crate::{DriveError, Ends};
+use crate::{ChainModel, DriveError, Ends, Joint, RollerModel};
 
 /// Every reason why `parts` is not a drive.
 pub(crate) fn problems(parts: &Parts) -> Vec<DriveError> {
     let mut found = parts.chain.problems();
+    if let ChainModel::Rigid(links) = &parts.chain.model {
+        if let Joint::Clearance(joint) = &links.joint {
+            found.extend(surface_problems(&joint.surface, "chain.joint"));
+        }
+        if let RollerModel::Free(roller) = &links.rollers {
+            found.extend(surface_problems(&roller.surface, "chain.roller"));
+        }
+    }
     for sprocket in &parts.sprockets {
         found.extend(sprocket_problems(sprocket, parts.tensioners.len()));
     }

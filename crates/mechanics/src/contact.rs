@@ -7,13 +7,14 @@
 
 mod kernel;
 mod plates;
+mod scalar;
 mod window;
 
 use chaindrive_contact::{Friction, dissipation::Action};
 use chaindrive_geometry::{Point, Vector};
 
 pub(crate) use kernel::Wrench;
-pub(crate) use plates::{PlateContact, PlateTouch};
+pub(crate) use plates::{PlateContact, PlatePins, PlatePlaces, PlateTouch};
 pub(crate) use window::{Places, Run};
 
 use crate::drive::Surface;
@@ -135,8 +136,7 @@ impl LawNumbers {
         Self {
             factor,
             damping,
-            // Without hysteresis the speed at touch is only kept, never used.
-            floor: surface.law.onset_floor.max(f64::MIN_POSITIVE.sqrt()),
+            floor: surface.floor(),
             friction,
             friction_slope: friction / slip_speed,
             slip_speed_squared: slip_speed * slip_speed,
@@ -182,6 +182,11 @@ impl Contacts {
 const SHALLOW: f64 = 1e-7;
 
 impl Surface {
+    /// Least speed at touch \[m/s\]; without hysteresis it is only kept, never used.
+    pub(crate) fn floor(&self) -> f64 {
+        self.law.onset_floor.max(f64::MIN_POSITIVE.sqrt())
+    }
+
     /// Tangent stiffness of a contact of some depth \[N/m\], for the choice of the step.
     pub(crate) fn stiffness(&self, depth: f64) -> f64 {
         self.law.stiffness(depth.max(SHALLOW))

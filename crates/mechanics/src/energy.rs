@@ -18,6 +18,8 @@ pub enum Store {
     Carriers,
     /// Stretch of the links.
     Links,
+    /// Indentation of pins, bushes and rollers.
+    Joints,
     /// Indentation of rollers and teeth.
     Teeth,
     /// Indentation of chain and guides.
@@ -35,6 +37,8 @@ pub enum Store {
 pub enum Flow {
     /// Loss in the link dampers.
     LinkLoss,
+    /// Loss in impacts of pins, bushes and rollers.
+    JointLoss,
     /// Loss in roller-tooth impacts.
     ToothLoss,
     /// Loss in chain-guide impacts.
@@ -57,11 +61,12 @@ pub enum Flow {
 
 impl Store {
     /// All stores, in the order of [`Energy::stores`].
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Chain,
         Self::Sprockets,
         Self::Carriers,
         Self::Links,
+        Self::Joints,
         Self::Teeth,
         Self::Guides,
         Self::Gravity,
@@ -81,6 +86,7 @@ impl Store {
             Self::Sprockets => "sprockets_kinetic",
             Self::Carriers => "tensioners_kinetic",
             Self::Links => "links_stored",
+            Self::Joints => "joints_stored",
             Self::Teeth => "teeth_stored",
             Self::Guides => "guides_stored",
             Self::Gravity => "gravity_stored",
@@ -92,8 +98,9 @@ impl Store {
 
 impl Flow {
     /// All flows, in the order of [`Energy::flows`].
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::LinkLoss,
+        Self::JointLoss,
         Self::ToothLoss,
         Self::GuideLoss,
         Self::FrictionLoss,
@@ -110,6 +117,7 @@ impl Flow {
         matches!(
             self,
             Self::LinkLoss
+                | Self::JointLoss
                 | Self::ToothLoss
                 | Self::GuideLoss
                 | Self::FrictionLoss
@@ -122,6 +130,7 @@ impl Flow {
     pub fn name(self) -> &'static str {
         match self {
             Self::LinkLoss => "links_dissipated",
+            Self::JointLoss => "joints_dissipated",
             Self::ToothLoss => "teeth_dissipated",
             Self::GuideLoss => "guides_dissipated",
             Self::FrictionLoss => "friction_dissipated",

@@ -6,7 +6,9 @@
 //!
 //! | model | file | degrees of freedom |
 //! |---|---|---|
-//! | particle chain | [`Chain`] | 2 per roller |
+//! | particle chain | [`ChainModel::Particles`] | 2 per roller |
+//! | rigid links, ideal joints or clearance | [`ChainModel::Rigid`] | 3 per link |
+//! | free rollers on them | [`RollerModel::Free`] | 3 per roller |
 //! | sprocket, free to turn | [`Sprocket`] | 1 |
 //! | sprocket centre on springs | [`Support::Springs`] | 2 |
 //! | tensioner: slider or arm | [`Tensioner`] | 1 |
@@ -22,12 +24,15 @@ mod contact;
 mod drive;
 mod energy;
 mod error;
+mod events;
 mod lanes;
+mod linkage;
 mod links;
 mod modes;
 mod motion;
 mod observe;
 mod profile;
+mod rigid;
 mod system;
 mod tensioner;
 mod torque;
@@ -40,9 +45,13 @@ pub use drive::{
 };
 pub use energy::{Energy, Flow, Store};
 pub use error::{AssemblyError, DriveError};
+pub use events::{ContactEvent, ContactPair, EventKinds};
 pub use modes::{Mode, Modes};
 pub use motion::{Course, Harmonic, Motion, Table};
 pub use observe::Observation;
+pub use rigid::{
+    ChainModel, Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel,
+};
 pub use system::{Record, System};
 pub use tensioner::{Carrier, Hydraulic, Plunger, Push, PushForce, Spring, Tensioner};
 pub use torque::{Argument, Torque};

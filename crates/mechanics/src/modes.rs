@@ -158,7 +158,7 @@ fn mode(frequency: f64, shape: &[f64], system: &System) -> Mode {
 
 impl System {
     /// Mass or inertia that goes with every entry of the state \[kg or kg m²\].
-    fn inertias(&self) -> Vec<f64> {
+    pub(crate) fn inertias(&self) -> Vec<f64> {
         let n = self.stride;
         let mut inertias = vec![0.0; self.dofs];
         inertias[..n].copy_from_slice(&self.masses);

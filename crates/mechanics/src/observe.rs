@@ -4,7 +4,9 @@ use chaindrive_geometry::Point;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 
 use crate::energy::{Energy, Flow, Store};
-use crate::system::{RailContact, Record, WheelRotation, WheelSupport};
+use crate::contact::{Frame, PlateContact};
+use crate::linkage::rates::LinkPlaces;
+use crate::system::{Pins, RailContact, Record, WheelRotation, WheelSupport};
 use crate::{Carrier, System};
 
 /// Everything that can be read off one state. SI units; arrays in the order of the drive.
@@ -20,6 +22,23 @@ pub struct Observation {
     pub roller_vx: Vec<f64>,
     /// See `roller_vx`.
     pub roller_vy: Vec<f64>,
+    /// Direction of every rigid link \[rad\], (links,); empty for particles, like all that follows of joints.
+    pub link_angle: Vec<f64>,
+    /// Eccentricity of every pin, seen from the centre of its bush, x and y \[m\], (joints,) each;
+    /// NaN where the chain ends.
+    pub joint_offset_x: Vec<f64>,
+    /// See `joint_offset_x`.
+    pub joint_offset_y: Vec<f64>,
+    /// Force on every pin, x and y \[N\], (joints,) each.
+    pub joint_force_x: Vec<f64>,
+    /// See `joint_force_x`.
+    pub joint_force_y: Vec<f64>,
+    /// Its magnitude \[N\], (joints,).
+    pub joint_force: Vec<f64>,
+    /// Direction of the link with the pin from that with the bush \[rad\], (joints,).
+    pub joint_angle: Vec<f64>,
+    /// Indentation of pin and bush \[m\], (joints,).
+    pub joint_depth: Vec<f64>,
     /// Tension of every link, damping included \[N\], (links,).
     pub link_tension: Vec<f64>,
     /// Mean tension of the links between consecutive sprockets of the route \[N\], (spans,).
@@ -86,7 +105,18 @@ impl System {
     /// Where in the drive a coordinate of the state belongs, in words.
     pub fn place(&self, dof: usize) -> String {
         let n = self.stride;
-        if dof < 2 * n {
+        if let Some(linkage) = &self.linkage
+            && dof < linkage.dofs()
+        {
+            let body = dof / 3;
+            let axis = ["x", "y", "its angle"][dof % 3];
+            return if body < linkage.links {
+                format!("link {body} along {axis}")
+            } else {
+                format!("free roller {} along {axis}", body - linkage.links)
+            };
+        }
+        if self.linkage.is_none() && dof < 2 * n {
             let axis = if dof < n { "x" } else { "y" };
             return format!("roller {} along {axis}", dof % n % self.rollers);
         }
@@ -123,13 +153,26 @@ impl System {
         let mut a = vec![0.0; self.dofs];
         let mut rates = vec![0.0; Flow::ALL.len()];
         self.evaluate(at, &mut a, &mut rates, record);
+        out.time = at.t;
+        if let Some(linkage) = &self.linkage {
+            linkage.observe(at, &record.play, out);
+        } else {
+            self.observe_particles(at, out);
+        }
+        self.observe_sprockets(at, record, out);
+        self.observe_spans(out);
+        Self::observe_guides(record, out);
+        self.observe_tensioners(at, out);
+        out.energy = self.energy(at, flows, record);
+    }
+
+    fn observe_particles(&self, at: Moment<'_>, out: &mut Observation) {
         let n = self.stride;
         let count = self.rollers;
         let copy = |to: &mut Vec<f64>, from: &[f64]| {
             to.clear();
             to.extend_from_slice(from);
         };
-        out.time = at.t;
         copy(&mut out.roller_x, &at.q[..count]);
         copy(&mut out.roller_y, &at.q[n..n + count]);
         copy(&mut out.roller_vx, &at.v[..count]);
@@ -139,11 +182,6 @@ impl System {
             self.links
                 .tension(link, [self.pin(at, link), self.pin(at, link + 1)])
         }));
-        self.observe_sprockets(at, record, out);
-        self.observe_spans(out);
-        Self::observe_guides(record, out);
-        self.observe_tensioners(at, out);
-        out.energy = self.energy(at, flows, record);
     }
 
     fn observe_sprockets(&self, at: Moment<'_>, record: &Record, out: &mut Observation) {
@@ -271,21 +309,11 @@ impl System {
     fn energy(&self, at: Moment<'_>, flows: &[f64], record: &Record) -> Energy {
         let mut energy = Energy::default();
         energy.flows.copy_from_slice(flows);
-        let mut none = vec![0.0; self.dofs];
-        let rollers = self.view(at.q, at.v, &mut none);
-        let mut add = |store: Store, value: f64| energy.stores[store as usize] += value;
-        for i in 0..self.rollers {
-            let mass = self.masses[i];
-            add(
-                Store::Chain,
-                0.5 * mass * rollers.velocity(i).norm_squared(),
-            );
-            add(
-                Store::Gravity,
-                -mass * self.gravity.dot(&rollers.place(i).coords),
-            );
+        match &self.linkage {
+            Some(linkage) => linkage.energies(at, self.gravity, &record.play, &mut energy),
+            None => self.particle_energies(at, &mut energy),
         }
-        add(Store::Links, self.links.stored(&rollers));
+        let mut add = |store: Store, value: f64| energy.stores[store as usize] += value;
         for (wheel, touch) in self.wheels.iter().zip(&record.teeth) {
             let (frame, course, _) = self.wheel_frame(wheel, at);
             let moves = !matches!(wheel.support, WheelSupport::Fixed);
@@ -320,7 +348,7 @@ impl System {
                 RailContact::Circles(contacts) => contacts.stored(&record.circles[i]),
                 RailContact::Plates(plates) => {
                     let frame = rail.frame(at.t, at.q, at.v, &self.slides);
-                    plates.stored(&rollers, &frame, self.links.count)
+                    self.plate_energy(at, plates, &frame, record)
                 }
             };
             add(Store::Guides, stored);
@@ -339,5 +367,42 @@ impl System {
             }
         }
         energy
+    }
+
+    fn particle_energies(&self, at: Moment<'_>, energy: &mut Energy) {
+        let mut none = vec![0.0; self.dofs];
+        let rollers = self.view(at.q, at.v, &mut none);
+        let mut add = |store: Store, value: f64| energy.stores[store as usize] += value;
+        for i in 0..self.rollers {
+            let mass = self.masses[i];
+            add(
+                Store::Chain,
+                0.5 * mass * rollers.velocity(i).norm_squared(),
+            );
+            add(
+                Store::Gravity,
+                -mass * self.gravity.dot(&rollers.place(i).coords),
+            );
+        }
+        add(Store::Links, self.links.stored(&rollers));
+    }
+
+    fn plate_energy(
+        &self,
+        at: Moment<'_>,
+        plates: &PlateContact,
+        frame: &Frame,
+        record: &Record,
+    ) -> f64 {
+        if self.linkage.is_some() {
+            return plates.stored(&LinkPlaces(&record.play), frame, self.links.count);
+        }
+        let mut none = vec![0.0; self.dofs];
+        let mut rollers = self.view(at.q, at.v, &mut none);
+        let pins = Pins {
+            rollers: &mut rollers,
+            count: self.rollers,
+        };
+        plates.stored(&pins, frame, self.links.count)
     }
 }

@@ -13,7 +13,7 @@ mod build;
 mod equations;
 
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::{Continuity, Moment, SecondOrderSystem, Verdict};
+use chaindrive_integrate::{Continuity, Moment, SecondOrderSystem, Verdict, Weights};
 use pulp::{Arch, Simd, WithSimd};
 
 pub(crate) use bodies::{
@@ -21,9 +21,11 @@ pub(crate) use bodies::{
 };
 pub(crate) use build::Laid;
 
-use crate::contact::{Frame, Places, PlateTouch, Touch, Wrench};
+use crate::contact::{Frame, Places, PlatePins, PlatePlaces, PlateTouch, Touch, Wrench};
 use crate::energy::Flow;
+use crate::events::EventLog;
 use crate::lanes::Wide;
+use crate::linkage::{Joining, Linkage, Play, Posture};
 use crate::links::{Links, Pulls};
 use crate::motion::Course;
 use crate::{End, Motion};
@@ -51,6 +53,13 @@ pub struct System {
     pub(crate) lightest: f64,
     /// ω² of the links alone and twice their damping rate.
     pub(crate) link_rates: [f64; 2],
+    /// The chain as rigid links, where the scene asks for them; it then replaces the rollers at the
+    /// beginning of the state.
+    pub(crate) linkage: Option<Linkage>,
+    /// Masses and inertias of what stands behind the chain in the state, for rigid links.
+    pub(crate) border_inertias: Vec<f64>,
+    /// The log of contacts, where one is kept.
+    pub(crate) events: Option<EventLog>,
     time_scale: f64,
     /// Deepest first penetration accepted \[m\], when steps are to be rejected for it.
     onset_depth: Option<f64>,
@@ -77,6 +86,7 @@ pub struct Record {
     pub(crate) wheel_wrenches: Vec<Wrench>,
     pub(crate) rail_wrenches: Vec<Wrench>,
     pulls: Pulls,
+    pub(crate) play: Play,
 }
 
 /// The rollers' part of a state, and of its accelerations.
@@ -102,10 +112,30 @@ impl Rollers<'_> {
         Vector::new(self.vx[roller], self.vy[roller])
     }
 
-    /// Adds a force \[N\] on one roller; a ghost index means its original.
-    pub(crate) fn push(&mut self, roller: usize, force: Vector) {
-        self.ax[roller] += force.x * self.inverse_mass[roller];
-        self.ay[roller] += force.y * self.inverse_mass[roller];
+}
+
+/// The plates of the particle chain: link i between roller i and the next.
+pub(crate) struct Pins<'a, 'b> {
+    pub(crate) rollers: &'b mut Rollers<'a>,
+    pub(crate) count: usize,
+}
+
+impl PlatePlaces for Pins<'_, '_> {
+    fn place(&self, link: usize, end: usize) -> Point {
+        self.rollers.place(link + end)
+    }
+}
+
+impl PlatePins for Pins<'_, '_> {
+    fn velocity(&self, link: usize, end: usize) -> Vector {
+        self.rollers.velocity(link + end)
+    }
+
+    fn push(&mut self, link: usize, end: usize, force: Vector) {
+        // Behind the last roller of a closed chain its copies are only looked at.
+        let roller = (link + end) % self.count;
+        self.rollers.ax[roller] += force.x * self.rollers.inverse_mass[roller];
+        self.rollers.ay[roller] += force.y * self.rollers.inverse_mass[roller];
     }
 }
 
@@ -130,6 +160,9 @@ impl System {
 
     /// Degrees of freedom that move: rollers that are not held count two.
     pub fn free_dofs(&self) -> usize {
+        if self.linkage.is_some() {
+            return self.dofs;
+        }
         2 * (0..self.rollers)
             .filter(|&i| self.inverse_masses[i] > 0.0)
             .count()
@@ -242,9 +275,13 @@ impl System {
                 continue;
             };
             let frame = rail.frame(at.t, at.q, at.v, &self.slides);
+            let mut pins = Pins {
+                rollers: &mut rollers,
+                count: self.rollers,
+            };
             let wrench = plates.act(
                 &frame,
-                &mut rollers,
+                &mut pins,
                 self.links.count,
                 &mut record.plates[i],
             );
@@ -259,18 +296,24 @@ impl System {
         for wheel in &mut self.wheels {
             wheel.anchor = Anchor::at(wheel.course(t, q, v).position);
         }
-        self.renew_windows(Moment { t, q, v });
         let mut record = self.new_record();
+        self.renew_windows(Moment { t, q, v }, &mut record.play.posture);
         let mut a = vec![0.0; self.dofs];
         let mut rates = vec![0.0; Flow::ALL.len()];
         self.evaluate(Moment { t, q, v }, &mut a, &mut rates, &mut record);
         self.commit(t, q, v, &mut record);
     }
 
-    fn renew_windows(&mut self, at: Moment<'_>) {
+    fn renew_windows(&mut self, at: Moment<'_>, posture: &mut Posture) {
         let n = self.stride;
-        let (vx, vy) = (&at.v[..self.rollers], &at.v[n..n + self.rollers]);
-        let fastest = vx
+        let [x, y, vx, vy] = if let Some(linkage) = &self.linkage {
+            linkage.pose(at, posture);
+            [&posture.x, &posture.y, &posture.vx, &posture.vy].map(Vec::as_slice)
+        } else {
+            let (q, v) = (at.q, at.v);
+            [&q[..n], &q[n..2 * n], &v[..n], &v[n..2 * n]]
+        };
+        let fastest = vx[..self.rollers]
             .iter()
             .zip(vy)
             .map(|(x, y)| x * x + y * y)
@@ -279,8 +322,8 @@ impl System {
         let mut speed = fastest;
         let margin = 0.5 * self.pitch;
         let places = Places {
-            x: &at.q[..n],
-            y: &at.q[n..2 * n],
+            x,
+            y,
             count: self.rollers,
         };
         for i in 0..self.wheels.len() {
@@ -302,6 +345,17 @@ impl System {
             at.t + 0.5 * margin / speed.max(f64::MIN_POSITIVE),
             STEPS_PER_WINDOW,
         );
+    }
+
+    fn renew_time_scales(&mut self, record: &Record) {
+        let scales = match &self.linkage {
+            Some(linkage) => linkage.stiffest(self, &record.play),
+            None => [self.stiffest(record); 2],
+        };
+        self.time_scale = scales[0];
+        if let Some(linkage) = &mut self.linkage {
+            linkage.time_scales = scales;
+        }
     }
 
     /// 1/ω of the stiffest mode as estimated from the links, the deepest contact and the damping.
@@ -379,6 +433,7 @@ impl SecondOrderSystem for System {
             wheel_wrenches: vec![Wrench::default(); self.wheels.len()],
             rail_wrenches: vec![Wrench::default(); self.rails.len()],
             pulls: self.links.pulls(),
+            play: Play::default(),
         }
     }
 
@@ -391,6 +446,11 @@ impl SecondOrderSystem for System {
     }
 
     fn evaluate(&self, at: Moment<'_>, a: &mut [f64], rates: &mut [f64], record: &mut Record) {
+        if let Some(linkage) = &self.linkage {
+            linkage.evaluate(self, at, a, rates, record);
+            self.bodies(at, a, rates, record);
+            return;
+        }
         self.arch.dispatch(Forces {
             system: self,
             at,
@@ -420,10 +480,14 @@ impl SecondOrderSystem for System {
         };
         let wrenches = end.wheel_wrenches.iter().chain(&end.rail_wrenches);
         let mut share = f64::INFINITY;
-        for wrench in wrenches.filter(|w| w.first_depth > allowed) {
+        let joints = &end.play.tally;
+        let firsts = wrenches
+            .map(|w| (w.first_depth, w.first_share))
+            .chain([(joints.first_depth, joints.first_share)]);
+        for (depth, before) in firsts.filter(|&(depth, _)| depth > allowed) {
             // Land with the gap half the allowed depth beyond touch, by the secant.
-            let beyond = 0.5 * allowed / wrench.first_depth;
-            share = share.min(wrench.first_share + (1.0 - wrench.first_share) * beyond);
+            let beyond = 0.5 * allowed / depth;
+            share = share.min(before + (1.0 - before) * beyond);
         }
         if share < 1.0 {
             Verdict::Retry { at_most: h * share }
@@ -446,9 +510,13 @@ impl SecondOrderSystem for System {
                 }
             }
         }
-        self.time_scale = self.stiffest(end);
+        if let Some(linkage) = &mut self.linkage {
+            std::mem::swap(&mut linkage.memory, &mut end.play.memory);
+        }
+        self.renew_time_scales(end);
+        self.note_events(t);
         let n = self.stride;
-        for held in &self.ends {
+        for held in self.ends.iter().filter(|_| self.linkage.is_none()) {
             if let End::Driven { x, y } = &held.end {
                 let (x, y): (Course, Course) = (Motion::at(x, t), y.at(t));
                 q[held.roller] = held.place.x + x.position;
@@ -459,12 +527,33 @@ impl SecondOrderSystem for System {
         }
         self.renew.1 = self.renew.1.saturating_sub(1);
         if t >= self.renew.0 || self.renew.1 == 0 {
-            self.renew_windows(Moment { t, q, v });
+            self.renew_windows(Moment { t, q, v }, &mut end.play.posture);
         }
         Continuity::Smooth
     }
 
     fn time_scale(&self) -> f64 {
         self.time_scale
+    }
+
+    fn undamped_time_scale(&self) -> f64 {
+        match &self.linkage {
+            Some(linkage) => linkage.time_scales[1],
+            None => self.time_scale,
+        }
+    }
+
+    fn can_solve(&self) -> bool {
+        matches!(
+            &self.linkage,
+            Some(linkage) if matches!(linkage.joining, Joining::Clearance(_))
+        )
+    }
+
+    fn solve(&self, weights: Weights, record: &mut Record, x: &mut [f64]) -> bool {
+        match &self.linkage {
+            Some(linkage) => linkage.solve(self, weights, &mut record.play, x),
+            None => false,
+        }
     }
 }

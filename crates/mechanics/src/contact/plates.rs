@@ -10,7 +10,20 @@ use chaindrive_geometry::{Point, Vector};
 use super::{Frame, LawNumbers, Wrench};
 use crate::drive::Surface;
 use crate::profile::{Probe, Profile};
-use crate::system::Rollers;
+
+/// Where the pins of the link plates are, whatever the chain is made of.
+pub(crate) trait PlatePlaces {
+    /// Place of a link's first (0) or second (1) pin.
+    fn place(&self, link: usize, end: usize) -> Point;
+}
+
+/// How they move, and what they bear.
+pub(crate) trait PlatePins: PlatePlaces {
+    /// Velocity of a link's first (0) or second (1) pin.
+    fn velocity(&self, link: usize, end: usize) -> Vector;
+    /// Takes a force \[N\] on that pin.
+    fn push(&mut self, link: usize, end: usize, force: Vector);
+}
 
 /// Contacts of all links with one rail.
 #[derive(Clone, Debug)]
@@ -90,11 +103,11 @@ impl PlateContact {
         })
     }
 
-    /// Adds the contact accelerations to `rollers` and returns what the rail receives.
+    /// Pushes the pins and returns what the rail receives.
     pub(crate) fn act(
         &self,
         frame: &Frame,
-        rollers: &mut Rollers<'_>,
+        pins_of: &mut impl PlatePins,
         links: usize,
         touch: &mut Vec<PlateTouch>,
     ) -> Wrench {
@@ -105,7 +118,7 @@ impl PlateContact {
             ..Wrench::default()
         };
         for link in 0..links {
-            let pins = [rollers.place(link), rollers.place(link + 1)];
+            let pins = [0, 1].map(|end| pins_of.place(link, end));
             let [a, b] = pins.map(|pin| frame.local(pin, self.reference));
             touch[link] = PlateTouch::FAR;
             if self.far(a) && self.far(b) {
@@ -114,7 +127,7 @@ impl PlateContact {
             let point = self.nearest(a, b);
             let normal = frame.outward(point.probe.normal);
             let shares = [1.0 - point.share, point.share];
-            let speed = |pin: usize| rollers.velocity(link + pin);
+            let speed = |pin: usize| pins_of.velocity(link, pin);
             let d = (pins[0] - frame.origin) * shares[0] + (pins[1] - frame.origin) * shares[1];
             // u = v − v_o − ω ẑ × d
             let u = speed(0) * shares[0] + speed(1) * shares[1]
@@ -150,7 +163,7 @@ impl PlateContact {
                 let rub = self.surface.friction.force(state.force, slip);
                 let push = normal * state.force + tangent * rub;
                 for (pin, share) in shares.into_iter().enumerate() {
-                    rollers.push(link + pin, push * share);
+                    pins_of.push(link, pin, push * share);
                 }
                 let foot = d - normal * self.half_height;
                 wrench.force[0] -= push.x;
@@ -169,11 +182,11 @@ impl PlateContact {
     }
 
     /// Sum of the elastic energies \[J\].
-    pub(crate) fn stored(&self, rollers: &Rollers<'_>, frame: &Frame, links: usize) -> f64 {
+    pub(crate) fn stored(&self, pins_of: &impl PlatePlaces, frame: &Frame, links: usize) -> f64 {
         (0..links)
             .map(|link| {
                 let [a, b] =
-                    [link, link + 1].map(|pin| frame.local(rollers.place(pin), self.reference));
+                    [0, 1].map(|end| frame.local(pins_of.place(link, end), self.reference));
                 if self.far(a) && self.far(b) {
                     return 0.0;
                 }

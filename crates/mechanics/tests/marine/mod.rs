@@ -62,6 +62,7 @@ pub(crate) fn parts(law: Law) -> Parts {
             roller_diameter,
             plate_height: 0.0778,
             ends: Ends::Closed,
+            model: chaindrive_mechanics::ChainModel::Particles,
         },
         sprockets: sprockets.into(),
         guides: Vec::new(),

@@ -1,6 +1,6 @@
 //! The chain: lengths, masses, stiffness and damping, link by link.
 
-use chaindrive_mechanics::{Chain, End, Ends};
+use chaindrive_mechanics::{Chain, ChainModel, End, Ends};
 
 use super::scatter::Normal;
 use super::{Findings, motion};
@@ -89,6 +89,7 @@ pub(super) fn resolve(
             .plate_height
             .map_or(PLATE * roller_diameter, |height| height.0),
         ends: ends?,
+        model: ChainModel::Particles,
     })
 }
 

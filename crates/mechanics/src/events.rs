@@ -1,0 +1,196 @@
+//! The log of contacts: when each began and ended, how fast it closed, and how hard it pressed.
+//!
+//! Kept on accepted states only. A contact that is lost and found again within one step was never
+//! seen to end; starts and ends are exact to the step.
+
+use crate::system::{RailContact, System};
+
+/// What touched what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum ContactPair {
+    /// A roller and the teeth of a sprocket.
+    Tooth {
+        /// Index of the sprocket.
+        sprocket: usize,
+        /// Number of the roller.
+        roller: usize,
+    },
+    /// A roller, or plate eye, and a guide.
+    Guide {
+        /// Index of the guide.
+        guide: usize,
+        /// Number of the roller.
+        roller: usize,
+    },
+    /// A pin and its bush.
+    Joint {
+        /// Number of the joint.
+        joint: usize,
+    },
+    /// A bush and the free roller on it.
+    Roller {
+        /// Number of the joint.
+        joint: usize,
+    },
+}
+
+/// One contact from touch to parting.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactEvent {
+    /// What touched what.
+    pub pair: ContactPair,
+    /// When it began \[s\].
+    pub start: f64,
+    /// When it ended \[s\]; infinite while it lasts.
+    pub end: f64,
+    /// Closing speed at touch \[m/s\], not below the floor of the law.
+    pub onset_speed: f64,
+    /// Largest normal force \[N\].
+    pub peak_force: f64,
+    /// ∫ F dt \[N s\].
+    pub impulse: f64,
+}
+
+/// Which contacts are logged.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct EventKinds {
+    /// Rollers on teeth.
+    pub teeth: bool,
+    /// Rollers on guides.
+    pub guides: bool,
+    /// Pins in bushes, and bushes in free rollers.
+    pub joints: bool,
+}
+
+/// The log, and the contacts that last.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct EventLog {
+    kinds: EventKinds,
+    /// Contacts that last, by place: wheels, rails, joints, bushes, each times the rollers.
+    lasting: Vec<Option<ContactEvent>>,
+    ended: Vec<ContactEvent>,
+    time: f64,
+}
+
+impl EventLog {
+    fn see(&mut self, place: usize, pair: ContactPair, t: f64, seen: Option<(f64, f64)>) {
+        let dt = t - self.time;
+        let entry = &mut self.lasting[place];
+        match (entry.as_mut(), seen) {
+            (Some(event), Some((_, force))) => {
+                event.peak_force = event.peak_force.max(force);
+                event.impulse += force * dt;
+            }
+            (None, Some((onset_speed, force))) => {
+                *entry = Some(ContactEvent {
+                    pair,
+                    start: t,
+                    end: f64::INFINITY,
+                    onset_speed,
+                    peak_force: force,
+                    impulse: force * dt,
+                });
+            }
+            (Some(event), None) => {
+                event.end = t;
+                self.ended.push(*event);
+                *entry = None;
+            }
+            (None, None) => {}
+        }
+    }
+}
+
+impl System {
+    /// Chooses which contacts are logged; forgets what was logged before.
+    pub fn log_events(&mut self, kinds: EventKinds) {
+        let places = (self.wheels.len() + self.rails.len() + 2) * self.rollers;
+        let any = kinds != EventKinds::default();
+        self.events = any.then(|| EventLog {
+            kinds,
+            lasting: vec![None; places],
+            ..EventLog::default()
+        });
+    }
+
+    /// Contacts that ended since the last call, in the order of their ends.
+    pub fn take_events(&mut self) -> Vec<ContactEvent> {
+        self.events
+            .as_mut()
+            .map_or_else(Vec::new, |log| std::mem::take(&mut log.ended))
+    }
+
+    /// Contacts that last, with an infinite end.
+    pub fn lasting_events(&self) -> Vec<ContactEvent> {
+        let lasting = self.events.iter().flat_map(|log| &log.lasting);
+        lasting.flatten().copied().collect()
+    }
+
+    /// Compares the accepted state at `t` with the log.
+    pub(crate) fn note_events(&mut self, t: f64) {
+        let Some(mut log) = self.events.take() else {
+            return;
+        };
+        let kinds = log.kinds;
+        let rollers = self.rollers;
+        let mut seen: Vec<Option<(f64, f64)>> = vec![None; rollers];
+        for (index, wheel) in self.wheels.iter().enumerate().filter(|_| kinds.teeth) {
+            seen.fill(None);
+            wheel.contacts.for_each_closed(|roller, onset, force| {
+                join(&mut seen[roller % rollers], onset, force);
+            });
+            for (roller, seen) in seen.iter().enumerate() {
+                let pair = ContactPair::Tooth {
+                    sprocket: index,
+                    roller,
+                };
+                log.see(index * rollers + roller, pair, t, *seen);
+            }
+        }
+        let base = self.wheels.len();
+        for (index, rail) in self.rails.iter().enumerate().filter(|_| kinds.guides) {
+            seen.fill(None);
+            match &rail.contact {
+                RailContact::Circles(contacts) => contacts.for_each_closed(|roller, onset, force| {
+                    join(&mut seen[roller % rollers], onset, force);
+                }),
+                RailContact::Plates(plates) => {
+                    for (link, touch) in plates.memory.iter().enumerate() {
+                        if touch.onset > 0.0 {
+                            join(&mut seen[link], touch.onset, touch.force);
+                        }
+                    }
+                }
+            }
+            for (roller, seen) in seen.iter().enumerate() {
+                let pair = ContactPair::Guide {
+                    guide: index,
+                    roller,
+                };
+                log.see((base + index) * rollers + roller, pair, t, *seen);
+            }
+        }
+        let base = base + self.rails.len();
+        if let Some(linkage) = self.linkage.as_ref().filter(|_| kinds.joints) {
+            for (kind, touches) in linkage.touches().into_iter().enumerate() {
+                for (joint, touch) in touches.iter().enumerate() {
+                    let pair = if kind == 0 {
+                        ContactPair::Joint { joint }
+                    } else {
+                        ContactPair::Roller { joint }
+                    };
+                    let seen = (touch.onset > 0.0).then_some((touch.onset, touch.force));
+                    log.see((base + kind) * rollers + joint, pair, t, seen);
+                }
+            }
+        }
+        log.time = t;
+        self.events = Some(log);
+    }
+}
+
+/// Both flanks of a gap count as one contact.
+fn join(seen: &mut Option<(f64, f64)>, onset: f64, force: f64) {
+    let (speed, sum) = seen.unwrap_or((0.0, 0.0));
+    *seen = Some((speed.max(onset), sum + force));
+}

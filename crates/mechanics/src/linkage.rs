@@ -1,0 +1,312 @@
+//! The chain as rigid links: compiled, and its forces.
+//!
+//! ```text
+//! q = [ x, y, φ of every link | x, y, φ of every free roller | sprockets, tensioners ]
+//! ```
+//!
+//! x and y are those of the centres of mass. Joints and free rollers push through the contact of a pin in a
+//! hole; ideal joints are held by the forces that keep their ends together. What wheels and guides
+//! touch is the circle that runs on the teeth, as for the particle chain.
+
+mod bearing;
+mod blocks;
+pub(crate) mod build;
+mod element;
+mod hinge;
+mod implicit;
+mod meshing;
+mod observe;
+mod posture;
+pub(crate) mod rates;
+pub(crate) mod settle;
+
+use chaindrive_geometry::Vector;
+use chaindrive_integrate::Moment;
+use nalgebra::Vector3;
+
+pub(crate) use bearing::{Bearing, Part, PinTouch, Tally};
+pub(crate) use blocks::Blocks;
+pub(crate) use element::{Element, Mount, Partner, cross, turned};
+pub(crate) use hinge::Hinges;
+pub(crate) use posture::{Posture, free_part};
+
+use crate::End;
+use crate::energy::Flow;
+use crate::system::{HeldEnd, Record, System};
+
+/// A body of the chain: a link, or a free roller.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Body {
+    pub(crate) mass: f64,
+    pub(crate) inertia: f64,
+    /// Joint ends from the centre of mass, in the frame of the body \[m\].
+    pub(crate) arms: [Vector; 2],
+}
+
+/// One side of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Mate {
+    /// An end of a link: 0 towards the joint of its own number, 1 towards the next.
+    Link { link: usize, end: usize },
+    /// A support at an end of the strand.
+    Ground(usize),
+}
+
+/// A joint of the chain.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct JointMates {
+    /// The hole and the pin; none where the chain simply ends.
+    pub(crate) pair: Option<[Mate; 2]>,
+    /// What the roller sits on.
+    pub(crate) carrier: Mate,
+}
+
+/// Rollers loose on their bushes.
+#[derive(Clone, Debug)]
+pub(crate) struct FreeRollers {
+    pub(crate) bearing: Bearing,
+    /// Body of the roller at every joint.
+    pub(crate) body: Vec<Option<usize>>,
+}
+
+/// How neighbouring links are joined.
+#[derive(Clone, Debug)]
+pub(crate) enum Joining {
+    /// Ends held together.
+    Hinges(Hinges),
+    /// A pin in every bush.
+    Clearance(Bearing),
+}
+
+/// A chain of rigid links.
+#[derive(Clone, Debug)]
+pub(crate) struct Linkage {
+    pub(crate) links: usize,
+    pub(crate) closed: bool,
+    /// Length of the roller arrays, copies included.
+    pub(crate) stride: usize,
+    pub(crate) pitch: f64,
+    pub(crate) bodies: Vec<Body>,
+    pub(crate) joints: Vec<JointMates>,
+    pub(crate) joining: Joining,
+    pub(crate) free_rollers: Option<FreeRollers>,
+    /// Whether what runs on the teeth turns with its link: a bush.
+    pub(crate) bush_turns: bool,
+    pub(crate) ends: Vec<HeldEnd>,
+    /// What the joints remember of the last accepted state.
+    pub(crate) memory: Memory,
+    /// 1/ω of the stiffest mode, damping included and left out \[s\].
+    pub(crate) time_scales: [f64; 2],
+}
+
+/// State of all joints at an accepted moment.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Memory {
+    pub(crate) time: f64,
+    pub(crate) joints: Vec<PinTouch>,
+    /// Of the free rollers on their bushes, by joint.
+    pub(crate) bushes: Vec<PinTouch>,
+}
+
+/// What one evaluation of a linkage leaves behind.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Play {
+    pub(crate) posture: Posture,
+    /// Force and moment on every body \[N, N, N m\].
+    pub(crate) forces: Vec<Vector3<f64>>,
+    pub(crate) memory: Memory,
+    /// Force on the pin of every joint \[N\].
+    pub(crate) pin_forces: Vec<Vector>,
+    pub(crate) elements: Vec<Element>,
+    pub(crate) mounts: Vec<Mount>,
+    pub(crate) tally: Tally,
+    pub(crate) blocks: Blocks,
+    pub(crate) loose: Vec<implicit::Loose>,
+}
+
+impl Linkage {
+    /// Coordinates of the chain.
+    pub(crate) fn dofs(&self) -> usize {
+        3 * self.bodies.len()
+    }
+
+    /// Accelerations of the chain's bodies, and what wheels and rails feel.
+    pub(crate) fn evaluate(
+        &self,
+        system: &System,
+        at: Moment<'_>,
+        a: &mut [f64],
+        rates: &mut [f64],
+        record: &mut Record,
+    ) {
+        rates.fill(0.0);
+        a[self.dofs()..].fill(0.0);
+        let mut play = std::mem::take(&mut record.play);
+        self.pose(at, &mut play.posture);
+        play.elements.clear();
+        play.tally = Tally::new();
+        play.memory.time = at.t;
+        play.forces.clear();
+        let gravity = system.gravity;
+        play.forces.extend(self.bodies.iter().map(|body| {
+            Vector3::new(body.mass * gravity.x, body.mass * gravity.y, 0.0)
+        }));
+        self.joint_forces(at, rates, &mut play);
+        self.roller_forces(at, rates, &mut play);
+        self.end_loads(rates, &mut play);
+        system.mesh(self, at, rates, record, &mut play);
+        if let Joining::Hinges(hinges) = &self.joining {
+            hinges.hold(self, at, rates, &mut play);
+        }
+        for (body, (force, a)) in self
+            .bodies
+            .iter()
+            .zip(play.forces.iter().zip(a.chunks_exact_mut(3)))
+        {
+            a[0] = force.x / body.mass;
+            a[1] = force.y / body.mass;
+            a[2] = force.z / body.inertia;
+        }
+        record.play = play;
+    }
+
+    /// Pins in their bushes.
+    fn joint_forces(&self, at: Moment<'_>, rates: &mut [f64], play: &mut Play) {
+        let count = self.joints.len();
+        play.memory.joints.resize(count, PinTouch::OPEN);
+        play.pin_forces.clear();
+        play.pin_forces.resize(count, Vector::zeros());
+        let Joining::Clearance(bearing) = &self.joining else {
+            return;
+        };
+        let dt = at.t - self.memory.time;
+        let mut tally = play.tally;
+        for (index, joint) in self.joints.iter().enumerate() {
+            let Some(mates) = joint.pair else { continue };
+            let [hole, pin] = mates.map(|mate| self.part(mate, at, &play.posture));
+            let before = &self.memory.joints[index];
+            let (touch, element) = bearing.touch(&hole, &pin, before, dt, &mut tally);
+            play.memory.joints[index] = touch;
+            if let Some(element) = element {
+                let push = element.push();
+                play.pin_forces[index] = push;
+                play.apply(&element, push);
+                rates[Flow::Motions as usize] += supplied(&mates, push, &hole, &pin);
+            }
+        }
+        rates[Flow::JointLoss as usize] += tally.normal_loss;
+        rates[Flow::FrictionLoss as usize] += tally.friction_loss;
+        play.tally = Tally {
+            normal_loss: 0.0,
+            friction_loss: 0.0,
+            ..tally
+        };
+    }
+
+    /// Bushes in their rollers.
+    fn roller_forces(&self, at: Moment<'_>, rates: &mut [f64], play: &mut Play) {
+        let Some(free) = &self.free_rollers else {
+            return;
+        };
+        play.memory.bushes.resize(self.joints.len(), PinTouch::OPEN);
+        let dt = at.t - self.memory.time;
+        let mut tally = play.tally;
+        for (index, joint) in self.joints.iter().enumerate() {
+            let Some(body) = free.body[index] else {
+                continue;
+            };
+            let bush = self.part(joint.carrier, at, &play.posture);
+            let roller = free_part(body, at);
+            let before = &self.memory.bushes[index];
+            let (touch, element) = free.bearing.touch(&roller, &bush, before, dt, &mut tally);
+            play.memory.bushes[index] = touch;
+            if let Some(element) = element {
+                play.apply(&element, element.push());
+            }
+        }
+        rates[Flow::JointLoss as usize] += tally.normal_loss;
+        rates[Flow::FrictionLoss as usize] += tally.friction_loss;
+        play.tally = Tally {
+            normal_loss: 0.0,
+            friction_loss: 0.0,
+            ..tally
+        };
+    }
+
+    /// Forces that pull at the ends of a strand.
+    fn end_loads(&self, rates: &mut [f64], play: &mut Play) {
+        for (index, held) in self.ends.iter().enumerate() {
+            let End::Pulled { force } = &held.end else {
+                continue;
+            };
+            let link = if index == 0 { 0 } else { self.links - 1 };
+            let tip = play.posture.tips[link][index];
+            play.forces[link] += Vector3::new(force.x, force.y, cross(tip.arm, *force));
+            rates[Flow::DriveTorque as usize] += force.dot(&tip.velocity);
+        }
+    }
+
+    /// Elastic energy of the joints \[J\].
+    pub(crate) fn stored(&self, memory: &Memory) -> f64 {
+        let energy = |bearing: &Bearing, touches: &[PinTouch]| -> f64 {
+            let closed = touches.iter().filter(|touch| touch.gap < 0.0);
+            closed.map(|touch| bearing.energy(touch)).sum()
+        };
+        let mut sum = 0.0;
+        if let Joining::Clearance(bearing) = &self.joining {
+            sum += energy(bearing, &memory.joints);
+        }
+        if let Some(free) = &self.free_rollers {
+            sum += energy(&free.bearing, &memory.bushes);
+        }
+        sum
+    }
+
+    /// Tension of every link \[N\]: half of what stretches it from both ends.
+    pub(crate) fn tension(&self, link: usize, play: &Play) -> f64 {
+        let [first, second] = play.posture.tips[link];
+        let along = (second.place - first.place).normalize();
+        let next = (link + 1) % self.joints.len();
+        let ends = [(link, -1.0), (next, 1.0)].map(|(joint, outward)| {
+            let pin = play.pin_forces[joint];
+            let on_link = match self.joints[joint].pair {
+                Some([_, Mate::Link { link: l, .. }]) if l == link => pin,
+                Some(_) => -pin,
+                None => self.end_pull(joint),
+            };
+            outward * along.dot(&on_link)
+        });
+        0.5 * (ends[0] + ends[1])
+    }
+
+    fn end_pull(&self, joint: usize) -> Vector {
+        let end = usize::from(joint != 0);
+        match self.ends.get(end).map(|held| &held.end) {
+            Some(End::Pulled { force }) => *force,
+            _ => Vector::zeros(),
+        }
+    }
+}
+
+/// Power that a support moved in time puts into the chain \[W\].
+fn supplied(mates: &[Mate; 2], push: Vector, hole: &Part, pin: &Part) -> f64 {
+    let by = |mate: Mate, part: &Part, force: Vector| match mate {
+        Mate::Ground(_) => force.dot(&part.velocity),
+        Mate::Link { .. } => 0.0,
+    };
+    // The hole pushes the pin, and the pin the hole.
+    by(mates[0], hole, push) + by(mates[1], pin, -push)
+}
+
+impl Play {
+    /// Applies a contact to the bodies it joins and keeps it for the implicit system.
+    pub(crate) fn apply(&mut self, element: &Element, push: Vector) {
+        if let Some(body) = element.a {
+            self.forces[body] += Vector3::new(push.x, push.y, element.moment_a(push));
+        }
+        if let Partner::Body(body) = element.b {
+            self.forces[body] -= Vector3::new(push.x, push.y, -element.moment_b(push));
+        }
+        self.elements.push(*element);
+    }
+}

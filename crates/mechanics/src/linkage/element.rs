@@ -1,0 +1,91 @@
+//! One closed contact, as the forces it exerts and as rows of the implicit system.
+
+use chaindrive_geometry::{Point, Vector};
+
+/// The other side of a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Partner {
+    /// Something that does not answer: the frame, or a bush whose motion is given.
+    Ground,
+    /// A body of the chain.
+    Body(usize),
+    /// A wheel or rail, by its place among the mounts.
+    Mount(usize),
+}
+
+/// How a wheel or rail can move: which border unknowns shift its frame, and which one turns it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mount {
+    /// (border unknown, shift of the frame's origin per unit); unused ones have no unknown.
+    pub(crate) shifts: [Option<(usize, Vector)>; 2],
+    /// Border unknown of the rotation.
+    pub(crate) turn: Option<usize>,
+    /// The frame's origin \[m\].
+    pub(crate) origin: Point,
+}
+
+/// A closed contact between a body `a` and its partner `b`.
+///
+/// ```text
+/// n from b's material into a's, seen from the centre of a's circle outward: a is pressed along −n
+/// closing = n·(v_a − v_b),   slip = t·(v_a − v_b) + ℓ_a ω_a − ℓ_b ω_b,   t = ẑ × n
+/// on a:  −F n + R t,  moment  arm × (−F n + R t) + ℓ_a R
+/// ```
+///
+/// v is the velocity of the circles' centres, arm leads from a body's centre of mass to it, and ℓ
+/// from there along n to the touching point, which is the same for both.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Element {
+    pub(crate) a: Option<usize>,
+    pub(crate) b: Partner,
+    pub(crate) arm_a: Vector,
+    pub(crate) arm_b: Vector,
+    /// Centre of b's arc from its centre of mass, or from the origin of its frame \[m\].
+    pub(crate) pivot_b: Vector,
+    pub(crate) lever_a: f64,
+    pub(crate) lever_b: f64,
+    pub(crate) normal: Vector,
+    /// Normal force F \[N\].
+    pub(crate) force: f64,
+    /// Friction R \[N\] on a along t.
+    pub(crate) rub: f64,
+    /// ∂F/∂δ \[N/m\].
+    pub(crate) stiffness: f64,
+    /// ∂F/∂δ̇ \[N s/m\].
+    pub(crate) damping: f64,
+    /// −∂R/∂slip \[N s/m\].
+    pub(crate) drag: f64,
+    /// Stiffness across, from the turning of the normal \[N/m\].
+    pub(crate) across: f64,
+}
+
+/// `ẑ·(a × b)`.
+pub(crate) fn cross(a: Vector, b: Vector) -> f64 {
+    a.x * b.y - a.y * b.x
+}
+
+/// ẑ × v.
+pub(crate) fn turned(v: Vector) -> Vector {
+    Vector::new(-v.y, v.x)
+}
+
+impl Element {
+    pub(crate) fn tangent(&self) -> Vector {
+        turned(self.normal)
+    }
+
+    /// Force on a \[N\].
+    pub(crate) fn push(&self) -> Vector {
+        self.tangent() * self.rub - self.normal * self.force
+    }
+
+    /// Moment on a about its centre of mass \[N m\].
+    pub(crate) fn moment_a(&self, push: Vector) -> f64 {
+        cross(self.arm_a, push) + self.lever_a * self.rub
+    }
+
+    /// Moment on b about its centre of mass, or about the origin of its frame \[N m\].
+    pub(crate) fn moment_b(&self, push: Vector) -> f64 {
+        -cross(self.arm_b, push) - self.lever_b * self.rub
+    }
+}

@@ -1,0 +1,484 @@
+//! (M + c C + k K) x = M b: the linear system of an implicit step.
+//!
+//! ```text
+//! C = Σ d Jₙᵀ Jₙ + Σ r J_sᵀ J_s,      K = Σ k Jₙᵀ Jₙ + Σ F/|e| J_tᵀ J_t + …
+//! ```
+//!
+//! Jₙ, J_t and J_s give closing speed, motion of the circles' centres across, and slip from the velocities. C is
+//! symmetric: that friction also follows the normal force is left to the explicit part. Free rollers touch
+//! their bush and a wheel only; they are eliminated first and leave the links' pattern as it is.
+
+use chaindrive_geometry::Vector;
+use chaindrive_integrate::Weights;
+use nalgebra::{Matrix3, Vector3};
+
+use super::{Blocks, Element, Linkage, Mount, Partner, Play, cross, turned};
+use crate::System;
+use crate::system::{WheelRotation, WheelSupport};
+
+/// A row over the unknowns of the partner.
+#[derive(Clone, Copy)]
+enum Row {
+    Nothing,
+    Body(usize, Vector3<f64>),
+    Border([(usize, f64); 3]),
+}
+
+/// Where a body's unknowns stand.
+#[derive(Clone, Copy, PartialEq)]
+enum Place {
+    Link(usize),
+    /// The last link of a closed chain: first three of the border.
+    Corner,
+    Roller(usize),
+}
+
+impl Linkage {
+    /// Place of a further degree of freedom in the border.
+    pub(crate) fn border(&self, dof: usize) -> usize {
+        dof - self.dofs() + if self.closed { 3 } else { 0 }
+    }
+
+    fn place(&self, body: usize) -> Place {
+        if body >= self.links {
+            Place::Roller(body - self.links)
+        } else if self.closed && body + 1 == self.links {
+            Place::Corner
+        } else {
+            Place::Link(body)
+        }
+    }
+
+    /// x ← (M + c C + k K)⁻¹ M x at the state that `play` was left by.
+    pub(crate) fn solve(
+        &self,
+        system: &System,
+        weights: Weights,
+        play: &mut Play,
+        x: &mut [f64],
+    ) -> bool {
+        let border = x.len() - self.dofs() + if self.closed { 3 } else { 0 };
+        let row = self.links - usize::from(self.closed);
+        let rollers = self.bodies.len() - self.links;
+        let mut blocks = std::mem::take(&mut play.blocks);
+        blocks.clear(row, border);
+        let mut loose = std::mem::take(&mut play.loose);
+        loose.resize_with(rollers, Loose::default);
+        for roller in &mut loose {
+            roller.clear();
+        }
+        self.add_masses(system, &mut blocks, &mut loose, x);
+        system.add_supports(self, weights, play, &mut blocks);
+        let mut sum = Sum {
+            linkage: self,
+            blocks: &mut blocks,
+            loose: &mut loose,
+            border,
+        };
+        for element in &play.elements {
+            sum.add(element, &play.mounts, weights);
+        }
+        let solved = sum.eliminate_rollers() && blocks.solve();
+        if solved {
+            self.read(&blocks, &loose, border, x);
+        }
+        play.blocks = blocks;
+        play.loose = loose;
+        solved
+    }
+
+    fn add_masses(&self, system: &System, blocks: &mut Blocks, loose: &mut [Loose], x: &[f64]) {
+        for (index, body) in self.bodies.iter().enumerate() {
+            let mass = Vector3::new(body.mass, body.mass, body.inertia);
+            let b = Vector3::new(x[3 * index], x[3 * index + 1], x[3 * index + 2]);
+            let force = mass.component_mul(&b);
+            match self.place(index) {
+                Place::Link(i) => {
+                    blocks.diagonal[i] = Matrix3::from_diagonal(&mass);
+                    blocks.right[i] = force;
+                }
+                Place::Corner => {
+                    for k in 0..3 {
+                        blocks.corner[(k, k)] = mass[k];
+                        blocks.right_border[k] = force[k];
+                    }
+                }
+                Place::Roller(i) => {
+                    loose[i].own = Matrix3::from_diagonal(&mass);
+                    loose[i].right = force;
+                }
+            }
+        }
+        for dof in self.dofs()..x.len() {
+            let inertia = system.border_inertias[dof - self.dofs()];
+            let j = self.border(dof);
+            blocks.corner[(j, j)] = inertia;
+            blocks.right_border[j] = inertia * x[dof];
+        }
+    }
+
+    fn read(&self, blocks: &Blocks, loose: &[Loose], border: usize, x: &mut [f64]) {
+        for index in 0..self.links {
+            let found = self.found(blocks, index);
+            x[3 * index..3 * index + 3].copy_from_slice(found.as_slice());
+        }
+        for (i, roller) in loose.iter().enumerate() {
+            // x_r = D_r⁻¹ (b_r − L_rᵀ x_l − W_rᵀ x_w)
+            let mut right = roller.right;
+            if let Some(link) = roller.link {
+                right -= roller.coupling.transpose() * self.found(blocks, link);
+            }
+            for &(j, row) in &roller.beside {
+                right -= row * blocks.right_border[j];
+            }
+            let found = roller.inverse * right;
+            let index = self.links + i;
+            x[3 * index..3 * index + 3].copy_from_slice(found.as_slice());
+        }
+        let first = if self.closed { 3 } else { 0 };
+        for j in first..border {
+            x[self.dofs() + j - first] = blocks.right_border[j];
+        }
+    }
+
+    fn found(&self, blocks: &Blocks, link: usize) -> Vector3<f64> {
+        match self.place(link) {
+            Place::Link(i) => blocks.right[i],
+            Place::Corner | Place::Roller(_) => {
+                Vector3::from_fn(|k, _| blocks.right_border[k])
+            }
+        }
+    }
+}
+
+impl System {
+    /// Bearings, tensioners and shafts: springs and dampers of the border's own.
+    fn add_supports(&self, linkage: &Linkage, weights: Weights, play: &Play, blocks: &mut Blocks) {
+        let mut add = |dof: usize, stiffness: f64, damping: f64| {
+            let j = linkage.border(dof);
+            blocks.corner[(j, j)] += weights.stiffness * stiffness + weights.damping * damping;
+        };
+        for wheel in &self.wheels {
+            if let WheelRotation::Free { dof, drive, load } = &wheel.rotation {
+                let drag: f64 = drive.iter().chain(load).map(crate::Torque::drag).sum();
+                add(*dof, 0.0, drag);
+            }
+            if let WheelSupport::Springs {
+                dof,
+                stiffness,
+                damping,
+            } = &wheel.support
+            {
+                for axis in 0..2 {
+                    add(dof + axis, stiffness[axis], damping[axis]);
+                }
+            }
+        }
+        for slide in &self.slides {
+            let Some(dof) = slide.dof else { continue };
+            let (_, lever) = slide.carrier.extension(0.0);
+            let squared = lever * lever;
+            add(
+                dof,
+                slide.push.stiffness() * squared,
+                slide.push.damping() * squared,
+            );
+        }
+        let _ = play;
+    }
+}
+
+/// A free roller's own equations.
+#[derive(Clone, Debug)]
+pub(crate) struct Loose {
+    own: Matrix3<f64>,
+    inverse: Matrix3<f64>,
+    right: Vector3<f64>,
+    /// The link it sits on, and the block (link, roller).
+    link: Option<usize>,
+    coupling: Matrix3<f64>,
+    /// Couplings with the border.
+    beside: Vec<(usize, Vector3<f64>)>,
+}
+
+impl Default for Loose {
+    fn default() -> Self {
+        Self {
+            own: Matrix3::zeros(),
+            inverse: Matrix3::zeros(),
+            right: Vector3::zeros(),
+            link: None,
+            coupling: Matrix3::zeros(),
+            beside: Vec::new(),
+        }
+    }
+}
+
+impl Loose {
+    /// Empties the equations but keeps their space.
+    fn clear(&mut self) {
+        let beside = std::mem::take(&mut self.beside);
+        *self = Self {
+            beside,
+            ..Self::default()
+        };
+        self.beside.clear();
+    }
+
+    /// Adds to the coupling with one unknown of the border.
+    fn couple(&mut self, j: usize, row: Vector3<f64>) {
+        match self.beside.iter_mut().find(|(known, _)| *known == j) {
+            Some((_, sum)) => *sum += row,
+            None => self.beside.push((j, row)),
+        }
+    }
+}
+
+struct Sum<'a> {
+    linkage: &'a Linkage,
+    blocks: &'a mut Blocks,
+    loose: &'a mut [Loose],
+    border: usize,
+}
+
+impl Sum<'_> {
+    fn add(&mut self, element: &Element, mounts: &[Mount], weights: Weights) {
+        let normal = weights.damping * element.damping + weights.stiffness * element.stiffness;
+        let tangent = element.tangent();
+        let rows = |direction: Vector, levers: [f64; 2]| {
+            let a = Vector3::new(
+                direction.x,
+                direction.y,
+                cross(element.arm_a, direction) + levers[0],
+            );
+            (a, partner_row(element, mounts, direction, levers[1]))
+        };
+        let (a, b) = rows(element.normal, [0.0; 2]);
+        self.square(element.a, a, b, normal);
+        if weights.stiffness > 0.0 {
+            let pivoting = Element {
+                arm_b: element.pivot_b,
+                ..*element
+            };
+            let a = Vector3::new(tangent.x, tangent.y, cross(element.arm_a, tangent));
+            let b = partner_row(&pivoting, mounts, tangent, 0.0);
+            self.square(element.a, a, b, weights.stiffness * element.across.max(0.0));
+            self.add_bend(&pivoting, mounts, weights.stiffness);
+        }
+        if element.drag > 0.0 {
+            let (a, b) = rows(tangent, [element.lever_a, element.lever_b]);
+            self.square(element.a, a, b, weights.damping * element.drag);
+        }
+    }
+
+    /// What the force adds to the rotation of the bodies it turns: −F n·arm, where that holds them.
+    fn add_bend(&mut self, element: &Element, mounts: &[Mount], weight: f64) {
+        let own = -element.force * element.normal.dot(&element.arm_a);
+        if let Some(body) = element.a {
+            self.add_turn(body, weight * own.max(0.0));
+        }
+        let other = element.force * element.normal.dot(&element.arm_b);
+        match element.b {
+            Partner::Ground => {}
+            Partner::Body(body) => self.add_turn(body, weight * other.max(0.0)),
+            Partner::Mount(mount) => {
+                if let Some(j) = mounts[mount].turn {
+                    self.blocks.corner[(j, j)] += weight * other.max(0.0);
+                }
+            }
+        }
+    }
+
+    fn add_turn(&mut self, body: usize, value: f64) {
+        match self.linkage.place(body) {
+            Place::Link(i) => self.blocks.diagonal[i][(2, 2)] += value,
+            Place::Corner => self.blocks.corner[(2, 2)] += value,
+            Place::Roller(i) => self.loose[i].own[(2, 2)] += value,
+        }
+    }
+
+    /// Adds w (a − b)ᵀ(a − b).
+    fn square(&mut self, a: Option<usize>, row: Vector3<f64>, partner: Row, weight: f64) {
+        if weight <= 0.0 {
+            return;
+        }
+        let place = a.map(|body| self.linkage.place(body));
+        if let Some(place) = place {
+            self.diagonal(place, row, weight);
+        }
+        match partner {
+            Row::Nothing => {}
+            Row::Body(body, other) => {
+                let there = self.linkage.place(body);
+                self.diagonal(there, other, weight);
+                if let Some(place) = place {
+                    self.couple(place, row, there, other, -weight);
+                }
+            }
+            Row::Border(entries) => {
+                for (k, &(j, value)) in entries.iter().enumerate() {
+                    if j == usize::MAX {
+                        continue;
+                    }
+                    for &(i, other) in &entries[..=k] {
+                        if i == usize::MAX {
+                            continue;
+                        }
+                        let (high, low) = (i.max(j), i.min(j));
+                        self.blocks.corner[(high, low)] += weight * value * other;
+                    }
+                    if let Some(place) = place {
+                        self.beside(place, j, row * (-weight * value));
+                    }
+                }
+            }
+        }
+    }
+
+    fn diagonal(&mut self, place: Place, row: Vector3<f64>, weight: f64) {
+        let block = row * row.transpose() * weight;
+        match place {
+            Place::Link(i) => self.blocks.diagonal[i] += block,
+            Place::Corner => {
+                for j in 0..3 {
+                    for k in 0..=j {
+                        self.blocks.corner[(j, k)] += block[(j, k)];
+                    }
+                }
+            }
+            Place::Roller(i) => self.loose[i].own += block,
+        }
+    }
+
+    /// Adds w row otherᵀ at (place, there) and its mirror image.
+    fn couple(
+        &mut self,
+        place: Place,
+        row: Vector3<f64>,
+        there: Place,
+        other: Vector3<f64>,
+        weight: f64,
+    ) {
+        match (place, there) {
+            (Place::Link(i), Place::Link(j)) if i == j + 1 => {
+                self.blocks.below[j] += row * other.transpose() * weight;
+            }
+            (Place::Link(i), Place::Link(j)) if j == i + 1 => {
+                self.blocks.below[i] += other * row.transpose() * weight;
+            }
+            (Place::Link(i), Place::Corner) => {
+                for k in 0..3 {
+                    self.blocks.beside[i * self.border + k] += row * (weight * other[k]);
+                }
+            }
+            (Place::Corner, Place::Link(_)) => self.couple(there, other, place, row, weight),
+            (Place::Roller(i), Place::Link(_) | Place::Corner) => {
+                self.loose[i].link = Some(self.index(there));
+                self.loose[i].coupling += other * row.transpose() * weight;
+            }
+            (Place::Link(_) | Place::Corner, Place::Roller(_)) => {
+                self.couple(there, other, place, row, weight);
+            }
+            // Other pairs never touch.
+            (Place::Link(_), Place::Link(_))
+            | (Place::Corner, Place::Corner)
+            | (Place::Roller(_), Place::Roller(_)) => {}
+        }
+    }
+
+    fn index(&self, place: Place) -> usize {
+        match place {
+            Place::Link(i) => i,
+            Place::Corner => self.linkage.links - 1,
+            Place::Roller(i) => self.linkage.links + i,
+        }
+    }
+
+    fn beside(&mut self, place: Place, j: usize, row: Vector3<f64>) {
+        match place {
+            Place::Link(i) => self.blocks.beside[i * self.border + j] += row,
+            Place::Corner => {
+                for k in 0..3 {
+                    self.blocks.corner[(j, k)] += row[k];
+                }
+            }
+            Place::Roller(i) => self.loose[i].couple(j, row),
+        }
+    }
+
+    /// Schur complements of the free rollers.
+    fn eliminate_rollers(&mut self) -> bool {
+        for index in 0..self.loose.len() {
+            let Some(inverse) = self.loose[index].own.try_inverse() else {
+                return false;
+            };
+            self.loose[index].inverse = inverse;
+            let roller = std::mem::take(&mut self.loose[index]);
+            let right = inverse * roller.right;
+            for (k, &(j, row)) in roller.beside.iter().enumerate() {
+                self.blocks.right_border[j] -= row.dot(&right);
+                let through = inverse * row;
+                for &(i, other) in &roller.beside[..=k] {
+                    self.blocks.corner[(i.max(j), i.min(j))] -= other.dot(&through);
+                }
+            }
+            self.pass_on(&roller, &inverse, &right);
+            self.loose[index] = roller;
+        }
+        true
+    }
+
+    /// What an eliminated roller leaves with its link.
+    fn pass_on(&mut self, roller: &Loose, inverse: &Matrix3<f64>, right: &Vector3<f64>) {
+        let Some(link) = roller.link else { return };
+        let place = self.linkage.place(link);
+        let through = roller.coupling * inverse;
+        let block = through * roller.coupling.transpose();
+        let force = roller.coupling * right;
+        match place {
+            Place::Link(i) => {
+                self.blocks.diagonal[i] -= block;
+                self.blocks.right[i] -= force;
+            }
+            Place::Corner | Place::Roller(_) => {
+                for j in 0..3 {
+                    for k in 0..=j {
+                        self.blocks.corner[(j, k)] -= block[(j, k)];
+                    }
+                    self.blocks.right_border[j] -= force[j];
+                }
+            }
+        }
+        for &(j, row) in &roller.beside {
+            self.beside(place, j, -(through * row));
+        }
+    }
+}
+
+/// How the partner moves along a direction at the circle's centre, with a lever for its rotation.
+fn partner_row(element: &Element, mounts: &[Mount], direction: Vector, lever: f64) -> Row {
+    match element.b {
+        Partner::Ground => Row::Nothing,
+        Partner::Body(body) => Row::Body(
+            body,
+            Vector3::new(
+                direction.x,
+                direction.y,
+                cross(element.arm_b, direction) + lever,
+            ),
+        ),
+        Partner::Mount(index) => {
+            let mount = &mounts[index];
+            let mut entries = [(usize::MAX, 0.0); 3];
+            for (entry, shift) in entries.iter_mut().zip(&mount.shifts) {
+                if let Some((j, shift)) = shift {
+                    *entry = (*j, direction.dot(shift));
+                }
+            }
+            if let Some(j) = mount.turn {
+                entries[2] = (j, direction.dot(&turned(element.arm_b)) + lever);
+            }
+            Row::Border(entries)
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! Rollers of a linkage on teeth and guides.
+
+use chaindrive_contact::{Approach, interpolated_onset};
+use chaindrive_geometry::{Point, Vector};
+use chaindrive_integrate::Moment;
+
+use super::{Element, Linkage, Mount, Partner, Play, Part, Tally, turned};
+use crate::Carrier;
+use crate::contact::{Contacts, Frame, Touch, Wrench};
+use crate::energy::Flow;
+use crate::system::{
+    RailContact, RailSupport, Record, System, Wheel, WheelRotation, WheelSupport,
+};
+
+impl System {
+    /// Contacts of a linkage with wheels and rails.
+    pub(crate) fn mesh(
+        &self,
+        linkage: &Linkage,
+        at: Moment<'_>,
+        rates: &mut [f64],
+        record: &mut Record,
+        play: &mut Play,
+    ) {
+        play.mounts.clear();
+        for (i, wheel) in self.wheels.iter().enumerate() {
+            let (frame, _, _) = self.wheel_frame(wheel, at);
+            play.mounts.push(self.wheel_mount(linkage, wheel, &frame));
+            let touch = &mut record.teeth[i];
+            let wrench = linkage.roll(&wheel.contacts, &frame, i, at, touch, play);
+            rates[Flow::ToothLoss as usize] += wrench.normal_loss;
+            rates[Flow::FrictionLoss as usize] += wrench.friction_loss;
+            record.wheel_wrenches[i] = wrench;
+        }
+        for (i, rail) in self.rails.iter().enumerate() {
+            let frame = rail.frame(at.t, at.q, at.v, &self.slides);
+            let mount = self.rail_mount(linkage, &rail.support, &frame);
+            play.mounts.push(mount);
+            let number = self.wheels.len() + i;
+            let wrench = match &rail.contact {
+                RailContact::Circles(contacts) => {
+                    let touch = &mut record.circles[i];
+                    linkage.roll(contacts, &frame, number, at, touch, play)
+                }
+                RailContact::Plates(plates) => {
+                    let mut pins = super::rates::LinkPins(play);
+                    plates.act(&frame, &mut pins, linkage.links, &mut record.plates[i])
+                }
+            };
+            rates[Flow::GuideLoss as usize] += wrench.normal_loss;
+            rates[Flow::FrictionLoss as usize] += wrench.friction_loss;
+            record.rail_wrenches[i] = wrench;
+        }
+    }
+
+    fn wheel_mount(&self, linkage: &Linkage, wheel: &Wheel, frame: &Frame) -> Mount {
+        let border = |dof: usize| linkage.border(dof);
+        let turn = match wheel.rotation {
+            WheelRotation::Free { dof, .. } => Some(border(dof)),
+            WheelRotation::Prescribed(_) => None,
+        };
+        let shifts = match &wheel.support {
+            WheelSupport::Fixed | WheelSupport::Prescribed { .. } => [None; 2],
+            WheelSupport::Springs { dof, .. } => [
+                Some((border(*dof), Vector::x())),
+                Some((border(dof + 1), Vector::y())),
+            ],
+            WheelSupport::Carried(index) => {
+                let slide = &self.slides[*index];
+                let shift = match &slide.carrier {
+                    Carrier::Slider { direction } => *direction,
+                    Carrier::Arm { pivot, .. } => turned(frame.origin - pivot),
+                };
+                [slide.dof.map(|dof| (border(dof), shift)), None]
+            }
+        };
+        Mount {
+            shifts,
+            turn,
+            origin: frame.origin,
+        }
+    }
+
+    fn rail_mount(&self, linkage: &Linkage, support: &RailSupport, frame: &Frame) -> Mount {
+        let mut mount = Mount {
+            shifts: [None; 2],
+            turn: None,
+            origin: frame.origin,
+        };
+        if let RailSupport::Carried(index) = support {
+            let slide = &self.slides[*index];
+            if let Some(dof) = slide.dof {
+                match &slide.carrier {
+                    Carrier::Slider { direction } => {
+                        mount.shifts[0] = Some((linkage.border(dof), *direction));
+                    }
+                    // The frame of a rail on an arm has the pivot as its origin.
+                    Carrier::Arm { .. } => mount.turn = Some(linkage.border(dof)),
+                }
+            }
+        }
+        mount
+    }
+}
+
+impl Linkage {
+    /// All contacts of the rollers with one wheel or rail.
+    fn roll(
+        &self,
+        contacts: &Contacts,
+        frame: &Frame,
+        mount: usize,
+        at: Moment<'_>,
+        touch: &mut Touch,
+        play: &mut Play,
+    ) -> Wrench {
+        let slots = contacts.slots;
+        touch.resize(slots * contacts.sides());
+        touch.inverse_onset.fill(0.0);
+        touch.force.fill(0.0);
+        touch.gap.fill(1.0);
+        touch.closing.fill(0.0);
+        let law = contacts.surface.law.prepared();
+        let floor = contacts.surface.floor();
+        let mut wrench = Wrench {
+            first_share: 1.0,
+            ..Wrench::default()
+        };
+        let mut tally = Tally::new();
+        contacts.for_each_slot(|slot, joint| {
+            let place = Point::new(play.posture.x[joint], play.posture.y[joint]);
+            let faces = contacts.faces(frame, slot, place);
+            for (side, probe) in faces.into_iter().enumerate() {
+                let Some(probe) = probe else { continue };
+                let index = side * slots + slot;
+                let part = self.roller(joint, at, &play.posture);
+                let d = place - frame.origin;
+                // u = v − v_o − ω ẑ × d
+                let relative = part.velocity - frame.velocity - turned(d) * frame.spin;
+                // Elements look from the surface's material outward through the roller: n = −n_surface.
+                let normal = -probe.normal;
+                let closing = normal.dot(&relative);
+                touch.gap[index] = probe.gap;
+                touch.closing[index] = closing;
+                if probe.gap >= 0.0 {
+                    continue;
+                }
+                let depth = -probe.gap;
+                let memory = &contacts.memory;
+                let mut inverse = memory.inverse_onset[index];
+                if inverse <= 0.0 {
+                    let (gap, rate) = (memory.gap[index], memory.closing[index]);
+                    let onset = interpolated_onset(gap, rate, probe.gap, closing);
+                    inverse = 1.0 / onset.max(floor);
+                    tally.began(gap, depth);
+                }
+                touch.inverse_onset[index] = inverse;
+                let answer = law.respond(Approach {
+                    penetration: depth,
+                    rate: closing,
+                    onset_rate: 1.0 / inverse,
+                });
+                touch.force[index] = answer.force;
+                tally.normal_loss += (answer.force - answer.elastic) * closing;
+                let spins = self.spins(&part);
+                let radius = contacts.radius;
+                let mut element = Element {
+                    a: part.body,
+                    b: Partner::Mount(mount),
+                    arm_a: part.arm,
+                    arm_b: d,
+                    pivot_b: pivot(d, normal, probe.bend),
+                    lever_a: if spins { radius } else { 0.0 },
+                    lever_b: radius,
+                    normal,
+                    force: answer.force,
+                    rub: 0.0,
+                    stiffness: answer.stiffness,
+                    damping: answer.damping,
+                    drag: 0.0,
+                    // −F × bend of the gap's level line: a seat holds a roller, a bulge sheds it.
+                    across: -answer.force * probe.bend,
+                };
+                let friction = &contacts.surface.friction;
+                if *friction != chaindrive_contact::Friction::None {
+                    let slip = turned(normal).dot(&relative) + element.lever_a * part.spin
+                        - element.lever_b * frame.spin;
+                    element.rub = friction.force(answer.force, slip);
+                    element.drag = friction.damping(answer.force, slip);
+                    tally.friction_loss -= element.rub * slip;
+                }
+                let push = element.push();
+                wrench.force[0] -= push.x;
+                wrench.force[1] -= push.y;
+                wrench.moment += element.moment_b(push);
+                wrench.depth = wrench.depth.max(depth);
+                wrench.damping = wrench.damping.max(answer.damping + element.drag);
+                play.apply(&element, push);
+            }
+        });
+        wrench.normal_loss = tally.normal_loss;
+        wrench.friction_loss = tally.friction_loss;
+        wrench.first_depth = tally.first_depth;
+        wrench.first_share = tally.first_share;
+        wrench
+    }
+
+    /// Whether the circle on the teeth turns with its body: a free roller, or a bush.
+    fn spins(&self, part: &Part) -> bool {
+        let free = part.body.is_some_and(|body| body >= self.links);
+        free || self.bush_turns
+    }
+}
+
+/// Centre of the arc that a roller at `d` faces, from the origin of the frame.
+fn pivot(d: Vector, normal: Vector, bend: f64) -> Vector {
+    if bend.abs() > 0.0 { d + normal / bend } else { d }
+}

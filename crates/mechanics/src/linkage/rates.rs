@@ -1,0 +1,144 @@
+//! Time scales of a linkage, and its plates as guides see them.
+
+use chaindrive_geometry::{Point, Vector};
+use nalgebra::Vector3;
+
+use super::{Joining, Linkage, Partner, Play, cross};
+use crate::System;
+use crate::contact::{PlatePins, PlatePlaces};
+
+/// Depth at which contacts that are open now are reckoned with \[m\].
+const SHALLOW: f64 = 1e-7;
+
+impl Linkage {
+    /// 1/ω of the stiffest mode \[s\], with its damping and without.
+    ///
+    /// ```text
+    /// ω² ≤ max over bodies of 2 Σ k (Jₙ M⁻¹ Jₙᵀ),    D alike with the damping,
+    /// 1/ω = 1/(D + √(D² + ω²))
+    /// ```
+    ///
+    /// Gershgorin's bound on the contacts of a body, doubled for what its neighbours share. Friction counts as
+    /// damping.
+    pub(crate) fn stiffest(&self, system: &System, play: &Play) -> [f64; 2] {
+        let mut sums = vec![[0.0_f64; 2]; self.bodies.len()];
+        for element in &play.elements {
+            let n = element.normal;
+            let t = element.tangent();
+            let mut add = |body: usize, arm: Vector, lever: f64| {
+                let along = self.mobility(body, arm, n, 0.0);
+                let across = self.mobility(body, arm, t, lever);
+                sums[body][0] += element.stiffness * along;
+                sums[body][1] += element.damping * along + element.drag * across;
+            };
+            if let Some(body) = element.a {
+                add(body, element.arm_a, element.lever_a);
+            }
+            if let Partner::Body(body) = element.b {
+                add(body, element.arm_b, element.lever_b);
+            }
+        }
+        let [mut squared, mut damping] = sums.iter().fold([0.0_f64; 2], |[k, d], sum| {
+            [k.max(2.0 * sum[0]), d.max(2.0 * sum[1])]
+        });
+        squared = squared.max(self.resting());
+        for (wheel, wrench) in system.wheels.iter().zip(&play.wheel_rates(system)) {
+            squared = squared.max(2.0 * wrench[0]);
+            damping = damping.max(2.0 * wrench[1]);
+            let [own, drag] = wheel.own_rates();
+            squared = squared.max(own);
+            damping = damping.max(drag);
+        }
+        for slide in &system.slides {
+            let (_, lever) = slide.carrier.extension(0.0);
+            let light = lever * lever / slide.inertia;
+            squared = squared.max(slide.push.stiffness() * light);
+            damping = damping.max(slide.push.damping() * light);
+        }
+        if let Joining::Hinges(hinges) = &self.joining {
+            damping = damping.max(hinges.rate);
+        }
+        [
+            1.0 / (damping + (damping * damping + squared).sqrt()),
+            1.0 / squared.sqrt(),
+        ]
+    }
+
+    /// ω² of the lightest body on the joints when they close gently: what the first step has to respect.
+    fn resting(&self) -> f64 {
+        let mut stiffness = 0.0_f64;
+        if let Joining::Clearance(bearing) = &self.joining {
+            stiffness = stiffness.max(bearing.stiffness(SHALLOW));
+        }
+        let link = self.bodies[..self.links]
+            .iter()
+            .map(|body| body.mass)
+            .fold(f64::INFINITY, f64::min);
+        let mut squared = 4.0 * stiffness / link;
+        if let Some(free) = &self.free_rollers {
+            let roller = self.bodies[self.links..]
+                .iter()
+                .map(|body| body.mass)
+                .fold(f64::INFINITY, f64::min);
+            squared = squared.max(2.0 * free.bearing.stiffness(SHALLOW) / roller);
+        }
+        squared
+    }
+
+    /// How easily a force at a joint moves the body along a direction \[1/kg\].
+    fn mobility(&self, body: usize, arm: Vector, direction: Vector, lever: f64) -> f64 {
+        let b = &self.bodies[body];
+        let turn = cross(arm, direction) + lever;
+        1.0 / b.mass + turn * turn / b.inertia
+    }
+}
+
+impl Play {
+    /// Sums of stiffness and damping at the rims, times the mobility of the wheels.
+    fn wheel_rates(&self, system: &System) -> Vec<[f64; 2]> {
+        let mut sums = vec![[0.0; 2]; system.wheels.len()];
+        for element in &self.elements {
+            if let Partner::Mount(mount) = element.b
+                && mount < system.wheels.len()
+            {
+                sums[mount][0] += element.stiffness;
+                sums[mount][1] += element.damping + element.drag;
+            }
+        }
+        for (sum, wheel) in sums.iter_mut().zip(&system.wheels) {
+            let mobility = wheel.mobility(&system.slides);
+            sum[0] *= mobility;
+            sum[1] *= mobility;
+        }
+        sums
+    }
+}
+
+/// The link plates of a linkage.
+pub(crate) struct LinkPins<'a>(pub(crate) &'a mut Play);
+
+/// Where they are.
+pub(crate) struct LinkPlaces<'a>(pub(crate) &'a Play);
+
+impl PlatePlaces for LinkPlaces<'_> {
+    fn place(&self, link: usize, end: usize) -> Point {
+        self.0.posture.tips[link][end].place
+    }
+}
+
+impl PlatePlaces for LinkPins<'_> {
+    fn place(&self, link: usize, end: usize) -> Point {
+        self.0.posture.tips[link][end].place
+    }
+}
+
+impl PlatePins for LinkPins<'_> {
+    fn velocity(&self, link: usize, end: usize) -> Vector {
+        self.0.posture.tips[link][end].velocity
+    }
+
+    fn push(&mut self, link: usize, end: usize, force: Vector) {
+        let arm = self.0.posture.tips[link][end].arm;
+        self.0.forces[link] += Vector3::new(force.x, force.y, cross(arm, force));
+    }
+}
