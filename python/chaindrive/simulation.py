@@ -49,7 +49,8 @@ def simulate(
     record
         Names of channels, see `channels`; ``"all"`` for all of them.
     method
-        ``"verlet"``, ``"rk4"`` or ``"dormand-prince"``.
+        ``"verlet"``, ``"rk4"`` or ``"dormand-prince"``; the implicit methods
+        ``"implicit-damping"`` and ``"generalized-alpha"`` are not for the particle chain.
     step
         Step of the fixed-step methods, longest step of the adaptive one [s]; chosen from the
         stiffest mode when neither the scene nor the caller gives it.

@@ -100,3 +100,9 @@ def test_an_unstable_step_names_the_limit():
 def test_a_chain_that_does_not_close():
     with pytest.raises(cd.ChaindriveError, match="links"):
         cd.simulate(cd.scenes.industrial_16b().replace({"chain.links": 60}), until=1e-3)
+
+
+@pytest.mark.parametrize("method", ["implicit-damping", "generalized-alpha"])
+def test_an_implicit_method_for_the_particle_chain(method):
+    with pytest.raises(cd.ParameterError, match="verlet, rk4, dormand-prince"):
+        cd.simulate(cd.scenes.spinning_ring(), until=1e-3, every=1e-3, method=method)

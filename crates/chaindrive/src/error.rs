@@ -3,6 +3,8 @@
 use chaindrive_integrate::{IntegrationError, Quantity};
 use chaindrive_mechanics::{AssemblyError, Flow, System};
 
+use crate::{Run, Stepping};
+
 /// Why a simulation stopped.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -32,6 +34,13 @@ pub enum SimulationError {
     #[error(transparent)]
     Integration(#[from] IntegrationError),
 
+    /// An implicit method for a chain that does not solve the equations of an implicit step.
+    #[error(
+        "method = `{method}` is implicit, and this kind of chain does not solve the equations of an \
+         implicit step; choose {works}"
+    )]
+    Implicit { method: &'static str, works: String },
+
     /// The motion ceased to be finite.
     #[error(
         "at t = {t:.6} s the {quantity} of {place} is no longer finite; try a smaller step, or look for a contact or damping that is too stiff for its mass"
@@ -44,6 +53,21 @@ pub enum SimulationError {
 }
 
 impl SimulationError {
+    /// The error of a start, with the methods as scenes name them.
+    pub(crate) fn starting(error: IntegrationError, run: &Run) -> Self {
+        match error {
+            IntegrationError::Unsupported { .. } => {
+                let explicit = Stepping::ALL.into_iter().filter(|s| !s.is_implicit());
+                let works: Vec<_> = explicit.map(Stepping::name).collect();
+                Self::Implicit {
+                    method: run.stepping.name(),
+                    works: works.join(", "),
+                }
+            }
+            other => Self::Integration(other),
+        }
+    }
+
     /// The error of a step, with the place in the drive instead of the number of a coordinate.
     pub(crate) fn stepping(error: IntegrationError, system: &System) -> Self {
         match error {

@@ -49,8 +49,8 @@ impl Simulation {
     /// Assembles the drive and starts the clock at t = 0.
     ///
     /// # Errors
-    /// [`SimulationError`] when the drive does not assemble, a setting is out of range, or the
-    /// step asked for is unstable.
+    /// [`SimulationError`] when the drive does not assemble, a setting is out of range, the method is
+    /// not for this chain, or the step asked for is unstable.
     pub fn start(drive: &Drive, run: &Run) -> Result<Self, SimulationError> {
         run.check()?;
         Self::from_assembled(drive.assemble()?, run)
@@ -66,7 +66,9 @@ impl Simulation {
         let mut state = State::new(0.0, assembled.q.clone(), assembled.v.clone());
         let method = run.method(&system);
         system.set_onset_depth(run.onset_depth);
-        let stepper = method.start(&mut system, &mut state)?;
+        let stepper = method
+            .start(&mut system, &mut state)
+            .map_err(|error| SimulationError::starting(error, run))?;
         let dofs = state.q.len();
         let record = chaindrive_integrate::SecondOrderSystem::new_record(&system);
         Ok(Self {

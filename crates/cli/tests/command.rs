@@ -155,6 +155,19 @@ fn every_method_runs() {
 }
 
 #[test]
+fn an_implicit_method_is_refused_by_the_particle_chain() {
+    let folder = folder();
+    for method in ["implicit-damping", "generalized-alpha"] {
+        let arguments = ["run", "spinning_ring", "--method", method, "-o", "x.zarr"];
+        let (code, _, err) = run(folder.path(), &arguments);
+        assert_eq!(code, 2, "{err}");
+        assert!(err.contains(method), "{err}");
+        assert!(err.contains("choose verlet, rk4, dormand-prince"), "{err}");
+    }
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
 fn bad_input_exits_2_and_leaves_nothing() {
     let folder = folder();
     let at = folder.path();

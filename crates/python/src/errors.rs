@@ -104,6 +104,9 @@ impl IntoException for SimulationError {
             Self::Assembly(error) => error.exception(),
             Self::Integration(error) => error.exception(),
             Self::Setting { name, allowed, .. } => parameter(message, name, allowed),
+            Self::Implicit { works, .. } => {
+                parameter(message, "method", &format!("one of {works}"))
+            }
             Self::UnknownChannel { suggestion, .. } => python::ParameterError::new_err((
                 message,
                 "record",

@@ -185,7 +185,16 @@ fn attributes<'py>(
     let (time, wall) = (simulation.time(), simulation.stepping_time());
     let link_steps = statistics.steps.max(1) as f64 * simulation.system().links() as f64;
     match simulation.method() {
-        Method::Verlet { step } | Method::Rk4 { step } => answer.set_item("step", step)?,
+        Method::Verlet { step } | Method::Rk4 { step } | Method::ImplicitDamping { step } => {
+            answer.set_item("step", step)?;
+        }
+        Method::GeneralizedAlpha {
+            step,
+            spectral_radius,
+        } => {
+            answer.set_item("step", step)?;
+            answer.set_item("spectral_radius", spectral_radius)?;
+        }
         Method::DormandPrince {
             relative, max_step, ..
         } => {
@@ -198,6 +207,8 @@ fn attributes<'py>(
     answer.set_item("error_rejections", statistics.error_rejections)?;
     answer.set_item("reductions", statistics.reductions)?;
     answer.set_item("evaluations", statistics.evaluations)?;
+    answer.set_item("solves", statistics.solves)?;
+    answer.set_item("newton_failures", statistics.newton_failures)?;
     answer.set_item("jumps", statistics.jumps)?;
     answer.set_item("smallest_step", statistics.smallest_step)?;
     answer.set_item("largest_step", statistics.largest_step)?;

@@ -38,7 +38,10 @@ const MEASURED: f64 = 400.0;
 pub(super) fn measure(assembled: &Assembled, run: &Run) -> Result<Cost, SimulationError> {
     let method = run.method(&assembled.system);
     let (step, adaptive) = match method {
-        Method::Verlet { step } | Method::Rk4 { step } => (step, false),
+        Method::Verlet { step }
+        | Method::Rk4 { step }
+        | Method::ImplicitDamping { step }
+        | Method::GeneralizedAlpha { step, .. } => (step, false),
         Method::DormandPrince { max_step, .. } => {
             (max_step.min(assembled.system.time_scale()), true)
         }

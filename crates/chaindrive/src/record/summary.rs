@@ -227,7 +227,7 @@ impl fmt::Display for Report<'_> {
             statistics.steps,
             statistics.smallest_step,
             statistics.largest_step,
-            statistics.rejections + statistics.error_rejections,
+            statistics.rejections + statistics.error_rejections + statistics.newton_failures,
             statistics.reductions
         )?;
         let wall = simulation.stepping_time();

@@ -182,7 +182,7 @@ pub struct RunDefaults {
     pub until: Option<f64>,
     /// Time between two samples \[s\].
     pub every: Option<f64>,
-    /// Method of time stepping: `verlet`, `rk4` or `dormand-prince`.
+    /// Method of time stepping: `verlet`, `rk4`, `dormand-prince`, `implicit-damping` or `generalized-alpha`.
     pub method: Option<&'static str>,
     /// Step of a method with a fixed step \[s\].
     pub step: Option<f64>,

@@ -92,6 +92,8 @@ pub(super) fn attributes(
     story.count("error_rejections", statistics.error_rejections);
     story.count("reductions", statistics.reductions);
     story.count("evaluations", statistics.evaluations);
+    story.count("solves", statistics.solves);
+    story.count("newton_failures", statistics.newton_failures);
     story.count("jumps", statistics.jumps);
     story.number("smallest_step", statistics.smallest_step);
     story.number("largest_step", statistics.largest_step);
@@ -105,7 +107,16 @@ fn method(story: &mut Story, method: Method) {
     story.text("method", Stepping::from(method).name());
     story.count("method_order", u64::from(method.order()));
     match method {
-        Method::Verlet { step } | Method::Rk4 { step } => story.number("step", step),
+        Method::Verlet { step } | Method::Rk4 { step } | Method::ImplicitDamping { step } => {
+            story.number("step", step);
+        }
+        Method::GeneralizedAlpha {
+            step,
+            spectral_radius,
+        } => {
+            story.number("step", step);
+            story.number("spectral_radius", spectral_radius);
+        }
         Method::DormandPrince {
             relative,
             absolute,

@@ -117,6 +117,10 @@ pub(crate) enum Method {
     Rk4,
     /// The Dormand–Prince pair of order 5(4), step under error control.
     DormandPrince,
+    /// Damping implicit and stiffness explicit, order 1, fixed step; not for the particle chain.
+    ImplicitDamping,
+    /// The implicit generalized-α method of order 2, fixed step; not for the particle chain.
+    GeneralizedAlpha,
 }
 
 impl Method {
@@ -126,6 +130,8 @@ impl Method {
             Self::Verlet => "verlet",
             Self::Rk4 => "rk4",
             Self::DormandPrince => "dormand-prince",
+            Self::ImplicitDamping => "implicit-damping",
+            Self::GeneralizedAlpha => "generalized-alpha",
         }
     }
 }
