@@ -6,7 +6,7 @@
 //! |---|---|---|
 //! | [`Elastic`] | [linear, Hertz, power](elastic::Power), [Johnson](elastic::Johnson) and [its relatives](elastic) | force g(δ), tangent stiffness, stored energy |
 //! | [`Dissipation`] | none, [nine hysteretic factors](dissipation), [Kelvin–Voigt](dissipation::Viscous) | what the closing speed makes of g |
-//! | [`Friction`] | none, [`Coulomb`](friction::Coulomb) | tangential force from normal force and slip |
+//! | [`Friction`] | none, [Coulomb](friction::Coulomb) and [five others](friction) | tangential force from normal force and slip |
 //!
 //! A [`Law`] joins an elastic law and a dissipation; a Kelvin–Voigt element, for example, is a linear
 //! [`Power`](elastic::Power) with a [`Viscous`](dissipation::Viscous) damper. Kernels keep the law
@@ -50,7 +50,7 @@ pub mod restitution;
 pub use dissipation::Dissipation;
 pub use elastic::Elastic;
 pub use error::ParameterError;
-pub use friction::Friction;
+pub use friction::{Friction, Rub};
 pub use law::{Approach, Law, Prepared, Response};
 pub use material::Elasticity;
 pub use onset::interpolated_onset;

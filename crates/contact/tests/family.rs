@@ -248,25 +248,6 @@ fn stiffness_of_the_response_is_the_slope_of_its_force() {
     }
 }
 
-#[test]
-fn friction_opposes_slip_and_is_bounded() {
-    for friction in Friction::specimens() {
-        let mut before = f64::INFINITY;
-        for i in -100..=100 {
-            let slip = 1e-3 * f64::from(i);
-            let force = friction.force(1e3, slip);
-            assert!(force * slip <= 0.0, "opposes");
-            assert!(force.abs() <= 120.0, "bounded by μN");
-            assert!((force + friction.force(1e3, -slip)).abs() < 1e-12, "odd");
-            assert!(force <= before, "monotone");
-            before = force;
-            let h = 1e-6;
-            let slope = (friction.force(1e3, slip + h) - friction.force(1e3, slip - h)) / (2.0 * h);
-            assert!((slope + friction.damping(1e3, slip)).abs() < 1e-3);
-        }
-    }
-}
-
 /// A parameter outside its range is named; the file form is strict and keeps every law.
 #[test]
 fn laws_survive_their_file_form() {

@@ -130,8 +130,9 @@ impl LawNumbers {
             Action::Viscous { damping } => (0.0, damping),
         };
         let (friction, slip_speed) = match surface.friction {
-            Friction::None => (0.0, 1.0),
             Friction::Coulomb(coulomb) => (coulomb.coefficient, coulomb.slip_speed),
+            // A drive with any other law was refused by its check.
+            _ => (0.0, 1.0),
         };
         Self {
             factor,

@@ -1,16 +1,36 @@
 //! The family of friction laws: tangential force from normal force and slip.
 //!
 //! To add a member write one file with its parameters, and enter it in `mod`, the variant, the
-//! match arms and [`specimens`](Friction::specimens).
+//! arm of `each!` and [`specimens`](Friction::specimens).
+//!
+//! | friction | `kind` | at rest | static peak |
+//! |---|---|---|---|
+//! | none | `none` | | |
+//! | [`Coulomb`] | `coulomb` | creeps, slope μN/v_s | no |
+//! | [`Ambrosio`] | `ambrosio` | free below v₀ | no |
+//! | [`Threlfall`] | `threlfall` | creeps, slope 3 μN/v_r | no |
+//! | [`BengisuAkay`] | `bengisu_akay` | creeps, slope 2 μ_s N/v₀ | yes |
+//! | [`BrownMcphee`] | `brown_mcphee` | creeps, slope above 4 μ_d N/v_t | yes |
+//! | [`Lugre`] | `lugre` | sticks, a spring σ₀ N | yes |
 
+mod ambrosio;
+mod bengisu_akay;
+mod brown_mcphee;
 mod coulomb;
+mod lugre;
+mod threlfall;
 
+pub use ambrosio::Ambrosio;
+pub use bengisu_akay::BengisuAkay;
+pub use brown_mcphee::BrownMcphee;
 pub use coulomb::Coulomb;
+pub use lugre::Lugre;
+pub use threlfall::Threlfall;
 
 use serde::{Deserialize, Serialize};
 
 use crate::ParameterError;
-use crate::error::no_parameters;
+use crate::error::{no_parameters, require};
 
 /// A friction law, chosen at run time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,25 +41,79 @@ pub enum Friction {
     None,
     /// Coulomb friction, smooth through zero slip.
     Coulomb(Coulomb),
+    /// Coulomb friction that fades in between two slip speeds.
+    Ambrosio(Ambrosio),
+    /// Coulomb friction approached exponentially.
+    Threlfall(Threlfall),
+    /// A parabola up to static friction, a decay to kinetic friction.
+    BengisuAkay(BengisuAkay),
+    /// Static, kinetic and viscous friction in one smooth curve.
+    BrownMcphee(BrownMcphee),
+    /// Bristles that bend: sticking, with a state.
+    Lugre(Lugre),
+}
+
+/// What a rubbing contact answers over a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Rub {
+    /// Tangential force f \[N\], opposes the slip; with a state at the end of the step.
+    pub force: f64,
+    /// Damping −∂f/∂v \[N s/m\], zero where the force falls with the slip.
+    pub damping: f64,
+    /// State at the end of the step, to be kept when the step is accepted.
+    pub state: f64,
+}
+
+/// Runs an expression on the member behind the enum, or another without friction.
+macro_rules! each {
+    ($friction:expr, $member:ident => $answer:expr, none => $otherwise:expr) => {
+        match $friction {
+            Friction::None => $otherwise,
+            Friction::Coulomb($member) => $answer,
+            Friction::Ambrosio($member) => $answer,
+            Friction::Threlfall($member) => $answer,
+            Friction::BengisuAkay($member) => $answer,
+            Friction::BrownMcphee($member) => $answer,
+            Friction::Lugre($member) => $answer,
+        }
+    };
 }
 
 impl Friction {
     /// Tangential force \[N\] under the normal force \[N\] at the slip velocity \[m/s\]; opposes the slip.
+    ///
+    /// A law with a state answers its steady state.
     #[inline]
     pub fn force(&self, normal: f64, slip: f64) -> f64 {
-        match self {
-            Self::None => 0.0,
-            Self::Coulomb(member) => member.force(normal, slip),
+        each!(self, member => member.force(normal, slip), none => 0.0)
+    }
+
+    /// Damping −∂f/∂v \[N s/m\] at the same arguments, zero where the force falls with the slip; what limits
+    /// an explicit time step.
+    #[inline]
+    pub fn damping(&self, normal: f64, slip: f64) -> f64 {
+        each!(self, member => member.damping(normal, slip), none => 0.0)
+    }
+
+    /// Force, damping and state after rubbing for dt \[s\] at constant normal force \[N\] and slip \[m/s\].
+    ///
+    /// `state` is that of the last accepted step, zero for a new contact. Laws without memory ignore
+    /// it and hand back zero; see [`Lugre`] for the one that has it.
+    #[inline]
+    pub fn rub(&self, normal: f64, slip: f64, state: f64, dt: f64) -> Rub {
+        if let Self::Lugre(member) = self {
+            return member.rub(normal, slip, state, dt);
+        }
+        Rub {
+            force: self.force(normal, slip),
+            damping: self.damping(normal, slip),
+            state: 0.0,
         }
     }
 
-    /// Damping −∂f/∂v \[N s/m\] at the same arguments; what limits an explicit time step.
-    #[inline]
-    pub fn damping(&self, normal: f64, slip: f64) -> f64 {
-        match self {
-            Self::None => 0.0,
-            Self::Coulomb(member) => member.damping(normal, slip),
-        }
+    /// Whether the law has a state to be kept between steps.
+    pub fn has_state(&self) -> bool {
+        matches!(self, Self::Lugre(_))
     }
 
     /// Refuses parameters outside the range of the member.
@@ -47,10 +121,7 @@ impl Friction {
     /// # Errors
     /// Names the first parameter outside its range.
     pub fn check(&self) -> Result<(), ParameterError> {
-        match self {
-            Self::None => Ok(()),
-            Self::Coulomb(member) => member.check(),
-        }
+        each!(self, member => member.check(), none => Ok(()))
     }
 
     /// At least one law of every kind, for tests and benchmarks.
@@ -61,6 +132,56 @@ impl Friction {
                 coefficient: 0.12,
                 slip_speed: 0.01,
             }),
+            Self::Ambrosio(Ambrosio {
+                coefficient: 0.1,
+                lower_speed: 1e-4,
+                upper_speed: 1e-3,
+            }),
+            Self::Threlfall(Threlfall {
+                coefficient: 0.1,
+                slip_speed: 0.01,
+            }),
+            Self::BengisuAkay(BengisuAkay {
+                static_coefficient: 0.12,
+                coefficient: 0.1,
+                slip_speed: 0.01,
+                decay: 500.0,
+            }),
+            Self::BrownMcphee(BrownMcphee::dry(0.12, 0.1, 0.01)),
+            Self::Lugre(Lugre {
+                static_coefficient: 0.12,
+                coefficient: 0.1,
+                slip_speed: 0.01,
+                stiffness: 1e5,
+                damping: 10.0,
+                viscosity: 0.0,
+            }),
         ]
     }
+}
+
+/// A slope of the friction curve, or zero where the force falls with the slip.
+fn not_below_zero(damping: f64) -> f64 {
+    damping.max(0.0)
+}
+
+/// Lets a coefficient of friction pass or names it.
+fn coefficient(name: &'static str, value: f64) -> Result<(), ParameterError> {
+    require(
+        value >= 0.0 && value.is_finite(),
+        name,
+        value,
+        "zero or positive",
+    )
+}
+
+/// The same for a static and a kinetic one.
+fn coefficients(at_rest: f64, sliding: f64) -> Result<(), ParameterError> {
+    coefficient("coefficient", sliding)?;
+    require(
+        at_rest >= sliding && at_rest.is_finite(),
+        "static_coefficient",
+        at_rest,
+        "at least the coefficient of sliding",
+    )
 }
