@@ -14,9 +14,9 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Moment, SecondOrderSystem, Weights};
 
 use super::{Joining, Linkage};
-use crate::AssemblyError;
+use crate::{AssemblyError, End, Motion};
 use crate::energy::Flow;
-use crate::system::{Record, System, WheelRotation};
+use crate::system::{RailSupport, Record, System, WheelRotation, WheelSupport};
 
 /// Forces out of balance, relative to the largest joint force, at which a state counts as static.
 const CONVERGED: f64 = 1e-7;
@@ -32,26 +32,16 @@ pub(crate) struct Balance {
 }
 
 /// Settles under pretension, gravity and load.
-///
-/// Free rollers touch bush and tooth so loosely that the iteration need not get to the end: it then gives the
-/// best state it met, and the first milliseconds of the run bring the rest.
 pub(crate) fn settle(
     system: &mut System,
     q: &mut [f64],
     pretension: f64,
     stiffness: f64,
 ) -> Result<Balance, AssemblyError> {
-    let loose = system
-        .linkage
-        .as_ref()
-        .is_some_and(|linkage| linkage.free_rollers.is_some());
-    if loose {
-        return Ok(relax(&mut system.lightened(), q, pretension));
-    }
     if pretension > 0.0 {
         tighten(system, q, pretension, stiffness)?;
     }
-    let mut light = system.lightened();
+    let mut light = system.at_rest();
     accept(relax(&mut light, q, pretension), "gravity and load on the joints")
 }
 
@@ -73,7 +63,7 @@ fn tighten(
     pretension: f64,
     stiffness: f64,
 ) -> Result<(), AssemblyError> {
-    let mut bare = system.lightened();
+    let mut bare = system.at_rest();
     bare.gravity = Vector::zeros();
     for wheel in &mut bare.wheels {
         if let WheelRotation::Free { drive, load, .. } = &mut wheel.rotation {
@@ -217,9 +207,9 @@ fn relax(system: &mut System, q: &mut [f64], typical: f64) -> Balance {
 }
 
 impl System {
-    /// The same statics with wheels that turn as easily as the chain on them: heavy ones would hold up the
-    /// iteration.
-    fn lightened(&self) -> Self {
+    /// The same statics with everything prescribed at rest, so that no contact closes or slips, and with wheels
+    /// that turn as easily as the chain on them: heavy ones would hold up the iteration.
+    fn at_rest(&self) -> Self {
         let mut light = self.clone();
         let Some(linkage) = &mut light.linkage else {
             return light;
@@ -228,9 +218,25 @@ impl System {
             .iter()
             .fold(0.0_f64, |m, body| m.max(body.mass));
         for wheel in &mut light.wheels {
+            if let WheelSupport::Prescribed { x, y } = &mut wheel.support {
+                (*x, *y) = (Motion::Held, Motion::Held);
+            }
+            if let WheelRotation::Prescribed(motion) = &mut wheel.rotation {
+                *motion = Motion::Held;
+            }
             if let WheelRotation::Free { dof, .. } = wheel.rotation {
                 wheel.inertia = link * wheel.pitch_radius * wheel.pitch_radius;
                 light.border_inertias[dof - linkage.dofs()] = wheel.inertia;
+            }
+        }
+        for rail in &mut light.rails {
+            if let RailSupport::Prescribed { x, y } = &mut rail.support {
+                (*x, *y) = (Motion::Held, Motion::Held);
+            }
+        }
+        for held in &mut linkage.ends {
+            if let End::Driven { x, y } = &mut held.end {
+                (*x, *y) = (Motion::Held, Motion::Held);
             }
         }
         light
