@@ -78,6 +78,17 @@ fn laws(criterion: &mut Criterion) {
         frictions.bench_function(format!("{name} force"), |b| {
             b.iter(|| -> f64 { approaches.iter().map(|at| law.force(1e3, at.rate)).sum() });
         });
+        frictions.bench_function(format!("{name} rub"), |b| {
+            b.iter(|| -> f64 {
+                approaches
+                    .iter()
+                    .map(|at| {
+                        let rub = law.rub(1e3, at.rate, at.penetration, 1e-6);
+                        rub.force + rub.damping + rub.state
+                    })
+                    .sum()
+            });
+        });
     }
     frictions.finish();
 }
