@@ -337,6 +337,9 @@ fn conformal_is_the_plane_strain_solution() {
     };
     for [load, depth] in SOLUTION {
         let approach = depth + (load - law.force(depth)) / law.stiffness(depth);
-        assert!((approach / depth - 1.0).abs() < 3.1e-3, "{depth}: {approach}");
+        assert!(
+            (approach / depth - 1.0).abs() < 3.1e-3,
+            "{depth}: {approach}"
+        );
     }
 }
