@@ -1,8 +1,8 @@
 """Compare the contact laws: tables and figure of docs/contact-laws.md.
 
-Run it as ``python examples/contact_laws.py``; it rewrites the tables between their marks and draws
-docs/contact_laws.png. With ``--criterion target/criterion``, after ``cargo bench -p
-chaindrive-contact``, it also rewrites the table of costs.
+Run it as ``python examples/contact_laws.py [--results FOLDER]``; it rewrites the tables between
+their marks and draws contact_laws.png, in docs unless told otherwise. With ``--criterion
+target/criterion``, after ``cargo bench -p chaindrive-contact``, it also rewrites the costs.
 """
 
 import argparse
@@ -188,14 +188,13 @@ def costs(folders: list[Path]) -> str:
     return "\n".join(lines)
 
 
-def write(page: Path, name: str, table: str) -> None:
+def insert(text: str, name: str, table: str) -> str:
     """Put a table between its marks."""
-    text = page.read_text(encoding="utf-8")
     pattern = rf"(<!-- {name} -->\n).*?(<!-- end -->)"
     text, count = re.subn(pattern, lambda m: f"{m[1]}\n{table}\n\n{m[2]}", text, flags=re.DOTALL)
     if count != 1:
-        raise SystemExit(f"{page} has no place for the table {name}")
-    page.write_text(text, encoding="utf-8")
+        raise SystemExit(f"contact-laws.md has no place for the table {name}")
+    return text
 
 
 def draw(path: Path) -> None:
@@ -271,17 +270,21 @@ def draw(path: Path) -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description="Compare the contact laws.")
-    parser.add_argument("--docs", type=Path, default=DOCS, help="folder with contact-laws.md")
+    parser.add_argument("--results", type=Path, default=DOCS, help="folder to write to")
     parser.add_argument("--criterion", type=Path, nargs="+", help="folders of measured costs")
     arguments = parser.parse_args()
-    page = arguments.docs / "contact-laws.md"
-    write(page, "against Johnson", against_johnson())
-    write(page, "against plane strain", against_the_solution())
-    write(page, "restitution", restitutions())
+    arguments.results.mkdir(parents=True, exist_ok=True)
+
+    text = (DOCS / "contact-laws.md").read_text(encoding="utf-8")
+    text = insert(text, "against Johnson", against_johnson())
+    text = insert(text, "against plane strain", against_the_solution())
+    text = insert(text, "restitution", restitutions())
     if arguments.criterion is not None:
-        write(page, "cost", costs(arguments.criterion))
-    draw(arguments.docs / "contact_laws.png")
-    print(f"written: {page}, {arguments.docs / 'contact_laws.png'}")
+        text = insert(text, "cost", costs(arguments.criterion))
+    page, figure = arguments.results / "contact-laws.md", arguments.results / "contact_laws.png"
+    page.write_text(text, encoding="utf-8")
+    draw(figure)
+    print(f"written: {page}, {figure}")
 
 
 if __name__ == "__main__":
