@@ -25,6 +25,7 @@ from chaindrive.errors import (
     SimulationError,
     WriteError,
 )
+from chaindrive.friction import Friction, friction
 from chaindrive.law import Law, law
 from chaindrive.simulation import simulate
 
@@ -32,6 +33,7 @@ __all__ = [
     "AssemblyError",
     "ChaindriveError",
     "Drive",
+    "Friction",
     "IntegrationError",
     "Law",
     "ParameterError",
@@ -41,6 +43,7 @@ __all__ = [
     "__version__",
     "channels",
     "errors",
+    "friction",
     "kinematics",
     "law",
     "load",
