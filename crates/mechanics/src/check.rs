@@ -306,30 +306,3 @@ fn fit_problems(fit: &Fit, parts: &Parts) -> Vec<DriveError> {
     );
     found
 }
-
-#[cfg(test)]
-mod tests {
-    use chaindrive_contact::elastic::Power;
-    use chaindrive_contact::friction::BrownMcphee;
-    use chaindrive_contact::{Dissipation, Elastic, Law};
-
-    use super::*;
-
-    /// A law that the kernels do not know is refused, not left out.
-    #[test]
-    fn friction_of_teeth_and_guides() {
-        let surface = |friction| Surface {
-            law: Law {
-                elastic: Elastic::Power(Power::linear(1e8)),
-                dissipation: Dissipation::None,
-                onset_floor: 0.0,
-            },
-            friction,
-        };
-        assert!(surface_problems(&surface(Friction::None), "guides.bar").is_empty());
-        let peaked = Friction::BrownMcphee(BrownMcphee::dry(0.15, 0.1, 1e-3));
-        let found = surface_problems(&surface(peaked), "guides.bar");
-        assert_eq!(found.len(), 1);
-        assert!(found[0].to_string().contains("guides.bar.contact.friction"));
-    }
-}
