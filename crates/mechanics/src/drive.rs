@@ -215,7 +215,7 @@ pub struct Parts {
 /// A drive that can be assembled: the parts, checked.
 #[derive(Clone, Debug)]
 pub struct Drive {
-    parts: Parts,
+    pub(crate) parts: Parts,
 }
 
 impl Drive {

@@ -49,9 +49,7 @@ pub use events::{ContactEvent, ContactPair, EventKinds};
 pub use modes::{Mode, Modes};
 pub use motion::{Course, Harmonic, Motion, Table};
 pub use observe::Observation;
-pub use rigid::{
-    ChainModel, Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel,
-};
+pub use rigid::{ChainModel, Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel};
 pub use system::{Record, System};
 pub use tensioner::{Carrier, Hydraulic, Plunger, Push, PushForce, Spring, Tensioner};
 pub use torque::{Argument, Torque};

@@ -3,8 +3,8 @@
 use chaindrive_geometry::Point;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 
-use crate::energy::{Energy, Flow, Store};
 use crate::contact::{Frame, PlateContact};
+use crate::energy::{Energy, Flow, Store};
 use crate::linkage::rates::LinkPlaces;
 use crate::system::{Pins, RailContact, Record, WheelRotation, WheelSupport};
 use crate::{Carrier, System};

@@ -136,7 +136,12 @@ impl RigidLinks {
         let positive = |value: f64| value > 0.0 && value.is_finite();
         for (name, body) in [("inner", &self.inner), ("outer", &self.outer)] {
             let path = |what: &str| format!("chain.{name}.{what}");
-            need(positive(body.mass), &path("mass"), body.mass, "positive [kg]");
+            need(
+                positive(body.mass),
+                &path("mass"),
+                body.mass,
+                "positive [kg]",
+            );
             need(
                 positive(body.inertia),
                 &path("inertia"),

@@ -1,8 +1,8 @@
 //! The inner loop: eight rollers against one profile.
 
-use chaindrive_contact::{Elastic, Friction, Rub};
 use chaindrive_contact::dissipation::RATIO_LIMIT;
 use chaindrive_contact::elastic::ElasticLaw;
+use chaindrive_contact::{Elastic, Friction, Rub};
 use pulp::Simd;
 
 use super::{Contacts, Frame, LawNumbers, Shape, Teeth, Touch};
@@ -267,7 +267,14 @@ impl Contacts {
         force.store(&mut rubs, 0);
         slip.store(&mut drags, 0);
         let before = &self.memory.stick[slots.clone()];
-        rub_one_by_one(friction, dt, before, &mut rubs, &mut drags, &mut touch.stick[slots]);
+        rub_one_by_one(
+            friction,
+            dt,
+            before,
+            &mut rubs,
+            &mut drags,
+            &mut touch.stick[slots],
+        );
         (w.load(&rubs, 0), w.load(&drags, 0))
     }
 

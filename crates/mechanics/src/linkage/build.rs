@@ -4,13 +4,14 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 
 use super::{
-    Bearing, Body, FreeRollers, Hinges, JointMates, Joining, Linkage, Mate, Memory, PinTouch, turned,
+    Bearing, Body, FreeRollers, Hinges, Joining, JointMates, Linkage, Mate, Memory, PinTouch,
+    turned,
 };
+use crate::End;
 use crate::chain::Chain;
 use crate::drive::{Layout, Parts};
 use crate::rigid::{Joint, RigidLinks, RollerModel};
 use crate::system::{System, WheelRotation, WheelSupport};
-use crate::End;
 
 /// Coordinates and velocities of a converted system.
 pub(crate) struct Converted {
@@ -175,8 +176,7 @@ fn compile(system: &System, parts: &Parts, links: &RigidLinks) -> Linkage {
     let mut bodies: Vec<Body> = (0..count)
         .map(|link| {
             // p (1 + ε₀) under T₀
-            let spacing =
-                system.links.rest[link] + pretension / system.links.stiffness[link];
+            let spacing = system.links.rest[link] + pretension / system.links.stiffness[link];
             body(links, link, spacing, play)
         })
         .collect();

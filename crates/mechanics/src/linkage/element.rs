@@ -34,6 +34,8 @@ pub(crate) struct Mount {
 /// from there along n to the touching point, which is the same for both.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Element {
+    /// Joint that it stands at.
+    pub(crate) joint: usize,
     pub(crate) a: Option<usize>,
     pub(crate) b: Partner,
     pub(crate) arm_a: Vector,

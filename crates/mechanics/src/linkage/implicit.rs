@@ -18,7 +18,7 @@ use crate::system::{WheelRotation, WheelSupport};
 
 /// A row over the unknowns of the partner.
 #[derive(Clone, Copy)]
-enum Row {
+pub(super) enum Row {
     Nothing,
     Body(usize, Vector3<f64>),
     Border([(usize, f64); 3]),
@@ -57,6 +57,9 @@ impl Linkage {
         play: &mut Play,
         x: &mut [f64],
     ) -> bool {
+        if weights.stiffness <= 0.0 && matches!(self.joining, Joining::Clearance(_)) {
+            return self.damp(system, weights.damping, play, x);
+        }
         let border = x.len() - self.dofs() + if self.closed { 3 } else { 0 };
         let row = self.links - usize::from(self.closed);
         let rollers = self.bodies.len() - self.links;
@@ -68,7 +71,10 @@ impl Linkage {
             roller.clear();
         }
         self.add_masses(system, &mut blocks, &mut loose, x);
-        system.add_supports(self, weights, play, &mut blocks);
+        system.each_support(|dof, stiffness, damping| {
+            let j = self.border(dof);
+            blocks.corner[(j, j)] += weights.stiffness * stiffness + weights.damping * damping;
+        });
         let mut sum = Sum {
             linkage: self,
             blocks: &mut blocks,
@@ -147,24 +153,18 @@ impl Linkage {
     fn found(&self, blocks: &Blocks, link: usize) -> Vector3<f64> {
         match self.place(link) {
             Place::Link(i) => blocks.right[i],
-            Place::Corner | Place::Roller(_) => {
-                Vector3::from_fn(|k, _| blocks.right_border[k])
-            }
+            Place::Corner | Place::Roller(_) => Vector3::from_fn(|k, _| blocks.right_border[k]),
         }
     }
 }
 
 impl System {
-    /// Bearings, tensioners and shafts: springs and dampers of the border's own.
-    fn add_supports(&self, linkage: &Linkage, weights: Weights, play: &Play, blocks: &mut Blocks) {
-        let mut add = |dof: usize, stiffness: f64, damping: f64| {
-            let j = linkage.border(dof);
-            blocks.corner[(j, j)] += weights.stiffness * stiffness + weights.damping * damping;
-        };
+    /// Bearings, tensioners and shafts: visits (degree of freedom, stiffness, damping) of what they have of their own.
+    pub(super) fn each_support(&self, mut visit: impl FnMut(usize, f64, f64)) {
         for wheel in &self.wheels {
             if let WheelRotation::Free { dof, drive, load } = &wheel.rotation {
                 let drag: f64 = drive.iter().chain(load).map(crate::Torque::drag).sum();
-                add(*dof, 0.0, drag);
+                visit(*dof, 0.0, drag);
             }
             if let WheelSupport::Springs {
                 dof,
@@ -173,7 +173,7 @@ impl System {
             } = &wheel.support
             {
                 for axis in 0..2 {
-                    add(dof + axis, stiffness[axis], damping[axis]);
+                    visit(dof + axis, stiffness[axis], damping[axis]);
                 }
             }
         }
@@ -181,13 +181,12 @@ impl System {
             let Some(dof) = slide.dof else { continue };
             let (_, lever) = slide.carrier.extension(0.0);
             let squared = lever * lever;
-            add(
+            visit(
                 dof,
                 slide.push.stiffness() * squared,
                 slide.push.damping() * squared,
             );
         }
-        let _ = play;
     }
 }
 
@@ -253,7 +252,10 @@ impl Sum<'_> {
     /// Ideal joints as very heavy rows: W Jᵀ (J x − J b) keeps J x at what the accelerations b ask for.
     fn add_hinges(&mut self, play: &Play, weights: Weights, b: &[f64]) {
         let linkage = self.linkage;
-        let heaviest = linkage.bodies.iter().fold(0.0_f64, |m, body| m.max(body.mass));
+        let heaviest = linkage
+            .bodies
+            .iter()
+            .fold(0.0_f64, |m, body| m.max(body.mass));
         let stiffest = play.elements.iter().fold(0.0_f64, |m, element| {
             m.max(weights.damping * element.damping + weights.stiffness * element.stiffness)
         });
@@ -276,8 +278,7 @@ impl Sum<'_> {
             for direction in [Vector::x(), Vector::y()] {
                 let [hole, pin] = sides.map(|side| {
                     side.map(|(body, arm)| {
-                        let row =
-                            Vector3::new(direction.x, direction.y, cross(arm, direction));
+                        let row = Vector3::new(direction.x, direction.y, cross(arm, direction));
                         let known = Vector3::from_column_slice(&b[3 * body..3 * body + 3]);
                         (body, row, row.dot(&known))
                     })
@@ -527,7 +528,12 @@ impl Sum<'_> {
 }
 
 /// How the partner moves along a direction at the circle's centre, with a lever for its rotation.
-fn partner_row(element: &Element, mounts: &[Mount], direction: Vector, lever: f64) -> Row {
+pub(super) fn partner_row(
+    element: &Element,
+    mounts: &[Mount],
+    direction: Vector,
+    lever: f64,
+) -> Row {
     match element.b {
         Partner::Ground => Row::Nothing,
         Partner::Body(body) => Row::Body(

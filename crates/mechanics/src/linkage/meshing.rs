@@ -4,13 +4,11 @@ use chaindrive_contact::{Approach, interpolated_onset};
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 
-use super::{Element, Linkage, Mount, Partner, Play, Part, Tally, turned};
+use super::{Element, Linkage, Mount, Part, Partner, Play, Tally, turned};
 use crate::Carrier;
 use crate::contact::{Contacts, Frame, Touch, Wrench};
 use crate::energy::Flow;
-use crate::system::{
-    RailContact, RailSupport, Record, System, Wheel, WheelRotation, WheelSupport,
-};
+use crate::system::{RailContact, RailSupport, Record, System, Wheel, WheelRotation, WheelSupport};
 
 impl System {
     /// Contacts of a linkage with wheels and rails.
@@ -44,7 +42,13 @@ impl System {
                 }
                 RailContact::Plates(plates) => {
                     let mut pins = super::rates::LinkPins(play);
-                    plates.act(at.t, &frame, &mut pins, linkage.links, &mut record.plates[i])
+                    plates.act(
+                        at.t,
+                        &frame,
+                        &mut pins,
+                        linkage.links,
+                        &mut record.plates[i],
+                    )
                 }
             };
             rates[Flow::GuideLoss as usize] += wrench.normal_loss;
@@ -161,6 +165,7 @@ impl Linkage {
                 let spins = self.spins(&part);
                 let radius = contacts.radius;
                 let mut element = Element {
+                    joint: joint % self.joints.len(),
                     a: part.body,
                     b: Partner::Mount(mount),
                     arm_a: part.arm,
@@ -213,5 +218,9 @@ impl Linkage {
 
 /// Centre of the arc that a roller at `d` faces, from the origin of the frame.
 fn pivot(d: Vector, normal: Vector, bend: f64) -> Vector {
-    if bend.abs() > 0.0 { d + normal / bend } else { d }
+    if bend.abs() > 0.0 {
+        d + normal / bend
+    } else {
+        d
+    }
 }
