@@ -45,6 +45,7 @@ pub(crate) fn simulate<'py>(
         step,
         tolerance,
         onset_depth,
+        ..Run::default()
     };
     let output = output.map(|path| {
         let existing = if overwrite {
