@@ -26,6 +26,13 @@ pub enum SimulationError {
         known: String,
     },
 
+    /// A channel of something that the drive does not have.
+    #[error(
+        "this chain has no `{name}`: particles have neither joints nor directions; set `chain.model` to \
+         `clearance-joints` or `ideal-joints`, or leave the channel out"
+    )]
+    AbsentChannel { name: &'static str },
+
     /// The drive could not be brought into its initial state.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),

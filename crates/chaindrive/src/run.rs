@@ -83,6 +83,7 @@ impl Stepping {
     }
 
     /// The method for a system: itself, or what [`Stepping::Auto`] chooses.
+    #[must_use]
     pub fn suited(self, system: &System) -> Self {
         match self {
             Self::Auto if system.can_solve() => Self::ImplicitDamping,

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use chaindrive_integrate::{Method, Moment, State, Statistics, Stepper};
-use chaindrive_mechanics::{Assembled, Drive, Energy, Observation, Record, System};
+use chaindrive_mechanics::{Assembled, ContactEvent, Drive, Energy, Observation, Record, System};
 
 use crate::SimulationError;
 use crate::run::Run;
@@ -39,6 +39,7 @@ pub struct Simulation {
     record: Record,
     buffers: [Vec<f64>; 3],
     start_energy: Option<Energy>,
+    ended: Vec<ContactEvent>,
     stepping_time: f64,
 }
 
@@ -66,6 +67,7 @@ impl Simulation {
         let mut state = State::new(0.0, assembled.q.clone(), assembled.v.clone());
         let method = run.method(&system);
         system.set_onset_depth(run.onset_depth);
+        system.log_events(run.events);
         let stepper = method
             .start(&mut system, &mut state)
             .map_err(|error| SimulationError::starting(error, run))?;
@@ -87,6 +89,7 @@ impl Simulation {
             observation: Observation::default(),
             record,
             start_energy: None,
+            ended: Vec::new(),
             stepping_time: 0.0,
         })
     }
@@ -140,6 +143,18 @@ impl Simulation {
         self.system
             .observe(at, flows, &mut self.record, &mut self.observation);
         self.start_energy.get_or_insert(self.observation.energy);
+        self.ended = self.system.take_events();
+    }
+
+    /// Contacts that ended between the sample before the last and the last one, in the order of their
+    /// ends; of the kinds that [`Run::events`] asks for.
+    pub fn events(&self) -> &[ContactEvent] {
+        &self.ended
+    }
+
+    /// Contacts that last, with an infinite end.
+    pub fn lasting_events(&self) -> Vec<ContactEvent> {
+        self.system.lasting_events()
     }
 
     /// The last sample.

@@ -65,8 +65,8 @@ fn bits(values: &[f64]) -> Vec<u64> {
 fn what_is_stored_is_what_was_sampled() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("ring.zarr");
-    let channels = Channel::from_names(&["all"]).unwrap();
     let (scene, run, mut simulation) = ring(0.17);
+    let channels = Channel::chosen(&["all"], simulation.system()).unwrap();
     let mut recording = Recording::new(&channels, simulation.system());
     let provenance = Provenance::of(&scene, &run);
     let mut writer =

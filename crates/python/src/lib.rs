@@ -23,7 +23,7 @@ mod core {
     use pyo3::prelude::*;
 
     #[pymodule_export]
-    use crate::drive::{Drive, presets, schema};
+    use crate::drive::{Drive, catalogue, presets, schema};
     #[pymodule_export]
     use crate::kinematics::{centre_distance_for, links_for, polygon_action};
     #[pymodule_export]
