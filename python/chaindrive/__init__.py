@@ -26,6 +26,7 @@ from chaindrive.errors import (
     SimulationError,
     WriteError,
 )
+from chaindrive.friction import Friction, friction
 from chaindrive.law import Law, law
 from chaindrive.simulation import simulate
 
@@ -33,6 +34,7 @@ __all__ = [
     "AssemblyError",
     "ChaindriveError",
     "Drive",
+    "Friction",
     "IntegrationError",
     "Law",
     "ParameterError",
@@ -43,6 +45,7 @@ __all__ = [
     "catalogue",
     "channels",
     "errors",
+    "friction",
     "kinematics",
     "law",
     "load",

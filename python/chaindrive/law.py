@@ -4,21 +4,42 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from chaindrive import _core
+from chaindrive.arrays import Values, flatten, shaped
 from chaindrive.errors import ParameterError
 
-__all__ = ["Law", "law"]
+__all__ = ["Law", "Response", "json_of", "law"]
+
+# How two cylinders can lie, by the keywords that say so.
+_ARRANGEMENTS = {
+    "pin_in_hole": ("hole", "pin"),
+    "side_by_side": ("radius", "other"),
+    "on_curve": ("radius", "curvature", "depth_cap"),
+}
+_GEOMETRY = ("hole", "pin", "radius", "other", "curvature", "depth_cap", "length", "modulus")
+
+
+class Response(NamedTuple):
+    """What a contact answers to an approach."""
+
+    force: Values
+    """Normal force [N], compressive, never negative."""
+    elastic: Values
+    """Elastic part of the force [N]."""
+    stiffness: Values
+    """∂force/∂penetration [N/m] at constant rate."""
+    damping: Values
+    """∂force/∂rate [N s/m]."""
 
 
 class Law:
     """A normal force law, as sprockets and guides use it; made by `law` or `Drive.law`.
 
-    Everything broadcasts like NumPy functions and is zero across a gap.
+    Everything broadcasts like NumPy functions and is zero across a gap; numbers give a number.
     """
 
     __slots__ = ("_inner",)
@@ -33,9 +54,16 @@ class Law:
         made._inner = core
         return made
 
+    def respond(
+        self, penetration: ArrayLike, rate: ArrayLike = 0.0, onset_rate: ArrayLike = 0.0
+    ) -> Response:
+        """Return force, elastic part, stiffness and damping at once; arguments as in `force`."""
+        shape, flat = flatten(penetration, rate, onset_rate)
+        return Response(*(shaped(values, shape) for values in self._inner.respond(*flat)))
+
     def force(
         self, penetration: ArrayLike, rate: ArrayLike = 0.0, onset_rate: ArrayLike = 0.0
-    ) -> NDArray[np.float64]:
+    ) -> Values:
         """Return the normal force, element by element.
 
         Parameters
@@ -56,25 +84,44 @@ class Law:
         ValueError
             The arguments do not broadcast.
         """
-        shape, flat = _flatten(penetration, rate, onset_rate)
-        return self._inner.force(*flat).reshape(shape)
+        return self.respond(penetration, rate, onset_rate).force
 
     def damping(
         self, penetration: ArrayLike, rate: ArrayLike = 0.0, onset_rate: ArrayLike = 0.0
-    ) -> NDArray[np.float64]:
+    ) -> Values:
         """Return the damping ∂F/∂rate [N s/m]; arguments as in `force`."""
-        shape, flat = _flatten(penetration, rate, onset_rate)
-        return self._inner.damping(*flat).reshape(shape)
+        return self.respond(penetration, rate, onset_rate).damping
 
-    def stiffness(self, penetration: ArrayLike) -> NDArray[np.float64]:
-        """Return the tangent stiffness [N/m] of the elastic part at a penetration [m], (...)."""
-        shape, flat = _flatten(penetration)
-        return self._inner.stiffness(*flat).reshape(shape)
+    def stiffness(
+        self, penetration: ArrayLike, rate: ArrayLike = 0.0, onset_rate: ArrayLike = 0.0
+    ) -> Values:
+        """Return the tangent stiffness ∂F/∂penetration [N/m]; arguments as in `force`.
 
-    def energy(self, penetration: ArrayLike) -> NDArray[np.float64]:
+        At rest it is that of the elastic part.
+        """
+        return self.respond(penetration, rate, onset_rate).stiffness
+
+    def energy(self, penetration: ArrayLike) -> Values:
         """Return the energy [J] stored at a penetration [m], (...)."""
-        shape, flat = _flatten(penetration)
-        return self._inner.energy(*flat).reshape(shape)
+        shape, flat = flatten(penetration)
+        return shaped(self._inner.energy(*flat), shape)
+
+    @property
+    def restitution(self) -> float | None:
+        """Coefficient of restitution [–] that a free impact delivers, whatever was asked for.
+
+        None for viscous damping, where it depends on mass and speed; 1 without dissipation.
+        """
+        if self.parameters["dissipation"]["kind"] == "none":
+            return 1.0
+        found = self._inner.hysteresis()
+        return None if found is None else found[1]
+
+    @property
+    def factor(self) -> float | None:
+        """Damping factor χ [–] of a hysteretic law; None for others."""
+        found = self._inner.hysteresis()
+        return None if found is None else found[0]
 
     @property
     def parameters(self) -> dict[str, Any]:
@@ -99,20 +146,33 @@ def law(
     Parameters
     ----------
     kind
-        ``"power"`` with ``stiffness`` [N/mⁿ] and ``exponent`` [–]; ``"johnson"`` with
-        ``length_scale`` [m] and ``modulus_length`` [N/m].
+        With the parameters of the law: ``"power"`` with ``stiffness`` [N/mⁿ] and ``exponent`` [–];
+        ``"johnson"``, ``"radzimovsky"``, ``"esdu_78035"`` and ``"dubowsky_freudenstein"`` with
+        ``length_scale`` [m] and ``modulus_length`` [N/m]; ``"conformal"`` with ``clearance`` [m]
+        and ``modulus_length``; ``"cylindrical"`` with ``stiffness`` and ``exponent``.
+
+        Or with the geometry of two parallel cylinders, for all of these but ``"power"`` and for
+        ``"hertz"``: ``length`` [m] of the contact and composite ``modulus`` [Pa], together with
+        ``hole`` and ``pin``, the radii [m] of one in the other; ``radius`` and ``other``, the
+        radii of two side by side; or ``radius``, ``curvature`` [1/m] of the counterpart, negative
+        in a hollow and zero on a flat, and ``depth_cap`` [m], the greatest depth it is reckoned
+        with. ``"conformal"`` is Johnson's law where the counterpart is not hollow;
+        ``"cylindrical"`` is Johnson's law towards a flat: in hollows with more than 10 mm between
+        the radii, and outside with more than 300 mm; `Law.parameters` tells.
     restitution
-        Coefficient of restitution [–] after Lankarani and Nikravesh.
+        Coefficient of restitution [–], after Lankarani and Nikravesh unless ``dissipation`` names
+        another: ``"exact"``, ``"hunt_crossley"``, ``"lee_wang"``, ``"herbert_mcwhannell"``,
+        ``"gonthier"``, ``"zhiying_qishao"``, ``"flores"``, ``"hu_guo"``.
     damping
-        Viscous damping [N s/m].
+        Viscous damping [N s/m]: a Kelvin–Voigt element.
     dissipation
-        Any other dissipation, by name or with its parameters,
-        ``{"kind": "lankarani_nikravesh", "restitution": 0.8}``. Of these three at most one; with
-        none the law is elastic.
+        The name of a dissipation, or the name with its parameters,
+        ``{"kind": "lankarani_nikravesh", "restitution": 0.8}``. With none of these three the law
+        is elastic.
     onset_floor
         Least speed at onset a hysteretic dissipation reckons with [m/s].
     **parameters
-        Those of the elastic law.
+        Those of the elastic law, or of the geometry.
 
     Returns
     -------
@@ -129,37 +189,75 @@ def law(
     >>> steel = cd.law("power", stiffness=6e11, exponent=1.5, restitution=0.8)
     >>> steel.force([0.0, 1e-5]).round()
     array([    0., 18974.])
+    >>> pin = cd.law(
+    ...     "johnson", hole=1.85e-3, pin=1.8e-3, length=4.5e-3, modulus=113.7e9,
+    ...     dissipation="exact", restitution=0.7,
+    ... )
+    >>> round(float(pin.force(1e-6)), 1), round(pin.restitution, 6)
+    (263.2, 0.7)
     """
+    described = json_of(_dissipation(restitution, damping, dissipation), "dissipation")
+    if any(name in parameters for name in _GEOMETRY):
+        finite = json.loads(json_of(parameters, "law"))
+        arrangement, measures, length, modulus = _cylinders(finite)
+        return Law._of(
+            _core.Law.between(
+                kind, arrangement, measures, length, modulus, described, float(onset_floor)
+            )
+        )
+    text = json_of(
+        {
+            "elastic": {"kind": kind, **parameters},
+            "dissipation": json.loads(described),
+            "onset_floor": onset_floor,
+        },
+        "law",
+    )
+    return Law._of(_core.Law.from_json(text))
+
+
+def json_of(described: Mapping[str, Any], what: str) -> str:
+    """Return a description as JSON; anything but finite numbers is a `ParameterError`."""
+    try:
+        return json.dumps(described, default=float, allow_nan=False)
+    except (TypeError, ValueError) as error:
+        raise ParameterError(f"{what}: {error}", what, "finite numbers") from error
+
+
+def _dissipation(
+    restitution: float | None,
+    damping: float | None,
+    dissipation: str | Mapping[str, Any] | None,
+) -> dict[str, Any]:
+    """Return the dissipation with its parameters, from its short forms."""
     given = {
-        "restitution": restitution is not None,
-        "damping": damping is not None,
-        "dissipation": dissipation is not None,
+        name: value
+        for name, value in {"restitution": restitution, "damping": damping}.items()
+        if value is not None
     }
-    names = [name for name, present in given.items() if present]
+    names = [*given, *(["dissipation"] if isinstance(dissipation, Mapping) else [])]
     if len(names) > 1:
         raise ParameterError(
             f"{' and '.join(names)} are given, must be one of them", names[1], "keep one of them"
         )
-    if restitution is not None:
-        dissipation = {"kind": "lankarani_nikravesh", "restitution": restitution}
-    elif damping is not None:
-        dissipation = {"kind": "viscous", "damping": damping}
-    elif dissipation is None:
-        dissipation = {"kind": "none"}
-    elif isinstance(dissipation, str):
-        dissipation = {"kind": dissipation}
-    described = {
-        "elastic": {"kind": kind, **parameters},
-        "dissipation": dict(dissipation),
-        "onset_floor": onset_floor,
-    }
-    try:
-        text = json.dumps(described, default=float, allow_nan=False)
-    except (TypeError, ValueError) as error:
-        raise ParameterError(f"law: {error}", "law", "finite numbers") from error
-    return Law._of(_core.Law.from_json(text))
+    if isinstance(dissipation, Mapping):
+        return dict(dissipation)
+    if dissipation is None:
+        short = {"restitution": "lankarani_nikravesh", "damping": "viscous"}
+        dissipation = short[names[0]] if names else "none"
+    return {"kind": dissipation, **given}
 
 
-def _flatten(*values: ArrayLike) -> tuple[tuple[int, ...], list[NDArray[np.float64]]]:
-    arrays = np.broadcast_arrays(*(np.asarray(value, dtype=np.float64) for value in values))
-    return arrays[0].shape, [np.ascontiguousarray(array).ravel() for array in arrays]
+def _cylinders(parameters: Mapping[str, float]) -> tuple[str, list[float], float, float]:
+    """Return arrangement, measures, length and modulus of two cylinders."""
+    given = set(parameters) - {"length", "modulus"}
+    matching = [name for name, words in _ARRANGEMENTS.items() if given == set(words)]
+    if not matching or not {"length", "modulus"} <= set(parameters):
+        choices = ", ".join(" and ".join(words) for words in _ARRANGEMENTS.values())
+        raise ParameterError(
+            f"{', '.join(parameters)} do not describe two cylinders",
+            "cylinders",
+            f"give length, modulus and one of: {choices}",
+        )
+    measures = [parameters[word] for word in _ARRANGEMENTS[matching[0]]]
+    return matching[0], measures, parameters["length"], parameters["modulus"]

@@ -1,7 +1,7 @@
 """Documentation runs: blocks of Python in the README and the guides, and examples in docstrings."""
 
 import doctest
-import importlib
+import importlib.util
 import pkgutil
 import re
 from pathlib import Path
@@ -45,3 +45,14 @@ def test_docstring_examples(name):
         importlib.import_module(name), optionflags=doctest.NORMALIZE_WHITESPACE
     )
     assert failed == 0
+
+
+def test_tables_of_the_contact_laws_are_current():
+    """The tables in docs/contact-laws.md are what examples/contact_laws.py computes now."""
+    place = ROOT / "examples" / "contact_laws.py"
+    spec = importlib.util.spec_from_file_location("contact_laws", place)
+    script = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(script)
+    text = (ROOT / "docs" / "contact-laws.md").read_text(encoding="utf-8")
+    for table in [script.against_johnson(), script.against_the_solution(), script.restitutions()]:
+        assert table in text, "run python examples/contact_laws.py"

@@ -53,12 +53,137 @@ def test_stiffness_and_energy_belong_to_the_force(law):
     )
 
 
+PIN = {"hole": 1.85e-3, "pin": 1.8e-3, "length": 4.5e-3, "modulus": 113.736263736e9}
+FLANK = {"radius": 3.875e-3, "other": 18.6e-3, "length": 2.2e-3, "modulus": 113.736263736e9}
+CYLINDERS = [
+    "johnson",
+    "conformal",
+    "radzimovsky",
+    "esdu_78035",
+    "dubowsky_freudenstein",
+    "cylindrical",
+    "hertz",
+]
+
+
+@pytest.mark.parametrize(
+    ("kind", "inside", "outside"),
+    [
+        ("johnson", 263.3, 60.61),
+        ("conformal", 262.8, 60.61),
+        ("radzimovsky", 249.6, 59.23),
+        ("esdu_78035", 190.7, None),
+        ("dubowsky_freudenstein", 180.6, None),
+        ("cylindrical", 268.1, 55.92),
+        ("hertz", 39.14, 8.588),
+    ],
+)
+def test_two_cylinders(kind, inside, outside):
+    """Forces at 1 µm, pin in bushing and roller on flank, from an independent program."""
+    assert cd.law(kind, **PIN).force(1e-6) == pytest.approx(inside, rel=3e-4)
+    if outside is not None:
+        assert cd.law(kind, **FLANK).force(1e-6) == pytest.approx(outside, rel=3e-4)
+
+
+def test_cylinders_on_a_curve():
+    curve = {"radius": 4e-3, "length": 2e-3, "modulus": 1e11, "depth_cap": 6e-3}
+    flat = cd.law("cylindrical", curvature=0.0, **curve)
+    assert flat.parameters["elastic"] == {
+        "kind": "johnson",
+        "length_scale": 4 * 6e-3,
+        "modulus_length": 2e8,
+    }
+    seat = cd.law("johnson", curvature=-1 / 4.04e-3, **curve)
+    pin = cd.law("johnson", hole=4.04e-3, pin=4e-3, length=2e-3, modulus=1e11)
+    assert seat.force(1e-6) == pytest.approx(pin.force(1e-6), rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", CYLINDERS)
+@pytest.mark.parametrize("pair", [PIN, FLANK], ids=["inside", "outside"])
+def test_response_is_consistent(kind, pair):
+    law = cd.law(kind, **pair, dissipation="exact", restitution=0.6)
+    depth = np.linspace(1e-6, 1e-5, 2001)
+    middle = 0.5 * (depth[1:] + depth[:-1])
+    here = law.respond(middle, 0.2, 0.5)
+    assert (here.force > here.elastic).all()
+    slope = np.diff(law.force(depth, 0.2, 0.5)) / np.diff(depth)
+    np.testing.assert_allclose(slope, here.stiffness, rtol=1e-4)
+    np.testing.assert_allclose(here.damping, here.elastic * law.factor / 0.5, rtol=1e-12)
+    np.testing.assert_allclose(here.stiffness, law.stiffness(middle, 0.2, 0.5))
+    work = np.diff(law.energy(depth)) / np.diff(depth)
+    np.testing.assert_allclose(work, here.elastic, rtol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("dissipation", "delivered"),
+    [
+        ("exact", 0.5),
+        ("hunt_crossley", 0.6630),
+        ("lankarani_nikravesh", 0.7252),
+        ("lee_wang", 0.7992),
+        ("herbert_mcwhannell", 0.5936),
+        ("gonthier", 0.4877),
+        ("zhiying_qishao", 0.4826),
+        ("flores", 0.4704),
+        ("hu_guo", 0.4877),
+    ],
+)
+def test_restitution_delivered(dissipation, delivered):
+    law = cd.law("johnson", **PIN, dissipation=dissipation, restitution=0.5)
+    assert law.restitution == pytest.approx(delivered, abs=5e-5)
+
+
+def test_restitution_without_hysteresis():
+    assert cd.law("johnson", **PIN).restitution == 1.0
+    viscous = cd.law("johnson", **PIN, damping=3.0)
+    assert viscous.restitution is None
+    assert viscous.factor is None
+
+
+def test_numbers_give_numbers(steel):
+    for value in (*steel.respond(1e-5, 0.1, 0.2), steel.energy(1e-5)):
+        assert isinstance(value, float)
+    assert steel.respond([1e-5, 2e-5], [[0.1], [0.2]]).stiffness.shape == (2, 2)
+
+
+def test_friction():
+    """Values of the printed formulas, see crates/contact/tests/friction.rs."""
+    dry = cd.friction("brown_mcphee", static_coefficient=0.15, coefficient=0.1, slip_speed=1e-3)
+    force = dry.force(2.0, [-1e-3, 0.0, 2e-3, 0.1])
+    np.testing.assert_allclose(force, [0.2998658599, 0.0, -0.2653060774, -0.2000015990], atol=1e-9)
+    assert isinstance(dry.force(1.0, 1e-3), float)
+    assert dry.damping(1.0, 0.0) == pytest.approx((4 * 0.1 + 16 / 9 * 0.05) / 1e-3)
+    assert dry.damping(np.ones((3, 1)), np.ones(2)).shape == (3, 2)
+    assert dry.parameters["kind"] == "brown_mcphee"
+    assert cd.friction("none").force(1.0, 1.0) == 0.0
+    bristles = cd.friction(
+        "lugre",
+        static_coefficient=0.15,
+        coefficient=0.1,
+        slip_speed=1e-3,
+        stiffness=1e5,
+        damping=30.0,
+        viscosity=0.4,
+    )
+    held = bristles.rub(1000.0, 0.0, state=5e-7, dt=1.0)
+    assert held.force == pytest.approx(-50.0)
+    assert held.state == 5e-7
+    slid = bristles.rub(1000.0, [-1.0, 1.0], dt=10.0)
+    np.testing.assert_allclose(slid.force, bristles.force(1000.0, [-1.0, 1.0]), rtol=1e-12)
+    with pytest.raises(cd.ParameterError, match="upper_speed"):
+        cd.friction("ambrosio", coefficient=0.1, lower_speed=2.0, upper_speed=1.0)
+    with pytest.raises(cd.ParameterError, match="stiction"):
+        cd.friction("stiction", coefficient=0.1)
+
+
 def test_dissipations_have_short_forms():
     power = {"stiffness": 1e8, "exponent": 1.0}
     short = cd.law("power", **power, restitution=0.9)
     long = cd.law("power", **power, dissipation={"kind": "lankarani_nikravesh", "restitution": 0.9})
     assert short.parameters == long.parameters
     assert cd.law("power", **power, damping=10.0).damping(1e-3) == 10.0
+    named = cd.law("power", **power, dissipation="flores", restitution=0.9)
+    assert named.parameters["dissipation"] == {"kind": "flores", "restitution": 0.9}
     none = cd.law("power", **power, dissipation="none")
     assert none.parameters == cd.law("power", **power).parameters
 
@@ -93,3 +218,17 @@ def test_parameters_out_of_range():
         cd.law("power", stiffness=np.inf, exponent=1.5)
     with pytest.raises(cd.ParameterError, match="one of them"):
         cd.law("power", stiffness=1e8, exponent=1.5, restitution=0.5, damping=3.0)
+    with pytest.raises(cd.ParameterError, match="one of them"):
+        cd.law("johnson", **PIN, dissipation={"kind": "flores"}, restitution=0.5)
+    with pytest.raises(cd.ParameterError, match=r"take 0\.02"):
+        cd.law("johnson", **PIN, dissipation="exact", restitution=0.0)
+    with pytest.raises(cd.ParameterError, match=r"clearance = .*5e-6"):
+        cd.law("cylindrical", hole=1.804e-3, pin=1.8e-3, length=1e-3, modulus=1e11)
+    with pytest.raises(cd.ParameterError, match="above"):
+        cd.law("johnson", **PIN | {"pin": 2e-3})
+    with pytest.raises(cd.ParameterError, match="do not describe two cylinders"):
+        cd.law("johnson", hole=2e-3, radius=1e-3, length=1e-3, modulus=1e11)
+    with pytest.raises(cd.ParameterError, match="do not describe two cylinders"):
+        cd.law("johnson", hole=2e-3, pin=1e-3, length=1e-3)
+    with pytest.raises(cd.ParameterError, match="power"):
+        cd.law("power", **PIN)

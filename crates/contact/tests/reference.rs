@@ -317,25 +317,29 @@ fn conformal_starts_as_johnson() {
     assert!((narrow.force(0.1587 * 5e-5) / exact - 1.045).abs() < 5e-3);
 }
 
-/// Load F/(E* L ΔR) and depth δ/ΔR of the plane-strain collocation.
+/// Load F/(E* L ΔR) and depth δ/ΔR of the plane-strain collocation in `examples/contact_laws.py`, for
+/// contacts of ±0.1 to ±1.1 rad. The fit is within 0.3 % in δ.
 #[test]
 fn conformal_is_the_plane_strain_solution() {
-    const SOLUTION: [[f64; 2]; 7] = [
-        [0.0079, 0.0160],
-        [0.0321, 0.0511],
-        [0.0743, 0.0992],
-        [0.1374, 0.1587],
-        [0.2263, 0.2303],
-        [0.5158, 0.4212],
-        [1.0755, 0.7266],
+    const SOLUTION: [[f64; 2]; 8] = [
+        [0.007_896_715, 0.016_034_65],
+        [0.032_109_013, 0.051_075_36],
+        [0.074_276_444, 0.099_155_76],
+        [0.137_395_304, 0.158_727_51],
+        [0.226_293_650, 0.230_320_80],
+        [0.515_798_544, 0.421_222_28],
+        [1.075_454_705, 0.726_649_19],
+        [2.324_006_792, 1.333_619_69],
     ];
     let law = Conformal {
         clearance: 1.0,
         modulus_length: 1.0,
     };
     for [load, depth] in SOLUTION {
-        // The fit is within 0.52 % in δ; the table has three to four digits.
         let approach = depth + (load - law.force(depth)) / law.stiffness(depth);
-        assert!((approach / depth - 1.0).abs() < 9e-3, "{depth}: {approach}");
+        assert!(
+            (approach / depth - 1.0).abs() < 3.1e-3,
+            "{depth}: {approach}"
+        );
     }
 }

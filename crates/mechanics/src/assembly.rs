@@ -41,6 +41,11 @@ pub struct Fitting {
     pub travel: f64,
 }
 
+/// Depth at which the teeth are asked for their stiffness \[m\].
+const PRESSED: f64 = 1e-6;
+/// Stiffness of a rigid link while it is laid, in those of the teeth.
+const HARD: f64 = 1e3;
+
 impl Drive {
     /// Lays the chain, finds the static state where asked, and sets everything going at the
     /// speed of the first driven sprocket.
@@ -48,6 +53,34 @@ impl Drive {
     /// # Errors
     /// [`AssemblyError`] when the chain does not close or no equilibrium is found.
     pub fn assemble(&self) -> Result<Assembled, AssemblyError> {
+        if let Some(stiffened) = self.stiffened() {
+            return stiffened.assemble_as_is();
+        }
+        self.assemble_as_is()
+    }
+
+    /// For ideal joints: the drive with links so stiff that they hardly stretch while the chain is laid.
+    fn stiffened(&self) -> Option<Self> {
+        let ChainModel::Rigid(links) = &self.chain.model else {
+            return None;
+        };
+        if links.joint != Joint::Ideal {
+            return None;
+        }
+        let teeth = self
+            .sprockets
+            .iter()
+            .map(|sprocket| sprocket.surface.law.stiffness(PRESSED))
+            .fold(0.0, f64::max);
+        if teeth <= 0.0 {
+            return None;
+        }
+        let mut parts = self.parts().clone();
+        parts.chain.stiffness.fill(HARD * teeth);
+        Self::new(parts).ok()
+    }
+
+    fn assemble_as_is(&self) -> Result<Assembled, AssemblyError> {
         let (laid, fitting) = lay::lay(self)?;
         let (mut system, mut q) = System::build(&laid)?;
         let mut statics = Vec::new();
@@ -91,7 +124,7 @@ impl Drive {
         let (system, q) = (&mut converted.system, &mut converted.q);
         let still = vec![0.0; q.len()];
         system.start(0.0, q, &mut still.clone());
-        if self.settle && matches!(links.joint, Joint::Clearance(_)) {
+        if self.settle && links.joint != Joint::Ideal {
             let pretension = match &parts.layout {
                 Layout::Route { fit, .. } => fit.pretension,
                 Layout::Points { .. } => 0.0,

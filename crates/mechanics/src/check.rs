@@ -2,7 +2,6 @@
 
 use std::collections::HashSet;
 
-use chaindrive_contact::Friction;
 use chaindrive_geometry::{Point, Vector};
 
 use crate::drive::{
@@ -137,12 +136,6 @@ fn surface_problems(surface: &Surface, place: &str) -> Vec<DriveError> {
     let mut found = Vec::new();
     found.extend(surface.law.check().map_err(law).err());
     found.extend(surface.friction.check().map_err(law).err());
-    if !matches!(surface.friction, Friction::None | Friction::Coulomb(_)) {
-        found.push(DriveError::Conflict {
-            path: format!("{place}.contact.friction"),
-            problem: "teeth and guides know no friction and coulomb; take coulomb".to_owned(),
-        });
-    }
     found
 }
 

@@ -77,6 +77,8 @@ pub(crate) struct Contacts {
     pub(crate) axis_y: Vec<f64>,
     /// State of each slot at the last accepted step, for one or two sides.
     pub(crate) memory: Touch,
+    /// When that was \[s\].
+    pub(crate) accepted: f64,
 }
 
 /// Contact state per slot; two-sided profiles hold the left side behind the right one.
@@ -90,6 +92,8 @@ pub(crate) struct Touch {
     pub(crate) closing: Vec<f64>,
     /// Normal force \[N\].
     pub(crate) force: Vec<f64>,
+    /// State of a friction law that has one.
+    pub(crate) stick: Vec<f64>,
 }
 
 impl Touch {
@@ -99,6 +103,7 @@ impl Touch {
             &mut self.gap,
             &mut self.closing,
             &mut self.force,
+            &mut self.stick,
         ] {
             values.resize(slots, 0.0);
         }
@@ -114,12 +119,14 @@ pub(crate) struct LawNumbers {
     pub(crate) damping: f64,
     /// Floor of the speed at touch \[m/s\], positive.
     pub(crate) floor: f64,
-    /// Friction coefficient, zero without friction.
+    /// Coefficient of Coulomb friction, zero with any other law.
     pub(crate) friction: f64,
     /// Slope of the friction force at rest per normal force, μ/v_s \[s/m\].
     pub(crate) friction_slope: f64,
     /// Square of the regularising slip speed \[m²/s²\].
     pub(crate) slip_speed_squared: f64,
+    /// Any other friction law, asked lane by lane.
+    pub(crate) general: Option<Friction>,
 }
 
 impl LawNumbers {
@@ -131,8 +138,11 @@ impl LawNumbers {
         };
         let (friction, slip_speed) = match surface.friction {
             Friction::Coulomb(coulomb) => (coulomb.coefficient, coulomb.slip_speed),
-            // A drive with any other law was refused by its check.
             _ => (0.0, 1.0),
+        };
+        let general = match surface.friction {
+            Friction::None | Friction::Coulomb(_) => None,
+            other => Some(other),
         };
         Self {
             factor,
@@ -141,6 +151,7 @@ impl LawNumbers {
             friction,
             friction_slope: friction / slip_speed,
             slip_speed_squared: slip_speed * slip_speed,
+            general,
         }
     }
 }
@@ -156,6 +167,7 @@ impl Contacts {
             axis_x: Vec::new(),
             axis_y: Vec::new(),
             memory: Touch::default(),
+            accepted: 0.0,
         }
     }
 

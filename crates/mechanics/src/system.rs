@@ -25,7 +25,7 @@ use crate::contact::{Frame, Places, PlatePins, PlatePlaces, PlateTouch, Touch, W
 use crate::energy::Flow;
 use crate::events::EventLog;
 use crate::lanes::Wide;
-use crate::linkage::{Joining, Linkage, Play, Posture};
+use crate::linkage::{Linkage, Play, Posture};
 use crate::links::{Links, Pulls};
 use crate::motion::Course;
 use crate::{End, Motion};
@@ -251,7 +251,7 @@ impl System {
                 let frame = rail.frame(at.t, at.q, at.v, &self.slides);
                 (frame, contacts, &mut record.circles[i - wheels])
             };
-            let wrench = contacts.act(w, &frame, &mut rollers, touch);
+            let wrench = contacts.act(w, at.t, &frame, &mut rollers, touch);
             let loss = if i < wheels {
                 Flow::ToothLoss
             } else {
@@ -280,6 +280,7 @@ impl System {
                 count: self.rollers,
             };
             let wrench = plates.act(
+                at.t,
                 &frame,
                 &mut pins,
                 self.links.count,
@@ -499,14 +500,17 @@ impl SecondOrderSystem for System {
     fn commit(&mut self, t: f64, q: &mut [f64], v: &mut [f64], end: &mut Record) -> Continuity {
         for (wheel, touch) in self.wheels.iter_mut().zip(&mut end.teeth) {
             std::mem::swap(&mut wheel.contacts.memory, touch);
+            wheel.contacts.accepted = t;
         }
         for (i, rail) in self.rails.iter_mut().enumerate() {
             match &mut rail.contact {
                 RailContact::Circles(contacts) => {
                     std::mem::swap(&mut contacts.memory, &mut end.circles[i]);
+                    contacts.accepted = t;
                 }
                 RailContact::Plates(plates) => {
                     std::mem::swap(&mut plates.memory, &mut end.plates[i]);
+                    plates.accepted = t;
                 }
             }
         }
@@ -544,10 +548,7 @@ impl SecondOrderSystem for System {
     }
 
     fn can_solve(&self) -> bool {
-        matches!(
-            &self.linkage,
-            Some(linkage) if matches!(linkage.joining, Joining::Clearance(_))
-        )
+        self.linkage.is_some()
     }
 
     fn solve(&self, weights: Weights, record: &mut Record, x: &mut [f64]) -> bool {

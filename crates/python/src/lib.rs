@@ -11,6 +11,7 @@
 mod drawing;
 mod drive;
 mod errors;
+mod friction;
 mod kinematics;
 mod law;
 mod run;
@@ -24,6 +25,8 @@ mod core {
 
     #[pymodule_export]
     use crate::drive::{Drive, catalogue, presets, schema};
+    #[pymodule_export]
+    use crate::friction::Friction;
     #[pymodule_export]
     use crate::kinematics::{centre_distance_for, links_for, polygon_action};
     #[pymodule_export]

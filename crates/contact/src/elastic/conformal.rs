@@ -42,10 +42,11 @@ const LEAST_DEPTH: f64 = 1e-280;
 ///
 /// The first term is [`Johnson`](super::Johnson)'s law. The second is **a fit of this project**, c₀ = 2.5964 and
 /// c₂ = 0.9753, to the plane-strain solution of a disk in a hole of the same material, found by collocation:
-/// within 0.52 % in δ up to q = 0.92, that is δ = 1.59 ΔR. The solution's contact angles agree with
-/// Persson's to 1e-5; a rigid displacement in proportion to the load is free in it, and was
-/// chosen so that light loads give Johnson's law. The stiffness is finite everywhere: Johnson's singularity at
-/// 0.541 ΔR is one of its approximation. Beyond q = 0.92 the law continues as its own tangent.
+/// within 0.30 % in δ up to q = 0.92, that is δ = 1.59 ΔR. The solution's loads agree with
+/// Persson's to 1e-8; a rigid displacement in proportion to the load is free in it, and was
+/// chosen so that light loads give Johnson's law. The stiffness is finite everywhere: the singularity of
+/// Johnson's law at 0.541 ΔR is one of its approximation. Beyond q = 0.92 the law continues as its own
+/// tangent. `examples/contact_laws.py` solves the problem again.
 ///
 /// The force is inverted by Halley's third-order form of Newton's method from Johnson's load, whose
 /// logarithm is known: one to two steps to rounding.

@@ -1,12 +1,12 @@
 //! The inner loop: eight rollers against one profile.
 
-use chaindrive_contact::Elastic;
+use chaindrive_contact::{Elastic, Friction, Rub};
 use chaindrive_contact::dissipation::RATIO_LIMIT;
 use chaindrive_contact::elastic::ElasticLaw;
 use pulp::Simd;
 
 use super::{Contacts, Frame, LawNumbers, Shape, Teeth, Touch};
-use crate::lanes::{Lane, Mask, Wide};
+use crate::lanes::{LANES, Lane, Mask, Wide};
 use crate::profile::Profile;
 use crate::system::Rollers;
 
@@ -67,6 +67,27 @@ fn general(law: Elastic, depth: f64) -> f64 {
     if depth > 0.0 { law.force(depth) } else { 0.0 }
 }
 
+/// Turns normal forces into friction forces and slips into damping; kept out of line like the laws.
+#[inline(never)]
+fn rub_one_by_one(
+    friction: &Friction,
+    dt: f64,
+    before: &[f64],
+    force: &mut [f64],
+    slip: &mut [f64],
+    stick: &mut [f64],
+) {
+    let lanes = force.iter_mut().zip(slip).zip(before.iter().zip(stick));
+    for ((force, slip), (before, stick)) in lanes {
+        let rub = if *force > 0.0 {
+            friction.rub(*force, *slip, *before, dt)
+        } else {
+            Rub::default()
+        };
+        (*force, *slip, *stick) = (rub.force, rub.damping, rub.state);
+    }
+}
+
 impl Contacts {
     /// Adds the contact accelerations to `rollers` and returns what the body receives.
     ///
@@ -75,14 +96,17 @@ impl Contacts {
     pub(crate) fn act<S: Simd>(
         &self,
         w: Wide<S>,
+        t: f64,
         frame: &Frame,
         rollers: &mut Rollers<'_>,
         touch: &mut Touch,
     ) -> Wrench {
+        let dt = t - self.accepted;
         touch.resize(self.slots * self.sides());
         let law = Response {
             elastic: LaneElastic::new(self.surface.law.elastic),
             numbers: LawNumbers::new(&self.surface),
+            dt,
         };
         let mut sums = Sums::new(w);
         let mut slot = 0;
@@ -222,6 +246,31 @@ impl Contacts {
         }
     }
 
+    /// Friction of any law: force along the tangent, and damping.
+    #[inline(always)]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the inner loop, split for reading only"
+    )]
+    fn rub<S: Simd>(
+        &self,
+        w: Wide<S>,
+        friction: &Friction,
+        dt: f64,
+        force: Lane<S>,
+        slip: Lane<S>,
+        slot: usize,
+        touch: &mut Touch,
+    ) -> (Lane<S>, Lane<S>) {
+        let slots = slot..slot + Wide::<S>::COUNT;
+        let [mut rubs, mut drags] = [[0.0; LANES]; 2];
+        force.store(&mut rubs, 0);
+        slip.store(&mut drags, 0);
+        let before = &self.memory.stick[slots.clone()];
+        rub_one_by_one(friction, dt, before, &mut rubs, &mut drags, &mut touch.stick[slots]);
+        (w.load(&rubs, 0), w.load(&drags, 0))
+    }
+
     /// Force, memory and sums of one lane of candidate contacts.
     #[inline(always)]
     #[expect(
@@ -240,7 +289,9 @@ impl Contacts {
         touch: &mut Touch,
         sums: &mut Sums<S>,
     ) {
-        let Response { elastic, numbers } = law;
+        let Response {
+            elastic, numbers, ..
+        } = law;
         let zero = w.splat(0.0);
         let gap = hit.near.select(hit.gap, w.splat(1.0));
         // δ̇ = −n·u
@@ -296,6 +347,17 @@ impl Contacts {
             moment = motion.dy * fx - motion.dx * fy + rub * radius;
             sums.friction_loss += -(rub * slip);
         }
+        let mut across = w.splat(numbers.friction_slope) * force;
+        if let Some(friction) = numbers.general {
+            let radius = w.splat(self.radius);
+            let slip = tx * motion.ux + ty * motion.uy + motion.spin * radius;
+            let (rub, drag) = self.rub(w, &friction, law.dt, force, slip, slot, touch);
+            fx += rub * tx;
+            fy += rub * ty;
+            moment = motion.dy * fx - motion.dx * fy + rub * radius;
+            sums.friction_loss += -(rub * slip);
+            across = drag;
+        }
         let inverse_mass = w.load(rollers.inverse_mass, roller);
         (w.load(rollers.ax, roller) + fx * inverse_mass).store(rollers.ax, roller);
         (w.load(rollers.ay, roller) + fy * inverse_mass).store(rollers.ay, roller);
@@ -307,7 +369,6 @@ impl Contacts {
         sums.depth = sums.depth.max(depth);
         // −∂F/∂ġ = χ g/v + c, and μ F/v_s across
         let normal = damping * inverse + closed.select(w.splat(numbers.damping), zero);
-        let across = w.splat(numbers.friction_slope) * force;
         sums.damping = sums.damping.max(normal + across);
     }
 }
@@ -373,6 +434,8 @@ fn look<S: Simd>(w: Wide<S>, profile: &Profile, x: Lane<S>, y: Lane<S>, radius: 
 struct Response {
     elastic: LaneElastic,
     numbers: LawNumbers,
+    /// Time since the last accepted state \[s\].
+    dt: f64,
 }
 
 /// The profile that a lane looks at.

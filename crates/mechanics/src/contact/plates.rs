@@ -38,6 +38,8 @@ pub(crate) struct PlateContact {
     pub(crate) half_height: f64,
     /// State of each link at the last accepted step.
     pub(crate) memory: Vec<PlateTouch>,
+    /// When that was \[s\].
+    pub(crate) accepted: f64,
 }
 
 /// Contact state of one plate.
@@ -51,6 +53,8 @@ pub(crate) struct PlateTouch {
     pub(crate) onset: f64,
     /// Normal force \[N\].
     pub(crate) force: f64,
+    /// State of a friction law that has one.
+    pub(crate) stick: f64,
 }
 
 impl PlateTouch {
@@ -59,6 +63,7 @@ impl PlateTouch {
         closing: 0.0,
         onset: 0.0,
         force: 0.0,
+        stick: 0.0,
     };
 }
 
@@ -106,6 +111,7 @@ impl PlateContact {
     /// Pushes the pins and returns what the rail receives.
     pub(crate) fn act(
         &self,
+        t: f64,
         frame: &Frame,
         pins_of: &mut impl PlatePins,
         links: usize,
@@ -140,6 +146,7 @@ impl PlateContact {
                 closing,
                 onset: 0.0,
                 force: 0.0,
+                stick: 0.0,
             };
             if gap < 0.0 {
                 let before = &self.memory[link];
@@ -160,8 +167,10 @@ impl PlateContact {
                 state.force = point.weight * law.force(approach);
                 let tangent = Vector::new(-normal.y, normal.x);
                 let slip = tangent.dot(&u) + frame.spin * self.half_height;
-                let rub = self.surface.friction.force(state.force, slip);
-                let push = normal * state.force + tangent * rub;
+                let friction = &self.surface.friction;
+                let rub = friction.rub(state.force, slip, before.stick, t - self.accepted);
+                state.stick = rub.state;
+                let push = normal * state.force + tangent * rub.force;
                 for (pin, share) in shares.into_iter().enumerate() {
                     pins_of.push(link, pin, push * share);
                 }
@@ -171,9 +180,9 @@ impl PlateContact {
                 wrench.moment -= foot.x * push.y - foot.y * push.x;
                 let stored = point.weight * law.elastic_force(-gap);
                 wrench.normal_loss += (state.force - stored) * closing;
-                wrench.friction_loss -= rub * slip;
+                wrench.friction_loss -= rub.force * slip;
                 wrench.depth = wrench.depth.max(-gap);
-                let across = self.surface.friction.damping(state.force, 0.0);
+                let across = rub.damping.max(friction.damping(state.force, 0.0));
                 wrench.damping = wrench.damping.max(law.damping(approach) + across);
             }
             touch[link] = state;

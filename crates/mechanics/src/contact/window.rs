@@ -44,6 +44,7 @@ impl Contacts {
                     memory.gap[to] = self.memory.gap[from];
                     memory.closing[to] = self.memory.closing[from];
                     memory.force[to] = self.memory.force[from];
+                    memory.stick[to] = self.memory.stick[from];
                 }
             }
             if let Shape::Teeth(teeth) = &self.shape {

@@ -171,10 +171,11 @@ impl Bearing {
         if self.friction != Friction::None {
             let slip = turned(normal).dot(&relative) + lever_pin * pin.spin
                 - lever_hole * hole.spin;
-            element.rub = self.friction.force(answer.force, slip);
-            element.drag = self.friction.damping(answer.force, slip);
-            tally.friction_loss -= element.rub * slip;
-            let _ = (before.stick, dt);
+            let rub = self.friction.rub(answer.force, slip, before.stick, dt);
+            touch.stick = rub.state;
+            element.rub = rub.force;
+            element.drag = rub.damping;
+            tally.friction_loss -= rub.force * slip;
         }
         (touch, Some(element))
     }

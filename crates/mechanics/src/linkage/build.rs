@@ -1,6 +1,7 @@
 //! From the settled particle chain to rigid links in the same place.
 
 use chaindrive_geometry::{Point, Vector};
+use chaindrive_integrate::Moment;
 
 use super::{
     Bearing, Body, FreeRollers, Hinges, JointMates, Joining, Linkage, Mate, Memory, PinTouch, turned,
@@ -27,11 +28,20 @@ pub(crate) fn convert(
     v: &[f64],
 ) -> Converted {
     let n = system.stride;
-    let place = |k: usize| Point::new(q[k], q[n + k]);
+    let (inward, shorter) = bush_shifts(&system, links, q);
+    let place = |k: usize| Point::new(q[k], q[n + k]) + inward[k];
     let velocity = |k: usize| Vector::new(v[k], v[n + k]);
     let count = system.rollers;
-    let linkage = compile(&system, parts, links);
+    let mut linkage = compile(&system, parts, links);
+    linkage.lengthen(-shorter / linkage.links as f64);
     let after = |link: usize| (link + 1) % count;
+    if links.joint == Joint::Ideal && matches!(parts.layout, Layout::Route { .. }) {
+        // The chain was settled with links that hardly stretch; what is left of that is theirs.
+        for link in 0..linkage.links {
+            let length = (place(after(link)) - place(link)).norm();
+            linkage.bodies[link] = body(links, link, length, 0.0);
+        }
+    }
     let mut chain_q = Vec::with_capacity(linkage.dofs());
     let mut chain_v = Vec::with_capacity(linkage.dofs());
     for (link, body) in linkage.bodies[..linkage.links].iter().enumerate() {
@@ -76,6 +86,50 @@ pub(crate) fn convert(
         q: chain_q,
         v: chain_v,
     }
+}
+
+/// Where free rollers let the bushes be: on a wheel they lie deeper by the clearance, in a span the rollers
+/// hang. Returns the shift of every bush from the particle, and by how much their way around the
+/// wheels is shorter \[m\].
+fn bush_shifts(system: &System, links: &RigidLinks, q: &[f64]) -> (Vec<Vector>, f64) {
+    let count = system.rollers;
+    let RollerModel::Free(roller) = &links.rollers else {
+        return (vec![Vector::zeros(); count], 0.0);
+    };
+    let still = vec![0.0; q.len()];
+    let at = Moment {
+        t: 0.0,
+        q,
+        v: &still,
+    };
+    let mut shorter = 0.0;
+    let seats: Vec<Option<Vector>> = (0..count)
+        .map(|joint| {
+            let place = Point::new(q[joint], q[system.stride + joint]);
+            let (wheel, d) = system.wheels.iter().find_map(|wheel| {
+                let (frame, _, _) = system.wheel_frame(wheel, at);
+                let d = place - frame.origin;
+                let seat = wheel.pitch_radius.hypot(0.5 * wheel.pitch);
+                (d.norm() < 0.5 * (wheel.pitch_radius + seat)).then_some((wheel, d))
+            })?;
+            shorter += roller.gap() * std::f64::consts::TAU / f64::from(wheel.teeth);
+            Some(-d.normalize() * roller.gap())
+        })
+        .collect();
+    // Linear between the wheels, so that the spans stay straight.
+    let look = |from: usize, step: usize| {
+        (1..count).find_map(|k| seats[(from + k * step) % count].map(|shift| (k, shift)))
+    };
+    let shifts = (0..count).map(|joint| {
+        seats[joint].unwrap_or_else(|| match (look(joint, count - 1), look(joint, 1)) {
+            (Some((before, a)), Some((after, b))) => {
+                let share = before as f64 / (before + after) as f64;
+                a * (1.0 - share) + b * share
+            }
+            _ => Vector::zeros(),
+        })
+    });
+    (shifts.collect(), shorter)
 }
 
 /// Moves the degrees of freedom of wheels and tensioners behind another chain.

@@ -1,6 +1,6 @@
 //! One closed contact, as the forces it exerts and as rows of the implicit system.
 
-use chaindrive_geometry::{Point, Vector};
+use chaindrive_geometry::Vector;
 
 /// The other side of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,8 +20,6 @@ pub(crate) struct Mount {
     pub(crate) shifts: [Option<(usize, Vector)>; 2],
     /// Border unknown of the rotation.
     pub(crate) turn: Option<usize>,
-    /// The frame's origin \[m\].
-    pub(crate) origin: Point,
 }
 
 /// A closed contact between a body `a` and its partner `b`.

@@ -12,7 +12,7 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::Weights;
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Blocks, Element, Linkage, Mount, Partner, Play, cross, turned};
+use super::{Blocks, Element, Joining, Linkage, Mate, Mount, Partner, Play, cross, turned};
 use crate::System;
 use crate::system::{WheelRotation, WheelSupport};
 
@@ -77,6 +77,9 @@ impl Linkage {
         };
         for element in &play.elements {
             sum.add(element, &play.mounts, weights);
+        }
+        if matches!(self.joining, Joining::Hinges(_)) {
+            sum.add_hinges(play, weights, x);
         }
         let solved = sum.eliminate_rollers() && blocks.solve();
         if solved {
@@ -241,7 +244,75 @@ struct Sum<'a> {
     border: usize,
 }
 
+/// How much stiffer a hinge is than everything else in the matrix.
+///
+/// J x then equals J b to about 1e-7 of its size; the stabilisation of the hinges takes the rest.
+const HINGE: f64 = 1e7;
+
 impl Sum<'_> {
+    /// Ideal joints as very heavy rows: W Jᵀ (J x − J b) keeps J x at what the accelerations b ask for.
+    fn add_hinges(&mut self, play: &Play, weights: Weights, b: &[f64]) {
+        let linkage = self.linkage;
+        let heaviest = linkage.bodies.iter().fold(0.0_f64, |m, body| m.max(body.mass));
+        let stiffest = play.elements.iter().fold(0.0_f64, |m, element| {
+            m.max(weights.damping * element.damping + weights.stiffness * element.stiffness)
+        });
+        let weight = HINGE * (heaviest + stiffest);
+        for (index, joint) in linkage.joints.iter().enumerate() {
+            let Some(mates) = joint.pair else { continue };
+            let sides = mates.map(|mate| match mate {
+                Mate::Link { link, end } => Some((link, play.posture.tips[link][end].arm)),
+                Mate::Ground(_) => None,
+            });
+            if weights.stiffness > 0.0 {
+                // What the joint force adds to the rotation of the links: λ·arm, where it holds them.
+                let force = play.pin_forces[index];
+                for (side, force) in sides.into_iter().zip([-force, force]) {
+                    if let Some((body, arm)) = side {
+                        self.add_turn(body, weights.stiffness * force.dot(&arm).max(0.0));
+                    }
+                }
+            }
+            for direction in [Vector::x(), Vector::y()] {
+                let [hole, pin] = sides.map(|side| {
+                    side.map(|(body, arm)| {
+                        let row =
+                            Vector3::new(direction.x, direction.y, cross(arm, direction));
+                        let known = Vector3::from_column_slice(&b[3 * body..3 * body + 3]);
+                        (body, row, row.dot(&known))
+                    })
+                });
+                let asked = pin.map_or(0.0, |p| p.2) - hole.map_or(0.0, |h| h.2);
+                for (side, sign) in [(pin, 1.0), (hole, -1.0)] {
+                    if let Some((body, row, _)) = side {
+                        self.force(body, row * (sign * weight * asked));
+                    }
+                }
+                match (pin, hole) {
+                    (Some((a, row, _)), Some((b, other, _))) => {
+                        self.square(Some(a), row, Row::Body(b, other), weight);
+                    }
+                    (Some((body, row, _)), None) | (None, Some((body, row, _))) => {
+                        self.square(Some(body), row, Row::Nothing, weight);
+                    }
+                    (None, None) => {}
+                }
+            }
+        }
+    }
+
+    fn force(&mut self, body: usize, force: Vector3<f64>) {
+        match self.linkage.place(body) {
+            Place::Link(i) => self.blocks.right[i] += force,
+            Place::Corner => {
+                for k in 0..3 {
+                    self.blocks.right_border[k] += force[k];
+                }
+            }
+            Place::Roller(i) => self.loose[i].right += force,
+        }
+    }
+
     fn add(&mut self, element: &Element, mounts: &[Mount], weights: Weights) {
         let normal = weights.damping * element.damping + weights.stiffness * element.stiffness;
         let tangent = element.tangent();

@@ -34,7 +34,7 @@ impl System {
         }
         for (i, rail) in self.rails.iter().enumerate() {
             let frame = rail.frame(at.t, at.q, at.v, &self.slides);
-            let mount = self.rail_mount(linkage, &rail.support, &frame);
+            let mount = self.rail_mount(linkage, &rail.support);
             play.mounts.push(mount);
             let number = self.wheels.len() + i;
             let wrench = match &rail.contact {
@@ -44,7 +44,7 @@ impl System {
                 }
                 RailContact::Plates(plates) => {
                     let mut pins = super::rates::LinkPins(play);
-                    plates.act(&frame, &mut pins, linkage.links, &mut record.plates[i])
+                    plates.act(at.t, &frame, &mut pins, linkage.links, &mut record.plates[i])
                 }
             };
             rates[Flow::GuideLoss as usize] += wrench.normal_loss;
@@ -74,18 +74,13 @@ impl System {
                 [slide.dof.map(|dof| (border(dof), shift)), None]
             }
         };
-        Mount {
-            shifts,
-            turn,
-            origin: frame.origin,
-        }
+        Mount { shifts, turn }
     }
 
-    fn rail_mount(&self, linkage: &Linkage, support: &RailSupport, frame: &Frame) -> Mount {
+    fn rail_mount(&self, linkage: &Linkage, support: &RailSupport) -> Mount {
         let mut mount = Mount {
             shifts: [None; 2],
             turn: None,
-            origin: frame.origin,
         };
         if let RailSupport::Carried(index) = support {
             let slide = &self.slides[*index];
@@ -120,6 +115,7 @@ impl Linkage {
         touch.force.fill(0.0);
         touch.gap.fill(1.0);
         touch.closing.fill(0.0);
+        touch.stick.fill(0.0);
         let law = contacts.surface.law.prepared();
         let floor = contacts.surface.floor();
         let mut wrench = Wrench {
@@ -185,9 +181,12 @@ impl Linkage {
                 if *friction != chaindrive_contact::Friction::None {
                     let slip = turned(normal).dot(&relative) + element.lever_a * part.spin
                         - element.lever_b * frame.spin;
-                    element.rub = friction.force(answer.force, slip);
-                    element.drag = friction.damping(answer.force, slip);
-                    tally.friction_loss -= element.rub * slip;
+                    let before = memory.stick[index];
+                    let rub = friction.rub(answer.force, slip, before, at.t - contacts.accepted);
+                    touch.stick[index] = rub.state;
+                    element.rub = rub.force;
+                    element.drag = rub.damping;
+                    tally.friction_loss -= rub.force * slip;
                 }
                 let push = element.push();
                 wrench.force[0] -= push.x;

@@ -281,6 +281,7 @@ fn rail(guide: &Guide, parts: &Parts) -> Result<Rail, AssemblyError> {
             surface: guide.surface,
             half_height: radius,
             memory: vec![PlateTouch::FAR; chain.links()],
+            accepted: 0.0,
         })
     } else {
         let shape = Shape::Rail {
