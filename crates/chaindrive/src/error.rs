@@ -64,7 +64,9 @@ impl SimulationError {
     pub(crate) fn starting(error: IntegrationError, run: &Run) -> Self {
         match error {
             IntegrationError::Unsupported { .. } => {
-                let explicit = Stepping::ALL.into_iter().filter(|s| !s.is_implicit());
+                let explicit =
+                    |method: &Stepping| !method.is_implicit() && *method != Stepping::Auto;
+                let explicit = Stepping::ALL.into_iter().filter(explicit);
                 let works: Vec<_> = explicit.map(Stepping::name).collect();
                 Self::Implicit {
                     method: run.stepping.name(),

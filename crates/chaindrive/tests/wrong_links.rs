@@ -97,11 +97,11 @@ const CASES: &[Case] = &[
     ("restitution = 0.8", "restitution = 0.8\nlaw = { kind = \"cylindrical\", clearance = \"2 µm\" }", "contact.teeth.law.clearance", 22, "or take another law"),
     ("restitution = 0.8", "restitution = 0.8\nlaw = { kind = \"cylindrical\", other_radius = \"0.1 mm\" }", "contact.teeth.law.radius", 22, "summed, for the external cylindrical law"),
     ("restitution = 0.8", "restitution = 0.8\nlaw = { kind = \"esdu-78035\", other_radius = \"-1 mm\" }", "contact.teeth.law.other_radius", 22, "a hollow wider than"),
-    ("restitution = 0.8", "restitution = 0.8\nfriction = { kind = \"bengisu-akay\", static_coefficient = 0.2, coefficient = 0.1, decay = \"500 s/m\" }", "sprockets[0].contact.friction", 27, "take coulomb"),
+    ("restitution = 0.8", "restitution = 0.8\nfriction = { kind = \"bengisu-akay\", static_coefficient = 0.1, coefficient = 0.2, decay = \"500 s/m\" }", "contact.teeth.friction.static_coefficient", 22, "at least the coefficient of sliding"),
     ("friction = { coefficient = 0.1 }", "friction = { kind = \"lugre\", coefficient = 0.1 }", "contact.joints.friction.static_coefficient", 25, "missing"),
     ("friction = { coefficient = 0.1 }", "friction = { kind = \"viscous\", coefficient = 0.1 }", "contact.joints.friction.kind", 25, "known are none, coulomb, ambrosio"),
     ("friction = { coefficient = 0.1 }", "friction = { coeficient = 0.1 }", "contact.joints.friction.coeficient", 25, "did you mean `coefficient`?"),
-    ("friction = { coefficient = 0.1 }", "friction = { kind = \"ambrosio\", coefficient = 0.1, lower_speed = \"2 mm/s\", upper_speed = \"1 mm/s\" }", "contact.joints.friction", 25, ""),
+    ("friction = { coefficient = 0.1 }", "friction = { kind = \"ambrosio\", coefficient = 0.1, lower_speed = \"2 mm/s\", upper_speed = \"1 mm/s\" }", "contact.joints.friction.upper_speed", 25, "must be"),
     // The catalogue.
     ("pitch = \"12.7 mm\"", "type = \"17B-1\"", "chain.type", 3, "no chain of the catalogue is named `17B-1`; did you mean"),
     ("pitch = \"12.7 mm\"", "type = \"bicycle\"", "chain.type", 3, "known are 04B-1"),

@@ -37,7 +37,7 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "TIME")]
     every: Option<String>,
 
-    /// Method of time stepping; implicit-damping and generalized-alpha are for clearance joints only
+    /// Method of time stepping; implicit-damping and generalized-alpha are for rigid links only
     #[arg(long, value_parser = Stepping::ALL.map(Stepping::name))]
     method: Option<String>,
 

@@ -117,11 +117,13 @@ impl<'s> Validator<'s> {
                 }
             }
         }
-        let required = schema
-            .get("required")
-            .and_then(Json::as_array)
-            .into_iter()
-            .flatten();
+        let listed = |keys: Option<&'s Json>| keys.and_then(Json::as_array).into_iter().flatten();
+        // Keys that another key may stand for.
+        let unless = schema.get("x-required-unless").and_then(Json::as_object);
+        let unless = unless.into_iter().flatten();
+        let alone = unless.filter(|(key, _)| !seen.contains(key));
+        let required = listed(schema.get("required"));
+        let required = required.chain(alone.flat_map(|(_, keys)| listed(Some(keys))));
         for key in required.filter_map(Json::as_str) {
             if seen.iter().any(|k| k == key) || meant.iter().any(|k| k == key) {
                 continue;

@@ -64,7 +64,11 @@ pub(super) fn surface(
         (None, None) => absent(findings),
     };
     let dissipation = dissipation(own, path, common, fallback, findings);
-    let friction = own.friction.or(common.friction);
+    let friction = match (own.friction, common.friction) {
+        (Some(text), _) => friction(text, path, findings),
+        (None, Some(text)) => friction(text, fallback.path, findings),
+        (None, None) => Some(Friction::None),
+    };
     let floor = own.onset_floor.or(common.onset_floor);
     Some(Surface {
         law: Law {
@@ -72,7 +76,7 @@ pub(super) fn surface(
             dissipation: dissipation?,
             onset_floor: floor.map_or(ONSET_FLOOR, |v| v.0),
         },
-        friction: friction.map_or(Friction::None, rubbing),
+        friction: friction?,
     })
 }
 
@@ -135,7 +139,7 @@ fn dissipation(
     }
     let restitution = said.restitution.or(common.restitution);
     let restitution = restitution.map_or(fallback.restitution, |e| e.0);
-    Some(match name.unwrap_or(Name::LankaraniNikravesh) {
+    let dissipation = match name.unwrap_or(Name::LankaraniNikravesh) {
         Name::None => Dissipation::None,
         Name::Exact => Dissipation::Exact(Exact { restitution }),
         Name::HuntCrossley => Dissipation::HuntCrossley(HuntCrossley { restitution }),
@@ -150,7 +154,22 @@ fn dissipation(
         Name::ZhiyingQishao => Dissipation::ZhiyingQishao(ZhiyingQishao { restitution }),
         Name::Flores => Dissipation::Flores(Flores { restitution }),
         Name::HuGuo => Dissipation::HuGuo(HuGuo { restitution }),
-    })
+    };
+    let sound = dissipation.check().map_err(|error| {
+        let message = format!("{}, must be {}", error.value, error.allowed);
+        findings.refuse_once(&format!("{place}.{}", error.parameter), message, "");
+    });
+    sound.ok().map(|()| dissipation)
+}
+
+fn friction(text: schema::Friction, place: &str, findings: &mut Findings<'_>) -> Option<Friction> {
+    let friction = rubbing(text);
+    let sound = friction.check().map_err(|error| {
+        let path = format!("{place}.friction.{}", error.parameter);
+        let message = format!("{}, must be {}", error.value, error.allowed);
+        findings.refuse_once(&path, message, "");
+    });
+    sound.ok().map(|()| friction)
 }
 
 fn rubbing(text: schema::Friction) -> Friction {

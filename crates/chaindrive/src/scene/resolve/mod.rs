@@ -121,9 +121,16 @@ impl Findings<'_> {
     }
 
     /// Refuses a value that several bodies share, once.
-    fn refuse_once(&mut self, path: &str, message: impl Into<String>, hint: impl Into<String>) {
+    ///
+    /// An empty hint is none.
+    fn refuse_once(&mut self, path: &str, message: impl Into<String>, hint: &str) {
         let (place, _) = self.tree.locate(path);
-        if !self.problems.iter().any(|problem| problem.path == place) {
+        if self.problems.iter().any(|problem| problem.path == place) {
+            return;
+        }
+        if hint.is_empty() {
+            self.refuse(path, message);
+        } else {
             self.refuse_with(path, message, hint);
         }
     }

@@ -10,6 +10,7 @@ use crate::scene::quantity::{AngularSpeed, Damping, Force, Length, Mass, Ratio, 
 /// nothing is changed.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("x-required-unless" = {"type": ["pitch", "links"]}))]
 pub(crate) struct Chain {
     /// Name in the catalogue, such as "16B-1"; whatever is absent below comes from there.
     #[serde(default, rename = "type")]

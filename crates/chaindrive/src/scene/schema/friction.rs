@@ -8,7 +8,7 @@ use crate::scene::quantity::{Damping, Force, PerLength, Ratio, Slowness, Speed};
 /// The friction of a table without `kind`.
 pub(crate) const PLAIN: &str = "coulomb";
 
-/// A friction law. A table without `kind` is Coulomb's. Teeth and guides take `none` and `coulomb` only.
+/// A friction law. A table without `kind` is Coulomb's.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 #[schemars(extend("x-default-kind" = PLAIN))]

@@ -106,6 +106,7 @@ fn for_editors(schema: &mut Value) {
             }
             drop_null(object);
             allow_missing_kind(object);
+            require_unless(object);
             allow_bare_kinds(object);
             allow_common_unit(object);
         }
@@ -134,6 +135,16 @@ fn drop_null(object: &mut Map<String, Value>) {
                 object.entry(key).or_insert(value);
             }
         }
+    }
+}
+
+/// Some keys are required unless another one is there.
+fn require_unless(object: &mut Map<String, Value>) {
+    if let Some(Value::Object(unless)) = object.remove("x-required-unless") {
+        let choices = unless
+            .into_iter()
+            .flat_map(|(key, keys)| [json!({"required": [key]}), json!({"required": keys})]);
+        object.insert("anyOf".into(), choices.collect());
     }
 }
 

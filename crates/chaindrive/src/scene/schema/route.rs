@@ -126,7 +126,7 @@ pub(crate) enum Events {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Method {
-    /// What suits the chain: implicit damping for clearance joints, else Verlet.
+    /// What suits the chain: implicit damping for rigid links, Verlet for particles.
     Auto,
     /// Velocity Verlet, fixed step: fast and without energy drift.
     Verlet,
@@ -134,9 +134,9 @@ pub(crate) enum Method {
     Rk4,
     /// The Dormand–Prince pair of order 5(4), step under error control.
     DormandPrince,
-    /// Damping implicit and stiffness explicit, order 1, fixed step; for clearance joints only.
+    /// Damping implicit and stiffness explicit, order 1, fixed step; for rigid links only.
     ImplicitDamping,
-    /// The implicit generalized-α method of order 2, fixed step; for clearance joints only.
+    /// The implicit generalized-α method of order 2, fixed step; for rigid links only.
     GeneralizedAlpha,
 }
 
