@@ -123,7 +123,7 @@ fn every_chain_of_the_catalogue_resolves() {
         };
         let made = |model| Scene::from_text(&text(model), &chain.name).unwrap().drive();
         let whole = |result: Result<_, chaindrive::scene::SceneError>| match result {
-            Ok(_) => 1,
+            Ok(()) => 1,
             Err(error) => {
                 assert!(
                     error

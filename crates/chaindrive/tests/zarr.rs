@@ -271,10 +271,9 @@ fn contacts_are_stored_as_they_were_logged() {
     let store = reader(&path);
     assert_eq!(numbers(&store, "event_start").0, [0]);
     while simulation.next_sample().unwrap().is_some() {
-        simulation
-            .events()
-            .iter()
-            .for_each(|event| table.push(event));
+        for event in simulation.events() {
+            table.push(event);
+        }
         writer.push(&simulation).unwrap();
         if simulation.time() > 0.05 {
             writer.flush(&simulation).unwrap();
@@ -283,8 +282,9 @@ fn contacts_are_stored_as_they_were_logged() {
             assert_eq!(ends, table.end);
         }
     }
-    let lasting = simulation.lasting_events();
-    lasting.iter().for_each(|event| table.push(event));
+    for event in simulation.lasting_events() {
+        table.push(&event);
+    }
     writer.finish(&simulation, &Ending::Complete).unwrap();
     assert!(table.len() > 10, "{}", table.len());
     for (name, expected) in [
