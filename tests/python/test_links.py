@@ -58,6 +58,24 @@ def test_a_scene_names_a_chain():
         cd.Drive.from_dict(scene | {"chain": "16C-1"})
 
 
+def test_joints_have_a_law():
+    """What the catalogue and the scene say is the law that one would make by hand."""
+    found = cd.scenes.bicycle().law("joints").parameters
+    by_hand = cd.law(
+        "cylindrical",
+        hole=2.07e-3,
+        pin=2.045e-3,
+        length=5.56e-3,
+        modulus=0.5 * 207e9 / (1.0 - 0.3**2),
+        restitution=0.7,
+    ).parameters
+    assert found["dissipation"] == by_hand["dissipation"]
+    for name, value in by_hand["elastic"].items():
+        assert found["elastic"][name] == (pytest.approx(value) if name != "kind" else value)
+    with pytest.raises(KeyError):
+        cd.scenes.spinning_ring().law("joints")
+
+
 def test_joints_are_recorded(bicycle):
     for name in JOINT_CHANNELS:
         assert bicycle[name].dims == ("time", "joint")
@@ -78,7 +96,7 @@ def test_joints_are_recorded(bicycle):
 def test_particles_have_no_joints():
     with pytest.raises(cd.ParameterError, match=r"chain\.model") as caught:
         cd.simulate(cd.scenes.spinning_ring(), until=1e-3, record="joint_force")
-    assert caught.value.parameter == "record"
+    assert caught.value.path == "record"
 
 
 def test_contacts_are_logged(bicycle):

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use chaindrive::catalogue::{CatalogueChain, Number};
 use chaindrive::scene::{self, Scene};
 use chaindrive::{Channel, Description, Mode, Run};
+use chaindrive_mechanics::{ChainModel, Joint, RollerModel};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
@@ -157,7 +158,7 @@ impl Drive {
         Ok(answer)
     }
 
-    /// The contact law of a sprocket or guide.
+    /// The contact law of a sprocket or guide, or of `joints` or `rollers`.
     fn law(&self, body: &str) -> PyResult<Law> {
         let sprockets = self
             .drive
@@ -170,7 +171,16 @@ impl Drive {
             .iter()
             .map(|guide| (&guide.name, &guide.surface));
         let found = sprockets.chain(guides).find(|(name, _)| *name == body);
-        let (_, surface) = found.ok_or_else(|| PyKeyError::new_err(body.to_owned()))?;
+        let found = found.map(|(_, surface)| surface);
+        let surface = found.or_else(|| match &self.drive.chain.model {
+            ChainModel::Rigid(links) => match (body, &links.joint, &links.rollers) {
+                ("joints", Joint::Clearance(joint), _) => Some(&joint.surface),
+                ("rollers", _, RollerModel::Free(roller)) => Some(&roller.surface),
+                _ => None,
+            },
+            ChainModel::Particles => None,
+        });
+        let surface = surface.ok_or_else(|| PyKeyError::new_err(body.to_owned()))?;
         Ok(Law(surface.law))
     }
 

@@ -148,14 +148,14 @@ fn carry_out(
         let mut recording = Recording::new(channels, simulation.system());
         advance(&mut simulation, &mut summary, progress, |simulation| {
             recording.push(simulation.observation());
-            simulation
-                .events()
-                .iter()
-                .for_each(|event| contacts.push(event));
+            for event in simulation.events() {
+                contacts.push(event);
+            }
             Ok(())
         })?;
-        let lasting = simulation.lasting_events();
-        lasting.iter().for_each(|event| contacts.push(event));
+        for event in simulation.lasting_events() {
+            contacts.push(&event);
+        }
         return Ok(Outcome {
             simulation,
             recording,
