@@ -259,7 +259,7 @@ class Drive:
         return self._inner.modes()["frequency"]
 
     def law(self, body: str) -> Law:
-        """Return the contact law of a sprocket or guide, by name, or of ``"joints"`` or ``"rollers"``.
+        """Return the contact law of a sprocket or guide by name, or of ``"joints"``, ``"rollers"``.
 
         Raises
         ------

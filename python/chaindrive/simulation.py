@@ -76,10 +76,11 @@ def simulate(
     Returns
     -------
     xarray.Dataset
-        One variable a channel, (time,) or (time, labels), with ``units`` and ``long_name``. Contacts
-        that were logged are ``event_kind``, ``event_body``, ``event_roller``, ``event_start``,
-        ``event_end``, ``event_onset_speed``, ``event_peak_force`` and ``event_impulse``, (event,),
-        in the order of their ends; what lasts comes last, with an infinite end. The
+        One variable a channel, (time,) or (time, labels), with ``units`` and ``long_name``.
+        Contacts that were logged are ``event_kind``, ``event_body``, ``event_roller``,
+        ``event_start``, ``event_end``, ``event_onset_speed``, ``event_peak_force`` and
+        ``event_impulse``, (event,), in the order of their ends; what lasts comes last, with an
+        infinite end. The
         attributes tell how it came about: ``scene`` (a text that reproduces the drive),
         ``chaindrive_version``, ``method``, ``step``, counts of steps, rejections and evaluations,
         ``energy_supplied`` and ``energy_residual_largest`` [J], ``wall_time`` [s],

@@ -39,7 +39,8 @@ pub struct Simulation {
     record: Record,
     buffers: [Vec<f64>; 3],
     start_energy: Option<Energy>,
-    ended: Vec<ContactEvent>,
+    /// Contacts that ended before the last sample, and since then.
+    ended: [Vec<ContactEvent>; 2],
     stepping_time: f64,
 }
 
@@ -89,7 +90,7 @@ impl Simulation {
             observation: Observation::default(),
             record,
             start_energy: None,
-            ended: Vec::new(),
+            ended: [Vec::new(), Vec::new()],
             stepping_time: 0.0,
         })
     }
@@ -132,6 +133,7 @@ impl Simulation {
             }
         }
         self.stepping_time += begin.elapsed().as_secs_f64();
+        self.ended[1].append(&mut self.system.take_events());
         Ok(self.state.t >= time)
     }
 
@@ -143,18 +145,22 @@ impl Simulation {
         self.system
             .observe(at, flows, &mut self.record, &mut self.observation);
         self.start_energy.get_or_insert(self.observation.energy);
-        self.ended = self.system.take_events();
+        self.ended.swap(0, 1);
+        self.ended[1].clear();
     }
 
     /// Contacts that ended between the sample before the last and the last one, in the order of their
     /// ends; of the kinds that [`Run::events`] asks for.
     pub fn events(&self) -> &[ContactEvent] {
-        &self.ended
+        &self.ended[0]
     }
 
-    /// Contacts that last, with an infinite end.
-    pub fn lasting_events(&self) -> Vec<ContactEvent> {
-        self.system.lasting_events()
+    /// Contacts that [`events`](Self::events) has not handed out: those that ended after the last
+    /// sample, and those that last, with an infinite end.
+    pub fn outstanding_events(&self) -> Vec<ContactEvent> {
+        let mut events = self.ended[1].clone();
+        events.extend(self.system.lasting_events());
+        events
     }
 
     /// The last sample.

@@ -282,7 +282,7 @@ fn contacts_are_stored_as_they_were_logged() {
             assert_eq!(ends, table.end);
         }
     }
-    for event in simulation.lasting_events() {
+    for event in simulation.outstanding_events() {
         table.push(&event);
     }
     writer.finish(&simulation, &Ending::Complete).unwrap();

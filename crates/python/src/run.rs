@@ -153,7 +153,7 @@ fn carry_out(
             }
             Ok(())
         })?;
-        for event in simulation.lasting_events() {
+        for event in simulation.outstanding_events() {
             contacts.push(&event);
         }
         return Ok(Outcome {

@@ -169,7 +169,7 @@ impl Summary {
         simulation: &Simulation,
     ) -> [ContactStatistics; EventTable::KINDS.len()] {
         let mut contacts = self.contacts;
-        for event in simulation.lasting_events() {
+        for event in simulation.outstanding_events() {
             contacts[kind(event.pair)].push(&event, simulation.time());
         }
         contacts

@@ -222,7 +222,7 @@ impl ZarrWriter {
     /// [`WriteError`] when the store refuses. What was committed before stays readable.
     pub fn finish(mut self, simulation: &Simulation, ending: &Ending) -> Result<(), WriteError> {
         let lasting = match &mut self.events {
-            Some(events) => events.push(&simulation.lasting_events()),
+            Some(events) => events.push(&simulation.outstanding_events()),
             None => Ok(()),
         };
         let committed = lasting.and_then(|()| self.commit(simulation, ending));
