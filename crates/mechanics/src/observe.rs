@@ -87,6 +87,13 @@ impl System {
             .collect()
     }
 
+    /// Number of joints of a chain of rigid links; zero for particles.
+    pub fn joints(&self) -> usize {
+        self.linkage
+            .as_ref()
+            .map_or(0, |linkage| linkage.joints.len())
+    }
+
     /// Names of the sprockets.
     pub fn sprocket_names(&self) -> Vec<String> {
         self.wheels.iter().map(|wheel| wheel.name.clone()).collect()
