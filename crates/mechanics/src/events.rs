@@ -154,7 +154,7 @@ impl System {
                 RailContact::Circles(contacts) => {
                     contacts.for_each_closed(|roller, onset, force| {
                         join(&mut seen[roller % rollers], onset, force);
-                    })
+                    });
                 }
                 RailContact::Plates(plates) => {
                     for (link, touch) in plates.memory.iter().enumerate() {

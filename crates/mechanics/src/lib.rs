@@ -40,8 +40,8 @@ mod torque;
 pub use assembly::{Assembled, Statics};
 pub use chain::{Chain, End, Ends};
 pub use drive::{
-    Adjust, Drive, Fit, Guide, GuideSupport, Layout, Parts, Rotation, Sprocket, Stop, Support,
-    Surface, Tighten, Touches,
+    Adjust, Drive, Fit, Flank, Guide, GuideSupport, Layout, Parts, Rotation, Sprocket, Stop,
+    Support, Surface, Tighten, Touches,
 };
 pub use energy::{Energy, Flow, Store};
 pub use error::{AssemblyError, DriveError};

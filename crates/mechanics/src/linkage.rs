@@ -274,14 +274,6 @@ impl Linkage {
         }
         sum
     }
-
-    /// Tension of every link \[N\]: half of what stretches it from both ends, joints and teeth together.
-    pub(crate) fn tension(&self, link: usize, play: &Play) -> f64 {
-        let [first, second] = play.posture.tips[link];
-        let along = (second.place - first.place).normalize();
-        let [at_first, at_second] = play.end_forces[link];
-        0.5 * along.dot(&(at_second - at_first))
-    }
 }
 
 /// Power that a support moved in time puts into the chain \[W\].
@@ -295,6 +287,14 @@ fn supplied(mates: &[Mate; 2], push: Vector, hole: &Part, pin: &Part) -> f64 {
 }
 
 impl Play {
+    /// Tension of every link \[N\]: half of what stretches it from both ends, joints and teeth together.
+    pub(crate) fn tension(&self, link: usize) -> f64 {
+        let [first, second] = self.posture.tips[link];
+        let along = (second.place - first.place).normalize();
+        let [at_first, at_second] = self.end_forces[link];
+        0.5 * along.dot(&(at_second - at_first))
+    }
+
     /// Applies a contact to the bodies it joins and keeps it for the implicit system.
     #[inline]
     pub(crate) fn apply(&mut self, element: &Element, push: Vector) {

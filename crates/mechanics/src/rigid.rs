@@ -124,7 +124,7 @@ impl FreeRoller {
 impl RigidLinks {
     /// Whether link `index` carries the bushes.
     pub(crate) fn is_inner(&self, index: usize) -> bool {
-        (index % 2 == 0) != self.outer_first
+        index.is_multiple_of(2) != self.outer_first
     }
 
     /// Names every parameter out of range.

@@ -352,7 +352,7 @@ impl System {
     fn renew_time_scales(&mut self, record: &Record) {
         let scales = match &self.linkage {
             // Stiffness changes little from one step to the next, and the bound has a reserve.
-            Some(_) if self.renew.1 % STEPS_PER_SCALE != 0 => return,
+            Some(_) if !self.renew.1.is_multiple_of(STEPS_PER_SCALE) => return,
             Some(linkage) => linkage.stiffest(self, &record.play),
             None => [self.stiffest(record); 2],
         };

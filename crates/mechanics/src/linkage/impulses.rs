@@ -238,7 +238,7 @@ impl Impulses {
                     self.beside[i * border + b] -= factor * value;
                 }
             }
-            if !(pivot > 0.0) {
+            if pivot.is_nan() || pivot <= 0.0 {
                 return false;
             }
             self.band[here(i)] = pivot;

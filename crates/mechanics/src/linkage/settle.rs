@@ -121,7 +121,7 @@ fn mean_tension(system: &System, q: &[f64]) -> f64 {
         return 0.0;
     };
     let sum: f64 = (0..linkage.links)
-        .map(|link| linkage.tension(link, &record.play))
+        .map(|link| record.play.tension(link))
         .sum();
     sum / linkage.links as f64
 }

@@ -1,17 +1,17 @@
 //! The bicycle drive of the tests, and what must hold for every linkage.
 
 use chaindrive_contact::dissipation::LankaraniNikravesh;
-use chaindrive_contact::elastic::{CylinderLaw, Cylinders};
+use chaindrive_contact::elastic::{CylinderLaw, Cylinders, ElasticLaw, Power};
 use chaindrive_contact::friction::Coulomb;
-use chaindrive_contact::{Dissipation, Friction, Law};
+use chaindrive_contact::{Dissipation, Elastic, Friction, Law};
 use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 
 use crate::energy::Flow;
 use crate::{
-    Adjust, Chain, ChainModel, Clearance, Drive, Ends, Fit, FreeRoller, Joint, Layout, LinkBody,
-    Motion, Parts, Record, RigidLinks, RollerModel, Rotation, Sprocket, Stop, Support, Surface,
-    System, Tighten, Torque,
+    Adjust, Chain, ChainModel, Clearance, Drive, Ends, Fit, Flank, FreeRoller, Joint, Layout,
+    LinkBody, Motion, Parts, Record, RigidLinks, RollerModel, Rotation, Sprocket, Stop, Support,
+    Surface, System, Tighten, Torque,
 };
 
 /// Steel on steel with a little friction, so that normals and tangents take part.
@@ -48,6 +48,7 @@ pub(super) fn bicycle(model: ChainModel) -> Parts {
         inertia,
         mass: 1.0,
         surface: surface(3.982e-3, 3.875e-3, 3.3e-3),
+        flank: None,
         gap_angle: 0.0,
     };
     let driven = Rotation::Free {
@@ -174,12 +175,98 @@ fn pretension_is_met() {
         system.evaluate(at, &mut a, &mut rates, &mut record);
         let linkage = system.linkage.as_ref().unwrap();
         let sum: f64 = (0..linkage.links)
-            .map(|link| linkage.tension(link, &record.play))
+            .map(|link| record.play.tension(link))
             .sum();
         let mean = sum / linkage.links as f64;
         assert!(
             (mean / 60.0 - 1.0).abs() < 2e-3,
             "{joint:?}, {rollers:?}: {mean} N"
         );
+    }
+}
+
+/// The lanes and the scalar path see the same surfaces and the same law, on seats, flanks and in the passage
+/// between them.
+#[test]
+fn lanes_and_scalar_contacts_agree() {
+    let mut parts = bicycle(ChainModel::Particles);
+    for sprocket in &mut parts.sprockets {
+        sprocket.surface.friction = Friction::None;
+        sprocket.flank = Some(Flank {
+            elastic: Elastic::Power(Power::linear(4e7)),
+            width: 4e-4,
+        });
+    }
+    let assembled = Drive::new(parts).unwrap().assemble().unwrap();
+    let (system, still) = (assembled.system, vec![0.0; assembled.q.len()]);
+    let mut shares = [0; 3];
+    // Shaking the rollers brings them onto the flanks.
+    for shake in 0..40_u32 {
+        let mut q = assembled.q.clone();
+        for (i, x) in q[..2 * system.stride].iter_mut().enumerate() {
+            *x += 2e-5 * f64::from(shake) * (f64::from(shake) + i as f64 % 104.0).sin();
+        }
+        let mut record = system.new_record();
+        let mut a = vec![0.0; q.len()];
+        let mut rates = vec![0.0; Flow::ALL.len()];
+        let at = Moment {
+            t: 0.0,
+            q: &q,
+            v: &still,
+        };
+        system.evaluate(at, &mut a, &mut rates, &mut record);
+        for (wheel, touch) in system.wheels.iter().zip(&record.teeth) {
+            let (frame, _, _) = system.wheel_frame(wheel, at);
+            let (law, flank) = (&wheel.contacts.surface.law, wheel.contacts.flank.unwrap());
+            wheel.contacts.for_each_slot(|slot, roller| {
+                let place = Point::new(q[roller], q[system.stride + roller]);
+                let [Some(probe), _] = wheel.contacts.faces(&frame, slot, place) else {
+                    return;
+                };
+                // The wheel turns under rollers at rest: only the elastic part is compared.
+                if probe.gap >= 0.0 || touch.closing[slot].abs() > 0.0 && touch.force[slot] == 0.0 {
+                    return;
+                }
+                let share = flank.share(probe.beyond);
+                let elastic = (1.0 - share) * law.elastic_force(-probe.gap)
+                    + share * flank.elastic.force(-probe.gap);
+                let factor = touch.force[slot] / elastic;
+                let rate = touch.closing[slot] * touch.inverse_onset[slot];
+                let damped =
+                    (1.0 + law.dissipation.factor().unwrap_or(0.0) * rate.min(4.0)).max(0.0);
+                assert!(
+                    (factor / damped - 1.0).abs() < 1e-12,
+                    "{factor} {damped} {share}"
+                );
+                shares[if share <= 0.0 {
+                    0
+                } else {
+                    1 + usize::from(share >= 1.0)
+                }] += 1;
+            });
+        }
+    }
+    assert!(shares.iter().all(|count| *count > 10), "{shares:?}");
+}
+
+/// Pushed from the seat over to the flank at one depth, a roller meets no step in the force.
+#[test]
+fn the_law_changes_continuously_from_seat_to_flank() {
+    let flank = Flank {
+        elastic: Elastic::Power(Power::linear(4e7)),
+        width: 4e-4,
+    };
+    let seat = Power::linear(1e8);
+    let force = |beyond: f64| {
+        let share = flank.share(beyond);
+        (1.0 - share) * seat.force(1e-6) + share * flank.elastic.force(1e-6)
+    };
+    let mut last = force(-1e-3);
+    assert!((last - 100.0).abs() < 1e-9 && (force(1e-3) - 40.0).abs() < 1e-9);
+    for step in 1..=2000 {
+        let next = force(-1e-3 + 1e-6 * f64::from(step));
+        // The steepest part of the smooth step has a slope of 3/(4 w).
+        assert!(next <= last && last - next <= 60.0 * 0.75 / 4e-4 * 1e-6 * 1.0001);
+        last = next;
     }
 }

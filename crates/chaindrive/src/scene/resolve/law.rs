@@ -18,7 +18,7 @@ pub(super) struct Pair {
 }
 
 /// Composite modulus of steel on steel \[Pa\].
-fn steel() -> f64 {
+pub(super) fn steel() -> f64 {
     Elasticity::STEEL.composite(Elasticity::STEEL)
 }
 

@@ -3,6 +3,7 @@
 mod catalogue;
 mod chain;
 mod contact;
+mod flank;
 mod guide;
 mod law;
 mod links;

@@ -9,7 +9,7 @@ use chaindrive_mechanics::{Rotation, Sprocket, Support};
 
 use super::chain::Resolved;
 use super::law::cylindrical;
-use super::{Findings, Names, contact, motion, point, tooth};
+use super::{Findings, Names, contact, flank, motion, point, tooth};
 use crate::scene::schema::{self, Push, SceneText};
 
 /// Stiffness of teeth \[link stiffnesses\] that the scene leaves open.
@@ -79,6 +79,9 @@ fn resolve(
         findings,
         |findings| law(gap.as_ref()?, chain, findings),
     );
+    let flank = gap
+        .as_ref()
+        .and_then(|gap| flank::resolve(text, path, scene, gap, chain, findings));
     let support = support?;
     let moves = match &support {
         Support::Springs { .. } => true,
@@ -102,6 +105,7 @@ fn resolve(
         inertia: text.inertia.map_or(0.0, |inertia| inertia.0),
         mass: text.mass.map_or(0.0, |mass| mass.0),
         surface: surface?,
+        flank,
         gap_angle: text.gap_angle.map_or(FRAC_PI_2, |angle| angle.0),
     })
 }

@@ -15,6 +15,10 @@ pub(crate) struct Contacts {
     /// Contact of rollers with teeth.
     #[serde(default)]
     pub(crate) teeth: Contact,
+    /// What is different on the flanks of all teeth; absent: nothing, but for rigid links that leave the
+    /// law of their teeth open, where seat and flank follow from their own curvatures.
+    #[serde(default)]
+    pub(crate) flanks: Option<Flank>,
     /// Contact of the chain with guides.
     #[serde(default)]
     pub(crate) guides: Contact,
@@ -24,6 +28,19 @@ pub(crate) struct Contacts {
     /// Contact of bushes with free rollers.
     #[serde(default)]
     pub(crate) rollers: Contact,
+}
+
+/// The flank of a tooth, where it does not answer like the hollow seat.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Flank {
+    /// Elastic law beyond the hollow.
+    pub(crate) law: Elastic,
+    /// The law changes smoothly within this distance on either side of the end of the hollow [m]; absent: a
+    /// twentieth of the roller diameter, about the half-width of the patch of contact.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) width: Option<Length>,
 }
 
 /// A contact. What a sprocket or guide leaves out is taken from `contact.teeth` or

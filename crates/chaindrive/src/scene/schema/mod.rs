@@ -15,7 +15,7 @@ mod sprocket;
 mod tensioner;
 
 pub(crate) use chain::{Chain, End, Start};
-pub(crate) use contact::{Contact, Contacts, Cylinders, Dissipation, Elastic};
+pub(crate) use contact::{Contact, Contacts, Cylinders, Dissipation, Elastic, Flank};
 pub(crate) use friction::Friction;
 pub(crate) use guide::{Face, Guide, GuideSupport, Touches, TravelSide};
 pub(crate) use links::{ChainModel, Joint, Link, Roller, Rollers};
