@@ -9,7 +9,7 @@
 //! their bush and a wheel only; they are eliminated first and leave the links' pattern as it is.
 
 use chaindrive_geometry::Vector;
-use chaindrive_integrate::Weights;
+use chaindrive_integrate::{Moment, Weights};
 use nalgebra::{Matrix3, Vector3};
 
 use super::{Blocks, Element, Joining, Linkage, Mate, Mount, Partner, Play, cross, turned};
@@ -22,6 +22,15 @@ pub(super) enum Row {
     Nothing,
     Body(usize, Vector3<f64>),
     Border([(usize, f64); 3]),
+}
+
+/// What J x is to be at the hinges.
+#[derive(Clone, Copy)]
+enum Asked<'a> {
+    /// What J b is.
+    Kept,
+    /// These values, by joint.
+    Given(&'a [Vector]),
 }
 
 /// Where a body's unknowns stand.
@@ -60,6 +69,43 @@ impl Linkage {
         if weights.stiffness <= 0.0 && matches!(self.joining, Joining::Clearance(_)) {
             return self.damp(system, weights.damping, play, x);
         }
+        self.eliminate(system, weights, play, x, Asked::Kept)
+    }
+
+    /// Velocities v nearest to the given ones, in kinetic energy, with which no hinge opens.
+    pub(crate) fn project(
+        &self,
+        system: &System,
+        at: Moment<'_>,
+        play: &mut Play,
+        v: &mut [f64],
+    ) -> bool {
+        let none = Weights {
+            damping: 0.0,
+            stiffness: 0.0,
+        };
+        let held = self.joints.iter().map(|joint| {
+            let of = |mate: Mate| match mate {
+                Mate::Ground(_) => self.part(mate, at, &play.posture).velocity,
+                Mate::Link { .. } => Vector::zeros(),
+            };
+            // v_pin − v_hole = 0: what the frame does stands on the other side.
+            joint
+                .pair
+                .map_or_else(Vector::zeros, |[hole, pin]| of(hole) - of(pin))
+        });
+        let held: Vec<Vector> = held.collect();
+        self.eliminate(system, none, play, v, Asked::Given(&held))
+    }
+
+    fn eliminate(
+        &self,
+        system: &System,
+        weights: Weights,
+        play: &mut Play,
+        x: &mut [f64],
+        asked: Asked<'_>,
+    ) -> bool {
         let border = x.len() - self.dofs() + if self.closed { 3 } else { 0 };
         let row = self.links - usize::from(self.closed);
         let rollers = self.bodies.len() - self.links;
@@ -85,7 +131,7 @@ impl Linkage {
             sum.add(element, &play.mounts, weights);
         }
         if matches!(self.joining, Joining::Hinges(_)) {
-            sum.add_hinges(play, weights, x);
+            sum.add_hinges(play, weights, x, asked);
         }
         let solved = sum.eliminate_rollers() && blocks.solve();
         if solved {
@@ -250,7 +296,7 @@ const HINGE: f64 = 1e7;
 
 impl Sum<'_> {
     /// Ideal joints as very heavy rows: W Jᵀ (J x − J b) keeps J x at what the accelerations b ask for.
-    fn add_hinges(&mut self, play: &Play, weights: Weights, b: &[f64]) {
+    fn add_hinges(&mut self, play: &Play, weights: Weights, b: &[f64], asked: Asked<'_>) {
         let linkage = self.linkage;
         let heaviest = linkage
             .bodies
@@ -283,7 +329,10 @@ impl Sum<'_> {
                         (body, row, row.dot(&known))
                     })
                 });
-                let asked = pin.map_or(0.0, |p| p.2) - hole.map_or(0.0, |h| h.2);
+                let asked = match asked {
+                    Asked::Kept => pin.map_or(0.0, |p| p.2) - hole.map_or(0.0, |h| h.2),
+                    Asked::Given(values) => direction.dot(&values[index]),
+                };
                 for (side, sign) in [(pin, 1.0), (hole, -1.0)] {
                     if let Some((body, row, _)) = side {
                         self.force(body, row * (sign * weight * asked));
