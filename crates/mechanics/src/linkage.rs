@@ -21,6 +21,8 @@ mod posture;
 pub(crate) mod rates;
 pub(crate) mod settle;
 #[cfg(test)]
+mod slider_crank;
+#[cfg(test)]
 mod tests;
 
 use chaindrive_geometry::Vector;

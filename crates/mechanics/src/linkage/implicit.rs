@@ -26,7 +26,7 @@ pub(super) enum Row {
 
 /// What J x is to be at the hinges.
 #[derive(Clone, Copy)]
-enum Asked<'a> {
+pub(super) enum Asked<'a> {
     /// What J b is.
     Kept,
     /// These values, by joint.
@@ -98,7 +98,7 @@ impl Linkage {
         self.eliminate(system, none, play, v, Asked::Given(&held))
     }
 
-    fn eliminate(
+    pub(super) fn eliminate(
         &self,
         system: &System,
         weights: Weights,
@@ -386,9 +386,15 @@ impl Sum<'_> {
             self.square(element.a, a, b, weights.stiffness * element.across.max(0.0));
             self.add_bend(&pivoting, mounts, weights.stiffness);
         }
-        if element.drag > 0.0 {
+        // Newton's method wants the tangent, a single step the secant.
+        let drag = if weights.stiffness > 0.0 {
+            element.drag
+        } else {
+            element.secant
+        };
+        if drag > 0.0 {
             let (a, b) = rows(tangent, [element.lever_a, element.lever_b]);
-            self.square(element.a, a, b, weights.damping * element.drag);
+            self.square(element.a, a, b, weights.damping * drag);
         }
     }
 
