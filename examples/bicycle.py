@@ -1,7 +1,7 @@
 """The bicycle drive with play in its joints: tables and figures of docs/clearance-joints.md.
 
 Run it as ``python examples/bicycle.py [--results FOLDER] [--until SECONDS]``. With the default of
-0.25 s it takes some ten minutes on one core; shorter runs only show that everything works. It
+0.25 s it takes some two minutes on one core; shorter runs only show that everything works. It
 prints the tables as Markdown and draws bicycle.png and bicycle_methods.png.
 """
 
