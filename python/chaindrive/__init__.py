@@ -14,6 +14,7 @@ penetrations are positive.
 
 from chaindrive import errors, kinematics, plot, scenes
 from chaindrive._core import __version__
+from chaindrive.catalogue import catalogue
 from chaindrive.channels import channels
 from chaindrive.drive import Drive, load, schema
 from chaindrive.errors import (
@@ -41,6 +42,7 @@ __all__ = [
     "SimulationError",
     "WriteError",
     "__version__",
+    "catalogue",
     "channels",
     "errors",
     "friction",

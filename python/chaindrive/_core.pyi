@@ -13,6 +13,7 @@ __all__ = [
     "Law",
     "__version__",
     "_cli",
+    "catalogue",
     "centre_distance_for",
     "channels",
     "links_for",
@@ -98,10 +99,12 @@ def simulate(
     step: float | None,
     tolerance: float,
     onset_depth: float | None,
+    events: Sequence[str],
     output: str | PathLike[str] | None,
     overwrite: bool,
     progress: Callable[[float], object] | None,
 ) -> Mapping[str, Any]: ...
+def catalogue() -> dict[str, Any]: ...
 def presets() -> list[tuple[str, str]]: ...
 def schema() -> str: ...
 def channels() -> list[tuple[str, str, str | None, str, bool]]: ...

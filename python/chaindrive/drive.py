@@ -142,7 +142,7 @@ class Drive:
 
     @property
     def run_defaults(self) -> dict[str, Any]:
-        """What `simulate` does unless told otherwise: until, every, method, step and record."""
+        """What `simulate` does unless told otherwise: the values of its settings, by name."""
         return self._inner.run_defaults()
 
     def to_dict(self) -> dict[str, Any]:
@@ -259,12 +259,12 @@ class Drive:
         return self._inner.modes()["frequency"]
 
     def law(self, body: str) -> Law:
-        """Return the contact law of a sprocket or guide, by name.
+        """Return the contact law of a sprocket or guide by name, or of ``"joints"``, ``"rollers"``.
 
         Raises
         ------
         KeyError
-            No sprocket or guide has this name.
+            No sprocket or guide has this name, or the chain has no such contacts.
         """
         return Law._of(self._inner.law(body))
 

@@ -29,6 +29,7 @@ def simulate(
     step: float | None = None,
     tolerance: float | None = None,
     onset_depth: float | None = None,
+    events: str | Iterable[str] | None = None,
     output: str | PathLike[str] | None = None,
     overwrite: bool = False,
     progress: bool | Callable[[float], object] = False,
@@ -42,15 +43,17 @@ def simulate(
     drive
         What to simulate.
     until
-        End of the run [s]. This and the next four come from the scene when absent.
+        End of the run [s]. This and the next seven come from the scene when absent.
     every
         Interval between samples [s]. Samples are interpolated: more of them do not change the
         motion.
     record
-        Names of channels, see `channels`; ``"all"`` for all of them.
+        Names of channels, see `channels`; ``"all"`` for all that the chain has. Those of joints and
+        of the direction of links belong to rigid links.
     method
         ``"verlet"``, ``"rk4"`` or ``"dormand-prince"``; the implicit methods
-        ``"implicit-damping"`` and ``"generalized-alpha"`` are not for the particle chain.
+        ``"implicit-damping"`` and ``"generalized-alpha"`` are for rigid links only. ``"auto"``
+        takes implicit damping for them, and Verlet for particles.
     step
         Step of the fixed-step methods, longest step of the adaptive one [s]; chosen from the
         stiffest mode when neither the scene nor the caller gives it.
@@ -59,6 +62,8 @@ def simulate(
     onset_depth
         Deepest penetration at which a contact may begin [m]: deeper steps are rejected and
         shortened. Absent: contacts begin wherever a step lands.
+    events
+        Contacts to log from touch to parting: of ``"teeth"``, ``"guides"``, ``"joints"``.
     output
         Zarr store to stream the recording into, ``"run.zarr"``. It can be opened while the run
         goes on; memory stays bounded, and the dataset returned reads from the store. Takes the
@@ -71,7 +76,11 @@ def simulate(
     Returns
     -------
     xarray.Dataset
-        One variable a channel, (time,) or (time, labels), with ``units`` and ``long_name``. The
+        One variable a channel, (time,) or (time, labels), with ``units`` and ``long_name``.
+        Contacts that were logged are ``event_kind``, ``event_body``, ``event_roller``,
+        ``event_start``, ``event_end``, ``event_onset_speed``, ``event_peak_force`` and
+        ``event_impulse``, (event,), in the order of their ends; what lasts comes last, with an
+        infinite end. The
         attributes tell how it came about: ``scene`` (a text that reproduces the drive),
         ``chaindrive_version``, ``method``, ``step``, counts of steps, rejections and evaluations,
         ``energy_supplied`` and ``energy_residual_largest`` [J], ``wall_time`` [s],
@@ -98,7 +107,7 @@ def simulate(
     defaults = drive.run_defaults
     if output is not None:
         _require_zarr()
-    names = _names(defaults["record"] if record is None else record)
+    names = _listed(defaults["record"] if record is None else record)
     settings: dict[str, Any] = {
         "until": defaults["until"] if until is None else until,
         "every": defaults["every"] if every is None else every,
@@ -106,6 +115,8 @@ def simulate(
         # The step of the scene goes with the method of the scene.
         "step": defaults["step"] if step is None and method is None else step,
         "tolerance": defaults["tolerance"] if tolerance is None else tolerance,
+        "onset_depth": defaults["onset_depth"] if onset_depth is None else onset_depth,
+        "events": _listed(defaults["events"] if events is None else events),
     }
     start = time.perf_counter()
     line = _Line()
@@ -115,7 +126,6 @@ def simulate(
             drive._inner,
             names,
             **settings,
-            onset_depth=onset_depth,
             output=None if output is None else fspath(output),
             overwrite=overwrite,
             progress=tell,
@@ -130,7 +140,6 @@ def simulate(
         "scene": drive.text,
         "until": settings["until"],
         "every": settings["every"],
-        "method": settings["method"],
         **result["attributes"],
         "wall_time": time.perf_counter() - start,
     }
@@ -146,6 +155,10 @@ def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:
     for name, values in result["columns"].items():
         about = {"units": known[name].unit, "long_name": known[name].description}
         variables[name] = (known[name].dims, values, about)
+    for name, values, unit, text in result.get("events", []):
+        about = {"long_name": text} if unit is None else {"units": unit, "long_name": text}
+        values = np.asarray(values, dtype=np.str_) if isinstance(values, list) else values
+        variables[name] = (("event",), values, about)
     coordinates: dict[str, Any] = {
         dim: np.arange(labels) if isinstance(labels, int) else np.asarray(labels, dtype=np.str_)
         for dim, labels in result["labels"].items()
@@ -160,11 +173,8 @@ def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:
     return xr.Dataset(variables, coords=coordinates, attrs=finite)
 
 
-def _names(record: str | Iterable[str]) -> list[str]:
-    if record == "all":
-        return list(channels())
-    names = [record] if isinstance(record, str) else list(record)
-    return list(dict.fromkeys(names))
+def _listed(names: str | Iterable[str]) -> list[str]:
+    return list(dict.fromkeys([names] if isinstance(names, str) else names))
 
 
 def _require_zarr() -> None:

@@ -4,6 +4,7 @@
 //! measured, by a few hundred steps. Front ends print a [`Description`] as text or as JSON.
 
 mod cost;
+mod links;
 mod polygon;
 mod route;
 mod text;
@@ -11,11 +12,12 @@ mod text;
 use chaindrive_geometry::mesh_frequency;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 use chaindrive_mechanics::{
-    Assembled, Chain, Drive, Flow, GuideSupport, Observation, Rotation, Statics,
+    Assembled, Chain, ChainModel, Drive, Flow, GuideSupport, Observation, Rotation, Statics,
 };
 use serde::Serialize;
 
 pub use cost::Cost;
+pub use links::{ContactFacts, LinkFacts};
 pub use polygon::PolygonPair;
 pub use route::{SpanAtRest, StopFacts, spans_at_rest};
 
@@ -53,7 +55,9 @@ pub struct ChainFacts {
     pub pitch: f64,
     /// Mass per length \[kg/m\].
     pub mass_per_length: f64,
-    /// Axial stiffness of one link \[N/m\], mean.
+    /// What it is made of.
+    pub bodies: LinkFacts,
+    /// Axial stiffness of one link \[N/m\], mean; of rigid links that with which they are laid.
     pub link_stiffness: f64,
     /// Axial stiffness k p \[N\]: force over strain.
     pub axial_stiffness: f64,
@@ -104,6 +108,8 @@ pub struct Model {
     pub moving_guides: usize,
     /// Tensioners.
     pub tensioners: usize,
+    /// Contact laws, each kind of pair once for every law.
+    pub contacts: Vec<ContactFacts>,
     /// What the scene leaves out.
     pub absent: Vec<&'static str>,
 }
@@ -113,6 +119,8 @@ pub struct Model {
 pub struct TimeScales {
     /// 1/ω of the stiffest mode \[s\].
     pub stiffest: f64,
+    /// The same with the damping left out \[s\].
+    pub undamped: f64,
     /// Speed of the fastest roller \[m/s\].
     pub chain_speed: f64,
     /// Frequency \[Hz\] at which rollers seat on every sprocket.
@@ -155,6 +163,7 @@ impl Description {
             model: model(drive, &assembled),
             time_scales: TimeScales {
                 stiffest: system.time_scale(),
+                undamped: system.undamped_time_scale(),
                 chain_speed: speeds.fold(0.0, f64::max),
                 mesh_frequencies: mesh.collect(),
             },
@@ -196,6 +205,7 @@ fn chain_facts(chain: &Chain, spans: &[SpanAtRest]) -> ChainFacts {
         links: chain.links(),
         pitch: chain.pitch,
         mass_per_length,
+        bodies: LinkFacts::of(chain),
         link_stiffness: stiffness,
         axial_stiffness: stiffness * chain.pitch,
         // c = p √(k/m)
@@ -208,7 +218,6 @@ fn chain_facts(chain: &Chain, spans: &[SpanAtRest]) -> ChainFacts {
 }
 
 fn model(drive: &Drive, assembled: &Assembled) -> Model {
-    use chaindrive_contact::Friction;
     let free = drive
         .sprockets
         .iter()
@@ -218,15 +227,18 @@ fn model(drive: &Drive, assembled: &Assembled) -> Model {
         .iter()
         .filter(|guide| guide.support == GuideSupport::Fixed);
     let (free, fixed) = (free.count(), fixed.count());
-    let surfaces = drive.sprockets.iter().map(|s| &s.surface);
-    let mut surfaces = surfaces.chain(drive.guides.iter().map(|guide| &guide.surface));
+    let contacts = links::contacts(drive);
+    let particles = drive.chain.model == ChainModel::Particles;
     let lacks = [
         (drive.sprockets.is_empty(), "sprockets"),
         (drive.guides.is_empty(), "guides"),
         (drive.tensioners.is_empty(), "tensioners"),
-        (surfaces.all(|s| s.friction == Friction::None), "friction"),
         (
-            drive.chain.damping.iter().all(|d| *d <= 0.0),
+            contacts.iter().all(|contact| contact.friction == "none"),
+            "friction",
+        ),
+        (
+            particles && drive.chain.damping.iter().all(|d| *d <= 0.0),
             "damping of the links",
         ),
         (drive.gravity.norm() <= 0.0, "gravity"),
@@ -241,6 +253,7 @@ fn model(drive: &Drive, assembled: &Assembled) -> Model {
         fixed_guides: fixed,
         moving_guides: drive.guides.len() - fixed,
         tensioners: drive.tensioners.len(),
+        contacts,
         absent: lacks
             .iter()
             .filter(|(lacking, _)| *lacking)

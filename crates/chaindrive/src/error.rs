@@ -26,6 +26,13 @@ pub enum SimulationError {
         known: String,
     },
 
+    /// A channel of something that the drive does not have.
+    #[error(
+        "this chain has no `{name}`: particles have neither joints nor directions; set `chain.model` to \
+         `clearance-joints` or `ideal-joints`, or leave the channel out"
+    )]
+    AbsentChannel { name: &'static str },
+
     /// The drive could not be brought into its initial state.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
@@ -57,7 +64,9 @@ impl SimulationError {
     pub(crate) fn starting(error: IntegrationError, run: &Run) -> Self {
         match error {
             IntegrationError::Unsupported { .. } => {
-                let explicit = Stepping::ALL.into_iter().filter(|s| !s.is_implicit());
+                let explicit =
+                    |method: &Stepping| !method.is_implicit() && *method != Stepping::Auto;
+                let explicit = Stepping::ALL.into_iter().filter(explicit);
                 let works: Vec<_> = explicit.map(Stepping::name).collect();
                 Self::Implicit {
                     method: run.stepping.name(),

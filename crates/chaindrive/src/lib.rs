@@ -18,6 +18,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod catalogue;
 pub mod describe;
 mod error;
 pub mod record;
@@ -25,11 +26,15 @@ mod run;
 pub mod scene;
 mod simulate;
 
+pub use catalogue::CatalogueChain;
 pub use chaindrive_integrate::{Method, Statistics};
-pub use chaindrive_mechanics::{Assembled, Drive, Energy, Flow, Mode, Modes, Observation, Store};
+pub use chaindrive_mechanics::{
+    Assembled, ContactEvent, ContactPair, Drive, Energy, EventKinds, Flow, Mode, Modes,
+    Observation, Store,
+};
 pub use describe::Description;
 pub use error::SimulationError;
-pub use record::{Axis, Channel, Recording, Summary};
+pub use record::{Axis, Channel, EventTable, Recording, Summary};
 pub use run::{Run, Stepping};
 pub use scene::Scene;
 pub use simulate::Simulation;

@@ -1,13 +1,15 @@
 //! Recordings: labelled columns with units, and the story of how they came about.
 
 mod channel;
+mod event;
 mod summary;
 mod zarr;
 
 use chaindrive_mechanics::{Energy, Flow, Observation, Store, System};
 
 pub use channel::{Axis, Channel};
-pub use summary::{ForceStatistics, SpanStatistics, Summary};
+pub use event::{EventColumn, EventTable};
+pub use summary::{ContactStatistics, ForceStatistics, SpanStatistics, Summary};
 pub use zarr::{Ending, Existing, Provenance, WriteError, ZarrWriter};
 
 /// One channel of a recording.
@@ -29,6 +31,13 @@ pub struct Recording {
     /// The channels recorded.
     pub columns: Vec<Column>,
     start: Option<Energy>,
+}
+
+impl Axis {
+    /// Whether its labels are numbers, not names.
+    pub fn is_numbered(self) -> bool {
+        matches!(self, Self::Roller | Self::Link | Self::Joint)
+    }
 }
 
 impl Recording {
@@ -75,13 +84,14 @@ impl Recording {
     }
 }
 
-/// Labels along an axis: names, or numbers from 0 for rollers and links; `None` for a scalar.
+/// Labels along an axis: names, or numbers from 0 for rollers, links and joints; `None` for a scalar.
 pub fn labels(axis: Axis, system: &System) -> Option<Vec<String>> {
     let numbers = |count: usize| (0..count).map(|i| i.to_string()).collect();
     match axis {
         Axis::None => None,
         Axis::Roller => Some(numbers(system.rollers())),
         Axis::Link => Some(numbers(system.links())),
+        Axis::Joint => Some(numbers(system.joints())),
         Axis::Span => Some(system.span_names()),
         Axis::Sprocket => Some(system.sprocket_names()),
         Axis::Guide => Some(system.guide_names()),

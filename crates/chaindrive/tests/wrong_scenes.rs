@@ -106,7 +106,7 @@ const CASES: &[Case] = &[
     ("15.88 mm", "30 mm", "sprockets[0].teeth", 15, "smaller than the pitch"),
     // Kinds.
     ("kind = \"constant\", speed", "kind = \"constnt\", speed", "sprockets[0].motion.kind", 17, "unknown kind `constnt`; did you mean `constant`?"),
-    ("kind = \"power\"", "kind = \"quantum\"", "contact.teeth.law.kind", 11, "known are linear, power, hertz, johnson"),
+    ("kind = \"power\"", "kind = \"quantum\"", "contact.teeth.law.kind", 11, "known are linear, power, hertz, johnson, conformal"),
     ("kind = \"spring\"", "kind = 3", "tensioners[0].push.kind", 32, "needed is a text"),
     ("kind = \"spring\", ", "", "tensioners[0].push.kind", 32, "missing; the kinds are locked, spring"),
     ("push = { kind = \"spring\", preload = \"2 kN\", stiffness = \"10 kN/m\" }", "push = \"lokced\"", "tensioners[0].push", 32, "did you mean `locked`?"),

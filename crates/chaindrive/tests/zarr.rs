@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use chaindrive::record::{Ending, Existing, Provenance, WriteError, ZarrWriter};
-use chaindrive::{Channel, Recording, Run, Scene, Simulation};
+use chaindrive::{Channel, EventTable, Recording, Run, Scene, Simulation};
 use object_store::local::LocalFileSystem;
 use zarrs::array::{Array, ArrayMetadata};
 use zarrs::group::Group;
@@ -65,8 +65,8 @@ fn bits(values: &[f64]) -> Vec<u64> {
 fn what_is_stored_is_what_was_sampled() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("ring.zarr");
-    let channels = Channel::from_names(&["all"]).unwrap();
     let (scene, run, mut simulation) = ring(0.17);
+    let channels = Channel::chosen(&["all"], simulation.system()).unwrap();
     let mut recording = Recording::new(&channels, simulation.system());
     let provenance = Provenance::of(&scene, &run);
     let mut writer =
@@ -253,4 +253,53 @@ fn only_results_are_replaced() {
         Err(WriteError::Foreign { .. })
     ));
     assert_eq!(fs::read_to_string(&path).unwrap(), "a file");
+}
+
+/// Contacts are appended while the run goes on; what lasts is appended at the end, and no row changes.
+#[test]
+fn contacts_are_stored_as_they_were_logged() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("pin.zarr");
+    let scene = Scene::preset("pin_in_bush").unwrap();
+    let run = Run::suggested(&scene.run_defaults());
+    let mut simulation = Simulation::start(&scene.drive().unwrap(), &run).unwrap();
+    let mut table = EventTable::new(simulation.system());
+    let provenance = Provenance::of(&scene, &run);
+    let channels = [Channel::JointForce];
+    let mut writer =
+        ZarrWriter::create(&path, &simulation, &channels, provenance, Existing::Keep).unwrap();
+    let store = reader(&path);
+    assert_eq!(numbers(&store, "event_start").0, [0]);
+    while simulation.next_sample().unwrap().is_some() {
+        for event in simulation.events() {
+            table.push(event);
+        }
+        writer.push(&simulation).unwrap();
+        if simulation.time() > 0.05 {
+            writer.flush(&simulation).unwrap();
+            let (shape, ends) = numbers(&store, "event_end");
+            assert_eq!(shape, [table.len() as u64]);
+            assert_eq!(ends, table.end);
+        }
+    }
+    for event in simulation.outstanding_events() {
+        table.push(&event);
+    }
+    writer.finish(&simulation, &Ending::Complete).unwrap();
+    assert!(table.len() > 10, "{}", table.len());
+    for (name, expected) in [
+        ("event_start", &table.start),
+        ("event_onset_speed", &table.onset_speed),
+        ("event_peak_force", &table.peak_force),
+        ("event_impulse", &table.impulse),
+    ] {
+        let (_, found) = numbers(&store, name);
+        assert_eq!(bits(&found), bits(expected), "{name}");
+    }
+    let texts = |name: &str| -> Vec<String> {
+        let array = Array::open(store.clone(), &format!("/{name}")).unwrap();
+        array.retrieve_array_subset(&array.subset_all()).unwrap()
+    };
+    assert_eq!(texts("event_kind"), table.kind);
+    assert_eq!(texts("event_body"), table.body);
 }

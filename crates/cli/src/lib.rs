@@ -52,6 +52,7 @@ enum Verb {
     Schema,
     /// Lists what a run can record.
     Channels,
+    Catalogue(lists::Catalogue),
 }
 
 /// Runs the command with its arguments, the program's name first, and returns the exit code.
@@ -84,6 +85,7 @@ where
         Verb::Scenes(arguments) => lists::scenes(arguments),
         Verb::Schema => lists::schema(),
         Verb::Channels => lists::channels(),
+        Verb::Catalogue(arguments) => lists::catalogue(arguments),
     };
     match done {
         Ok(()) => 0,

@@ -37,7 +37,7 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "TIME")]
     every: Option<String>,
 
-    /// Method of time stepping; implicit-damping and generalized-alpha are not for the particle chain
+    /// Method of time stepping; implicit-damping and generalized-alpha are for rigid links only
     #[arg(long, value_parser = Stepping::ALL.map(Stepping::name))]
     method: Option<String>,
 
@@ -56,6 +56,10 @@ pub(crate) struct RunArguments {
     /// Channels to record, separated by commas, or all; `chaindrive channels` lists them
     #[arg(long, value_name = "CHANNELS", value_delimiter = ',')]
     record: Vec<String>,
+
+    /// Contacts to log, separated by commas: teeth, guides, joints; they go into Zarr results and the summary
+    #[arg(long, value_name = "KINDS", value_delimiter = ',')]
+    events: Vec<String>,
 }
 
 /// Reads a scene file, stdin or an embedded scene.
@@ -94,7 +98,9 @@ impl SceneArguments {
 
 impl RunArguments {
     /// Writes the settings into the scene and reads all of them from there.
-    pub(crate) fn apply(&self, mut scene: Scene) -> Result<(Scene, Run, Vec<Channel>), Failure> {
+    ///
+    /// The channels are names: which of them a chain has is known when it is assembled.
+    pub(crate) fn apply(&self, mut scene: Scene) -> Result<(Scene, Run, Vec<String>), Failure> {
         let settings = [
             ("run.until", &self.until),
             ("run.every", &self.every),
@@ -108,14 +114,13 @@ impl RunArguments {
                 scene = scene.replace(path, value)?;
             }
         }
-        let names = self
-            .record
-            .iter()
-            .map(|name| name.trim())
-            .filter(|name| !name.is_empty());
-        let names: Vec<Value> = names.map(Value::from).collect();
-        if !names.is_empty() {
-            scene = scene.replace_json("run.record", &Value::Array(names))?;
+        for (path, names) in [("run.record", &self.record), ("run.events", &self.events)] {
+            let names = names.iter().map(|name| name.trim());
+            let names = names.filter(|name| !name.is_empty());
+            let names: Vec<Value> = names.map(Value::from).collect();
+            if !names.is_empty() {
+                scene = scene.replace_json(path, &Value::Array(names))?;
+            }
         }
         let wanted = scene.run_defaults();
         let run = Run::suggested(&wanted);
@@ -124,7 +129,7 @@ impl RunArguments {
             source: error,
         };
         run.check().map_err(wrong)?;
-        let channels = Channel::from_names(&wanted.record).map_err(wrong)?;
-        Ok((scene, run, channels))
+        Channel::check(&wanted.record).map_err(wrong)?;
+        Ok((scene, run, wanted.record))
     }
 }

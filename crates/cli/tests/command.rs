@@ -339,8 +339,51 @@ fn the_lists() {
     assert!(code == 0 && schema["properties"]["chain"].is_object());
     let (code, out, _) = run(at, &["channels"]);
     assert!(code == 0 && out.contains("span_tension") && out.contains("N m"));
+    let (code, out, _) = run(at, &["catalogue"]);
+    assert!(code == 0 && out.lines().count() > 40 && out.contains("16B-1"));
+    let (code, out, _) = run(at, &["catalogue", "80"]);
+    assert!(
+        code == 0 && out.starts_with("16A-1") && out.contains("assumed:"),
+        "{out}"
+    );
+    let (code, _, err) = run(at, &["catalogue", "17B"]);
+    assert!(
+        code == 2 && err.contains("no chain of the catalogue"),
+        "{err}"
+    );
     let (code, out, _) = run(at, &["--help"]);
     assert!(code == 0 && out.contains("130  interrupted"), "{out}");
+}
+
+#[test]
+fn logged_contacts_are_counted_and_stored() {
+    let folder = folder();
+    let at = folder.path();
+    let short = ["run", "bicycle", "--until", "3 ms", "-o", "bicycle.zarr"];
+    let more = ["--events", "teeth,joints", "--record", "joint_force"];
+    let (code, out, err) = run(at, &[&short[..], &more].concat());
+    assert_eq!(code, 0, "{err}");
+    for words in [
+        "mean peak [N]",
+        "  tooth ",
+        "  joint ",
+        "implicit damping with",
+    ] {
+        assert!(out.contains(words), "{words}:\n{out}");
+    }
+    let group = group(&at.join("bicycle.zarr"));
+    let arrays = &group["consolidated_metadata"]["metadata"];
+    let events = arrays["event_start"]["shape"][0].as_u64().unwrap();
+    assert!(events >= 104, "{events}: all joints are pressed");
+    assert_eq!(arrays["event_kind"]["shape"][0], events);
+    assert_eq!(arrays["joint_force"]["shape"], serde_json::json!([31, 104]));
+
+    let (code, _, err) = run(at, &["run", "spinning_ring", "--record", "joint_force"]);
+    assert_eq!(code, 2);
+    assert!(err.contains("this chain has no `joint_force`"), "{err}");
+    let (code, _, err) = run(at, &["run", "bicycle", "--events", "tooth"]);
+    assert_eq!(code, 2);
+    assert!(err.contains("run.events[0]"), "{err}");
 }
 
 #[test]

@@ -2,13 +2,14 @@
 
 mod lay;
 mod relax;
+mod rigid;
 mod setting_off;
 mod slack;
 
 use chaindrive_geometry::Point;
 
-use crate::drive::{Layout, Parts};
-use crate::{AssemblyError, ChainModel, Drive, Joint, RigidLinks, System, linkage};
+use crate::drive::Layout;
+use crate::{AssemblyError, ChainModel, Drive, Joint, System};
 
 pub use relax::Statics;
 pub(crate) use relax::{Curvature, curvature};
@@ -41,11 +42,6 @@ pub struct Fitting {
     pub travel: f64,
 }
 
-/// Depth at which the teeth are asked for their stiffness \[m\].
-const PRESSED: f64 = 1e-6;
-/// Stiffness of a rigid link while it is laid, in those of the teeth.
-const HARD: f64 = 1e3;
-
 impl Drive {
     /// Lays the chain, finds the static state where asked, and sets everything going at the
     /// speed of the first driven sprocket.
@@ -53,31 +49,10 @@ impl Drive {
     /// # Errors
     /// [`AssemblyError`] when the chain does not close or no equilibrium is found.
     pub fn assemble(&self) -> Result<Assembled, AssemblyError> {
-        if let Some(stiffened) = self.stiffened() {
-            return stiffened.assemble_as_is();
+        match &self.chain.model {
+            ChainModel::Rigid(links) if links.joint == Joint::Ideal => self.assemble_rigid(),
+            ChainModel::Rigid(_) | ChainModel::Particles => self.assemble_as_is(),
         }
-        self.assemble_as_is()
-    }
-
-    /// For ideal joints: the drive with links so stiff that they hardly stretch while the chain is laid.
-    fn stiffened(&self) -> Option<Self> {
-        let ChainModel::Rigid(links) = &self.chain.model else {
-            return None;
-        };
-        if links.joint != Joint::Ideal {
-            return None;
-        }
-        let teeth = self
-            .sprockets
-            .iter()
-            .map(|sprocket| sprocket.surface.law.stiffness(PRESSED))
-            .fold(0.0, f64::max);
-        if teeth <= 0.0 {
-            return None;
-        }
-        let mut parts = self.parts().clone();
-        parts.chain.stiffness.fill(HARD * teeth);
-        Self::new(parts).ok()
     }
 
     fn assemble_as_is(&self) -> Result<Assembled, AssemblyError> {
@@ -109,30 +84,6 @@ impl Drive {
             statics,
             fitting,
         })
-    }
-
-    /// Puts rigid links where the particles are, and settles the joints.
-    fn with_links(
-        &self,
-        system: System,
-        parts: &Parts,
-        links: &RigidLinks,
-        q: &[f64],
-        v: &[f64],
-    ) -> Result<(System, Vec<f64>, Vec<f64>), AssemblyError> {
-        let mut converted = linkage::build::convert(system, parts, links, q, v);
-        let (system, q) = (&mut converted.system, &mut converted.q);
-        let still = vec![0.0; q.len()];
-        system.start(0.0, q, &mut still.clone());
-        if self.settle && links.joint != Joint::Ideal {
-            let pretension = match &parts.layout {
-                Layout::Route { fit, .. } => fit.pretension,
-                Layout::Points { .. } => 0.0,
-            };
-            let stiffness = parts.chain.stiffness[0];
-            linkage::settle::settle(system, q, pretension, stiffness)?;
-        }
-        Ok((converted.system, converted.q, converted.v))
     }
 
     /// Lays the chain only, without settling: roller positions \[m\], (rollers,), and the fitting.

@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_geometry::{Point, Vector};
 
 use crate::drive::{
@@ -55,6 +56,16 @@ pub(crate) fn problems(parts: &Parts) -> Vec<DriveError> {
 fn sprocket_problems(sprocket: &Sprocket, tensioners: usize) -> Vec<DriveError> {
     let place = format!("sprockets.{}", sprocket.name);
     let mut found = surface_problems(&sprocket.surface, &place);
+    if let Some(flank) = &sprocket.flank {
+        let law = |source| DriveError::Law {
+            path: format!("{place}.contact.flank"),
+            source,
+        };
+        found.extend(flank.elastic.check().map_err(law).err());
+        let path = format!("{place}.contact.flank.width");
+        let fits = flank.width > 0.0 && flank.width.is_finite();
+        found.extend(DriveError::require(fits, &path, flank.width, "positive [m]").err());
+    }
     let mut need = |ok: bool, what: &str, value: f64, allowed: &'static str| {
         found.extend(DriveError::require(ok, &format!("{place}.{what}"), value, allowed).err());
     };

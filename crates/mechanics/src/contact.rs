@@ -10,6 +10,7 @@ mod plates;
 mod scalar;
 mod window;
 
+use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_contact::{Friction, dissipation::Action};
 use chaindrive_geometry::{Point, Vector};
 
@@ -17,7 +18,7 @@ pub(crate) use kernel::Wrench;
 pub(crate) use plates::{PlateContact, PlatePins, PlatePlaces, PlateTouch};
 pub(crate) use window::{Places, Run};
 
-use crate::drive::Surface;
+use crate::drive::{Flank, Surface};
 use crate::profile::{GapHalves, Profile};
 
 /// The position and motion of the frame in which a profile is given.
@@ -66,6 +67,8 @@ pub(crate) struct Teeth {
 pub(crate) struct Contacts {
     pub(crate) shape: Shape,
     pub(crate) surface: Surface,
+    /// What is different on the flanks.
+    pub(crate) flank: Option<Flank>,
     /// Radius of the touching circles \[m\].
     pub(crate) radius: f64,
     /// Runs of rollers that can touch.
@@ -94,9 +97,26 @@ pub(crate) struct Touch {
     pub(crate) force: Vec<f64>,
     /// State of a friction law that has one.
     pub(crate) stick: Vec<f64>,
+    /// Share of the flank's law; kept where there is one.
+    pub(crate) share: Vec<f64>,
 }
 
 impl Touch {
+    /// As many slots, none of them in contact.
+    pub(crate) fn open(&mut self, slots: usize) {
+        self.resize(slots);
+        self.gap.fill(1.0);
+        for values in [
+            &mut self.inverse_onset,
+            &mut self.closing,
+            &mut self.force,
+            &mut self.stick,
+            &mut self.share,
+        ] {
+            values.fill(0.0);
+        }
+    }
+
     pub(crate) fn resize(&mut self, slots: usize) {
         for values in [
             &mut self.inverse_onset,
@@ -104,6 +124,7 @@ impl Touch {
             &mut self.closing,
             &mut self.force,
             &mut self.stick,
+            &mut self.share,
         ] {
             values.resize(slots, 0.0);
         }
@@ -161,6 +182,7 @@ impl Contacts {
         Self {
             shape,
             surface,
+            flank: None,
             radius,
             runs: Vec::new(),
             slots: 0,
@@ -182,12 +204,29 @@ impl Contacts {
     /// Sum of the elastic energies of all closed slots \[J\].
     pub(crate) fn stored(&self, touch: &Touch) -> f64 {
         let law = &self.surface.law;
-        touch
+        let closed = touch
             .gap
             .iter()
-            .filter(|&&gap| gap < 0.0)
-            .map(|&gap| law.energy(-gap))
+            .zip(&touch.share)
+            .filter(|(gap, _)| **gap < 0.0);
+        closed
+            .map(|(&gap, &share)| match &self.flank {
+                None => law.energy(-gap),
+                Some(flank) => {
+                    (1.0 - share) * law.energy(-gap) + share * flank.elastic.energy(-gap)
+                }
+            })
             .sum()
+    }
+}
+
+impl Flank {
+    /// Share s of the flank's law at a distance beyond the end of the hollow \[m\].
+    #[inline]
+    pub(crate) fn share(&self, beyond: f64) -> f64 {
+        // s = x² (3 − 2x),   x = (ξ + w)/(2w)
+        let x = (0.5 * (beyond / self.width + 1.0)).clamp(0.0, 1.0);
+        x * x * (3.0 - 2.0 * x)
     }
 }
 

@@ -1,6 +1,6 @@
 //! A drive: everything that stays constant during a run, valid by construction.
 
-use chaindrive_contact::{Friction, Law};
+use chaindrive_contact::{Elastic, Friction, Law};
 use chaindrive_geometry::{ArcSpline, Point, Side, ToothGap, Vector};
 
 use crate::{Chain, DriveError, Motion, Tensioner, Torque};
@@ -12,6 +12,23 @@ pub struct Surface {
     pub law: Law,
     /// Friction law.
     pub friction: Friction,
+}
+
+/// The flank of a tooth, where it does not answer like its seat.
+///
+/// ```text
+/// g = (1 − s) g_seat(δ) + s g_flank(δ),   s: smooth step from 0 to 1 within ± w of the end of the hollow
+/// ```
+///
+/// A roller in its seat has a counterpart little wider than itself; on the flank that bulges. The patch of
+/// contact lies across the joint of the two while the roller passes it, so the law changes over an
+/// arc and not at a point; w is about its half-width under load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flank {
+    /// Elastic law beyond the hollow; dissipation and friction are those of the surface.
+    pub elastic: Elastic,
+    /// Half-width w of the passage \[m\], positive.
+    pub width: f64,
 }
 
 /// A toothed wheel.
@@ -35,6 +52,8 @@ pub struct Sprocket {
     pub mass: f64,
     /// Contact with the rollers.
     pub surface: Surface,
+    /// What is different on the flanks, if anything.
+    pub flank: Option<Flank>,
     /// Angle of one gap axis at assembly \[rad\] for wheels that no route passes over; along a
     /// route the closing of the chain decides.
     pub gap_angle: f64,
@@ -215,7 +234,7 @@ pub struct Parts {
 /// A drive that can be assembled: the parts, checked.
 #[derive(Clone, Debug)]
 pub struct Drive {
-    parts: Parts,
+    pub(crate) parts: Parts,
 }
 
 impl Drive {

@@ -151,9 +151,11 @@ impl System {
         for (index, rail) in self.rails.iter().enumerate().filter(|_| kinds.guides) {
             seen.fill(None);
             match &rail.contact {
-                RailContact::Circles(contacts) => contacts.for_each_closed(|roller, onset, force| {
-                    join(&mut seen[roller % rollers], onset, force);
-                }),
+                RailContact::Circles(contacts) => {
+                    contacts.for_each_closed(|roller, onset, force| {
+                        join(&mut seen[roller % rollers], onset, force);
+                    });
+                }
                 RailContact::Plates(plates) => {
                     for (link, touch) in plates.memory.iter().enumerate() {
                         if touch.onset > 0.0 {

@@ -40,8 +40,8 @@ mod torque;
 pub use assembly::{Assembled, Statics};
 pub use chain::{Chain, End, Ends};
 pub use drive::{
-    Adjust, Drive, Fit, Guide, GuideSupport, Layout, Parts, Rotation, Sprocket, Stop, Support,
-    Surface, Tighten, Touches,
+    Adjust, Drive, Fit, Flank, Guide, GuideSupport, Layout, Parts, Rotation, Sprocket, Stop,
+    Support, Surface, Tighten, Touches,
 };
 pub use energy::{Energy, Flow, Store};
 pub use error::{AssemblyError, DriveError};
@@ -49,9 +49,7 @@ pub use events::{ContactEvent, ContactPair, EventKinds};
 pub use modes::{Mode, Modes};
 pub use motion::{Course, Harmonic, Motion, Table};
 pub use observe::Observation;
-pub use rigid::{
-    ChainModel, Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel,
-};
+pub use rigid::{ChainModel, Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel};
 pub use system::{Record, System};
 pub use tensioner::{Carrier, Hydraulic, Plunger, Push, PushForce, Spring, Tensioner};
 pub use torque::{Argument, Torque};

@@ -14,11 +14,16 @@ pub(crate) mod build;
 mod element;
 mod hinge;
 mod implicit;
+mod impulses;
 mod meshing;
 mod observe;
 mod posture;
 pub(crate) mod rates;
 pub(crate) mod settle;
+#[cfg(test)]
+mod slider_crank;
+#[cfg(test)]
+mod tests;
 
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
@@ -117,11 +122,14 @@ pub(crate) struct Play {
     pub(crate) memory: Memory,
     /// Force on the pin of every joint \[N\].
     pub(crate) pin_forces: Vec<Vector>,
+    /// Force on both ends of every link, whatever it comes from \[N\].
+    pub(crate) end_forces: Vec<[Vector; 2]>,
     pub(crate) elements: Vec<Element>,
     pub(crate) mounts: Vec<Mount>,
     pub(crate) tally: Tally,
     pub(crate) blocks: Blocks,
     pub(crate) loose: Vec<implicit::Loose>,
+    pub(crate) impulses: impulses::Impulses,
 }
 
 impl Linkage {
@@ -148,9 +156,13 @@ impl Linkage {
         play.memory.time = at.t;
         play.forces.clear();
         let gravity = system.gravity;
-        play.forces.extend(self.bodies.iter().map(|body| {
-            Vector3::new(body.mass * gravity.x, body.mass * gravity.y, 0.0)
-        }));
+        play.forces.extend(
+            self.bodies
+                .iter()
+                .map(|body| Vector3::new(body.mass * gravity.x, body.mass * gravity.y, 0.0)),
+        );
+        play.end_forces.clear();
+        play.end_forces.resize(self.links, [Vector::zeros(); 2]);
         self.joint_forces(at, rates, &mut play);
         self.roller_forces(at, rates, &mut play);
         self.end_loads(rates, &mut play);
@@ -185,7 +197,7 @@ impl Linkage {
             let Some(mates) = joint.pair else { continue };
             let [hole, pin] = mates.map(|mate| self.part(mate, at, &play.posture));
             let before = &self.memory.joints[index];
-            let (touch, element) = bearing.touch(&hole, &pin, before, dt, &mut tally);
+            let (touch, element) = bearing.touch(index, &hole, &pin, before, dt, &mut tally);
             play.memory.joints[index] = touch;
             if let Some(element) = element {
                 let push = element.push();
@@ -218,7 +230,9 @@ impl Linkage {
             let bush = self.part(joint.carrier, at, &play.posture);
             let roller = free_part(body, at);
             let before = &self.memory.bushes[index];
-            let (touch, element) = free.bearing.touch(&roller, &bush, before, dt, &mut tally);
+            let (touch, element) = free
+                .bearing
+                .touch(index, &roller, &bush, before, dt, &mut tally);
             play.memory.bushes[index] = touch;
             if let Some(element) = element {
                 play.apply(&element, element.push());
@@ -242,6 +256,7 @@ impl Linkage {
             let link = if index == 0 { 0 } else { self.links - 1 };
             let tip = play.posture.tips[link][index];
             play.forces[link] += Vector3::new(force.x, force.y, cross(tip.arm, *force));
+            play.end_forces[link][index] += force;
             rates[Flow::DriveTorque as usize] += force.dot(&tip.velocity);
         }
     }
@@ -261,31 +276,6 @@ impl Linkage {
         }
         sum
     }
-
-    /// Tension of every link \[N\]: half of what stretches it from both ends.
-    pub(crate) fn tension(&self, link: usize, play: &Play) -> f64 {
-        let [first, second] = play.posture.tips[link];
-        let along = (second.place - first.place).normalize();
-        let next = (link + 1) % self.joints.len();
-        let ends = [(link, -1.0), (next, 1.0)].map(|(joint, outward)| {
-            let pin = play.pin_forces[joint];
-            let on_link = match self.joints[joint].pair {
-                Some([_, Mate::Link { link: l, .. }]) if l == link => pin,
-                Some(_) => -pin,
-                None => self.end_pull(joint),
-            };
-            outward * along.dot(&on_link)
-        });
-        0.5 * (ends[0] + ends[1])
-    }
-
-    fn end_pull(&self, joint: usize) -> Vector {
-        let end = usize::from(joint != 0);
-        match self.ends.get(end).map(|held| &held.end) {
-            Some(End::Pulled { force }) => *force,
-            _ => Vector::zeros(),
-        }
-    }
 }
 
 /// Power that a support moved in time puts into the chain \[W\].
@@ -299,14 +289,33 @@ fn supplied(mates: &[Mate; 2], push: Vector, hole: &Part, pin: &Part) -> f64 {
 }
 
 impl Play {
+    /// Tension of every link \[N\]: half of what stretches it from both ends, joints and teeth together.
+    pub(crate) fn tension(&self, link: usize) -> f64 {
+        let [first, second] = self.posture.tips[link];
+        let along = (second.place - first.place).normalize();
+        let [at_first, at_second] = self.end_forces[link];
+        0.5 * along.dot(&(at_second - at_first))
+    }
+
     /// Applies a contact to the bodies it joins and keeps it for the implicit system.
+    #[inline]
     pub(crate) fn apply(&mut self, element: &Element, push: Vector) {
         if let Some(body) = element.a {
             self.forces[body] += Vector3::new(push.x, push.y, element.moment_a(push));
+            self.load_end(body, element.joint, push);
         }
         if let Partner::Body(body) = element.b {
             self.forces[body] -= Vector3::new(push.x, push.y, -element.moment_b(push));
+            self.load_end(body, element.joint, -push);
         }
         self.elements.push(*element);
+    }
+
+    /// Writes down a force on the end of a link at a joint; rollers have none.
+    #[inline]
+    pub(crate) fn load_end(&mut self, body: usize, joint: usize, force: Vector) {
+        if let Some(ends) = self.end_forces.get_mut(body) {
+            ends[usize::from(joint != body)] += force;
+        }
     }
 }

@@ -3,8 +3,8 @@
 use chaindrive_geometry::Point;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 
-use crate::energy::{Energy, Flow, Store};
 use crate::contact::{Frame, PlateContact};
+use crate::energy::{Energy, Flow, Store};
 use crate::linkage::rates::LinkPlaces;
 use crate::system::{Pins, RailContact, Record, WheelRotation, WheelSupport};
 use crate::{Carrier, System};
@@ -85,6 +85,13 @@ impl System {
                 format!("{}-{}", name(i), name(i + 1))
             })
             .collect()
+    }
+
+    /// Number of joints of a chain of rigid links; zero for particles.
+    pub fn joints(&self) -> usize {
+        self.linkage
+            .as_ref()
+            .map_or(0, |linkage| linkage.joints.len())
     }
 
     /// Names of the sprockets.

@@ -38,6 +38,8 @@ pub(crate) struct Profile {
     pub(crate) features: Vec<Feature>,
     /// Whether any feature is straight.
     pub(crate) has_straights: bool,
+    /// First feature behind a hollow that is not hollow itself: where the flank begins.
+    pub(crate) flank: Option<usize>,
 }
 
 /// The nearest surface of a profile as one roller sees it.
@@ -51,6 +53,8 @@ pub(crate) struct Probe {
     pub(crate) bend: f64,
     /// Number of the feature.
     pub(crate) feature: usize,
+    /// Distance beyond the end of the hollow \[m\].
+    pub(crate) beyond: f64,
 }
 
 /// Joints that turn by less than this \[rad\] count as tangent.
@@ -65,6 +69,7 @@ impl Profile {
             return Self {
                 features,
                 has_straights: false,
+                flank: None,
             };
         };
         if open_start {
@@ -86,10 +91,26 @@ impl Profile {
             features.push(corner(last.end(), last.end_tangent()));
         }
         let has_straights = features.iter().any(|f| f.straight != Vector::zeros());
+        let flank = features
+            .iter()
+            .position(|f| f.sign < 0.0)
+            .and_then(|hollow| {
+                let behind = features.iter().skip(hollow).position(|f| f.sign > 0.0)?;
+                Some(hollow + behind)
+            });
         Self {
             features,
             has_straights,
+            flank,
         }
+    }
+
+    /// How far beyond the end of the hollow a place is \[m\], negative in the hollow; infinite without one.
+    pub(crate) fn beyond_hollow(&self, q: Point) -> f64 {
+        self.flank.map_or(f64::INFINITY, |index| {
+            let start = &self.features[index];
+            (q - start.start).dot(&start.along)
+        })
     }
 
     /// The mirror image x → −x, travelled in the same order.
@@ -122,6 +143,7 @@ impl Profile {
                 normal: from * (f.sign / distance),
                 bend: f.sign / distance,
                 feature: index,
+                beyond: self.beyond_hollow(q),
             }
         } else {
             Probe {
@@ -130,6 +152,7 @@ impl Profile {
                 normal: f.straight,
                 bend: 0.0,
                 feature: index,
+                beyond: self.beyond_hollow(q),
             }
         }
     }

@@ -124,7 +124,7 @@ impl FreeRoller {
 impl RigidLinks {
     /// Whether link `index` carries the bushes.
     pub(crate) fn is_inner(&self, index: usize) -> bool {
-        (index % 2 == 0) != self.outer_first
+        index.is_multiple_of(2) != self.outer_first
     }
 
     /// Names every parameter out of range.
@@ -136,7 +136,12 @@ impl RigidLinks {
         let positive = |value: f64| value > 0.0 && value.is_finite();
         for (name, body) in [("inner", &self.inner), ("outer", &self.outer)] {
             let path = |what: &str| format!("chain.{name}.{what}");
-            need(positive(body.mass), &path("mass"), body.mass, "positive [kg]");
+            need(
+                positive(body.mass),
+                &path("mass"),
+                body.mass,
+                "positive [kg]",
+            );
             need(
                 positive(body.inertia),
                 &path("inertia"),

@@ -111,7 +111,6 @@ impl Rollers<'_> {
     pub(crate) fn velocity(&self, roller: usize) -> Vector {
         Vector::new(self.vx[roller], self.vy[roller])
     }
-
 }
 
 /// The plates of the particle chain: link i between roller i and the next.
@@ -139,6 +138,8 @@ impl PlatePins for Pins<'_, '_> {
     }
 }
 
+/// Accepted steps after which the time scales of rigid links are worked out again.
+const STEPS_PER_SCALE: u32 = 8;
 /// Accepted steps after which the windows are renewed at the latest.
 const STEPS_PER_WINDOW: u32 = 64;
 
@@ -350,6 +351,8 @@ impl System {
 
     fn renew_time_scales(&mut self, record: &Record) {
         let scales = match &self.linkage {
+            // Stiffness changes little from one step to the next, and the bound has a reserve.
+            Some(_) if !self.renew.1.is_multiple_of(STEPS_PER_SCALE) => return,
             Some(linkage) => linkage.stiffest(self, &record.play),
             None => [self.stiffest(record); 2],
         };

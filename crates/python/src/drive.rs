@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
+use chaindrive::catalogue::{CatalogueChain, Number};
 use chaindrive::scene::{self, Scene};
-use chaindrive::{Channel, Description, Mode, Run, Stepping};
+use chaindrive::{Channel, Description, Mode, Run};
+use chaindrive_mechanics::{ChainModel, Joint, RollerModel};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
@@ -32,17 +34,7 @@ impl Drive {
 
     /// The run the scene suggests.
     fn run(&self) -> Run {
-        let (suggested, fallback) = (self.scene.run_defaults(), Run::default());
-        Run {
-            until: suggested.until.unwrap_or(fallback.until),
-            every: suggested.every.unwrap_or(fallback.every),
-            stepping: suggested
-                .method
-                .and_then(Stepping::from_name)
-                .unwrap_or_default(),
-            step: suggested.step,
-            ..fallback
-        }
+        Run::suggested(&self.scene.run_defaults())
     }
 }
 
@@ -146,6 +138,15 @@ impl Drive {
         answer.set_item("method", run.stepping.name())?;
         answer.set_item("step", run.step)?;
         answer.set_item("tolerance", run.tolerance)?;
+        answer.set_item("onset_depth", run.onset_depth)?;
+        let kinds = [
+            ("teeth", run.events.teeth),
+            ("guides", run.events.guides),
+            ("joints", run.events.joints),
+        ];
+        let wanted = kinds.into_iter().filter(|(_, wanted)| *wanted);
+        let events: Vec<&str> = wanted.map(|(name, _)| name).collect();
+        answer.set_item("events", events)?;
         let mut record = self.scene.run_defaults().record;
         if record.is_empty() {
             record = Channel::DEFAULT
@@ -157,7 +158,7 @@ impl Drive {
         Ok(answer)
     }
 
-    /// The contact law of a sprocket or guide.
+    /// The contact law of a sprocket or guide, or of `joints` or `rollers`.
     fn law(&self, body: &str) -> PyResult<Law> {
         let sprockets = self
             .drive
@@ -170,7 +171,16 @@ impl Drive {
             .iter()
             .map(|guide| (&guide.name, &guide.surface));
         let found = sprockets.chain(guides).find(|(name, _)| *name == body);
-        let (_, surface) = found.ok_or_else(|| PyKeyError::new_err(body.to_owned()))?;
+        let found = found.map(|(_, surface)| surface);
+        let surface = found.or_else(|| match &self.drive.chain.model {
+            ChainModel::Rigid(links) => match (body, &links.joint, &links.rollers) {
+                ("joints", Joint::Clearance(joint), _) => Some(&joint.surface),
+                ("rollers", _, RollerModel::Free(roller)) => Some(&roller.surface),
+                _ => None,
+            },
+            ChainModel::Particles => None,
+        });
+        let surface = surface.ok_or_else(|| PyKeyError::new_err(body.to_owned()))?;
         Ok(Law(surface.law))
     }
 
@@ -239,4 +249,39 @@ pub(crate) fn presets() -> Vec<(&'static str, &'static str)> {
 #[pyfunction]
 pub(crate) fn schema() -> String {
     scene::schema().to_string()
+}
+
+/// The catalogue of chains: name, ANSI number, kind and notes of every chain; then name, unit,
+/// description, values and statuses of every number, NaN where there is none.
+#[pyfunction]
+pub(crate) fn catalogue(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let chains = chaindrive::catalogue::catalogue();
+    let answer = PyDict::new(py);
+    let texts = |of: &dyn Fn(&'static CatalogueChain) -> &'static str| -> Vec<&'static str> {
+        chains.iter().map(of).collect()
+    };
+    answer.set_item("chain", texts(&|chain| &chain.name))?;
+    answer.set_item("ansi", texts(&|chain| &chain.ansi))?;
+    answer.set_item("kind", texts(&|chain| &chain.kind))?;
+    answer.set_item("makers_differ", texts(&|chain| &chain.makers_differ))?;
+    let statuses = PyDict::new(py);
+    let numbers = PyDict::new(py);
+    for number in Number::ALL {
+        let status = number.status();
+        statuses.set_item(status.name(), texts(&|chain| chain.status(status)))?;
+        let values = chains
+            .iter()
+            .map(|chain| chain.number(number).unwrap_or(f64::NAN))
+            .collect();
+        let about = (
+            PyArray1::from_vec(py, values),
+            number.unit(),
+            number.description(),
+            status.name(),
+        );
+        numbers.set_item(number.name(), about)?;
+    }
+    answer.set_item("numbers", numbers)?;
+    answer.set_item("statuses", statuses)?;
+    Ok(answer)
 }

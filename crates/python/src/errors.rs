@@ -107,6 +107,11 @@ impl IntoException for SimulationError {
             Self::Implicit { works, .. } => {
                 parameter(message, "method", &format!("one of {works}"))
             }
+            Self::AbsentChannel { .. } => python::ParameterError::new_err((
+                message,
+                "record",
+                "take a chain of rigid links, or leave the channel out",
+            )),
             Self::UnknownChannel { suggestion, .. } => python::ParameterError::new_err((
                 message,
                 "record",

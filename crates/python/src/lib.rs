@@ -24,7 +24,7 @@ mod core {
     use pyo3::prelude::*;
 
     #[pymodule_export]
-    use crate::drive::{Drive, presets, schema};
+    use crate::drive::{Drive, catalogue, presets, schema};
     #[pymodule_export]
     use crate::friction::Friction;
     #[pymodule_export]

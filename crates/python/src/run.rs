@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use chaindrive::record::{self, Ending, Existing, Provenance, Recording, ZarrWriter};
-use chaindrive::{Axis, Channel, Method, Run, Simulation, Stepping, Summary};
+use chaindrive::record::{
+    self, Ending, EventColumn, EventTable, Existing, Provenance, Recording, ZarrWriter,
+};
+use chaindrive::{Axis, Channel, EventKinds, Method, Run, Simulation, Stepping, Summary};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
@@ -18,7 +20,7 @@ const PATIENCE: Duration = Duration::from_millis(50);
 
 /// Runs a drive and returns its recording: time, columns, labels and attributes.
 #[pyfunction]
-#[pyo3(signature = (drive, channels, *, until, every, method, step, tolerance, onset_depth, output, overwrite, progress))]
+#[pyo3(signature = (drive, channels, *, until, every, method, step, tolerance, onset_depth, events, output, overwrite, progress))]
 #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
 pub(crate) fn simulate<'py>(
     py: Python<'py>,
@@ -30,14 +32,12 @@ pub(crate) fn simulate<'py>(
     step: Option<f64>,
     tolerance: f64,
     onset_depth: Option<f64>,
+    events: Vec<String>,
     output: Option<PathBuf>,
     overwrite: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let names = channels
-        .iter()
-        .map(|name| Channel::from_name(name).or_raise());
-    let channels = names.collect::<PyResult<Vec<_>>>()?;
+    Channel::check(&channels).or_raise()?;
     let run = Run {
         until,
         every,
@@ -45,6 +45,7 @@ pub(crate) fn simulate<'py>(
         step,
         tolerance,
         onset_depth,
+        events: event_kinds(&events)?,
     };
     let output = output.map(|path| {
         let existing = if overwrite {
@@ -54,10 +55,16 @@ pub(crate) fn simulate<'py>(
         };
         (path, existing)
     });
-    let (simulation, recording, summary) =
-        py.detach(|| carry_out(drive, &run, &channels, output, progress.as_ref()))?;
+    let Outcome {
+        simulation,
+        recording,
+        contacts,
+        summary,
+    } = py.detach(|| carry_out(drive, &run, &channels, output, progress.as_ref()))?;
     let answer = PyDict::new(py);
-    answer.set_item("labels", labels(py, &channels, &simulation)?)?;
+    let recorded = recording.columns.iter().map(|column| column.channel);
+    let recorded: Vec<Channel> = recorded.collect();
+    answer.set_item("labels", labels(py, &recorded, &simulation)?)?;
     answer.set_item("attributes", attributes(py, &simulation, &summary)?)?;
     let samples = recording.len();
     answer.set_item("time", PyArray1::from_vec(py, recording.time))?;
@@ -71,7 +78,42 @@ pub(crate) fn simulate<'py>(
         columns.set_item(column.channel.name(), values)?;
     }
     answer.set_item("columns", columns)?;
+    if run.events != EventKinds::default() {
+        answer.set_item("events", event_columns(py, contacts)?)?;
+    }
     Ok(answer)
+}
+
+/// Name, values, unit and description of every column of the table of contacts.
+fn event_columns(py: Python<'_>, contacts: EventTable) -> PyResult<Bound<'_, PyList>> {
+    let columns = PyList::empty(py);
+    for column in EventColumn::ALL {
+        let values = match column {
+            EventColumn::Kind => PyList::new(py, &contacts.kind)?.into_any(),
+            EventColumn::Body => PyList::new(py, &contacts.body)?.into_any(),
+            EventColumn::Roller => PyArray1::from_slice(py, &contacts.roller).into_any(),
+            _ => PyArray1::from_slice(py, contacts.numbers(column).unwrap_or_default()).into_any(),
+        };
+        columns.append((column.name(), values, column.unit(), column.description()))?;
+    }
+    Ok(columns)
+}
+
+fn event_kinds(names: &[String]) -> PyResult<EventKinds> {
+    let mut kinds = EventKinds::default();
+    for name in names {
+        match name.as_str() {
+            "teeth" => kinds.teeth = true,
+            "guides" => kinds.guides = true,
+            "joints" => kinds.joints = true,
+            _ => {
+                let known = "teeth, guides, joints";
+                let message = format!("no contacts are named `{name}`; there are {known}");
+                return Err(parameter(message, "events", &format!("of {known}")));
+            }
+        }
+    }
+    Ok(kinds)
 }
 
 fn stepping(name: &str) -> PyResult<Stepping> {
@@ -82,22 +124,44 @@ fn stepping(name: &str) -> PyResult<Stepping> {
     })
 }
 
+/// What a run leaves.
+struct Outcome {
+    simulation: Simulation,
+    recording: Recording,
+    contacts: EventTable,
+    summary: Summary,
+}
+
 fn carry_out(
     drive: &Drive,
     run: &Run,
-    channels: &[Channel],
+    names: &[String],
     output: Option<(PathBuf, Existing)>,
     progress: Option<&Py<PyAny>>,
-) -> PyResult<(Simulation, Recording, Summary)> {
+) -> PyResult<Outcome> {
     let mut simulation = Simulation::start(&drive.drive, run).or_raise()?;
+    let channels = Channel::chosen(names, simulation.system()).or_raise()?;
+    let channels = channels.as_slice();
     let mut summary = Summary::new(&simulation);
+    let mut contacts = EventTable::new(simulation.system());
     let Some((path, existing)) = output else {
         let mut recording = Recording::new(channels, simulation.system());
         advance(&mut simulation, &mut summary, progress, |simulation| {
             recording.push(simulation.observation());
+            for event in simulation.events() {
+                contacts.push(event);
+            }
             Ok(())
         })?;
-        return Ok((simulation, recording, summary));
+        for event in simulation.outstanding_events() {
+            contacts.push(&event);
+        }
+        return Ok(Outcome {
+            simulation,
+            recording,
+            contacts,
+            summary,
+        });
     };
     // On disk; nothing is kept in memory.
     let recording = Recording::new(&[], simulation.system());
@@ -119,7 +183,12 @@ fn carry_out(
     };
     let finished = writer.finish(&simulation, &ending).or_raise();
     outcome.and(finished)?;
-    Ok((simulation, recording, summary))
+    Ok(Outcome {
+        simulation,
+        recording,
+        contacts,
+        summary,
+    })
 }
 
 /// Takes sample after sample to the end of the run.
@@ -138,6 +207,7 @@ fn advance(
             break;
         }
         summary.push(simulation.observation());
+        summary.count(simulation.events());
         keep(simulation)?;
         if looked.elapsed() > PATIENCE {
             look(progress, simulation.progress())?;
@@ -165,9 +235,10 @@ fn labels<'py>(
     for axis in channels.iter().map(|channel| channel.axis()) {
         if let (Some(name), Some(labels)) = (axis.name(), record::labels(axis, simulation.system()))
         {
-            match axis {
-                Axis::Roller | Axis::Link => answer.set_item(name, labels.len())?,
-                _ => answer.set_item(name, labels)?,
+            if axis.is_numbered() {
+                answer.set_item(name, labels.len())?;
+            } else {
+                answer.set_item(name, labels)?;
             }
         }
     }
@@ -184,7 +255,9 @@ fn attributes<'py>(
     let statistics = simulation.statistics();
     let (time, wall) = (simulation.time(), simulation.stepping_time());
     let link_steps = statistics.steps.max(1) as f64 * simulation.system().links() as f64;
-    match simulation.method() {
+    let method = simulation.method();
+    answer.set_item("method", Stepping::from(method).name())?;
+    match method {
         Method::Verlet { step } | Method::Rk4 { step } | Method::ImplicitDamping { step } => {
             answer.set_item("step", step)?;
         }

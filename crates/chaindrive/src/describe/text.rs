@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{Description, Model, SpanAtRest};
+use super::{ContactFacts, Description, LinkFacts, Model, SpanAtRest};
 
 impl fmt::Display for Description {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -25,14 +25,21 @@ impl Description {
             "links",
             &format!("{} of {:.4} mm", chain.links, chain.pitch * 1e3),
         )?;
+        row(f, "model", &chain.bodies.to_string())?;
         row(
             f,
             "mass per length",
             &format!("{:.4} kg/m", chain.mass_per_length),
         )?;
         let stiffness = format!(
-            "{:.4e} N/m a link, {:.4e} N a unit of strain",
-            chain.link_stiffness, chain.axial_stiffness
+            "{:.4e} N/m a link, {:.4e} N a unit of strain{}",
+            chain.link_stiffness,
+            chain.axial_stiffness,
+            if chain.bodies.rollers.is_some() {
+                ", while it is laid"
+            } else {
+                ""
+            }
         );
         row(f, "axial stiffness", &stiffness)?;
         let along = format!("{:.0} m/s along", chain.longitudinal_wave_speed);
@@ -90,10 +97,13 @@ impl Description {
         if self.statics.is_empty() {
             return Ok(());
         }
-        writeln!(
-            f,
-            "statics                  iterations   residual   span tensions [N]"
-        )?;
+        // Rigid links take over where the springs have settled.
+        let of = if self.chain.bodies.rollers.is_some() {
+            "statics, laid as springs "
+        } else {
+            "statics                  "
+        };
+        writeln!(f, "{of}iterations   residual   span tensions [N]")?;
         for stage in &self.statics {
             let tensions = stage
                 .span_tensions
@@ -115,7 +125,10 @@ impl Description {
         row(
             f,
             "stiffest mode",
-            &format!("1/ω = {:.3e} s", scales.stiffest),
+            &format!(
+                "1/ω = {:.3e} s, {:.3e} s without its damping",
+                scales.stiffest, scales.undamped
+            ),
         )?;
         row(f, "chain speed", &format!("{:.3} m/s", scales.chain_speed))?;
         for (name, frequency) in &scales.mesh_frequencies {
@@ -192,10 +205,51 @@ impl fmt::Display for Model {
             "contact candidates",
             &format!("{} rollers near a body", self.candidates),
         )?;
+        for contact in &self.contacts {
+            row(
+                f,
+                &format!("contact of {}", contact.pair),
+                &contact.to_string(),
+            )?;
+        }
         if self.absent.is_empty() {
             return Ok(());
         }
         row(f, "absent", &self.absent.join(", "))
+    }
+}
+
+impl fmt::Display for LinkFacts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(rollers) = self.rollers else {
+            return write!(
+                f,
+                "{}: point masses at the rollers, links as springs",
+                self.model
+            );
+        };
+        write!(f, "{}: rigid links, {} joints", self.model, self.joints)?;
+        if let Some(gap) = self.joint_clearance {
+            write!(f, " with {:.1} µm of radial play", gap * 1e6)?;
+        }
+        match (rollers, self.roller_clearance) {
+            (_, Some(gap)) => write!(f, ", free rollers with {:.1} µm", gap * 1e6),
+            ("none", _) => write!(f, ", no rollers"),
+            _ => write!(f, ", rollers lumped with their bushes"),
+        }
+    }
+}
+
+impl fmt::Display for ContactFacts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, {}", self.elastic, self.dissipation)?;
+        if let Some(restitution) = self.restitution {
+            write!(f, " {restitution}")?;
+        }
+        if self.friction != "none" {
+            write!(f, ", friction {}", self.friction)?;
+        }
+        Ok(())
     }
 }
 

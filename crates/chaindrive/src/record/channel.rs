@@ -1,6 +1,6 @@
 //! The channels: what a run can record, with names, units and dimensions.
 
-use chaindrive_mechanics::{Energy, Flow, Observation, Store};
+use chaindrive_mechanics::{Energy, Flow, Observation, Store, System};
 
 use crate::SimulationError;
 
@@ -13,6 +13,8 @@ pub enum Axis {
     Roller,
     /// One a link.
     Link,
+    /// One a joint of a chain of rigid links.
+    Joint,
     /// One a span between consecutive sprockets.
     Span,
     /// One a sprocket.
@@ -29,9 +31,10 @@ pub enum Axis {
 
 impl Axis {
     /// All axes with labels.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Roller,
         Self::Link,
+        Self::Joint,
         Self::Span,
         Self::Sprocket,
         Self::Guide,
@@ -46,6 +49,7 @@ impl Axis {
             Self::None => None,
             Self::Roller => Some("roller"),
             Self::Link => Some("link"),
+            Self::Joint => Some("joint"),
             Self::Span => Some("span"),
             Self::Sprocket => Some("sprocket"),
             Self::Guide => Some("guide"),
@@ -94,6 +98,14 @@ macro_rules! channels {
 channels! {
     SpanTension, "span_tension", "N", Span, "mean tension of the links between two sprockets";
     LinkTension, "link_tension", "N", Link, "tension of every link, damping included";
+    LinkAngle, "link_angle", "rad", Link, "direction of every rigid link";
+    JointForce, "joint_force", "N", Joint, "force on the pin";
+    JointForceX, "joint_force_x", "N", Joint, "force on the pin, x";
+    JointForceY, "joint_force_y", "N", Joint, "force on the pin, y";
+    JointDepth, "joint_depth", "m", Joint, "indentation of pin and bush";
+    JointOffsetX, "joint_offset_x", "m", Joint, "eccentricity of the pin in its bush, x";
+    JointOffsetY, "joint_offset_y", "m", Joint, "eccentricity of the pin in its bush, y";
+    JointAngle, "joint_angle", "rad", Joint, "direction of the link with the pin from that with the bush";
     ContactForce, "contact_force", "N", Roller, "normal force between roller and teeth";
     ContactDepth, "contact_depth", "m", Sprocket, "deepest indentation on the sprocket";
     Contacts, "contacts", "1", Sprocket, "number of closed contacts on the sprocket";
@@ -162,26 +174,61 @@ impl Channel {
         })
     }
 
-    /// The channels of some names, each once: `all` of them, or the default ones of no names.
+    /// Whether a system has what the channel records: joints and directions of links belong to rigid
+    /// links.
+    pub fn is_of(self, system: &System) -> bool {
+        self != Self::LinkAngle && self.axis() != Axis::Joint || system.joints() > 0
+    }
+
+    /// The channels of some names for a system, each once: `all` that it has, or the default ones of
+    /// no names.
     ///
     /// # Errors
-    /// As [`Channel::from_name`].
-    pub fn from_names(names: &[impl AsRef<str>]) -> Result<Vec<Self>, SimulationError> {
+    /// As [`Channel::from_name`], and [`SimulationError::AbsentChannel`] for one that the system does
+    /// not have.
+    pub fn chosen(
+        names: &[impl AsRef<str>],
+        system: &System,
+    ) -> Result<Vec<Self>, SimulationError> {
         if names.is_empty() {
             return Ok(Self::DEFAULT.to_vec());
         }
         let mut channels = Vec::new();
         for name in names {
-            let named = match name.as_ref() {
-                "all" => Self::ALL.to_vec(),
-                name => vec![Self::from_name(name)?],
-            };
-            let new = named
-                .into_iter()
-                .filter(|channel| !channels.contains(channel));
-            channels.extend(new.collect::<Vec<_>>());
+            if name.as_ref() == "all" {
+                let all = Self::ALL.iter().filter(|channel| channel.is_of(system));
+                channels.extend(all.copied());
+                continue;
+            }
+            let channel = Self::from_name(name.as_ref())?;
+            if !channel.is_of(system) {
+                return Err(SimulationError::AbsentChannel {
+                    name: channel.name(),
+                });
+            }
+            channels.push(channel);
         }
+        let mut seen = Vec::new();
+        channels.retain(|channel| {
+            let new = !seen.contains(channel);
+            seen.push(*channel);
+            new
+        });
         Ok(channels)
+    }
+
+    /// Names the first of some names that is neither `all` nor that of a channel.
+    ///
+    /// # Errors
+    /// As [`Channel::from_name`].
+    pub fn check(names: &[impl AsRef<str>]) -> Result<(), SimulationError> {
+        let names = names
+            .iter()
+            .map(AsRef::as_ref)
+            .filter(|name| *name != "all");
+        names
+            .map(Self::from_name)
+            .try_for_each(|found| found.map(drop))
     }
 
     /// Appends the entries of one sample; `start` is the energy of the first sample.
@@ -190,6 +237,14 @@ impl Channel {
         match self {
             Self::SpanTension => to.extend(&sample.span_tension),
             Self::LinkTension => to.extend(&sample.link_tension),
+            Self::LinkAngle => to.extend(&sample.link_angle),
+            Self::JointForce => to.extend(&sample.joint_force),
+            Self::JointForceX => to.extend(&sample.joint_force_x),
+            Self::JointForceY => to.extend(&sample.joint_force_y),
+            Self::JointDepth => to.extend(&sample.joint_depth),
+            Self::JointOffsetX => to.extend(&sample.joint_offset_x),
+            Self::JointOffsetY => to.extend(&sample.joint_offset_y),
+            Self::JointAngle => to.extend(&sample.joint_angle),
             Self::ContactForce => to.extend(&sample.contact_force),
             Self::ContactDepth => to.extend(&sample.contact_depth),
             Self::Contacts => to.extend(&sample.contacts),

@@ -2,9 +2,10 @@
 
 use std::fmt;
 
-use chaindrive_mechanics::{Energy, Observation};
+use chaindrive_mechanics::{ContactEvent, Energy, Observation};
 use hdrhistogram::Histogram;
 
+use super::event::{EventTable, kind};
 use crate::Simulation;
 
 /// Collects statistics sample by sample, in bounded memory.
@@ -14,6 +15,7 @@ pub struct Summary {
     pub spans: Vec<SpanStatistics>,
     forces: Histogram<u64>,
     largest_force: f64,
+    contacts: [ContactStatistics; EventTable::KINDS.len()],
     start: Option<Energy>,
     last: Energy,
     /// Largest energy residual in magnitude \[J\].
@@ -63,6 +65,33 @@ pub struct ForceStatistics {
     pub max: f64,
 }
 
+/// Contacts of one kind over the run, those that last included.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactStatistics {
+    /// Their number.
+    pub count: u64,
+    /// Sum of their largest forces \[N\].
+    sum: f64,
+    /// Largest force of all \[N\].
+    pub greatest: f64,
+    /// Sum of their durations \[s\].
+    pub duration: f64,
+}
+
+impl ContactStatistics {
+    fn push(&mut self, event: &ContactEvent, now: f64) {
+        self.count += 1;
+        self.sum += event.peak_force;
+        self.greatest = self.greatest.max(event.peak_force);
+        self.duration += event.end.min(now) - event.start;
+    }
+
+    /// Mean of their largest forces \[N\].
+    pub fn mean(&self) -> f64 {
+        self.sum / self.count as f64
+    }
+}
+
 /// Forces are counted in millinewtons, to three digits.
 const COUNTS_PER_NEWTON: f64 = 1e3;
 
@@ -89,6 +118,7 @@ impl Summary {
                 .collect(),
             forces: Histogram::new(3).expect("three digits are between one and five"),
             largest_force: 0.0,
+            contacts: Default::default(),
             start: None,
             last: Energy::default(),
             residual: 0.0,
@@ -124,6 +154,25 @@ impl Summary {
         }
         self.last = sample.energy;
         self.samples += 1;
+    }
+
+    /// Takes in contacts that ended.
+    pub fn count(&mut self, events: &[ContactEvent]) {
+        for event in events {
+            self.contacts[kind(event.pair)].push(event, f64::INFINITY);
+        }
+    }
+
+    /// Contacts by kind, see [`EventTable::KINDS`], with those that last.
+    pub fn contacts(
+        &self,
+        simulation: &Simulation,
+    ) -> [ContactStatistics; EventTable::KINDS.len()] {
+        let mut contacts = self.contacts;
+        for event in simulation.outstanding_events() {
+            contacts[kind(event.pair)].push(&event, simulation.time());
+        }
+        contacts
     }
 
     /// Percentiles of the contact forces; zero when nothing touched.
@@ -204,6 +253,7 @@ impl fmt::Display for Report<'_> {
                 forces.p50, forces.p90, forces.p99, forces.max
             )?;
         }
+        contacts(f, summary, simulation)?;
         let supplied = summary.energy_supplied();
         let relative = if supplied > 0.0 {
             format!(
@@ -239,4 +289,37 @@ impl fmt::Display for Report<'_> {
             wall
         )
     }
+}
+
+/// One line a kind of contact that was logged.
+fn contacts(f: &mut fmt::Formatter<'_>, summary: &Summary, simulation: &Simulation) -> fmt::Result {
+    let found = summary.contacts(simulation);
+    if found.iter().all(|contacts| contacts.count == 0) {
+        return Ok(());
+    }
+    writeln!(
+        f,
+        "contacts                 number   mean peak [N]   max peak [N]   share of time a roller or joint"
+    )?;
+    let system = simulation.system();
+    let places = [
+        system.rollers(),
+        system.rollers(),
+        system.joints(),
+        system.joints(),
+    ];
+    for ((name, contacts), places) in EventTable::KINDS.iter().zip(found).zip(places) {
+        if contacts.count > 0 {
+            let share = contacts.duration / (simulation.time() * places as f64);
+            writeln!(
+                f,
+                "  {name:20} {:>8}   {:>13.1}   {:>12.1}   {:>10.2} %",
+                contacts.count,
+                contacts.mean(),
+                contacts.greatest,
+                100.0 * share
+            )?;
+        }
+    }
+    Ok(())
 }

@@ -6,6 +6,7 @@
 //!   time/                  (time,) [s]
 //!   span/, roller/, …      labels of the other dimensions
 //!   span_tension/          (time, span) [N]: zarr.json, c/0/0, c/1/0, …
+//!   event_start/, …        (event,) contacts from touch to parting, where they are logged
 //! ```
 //!
 //! `zarrs` makes the arrays and their chunks; `object_store` puts every file in place by renaming
@@ -24,6 +25,7 @@
 //! once the run has ended this does not matter.
 
 mod error;
+mod events;
 mod story;
 mod target;
 mod track;
@@ -32,7 +34,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use chaindrive_mechanics::Energy;
+use chaindrive_mechanics::{Energy, EventKinds};
 use serde_json::{Map, Value, json};
 use zarrs::group::Group;
 use zarrs::metadata::v3::{AdditionalFieldV3, GroupMetadataV3};
@@ -43,6 +45,7 @@ pub use story::{Ending, Provenance};
 use super::{Axis, Channel, labels};
 use crate::Simulation;
 use error::Fault;
+use events::EventTracks;
 use target::{Storage, Target};
 use track::{Track, store_labels};
 
@@ -90,6 +93,8 @@ pub struct ZarrWriter {
     provenance: Provenance,
     time: Track,
     tracks: Vec<(Channel, Track)>,
+    /// Contacts, where they are logged.
+    events: Option<EventTracks>,
     /// Metadata of the arrays that do not grow.
     fixed: Vec<(&'static str, Value)>,
     start: Option<Energy>,
@@ -157,12 +162,15 @@ impl ZarrWriter {
             ));
         }
         let time = Track::new(storage, "time", Axis::None, system, about("s", "time"))?;
+        let logged = provenance.run.events != EventKinds::default();
+        let events = logged.then(|| EventTracks::new(storage, system));
         let mut writer = Self {
             path: path.to_owned(),
             storage: storage.clone(),
             provenance,
             time,
             tracks,
+            events: events.transpose()?,
             fixed,
             start: None,
             samples: 0,
@@ -192,6 +200,9 @@ impl ZarrWriter {
         for (channel, track) in &mut self.tracks {
             track.push(|to| channel.read(sample, &start, to))?;
         }
+        if let Some(events) = &mut self.events {
+            events.push(simulation.events())?;
+        }
         self.samples += 1;
         Ok(())
     }
@@ -210,7 +221,11 @@ impl ZarrWriter {
     /// # Errors
     /// [`WriteError`] when the store refuses. What was committed before stays readable.
     pub fn finish(mut self, simulation: &Simulation, ending: &Ending) -> Result<(), WriteError> {
-        let committed = self.commit(simulation, ending);
+        let lasting = match &mut self.events {
+            Some(events) => events.push(&simulation.outstanding_events()),
+            None => Ok(()),
+        };
+        let committed = lasting.and_then(|()| self.commit(simulation, ending));
         committed.map_err(|fault| at(&self.path, fault))
     }
 
@@ -225,6 +240,13 @@ impl ZarrWriter {
             track.store()?;
             track.set_length(self.samples)?;
             arrays.insert(track.name.into(), track.metadata()?);
+        }
+        if let Some(events) = &mut self.events {
+            events.store()?;
+            events.set_length()?;
+            for (name, metadata) in events.metadata()? {
+                arrays.insert(name.into(), metadata);
+            }
         }
         for (name, metadata) in &self.fixed {
             arrays.insert((*name).into(), metadata.clone());
@@ -246,6 +268,9 @@ impl ZarrWriter {
         Group::new_with_metadata(self.storage.clone(), "/", metadata.into())?.store_metadata()?;
         for track in growing(&mut self.time, &mut self.tracks) {
             track.store_metadata()?;
+        }
+        if let Some(events) = &self.events {
+            events.store_metadata()?;
         }
         self.committed = Instant::now();
         Ok(())

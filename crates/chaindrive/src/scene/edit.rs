@@ -98,6 +98,11 @@ enum Key {
     Index(usize),
 }
 
+/// Whether a path goes on behind `chain`, which may be written as the name of a catalogue chain.
+fn leads_into_chain(keys: &[Key]) -> bool {
+    matches!(keys, [Key::Name(first), _, ..] if first == "chain")
+}
+
 fn name_of(node: &Node) -> Option<&str> {
     match &node.get("name")?.value {
         Value::Text(name) => Some(name),
@@ -107,6 +112,11 @@ fn name_of(node: &Node) -> Option<&str> {
 
 fn put_json(root: &mut Json, keys: &[Key], value: &Json) -> Option<()> {
     let mut place = root;
+    if leads_into_chain(keys)
+        && let Some(named) = place.get_mut("chain").filter(|chain| chain.is_string())
+    {
+        *named = serde_json::json!({"type": named.take()});
+    }
     for key in keys {
         place = match key {
             Key::Index(index) => place.get_mut(index)?,
@@ -132,6 +142,14 @@ fn put_toml(root: &mut Item, keys: &[Key], value: Toml) -> Option<()> {
     };
     match key {
         Key::Name(name) => {
+            if leads_into_chain(keys)
+                && let Some(chain) = root.get_mut("chain").and_then(Item::as_value_mut)
+                && let Some(named) = chain.as_str()
+            {
+                let mut table = toml_edit::InlineTable::new();
+                table.insert("type", named.into());
+                *chain = Toml::InlineTable(table);
+            }
             if let Some(Toml::InlineTable(_)) = root.as_value() {
                 return put_inline(root.as_value_mut()?, keys, value);
             }

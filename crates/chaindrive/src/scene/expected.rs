@@ -8,7 +8,8 @@ use super::quantity::Dimension;
 pub(crate) enum Expected<'s> {
     Table(&'s Json),
     List(&'s Json),
-    Kinds(&'s [Json]),
+    /// The members of a family, and the kind of a table that does not name one.
+    Kinds(&'s [Json], Option<&'s str>),
     Words(Vec<&'s str>),
     Quantity(&'s Json, &'static Dimension),
     Integer,
@@ -27,7 +28,8 @@ impl<'s> Expected<'s> {
         }
         if let Some(members) = schema.get("oneOf").and_then(Json::as_array) {
             if members.iter().all(|member| kind_of(member).is_some()) {
-                return Expected::Kinds(members);
+                let unnamed = schema.get("x-default-kind").and_then(Json::as_str);
+                return Expected::Kinds(members, unnamed);
             }
             let words = members.iter().flat_map(words_of);
             return Expected::Words(words.collect());

@@ -63,7 +63,7 @@ mod tree;
 mod unit;
 mod validate;
 
-use chaindrive_mechanics::Drive;
+use chaindrive_mechanics::{Drive, EventKinds};
 use serde::Deserialize;
 
 pub use error::{Problem, SceneError};
@@ -116,6 +116,7 @@ impl Scene {
 
     fn from_tree(tree: Node, text: &str, name: &str) -> Result<Self, SceneError> {
         let mut normalised = tree.clone();
+        normalised.expand_chain();
         let problems = validate::validate(&mut normalised, &schema::raw());
         if !problems.is_empty() {
             return Err(SceneError::new(name, problems));
@@ -171,6 +172,7 @@ impl Scene {
             tolerance: run.tolerance.map(|ratio| ratio.0),
             onset_depth: run.onset_depth.map(|depth| depth.0),
             record: run.record.clone().unwrap_or_default(),
+            events: events(&run.events),
         }
     }
 }
@@ -182,7 +184,8 @@ pub struct RunDefaults {
     pub until: Option<f64>,
     /// Time between two samples \[s\].
     pub every: Option<f64>,
-    /// Method of time stepping: `verlet`, `rk4`, `dormand-prince`, `implicit-damping` or `generalized-alpha`.
+    /// Method of time stepping: `auto`, `verlet`, `rk4`, `dormand-prince`, `implicit-damping` or
+    /// `generalized-alpha`.
     pub method: Option<&'static str>,
     /// Step of a method with a fixed step \[s\].
     pub step: Option<f64>,
@@ -192,4 +195,14 @@ pub struct RunDefaults {
     pub onset_depth: Option<f64>,
     /// Channels to record; empty when the scene leaves them open.
     pub record: Vec<String>,
+    /// Contacts to log.
+    pub events: EventKinds,
+}
+
+fn events(named: &[schema::Events]) -> EventKinds {
+    EventKinds {
+        teeth: named.contains(&schema::Events::Teeth),
+        guides: named.contains(&schema::Events::Guides),
+        joints: named.contains(&schema::Events::Joints),
+    }
 }

@@ -4,7 +4,7 @@ use super::suggest::one_of;
 use super::{Problem, Scene, SceneError};
 
 /// Name, one-line description and text of every embedded scene.
-const PRESETS: [(&str, &str, &str); 6] = [
+const PRESETS: [(&str, &str, &str); 11] = [
     (
         "marine_engine",
         "Camshaft drive of a large two-stroke engine: four sprockets, three guide bars, tensioner",
@@ -24,6 +24,31 @@ const PRESETS: [(&str, &str, &str); 6] = [
         "timing_drive",
         "Valve timing of a car: 8 mm bush chain, fixed guide, arm with a hydraulic plunger",
         include_str!("../../scenes/timing_drive.toml"),
+    ),
+    (
+        "bicycle",
+        "Chain of a bicycle, 44 to 18 teeth, tight: rigid links with play in their joints",
+        include_str!("../../scenes/bicycle.toml"),
+    ),
+    (
+        "bicycle_slack",
+        "The chain of the bicycle, slack: the rear wheel 1 mm nearer",
+        include_str!("../../scenes/bicycle_slack.toml"),
+    ),
+    (
+        "motorcycle",
+        "Rear drive of a motorcycle, 520 chain with a slack lower run, 15 to 46 teeth",
+        include_str!("../../scenes/motorcycle.toml"),
+    ),
+    (
+        "pin_in_bush",
+        "A pin dropped into its bush: one link with play, and how it bounces",
+        include_str!("../../scenes/pin_in_bush.toml"),
+    ),
+    (
+        "pendulum_in_bush",
+        "A link that swings by its pin in a bush, with play and friction",
+        include_str!("../../scenes/pendulum_in_bush.toml"),
     ),
     (
         "hanging_chain",

@@ -106,6 +106,10 @@ quantities! {
     Pressure, "a pressure", "Pa", "207 GPa", [-1.0, 1.0, -2.0, 0.0], true;
     /// A dynamic viscosity \[Pa s\].
     Viscosity, "a viscosity", "Pa s", "10 mPa s", [-1.0, 1.0, -1.0, 0.0], true;
+    /// The inverse of a length \[1/m\].
+    PerLength, "an inverse length", "1/m", "1e5 1/m", [-1.0, 0.0, 0.0, 0.0], true;
+    /// The inverse of a speed \[s/m\].
+    Slowness, "an inverse speed", "s/m", "500 s/m", [-1.0, 0.0, 1.0, 0.0], true;
     /// Stiffness of a power law \[N/mⁿ\]; n is the `exponent` beside it.
     ContactStiffness, "a contact stiffness", "N/m^n", "6e11 N/m^1.5", [f64::NAN, 1.0, -2.0, 0.0], true;
 }

@@ -120,6 +120,23 @@ impl Node {
         }
     }
 
+    /// `chain = "16B-1"` becomes a table with this `type`.
+    pub(crate) fn expand_chain(&mut self) {
+        let Value::Table(entries) = &mut self.value else {
+            return;
+        };
+        for entry in entries.iter_mut().filter(|entry| entry.key == "chain") {
+            if let Value::Text(_) = entry.node.value {
+                let named = Entry {
+                    key: "type".into(),
+                    line: entry.line,
+                    node: entry.node.clone(),
+                };
+                entry.node.value = Value::Table(vec![named]);
+            }
+        }
+    }
+
     /// The value under a key of a table.
     pub(crate) fn get(&self, key: &str) -> Option<&Self> {
         match &self.value {

@@ -39,7 +39,7 @@ impl<'s> Validator<'s> {
         match Expected::of(core) {
             Expected::Table(core) => self.table(node, core, path, None),
             Expected::List(core) => self.list(node, core, path, exponent),
-            Expected::Kinds(members) => self.kinds(node, members, path),
+            Expected::Kinds(members, unnamed) => self.kinds(node, members, unnamed, path),
             Expected::Words(words) => self.word(node, &words, path),
             Expected::Quantity(core, dimension) => {
                 self.quantity(node, core, dimension, path, exponent);
@@ -117,11 +117,13 @@ impl<'s> Validator<'s> {
                 }
             }
         }
-        let required = schema
-            .get("required")
-            .and_then(Json::as_array)
-            .into_iter()
-            .flatten();
+        let listed = |keys: Option<&'s Json>| keys.and_then(Json::as_array).into_iter().flatten();
+        // Keys that another key may stand for.
+        let unless = schema.get("x-required-unless").and_then(Json::as_object);
+        let unless = unless.into_iter().flatten();
+        let alone = unless.filter(|(key, _)| !seen.contains(key));
+        let required = listed(schema.get("required"));
+        let required = required.chain(alone.flat_map(|(_, keys)| listed(Some(keys))));
         for key in required.filter_map(Json::as_str) {
             if seen.iter().any(|k| k == key) || meant.iter().any(|k| k == key) {
                 continue;
@@ -186,7 +188,7 @@ impl<'s> Validator<'s> {
         node.value = Value::List(values);
     }
 
-    fn kinds(&mut self, node: &mut Node, members: &'s [Json], path: &str) {
+    fn kinds(&mut self, node: &mut Node, members: &'s [Json], unnamed: Option<&str>, path: &str) {
         let names: Vec<&str> = members.iter().filter_map(kind_of).collect();
         if let Value::Text(name) = &node.value {
             // A bare name; what else its kind needs is reported as missing.
@@ -208,6 +210,18 @@ impl<'s> Validator<'s> {
             self.wrong_type(node, path, "a table with a `kind`");
             return;
         };
+        if let Some(kind) = unnamed
+            && entries.iter().all(|entry| entry.key != "kind")
+        {
+            entries.push(Entry {
+                key: "kind".into(),
+                line,
+                node: Node {
+                    line,
+                    value: Value::Text(kind.to_owned()),
+                },
+            });
+        }
         let Some(entry) = entries.iter_mut().find(|entry| entry.key == "kind") else {
             let problem = Problem::new(&below(path, "kind"), line, "missing");
             self.refuse(problem.hint(format!("the kinds are {}", names.join(", "))));

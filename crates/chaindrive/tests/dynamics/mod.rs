@@ -1,7 +1,7 @@
 //! Running a scene text, and what the dynamic validation cases ask of its samples.
 #![allow(dead_code, reason = "every test uses its part")]
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Write as _;
 
 use chaindrive::{Observation, Run, Scene, Simulation};
@@ -39,6 +39,64 @@ pub(crate) fn pairs(values: impl IntoIterator<Item = [f64; 2]>) -> String {
 pub(crate) fn numbers(values: impl IntoIterator<Item = f64>) -> String {
     let values: Vec<f64> = values.into_iter().collect();
     format!("{values:?}")
+}
+
+/// A tooth gap whose seat has the roller's own radius, 0.3 p, and holds it without a pull from the
+/// slack side: flanks 10° from the pull of a seated link, T' = T sin 10°/sin(10° + 2π/z) behind it.
+///
+/// The teeth end `tip` pitches above the pitch circle.
+pub(crate) fn holding_gap(teeth: f64, pitch: f64, tip: f64) -> String {
+    let alpha = PI / teeth;
+    let radius = 0.5 * pitch / alpha.sin();
+    let (seat, tip) = (0.3 * pitch, radius + tip * pitch);
+    // The flank still opens by more than a link swings while its roller rises to the tip.
+    let (sine, cosine) = (FRAC_PI_2 - alpha - 10_f64.to_radians()).sin_cos();
+    let foot = [seat * sine, radius - seat * cosine];
+    let along = foot[0] * cosine + foot[1] * sine;
+    let rise = (along * along + tip * tip - foot[0].powi(2) - foot[1].powi(2)).sqrt() - along;
+    let head = [foot[0] + rise * cosine, foot[1] + rise * sine];
+    let middle = [tip * alpha.sin(), tip * alpha.cos()];
+    let place = |[x, y]: [f64; 2], side: f64| format!("[{:?}, {y:?}]", side * x);
+    format!(
+        r#"{{ kind = "path", from = {}, pieces = [
+            {{ kind = "line", to = {} }},
+            {{ kind = "line", to = {} }},
+            {{ kind = "arc", to = {}, radius = {:?} }},
+            {{ kind = "line", to = {} }},
+            {{ kind = "line", to = {} }},
+        ] }}"#,
+        place(middle, 1.0),
+        place(head, 1.0),
+        place(foot, 1.0),
+        place(foot, -1.0),
+        -seat,
+        place(head, -1.0),
+        place(middle, -1.0),
+    )
+}
+
+/// A rod between the wheels of an open drive, inside of the lower span: it takes up most of the
+/// length that whole links have to spare, and leaves 0.3 p to hang.
+///
+/// The route ends with it. `spare` and `distance` are in pitches, `radius` is that of the wheels.
+pub(crate) fn spreading_rod(spare: f64, distance: f64, radius: f64, pitch: f64) -> String {
+    let half = 0.5 * distance;
+    // 2 √(C²/4 + h²) = C + s - 0.3
+    let depth = ((half + 0.5 * (spare - 0.3)).powi(2) - half * half)
+        .max(0.0)
+        .sqrt();
+    format!(
+        r#"
+        [[guides]]
+        name = "rod"
+        face = {{ kind = "arc", centre = [{x:?}, {y:?}], radius = {r:?}, from = "240 deg", to = "300 deg" }}
+        contact = {{ law = {{ kind = "linear", stiffness = 1e6 }} }}
+        "#,
+        x = half * pitch,
+        // The rollers of 0.3 p roll under it.
+        y = -radius - (depth - 0.3 - 0.5) * pitch,
+        r = 0.5 * pitch,
+    )
 }
 
 /// Kinetic and potential energy \[J\].

@@ -1,5 +1,6 @@
-//! `chaindrive scenes`, `schema` and `channels`: what there is.
+//! `chaindrive scenes`, `schema`, `channels` and `catalogue`: what there is.
 
+use chaindrive::catalogue::{CatalogueChain, Number, catalogue as chains};
 use chaindrive::scene::{presets, schema as scene_schema};
 use chaindrive::{Channel, Scene};
 use clap::Args;
@@ -44,4 +45,78 @@ pub(crate) fn channels() -> Result<(), Failure> {
         ))?;
     }
     print("* recorded unless asked otherwise")
+}
+
+/// Lists the chains that a scene can name, or all that is known of one.
+#[derive(Debug, Args)]
+pub(crate) struct Catalogue {
+    /// Chain to look up, such as 16B-1 or 80
+    name: Option<String>,
+}
+
+/// What the list shows, and how many of its units make one of SI.
+const SHOWN: [(Number, &str, f64); 8] = [
+    (Number::Pitch, "pitch mm", 1e3),
+    (Number::RollerDiameter, "roller mm", 1e3),
+    (Number::InnerWidth, "width mm", 1e3),
+    (Number::PinDiameter, "pin mm", 1e3),
+    (Number::PlateHeight, "plate mm", 1e3),
+    (Number::BreakingLoad, "break kN", 1e-3),
+    (Number::MassPerLength, "mass kg/m", 1.0),
+    (Number::LinkStiffness, "link MN/m", 1e-6),
+];
+
+pub(crate) fn catalogue(arguments: &Catalogue) -> Result<(), Failure> {
+    if let Some(name) = &arguments.name {
+        let unknown = || Failure::Argument(format!("no chain of the catalogue is named `{name}`"));
+        return entry(CatalogueChain::named(name).ok_or_else(unknown)?);
+    }
+    let heading = SHOWN.map(|(_, heading, _)| format!("{heading:>10}"));
+    print(format_args!(
+        "{:8} {:>5} {:>6} {}",
+        "chain",
+        "ANSI",
+        "kind",
+        heading.join(" ")
+    ))?;
+    for chain in chains() {
+        let cells = SHOWN.map(|(number, _, per)| match chain.number(number) {
+            Some(value) => format!("{:>10}", short(value * per)),
+            None => format!("{:>10}", "–"),
+        });
+        print(format_args!(
+            "{:8} {:>5} {:>6} {}",
+            chain.name,
+            chain.ansi,
+            chain.kind,
+            cells.join(" ")
+        ))?;
+    }
+    print("`chaindrive catalogue NAME` tells all, and where it is from")
+}
+
+/// Five digits, as the table has at most.
+fn short(value: f64) -> String {
+    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
+    rounded.to_string()
+}
+
+fn entry(chain: &CatalogueChain) -> Result<(), Failure> {
+    print(&chain.name)?;
+    for number in Number::ALL {
+        let value = chain
+            .number(number)
+            .map_or_else(|| "–".to_owned(), |value| format!("{value:.5e}"));
+        print(format_args!(
+            "  {:16} {value:>12} {:7} {} [{}]",
+            number.name(),
+            number.unit(),
+            number.description(),
+            chain.status(number.status())
+        ))?;
+    }
+    if !chain.makers_differ.is_empty() {
+        print(format_args!("  makers differ: {}", chain.makers_differ))?;
+    }
+    Ok(())
 }

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use chaindrive::describe::spans_at_rest;
 use chaindrive::record::{Ending, Existing, Provenance};
-use chaindrive::{Drive, Simulation, Summary};
+use chaindrive::{Channel, Drive, Simulation, Summary};
 use clap::Args;
 
 use super::output::{Output, Target};
@@ -38,12 +38,14 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
     let target = Target::of(arguments.output.as_deref())?;
-    let (scene, run, channels) = arguments.run.apply(arguments.scene.load()?)?;
+    let (scene, run, names) = arguments.run.apply(arguments.scene.load()?)?;
     let drive = scene.drive()?;
-    let mut simulation = Simulation::start(&drive, &run).map_err(|source| Failure::Start {
+    let failed = |source| Failure::Start {
         scene: scene.name().to_owned(),
         source,
-    })?;
+    };
+    let mut simulation = Simulation::start(&drive, &run).map_err(failed)?;
+    let channels = Channel::chosen(&names, simulation.system()).map_err(failed)?;
     let existing = if arguments.overwrite {
         Existing::Replace
     } else {
@@ -113,6 +115,7 @@ fn drive_to_the_end(
             Ok(None) => break Stop::End,
             Err(error) => break Stop::Failed(error),
         }
+        summary.count(simulation.events());
         output.push(simulation)?;
         progress.show(simulation);
         if interrupted() {

@@ -1,8 +1,8 @@
 //! The inner loop: eight rollers against one profile.
 
-use chaindrive_contact::{Elastic, Friction, Rub};
 use chaindrive_contact::dissipation::RATIO_LIMIT;
 use chaindrive_contact::elastic::ElasticLaw;
+use chaindrive_contact::{Elastic, Friction, Rub};
 use pulp::Simd;
 
 use super::{Contacts, Frame, LawNumbers, Shape, Teeth, Touch};
@@ -107,6 +107,10 @@ impl Contacts {
             elastic: LaneElastic::new(self.surface.law.elastic),
             numbers: LawNumbers::new(&self.surface),
             dt,
+            flank: self.flank.map(|flank| LaneFlank {
+                elastic: LaneElastic::new(flank.elastic),
+                scale: 0.5 / flank.width,
+            }),
         };
         let mut sums = Sums::new(w);
         let mut slot = 0;
@@ -172,6 +176,10 @@ impl Contacts {
         for side in 0..self.sides() {
             let face = self.face(w, side, &place);
             let mut found = look(w, face.profile, face.sign * place.x, place.y, self.radius);
+            let flank = law.flank.map(|flank| {
+                let beyond = beyond_hollow(w, face.profile, face.sign * place.x, place.y);
+                flank.elastic_and_share(w, beyond)
+            });
             if face.seat_across {
                 // A seat across the axis belongs to the right half alone.
                 let wrong = w.splat(0.0).greater(face.sign * place.x) & found.in_first;
@@ -180,7 +188,7 @@ impl Contacts {
             found.nx = face.sign * found.nx;
             let hit = place.world(&found, near);
             let slot = side * self.slots + here.slot;
-            self.respond(w, law, &motion, &hit, slot, i, rollers, touch, sums);
+            self.respond(w, law, flank, &motion, &hit, slot, i, rollers, touch, sums);
         }
     }
 
@@ -267,7 +275,14 @@ impl Contacts {
         force.store(&mut rubs, 0);
         slip.store(&mut drags, 0);
         let before = &self.memory.stick[slots.clone()];
-        rub_one_by_one(friction, dt, before, &mut rubs, &mut drags, &mut touch.stick[slots]);
+        rub_one_by_one(
+            friction,
+            dt,
+            before,
+            &mut rubs,
+            &mut drags,
+            &mut touch.stick[slots],
+        );
         (w.load(&rubs, 0), w.load(&drags, 0))
     }
 
@@ -281,6 +296,7 @@ impl Contacts {
         &self,
         w: Wide<S>,
         law: &Response,
+        flank: Option<(LaneElastic, Lane<S>)>,
         motion: &Motion<S>,
         hit: &Hit<S>,
         slot: usize,
@@ -323,7 +339,12 @@ impl Contacts {
         inverse.store(&mut touch.inverse_onset, slot);
 
         // F = max(0, g + χ g min(δ̇/v, 4) + c δ̇)
-        let stored = elastic.force(w, depth);
+        let mut stored = elastic.force(w, depth);
+        if let Some((on_flank, share)) = flank {
+            // g = (1 − s) g_seat + s g_flank
+            stored = stored + share * (on_flank.force(w, depth) - stored);
+            share.store(&mut touch.share, slot);
+        }
         let ratio = (closing * inverse).min(w.splat(RATIO_LIMIT));
         let damping = w.splat(numbers.factor) * stored;
         let viscous = w.splat(numbers.damping) * closing;
@@ -436,6 +457,39 @@ struct Response {
     numbers: LawNumbers,
     /// Time since the last accepted state \[s\].
     dt: f64,
+    /// What is different on flanks.
+    flank: Option<LaneFlank>,
+}
+
+/// A flank on lanes.
+#[derive(Clone, Copy)]
+struct LaneFlank {
+    elastic: LaneElastic,
+    /// 1/(2w) \[1/m\].
+    scale: f64,
+}
+
+impl LaneFlank {
+    /// Its law, and its share as [`Flank::share`](crate::Flank) has it.
+    #[inline(always)]
+    fn elastic_and_share<S: Simd>(self, w: Wide<S>, beyond: Lane<S>) -> (LaneElastic, Lane<S>) {
+        let x = beyond * w.splat(self.scale) + w.splat(0.5);
+        let x = x.max(w.splat(0.0)).min(w.splat(1.0));
+        (self.elastic, x * x * (w.splat(3.0) - w.splat(2.0) * x))
+    }
+}
+
+/// How far beyond the hollow the rollers are; infinite where there is none.
+#[inline(always)]
+fn beyond_hollow<S: Simd>(w: Wide<S>, profile: &Profile, x: Lane<S>, y: Lane<S>) -> Lane<S> {
+    match profile.flank {
+        Some(index) => {
+            let f = &profile.features[index];
+            (x - w.splat(f.start.x)) * w.splat(f.along.x)
+                + (y - w.splat(f.start.y)) * w.splat(f.along.y)
+        }
+        None => w.splat(f64::MAX),
+    }
 }
 
 /// The profile that a lane looks at.

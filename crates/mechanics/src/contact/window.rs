@@ -45,6 +45,7 @@ impl Contacts {
                     memory.closing[to] = self.memory.closing[from];
                     memory.force[to] = self.memory.force[from];
                     memory.stick[to] = self.memory.stick[from];
+                    memory.share[to] = self.memory.share[from];
                 }
             }
             if let Shape::Teeth(teeth) = &self.shape {

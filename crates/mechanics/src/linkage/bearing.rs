@@ -109,9 +109,11 @@ impl Bearing {
         }
     }
 
-    /// The contact of `pin` in `hole`, `dt` after the accepted state `before`.
+    /// The contact of `pin` in `hole` at a joint, `dt` after the accepted state `before`.
+    #[inline(always)]
     pub(crate) fn touch(
         &self,
+        joint: usize,
         hole: &Part,
         pin: &Part,
         before: &PinTouch,
@@ -137,9 +139,8 @@ impl Bearing {
         let depth = -touch.gap;
         touch.onset = before.onset;
         if before.onset <= 0.0 {
-            touch.onset =
-                interpolated_onset(before.gap, before.closing, touch.gap, touch.closing)
-                    .max(self.floor);
+            touch.onset = interpolated_onset(before.gap, before.closing, touch.gap, touch.closing)
+                .max(self.floor);
             tally.began(before.gap, depth);
         }
         let answer = self.law.respond(Approach {
@@ -153,6 +154,7 @@ impl Bearing {
         let lever_pin = self.radius - 0.5 * depth;
         let lever_hole = self.radius + self.clearance + 0.5 * depth;
         let mut element = Element {
+            joint,
             a: pin.body,
             b: hole.body.map_or(Partner::Ground, Partner::Body),
             arm_a: pin.arm,
@@ -166,15 +168,15 @@ impl Bearing {
             stiffness: answer.stiffness,
             damping: answer.damping,
             drag: 0.0,
+            secant: 0.0,
             across: answer.force / eccentricity,
         };
         if self.friction != Friction::None {
-            let slip = turned(normal).dot(&relative) + lever_pin * pin.spin
-                - lever_hole * hole.spin;
+            let slip =
+                turned(normal).dot(&relative) + lever_pin * pin.spin - lever_hole * hole.spin;
             let rub = self.friction.rub(answer.force, slip, before.stick, dt);
             touch.stick = rub.state;
-            element.rub = rub.force;
-            element.drag = rub.damping;
+            element.rub(&self.friction, rub, slip);
             tally.friction_loss -= rub.force * slip;
         }
         (touch, Some(element))

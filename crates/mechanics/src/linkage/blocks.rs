@@ -28,17 +28,17 @@ pub(crate) struct Blocks {
 }
 
 impl Blocks {
-    /// Empties the system for `links` blocks and `border` further unknowns.
+    /// Makes room for `links` blocks and `border` further unknowns; diagonal and right-hand sides are
+    /// left to be set.
     pub(crate) fn clear(&mut self, links: usize, border: usize) {
-        let zero = Matrix3::zeros();
-        for blocks in [&mut self.diagonal, &mut self.below, &mut self.inverse] {
-            blocks.clear();
-            blocks.resize(links, zero);
-        }
+        // Diagonal, right-hand sides and inverses are written before they are read.
+        self.diagonal.resize(links, Matrix3::zeros());
+        self.inverse.resize(links, Matrix3::zeros());
+        self.right.resize(links, Vector3::zeros());
+        self.below.clear();
+        self.below.resize(links, Matrix3::zeros());
         self.beside.clear();
         self.beside.resize(links * border, Vector3::zeros());
-        self.right.clear();
-        self.right.resize(links, Vector3::zeros());
         if self.corner.nrows() == border {
             self.corner.fill(0.0);
             self.right_border.fill(0.0);

@@ -4,19 +4,42 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 
 use super::{
-    Bearing, Body, FreeRollers, Hinges, JointMates, Joining, Linkage, Mate, Memory, PinTouch, turned,
+    Bearing, Body, FreeRollers, Hinges, Joining, JointMates, Linkage, Mate, Memory, PinTouch, Play,
+    turned,
 };
+use crate::End;
 use crate::chain::Chain;
 use crate::drive::{Layout, Parts};
 use crate::rigid::{Joint, RigidLinks, RollerModel};
 use crate::system::{System, WheelRotation, WheelSupport};
-use crate::End;
 
 /// Coordinates and velocities of a converted system.
 pub(crate) struct Converted {
     pub(crate) system: System,
     pub(crate) q: Vec<f64>,
     pub(crate) v: Vec<f64>,
+}
+
+impl Converted {
+    /// Brings the velocities to where no hinge opens: what the stabilisation would otherwise take out of the
+    /// chain in its first milliseconds.
+    pub(crate) fn close_in_motion(&mut self) {
+        let Some(linkage) = &self.system.linkage else {
+            return;
+        };
+        let mut play = Play::default();
+        let at = Moment {
+            t: 0.0,
+            q: &self.q,
+            v: &self.v,
+        };
+        linkage.pose(at, &mut play.posture);
+        play.pin_forces = vec![Vector::zeros(); linkage.joints.len()];
+        let mut v = self.v.clone();
+        if linkage.project(&self.system, at, &mut play, &mut v) {
+            self.v = v;
+        }
+    }
 }
 
 /// Replaces the particle chain of an assembled system by its rigid links.
@@ -175,8 +198,7 @@ fn compile(system: &System, parts: &Parts, links: &RigidLinks) -> Linkage {
     let mut bodies: Vec<Body> = (0..count)
         .map(|link| {
             // p (1 + ε₀) under T₀
-            let spacing =
-                system.links.rest[link] + pretension / system.links.stiffness[link];
+            let spacing = system.links.rest[link] + pretension / system.links.stiffness[link];
             body(links, link, spacing, play)
         })
         .collect();

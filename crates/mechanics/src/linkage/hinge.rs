@@ -66,8 +66,8 @@ impl Hinges {
                     Some(body) => {
                         let b = &linkage.bodies[body];
                         let across = turned(part.arm);
-                        diagonal[row] += Matrix2::identity() / b.mass
-                            + across * across.transpose() / b.inertia;
+                        diagonal[row] +=
+                            Matrix2::identity() / b.mass + across * across.transpose() / b.inertia;
                         let f = &play.forces[body];
                         // J a + J̇ v = F/m + α ẑ × r − ω² r
                         let acceleration = Vector::new(f.x, f.y) / b.mass
@@ -100,6 +100,7 @@ impl Hinges {
                 if let Some(body) = limb.body {
                     let push = force * limb.sign;
                     play.forces[body] += Vector3::new(push.x, push.y, cross(limb.arm, push));
+                    play.load_end(body, joint, push);
                 }
             }
             let [hole, pin] = mates.map(|mate| linkage.part(mate, at, &play.posture));
@@ -111,9 +112,7 @@ impl Hinges {
 fn ground_acceleration(linkage: &Linkage, mate: Mate, at: Moment<'_>) -> Vector {
     match mate {
         Mate::Ground(end) => match &linkage.ends[end].end {
-            End::Driven { x, y } => {
-                Vector::new(x.at(at.t).acceleration, y.at(at.t).acceleration)
-            }
+            End::Driven { x, y } => Vector::new(x.at(at.t).acceleration, y.at(at.t).acceleration),
             End::Free | End::Fixed | End::Pulled { .. } => Vector::zeros(),
         },
         Mate::Link { .. } => Vector::zeros(),
@@ -226,9 +225,8 @@ mod tests {
         for i in 0..4 {
             let before = (i + 3) % 4;
             let after = (i + 1) % 4;
-            let found = diagonal[i] * x[i]
-                + below[before] * x[before]
-                + below[i].transpose() * x[after];
+            let found =
+                diagonal[i] * x[i] + below[before] * x[before] + below[i].transpose() * x[after];
             assert!((found - right[i]).norm() < 1e-13, "row {i}");
         }
     }

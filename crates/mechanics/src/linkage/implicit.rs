@@ -9,7 +9,7 @@
 //! their bush and a wheel only; they are eliminated first and leave the links' pattern as it is.
 
 use chaindrive_geometry::Vector;
-use chaindrive_integrate::Weights;
+use chaindrive_integrate::{Moment, Weights};
 use nalgebra::{Matrix3, Vector3};
 
 use super::{Blocks, Element, Joining, Linkage, Mate, Mount, Partner, Play, cross, turned};
@@ -18,10 +18,19 @@ use crate::system::{WheelRotation, WheelSupport};
 
 /// A row over the unknowns of the partner.
 #[derive(Clone, Copy)]
-enum Row {
+pub(super) enum Row {
     Nothing,
     Body(usize, Vector3<f64>),
     Border([(usize, f64); 3]),
+}
+
+/// What J x is to be at the hinges.
+#[derive(Clone, Copy)]
+pub(super) enum Asked<'a> {
+    /// What J b is.
+    Kept,
+    /// These values, by joint.
+    Given(&'a [Vector]),
 }
 
 /// Where a body's unknowns stand.
@@ -57,6 +66,46 @@ impl Linkage {
         play: &mut Play,
         x: &mut [f64],
     ) -> bool {
+        if weights.stiffness <= 0.0 && matches!(self.joining, Joining::Clearance(_)) {
+            return self.damp(system, weights.damping, play, x);
+        }
+        self.eliminate(system, weights, play, x, Asked::Kept)
+    }
+
+    /// Velocities v nearest to the given ones, in kinetic energy, with which no hinge opens.
+    pub(crate) fn project(
+        &self,
+        system: &System,
+        at: Moment<'_>,
+        play: &mut Play,
+        v: &mut [f64],
+    ) -> bool {
+        let none = Weights {
+            damping: 0.0,
+            stiffness: 0.0,
+        };
+        let held = self.joints.iter().map(|joint| {
+            let of = |mate: Mate| match mate {
+                Mate::Ground(_) => self.part(mate, at, &play.posture).velocity,
+                Mate::Link { .. } => Vector::zeros(),
+            };
+            // v_pin − v_hole = 0: what the frame does stands on the other side.
+            joint
+                .pair
+                .map_or_else(Vector::zeros, |[hole, pin]| of(hole) - of(pin))
+        });
+        let held: Vec<Vector> = held.collect();
+        self.eliminate(system, none, play, v, Asked::Given(&held))
+    }
+
+    pub(super) fn eliminate(
+        &self,
+        system: &System,
+        weights: Weights,
+        play: &mut Play,
+        x: &mut [f64],
+        asked: Asked<'_>,
+    ) -> bool {
         let border = x.len() - self.dofs() + if self.closed { 3 } else { 0 };
         let row = self.links - usize::from(self.closed);
         let rollers = self.bodies.len() - self.links;
@@ -68,7 +117,10 @@ impl Linkage {
             roller.clear();
         }
         self.add_masses(system, &mut blocks, &mut loose, x);
-        system.add_supports(self, weights, play, &mut blocks);
+        system.each_support(|dof, stiffness, damping| {
+            let j = self.border(dof);
+            blocks.corner[(j, j)] += weights.stiffness * stiffness + weights.damping * damping;
+        });
         let mut sum = Sum {
             linkage: self,
             blocks: &mut blocks,
@@ -79,7 +131,7 @@ impl Linkage {
             sum.add(element, &play.mounts, weights);
         }
         if matches!(self.joining, Joining::Hinges(_)) {
-            sum.add_hinges(play, weights, x);
+            sum.add_hinges(play, weights, x, asked);
         }
         let solved = sum.eliminate_rollers() && blocks.solve();
         if solved {
@@ -147,24 +199,18 @@ impl Linkage {
     fn found(&self, blocks: &Blocks, link: usize) -> Vector3<f64> {
         match self.place(link) {
             Place::Link(i) => blocks.right[i],
-            Place::Corner | Place::Roller(_) => {
-                Vector3::from_fn(|k, _| blocks.right_border[k])
-            }
+            Place::Corner | Place::Roller(_) => Vector3::from_fn(|k, _| blocks.right_border[k]),
         }
     }
 }
 
 impl System {
-    /// Bearings, tensioners and shafts: springs and dampers of the border's own.
-    fn add_supports(&self, linkage: &Linkage, weights: Weights, play: &Play, blocks: &mut Blocks) {
-        let mut add = |dof: usize, stiffness: f64, damping: f64| {
-            let j = linkage.border(dof);
-            blocks.corner[(j, j)] += weights.stiffness * stiffness + weights.damping * damping;
-        };
+    /// Bearings, tensioners and shafts: visits (degree of freedom, stiffness, damping) of what they have of their own.
+    pub(super) fn each_support(&self, mut visit: impl FnMut(usize, f64, f64)) {
         for wheel in &self.wheels {
             if let WheelRotation::Free { dof, drive, load } = &wheel.rotation {
                 let drag: f64 = drive.iter().chain(load).map(crate::Torque::drag).sum();
-                add(*dof, 0.0, drag);
+                visit(*dof, 0.0, drag);
             }
             if let WheelSupport::Springs {
                 dof,
@@ -173,7 +219,7 @@ impl System {
             } = &wheel.support
             {
                 for axis in 0..2 {
-                    add(dof + axis, stiffness[axis], damping[axis]);
+                    visit(dof + axis, stiffness[axis], damping[axis]);
                 }
             }
         }
@@ -181,13 +227,12 @@ impl System {
             let Some(dof) = slide.dof else { continue };
             let (_, lever) = slide.carrier.extension(0.0);
             let squared = lever * lever;
-            add(
+            visit(
                 dof,
                 slide.push.stiffness() * squared,
                 slide.push.damping() * squared,
             );
         }
-        let _ = play;
     }
 }
 
@@ -251,9 +296,12 @@ const HINGE: f64 = 1e7;
 
 impl Sum<'_> {
     /// Ideal joints as very heavy rows: W Jᵀ (J x − J b) keeps J x at what the accelerations b ask for.
-    fn add_hinges(&mut self, play: &Play, weights: Weights, b: &[f64]) {
+    fn add_hinges(&mut self, play: &Play, weights: Weights, b: &[f64], asked: Asked<'_>) {
         let linkage = self.linkage;
-        let heaviest = linkage.bodies.iter().fold(0.0_f64, |m, body| m.max(body.mass));
+        let heaviest = linkage
+            .bodies
+            .iter()
+            .fold(0.0_f64, |m, body| m.max(body.mass));
         let stiffest = play.elements.iter().fold(0.0_f64, |m, element| {
             m.max(weights.damping * element.damping + weights.stiffness * element.stiffness)
         });
@@ -276,13 +324,15 @@ impl Sum<'_> {
             for direction in [Vector::x(), Vector::y()] {
                 let [hole, pin] = sides.map(|side| {
                     side.map(|(body, arm)| {
-                        let row =
-                            Vector3::new(direction.x, direction.y, cross(arm, direction));
+                        let row = Vector3::new(direction.x, direction.y, cross(arm, direction));
                         let known = Vector3::from_column_slice(&b[3 * body..3 * body + 3]);
                         (body, row, row.dot(&known))
                     })
                 });
-                let asked = pin.map_or(0.0, |p| p.2) - hole.map_or(0.0, |h| h.2);
+                let asked = match asked {
+                    Asked::Kept => pin.map_or(0.0, |p| p.2) - hole.map_or(0.0, |h| h.2),
+                    Asked::Given(values) => direction.dot(&values[index]),
+                };
                 for (side, sign) in [(pin, 1.0), (hole, -1.0)] {
                     if let Some((body, row, _)) = side {
                         self.force(body, row * (sign * weight * asked));
@@ -336,9 +386,15 @@ impl Sum<'_> {
             self.square(element.a, a, b, weights.stiffness * element.across.max(0.0));
             self.add_bend(&pivoting, mounts, weights.stiffness);
         }
-        if element.drag > 0.0 {
+        // Newton's method wants the tangent, a single step the secant.
+        let drag = if weights.stiffness > 0.0 {
+            element.drag
+        } else {
+            element.secant
+        };
+        if drag > 0.0 {
             let (a, b) = rows(tangent, [element.lever_a, element.lever_b]);
-            self.square(element.a, a, b, weights.damping * element.drag);
+            self.square(element.a, a, b, weights.damping * drag);
         }
     }
 
@@ -527,7 +583,12 @@ impl Sum<'_> {
 }
 
 /// How the partner moves along a direction at the circle's centre, with a lever for its rotation.
-fn partner_row(element: &Element, mounts: &[Mount], direction: Vector, lever: f64) -> Row {
+pub(super) fn partner_row(
+    element: &Element,
+    mounts: &[Mount],
+    direction: Vector,
+    lever: f64,
+) -> Row {
     match element.b {
         Partner::Ground => Row::Nothing,
         Partner::Body(body) => Row::Body(

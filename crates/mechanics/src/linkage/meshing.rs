@@ -1,16 +1,14 @@
 //! Rollers of a linkage on teeth and guides.
 
-use chaindrive_contact::{Approach, interpolated_onset};
+use chaindrive_contact::{Approach, Friction, Law, Prepared, Response, interpolated_onset};
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 
-use super::{Element, Linkage, Mount, Partner, Play, Part, Tally, turned};
-use crate::Carrier;
+use super::{Element, Linkage, Mount, Part, Partner, Play, Tally, turned};
 use crate::contact::{Contacts, Frame, Touch, Wrench};
 use crate::energy::Flow;
-use crate::system::{
-    RailContact, RailSupport, Record, System, Wheel, WheelRotation, WheelSupport,
-};
+use crate::system::{RailContact, RailSupport, Record, System, Wheel, WheelRotation, WheelSupport};
+use crate::{Carrier, Flank};
 
 impl System {
     /// Contacts of a linkage with wheels and rails.
@@ -44,7 +42,13 @@ impl System {
                 }
                 RailContact::Plates(plates) => {
                     let mut pins = super::rates::LinkPins(play);
-                    plates.act(at.t, &frame, &mut pins, linkage.links, &mut record.plates[i])
+                    plates.act(
+                        at.t,
+                        &frame,
+                        &mut pins,
+                        linkage.links,
+                        &mut record.plates[i],
+                    )
                 }
             };
             rates[Flow::GuideLoss as usize] += wrench.normal_loss;
@@ -110,13 +114,8 @@ impl Linkage {
         play: &mut Play,
     ) -> Wrench {
         let slots = contacts.slots;
-        touch.resize(slots * contacts.sides());
-        touch.inverse_onset.fill(0.0);
-        touch.force.fill(0.0);
-        touch.gap.fill(1.0);
-        touch.closing.fill(0.0);
-        touch.stick.fill(0.0);
-        let law = contacts.surface.law.prepared();
+        touch.open(slots * contacts.sides());
+        let law = ToothLaw::new(contacts);
         let floor = contacts.surface.floor();
         let mut wrench = Wrench {
             first_share: 1.0,
@@ -151,16 +150,18 @@ impl Linkage {
                     tally.began(gap, depth);
                 }
                 touch.inverse_onset[index] = inverse;
-                let answer = law.respond(Approach {
+                let approach = Approach {
                     penetration: depth,
                     rate: closing,
                     onset_rate: 1.0 / inverse,
-                });
+                };
+                let answer = law.respond(approach, probe.beyond, &mut touch.share[index]);
                 touch.force[index] = answer.force;
                 tally.normal_loss += (answer.force - answer.elastic) * closing;
                 let spins = self.spins(&part);
                 let radius = contacts.radius;
                 let mut element = Element {
+                    joint: joint % self.joints.len(),
                     a: part.body,
                     b: Partner::Mount(mount),
                     arm_a: part.arm,
@@ -174,18 +175,18 @@ impl Linkage {
                     stiffness: answer.stiffness,
                     damping: answer.damping,
                     drag: 0.0,
+                    secant: 0.0,
                     // −F × bend of the gap's level line: a seat holds a roller, a bulge sheds it.
                     across: -answer.force * probe.bend,
                 };
                 let friction = &contacts.surface.friction;
-                if *friction != chaindrive_contact::Friction::None {
+                if *friction != Friction::None {
                     let slip = turned(normal).dot(&relative) + element.lever_a * part.spin
                         - element.lever_b * frame.spin;
                     let before = memory.stick[index];
                     let rub = friction.rub(answer.force, slip, before, at.t - contacts.accepted);
                     touch.stick[index] = rub.state;
-                    element.rub = rub.force;
-                    element.drag = rub.damping;
+                    element.rub(friction, rub, slip);
                     tally.friction_loss -= rub.force * slip;
                 }
                 let push = element.push();
@@ -211,7 +212,58 @@ impl Linkage {
     }
 }
 
+/// The law of a seat, and of the flank behind it.
+struct ToothLaw {
+    seat: Prepared,
+    flank: Option<(Flank, Prepared)>,
+}
+
+impl ToothLaw {
+    fn new(contacts: &Contacts) -> Self {
+        let seat = contacts.surface.law;
+        let flank = contacts.flank.map(|flank| {
+            let law = Law {
+                elastic: flank.elastic,
+                ..seat
+            };
+            (flank, law.prepared())
+        });
+        Self {
+            seat: seat.prepared(),
+            flank,
+        }
+    }
+
+    /// Answer at a distance beyond the end of the hollow; writes down the flank's share.
+    #[inline]
+    fn respond(&self, approach: Approach, beyond: f64, share: &mut f64) -> Response {
+        let seat = self.seat.respond(approach);
+        match &self.flank {
+            None => seat,
+            Some((flank, law)) => {
+                *share = flank.share(beyond);
+                between(seat, law.respond(approach), *share)
+            }
+        }
+    }
+}
+
+/// Part of one answer and part of another.
+fn between(seat: Response, flank: Response, share: f64) -> Response {
+    let mix = |a: f64, b: f64| (1.0 - share) * a + share * b;
+    Response {
+        force: mix(seat.force, flank.force),
+        elastic: mix(seat.elastic, flank.elastic),
+        stiffness: mix(seat.stiffness, flank.stiffness),
+        damping: mix(seat.damping, flank.damping),
+    }
+}
+
 /// Centre of the arc that a roller at `d` faces, from the origin of the frame.
 fn pivot(d: Vector, normal: Vector, bend: f64) -> Vector {
-    if bend.abs() > 0.0 { d + normal / bend } else { d }
+    if bend.abs() > 0.0 {
+        d + normal / bend
+    } else {
+        d
+    }
 }

@@ -21,7 +21,7 @@ impl Linkage {
         copy(&mut out.roller_vy, &play.posture.vy);
         out.link_tension.clear();
         out.link_tension
-            .extend((0..self.links).map(|link| self.tension(link, play)));
+            .extend((0..self.links).map(|link| play.tension(link)));
         out.link_angle.clear();
         out.link_angle
             .extend((0..self.links).map(|link| at.q[3 * link + 2]));
@@ -49,7 +49,7 @@ impl Linkage {
                 Joining::Hinges(_) => 0.0,
             });
             out.joint_angle.push(match joint.pair {
-                Some([hole, pin]) => self.angle(pin, at) - self.angle(hole, at),
+                Some([hole, pin]) => angle(pin, at) - angle(hole, at),
                 None => f64::NAN,
             });
         }
@@ -63,13 +63,6 @@ impl Linkage {
                 pin - hole
             }
             None => Vector::new(f64::NAN, f64::NAN),
-        }
-    }
-
-    fn angle(&self, mate: Mate, at: Moment<'_>) -> f64 {
-        match mate {
-            Mate::Link { link, .. } => at.q[3 * link + 2],
-            Mate::Ground(_) => 0.0,
         }
     }
 
@@ -88,5 +81,13 @@ impl Linkage {
     /// States of the joints and of the bushes in their rollers, for those who count impacts.
     pub(crate) fn touches(&self) -> [&[PinTouch]; 2] {
         [&self.memory.joints, &self.memory.bushes]
+    }
+}
+
+/// Direction of a side of a joint \[rad\].
+fn angle(mate: Mate, at: Moment<'_>) -> f64 {
+    match mate {
+        Mate::Link { link, .. } => at.q[3 * link + 2],
+        Mate::Ground(_) => 0.0,
     }
 }

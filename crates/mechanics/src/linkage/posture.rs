@@ -78,7 +78,12 @@ impl Linkage {
                 [posture.x[k], posture.y[k], posture.vx[k], posture.vy[k]]
             } else {
                 // Behind a strand stand still points one pitch apart.
-                [posture.x[joint - 1] + self.pitch, posture.y[joint - 1], 0.0, 0.0]
+                [
+                    posture.x[joint - 1] + self.pitch,
+                    posture.y[joint - 1],
+                    0.0,
+                    0.0,
+                ]
             };
             [
                 posture.x[joint],
@@ -98,6 +103,7 @@ impl Linkage {
     }
 
     /// One side of a joint.
+    #[inline]
     pub(crate) fn part(&self, mate: Mate, at: Moment<'_>, posture: &Posture) -> Part {
         match mate {
             Mate::Link { link, end } => {

@@ -1,12 +1,15 @@
 //! Time scales of a linkage, and its plates as guides see them.
 
 use chaindrive_geometry::{Point, Vector};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::{Joining, Linkage, Partner, Play, cross};
 use crate::System;
 use crate::contact::{PlatePins, PlatePlaces};
 
+/// Shares of a contact between chain and wheel: 1 + ε and 1 + 1/ε with ε = 0.1.
+const WHEEL_SHARE: f64 = 1.1;
+const RIM_SHARE: f64 = 11.0;
 /// Depth at which contacts that are open now are reckoned with \[m\].
 const SHALLOW: f64 = 1e-7;
 
@@ -14,22 +17,28 @@ impl Linkage {
     /// 1/ω of the stiffest mode \[s\], with its damping and without.
     ///
     /// ```text
-    /// ω² ≤ max over bodies of 2 Σ k (Jₙ M⁻¹ Jₙᵀ),    D alike with the damping,
-    /// 1/ω = 1/(D + √(D² + ω²))
+    /// k (a − b)² ≤ 2 k (a² + b²)   ⇒   ω² ≤ max over bodies of λ(S),   S = M^(−½) Σ 2 k Jₙᵀ Jₙ M^(−½)
+    /// D alike with the damping,    1/ω = 1/(D + √(D² + ω²))
     /// ```
     ///
-    /// Gershgorin's bound on the contacts of a body, doubled for what its neighbours share. Friction counts as
-    /// damping.
+    /// λ is the largest eigenvalue of a three-by-three matrix. Against a wheel the contact is shared unevenly:
+    /// 1.1 for the chain, 11 for the wheel, and 1 where the wheel does not answer. Friction counts as damping.
     pub(crate) fn stiffest(&self, system: &System, play: &Play) -> [f64; 2] {
-        let mut sums = vec![[0.0_f64; 2]; self.bodies.len()];
+        let mut sums = vec![[Matrix3::zeros(); 2]; self.bodies.len()];
         for element in &play.elements {
-            let n = element.normal;
-            let t = element.tangent();
+            let (n, t) = (element.normal, element.tangent());
+            let share = match element.b {
+                Partner::Ground => 1.0,
+                Partner::Body(_) => 2.0,
+                Partner::Mount(_) => WHEEL_SHARE,
+            };
             let mut add = |body: usize, arm: Vector, lever: f64| {
-                let along = self.mobility(body, arm, n, 0.0);
-                let across = self.mobility(body, arm, t, lever);
-                sums[body][0] += element.stiffness * along;
-                sums[body][1] += element.damping * along + element.drag * across;
+                let along = self.scaled_row(body, arm, n, 0.0);
+                let across = self.scaled_row(body, arm, t, lever);
+                let square = along * along.transpose();
+                sums[body][0] += square * (share * element.stiffness);
+                sums[body][1] += square * (share * element.damping)
+                    + across * across.transpose() * (share * element.drag);
             };
             if let Some(body) = element.a {
                 add(body, element.arm_a, element.lever_a);
@@ -39,12 +48,12 @@ impl Linkage {
             }
         }
         let [mut squared, mut damping] = sums.iter().fold([0.0_f64; 2], |[k, d], sum| {
-            [k.max(2.0 * sum[0]), d.max(2.0 * sum[1])]
+            [k.max(largest(&sum[0])), d.max(largest(&sum[1]))]
         });
         squared = squared.max(self.resting());
         for (wheel, wrench) in system.wheels.iter().zip(&play.wheel_rates(system)) {
-            squared = squared.max(2.0 * wrench[0]);
-            damping = damping.max(2.0 * wrench[1]);
+            squared = squared.max(RIM_SHARE * wrench[0]);
+            damping = damping.max(RIM_SHARE * wrench[1]);
             let [own, drag] = wheel.own_rates();
             squared = squared.max(own);
             damping = damping.max(drag);
@@ -67,7 +76,9 @@ impl Linkage {
     /// ω² of the lightest body on the joints when they close gently: what the first step has to respect.
     fn resting(&self) -> f64 {
         let mut stiffness = 0.0_f64;
-        if let Joining::Clearance(bearing) = &self.joining {
+        if let Joining::Clearance(bearing) = &self.joining
+            && self.joints.iter().any(|joint| joint.pair.is_some())
+        {
             stiffness = stiffness.max(bearing.stiffness(SHALLOW));
         }
         let link = self.bodies[..self.links]
@@ -85,12 +96,28 @@ impl Linkage {
         squared
     }
 
-    /// How easily a force at a joint moves the body along a direction \[1/kg\].
-    fn mobility(&self, body: usize, arm: Vector, direction: Vector, lever: f64) -> f64 {
+    /// A row of J M^(−½).
+    fn scaled_row(&self, body: usize, arm: Vector, direction: Vector, lever: f64) -> Vector3<f64> {
         let b = &self.bodies[body];
+        let root = 1.0 / b.mass.sqrt();
         let turn = cross(arm, direction) + lever;
-        1.0 / b.mass + turn * turn / b.inertia
+        Vector3::new(
+            direction.x * root,
+            direction.y * root,
+            turn / b.inertia.sqrt(),
+        )
     }
+}
+
+/// Largest eigenvalue of a positive semidefinite matrix, from above.
+///
+/// ```text
+/// m = tr/3,  p² = |S − m|²/6:   λ ≤ m + 2 p
+/// ```
+fn largest(matrix: &Matrix3<f64>) -> f64 {
+    let mean = matrix.trace() / 3.0;
+    let deviation = matrix - Matrix3::identity() * mean;
+    mean + 2.0 * (deviation.norm_squared() / 6.0).sqrt()
 }
 
 impl Play {

@@ -14,9 +14,9 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Moment, SecondOrderSystem, Weights};
 
 use super::{Joining, Linkage};
-use crate::{AssemblyError, End, Motion};
 use crate::energy::Flow;
 use crate::system::{RailSupport, Record, System, WheelRotation, WheelSupport};
+use crate::{AssemblyError, End, Motion};
 
 /// Forces out of balance, relative to the largest joint force, at which a state counts as static.
 const CONVERGED: f64 = 1e-7;
@@ -42,7 +42,10 @@ pub(crate) fn settle(
         tighten(system, q, pretension, stiffness)?;
     }
     let mut light = system.at_rest();
-    accept(relax(&mut light, q, pretension), "gravity and load on the joints")
+    accept(
+        relax(&mut light, q, pretension),
+        "gravity and load on the joints",
+    )
 }
 
 fn accept(balance: Balance, stage: &'static str) -> Result<Balance, AssemblyError> {
@@ -118,7 +121,7 @@ fn mean_tension(system: &System, q: &[f64]) -> f64 {
         return 0.0;
     };
     let sum: f64 = (0..linkage.links)
-        .map(|link| linkage.tension(link, &record.play))
+        .map(|link| record.play.tension(link))
         .sum();
     sum / linkage.links as f64
 }

@@ -234,7 +234,10 @@ fn wheel(
     };
     Wheel {
         name: sprocket.name.clone(),
-        contacts: Contacts::new(Shape::Teeth(teeth), sprocket.surface, radius),
+        contacts: Contacts {
+            flank: sprocket.flank,
+            ..Contacts::new(Shape::Teeth(teeth), sprocket.surface, radius)
+        },
         centre: sprocket.centre,
         angle,
         rotation,

@@ -50,6 +50,7 @@ pub(crate) fn parts(law: Law) -> Parts {
             law,
             friction: Friction::None,
         },
+        flank: None,
         gap_angle: 0.0,
     });
     Parts {

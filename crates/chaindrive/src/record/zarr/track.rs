@@ -19,7 +19,7 @@ const NUMBERS_PER_CHUNK: usize = 1 << 17;
 const SAMPLES_PER_CHUNK: usize = 1 << 14;
 
 /// Level of the compression: what is zero or constant shrinks at any level, the rest at none.
-const ZSTD_LEVEL: i32 = 3;
+pub(super) const ZSTD_LEVEL: i32 = 3;
 
 /// An array that grows with time.
 pub(super) struct Track {
@@ -129,7 +129,7 @@ pub(super) fn store_labels(
     labels: &[String],
 ) -> Result<Value, Fault> {
     let count = labels.len() as u64;
-    let numbers = matches!(axis, Axis::Roller | Axis::Link);
+    let numbers = axis.is_numbered();
     let (shape, chunk) = (vec![count], vec![count.max(1)]);
     let mut builder = if numbers {
         ArrayBuilder::new(shape, chunk, data_type::int64(), 0_i64)
@@ -156,10 +156,10 @@ fn plain() -> ArrayMetadataOptions {
     ArrayMetadataOptions::default().with_include_zarrs_metadata(false)
 }
 
-fn metadata(array: &StoredArray) -> Result<Value, Fault> {
+pub(super) fn metadata(array: &StoredArray) -> Result<Value, Fault> {
     Ok(serde_json::to_value(array.metadata_opt(&plain()))?)
 }
 
-fn store_metadata(array: &StoredArray) -> Result<(), Fault> {
+pub(super) fn store_metadata(array: &StoredArray) -> Result<(), Fault> {
     Ok(array.store_metadata_opt(&plain())?)
 }

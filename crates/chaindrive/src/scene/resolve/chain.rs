@@ -1,10 +1,12 @@
-//! The chain: lengths, masses, stiffness and damping, link by link.
+//! The chain: completed from the catalogue, then lengths, masses, stiffness and damping, link by link.
 
+use chaindrive_geometry::{Route, Side, Wheel};
 use chaindrive_mechanics::{Chain, ChainModel, End, Ends};
 
+use super::law::Pair;
 use super::scatter::Normal;
-use super::{Findings, motion};
-use crate::scene::schema;
+use super::{Findings, catalogue, links, motion, point};
+use crate::scene::schema::{self, SceneText};
 
 /// Roller diameter \[pitches\] of a strand that touches nothing.
 const UNTOUCHED_ROLLER: f64 = 0.6;
@@ -13,15 +15,131 @@ const PLATE: f64 = 1.4;
 /// Damping ratio ζ \[–\] of a link: measured values are not published, 0.01 to 0.05 are in use.
 const DAMPING_RATIO: f64 = 0.03;
 
+/// The chain, and what contacts want to know of it.
+#[derive(Debug)]
+pub(super) struct Resolved {
+    pub(super) chain: Chain,
+    /// Length of the rollers on the teeth \[m\], where it is known.
+    pub(super) roller_length: Option<f64>,
+}
+
+impl Resolved {
+    /// A roller before it meets a surface.
+    pub(super) fn roller(&self) -> Pair {
+        Pair {
+            radius: 0.5 * self.chain.roller_diameter,
+            bore: None,
+            length: self.roller_length,
+        }
+    }
+
+    /// Whether the links are rigid.
+    pub(super) fn is_rigid(&self) -> bool {
+        matches!(self.chain.model, ChainModel::Rigid(_))
+    }
+
+    /// Mean stiffness of the links \[N/m\].
+    pub(super) fn link_stiffness(&self) -> f64 {
+        self.chain.stiffness.iter().sum::<f64>() / self.chain.links() as f64
+    }
+}
+
 /// `touched`: whether there is a sprocket or guide for which the roller diameter matters.
 pub(super) fn resolve(
-    text: &schema::Chain,
+    scene: &SceneText,
     touched: bool,
     findings: &mut Findings<'_>,
-) -> Option<Chain> {
-    let links = text.links as usize;
+) -> Option<Resolved> {
+    let of_type = match &scene.chain.of_type {
+        Some(name) => Some(catalogue::named(name, findings)?),
+        None => None,
+    };
+    if scene.chain.model == schema::ChainModel::Particles {
+        links::refuse_on_particles(&scene.chain, findings);
+    }
+    let text = &of_type.map_or_else(
+        || scene.chain.clone(),
+        |chain| catalogue::completed(&scene.chain, chain),
+    );
+    let Some(pitch) = text.pitch.map(|pitch| pitch.0) else {
+        findings.refuse_with("chain.pitch", "missing", "give the nominal pitch");
+        return None;
+    };
+    let links = count(scene, text, pitch, findings)?;
+    let lengths = lengths(text, pitch, links, findings);
+    let roller_diameter = match text.roller_diameter {
+        Some(diameter) => diameter.0,
+        None if touched => {
+            let hint = "give the roller diameter, from which teeth and guides follow";
+            findings.refuse_with("chain.roller_diameter", "missing", hint);
+            return None;
+        }
+        None => UNTOUCHED_ROLLER * pitch,
+    };
+    let roller_length = text.roller.and_then(|roller| roller.length);
+    let roller_length = roller_length.map(|length| length.0);
+    let roller_length = roller_length.or(of_type.and_then(catalogue::roller_length));
+    let ends = ends(text, findings);
+    let body = match text.model {
+        schema::ChainModel::Particles => particles(text, links, findings),
+        _ => links::resolve(scene, text, links, roller_diameter, roller_length, findings),
+    };
+
+    let scatter = text.scatter.clone().unwrap_or_default();
+    let vary = |values: Vec<f64>, deviation: f64, stream: u32, scale: Option<f64>| -> Vec<f64> {
+        let mut normal = Normal::new(scatter.seed, stream);
+        let varied = values
+            .into_iter()
+            .map(|v| v + deviation * scale.unwrap_or(v) * normal.next());
+        varied.collect()
+    };
+    let lengths = vary(lengths?, scatter.pitch.0, 0, Some(pitch));
+    let Body {
+        masses,
+        stiffness,
+        model,
+    } = body?;
+    let masses = vary(masses, scatter.mass.0, 1, None);
+    let stiffness = vary(stiffness, scatter.stiffness.0, 2, None);
+    let damping = if let Some(damping) = text.damping {
+        vec![damping.0; links]
+    } else {
+        let ratio = text.damping_ratio.map_or(DAMPING_RATIO, |ratio| ratio.0);
+        // c = 2 ζ √(k m)
+        let pairs = stiffness.iter().zip(&masses);
+        pairs
+            .map(|(k, m)| 2.0 * ratio * (k * m).max(0.0).sqrt())
+            .collect()
+    };
+    let chain = Chain {
+        pitch,
+        lengths,
+        stiffness,
+        damping,
+        masses,
+        roller_diameter,
+        plate_height: text
+            .plate_height
+            .map_or(PLATE * roller_diameter, |height| height.0),
+        ends: ends?,
+        model,
+    };
+    Some(Resolved {
+        chain,
+        roller_length,
+    })
+}
+
+/// What is between the joints.
+#[derive(Debug)]
+pub(super) struct Body {
+    pub(super) masses: Vec<f64>,
+    pub(super) stiffness: Vec<f64>,
+    pub(super) model: ChainModel,
+}
+
+fn particles(text: &schema::Chain, links: usize, findings: &mut Findings<'_>) -> Option<Body> {
     let rollers = links + usize::from(text.ends.is_some());
-    let lengths = lengths(text, links, findings);
     let given = text
         .masses
         .as_ref()
@@ -39,61 +157,73 @@ pub(super) fn resolve(
         .map(|all| all.iter().map(|k| k.0).collect());
     let single = text.stiffness.map(|k| k.0);
     let stiffness = each(("stiffness", "stiffnesses"), single, given, links, findings);
-    let roller_diameter = match text.roller_diameter {
-        Some(diameter) => diameter.0,
-        None if touched => {
-            let hint = "give the roller diameter, from which teeth and guides follow";
-            findings.refuse_with("chain.roller_diameter", "missing", hint);
-            return None;
-        }
-        None => UNTOUCHED_ROLLER * text.pitch.0,
-    };
     if text.damping.is_some() && text.damping_ratio.is_some() {
-        findings.refuse_with(
-            "chain.damping_ratio",
-            "`damping` is given too",
-            "keep one of them",
-        );
+        let message = "`damping` is given too";
+        findings.refuse_with("chain.damping_ratio", message, "keep one of them");
     }
-    let ends = ends(text, findings);
-
-    let scatter = text.scatter.clone().unwrap_or_default();
-    let vary = |values: Vec<f64>, deviation: f64, stream: u32, scale: Option<f64>| -> Vec<f64> {
-        let mut normal = Normal::new(scatter.seed, stream);
-        let varied = values
-            .into_iter()
-            .map(|v| v + deviation * scale.unwrap_or(v) * normal.next());
-        varied.collect()
-    };
-    let lengths = vary(lengths?, scatter.pitch.0, 0, Some(text.pitch.0));
-    let masses = vary(masses?, scatter.mass.0, 1, None);
-    let stiffness = vary(stiffness?, scatter.stiffness.0, 2, None);
-    let damping = if let Some(damping) = text.damping {
-        vec![damping.0; links]
-    } else {
-        let ratio = text.damping_ratio.map_or(DAMPING_RATIO, |ratio| ratio.0);
-        // c = 2 ζ √(k m)
-        let pairs = stiffness.iter().zip(&masses);
-        pairs
-            .map(|(k, m)| 2.0 * ratio * (k * m).max(0.0).sqrt())
-            .collect()
-    };
-    Some(Chain {
-        pitch: text.pitch.0,
-        lengths,
-        stiffness,
-        damping,
-        masses,
-        roller_diameter,
-        plate_height: text
-            .plate_height
-            .map_or(PLATE * roller_diameter, |height| height.0),
-        ends: ends?,
+    Some(Body {
+        masses: masses?,
+        stiffness: stiffness?,
         model: ChainModel::Particles,
     })
 }
 
-fn lengths(text: &schema::Chain, links: usize, findings: &mut Findings<'_>) -> Option<Vec<f64>> {
+/// The number of links: as given, or for a chain of the catalogue the even one nearest to the taut
+/// route.
+fn count(
+    scene: &SceneText,
+    text: &schema::Chain,
+    pitch: f64,
+    findings: &mut Findings<'_>,
+) -> Option<usize> {
+    if let Some(links) = text.links {
+        return Some(links as usize);
+    }
+    let pitches = if text.of_type.is_some() && text.ends.is_none() && text.start.is_none() {
+        taut(scene, pitch)
+    } else {
+        None
+    };
+    let Some(pitches) = pitches else {
+        findings.refuse_with("chain.links", "missing", "give the number of links");
+        return None;
+    };
+    // Two at a time, because inner and outer links alternate.
+    let pairs = (0.5 * pitches).round().clamp(2.0, 50_000.0);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "between 2 and 50 000"
+    )]
+    Some(2 * pairs as usize)
+}
+
+/// Pitches of the taut route; none where guides take part, or where there is none.
+fn taut(scene: &SceneText, pitch: f64) -> Option<f64> {
+    let wheel = |sprocket: &schema::Sprocket| {
+        let side = match sprocket.side {
+            schema::Side::Left => Side::Left,
+            schema::Side::Right => Side::Right,
+        };
+        Wheel::toothed(point(sprocket.centre), sprocket.teeth, pitch, side)
+    };
+    let stops = scene.route.as_ref().and_then(|route| route.stops.as_ref());
+    let wheels: Option<Vec<Wheel>> = match stops {
+        None => Some(scene.sprockets.iter().map(wheel).collect()),
+        Some(names) => names
+            .iter()
+            .map(|name| scene.sprockets.iter().find(|s| s.name == *name).map(wheel))
+            .collect(),
+    };
+    Route::taut(&wheels?).ok().map(|route| route.pitches(pitch))
+}
+
+fn lengths(
+    text: &schema::Chain,
+    pitch: f64,
+    links: usize,
+    findings: &mut Findings<'_>,
+) -> Option<Vec<f64>> {
     let worn = 1.0 + text.elongation.0;
     if let Some(pitches) = &text.pitches {
         for (key, given) in [
@@ -113,16 +243,23 @@ fn lengths(text: &schema::Chain, links: usize, findings: &mut Findings<'_>) -> O
         }
         return Some(pitches.iter().map(|pitch| pitch.0 * worn).collect());
     }
-    let inner = text.inner_pitch.unwrap_or(text.pitch).0;
-    let outer = text.outer_pitch.unwrap_or(text.pitch).0;
-    let alternating = text.inner_pitch.is_some() || text.outer_pitch.is_some();
+    let inner = text.inner_pitch.map_or(pitch, |length| length.0);
+    let outer = text.outer_pitch.map_or(pitch, |length| length.0);
+    let rigid = text.model != schema::ChainModel::Particles;
+    let alternating = rigid || text.inner_pitch.is_some() || text.outer_pitch.is_some();
     if alternating && text.ends.is_none() && links % 2 == 1 {
         let message = format!("{links} links, but inner and outer links alternate");
         let hint = "a closed chain of both needs an even number";
         findings.refuse_with("chain.links", message, hint);
         return None;
     }
-    let of = |i: usize| if i.is_multiple_of(2) { inner } else { outer };
+    let of = |i: usize| {
+        if i.is_multiple_of(2) == text.outer_first {
+            outer
+        } else {
+            inner
+        }
+    };
     Some((0..links).map(|i| of(i) * worn).collect())
 }
 

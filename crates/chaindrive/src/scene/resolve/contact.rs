@@ -1,12 +1,15 @@
-//! Contact laws: what a sprocket or guide says, completed by what holds for all.
+//! Contacts: what a sprocket or guide says, completed by what holds for all.
 
-use chaindrive_contact::dissipation::{LankaraniNikravesh, Viscous};
-use chaindrive_contact::elastic::{Johnson, Power};
-use chaindrive_contact::friction::Coulomb;
-use chaindrive_contact::{Dissipation, Elastic, Elasticity, Friction, Law};
-use chaindrive_mechanics::{Chain, Surface};
+use chaindrive_contact::dissipation::{
+    Exact, Flores, Gonthier, HerbertMcWhannell, HuGuo, HuntCrossley, LankaraniNikravesh, LeeWang,
+    Viscous, ZhiyingQishao,
+};
+use chaindrive_contact::friction::{Ambrosio, BengisuAkay, BrownMcphee, Coulomb, Lugre, Threlfall};
+use chaindrive_contact::{Dissipation, Elastic, Friction, Law};
+use chaindrive_mechanics::Surface;
 
 use super::Findings;
+use super::law::{Pair, elastic};
 use crate::scene::schema::{self, Contact};
 
 /// What a contact falls back on.
@@ -14,169 +17,225 @@ use crate::scene::schema::{self, Contact};
 pub(super) struct Fallback {
     /// Place of the contact that holds for all.
     path: &'static str,
-    /// Stiffness \[link stiffnesses\].
-    stiffness: f64,
     restitution: f64,
 }
 
-/// Teeth of steel: stiffer than a link, which bends its pins.
+/// Teeth of steel.
 pub(super) const TEETH: Fallback = Fallback {
     path: "contact.teeth",
-    stiffness: 5.0,
     restitution: 0.8,
 };
 
 /// Guides lined with rubber or plastic.
 pub(super) const GUIDES: Fallback = Fallback {
     path: "contact.guides",
-    stiffness: 1.0,
     restitution: 0.5,
+};
+
+/// Pins of steel in oiled bushes.
+pub(super) const JOINTS: Fallback = Fallback {
+    path: "contact.joints",
+    restitution: 0.7,
+};
+
+/// Bushes of steel in oiled rollers.
+pub(super) const ROLLERS: Fallback = Fallback {
+    path: "contact.rollers",
+    restitution: 0.7,
 };
 
 /// Least speed at onset \[m/s\].
 const ONSET_FLOOR: f64 = 0.05;
 
-/// The surface of one body: its own contact at `path`, then the common one, then the fallback.
+/// The surface of one body: its own contact at `path`, then the common one, then the fallback, for
+/// which `absent` knows the elastic law.
 pub(super) fn surface(
     own: &Contact,
     path: &str,
     common: &Contact,
     fallback: Fallback,
-    chain: &Chain,
+    pair: Pair,
     findings: &mut Findings<'_>,
+    absent: impl FnOnce(&mut Findings<'_>) -> Option<Elastic>,
 ) -> Option<Surface> {
-    let (law, place) = match (&own.law, &common.law) {
-        (Some(law), _) => (Some(law), path),
-        (None, Some(law)) => (Some(law), fallback.path),
-        (None, None) => (None, fallback.path),
+    let elastic = match (&own.law, &common.law) {
+        (Some(law), _) => elastic(law, pair, &format!("{path}.law"), findings),
+        (None, Some(law)) => elastic(law, pair, &format!("{}.law", fallback.path), findings),
+        (None, None) => absent(findings),
     };
-    let elastic = match law {
-        Some(law) => elastic(law, chain, &format!("{place}.law"), findings)?,
-        None => Elastic::Power(Power::linear(
-            fallback.stiffness * chain.stiffness.iter().sum::<f64>() / chain.links() as f64,
-        )),
+    let dissipation = dissipation(own, path, common, fallback, findings);
+    let friction = match (own.friction, common.friction) {
+        (Some(text), _) => friction(text, path, findings),
+        (None, Some(text)) => friction(text, fallback.path, findings),
+        (None, None) => Some(Friction::None),
     };
-    let (dissipating, place) = if own.restitution.is_some() || own.damping.is_some() {
+    let floor = own.onset_floor.or(common.onset_floor);
+    Some(Surface {
+        law: Law {
+            elastic: elastic?,
+            dissipation: dissipation?,
+            onset_floor: floor.map_or(ONSET_FLOOR, |v| v.0),
+        },
+        friction: friction?,
+    })
+}
+
+/// The common contact in full: that of joints and rollers, of which a chain has one kind.
+pub(super) fn common_surface(
+    common: &Contact,
+    fallback: Fallback,
+    pair: Pair,
+    findings: &mut Findings<'_>,
+    absent: impl FnOnce(&mut Findings<'_>) -> Option<Elastic>,
+) -> Option<Surface> {
+    surface(
+        common,
+        fallback.path,
+        common,
+        fallback,
+        pair,
+        findings,
+        absent,
+    )
+}
+
+fn dissipation(
+    own: &Contact,
+    path: &str,
+    common: &Contact,
+    fallback: Fallback,
+    findings: &mut Findings<'_>,
+) -> Option<Dissipation> {
+    use schema::Dissipation as Name;
+    let says = |text: &Contact| {
+        text.restitution.is_some() || text.damping.is_some() || text.dissipation.is_some()
+    };
+    let (said, place) = if says(own) {
         (own, path)
     } else {
         (common, fallback.path)
     };
-    let dissipation = match (dissipating.restitution, dissipating.damping) {
-        (Some(_), Some(_)) => {
-            let place = format!("{place}.damping");
-            // The common contact is completed for every body; say it once.
-            if !findings
-                .problems
-                .iter()
-                .any(|problem| problem.path == place)
-            {
-                findings.refuse_with(&place, "`restitution` is given too", "keep one of them");
-            }
+    let mut twice = |key: &str, other: &str| {
+        let message = format!("`{other}` is given too");
+        findings.refuse_once(&format!("{place}.{key}"), message, "keep one of them");
+    };
+    if let Some(damping) = said.damping {
+        if said.restitution.is_some() {
+            twice("damping", "restitution");
             return None;
         }
-        (None, Some(damping)) => Dissipation::Viscous(Viscous { damping: damping.0 }),
-        (restitution, None) => Dissipation::LankaraniNikravesh(LankaraniNikravesh {
-            restitution: restitution.map_or(fallback.restitution, |e| e.0),
-        }),
+        if said.dissipation.is_some() {
+            twice("damping", "dissipation");
+            return None;
+        }
+        return Some(Dissipation::Viscous(Viscous { damping: damping.0 }));
+    }
+    let name = said
+        .dissipation
+        .or(common.dissipation.filter(|name| *name != Name::None));
+    if name == Some(Name::None) && said.restitution.is_some() {
+        twice("restitution", "dissipation = \"none\"");
+        return None;
+    }
+    let restitution = said.restitution.or(common.restitution);
+    let restitution = restitution.map_or(fallback.restitution, |e| e.0);
+    let dissipation = match name.unwrap_or(Name::LankaraniNikravesh) {
+        Name::None => Dissipation::None,
+        Name::Exact => Dissipation::Exact(Exact { restitution }),
+        Name::HuntCrossley => Dissipation::HuntCrossley(HuntCrossley { restitution }),
+        Name::LankaraniNikravesh => {
+            Dissipation::LankaraniNikravesh(LankaraniNikravesh { restitution })
+        }
+        Name::LeeWang => Dissipation::LeeWang(LeeWang { restitution }),
+        Name::HerbertMcWhannell => {
+            Dissipation::HerbertMcWhannell(HerbertMcWhannell { restitution })
+        }
+        Name::Gonthier => Dissipation::Gonthier(Gonthier { restitution }),
+        Name::ZhiyingQishao => Dissipation::ZhiyingQishao(ZhiyingQishao { restitution }),
+        Name::Flores => Dissipation::Flores(Flores { restitution }),
+        Name::HuGuo => Dissipation::HuGuo(HuGuo { restitution }),
     };
-    let friction = own
-        .friction
-        .or(common.friction)
-        .map_or(Friction::None, |friction| {
-            Friction::Coulomb(Coulomb {
-                coefficient: friction.coefficient.0,
-                slip_speed: friction.slip_speed.0,
-            })
-        });
-    Some(Surface {
-        law: Law {
-            elastic,
-            dissipation,
-            onset_floor: own
-                .onset_floor
-                .or(common.onset_floor)
-                .map_or(ONSET_FLOOR, |v| v.0),
-        },
-        friction,
-    })
+    let sound = dissipation.check().map_err(|error| {
+        let message = format!("{}, must be {}", error.value, error.allowed);
+        findings.refuse_once(&format!("{place}.{}", error.parameter), message, "");
+    });
+    sound.ok().map(|()| dissipation)
 }
 
-fn elastic(
-    law: &schema::Elastic,
-    chain: &Chain,
-    path: &str,
-    findings: &mut Findings<'_>,
-) -> Option<Elastic> {
-    let roller = 0.5 * chain.roller_diameter;
-    let steel = |modulus: f64, poisson: f64| {
-        let body = Elasticity { modulus, poisson };
-        body.composite(body)
-    };
-    // Two radii make a contact when the second is a flat, another cylinder, or a wider hollow.
-    let mut hollow = |radius: f64, other: Option<f64>| match other {
-        Some(other) if other == 0.0 || (other < 0.0 && -other <= radius) => {
-            let message = format!("{other}, must be a radius, or a hollow wider than {radius} [m]");
-            let hint = "leave it out for a flat; hollows are negative";
-            let path = format!("{path}.other_radius");
-            if !findings.problems.iter().any(|problem| problem.path == path) {
-                findings.refuse_with(&path, message, hint);
-            }
-            None
-        }
-        other => Some(other),
-    };
-    Some(match law {
-        schema::Elastic::Linear { stiffness } => Elastic::Power(Power::linear(stiffness.0)),
-        schema::Elastic::Power {
-            stiffness,
-            exponent,
-        } => Elastic::Power(Power {
-            stiffness: stiffness.0,
-            exponent: exponent.0,
+fn friction(text: schema::Friction, place: &str, findings: &mut Findings<'_>) -> Option<Friction> {
+    let friction = rubbing(text);
+    let sound = friction.check().map_err(|error| {
+        let path = format!("{place}.friction.{}", error.parameter);
+        let message = format!("{}, must be {}", error.value, error.allowed);
+        findings.refuse_once(&path, message, "");
+    });
+    sound.ok().map(|()| friction)
+}
+
+fn rubbing(text: schema::Friction) -> Friction {
+    match text {
+        schema::Friction::None => Friction::None,
+        schema::Friction::Coulomb {
+            coefficient,
+            slip_speed,
+        } => Friction::Coulomb(Coulomb {
+            coefficient: coefficient.0,
+            slip_speed: slip_speed.0,
         }),
-        schema::Elastic::Hertz {
-            modulus,
-            poisson,
-            radius,
-            other_radius,
-        } => {
-            let radius = radius.map_or(roller, |r| r.0);
-            let other = hollow(radius, other_radius.map(|r| r.0))?;
-            let modulus = steel(modulus.0, poisson.0);
-            Elastic::Power(Power::hertz_pair(
-                radius,
-                other.unwrap_or(f64::INFINITY),
-                modulus,
-            ))
-        }
-        schema::Elastic::Johnson {
-            length,
-            modulus,
-            poisson,
-            radius,
-            other_radius,
-            clearance,
-        } => {
-            let radius = radius.map_or(roller, |r| r.0);
-            let other = hollow(radius, other_radius.map(|r| r.0))?;
-            let modulus = steel(modulus.0, poisson.0);
-            if let (Some(_), Some(_)) = (clearance, other) {
-                let hint = "keep one of them";
-                findings.refuse_with(
-                    &format!("{path}.clearance"),
-                    "`other_radius` is given too",
-                    hint,
-                );
-                return None;
-            }
-            Elastic::Johnson(match (clearance, other) {
-                (Some(clearance), _) => Johnson::internal(clearance.0, 0.0, length.0, modulus),
-                (None, None) => Johnson::flat(radius, length.0, modulus),
-                (None, Some(other)) if other < 0.0 => {
-                    Johnson::internal(-other, radius, length.0, modulus)
-                }
-                (None, Some(other)) => Johnson::external(radius, other, length.0, modulus),
-            })
-        }
-    })
+        schema::Friction::Ambrosio {
+            coefficient,
+            lower_speed,
+            upper_speed,
+        } => Friction::Ambrosio(Ambrosio {
+            coefficient: coefficient.0,
+            lower_speed: lower_speed.0,
+            upper_speed: upper_speed.0,
+        }),
+        schema::Friction::Threlfall {
+            coefficient,
+            slip_speed,
+        } => Friction::Threlfall(Threlfall {
+            coefficient: coefficient.0,
+            slip_speed: slip_speed.0,
+        }),
+        schema::Friction::BengisuAkay {
+            static_coefficient,
+            coefficient,
+            slip_speed,
+            decay,
+        } => Friction::BengisuAkay(BengisuAkay {
+            static_coefficient: static_coefficient.0,
+            coefficient: coefficient.0,
+            slip_speed: slip_speed.0,
+            decay: decay.0,
+        }),
+        schema::Friction::BrownMcphee {
+            static_coefficient,
+            coefficient,
+            slip_speed,
+            viscosity,
+            transition_force,
+        } => Friction::BrownMcphee(BrownMcphee {
+            static_coefficient: static_coefficient.0,
+            coefficient: coefficient.0,
+            slip_speed: slip_speed.0,
+            viscosity: viscosity.0,
+            transition_force: transition_force.0,
+        }),
+        schema::Friction::Lugre {
+            static_coefficient,
+            coefficient,
+            slip_speed,
+            stiffness,
+            damping,
+            viscosity,
+        } => Friction::Lugre(Lugre {
+            static_coefficient: static_coefficient.0,
+            coefficient: coefficient.0,
+            slip_speed: slip_speed.0,
+            stiffness: stiffness.0,
+            damping: damping.0,
+            viscosity: viscosity.0,
+        }),
+    }
 }

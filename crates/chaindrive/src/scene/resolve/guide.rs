@@ -2,9 +2,12 @@
 
 use std::f64::consts::TAU;
 
+use chaindrive_contact::Elastic;
+use chaindrive_contact::elastic::Power;
 use chaindrive_geometry::{Arc, ArcSpline, GeometryError, Piece, Point, bar, rail};
-use chaindrive_mechanics::{Chain, Guide, GuideSupport, Touches};
+use chaindrive_mechanics::{Guide, GuideSupport, Touches};
 
+use super::chain::Resolved;
 use super::{Findings, Names, contact, motion, point};
 use crate::scene::schema::{self, Face, SceneText, TravelSide};
 
@@ -16,7 +19,7 @@ const END_ANGLE: f64 = 10.0;
 pub(super) fn resolve_all(
     scene: &SceneText,
     names: &Names<'_>,
-    chain: &Chain,
+    chain: &Resolved,
     findings: &mut Findings<'_>,
 ) -> Option<Vec<Guide>> {
     let guides: Vec<_> = scene
@@ -33,7 +36,7 @@ fn resolve(
     path: &str,
     scene: &SceneText,
     names: &Names<'_>,
-    chain: &Chain,
+    chain: &Resolved,
     findings: &mut Findings<'_>,
 ) -> Option<Guide> {
     let face = findings.keep(&format!("{path}.face"), face(&text.face));
@@ -43,8 +46,10 @@ fn resolve(
         &format!("{path}.contact"),
         &scene.contact.guides,
         contact::GUIDES,
-        chain,
+        chain.roller(),
         findings,
+        // As soft as a link: a lining.
+        |_| Some(Elastic::Power(Power::linear(chain.link_stiffness()))),
     );
     Some(Guide {
         name: text.name.clone(),

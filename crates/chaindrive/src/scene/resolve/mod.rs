@@ -1,8 +1,12 @@
 //! From the scene as written to the drive: names become indices, choices become models.
 
+mod catalogue;
 mod chain;
 mod contact;
+mod flank;
 mod guide;
+mod law;
+mod links;
 mod motion;
 mod route;
 mod scatter;
@@ -41,7 +45,7 @@ pub(crate) fn drive(scene: &SceneText, tree: &Node) -> Result<Drive, Vec<Problem
 
 fn parts(scene: &SceneText, names: &Names<'_>, findings: &mut Findings<'_>) -> Option<Parts> {
     let touched = !(scene.sprockets.is_empty() && scene.guides.is_empty());
-    let chain = chain::resolve(&scene.chain, touched, findings);
+    let chain = chain::resolve(scene, touched, findings);
     let tensioners = tensioner::resolve_all(scene, findings);
     let gravity = scene
         .gravity
@@ -49,10 +53,10 @@ fn parts(scene: &SceneText, names: &Names<'_>, findings: &mut Findings<'_>) -> O
     let chain = chain?;
     let sprockets = sprocket::resolve_all(scene, names, &chain, findings);
     let guides = guide::resolve_all(scene, names, &chain, findings);
-    let layout = route::layout(scene, names, &chain, gravity, findings);
+    let layout = route::layout(scene, names, &chain.chain, gravity, findings);
     Some(Parts {
         layout: layout?,
-        chain,
+        chain: chain.chain,
         sprockets: sprockets?,
         guides: guides?,
         tensioners: tensioners?,
@@ -117,6 +121,21 @@ impl Findings<'_> {
             .push(Problem::new(&path, line, message).hint(hint));
     }
 
+    /// Refuses a value that several bodies share, once.
+    ///
+    /// An empty hint is none.
+    fn refuse_once(&mut self, path: &str, message: impl Into<String>, hint: &str) {
+        let (place, _) = self.tree.locate(path);
+        if self.problems.iter().any(|problem| problem.path == place) {
+            return;
+        }
+        if hint.is_empty() {
+            self.refuse(path, message);
+        } else {
+            self.refuse_with(path, message, hint);
+        }
+    }
+
     /// The value, or its error as a problem of `path`.
     fn keep<T, E: std::fmt::Display>(&mut self, path: &str, result: Result<T, E>) -> Option<T> {
         result
@@ -168,7 +187,7 @@ impl Findings<'_> {
                 allowed,
             } => self.refuse(&path, format!("{value}, must be {allowed}")),
             DriveError::Law { path, source } => {
-                let path = format!("{path}.{}", source.parameter);
+                let path = format!("{}.{}", in_scene(&path), source.parameter);
                 self.refuse(
                     &path,
                     format!("{}, must be {}", source.value, source.allowed),
@@ -183,10 +202,16 @@ impl Findings<'_> {
                 format!("overlaps sprocket `{first}` by {:.1} mm", overlap * 1e3),
                 "move the centres apart",
             ),
-            DriveError::Conflict { path, problem } => self.refuse(&path, problem),
+            DriveError::Conflict { path, problem } => self.refuse(&in_scene(&path), problem),
             other => self.refuse("", other.to_string()),
         }
     }
+}
+
+/// Where a scene has the contacts that a drive has in its joints and rollers.
+fn in_scene(path: &str) -> String {
+    path.replacen("chain.joint.contact", "contact.joints", 1)
+        .replacen("chain.roller.contact", "contact.rollers", 1)
 }
 
 fn point([x, y]: [Length; 2]) -> Point {

@@ -2,16 +2,23 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use chaindrive_contact::Elastic;
+use chaindrive_contact::elastic::Power;
 use chaindrive_geometry::{Side, ToothGap};
-use chaindrive_mechanics::{Chain, Rotation, Sprocket, Support};
+use chaindrive_mechanics::{Rotation, Sprocket, Support};
 
-use super::{Findings, Names, contact, motion, point, tooth};
+use super::chain::Resolved;
+use super::law::cylindrical;
+use super::{Findings, Names, contact, flank, motion, point, tooth};
 use crate::scene::schema::{self, Push, SceneText};
+
+/// Stiffness of teeth \[link stiffnesses\] that the scene leaves open.
+const TEETH_PER_LINK: f64 = 5.0;
 
 pub(super) fn resolve_all(
     scene: &SceneText,
     names: &Names<'_>,
-    chain: &Chain,
+    chain: &Resolved,
     findings: &mut Findings<'_>,
 ) -> Option<Vec<Sprocket>> {
     let sprockets: Vec<_> = scene
@@ -37,18 +44,23 @@ fn resolve(
     path: &str,
     scene: &SceneText,
     names: &Names<'_>,
-    chain: &Chain,
+    chain: &Resolved,
     findings: &mut Findings<'_>,
 ) -> Option<Sprocket> {
     let form = tooth::form(
         text.tooth.as_ref(),
-        chain.pitch,
-        chain.roller_diameter,
+        chain.chain.pitch,
+        chain.chain.roller_diameter,
         &format!("{path}.tooth"),
         findings,
     );
     let gap = form.and_then(|form| {
-        let gap = ToothGap::new(text.teeth, chain.pitch, chain.roller_diameter, &form);
+        let gap = ToothGap::new(
+            text.teeth,
+            chain.chain.pitch,
+            chain.chain.roller_diameter,
+            &form,
+        );
         let place = if text.tooth.is_some() {
             "tooth"
         } else {
@@ -63,9 +75,13 @@ fn resolve(
         &format!("{path}.contact"),
         &scene.contact.teeth,
         contact::TEETH,
-        chain,
+        chain.roller(),
         findings,
+        |findings| law(gap.as_ref()?, chain, findings),
     );
+    let flank = gap
+        .as_ref()
+        .and_then(|gap| flank::resolve(text, path, scene, gap, chain, findings));
     let support = support?;
     let moves = match &support {
         Support::Springs { .. } => true,
@@ -89,8 +105,28 @@ fn resolve(
         inertia: text.inertia.map_or(0.0, |inertia| inertia.0),
         mass: text.mass.map_or(0.0, |mass| mass.0),
         surface: surface?,
+        flank,
         gap_angle: text.gap_angle.map_or(FRAC_PI_2, |angle| angle.0),
     })
+}
+
+/// Elastic law of teeth that the scene leaves open.
+fn law(gap: &ToothGap, chain: &Resolved, findings: &mut Findings<'_>) -> Option<Elastic> {
+    if !chain.is_rigid() {
+        // Stiffer than a link, which bends its pins.
+        let stiffness = TEETH_PER_LINK * chain.link_stiffness();
+        return Some(Elastic::Power(Power::linear(stiffness)));
+    }
+    let roller = chain.roller();
+    let seated = roller
+        .length
+        .and_then(|length| cylindrical(roller, gap.seat_clearance, length).ok());
+    if seated.is_none() {
+        let hint =
+            "give a law, or `chain.roller.length`, with which it follows from roller and seat";
+        findings.refuse_once("contact.teeth.law", "missing", hint);
+    }
+    seated
 }
 
 fn rotation(text: &schema::Sprocket, path: &str, findings: &mut Findings<'_>) -> Option<Rotation> {

@@ -3,24 +3,36 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::Motion;
+use super::{ChainModel, Joint, Link, Motion, Roller, Rollers};
 use crate::scene::quantity::{AngularSpeed, Damping, Force, Length, Mass, Ratio, Speed, Stiffness};
 
-/// The chain: point masses at the rollers, joined by links that are springs with dampers.
+/// The chain. Written as a text, `chain = "16B-1"`, it is a chain of the catalogue in which
+/// nothing is changed.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("x-required-unless" = {"type": ["pitch", "links"]}))]
 pub(crate) struct Chain {
+    /// Name in the catalogue, such as "16B-1"; whatever is absent below comes from there.
+    #[serde(default, rename = "type")]
+    pub(crate) of_type: Option<String>,
+    /// What it is made of; absent: particles, and all below from `rollers` to `roller` is for
+    /// rigid links only.
+    #[serde(default)]
+    pub(crate) model: ChainModel,
     /// Nominal pitch [m]: what the sprockets are cut for.
+    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
-    pub(crate) pitch: Length,
-    /// Number of links.
+    pub(crate) pitch: Option<Length>,
+    /// Number of links; absent, with a `type`: the even number nearest to the taut route.
+    #[serde(default)]
     #[schemars(extend("minimum" = 1, "maximum" = 100_000))]
-    pub(crate) links: u32,
+    pub(crate) links: Option<u32>,
     /// Mass of one link [kg], at its roller.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) mass: Option<Mass>,
-    /// Stiffness of one link [N/m].
+    /// Stiffness of one link [N/m]. Rigid links are laid and settled with it, nothing else; absent
+    /// there: that of a joint under the pretension, or ten times that of a tooth.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) stiffness: Option<Stiffness>,
@@ -41,8 +53,7 @@ pub(crate) struct Chain {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) plate_height: Option<Length>,
-    /// Unstressed length of the inner links, the first link and every second one [m]; absent:
-    /// the pitch.
+    /// Unstressed length of the inner links, every second one [m]; absent: the pitch.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) inner_pitch: Option<Length>,
@@ -66,6 +77,24 @@ pub(crate) struct Chain {
     /// Stiffness of every link [N/m], instead of `stiffness`.
     #[serde(default)]
     pub(crate) stiffnesses: Option<Vec<Stiffness>>,
+    /// What runs on the teeth; absent: lumped, or none for a bush chain of the catalogue.
+    #[serde(default)]
+    pub(crate) rollers: Option<Rollers>,
+    /// Whether the first link is an outer one, with pins; absent: an inner one, with bushes.
+    #[serde(default)]
+    pub(crate) outer_first: bool,
+    /// Links with bushes.
+    #[serde(default)]
+    pub(crate) inner: Option<Link>,
+    /// Links with pins.
+    #[serde(default)]
+    pub(crate) outer: Option<Link>,
+    /// Pins in their bushes; for clearance joints.
+    #[serde(default)]
+    pub(crate) joint: Option<Joint>,
+    /// Rollers on their bushes.
+    #[serde(default)]
+    pub(crate) roller: Option<Roller>,
     /// What happens at the first and last roller: this makes the chain an open strand.
     #[serde(default)]
     pub(crate) ends: Option<[End; 2]>,

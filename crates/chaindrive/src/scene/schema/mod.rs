@@ -6,17 +6,21 @@
 
 mod chain;
 mod contact;
+mod friction;
 mod guide;
+mod links;
 mod motion;
 mod route;
 mod sprocket;
 mod tensioner;
 
 pub(crate) use chain::{Chain, End, Start};
-pub(crate) use contact::{Contact, Contacts, Elastic};
+pub(crate) use contact::{Contact, Contacts, Cylinders, Dissipation, Elastic, Flank};
+pub(crate) use friction::Friction;
 pub(crate) use guide::{Face, Guide, GuideSupport, Touches, TravelSide};
+pub(crate) use links::{ChainModel, Joint, Link, Roller, Rollers};
 pub(crate) use motion::{Motion, Torque};
-pub(crate) use route::{Adjust, Method, Route, Run, Tighten};
+pub(crate) use route::{Adjust, Events, Method, Route, Run, Tighten};
 pub(crate) use sprocket::{GapForm, PathPiece, Seat, Side, Sprocket, Support, TipForm, Tooth};
 pub(crate) use tensioner::{Carrier, Oil, Push, Tensioner};
 
@@ -47,7 +51,7 @@ pub(crate) struct SceneText {
     /// absent: true.
     #[serde(default = "settle")]
     pub(crate) settle: bool,
-    /// The chain.
+    /// The chain, or the name of a chain of the catalogue, such as "16B-1".
     pub(crate) chain: Chain,
     /// Contact laws that hold wherever a sprocket or guide does not give its own.
     #[serde(default)]
@@ -80,6 +84,11 @@ fn settle() -> bool {
 pub fn schema() -> Value {
     let mut schema = raw();
     for_editors(&mut schema);
+    let chain = &mut schema["properties"]["chain"];
+    *chain = json!({
+        "description": chain["description"],
+        "anyOf": [{"type": "string", "examples": ["16B-1"]}, {"$ref": chain["$ref"]}],
+    });
     schema
 }
 
@@ -96,6 +105,8 @@ fn for_editors(schema: &mut Value) {
                 for_editors(value);
             }
             drop_null(object);
+            allow_missing_kind(object);
+            require_unless(object);
             allow_bare_kinds(object);
             allow_common_unit(object);
         }
@@ -123,6 +134,31 @@ fn drop_null(object: &mut Map<String, Value>) {
             for (key, value) in only {
                 object.entry(key).or_insert(value);
             }
+        }
+    }
+}
+
+/// Some keys are required unless another one is there.
+fn require_unless(object: &mut Map<String, Value>) {
+    if let Some(Value::Object(unless)) = object.remove("x-required-unless") {
+        let choices = unless
+            .into_iter()
+            .flat_map(|(key, keys)| [json!({"required": [key]}), json!({"required": keys})]);
+        object.insert("anyOf".into(), choices.collect());
+    }
+}
+
+/// A table without `kind` may be one of the members.
+fn allow_missing_kind(object: &mut Map<String, Value>) {
+    let Some(kind) = object.remove("x-default-kind") else {
+        return;
+    };
+    let members = object.get_mut("oneOf").and_then(Value::as_array_mut);
+    for member in members.into_iter().flatten() {
+        if member["properties"]["kind"]["const"] == kind
+            && let Some(Value::Array(required)) = member.get_mut("required")
+        {
+            required.retain(|key| key != "kind");
         }
     }
 }

@@ -105,21 +105,38 @@ pub(crate) struct Run {
     /// Channels to record.
     #[serde(default)]
     pub(crate) record: Option<Vec<String>>,
+    /// Contacts to log, each from touch to parting; absent: none.
+    #[serde(default)]
+    pub(crate) events: Vec<Events>,
+}
+
+/// Contacts that can be logged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Events {
+    /// Rollers on teeth.
+    Teeth,
+    /// Rollers and plates on guides.
+    Guides,
+    /// Pins in bushes, and bushes in free rollers.
+    Joints,
 }
 
 /// A method of time stepping.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Method {
+    /// What suits the chain: implicit damping for rigid links, Verlet for particles.
+    Auto,
     /// Velocity Verlet, fixed step: fast and without energy drift.
     Verlet,
     /// The classical Runge–Kutta method of order 4, fixed step.
     Rk4,
     /// The Dormand–Prince pair of order 5(4), step under error control.
     DormandPrince,
-    /// Damping implicit and stiffness explicit, order 1, fixed step; not for the particle chain.
+    /// Damping implicit and stiffness explicit, order 1, fixed step; for rigid links only.
     ImplicitDamping,
-    /// The implicit generalized-α method of order 2, fixed step; not for the particle chain.
+    /// The implicit generalized-α method of order 2, fixed step; for rigid links only.
     GeneralizedAlpha,
 }
 
@@ -127,6 +144,7 @@ impl Method {
     /// Its name, as a scene writes it.
     pub(crate) fn name(self) -> &'static str {
         match self {
+            Self::Auto => "auto",
             Self::Verlet => "verlet",
             Self::Rk4 => "rk4",
             Self::DormandPrince => "dormand-prince",

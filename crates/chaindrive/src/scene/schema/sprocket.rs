@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Contact, Motion, Torque};
+use super::{Contact, Flank, Motion, Torque};
 use crate::scene::quantity::{
     Angle, AngularSpeed, Damping, Inertia, Length, Mass, Speed, Stiffness,
 };
@@ -52,6 +52,9 @@ pub(crate) struct Sprocket {
     /// Contact with the rollers, where it differs from `contact.teeth`.
     #[serde(default)]
     pub(crate) contact: Contact,
+    /// What is different on the flanks of the teeth, instead of `contact.flanks`.
+    #[serde(default)]
+    pub(crate) flank: Option<Flank>,
     /// Angle of one tooth gap [rad], for a wheel that no route passes; absent: 90°, upward.
     #[serde(default)]
     pub(crate) gap_angle: Option<Angle>,

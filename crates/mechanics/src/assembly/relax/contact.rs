@@ -1,5 +1,6 @@
 //! Contact terms of the static balance, from the scalar form of the profiles.
 
+use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_geometry::{Point, Vector};
 use nalgebra::SVector;
 
@@ -98,10 +99,17 @@ fn add_circles(
             if probe.gap < 0.0 {
                 closed += 1;
                 let law = &contacts.surface.law;
-                let push = Push {
+                let mut push = Push {
                     force: law.elastic_force(-probe.gap),
                     stiffness: law.stiffness(-probe.gap),
                 };
+                if let Some(flank) = &contacts.flank {
+                    let share = flank.share(probe.beyond);
+                    let mix = |a: f64, b: f64| (1.0 - share) * a + share * b;
+                    let depth = -probe.gap;
+                    push.force = mix(push.force, flank.elastic.force(depth));
+                    push.stiffness = mix(push.stiffness, flank.elastic.stiffness(depth));
+                }
                 let pins = [(roller, 1.0)];
                 add_one(&pins, place - frame.origin, &probe, push, mount, n, sum);
             }

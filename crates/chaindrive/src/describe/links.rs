@@ -1,0 +1,106 @@
+//! What the chain is made of, and by which laws it touches.
+
+use chaindrive_contact::Friction;
+use chaindrive_mechanics::{Chain, ChainModel, Drive, Joint, RollerModel, Surface};
+use serde::Serialize;
+use serde_json::Value;
+
+/// What the chain is made of.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LinkFacts {
+    /// Model, as scenes name it.
+    pub model: &'static str,
+    /// What runs on the teeth of rigid links: lumped, free or none.
+    pub rollers: Option<&'static str>,
+    /// Joints between links, and between links and supports.
+    pub joints: usize,
+    /// Radial clearance of the pins \[m\].
+    pub joint_clearance: Option<f64>,
+    /// Radial clearance of free rollers \[m\].
+    pub roller_clearance: Option<f64>,
+}
+
+impl LinkFacts {
+    pub(super) fn of(chain: &Chain) -> Self {
+        let ChainModel::Rigid(links) = &chain.model else {
+            return Self {
+                model: "particles",
+                rollers: None,
+                joints: 0,
+                joint_clearance: None,
+                roller_clearance: None,
+            };
+        };
+        let (model, joint_clearance) = match &links.joint {
+            Joint::Ideal => ("ideal-joints", None),
+            Joint::Clearance(joint) => ("clearance-joints", Some(joint.gap())),
+        };
+        let (rollers, roller_clearance) = match &links.rollers {
+            RollerModel::Lumped { .. } => ("lumped", None),
+            RollerModel::Free(roller) => ("free", Some(roller.gap())),
+            RollerModel::Bush => ("none", None),
+        };
+        Self {
+            model,
+            rollers: Some(rollers),
+            joints: chain.rollers(),
+            joint_clearance,
+            roller_clearance,
+        }
+    }
+}
+
+/// The law of a kind of contact.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ContactFacts {
+    /// What touches: teeth, guides, joints or rollers.
+    pub pair: &'static str,
+    /// Kind of the elastic law.
+    pub elastic: String,
+    /// Kind of the dissipation.
+    pub dissipation: String,
+    /// Coefficient of restitution \[–\] where the dissipation has one.
+    pub restitution: Option<f64>,
+    /// Kind of the friction.
+    pub friction: String,
+}
+
+/// The contacts of a drive, each kind of pair once for every law.
+pub(super) fn contacts(drive: &Drive) -> Vec<ContactFacts> {
+    let teeth = drive.sprockets.iter().map(|s| ("teeth", &s.surface));
+    let guides = drive.guides.iter().map(|guide| ("guides", &guide.surface));
+    let mut surfaces: Vec<(&'static str, &Surface)> = teeth.chain(guides).collect();
+    if let ChainModel::Rigid(links) = &drive.chain.model {
+        if let Joint::Clearance(joint) = &links.joint {
+            surfaces.push(("joints", &joint.surface));
+        }
+        if let RollerModel::Free(roller) = &links.rollers {
+            surfaces.push(("rollers", &roller.surface));
+        }
+    }
+    let mut found: Vec<ContactFacts> = Vec::new();
+    for (pair, surface) in surfaces {
+        let facts = ContactFacts {
+            pair,
+            elastic: kind(serde_json::to_value(surface.law.elastic)),
+            dissipation: kind(serde_json::to_value(surface.law.dissipation)),
+            restitution: surface.law.dissipation.restitution(),
+            friction: match surface.friction {
+                Friction::None => "none".to_owned(),
+                friction => kind(serde_json::to_value(friction)),
+            },
+        };
+        if !found.contains(&facts) {
+            found.push(facts);
+        }
+    }
+    found
+}
+
+/// The kind of a law, as scenes write it.
+fn kind(law: serde_json::Result<Value>) -> String {
+    let kind = law
+        .ok()
+        .and_then(|law| Some(law["kind"].as_str()?.to_owned()));
+    kind.unwrap_or_default().replace('_', "-")
+}

@@ -1,0 +1,199 @@
+//! Elastic laws: what a scene says, completed by the surfaces that touch.
+
+use chaindrive_contact::elastic::{CylinderLaw, Cylinders, Johnson, Power};
+use chaindrive_contact::{Elastic, Elasticity, ParameterError};
+
+use super::Findings;
+use crate::scene::schema;
+
+/// The two surfaces of a contact, as far as the drive gives them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pair {
+    /// Radius of the roller or pin \[m\].
+    pub(super) radius: f64,
+    /// Radius of the bore that surrounds it \[m\]; none on teeth and guides.
+    pub(super) bore: Option<f64>,
+    /// Length on which they touch \[m\], where the chain gives it.
+    pub(super) length: Option<f64>,
+}
+
+/// Composite modulus of steel on steel \[Pa\].
+pub(super) fn steel() -> f64 {
+    Elasticity::STEEL.composite(Elasticity::STEEL)
+}
+
+/// The enhanced cylindrical law of steel in a hollow that is wider by `clearance` \[m\].
+pub(super) fn cylindrical(
+    pair: Pair,
+    clearance: f64,
+    length: f64,
+) -> Result<Elastic, ParameterError> {
+    let hollow = pair.radius + clearance;
+    CylinderLaw::Cylindrical.between(&Cylinders::pin_in_hole(
+        hollow,
+        pair.radius,
+        length,
+        steel(),
+    ))
+}
+
+/// The law that a scene describes at `path`.
+pub(super) fn elastic(
+    law: &schema::Elastic,
+    pair: Pair,
+    path: &str,
+    findings: &mut Findings<'_>,
+) -> Option<Elastic> {
+    let (kind, text) = match law {
+        schema::Elastic::Linear { stiffness } => {
+            return Some(Elastic::Power(Power::linear(stiffness.0)));
+        }
+        schema::Elastic::Power {
+            stiffness,
+            exponent,
+        } => {
+            return Some(Elastic::Power(Power {
+                stiffness: stiffness.0,
+                exponent: exponent.0,
+            }));
+        }
+        schema::Elastic::Hertz {
+            modulus,
+            poisson,
+            radius,
+            other_radius,
+        } => {
+            let text = schema::Cylinders {
+                modulus: Some(*modulus),
+                poisson: Some(*poisson),
+                radius: *radius,
+                other_radius: *other_radius,
+                ..schema::Cylinders::default()
+            };
+            let Sides {
+                radius,
+                other,
+                modulus,
+            } = Sides::of(&text, pair, path, findings)?;
+            let other = other.unwrap_or(f64::INFINITY);
+            return Some(Elastic::Power(Power::hertz_pair(radius, other, modulus)));
+        }
+        schema::Elastic::Johnson(text) => (CylinderLaw::Johnson, text),
+        schema::Elastic::Conformal(text) => (CylinderLaw::Conformal, text),
+        schema::Elastic::Radzimovsky(text) => (CylinderLaw::Radzimovsky, text),
+        schema::Elastic::Esdu78035(text) => (CylinderLaw::Esdu78035, text),
+        schema::Elastic::DubowskyFreudenstein(text) => (CylinderLaw::DubowskyFreudenstein, text),
+        schema::Elastic::Cylindrical(text) => (CylinderLaw::Cylindrical, text),
+    };
+    cylinders(kind, text, pair, path, findings)
+}
+
+fn cylinders(
+    kind: CylinderLaw,
+    text: &schema::Cylinders,
+    pair: Pair,
+    path: &str,
+    findings: &mut Findings<'_>,
+) -> Option<Elastic> {
+    let Some(length) = text.length.map(|length| length.0).or(pair.length) else {
+        let hint = "give the length of the contact";
+        findings.refuse_once(&format!("{path}.length"), "missing", hint);
+        return None;
+    };
+    let Sides {
+        radius,
+        other,
+        modulus,
+    } = Sides::of(text, pair, path, findings)?;
+    if kind == CylinderLaw::Johnson {
+        return Some(Elastic::Johnson(match (text.clearance, other) {
+            (Some(clearance), _) => Johnson::internal(clearance.0, 0.0, length, modulus),
+            (None, None) => Johnson::flat(radius, length, modulus),
+            (None, Some(other)) if other < 0.0 => {
+                Johnson::internal(-other, radius, length, modulus)
+            }
+            (None, Some(other)) => Johnson::external(radius, other, length, modulus),
+        }));
+    }
+    let cylinders = match other {
+        // D = 4 r, as Johnson's law on a flat.
+        None => Cylinders::on_curve(radius, 0.0, length, modulus, radius),
+        Some(other) => Cylinders::on_curve(radius, 1.0 / other, length, modulus, other.abs()),
+    };
+    match kind.between(&cylinders) {
+        Ok(law) => Some(law),
+        Err(error) => {
+            // The second cylinder is given by its own radius, or by the clearance.
+            let key = match error.parameter {
+                "length" | "modulus" | "radius" => error.parameter,
+                _ if text.other_radius.is_some() => "other_radius",
+                _ => "clearance",
+            };
+            let message = format!("{}, must be {}", error.value, error.allowed);
+            findings.refuse_once(&format!("{path}.{key}"), message, "or take another law");
+            None
+        }
+    }
+}
+
+/// Two cylinders: a radius, the other one (negative for a hollow, none for a flat), and the modulus.
+struct Sides {
+    radius: f64,
+    other: Option<f64>,
+    modulus: f64,
+}
+
+impl Sides {
+    fn of(
+        text: &schema::Cylinders,
+        pair: Pair,
+        path: &str,
+        findings: &mut Findings<'_>,
+    ) -> Option<Self> {
+        let steel = Elasticity::STEEL;
+        let body = Elasticity {
+            modulus: text.modulus.map_or(steel.modulus, |modulus| modulus.0),
+            poisson: text.poisson.map_or(steel.poisson, |poisson| poisson.0),
+        };
+        let modulus = body.composite(body);
+        if let Some(bore) = pair.bore {
+            for (key, given) in [
+                ("radius", text.radius),
+                ("other_radius", text.other_radius),
+                ("clearance", text.clearance),
+            ] {
+                if given.is_some() {
+                    let hint = "leave it out; the radii are those of the chain";
+                    findings.refuse_once(&format!("{path}.{key}"), "not for a joint", hint);
+                    return None;
+                }
+            }
+            return Some(Self {
+                radius: pair.radius,
+                other: Some(-bore),
+                modulus,
+            });
+        }
+        let radius = text.radius.map_or(pair.radius, |radius| radius.0);
+        let other = text.other_radius.map(|radius| radius.0);
+        if let Some(other) = other
+            && (other == 0.0 || (other < 0.0 && -other <= radius))
+        {
+            let message = format!("{other}, must be a radius, or a hollow wider than {radius} [m]");
+            let hint = "leave it out for a flat; hollows are negative";
+            findings.refuse_once(&format!("{path}.other_radius"), message, hint);
+            return None;
+        }
+        if let (Some(_), Some(_)) = (text.clearance, other) {
+            let message = "`other_radius` is given too";
+            findings.refuse_once(&format!("{path}.clearance"), message, "keep one of them");
+            return None;
+        }
+        let hollow = text.clearance.map(|clearance| -(radius + clearance.0));
+        Some(Self {
+            radius,
+            other: other.or(hollow),
+            modulus,
+        })
+    }
+}

@@ -1,0 +1,379 @@
+//! Rigid links: bodies, joints and rollers.
+
+use chaindrive_contact::Law;
+use chaindrive_contact::elastic::{ElasticLaw, Johnson};
+use chaindrive_contact::{Elastic, Elasticity};
+use chaindrive_geometry::Vector;
+use chaindrive_mechanics::{
+    ChainModel, Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel,
+};
+
+use super::chain::Body;
+use super::law::{Pair, cylindrical, elastic};
+use super::{Findings, contact};
+use crate::scene::schema::{self, Rollers, SceneText};
+
+/// Indentation \[m\] at which a contact counts as pressed, where no pretension says how far.
+const PRESSED: f64 = 1e-6;
+
+/// How much stiffer than a tooth rigid links with ideal joints are while they are laid \[–\]: their
+/// stretch must not show beside the indentation of the teeth.
+const RIGID: f64 = 10.0;
+
+/// Keys of rigid links have no meaning for particles.
+pub(super) fn refuse_on_particles(text: &schema::Chain, findings: &mut Findings<'_>) {
+    let given = [
+        ("rollers", text.rollers.is_some()),
+        ("outer_first", text.outer_first),
+        ("inner", text.inner.is_some()),
+        ("outer", text.outer.is_some()),
+        ("joint", text.joint.is_some()),
+        ("roller", text.roller.is_some()),
+    ];
+    for (key, _) in given.iter().filter(|(_, given)| *given) {
+        let hint = "take `model = \"clearance-joints\"` or `\"ideal-joints\"`, or leave it out";
+        let message = "the particle chain has none";
+        findings.refuse_with(&format!("chain.{key}"), message, hint);
+    }
+}
+
+/// Keys of the particle chain have no meaning for rigid links.
+fn refuse_of_particles(text: &schema::Chain, findings: &mut Findings<'_>) {
+    let scatter = text.scatter.clone().unwrap_or_default();
+    let given = [
+        (
+            "mass",
+            text.mass.is_some(),
+            "give `chain.inner.mass` and `chain.outer.mass`",
+        ),
+        (
+            "masses",
+            text.masses.is_some(),
+            "give `chain.inner.mass` and `chain.outer.mass`",
+        ),
+        (
+            "stiffnesses",
+            text.stiffnesses.is_some(),
+            "give one `stiffness`, or none",
+        ),
+        ("damping", text.damping.is_some(), "only contacts damp them"),
+        (
+            "damping_ratio",
+            text.damping_ratio.is_some(),
+            "only contacts damp them",
+        ),
+        (
+            "scatter.mass",
+            scatter.mass.0 != 0.0,
+            "only lengths can scatter",
+        ),
+        (
+            "scatter.stiffness",
+            scatter.stiffness.0 != 0.0,
+            "only lengths can scatter",
+        ),
+    ];
+    for (key, _, hint) in given.iter().filter(|(_, given, _)| *given) {
+        findings.refuse_with(&format!("chain.{key}"), "rigid links have none", *hint);
+    }
+}
+
+/// Values that must be there, and what to say where they are not.
+struct Needs<'f, 't> {
+    findings: &'f mut Findings<'t>,
+    of_type: Option<String>,
+}
+
+impl Needs<'_, '_> {
+    fn value(&mut self, value: Option<f64>, key: &str, what: &str) -> Option<f64> {
+        if value.is_none() {
+            let hint = match &self.of_type {
+                Some(name) => {
+                    format!("give the {what}, which the catalogue does not have for {name}")
+                }
+                None => format!("give the {what}"),
+            };
+            self.findings
+                .refuse_with(&format!("chain.{key}"), "missing", hint);
+        }
+        value
+    }
+}
+
+/// The links of a chain of rigid bodies. `text` is the chain completed from the catalogue.
+pub(super) fn resolve(
+    scene: &SceneText,
+    text: &schema::Chain,
+    count: usize,
+    roller_diameter: f64,
+    roller_length: Option<f64>,
+    findings: &mut Findings<'_>,
+) -> Option<Body> {
+    refuse_of_particles(text, findings);
+    let mut needs = Needs {
+        findings,
+        of_type: text.of_type.clone(),
+    };
+    let inner = link(text.inner, "inner", &mut needs);
+    let outer = link(text.outer, "outer", &mut needs);
+    let rollers = rollers(scene, text, roller_diameter, roller_length, &mut needs);
+    let joint = joint(scene, text, roller_diameter, &mut needs);
+    let links = RigidLinks {
+        inner: inner?,
+        outer: outer?,
+        outer_first: text.outer_first,
+        joint: joint?,
+        rollers: rollers?,
+    };
+    let pair = Pair {
+        radius: 0.5 * roller_diameter,
+        bore: None,
+        length: roller_length,
+    };
+    let stiffness = match text.stiffness {
+        Some(stiffness) => stiffness.0,
+        None => laying_stiffness(scene, &links.joint, pair, findings)?,
+    };
+    Some(Body {
+        masses: masses(&links, count, text.ends.is_some()),
+        stiffness: vec![stiffness; count],
+        model: ChainModel::Rigid(links),
+    })
+}
+
+fn link(text: Option<schema::Link>, name: &str, needs: &mut Needs<'_, '_>) -> Option<LinkBody> {
+    let text = text.unwrap_or_default();
+    let mass = text.mass.map(|mass| mass.0);
+    let inertia = text.inertia.map(|inertia| inertia.0);
+    let mass = needs.value(
+        mass,
+        &format!("{name}.mass"),
+        &format!("mass of an {name} link"),
+    );
+    let inertia = needs.value(
+        inertia,
+        &format!("{name}.inertia"),
+        &format!("moment of inertia of an {name} link about its centre of mass"),
+    );
+    Some(LinkBody {
+        mass: mass?,
+        inertia: inertia?,
+        centre: Vector::new(text.centre[0].0, text.centre[1].0),
+    })
+}
+
+fn rollers(
+    scene: &SceneText,
+    text: &schema::Chain,
+    roller_diameter: f64,
+    length: Option<f64>,
+    needs: &mut Needs<'_, '_>,
+) -> Option<RollerModel> {
+    let roller = text.roller.unwrap_or_default();
+    let mass = roller.mass.map(|mass| mass.0);
+    match text.rollers.unwrap_or(Rollers::Lumped) {
+        Rollers::Lumped => {
+            let mass = needs.value(mass, "roller.mass", "mass of a roller")?;
+            Some(RollerModel::Lumped { mass })
+        }
+        Rollers::None => {
+            let described = roller
+                != schema::Roller {
+                    length: roller.length,
+                    ..schema::Roller::default()
+                };
+            if described {
+                let hint = "take `rollers = \"lumped\"` or `\"free\"`, or leave it out";
+                needs
+                    .findings
+                    .refuse_with("chain.roller", "this chain has no rollers", hint);
+            }
+            Some(RollerModel::Bush)
+        }
+        Rollers::Free => {
+            let mass = needs.value(mass, "roller.mass", "mass of a roller");
+            let inertia = roller.inertia.map(|inertia| inertia.0);
+            let inertia = needs.value(inertia, "roller.inertia", "moment of inertia of a roller");
+            let bush = roller.bush_diameter.map(|diameter| 0.5 * diameter.0);
+            let bush = needs.value(bush, "roller.bush_diameter", "outer diameter of the bush");
+            let clearance = roller.clearance.map(|clearance| clearance.0);
+            let what = "radial clearance between bush and roller, such as \"0.05 mm\"";
+            let clearance = needs.value(clearance, "roller.clearance", what);
+            let (bush, clearance) = (bush?, clearance?);
+            let bore = bush + clearance;
+            if bore >= 0.5 * roller_diameter {
+                let message = format!("{}, must be less", 2.0 * bush);
+                let hint = format!("the roller around it has a diameter of {roller_diameter} m");
+                needs
+                    .findings
+                    .refuse_with("chain.roller.bush_diameter", message, hint);
+                return None;
+            }
+            let pair = Pair {
+                radius: bush,
+                bore: Some(bore),
+                length,
+            };
+            let common = &scene.contact.rollers;
+            let surface = surface(
+                common,
+                contact::ROLLERS,
+                pair,
+                clearance,
+                "roller",
+                needs.findings,
+            );
+            Some(RollerModel::Free(FreeRoller {
+                mass: mass?,
+                inertia: inertia?,
+                bush_radius: bush,
+                bore_radius: bore,
+                surface: surface?,
+            }))
+        }
+    }
+}
+
+fn joint(
+    scene: &SceneText,
+    text: &schema::Chain,
+    roller_diameter: f64,
+    needs: &mut Needs<'_, '_>,
+) -> Option<Joint> {
+    if text.model == schema::ChainModel::IdealJoints {
+        if text.joint.is_some() {
+            let hint = "take `model = \"clearance-joints\"`, or leave it out";
+            needs
+                .findings
+                .refuse_with("chain.joint", "ideal joints have no dimensions", hint);
+        }
+        return Some(Joint::Ideal);
+    }
+    let joint = text.joint.unwrap_or_default();
+    let pin = joint.pin_diameter.map(|diameter| 0.5 * diameter.0);
+    let pin = needs.value(pin, "joint.pin_diameter", "diameter of the pin");
+    let clearance = joint.clearance.map(|clearance| clearance.0);
+    let what = "radial clearance between pin and bush, such as \"0.025 mm\"";
+    let clearance = needs.value(clearance, "joint.clearance", what);
+    let (pin, clearance) = (pin?, clearance?);
+    let bore = pin + clearance;
+    // What surrounds the bore: the bush, and at the latest the roller.
+    let bush = text.roller.and_then(|roller| roller.bush_diameter);
+    let bush = bush.map_or(roller_diameter, |diameter| diameter.0);
+    if 2.0 * bore >= bush {
+        let message = format!("{}, must be less", 2.0 * pin);
+        let hint = format!("the bush around it has a diameter of {bush} m");
+        needs
+            .findings
+            .refuse_with("chain.joint.pin_diameter", message, hint);
+        return None;
+    }
+    let pair = Pair {
+        radius: pin,
+        bore: Some(bore),
+        length: joint.length.map(|length| length.0),
+    };
+    let common = &scene.contact.joints;
+    let surface = surface(
+        common,
+        contact::JOINTS,
+        pair,
+        clearance,
+        "joint",
+        needs.findings,
+    );
+    Some(Joint::Clearance(Clearance {
+        pin_radius: pin,
+        bore_radius: bore,
+        surface: surface?,
+    }))
+}
+
+/// Contact of what turns in a bore; steel, and the enhanced cylindrical law, unless the scene says more.
+fn surface(
+    common: &schema::Contact,
+    fallback: contact::Fallback,
+    pair: Pair,
+    clearance: f64,
+    name: &str,
+    findings: &mut Findings<'_>,
+) -> Option<chaindrive_mechanics::Surface> {
+    contact::common_surface(common, fallback, pair, findings, |findings| {
+        let Some(length) = pair.length else {
+            let hint = format!("give the length of the contact, or `contact.{name}s.law`");
+            findings.refuse_with(&format!("chain.{name}.length"), "missing", hint);
+            return None;
+        };
+        let law = cylindrical(pair, clearance, length);
+        law.map_err(|error| {
+            let message = format!("{}, must be {}", error.value, error.allowed);
+            let hint = format!("say so in `contact.{name}s.law`");
+            findings.refuse_with(&format!("chain.{name}.{}", error.parameter), message, hint);
+        })
+        .ok()
+    })
+}
+
+/// Stiffness with which the links are laid and settled \[N/m\]: that of a joint under the pretension,
+/// or ten times that of a tooth.
+fn laying_stiffness(
+    scene: &SceneText,
+    joint: &Joint,
+    pair: Pair,
+    findings: &mut Findings<'_>,
+) -> Option<f64> {
+    if let Joint::Clearance(joint) = joint {
+        let pretension = scene.route.as_ref().map_or(0.0, |route| route.pretension.0);
+        let law = &joint.surface.law;
+        return Some(law.stiffness(indentation(law, pretension, pair.radius).max(PRESSED)));
+    }
+    let teeth = match (&scene.contact.teeth.law, pair.length) {
+        (Some(law), _) => elastic(law, pair, "contact.teeth.law", findings)?,
+        (None, Some(length)) => {
+            let steel = Elasticity::STEEL.composite(Elasticity::STEEL);
+            Elastic::Johnson(Johnson::flat(pair.radius, length, steel))
+        }
+        (None, None) => {
+            let hint = "rigid links are laid with it; or give `contact.teeth.law`, of whose stiffness it is ten times";
+            findings.refuse_with("chain.stiffness", "missing", hint);
+            return None;
+        }
+    };
+    Some(RIGID * teeth.stiffness(PRESSED))
+}
+
+/// Indentation \[m\] at which a law reaches a force \[N\], at most `most`.
+fn indentation(law: &Law, force: f64, most: f64) -> f64 {
+    let (mut low, mut high) = (0.0, most);
+    // Down to the rounding of a length.
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if law.elastic_force(middle) < force {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low
+}
+
+/// Masses of the rollers while the chain is laid \[kg\]: every link halved between its ends.
+fn masses(links: &RigidLinks, count: usize, open: bool) -> Vec<f64> {
+    let roller = match links.rollers {
+        RollerModel::Lumped { mass } => mass,
+        RollerModel::Free(roller) => roller.mass,
+        RollerModel::Bush => 0.0,
+    };
+    let rollers = count + usize::from(open);
+    let mut masses = vec![0.0; rollers];
+    for link in 0..count {
+        let whole = if link.is_multiple_of(2) == links.outer_first {
+            links.outer.mass
+        } else {
+            links.inner.mass + 2.0 * roller
+        };
+        masses[link] += 0.5 * whole;
+        masses[(link + 1) % rollers] += 0.5 * whole;
+    }
+    masses
+}

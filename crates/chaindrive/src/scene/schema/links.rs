@@ -1,0 +1,94 @@
+//! What rigid links are made of: plates, joints, rollers.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use crate::scene::quantity::{Inertia, Length, Mass};
+
+/// What the chain is made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum ChainModel {
+    /// Point masses at the rollers, joined by links that are springs with dampers.
+    #[default]
+    Particles,
+    /// Rigid inner and outer links, joined by ideal hinges.
+    IdealJoints,
+    /// Rigid inner and outer links, joined by pins that have play in their bushes.
+    ClearanceJoints,
+}
+
+/// What runs on the teeth of a chain of rigid links.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Rollers {
+    /// Rollers that move with their bush.
+    Lumped,
+    /// Rollers as bodies of their own, with play on their bush.
+    Free,
+    /// No rollers: the bush meets the teeth.
+    None,
+}
+
+/// Mass properties of one link: its two plates and its bushes or pins, without rollers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Link {
+    /// Mass [kg].
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) mass: Option<Mass>,
+    /// Moment of inertia about the centre of mass [kg m²].
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) inertia: Option<Inertia>,
+    /// Centre of mass [m] from the middle between the joints: along the link in the order of the
+    /// chain, and to its left; absent: the middle.
+    #[serde(default)]
+    pub(crate) centre: [Length; 2],
+}
+
+/// Pins in their bushes. The contact of the two is `contact.joints`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Joint {
+    /// Diameter of the pin [m].
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) pin_diameter: Option<Length>,
+    /// Radial clearance [m]: radius of the bore less radius of the pin.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) clearance: Option<Length>,
+    /// Length on which pin and bush touch [m].
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) length: Option<Length>,
+}
+
+/// Rollers on their bushes. The contact of the two is `contact.rollers`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Roller {
+    /// Mass of one roller [kg].
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0))]
+    pub(crate) mass: Option<Mass>,
+    /// Moment of inertia of one roller [kg m²]; for free rollers.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) inertia: Option<Inertia>,
+    /// Outer diameter of the bush [m]; for free rollers.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) bush_diameter: Option<Length>,
+    /// Radial clearance [m]: radius of the roller's bore less outer radius of the bush; for free
+    /// rollers.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) clearance: Option<Length>,
+    /// Length of the roller [m]: on its bush, and on the teeth.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) length: Option<Length>,
+}

@@ -1,0 +1,96 @@
+//! Rigid links: laid and settled as particles, then put in their places.
+
+use super::Assembled;
+use crate::drive::{Layout, Parts};
+use crate::{AssemblyError, Drive, Joint, RigidLinks, System, linkage};
+
+/// Depth at which the teeth are asked for their stiffness \[m\].
+const PRESSED: f64 = 1e-6;
+/// Stiffness of a rigid link while it is laid, in those of the teeth.
+const HARD: f64 = 1e3;
+/// Relative error of the pretension that is left.
+const MET: f64 = 1e-3;
+
+impl Drive {
+    /// For ideal joints: with links so stiff that they hardly stretch while the chain is laid.
+    ///
+    /// Such a chain owes its tension to the teeth alone. What the links are shortened by is found by the secant
+    /// method, until the chain without gravity and load carries the pretension.
+    pub(super) fn assemble_rigid(&self) -> Result<Assembled, AssemblyError> {
+        let teeth = self
+            .sprockets
+            .iter()
+            .map(|sprocket| sprocket.surface.law.stiffness(PRESSED))
+            .fold(0.0, f64::max);
+        if teeth <= 0.0 {
+            return self.assemble_as_is();
+        }
+        let mut parts = self.parts().clone();
+        parts.chain.stiffness.fill(HARD * teeth);
+        let asked = match &parts.layout {
+            Layout::Route { fit, .. } => fit.pretension,
+            Layout::Points { .. } => 0.0,
+        };
+        let (mut given, mut before) = (asked, None);
+        for _ in 0..20 {
+            if let Layout::Route { fit, .. } = &mut parts.layout {
+                fit.pretension = given;
+            }
+            let assembled = Self {
+                parts: parts.clone(),
+            }
+            .assemble_as_is()?;
+            let taut = assembled
+                .statics
+                .first()
+                .filter(|statics| statics.stage == "pretension");
+            let Some(taut) = taut.filter(|_| asked > 0.0) else {
+                return Ok(assembled);
+            };
+            let found = taut.tensions.iter().sum::<f64>() / taut.tensions.len() as f64;
+            if (found / asked - 1.0).abs() < MET {
+                return Ok(assembled);
+            }
+            let next = match before {
+                Some((x, y)) if f64::abs(found - y) > 1e-3 * asked => {
+                    given + (asked - found) * (given - x) / (found - y)
+                }
+                _ => given * (asked / found).clamp(0.1, 30.0),
+            };
+            before = Some((given, found));
+            given = next.clamp(0.1 * given, 30.0 * given);
+        }
+        Err(AssemblyError::NoEquilibrium {
+            stage: "pretension on ideal joints",
+            residual: 1.0,
+            iterations: 20,
+        })
+    }
+
+    /// Puts rigid links where the particles are, and settles the joints.
+    pub(super) fn with_links(
+        &self,
+        system: System,
+        parts: &Parts,
+        links: &RigidLinks,
+        q: &[f64],
+        v: &[f64],
+    ) -> Result<(System, Vec<f64>, Vec<f64>), AssemblyError> {
+        let mut converted = linkage::build::convert(system, parts, links, q, v);
+        let (system, q) = (&mut converted.system, &mut converted.q);
+        let still = vec![0.0; q.len()];
+        system.start(0.0, q, &mut still.clone());
+        if self.settle && links.joint != Joint::Ideal {
+            let pretension = match &parts.layout {
+                Layout::Route { fit, .. } => fit.pretension,
+                Layout::Points { .. } => 0.0,
+            };
+            let stiffness = parts.chain.stiffness[0];
+            linkage::settle::settle(system, q, pretension, stiffness)?;
+        }
+        if links.joint == Joint::Ideal {
+            converted.close_in_motion();
+        }
+        Ok((converted.system, converted.q, converted.v))
+    }
+}

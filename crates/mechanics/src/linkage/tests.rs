@@ -1,0 +1,272 @@
+//! The bicycle drive of the tests, and what must hold for every linkage.
+
+use chaindrive_contact::dissipation::LankaraniNikravesh;
+use chaindrive_contact::elastic::{CylinderLaw, Cylinders, ElasticLaw, Power};
+use chaindrive_contact::friction::Coulomb;
+use chaindrive_contact::{Dissipation, Elastic, Friction, Law};
+use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
+use chaindrive_integrate::{Moment, SecondOrderSystem};
+
+use crate::energy::Flow;
+use crate::{
+    Adjust, Chain, ChainModel, Clearance, Drive, Ends, Fit, Flank, FreeRoller, Joint, Layout,
+    LinkBody, Motion, Parts, Record, RigidLinks, RollerModel, Rotation, Sprocket, Stop, Support,
+    Surface, System, Tighten, Torque,
+};
+
+/// Steel on steel with a little friction, so that normals and tangents take part.
+fn surface(hole: f64, pin: f64, length: f64) -> Surface {
+    let pair = Cylinders::pin_in_hole(hole, pin, length, 113.7e9);
+    Surface {
+        law: Law {
+            elastic: CylinderLaw::Cylindrical.between(&pair).unwrap(),
+            dissipation: Dissipation::LankaraniNikravesh(LankaraniNikravesh { restitution: 0.7 }),
+            onset_floor: 0.05,
+        },
+        friction: Friction::Coulomb(Coulomb {
+            coefficient: 0.1,
+            slip_speed: 0.01,
+        }),
+    }
+}
+
+/// 44/18 teeth, 104 links of half an inch, centre distance computed so that they close without stress.
+pub(super) fn bicycle(model: ChainModel) -> Parts {
+    let (pitch, links, roller_diameter) = (0.0127, 104, 7.75e-3);
+    let form = ToothForm::Iso606 {
+        gap: 0.5,
+        tip: Tip::Mid,
+        seat: Seat::Bottom,
+    };
+    let sprocket = |name: &str, teeth: u32, x: f64, rotation: Rotation, inertia: f64| Sprocket {
+        name: name.into(),
+        gap: ToothGap::new(teeth, pitch, roller_diameter, &form).unwrap(),
+        side: Side::Left,
+        centre: Point::new(x, 0.0),
+        rotation,
+        support: Support::Fixed,
+        inertia,
+        mass: 1.0,
+        surface: surface(3.982e-3, 3.875e-3, 3.3e-3),
+        flank: None,
+        gap_angle: 0.0,
+    };
+    let driven = Rotation::Free {
+        drive: Vec::new(),
+        load: vec![Torque::Constant { torque: 5.0 }],
+    };
+    let driver = Rotation::Prescribed(Motion::Constant { rate: -9.42 });
+    Parts {
+        chain: Chain {
+            pitch,
+            lengths: vec![pitch; links],
+            stiffness: vec![47.7e6; links],
+            damping: vec![25.6; links],
+            masses: vec![3.81e-3; links],
+            roller_diameter,
+            plate_height: 9.6e-3,
+            ends: Ends::Closed,
+            model,
+        },
+        sprockets: vec![
+            sprocket("chainring", 44, 0.0, driver, 0.0),
+            sprocket("sprocket", 18, -0.460_544_624_366, driven, 0.12),
+        ],
+        guides: Vec::new(),
+        tensioners: Vec::new(),
+        layout: Layout::Route {
+            stops: vec![Stop::Sprocket(0), Stop::Sprocket(1)],
+            phase: 0.5,
+            fit: Fit {
+                adjust: Adjust::Nothing,
+                pretension: 60.0,
+                tighten: Tighten::RestLength,
+            },
+        },
+        settle: true,
+        gravity: Vector::new(0.0, -9.81),
+    }
+}
+
+pub(super) fn links(joint: Joint, rollers: RollerModel) -> ChainModel {
+    let body = |mass: f64, inertia: f64| LinkBody {
+        mass,
+        inertia,
+        centre: Vector::zeros(),
+    };
+    ChainModel::Rigid(RigidLinks {
+        inner: body(3.01e-3, 1.33e-7),
+        outer: body(3.71e-3, 1.6e-7),
+        outer_first: false,
+        joint,
+        rollers,
+    })
+}
+
+pub(super) fn clearance() -> Joint {
+    Joint::Clearance(Clearance {
+        pin_radius: 2.045e-3,
+        bore_radius: 2.07e-3,
+        surface: surface(2.07e-3, 2.045e-3, 5e-3),
+    })
+}
+
+pub(super) fn free_rollers() -> RollerModel {
+    RollerModel::Free(FreeRoller {
+        mass: 0.453e-3,
+        inertia: 5.25e-9,
+        bush_radius: 2.8e-3,
+        bore_radius: 2.85e-3,
+        surface: surface(2.85e-3, 2.8e-3, 3.3e-3),
+    })
+}
+
+/// The bicycle drive with clearance joints, evaluated at its start, and the accelerations there.
+pub(super) fn started(free: bool) -> (System, Record, Vec<f64>) {
+    let rollers = if free {
+        free_rollers()
+    } else {
+        RollerModel::Lumped { mass: 0.453e-3 }
+    };
+    let parts = bicycle(links(clearance(), rollers));
+    let assembled = Drive::new(parts).unwrap().assemble().unwrap();
+    let system = assembled.system;
+    let mut record = system.new_record();
+    let mut a = vec![0.0; system.dofs()];
+    let mut rates = vec![0.0; Flow::ALL.len()];
+    let at = Moment {
+        t: 0.0,
+        q: &assembled.q,
+        v: &assembled.v,
+    };
+    system.evaluate(at, &mut a, &mut rates, &mut record);
+    (system, record, a)
+}
+
+/// The chain is given its pretension whatever it is made of.
+#[test]
+fn pretension_is_met() {
+    let lumped = RollerModel::Lumped { mass: 0.453e-3 };
+    for (joint, rollers) in [
+        (clearance(), lumped),
+        (clearance(), RollerModel::Bush),
+        (clearance(), free_rollers()),
+        (Joint::Ideal, lumped),
+    ] {
+        let mut parts = bicycle(links(joint, rollers));
+        parts.gravity = Vector::zeros();
+        if let Rotation::Free { load, .. } = &mut parts.sprockets[1].rotation {
+            load.clear();
+        }
+        if let Rotation::Prescribed(motion) = &mut parts.sprockets[0].rotation {
+            *motion = Motion::Held;
+        }
+        let assembled = Drive::new(parts).unwrap().assemble().unwrap();
+        let (system, q) = (assembled.system, assembled.q);
+        let mut record = system.new_record();
+        let mut a = vec![0.0; q.len()];
+        let mut rates = vec![0.0; Flow::ALL.len()];
+        let still = vec![0.0; q.len()];
+        let at = Moment {
+            t: 0.0,
+            q: &q,
+            v: &still,
+        };
+        system.evaluate(at, &mut a, &mut rates, &mut record);
+        let linkage = system.linkage.as_ref().unwrap();
+        let sum: f64 = (0..linkage.links)
+            .map(|link| record.play.tension(link))
+            .sum();
+        let mean = sum / linkage.links as f64;
+        assert!(
+            (mean / 60.0 - 1.0).abs() < 2e-3,
+            "{joint:?}, {rollers:?}: {mean} N"
+        );
+    }
+}
+
+/// The lanes and the scalar path see the same surfaces and the same law, on seats, flanks and in the passage
+/// between them.
+#[test]
+fn lanes_and_scalar_contacts_agree() {
+    let mut parts = bicycle(ChainModel::Particles);
+    for sprocket in &mut parts.sprockets {
+        sprocket.surface.friction = Friction::None;
+        sprocket.flank = Some(Flank {
+            elastic: Elastic::Power(Power::linear(4e7)),
+            width: 4e-4,
+        });
+    }
+    let assembled = Drive::new(parts).unwrap().assemble().unwrap();
+    let (system, still) = (assembled.system, vec![0.0; assembled.q.len()]);
+    let mut shares = [0; 3];
+    // Shaking the rollers brings them onto the flanks.
+    for shake in 0..40_u32 {
+        let mut q = assembled.q.clone();
+        for (i, x) in q[..2 * system.stride].iter_mut().enumerate() {
+            *x += 2e-5 * f64::from(shake) * (f64::from(shake) + i as f64 % 104.0).sin();
+        }
+        let mut record = system.new_record();
+        let mut a = vec![0.0; q.len()];
+        let mut rates = vec![0.0; Flow::ALL.len()];
+        let at = Moment {
+            t: 0.0,
+            q: &q,
+            v: &still,
+        };
+        system.evaluate(at, &mut a, &mut rates, &mut record);
+        for (wheel, touch) in system.wheels.iter().zip(&record.teeth) {
+            let (frame, _, _) = system.wheel_frame(wheel, at);
+            let (law, flank) = (&wheel.contacts.surface.law, wheel.contacts.flank.unwrap());
+            wheel.contacts.for_each_slot(|slot, roller| {
+                let place = Point::new(q[roller], q[system.stride + roller]);
+                let [Some(probe), _] = wheel.contacts.faces(&frame, slot, place) else {
+                    return;
+                };
+                // The wheel turns under rollers at rest: only the elastic part is compared.
+                if probe.gap >= 0.0 || touch.closing[slot].abs() > 0.0 && touch.force[slot] == 0.0 {
+                    return;
+                }
+                let share = flank.share(probe.beyond);
+                let elastic = (1.0 - share) * law.elastic_force(-probe.gap)
+                    + share * flank.elastic.force(-probe.gap);
+                let factor = touch.force[slot] / elastic;
+                let rate = touch.closing[slot] * touch.inverse_onset[slot];
+                let damped =
+                    (1.0 + law.dissipation.factor().unwrap_or(0.0) * rate.min(4.0)).max(0.0);
+                assert!(
+                    (factor / damped - 1.0).abs() < 1e-12,
+                    "{factor} {damped} {share}"
+                );
+                shares[if share <= 0.0 {
+                    0
+                } else {
+                    1 + usize::from(share >= 1.0)
+                }] += 1;
+            });
+        }
+    }
+    assert!(shares.iter().all(|count| *count > 10), "{shares:?}");
+}
+
+/// Pushed from the seat over to the flank at one depth, a roller meets no step in the force.
+#[test]
+fn the_law_changes_continuously_from_seat_to_flank() {
+    let flank = Flank {
+        elastic: Elastic::Power(Power::linear(4e7)),
+        width: 4e-4,
+    };
+    let seat = Power::linear(1e8);
+    let force = |beyond: f64| {
+        let share = flank.share(beyond);
+        (1.0 - share) * seat.force(1e-6) + share * flank.elastic.force(1e-6)
+    };
+    let mut last = force(-1e-3);
+    assert!((last - 100.0).abs() < 1e-9 && (force(1e-3) - 40.0).abs() < 1e-9);
+    for step in 1..=2000 {
+        let next = force(-1e-3 + 1e-6 * f64::from(step));
+        // The steepest part of the smooth step has a slope of 3/(4 w).
+        assert!(next <= last && last - next <= 60.0 * 0.75 / 4e-4 * 1e-6 * 1.0001);
+        last = next;
+    }
+}
