@@ -4,7 +4,6 @@
 //! bush of the slider: two degrees of freedom, the angle of the rod and the place of the slider.
 
 use std::f64::consts::TAU;
-use std::path::Path;
 
 use chaindrive_contact::dissipation::LankaraniNikravesh;
 use chaindrive_contact::elastic::Power;
@@ -47,11 +46,13 @@ struct Work {
 }
 
 fn read(id: &str) -> Value {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../tests/validation")
-        .join(id)
-        .join("reference.json");
-    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+    let text = match id {
+        "S01" => include_str!("../../../../tests/validation/S01/reference.json"),
+        "S02" => include_str!("../../../../tests/validation/S02/reference.json"),
+        "S05" => include_str!("../../../../tests/validation/S05/reference.json"),
+        other => panic!("no case {other}"),
+    };
+    serde_json::from_str(text).unwrap()
 }
 
 impl SliderCrank {
@@ -194,7 +195,6 @@ fn s01_s02_first_impacts_of_a_slider_crank() {
             stepper.advance(&mut mechanism, &mut state).unwrap();
         }
         let rows = case["expected"]["impacts"].as_array().unwrap();
-        let mut worst = [0.0_f64; 4];
         for (k, row) in rows.iter().enumerate() {
             let value = |column: usize| row[column].as_f64().unwrap();
             let found = mechanism.impacts[k];
@@ -215,11 +215,7 @@ fn s01_s02_first_impacts_of_a_slider_crank() {
                 "{id}, {k}: {errors:?}"
             );
             assert!(errors[3] < allowed.max(1e-2), "{id}, {k}: {errors:?}");
-            for (worst, error) in worst.iter_mut().zip(errors) {
-                *worst = worst.max(error);
-            }
         }
-        println!("{id}: worst of ten in start, speed, end, force {worst:?}");
     }
 }
 
@@ -259,7 +255,6 @@ fn s05_statistics_of_a_slider_crank() {
         let found = sum / f64::from(runs);
         let expected = &case["expected"][name];
         let (mean, deviation) = (expected[0].as_f64().unwrap(), expected[1].as_f64().unwrap());
-        println!("S05 {name}: {found:.4} against {mean} ± {deviation}");
         assert!(
             (found - mean).abs() < 3.0 * deviation + 0.05 * mean,
             "{name}: {found}"
