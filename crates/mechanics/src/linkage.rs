@@ -15,6 +15,7 @@ mod element;
 mod hinge;
 mod implicit;
 mod impulses;
+mod loose;
 mod meshing;
 mod observe;
 mod posture;
@@ -128,7 +129,7 @@ pub(crate) struct Play {
     pub(crate) mounts: Vec<Mount>,
     pub(crate) tally: Tally,
     pub(crate) blocks: Blocks,
-    pub(crate) loose: Vec<implicit::Loose>,
+    pub(crate) loose: Vec<loose::Loose>,
     pub(crate) impulses: impulses::Impulses,
 }
 

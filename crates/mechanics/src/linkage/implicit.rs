@@ -12,6 +12,7 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Moment, Weights};
 use nalgebra::{Matrix3, Vector3};
 
+use super::loose::Loose;
 use super::{Blocks, Element, Joining, Linkage, Mate, Mount, Partner, Play, cross, turned};
 use crate::System;
 use crate::system::{WheelRotation, WheelSupport};
@@ -232,52 +233,6 @@ impl System {
                 slide.push.stiffness() * squared,
                 slide.push.damping() * squared,
             );
-        }
-    }
-}
-
-/// A free roller's own equations.
-#[derive(Clone, Debug)]
-pub(crate) struct Loose {
-    own: Matrix3<f64>,
-    inverse: Matrix3<f64>,
-    right: Vector3<f64>,
-    /// The link it sits on, and the block (link, roller).
-    link: Option<usize>,
-    coupling: Matrix3<f64>,
-    /// Couplings with the border.
-    beside: Vec<(usize, Vector3<f64>)>,
-}
-
-impl Default for Loose {
-    fn default() -> Self {
-        Self {
-            own: Matrix3::zeros(),
-            inverse: Matrix3::zeros(),
-            right: Vector3::zeros(),
-            link: None,
-            coupling: Matrix3::zeros(),
-            beside: Vec::new(),
-        }
-    }
-}
-
-impl Loose {
-    /// Empties the equations but keeps their space.
-    fn clear(&mut self) {
-        let beside = std::mem::take(&mut self.beside);
-        *self = Self {
-            beside,
-            ..Self::default()
-        };
-        self.beside.clear();
-    }
-
-    /// Adds to the coupling with one unknown of the border.
-    fn couple(&mut self, j: usize, row: Vector3<f64>) {
-        match self.beside.iter_mut().find(|(known, _)| *known == j) {
-            Some((_, sum)) => *sum += row,
-            None => self.beside.push((j, row)),
         }
     }
 }
