@@ -85,18 +85,20 @@ impl Linkage {
             damping: 0.0,
             stiffness: 0.0,
         };
-        let held = self.joints.iter().map(|joint| {
-            let of = |mate: Mate| match mate {
-                Mate::Ground(_) => self.part(mate, at, &play.posture).velocity,
-                Mate::Link { .. } => Vector::zeros(),
-            };
-            // v_pin − v_hole = 0: what the frame does stands on the other side.
-            joint
-                .pair
-                .map_or_else(Vector::zeros, |[hole, pin]| of(hole) - of(pin))
+        // Solved for the change, which is nothing where no hinge opens.
+        let opening = self.joints.iter().map(|joint| {
+            joint.pair.map_or_else(Vector::zeros, |mates| {
+                let [hole, pin] = mates.map(|mate| self.part(mate, at, &play.posture).velocity);
+                hole - pin
+            })
         });
-        let held: Vec<Vector> = held.collect();
-        self.eliminate(system, none, play, v, Asked::Given(&held))
+        let opening: Vec<Vector> = opening.collect();
+        let mut change = vec![0.0; v.len()];
+        let solved = self.eliminate(system, none, play, &mut change, Asked::Given(&opening));
+        for (v, change) in v.iter_mut().zip(&change) {
+            *v += change;
+        }
+        solved
     }
 
     pub(super) fn eliminate(
