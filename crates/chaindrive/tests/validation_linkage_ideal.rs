@@ -25,7 +25,7 @@ fn a_ring_of_bars_carries_its_centrifugal_tension() {
         let [count, pitch, mass, spin] = input[..] else {
             panic!("four inputs")
         };
-        let places = circle(count as usize, pitch);
+        let places = circle(count, pitch);
         let velocities = places.iter().map(|p| [-spin * p[1], spin * p[0]]).collect();
         let mut ring = Strand::ring(pitch, body(mass, mass * pitch * pitch / 12.0), places);
         ring.velocities = velocities;

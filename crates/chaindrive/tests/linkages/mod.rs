@@ -201,12 +201,12 @@ impl Bench {
     }
 }
 
-/// Places on a circle about the origin, n of them, the distance of neighbours `length`.
-pub(crate) fn circle(count: usize, length: f64) -> Vec<[f64; 2]> {
-    let step = std::f64::consts::TAU / count as f64;
+/// Places on a circle about the origin, `count` of them, the distance of neighbours `length`.
+pub(crate) fn circle(count: f64, length: f64) -> Vec<[f64; 2]> {
+    let step = std::f64::consts::TAU / count;
     let radius = 0.5 * length / (0.5 * step).sin();
-    (0..count)
-        .map(|i| (step * i as f64).sin_cos())
+    std::iter::successors(Some(0.0), |i| (i + 1.0 < count).then_some(i + 1.0))
+        .map(|i: f64| (step * i).sin_cos())
         .map(|(s, c)| [radius * c, radius * s])
         .collect()
 }
