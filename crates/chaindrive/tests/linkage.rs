@@ -29,7 +29,7 @@ const MASSES: [LinkBody; 2] = [
 /// A closed chain of twelve unequal links in free flight, spinning and out of shape.
 fn ring(joint: Joint) -> Assembled {
     let pitch = 0.03;
-    let mut ring = Strand::ring(pitch, MASSES[0], circle(12.0, pitch));
+    let mut ring = Strand::ring(pitch, MASSES[0], circle(12, pitch));
     ring.links = bars(MASSES[0]);
     ring.links.outer = MASSES[1];
     ring.links.joint = joint;
@@ -138,7 +138,7 @@ fn methods(step: f64) -> [Method; 4] {
 fn pressed_ring(joint: Joint) -> Assembled {
     let (pitch, spin) = (0.03, 400.0);
     let stretch = if joint == Joint::Ideal { 0.0 } else { 3e-6 };
-    let mut ring = Strand::ring(pitch, MASSES[0], circle(12.0, pitch + stretch));
+    let mut ring = Strand::ring(pitch, MASSES[0], circle(12, pitch + stretch));
     ring.links.outer = MASSES[1];
     ring.links.joint = joint;
     let whirl = |p: &[f64; 2]| [-spin * p[1], spin * p[0]];
@@ -207,7 +207,7 @@ fn methods_agree_and_the_ledger_closes_to_their_order() {
 #[test]
 fn joints_brought_together_keep_momentum() {
     let pitch = 0.03;
-    let mut ring = Strand::ring(pitch, MASSES[0], circle(12.0, pitch));
+    let mut ring = Strand::ring(pitch, MASSES[0], circle(12, pitch));
     ring.links.outer = MASSES[1];
     // Anything: places of the golden angle.
     ring.velocities = (0..12)
