@@ -84,7 +84,7 @@ pub(crate) struct Contacts {
     pub(crate) axis_x: Vec<f64>,
     pub(crate) axis_y: Vec<f64>,
     /// State of each slot at the last accepted step, for one or two sides.
-    pub(crate) memory: Touch,
+    pub(crate) memory: Box<Touch>,
     /// When that was \[s\].
     pub(crate) accepted: f64,
 }
@@ -156,7 +156,7 @@ impl Contacts {
             slots: 0,
             axis_x: Vec::new(),
             axis_y: Vec::new(),
-            memory: Touch::default(),
+            memory: Box::default(),
             accepted: 0.0,
         }
     }

@@ -79,9 +79,13 @@ pub(crate) struct HeldEnd {
 
 /// What one evaluation leaves behind: contact states, work space and what the bodies felt.
 #[derive(Clone, Debug, Default)]
+#[expect(
+    clippy::vec_box,
+    reason = "what changes hands at every step is a pointer, not seven vectors"
+)]
 pub struct Record {
-    pub(crate) teeth: Vec<Touch>,
-    pub(crate) circles: Vec<Touch>,
+    pub(crate) teeth: Vec<Box<Touch>>,
+    pub(crate) circles: Vec<Box<Touch>>,
     pub(crate) plates: Vec<Vec<PlateTouch>>,
     pub(crate) wheel_wrenches: Vec<Wrench>,
     pub(crate) rail_wrenches: Vec<Wrench>,
@@ -143,7 +147,7 @@ impl PlatePins for Pins<'_, '_> {
 /// Accepted steps after which the time scale is worked out again.
 const STEPS_PER_SCALE: u32 = 8;
 /// Accepted steps after which the windows are renewed at the latest.
-const STEPS_PER_WINDOW: u32 = 64;
+const STEPS_PER_WINDOW: u32 = 256;
 
 impl System {
     /// Rejects steps in which a contact begins deeper than `depth` \[m\]; `None` accepts any.
@@ -439,7 +443,7 @@ impl SecondOrderSystem for System {
     type Record = Record;
 
     fn new_record(&self) -> Record {
-        let touches = |count: usize| vec![Touch::default(); count];
+        let touches = |count: usize| vec![Box::<Touch>::default(); count];
         Record {
             teeth: touches(self.wheels.len()),
             circles: touches(self.rails.len()),
@@ -477,9 +481,10 @@ impl SecondOrderSystem for System {
         self.bodies(at, a, rates, record);
         if self.links.closed {
             let n = self.stride;
+            // A ghost behind the first turn copies one of the turn before.
             for ghost in self.rollers..n {
-                a[ghost] = a[ghost % self.rollers];
-                a[n + ghost] = a[n + ghost % self.rollers];
+                a[ghost] = a[ghost - self.rollers];
+                a[n + ghost] = a[n + ghost - self.rollers];
             }
         } else {
             self.hold_ends(at, a, rates);

@@ -100,7 +100,7 @@ impl LaneElastic {
     pub(super) fn force<S: Simd>(self, w: Wide<S>, depth: Lane<S>) -> Lane<S> {
         match self {
             Self::Linear(stiffness) => w.splat(stiffness) * depth,
-            Self::Hertz(stiffness) => w.splat(stiffness) * depth * depth.sqrt(),
+            Self::Hertz(stiffness) => w.splat(stiffness) * depth * depth.root(),
             Self::General(law) => depth.one_by_one(|depth| general(law, depth)),
         }
     }

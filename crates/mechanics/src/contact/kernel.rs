@@ -87,7 +87,7 @@ impl Contacts {
             }
         }
         if touching {
-            sums.total()
+            sums.total(self.surface.friction != Friction::None)
         } else {
             Wrench {
                 first_share: 1.0,
@@ -317,6 +317,7 @@ impl Contacts {
             let onset = closing_before + share * (closing - closing_before);
             let inverse_onset = onset.max(w.splat(numbers.floor)).recip();
             inverse = fresh.select(inverse_onset, inverse);
+            sums.fresh = true;
             let fresh_depth = fresh.select(depth, zero);
             sums.first_depth = sums.first_depth.max(fresh_depth);
             sums.first_share = sums.first_share.min(fresh.select(share, w.splat(1.0)));
@@ -410,10 +411,8 @@ fn look<S: Simd>(w: Wide<S>, profile: &Profile, x: Lane<S>, y: Lane<S>, radius: 
         }
     }
     let (ex, ey) = (x - cx, y - cy);
-    // The root and the reciprocal side by side: 1/d = d · 1/d².
-    let square = (ex * ex + ey * ey).max(w.splat(f64::MIN_POSITIVE));
-    let distance = square.sqrt();
-    let scale = sign * (distance * square.recip());
+    let [distance, inverse] = (ex * ex + ey * ey).roots();
+    let scale = sign * inverse;
     let contact_radius = w.splat(radius);
     let mut found = Found {
         // g = ±(|q − c| − R) − r
@@ -541,6 +540,8 @@ struct Sums<S: Simd> {
     friction_loss: Lane<S>,
     depth: Lane<S>,
     damping: Lane<S>,
+    /// Whether contacts began; only then the rest counts.
+    fresh: bool,
     first_depth: Lane<S>,
     first_share: Lane<S>,
 }
@@ -557,22 +558,33 @@ impl<S: Simd> Sums<S> {
             friction_loss: zero,
             depth: zero,
             damping: zero,
+            fresh: false,
             first_depth: zero,
             first_share: w.splat(1.0),
         }
     }
 
     #[inline(always)]
-    fn total(&self) -> Wrench {
+    fn total(&self, rubbing: bool) -> Wrench {
+        let (first_depth, first_share) = if self.fresh {
+            (self.first_depth.largest(), self.first_share.smallest())
+        } else {
+            (0.0, 1.0)
+        };
+        let friction_loss = if rubbing {
+            self.friction_loss.sum()
+        } else {
+            0.0
+        };
         Wrench {
             force: [self.fx.sum(), self.fy.sum()],
             moment: self.moment.sum(),
             normal_loss: self.normal_loss.sum(),
-            friction_loss: self.friction_loss.sum(),
+            friction_loss,
             depth: self.depth.largest(),
             damping: self.damping.largest(),
-            first_depth: self.first_depth.largest(),
-            first_share: self.first_share.smallest(),
+            first_depth,
+            first_share,
         }
     }
 }

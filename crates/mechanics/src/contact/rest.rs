@@ -151,7 +151,7 @@ mod tests {
         let [mut x, mut y, mut vx, mut vy] = [(); 4].map(|()| vec![0.0; count]);
         let (mut ax, mut ay) = (vec![0.0; count], vec![-600.0; count]);
         let inverse_mass = vec![0.0; count];
-        let mut touch = Touch::default();
+        let mut touch = Box::<Touch>::default();
         let (dt, mut rested, mut touched) = (1e-5, 0, 0);
         for step in 0..900 {
             let t = f64::from(step) * dt;

@@ -31,7 +31,7 @@ impl Contacts {
     pub(crate) fn renew(&mut self, frame: &Frame, places: Places<'_>, margin: f64) {
         let runs = self.near_runs(frame, places, margin);
         let slots = runs.iter().map(|run| padded(run.count)).sum();
-        let mut memory = Touch::default();
+        let mut memory = Box::<Touch>::default();
         memory.resize(slots * self.sides());
         memory.gap.fill(FAR);
         let mut axes = (vec![1.0; slots], vec![0.0; slots]);
