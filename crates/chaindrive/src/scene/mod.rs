@@ -50,6 +50,7 @@
 //! # Ok::<(), chaindrive::scene::SceneError>(())
 //! ```
 
+mod datum;
 mod edit;
 mod error;
 mod expected;
@@ -66,6 +67,7 @@ mod validate;
 use chaindrive_mechanics::{Drive, EventKinds};
 use serde::Deserialize;
 
+pub use datum::Datum;
 pub use error::{Problem, SceneError};
 pub use presets::presets;
 pub use schema::schema;
