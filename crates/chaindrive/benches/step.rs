@@ -13,6 +13,7 @@ fn steps(criterion: &mut Criterion) {
         "marine_two_sprockets",
         "industrial_16b",
         "spinning_ring",
+        "bicycle",
     ] {
         let scene = Scene::preset(preset).expect("presets are valid");
         let drive = scene.drive().expect("presets resolve");
@@ -20,10 +21,16 @@ fn steps(criterion: &mut Criterion) {
         let links = assembled.system.links() as u64;
         group.throughput(Throughput::Elements(links));
         let scale = assembled.system.time_scale();
-        for method in [
+        let mut methods = vec![
             Method::Verlet { step: 0.5 * scale },
             Method::Rk4 { step: 0.5 * scale },
-        ] {
+        ];
+        if assembled.system.suits_implicit_damping() {
+            methods.push(Method::ImplicitDamping {
+                step: 1.4 * assembled.system.undamped_time_scale(),
+            });
+        }
+        for method in methods {
             let mut system = assembled.system.clone();
             let mut state = State::new(0.0, assembled.q.clone(), assembled.v.clone());
             let mut stepper = method

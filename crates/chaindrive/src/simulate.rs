@@ -2,11 +2,11 @@
 
 use std::time::{Duration, Instant};
 
-use chaindrive_integrate::{Method, Moment, State, Statistics, Stepper};
+use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Statistics, Stepper};
 use chaindrive_mechanics::{Assembled, ContactEvent, Drive, Energy, Observation, Record, System};
 
 use crate::SimulationError;
-use crate::run::Run;
+use crate::run::{Run, Stepping};
 
 /// A run in progress: ask it for one sample after the other.
 ///
@@ -66,6 +66,12 @@ impl Simulation {
         run.check()?;
         let mut system = assembled.system.clone();
         let mut state = State::new(0.0, assembled.q.clone(), assembled.v.clone());
+        if run.stepping == Stepping::ImplicitDamping
+            && SecondOrderSystem::can_solve(&system)
+            && !system.suits_implicit_damping()
+        {
+            return Err(SimulationError::IdealJoints);
+        }
         let method = run.method(&system);
         system.set_onset_depth(run.onset_depth);
         system.log_events(run.events);
@@ -73,7 +79,7 @@ impl Simulation {
             .start(&mut system, &mut state)
             .map_err(|error| SimulationError::starting(error, run))?;
         let dofs = state.q.len();
-        let record = chaindrive_integrate::SecondOrderSystem::new_record(&system);
+        let record = system.new_record();
         Ok(Self {
             buffers: [
                 vec![0.0; dofs],

@@ -15,11 +15,14 @@ mod element;
 mod hinge;
 mod implicit;
 mod impulses;
+mod loose;
 mod meshing;
 mod observe;
 mod posture;
 pub(crate) mod rates;
 pub(crate) mod settle;
+#[cfg(test)]
+mod slider_crank;
 #[cfg(test)]
 mod tests;
 
@@ -126,7 +129,7 @@ pub(crate) struct Play {
     pub(crate) mounts: Vec<Mount>,
     pub(crate) tally: Tally,
     pub(crate) blocks: Blocks,
-    pub(crate) loose: Vec<implicit::Loose>,
+    pub(crate) loose: Vec<loose::Loose>,
     pub(crate) impulses: impulses::Impulses,
 }
 

@@ -25,7 +25,7 @@ use crate::contact::{Frame, Places, PlatePins, PlatePlaces, PlateTouch, Touch, W
 use crate::energy::Flow;
 use crate::events::EventLog;
 use crate::lanes::Wide;
-use crate::linkage::{Linkage, Play, Posture};
+use crate::linkage::{Joining, Linkage, Play, Posture};
 use crate::links::{Links, Pulls};
 use crate::motion::Course;
 use crate::{End, Motion};
@@ -147,6 +147,16 @@ impl System {
     /// Rejects steps in which a contact begins deeper than `depth` \[m\]; `None` accepts any.
     pub fn set_onset_depth(&mut self, depth: Option<f64>) {
         self.onset_depth = depth;
+    }
+
+    /// Whether implicit damping serves this drive: rigid links with play in their joints.
+    ///
+    /// Ideal joints hold the chain together by forces of their own, which a step of first order does
+    /// not follow through impacts.
+    pub fn suits_implicit_damping(&self) -> bool {
+        self.linkage
+            .as_ref()
+            .is_some_and(|linkage| matches!(linkage.joining, Joining::Clearance(_)))
     }
 
     /// Number of rollers.

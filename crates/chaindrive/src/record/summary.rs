@@ -269,6 +269,12 @@ impl fmt::Display for Report<'_> {
             summary.residual,
             summary.energy_dissipated()
         )?;
+        if supplied > 0.0 && summary.residual.abs() > OPEN_LEDGER * supplied {
+            writeln!(
+                f,
+                "                         do not trust this run: the energy does not add up; take a smaller step, or method generalized-alpha for rigid links"
+            )?;
+        }
         let steps = statistics.steps.max(1) as f64;
         writeln!(
             f,
@@ -290,6 +296,9 @@ impl fmt::Display for Report<'_> {
         )
     }
 }
+
+/// Share of the energy supplied that may be missing before a run is called into question.
+const OPEN_LEDGER: f64 = 0.1;
 
 /// One line a kind of contact that was logged.
 fn contacts(f: &mut fmt::Formatter<'_>, summary: &Summary, simulation: &Simulation) -> fmt::Result {

@@ -88,6 +88,9 @@ impl Drive {
             let stiffness = parts.chain.stiffness[0];
             linkage::settle::settle(system, q, pretension, stiffness)?;
         }
+        if links.joint == Joint::Ideal {
+            converted.close_in_motion();
+        }
         Ok((converted.system, converted.q, converted.v))
     }
 }

@@ -168,6 +168,7 @@ impl Bearing {
             stiffness: answer.stiffness,
             damping: answer.damping,
             drag: 0.0,
+            secant: 0.0,
             across: answer.force / eccentricity,
         };
         if self.friction != Friction::None {
@@ -175,8 +176,7 @@ impl Bearing {
                 turned(normal).dot(&relative) + lever_pin * pin.spin - lever_hole * hole.spin;
             let rub = self.friction.rub(answer.force, slip, before.stick, dt);
             touch.stick = rub.state;
-            element.rub = rub.force;
-            element.drag = rub.damping;
+            element.rub(&self.friction, rub, slip);
             tally.friction_loss -= rub.force * slip;
         }
         (touch, Some(element))

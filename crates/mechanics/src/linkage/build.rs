@@ -4,7 +4,7 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 
 use super::{
-    Bearing, Body, FreeRollers, Hinges, Joining, JointMates, Linkage, Mate, Memory, PinTouch,
+    Bearing, Body, FreeRollers, Hinges, Joining, JointMates, Linkage, Mate, Memory, PinTouch, Play,
     turned,
 };
 use crate::End;
@@ -18,6 +18,28 @@ pub(crate) struct Converted {
     pub(crate) system: System,
     pub(crate) q: Vec<f64>,
     pub(crate) v: Vec<f64>,
+}
+
+impl Converted {
+    /// Brings the velocities to where no hinge opens: what the stabilisation would otherwise take out of the
+    /// chain in its first milliseconds.
+    pub(crate) fn close_in_motion(&mut self) {
+        let Some(linkage) = &self.system.linkage else {
+            return;
+        };
+        let mut play = Play::default();
+        let at = Moment {
+            t: 0.0,
+            q: &self.q,
+            v: &self.v,
+        };
+        linkage.pose(at, &mut play.posture);
+        play.pin_forces = vec![Vector::zeros(); linkage.joints.len()];
+        let mut v = self.v.clone();
+        if linkage.project(&self.system, at, &mut play, &mut v) {
+            self.v = v;
+        }
+    }
 }
 
 /// Replaces the particle chain of an assembled system by its rigid links.

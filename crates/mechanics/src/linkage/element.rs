@@ -1,5 +1,6 @@
 //! One closed contact, as the forces it exerts and as rows of the implicit system.
 
+use chaindrive_contact::{Friction, Rub};
 use chaindrive_geometry::Vector;
 
 /// The other side of a contact.
@@ -55,6 +56,9 @@ pub(crate) struct Element {
     pub(crate) damping: f64,
     /// −∂R/∂slip \[N s/m\].
     pub(crate) drag: f64,
+    /// The same as a secant, |R/slip|: with it a step cannot carry the slip beyond zero, where the tangent of
+    /// a saturated friction would let it chatter.
+    pub(crate) secant: f64,
     /// Stiffness across, from the turning of the normal \[N/m\].
     pub(crate) across: f64,
 }
@@ -70,6 +74,18 @@ pub(crate) fn turned(v: Vector) -> Vector {
 }
 
 impl Element {
+    /// Takes in the answer of a friction law.
+    pub(crate) fn rub(&mut self, friction: &Friction, rub: Rub, slip: f64) {
+        self.rub = rub.force;
+        self.drag = rub.damping;
+        // A law with a state sticks by itself, and its tangent knows how.
+        self.secant = if friction.has_state() || slip.abs() < f64::MIN_POSITIVE {
+            rub.damping
+        } else {
+            rub.damping.max(-rub.force / slip)
+        };
+    }
+
     pub(crate) fn tangent(&self) -> Vector {
         turned(self.normal)
     }

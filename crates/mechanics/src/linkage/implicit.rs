@@ -9,9 +9,10 @@
 //! their bush and a wheel only; they are eliminated first and leave the links' pattern as it is.
 
 use chaindrive_geometry::Vector;
-use chaindrive_integrate::Weights;
+use chaindrive_integrate::{Moment, Weights};
 use nalgebra::{Matrix3, Vector3};
 
+use super::loose::Loose;
 use super::{Blocks, Element, Joining, Linkage, Mate, Mount, Partner, Play, cross, turned};
 use crate::System;
 use crate::system::{WheelRotation, WheelSupport};
@@ -22,6 +23,15 @@ pub(super) enum Row {
     Nothing,
     Body(usize, Vector3<f64>),
     Border([(usize, f64); 3]),
+}
+
+/// What J x is to be at the hinges.
+#[derive(Clone, Copy)]
+pub(super) enum Asked<'a> {
+    /// What J b is.
+    Kept,
+    /// These values, by joint.
+    Given(&'a [Vector]),
 }
 
 /// Where a body's unknowns stand.
@@ -60,6 +70,45 @@ impl Linkage {
         if weights.stiffness <= 0.0 && matches!(self.joining, Joining::Clearance(_)) {
             return self.damp(system, weights.damping, play, x);
         }
+        self.eliminate(system, weights, play, x, Asked::Kept)
+    }
+
+    /// Velocities v nearest to the given ones, in kinetic energy, with which no hinge opens.
+    pub(crate) fn project(
+        &self,
+        system: &System,
+        at: Moment<'_>,
+        play: &mut Play,
+        v: &mut [f64],
+    ) -> bool {
+        let none = Weights {
+            damping: 0.0,
+            stiffness: 0.0,
+        };
+        // Solved for the change, which is nothing where no hinge opens.
+        let opening = self.joints.iter().map(|joint| {
+            joint.pair.map_or_else(Vector::zeros, |mates| {
+                let [hole, pin] = mates.map(|mate| self.part(mate, at, &play.posture).velocity);
+                hole - pin
+            })
+        });
+        let opening: Vec<Vector> = opening.collect();
+        let mut change = vec![0.0; v.len()];
+        let solved = self.eliminate(system, none, play, &mut change, Asked::Given(&opening));
+        for (v, change) in v.iter_mut().zip(&change) {
+            *v += change;
+        }
+        solved
+    }
+
+    pub(super) fn eliminate(
+        &self,
+        system: &System,
+        weights: Weights,
+        play: &mut Play,
+        x: &mut [f64],
+        asked: Asked<'_>,
+    ) -> bool {
         let border = x.len() - self.dofs() + if self.closed { 3 } else { 0 };
         let row = self.links - usize::from(self.closed);
         let rollers = self.bodies.len() - self.links;
@@ -85,7 +134,7 @@ impl Linkage {
             sum.add(element, &play.mounts, weights);
         }
         if matches!(self.joining, Joining::Hinges(_)) {
-            sum.add_hinges(play, weights, x);
+            sum.add_hinges(play, weights, x, asked);
         }
         let solved = sum.eliminate_rollers() && blocks.solve();
         if solved {
@@ -190,52 +239,6 @@ impl System {
     }
 }
 
-/// A free roller's own equations.
-#[derive(Clone, Debug)]
-pub(crate) struct Loose {
-    own: Matrix3<f64>,
-    inverse: Matrix3<f64>,
-    right: Vector3<f64>,
-    /// The link it sits on, and the block (link, roller).
-    link: Option<usize>,
-    coupling: Matrix3<f64>,
-    /// Couplings with the border.
-    beside: Vec<(usize, Vector3<f64>)>,
-}
-
-impl Default for Loose {
-    fn default() -> Self {
-        Self {
-            own: Matrix3::zeros(),
-            inverse: Matrix3::zeros(),
-            right: Vector3::zeros(),
-            link: None,
-            coupling: Matrix3::zeros(),
-            beside: Vec::new(),
-        }
-    }
-}
-
-impl Loose {
-    /// Empties the equations but keeps their space.
-    fn clear(&mut self) {
-        let beside = std::mem::take(&mut self.beside);
-        *self = Self {
-            beside,
-            ..Self::default()
-        };
-        self.beside.clear();
-    }
-
-    /// Adds to the coupling with one unknown of the border.
-    fn couple(&mut self, j: usize, row: Vector3<f64>) {
-        match self.beside.iter_mut().find(|(known, _)| *known == j) {
-            Some((_, sum)) => *sum += row,
-            None => self.beside.push((j, row)),
-        }
-    }
-}
-
 struct Sum<'a> {
     linkage: &'a Linkage,
     blocks: &'a mut Blocks,
@@ -250,7 +253,7 @@ const HINGE: f64 = 1e7;
 
 impl Sum<'_> {
     /// Ideal joints as very heavy rows: W Jᵀ (J x − J b) keeps J x at what the accelerations b ask for.
-    fn add_hinges(&mut self, play: &Play, weights: Weights, b: &[f64]) {
+    fn add_hinges(&mut self, play: &Play, weights: Weights, b: &[f64], asked: Asked<'_>) {
         let linkage = self.linkage;
         let heaviest = linkage
             .bodies
@@ -283,7 +286,10 @@ impl Sum<'_> {
                         (body, row, row.dot(&known))
                     })
                 });
-                let asked = pin.map_or(0.0, |p| p.2) - hole.map_or(0.0, |h| h.2);
+                let asked = match asked {
+                    Asked::Kept => pin.map_or(0.0, |p| p.2) - hole.map_or(0.0, |h| h.2),
+                    Asked::Given(values) => direction.dot(&values[index]),
+                };
                 for (side, sign) in [(pin, 1.0), (hole, -1.0)] {
                     if let Some((body, row, _)) = side {
                         self.force(body, row * (sign * weight * asked));
@@ -337,9 +343,15 @@ impl Sum<'_> {
             self.square(element.a, a, b, weights.stiffness * element.across.max(0.0));
             self.add_bend(&pivoting, mounts, weights.stiffness);
         }
-        if element.drag > 0.0 {
+        // Newton's method wants the tangent, a single step the secant.
+        let drag = if weights.stiffness > 0.0 {
+            element.drag
+        } else {
+            element.secant
+        };
+        if drag > 0.0 {
             let (a, b) = rows(tangent, [element.lever_a, element.lever_b]);
-            self.square(element.a, a, b, weights.damping * element.drag);
+            self.square(element.a, a, b, weights.damping * drag);
         }
     }
 

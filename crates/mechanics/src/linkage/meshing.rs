@@ -175,6 +175,7 @@ impl Linkage {
                     stiffness: answer.stiffness,
                     damping: answer.damping,
                     drag: 0.0,
+                    secant: 0.0,
                     // −F × bend of the gap's level line: a seat holds a roller, a bulge sheds it.
                     across: -answer.force * probe.bend,
                 };
@@ -185,8 +186,7 @@ impl Linkage {
                     let before = memory.stick[index];
                     let rub = friction.rub(answer.force, slip, before, at.t - contacts.accepted);
                     touch.stick[index] = rub.state;
-                    element.rub = rub.force;
-                    element.drag = rub.damping;
+                    element.rub(friction, rub, slip);
                     tally.friction_loss -= rub.force * slip;
                 }
                 let push = element.push();

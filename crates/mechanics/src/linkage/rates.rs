@@ -76,7 +76,9 @@ impl Linkage {
     /// ω² of the lightest body on the joints when they close gently: what the first step has to respect.
     fn resting(&self) -> f64 {
         let mut stiffness = 0.0_f64;
-        if let Joining::Clearance(bearing) = &self.joining {
+        if let Joining::Clearance(bearing) = &self.joining
+            && self.joints.iter().any(|joint| joint.pair.is_some())
+        {
             stiffness = stiffness.max(bearing.stiffness(SHALLOW));
         }
         let link = self.bodies[..self.links]
