@@ -109,7 +109,7 @@ fn dimensions_are_named_by_the_end_of_their_path_and_keep_si_values() -> Checked
     let expected = [
         "speed",
         "crank_teeth",
-        "1_teeth",
+        "sprockets_1_teeth",
         "method",
         "gravity",
         "gravity_1",

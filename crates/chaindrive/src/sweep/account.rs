@@ -7,8 +7,8 @@ use std::time::Duration;
 use chaindrive_mechanics::EventKinds;
 
 use super::Outcome;
-use crate::record::{EventTable, labels};
-use crate::{Channel, Recording, Run, Scene, Simulation, SimulationError, Summary};
+use crate::record::{ContactStatistics, EventTable, SpanStatistics, labels};
+use crate::{Channel, Recording, Run, Scene, Simulation, SimulationError, Stepping, Summary};
 
 macro_rules! statistics {
     ($($variant:ident, $name:literal, $unit:literal, $along:expr, $text:literal;)*) => {
@@ -85,24 +85,24 @@ impl Statistic {
     }
 
     fn read(self, simulation: &Simulation, summary: &Summary) -> Vec<f64> {
-        let spans = |of: fn(&crate::record::SpanStatistics) -> f64| {
+        let spans = |of: fn(&SpanStatistics) -> f64| {
             let values = summary.spans.iter().map(of);
             // A span without a single finite sample has neither a least nor a greatest one.
             values
                 .map(|value| if value.is_finite() { value } else { f64::NAN })
                 .collect()
         };
-        let contacts = |of: fn(&crate::record::ContactStatistics) -> f64| {
+        let contacts = |of: fn(&ContactStatistics) -> f64| {
             summary.contacts(simulation).iter().map(of).collect()
         };
         let counts = simulation.statistics();
         let number = match self {
-            Self::SpanTensionMean => return spans(crate::record::SpanStatistics::mean),
-            Self::SpanTensionStd => return spans(crate::record::SpanStatistics::deviation),
+            Self::SpanTensionMean => return spans(SpanStatistics::mean),
+            Self::SpanTensionStd => return spans(SpanStatistics::deviation),
             Self::SpanTensionMin => return spans(|span| span.least),
             Self::SpanTensionMax => return spans(|span| span.greatest),
             Self::ContactCount => return contacts(|kind| kind.count as f64),
-            Self::ContactPeakMean => return contacts(crate::record::ContactStatistics::mean),
+            Self::ContactPeakMean => return contacts(ContactStatistics::mean),
             Self::ContactPeakMax => return contacts(|kind| kind.greatest),
             Self::ContactDuration => return contacts(|kind| kind.duration),
             Self::ContactForceP50 => summary.forces().p50,
@@ -186,6 +186,8 @@ impl Quantity {
 /// What is kept of a run that reached its end.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Account {
+    /// Method of time stepping, as chosen.
+    pub method: String,
     /// Sample times of the channels \[s\]; empty without channels.
     pub time: Vec<f64>,
     /// Labels of every dimension that the values have beside time.
@@ -197,25 +199,27 @@ pub struct Account {
 /// Wall time between two looks at whether to stop.
 const LOOK: Duration = Duration::from_millis(50);
 
+/// Whatever goes wrong is the outcome, a panic included: the other variants are not its fault.
+fn outcome(attempt: impl FnOnce() -> Result<Option<Account>, String>) -> Outcome {
+    match catch_unwind(AssertUnwindSafe(attempt)) {
+        Ok(Ok(Some(account))) => Outcome::Done(account),
+        Ok(Ok(None)) => Outcome::Open,
+        Ok(Err(message)) => Outcome::Failed(message),
+        Err(panic) => {
+            let text = panic.downcast_ref::<String>().map(String::as_str);
+            let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
+            Outcome::Failed(format!(
+                "the program failed, please report this as a bug: {}",
+                text.unwrap_or("without a message")
+            ))
+        }
+    }
+}
+
 impl Account {
     /// Runs a scene as it suggests and keeps the account, with the channels of these names.
-    ///
-    /// Whatever goes wrong is the outcome, a panic included: the other variants are not its fault.
-    pub fn of(scene: &Scene, record: &[String], stop: &AtomicBool) -> Outcome {
-        let run = AssertUnwindSafe(|| Self::attempt(scene, record, stop));
-        match catch_unwind(run) {
-            Ok(Ok(Some(account))) => Outcome::Done(account),
-            Ok(Ok(None)) => Outcome::Open,
-            Ok(Err(message)) => Outcome::Failed(message),
-            Err(panic) => {
-                let text = panic.downcast_ref::<String>().map(String::as_str);
-                let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
-                Outcome::Failed(format!(
-                    "the program failed, please report this as a bug: {}",
-                    text.unwrap_or("without a message")
-                ))
-            }
-        }
+    pub(super) fn of(scene: &Scene, record: &[String], stop: &AtomicBool) -> Outcome {
+        outcome(|| Self::attempt(scene, record, stop))
     }
 
     /// The account, `None` if it was told to stop, or what went wrong.
@@ -259,6 +263,7 @@ impl Account {
     fn close(simulation: &Simulation, summary: &Summary, recording: Recording, run: &Run) -> Self {
         let names = summary.spans.iter().map(|span| span.name.clone());
         let mut account = Self {
+            method: Stepping::from(simulation.method()).name().to_owned(),
             time: recording.time,
             labels: vec![("span".into(), names.collect())],
             values: Vec::new(),
@@ -293,5 +298,27 @@ impl Account {
     pub fn labels_along(&self, dimension: &str) -> Option<&[String]> {
         let found = self.labels.iter().find(|(name, _)| name == dimension);
         found.map(|(_, labels)| labels.as_slice())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_an_outcome() {
+        for (panicking, words) in [
+            (outcome(|| panic!("roller {}", 7)), "roller 7"),
+            (outcome(|| panic!("roller")), "roller"),
+            (outcome(|| std::panic::panic_any(7)), "without a message"),
+        ] {
+            let Outcome::Failed(message) = panicking else {
+                panic!("a panic has passed for {panicking:?}");
+            };
+            assert!(
+                message.contains("bug") && message.ends_with(words),
+                "{message}"
+            );
+        }
     }
 }

@@ -32,6 +32,8 @@ pub struct Stacked {
     pub quantities: Vec<StackedQuantity>,
     /// What went wrong, a variant; empty where nothing did.
     pub errors: Vec<String>,
+    /// Methods of time stepping that were used.
+    pub methods: Vec<String>,
 }
 
 impl Sweep {
@@ -91,6 +93,7 @@ impl Sweep {
             labels: labels.into_iter().map(coordinate).collect(),
             quantities,
             errors: outcomes.iter().map(error).collect(),
+            methods: methods(&accounts),
         }
     }
 }
@@ -100,6 +103,16 @@ fn longest<'a>(accounts: &[Option<&'a Account>]) -> &'a [f64] {
     times
         .max_by_key(|time| time.len())
         .map_or(&[], Vec::as_slice)
+}
+
+fn methods(accounts: &[Option<&Account>]) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for account in accounts.iter().flatten() {
+        if !all.contains(&account.method) {
+            all.push(account.method.clone());
+        }
+    }
+    all
 }
 
 /// The labels of all accounts, each once, in the order of their appearance.

@@ -1,14 +1,17 @@
 //! A sweep on disk: one array a quantity, the swept dimensions first.
 //!
 //! Written as a whole, again and again while the sweep goes on: the arrays first, then the group document
-//! that lists them. A reader that comes in between sees every file whole.
+//! that lists them. Every file appears whole. The shapes are known when the first variant has ended;
+//! from then on a reader that comes in between, or after the program was killed, finds old or new values
+//! in each array, unless a later variant has more samples or links than all before it.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde_json::{Map, Value, json};
+use zarrs::array::builder::ArrayBuilderFillValue;
 use zarrs::array::codec::ZstdCodec;
-use zarrs::array::{ArrayBuilder, CodecOptions, DataType, FillValue, data_type};
+use zarrs::array::{ArrayBuilder, CodecOptions, DataType, data_type};
 use zarrs::group::Group;
 use zarrs::metadata::v3::{AdditionalFieldV3, GroupMetadataV3};
 
@@ -19,7 +22,7 @@ use super::track::{StoredArray, ZSTD_LEVEL, metadata, store_metadata};
 use super::{Ending, Existing, FORMAT, about, at};
 use crate::sweep::{Coordinate, Outcome, Stacked, Sweep};
 
-/// Numbers in a chunk at most; beyond that a chunk is a single variant.
+/// Numbers in a chunk, about 1 MiB: beyond that a chunk is a stretch of a single variant.
 const NUMBERS_PER_CHUNK: usize = 1 << 17;
 
 /// A store for a sweep.
@@ -96,7 +99,14 @@ impl SweepWriter {
             arrays.insert(dimension.name.clone(), array);
         }
         if let Some(time) = &stacked.time {
-            let array = self.numbers("time", &["time"], &[time.len()], 1, time, about("s", "time"));
+            let array = self.numbers(
+                "time",
+                &["time"],
+                &[time.len()],
+                1,
+                time,
+                about("s", "time"),
+            );
             arrays.insert("time".into(), array?);
         }
         for (name, labels) in &stacked.labels {
@@ -124,7 +134,7 @@ impl SweepWriter {
             AdditionalFieldV3::new(consolidated, false),
         )];
         let metadata = GroupMetadataV3::new()
-            .with_attributes(attributes(sweep, outcomes, ending))
+            .with_attributes(attributes(sweep, stacked, outcomes, ending))
             .with_additional_fields(fields.into_iter().collect());
         Group::new_with_metadata(self.storage.clone(), "/", metadata.into())?.store_metadata()?;
         Ok(())
@@ -141,7 +151,15 @@ impl SweepWriter {
             Coordinate::Numbers(numbers) => self.numbers(name, &[name], &shape, 1, numbers, about),
             Coordinate::Texts(texts) => self.texts(name, &[name], &shape, texts, about),
             Coordinate::Whole(numbers) => {
-                let array = self.array(name, &[name], &shape, &shape, &data_type::int64(), 0_i64, about)?;
+                let array = self.array(
+                    name,
+                    &[name],
+                    &shape,
+                    &shape,
+                    &data_type::int64(),
+                    0_i64,
+                    about,
+                )?;
                 if !numbers.is_empty() {
                     array.store_chunk_opt(&[0], numbers.as_slice(), &every_chunk())?;
                 }
@@ -177,11 +195,23 @@ impl SweepWriter {
     ) -> Result<Value, Fault> {
         let mut chunk = shape.to_vec();
         if numbers.len() > NUMBERS_PER_CHUNK {
-            // One variant after the other.
+            // One variant after the other, and long ones in stretches of time.
             chunk[..outer].fill(1);
+            let sample: usize = chunk[outer..].iter().skip(1).product();
+            if let Some(time) = chunk.get_mut(outer) {
+                *time = (NUMBERS_PER_CHUNK / sample.max(1)).clamp(1, (*time).max(1));
+            }
         }
         let fill = f64::NAN;
-        let array = self.array(name, dims, shape, &chunk, &data_type::float64(), fill, about)?;
+        let array = self.array(
+            name,
+            dims,
+            shape,
+            &chunk,
+            &data_type::float64(),
+            fill,
+            about,
+        )?;
         if !numbers.is_empty() {
             array.store_array_subset_opt(&array.subset_all(), numbers, &every_chunk())?;
         }
@@ -196,7 +226,7 @@ impl SweepWriter {
         shape: &[usize],
         chunk: &[usize],
         kind: &DataType,
-        fill: impl Into<FillValue>,
+        fill: impl Into<ArrayBuilderFillValue>,
         about: Map<String, Value>,
     ) -> Result<StoredArray, Fault> {
         let shape: Vec<u64> = shape.iter().map(|&size| size as u64).collect();
@@ -220,7 +250,12 @@ fn finish(array: &StoredArray) -> Result<Value, Fault> {
     metadata(array)
 }
 
-fn attributes(sweep: &Sweep, outcomes: &[Outcome], ending: &Ending) -> Map<String, Value> {
+fn attributes(
+    sweep: &Sweep,
+    stacked: &Stacked,
+    outcomes: &[Outcome],
+    ending: &Ending,
+) -> Map<String, Value> {
     let count = |of: fn(&Outcome) -> bool| outcomes.iter().filter(|it| of(it)).count() as u64;
     let scene = sweep.scene();
     let mut story = Story(Map::new());
@@ -231,6 +266,7 @@ fn attributes(sweep: &Sweep, outcomes: &[Outcome], ending: &Ending) -> Map<Strin
     story.count("complete", u64::from(*ending == Ending::Complete));
     story.text("scene_name", scene.name());
     story.text("scene", scene.text());
+    story.text("method", &stacked.methods.join(", "));
     story.list("swept", sweep.dimensions().iter().map(|d| d.path.as_str()));
     story.count("variants", sweep.len() as u64);
     story.count("finished", count(|it| matches!(it, Outcome::Done(_))));
