@@ -5,6 +5,7 @@
 
 mod account;
 mod dimension;
+mod report;
 mod stack;
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -14,6 +15,7 @@ use std::time::Duration;
 
 pub use account::{Account, Quantity, Statistic};
 pub use dimension::{Coordinate, Dimension, Setting};
+pub use report::Report;
 pub use stack::{Stacked, StackedQuantity};
 
 use crate::scene::SceneError;
@@ -49,6 +51,14 @@ pub enum SweepError {
     /// Two entries of a dimension are equal.
     #[error("`{path}`: the value {value} stands twice; give each value once")]
     Repeated { path: String, value: String },
+
+    /// A range that gives no values.
+    #[error("`{path}` = {range}: {reason}")]
+    Range {
+        path: String,
+        range: String,
+        reason: String,
+    },
 
     /// More variants than memory could hold.
     #[error("the sweep has more than {most} variants; split it")]
@@ -230,10 +240,14 @@ impl Sweep {
         Ok(scene)
     }
 
-    /// A variant in words: `speed = 300, pretension = 10000`.
+    /// A variant in words: `speed = 300 rad/s, pretension = 10000 N`; numbers have five digits.
     pub fn label(&self, index: usize) -> String {
         let dimensions = self.dimensions.iter().zip(self.indices(index));
-        let parts = dimensions.map(|(it, at)| format!("{} = {}", it.name, it.values.text(at)));
+        let parts = dimensions.map(|(it, at)| {
+            let unit = it.unit.filter(|unit| *unit != "1");
+            let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
+            format!("{} = {}{unit}", it.name, it.values.short(at))
+        });
         parts.collect::<Vec<_>>().join(", ")
     }
 

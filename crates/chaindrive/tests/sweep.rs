@@ -282,6 +282,77 @@ fn what_is_not_of_a_scene_is_refused_before_anything_runs() -> Checked {
 }
 
 #[test]
+fn a_range_has_both_ends_and_equal_distances() -> Checked {
+    let scene = marine("1 ms")?;
+    let speed = "sprockets.crank.motion.speed";
+    let range = Setting::range(&scene, speed, "-80 rpm", "-140 rpm", 4)?;
+    let by_hand = texts(speed, ["-80 rpm", "-100 rpm", "-120 rpm", "-140 rpm"]).1;
+    let numbers = |settings| -> Result<Vec<f64>, Box<dyn Error>> {
+        let sweep = Sweep::new(&scene, &[(speed.to_owned(), settings)], &[])?;
+        match &sweep.dimensions()[0].values {
+            Coordinate::Numbers(numbers) => Ok(numbers.clone()),
+            other => Err(format!("{other:?}").into()),
+        }
+    };
+    let (range, by_hand) = (numbers(range)?, numbers(by_hand)?);
+    assert_eq!((range[0], range[3]), (by_hand[0], by_hand[3]));
+    let close = |(one, other): (&f64, &f64)| (one - other).abs() < 1e-14;
+    assert!(range.iter().zip(&by_hand).all(close));
+
+    let teeth = Setting::range(&scene, "sprockets.crank.teeth", "60", "54", 4)?;
+    let expected = [60, 58, 56, 54].map(|teeth| Setting::Json(teeth.into()));
+    assert_eq!(teeth, expected);
+    let zero = Setting::range(&scene, "route.pretension", "0", "1 kN", 2)?;
+    assert_eq!(zero[0], Setting::Json(0.0.into()));
+
+    let cases = [
+        (speed, "-80", "-140 rpm", 4, "give `-80` its unit too"),
+        (speed, "-80 rpm", "-140 rpm", 1, "2 to"),
+        (speed, "-80 rpm", "-140 mm", 4, "is a length"),
+        ("sprockets.crank.teeth", "60", "54", 3, ""),
+        ("sprockets.crank.teeth", "60", "54", 5, "do not fit evenly"),
+        ("sprockets.crank.name", "one", "two", 5, "no number"),
+        ("sprockets.crnk.teeth", "1", "2", 2, "crank"),
+    ];
+    for (path, first, last, count, words) in cases {
+        match Setting::range(&scene, path, first, last, count) {
+            Ok(_) => assert_eq!(words, "", "{path} = {first}..{last}/{count}"),
+            Err(error) => {
+                let message = error.to_string();
+                assert!(!words.is_empty() && message.contains(words), "{message}");
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn the_report_tells_every_variant_or_the_extremes_of_many() -> Checked {
+    let scene = Scene::preset("spinning_ring")?.replace("run.until", "1 ms")?;
+    let path = "chain.start.speed";
+    let speeds = texts(path, ["300 rad/s", "400 rad/s", "1e300 rad/s"]);
+    let sweep = Sweep::new(&scene, &[speeds], &[])?;
+    let outcomes = sweep.run(None, |_| Go::On)?;
+    let report = sweep.report(&outcomes).to_string();
+    let lines: Vec<&str> = report.lines().collect();
+    assert!(lines[0].contains("speed [rad/s]"), "{report}");
+    assert!(lines[1].trim_start().starts_with("300 "), "{report}");
+    assert!(lines[3].ends_with("failed"), "{report}");
+    assert_eq!(lines[4], "variants: 2 of 3 done, 1 failed");
+    let failures = sweep.failures(&outcomes);
+    assert!(failures.len() == 1 && failures[0].starts_with("speed = 1.000e300 rad/s: "));
+
+    let many = Setting::range(&scene, path, "300 rad/s", "349 rad/s", 50)?;
+    let sweep = Sweep::new(&scene, &[(path.to_owned(), many)], &[])?;
+    let report = sweep.report(&sweep.run(None, |_| Go::On)?).to_string();
+    // T = m v²/p grows with the speed.
+    let found = report.lines().filter(|line| line.starts_with("span max"));
+    assert_eq!(found.count(), 0, "a ring has no spans: {report}");
+    assert_eq!(report.lines().last(), Some("variants: 50 of 50 done"));
+    Ok(())
+}
+
+#[test]
 fn logged_contacts_are_counted_by_kind() -> Checked {
     let scene = marine("2 ms")?.replace("run.events", "[\"teeth\"]")?;
     let vary = [texts("route.pretension", ["10 kN", "20 kN"])];

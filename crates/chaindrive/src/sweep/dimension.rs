@@ -2,7 +2,8 @@
 
 use serde_json::Value as Json;
 
-use super::{Quantity, Statistic, SweepError};
+use super::report::short;
+use super::{MOST, Quantity, Statistic, SweepError};
 use crate::Channel;
 use crate::record::Axis;
 use crate::scene::{Datum, Scene, SceneError};
@@ -17,6 +18,65 @@ pub enum Setting {
 }
 
 impl Setting {
+    /// `count` values from `first` to `last`, both among them, at equal distances in SI units.
+    ///
+    /// ```
+    /// use chaindrive::Scene;
+    /// use chaindrive::sweep::Setting;
+    ///
+    /// let scene = Scene::preset("marine_engine")?;
+    /// let forces = Setting::range(&scene, "route.pretension", "500 N", "2 kN", 4)?;
+    /// assert_eq!(forces[1], Setting::Json(1000.0.into()));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Ends that are not numbers of the scene, one of them with a unit and the other one, not zero, without;
+    /// less than two values; counts, such as teeth, between which `count` whole numbers do not fit evenly.
+    pub fn range(
+        scene: &Scene,
+        path: &str,
+        first: &str,
+        last: &str,
+        count: usize,
+    ) -> Result<Vec<Self>, SweepError> {
+        let refuse = |reason: String| SweepError::Range {
+            path: path.to_owned(),
+            range: format!("{first}..{last}/{count}"),
+            reason,
+        };
+        if !(2..=MOST).contains(&count) {
+            return Err(refuse(format!("the number of values must be 2 to {MOST}")));
+        }
+        // A number without a unit is in SI units: beside "140 rpm" 80 would be 80 rad/s.
+        let bare = |text: &str| text.trim().parse::<f64>().ok();
+        for (one, other) in [(first, last), (last, first)] {
+            if bare(one).is_some_and(|number| number != 0.0) && bare(other).is_none() {
+                return Err(refuse(format!("give `{}` its unit too", one.trim())));
+            }
+        }
+        let read = |text: &str| Ok::<_, SweepError>(scene.replace(path, text)?.datum(path));
+        let shares = (0..count).map(|i| i as f64 / (count - 1) as f64);
+        match (read(first)?, read(last)?) {
+            (Some(Datum::Whole(first)), Some(Datum::Whole(last))) => {
+                let (span, gaps) = (last.saturating_sub(first), count as i64 - 1);
+                if span % gaps != 0 {
+                    return Err(refuse(format!(
+                        "only whole numbers are allowed here, and {count} do not fit evenly"
+                    )));
+                }
+                let number = |i: i64| Self::Json((first + span / gaps * i).into());
+                Ok((0..=gaps).map(number).collect())
+            }
+            (Some(Datum::Quantity(first, _)), Some(Datum::Quantity(last, _))) => {
+                // Exact at both ends.
+                let number = |share: f64| Self::Json((first * (1.0 - share) + last * share).into());
+                Ok(shares.map(number).collect())
+            }
+            _ => Err(refuse("there is no number here to be varied".into())),
+        }
+    }
+
     pub(super) fn put(&self, scene: &Scene, path: &str) -> Result<Scene, SceneError> {
         match self {
             Self::Text(text) => scene.replace(path, text),
@@ -65,6 +125,14 @@ impl Coordinate {
             Self::Numbers(numbers) => numbers[index].to_string(),
             Self::Whole(numbers) => numbers[index].to_string(),
             Self::Texts(texts) => texts[index].clone(),
+        }
+    }
+
+    /// An entry as a text, with five digits.
+    pub(super) fn short(&self, index: usize) -> String {
+        match self {
+            Self::Numbers(numbers) => short(numbers[index]),
+            Self::Whole(_) | Self::Texts(_) => self.text(index),
         }
     }
 
