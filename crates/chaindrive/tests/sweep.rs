@@ -246,7 +246,7 @@ fn what_is_not_of_a_scene_is_refused_before_anything_runs() -> Checked {
         (
             vec![texts("route.pretension", ["1 kN", "1000 N"])],
             vec![],
-            "the value 1000 stands twice",
+            "the value 1000.0 stands twice",
         ),
         (
             vec![
@@ -345,9 +345,12 @@ fn the_report_tells_every_variant_or_the_extremes_of_many() -> Checked {
     let many = Setting::range(&scene, path, "300 rad/s", "349 rad/s", 50)?;
     let sweep = Sweep::new(&scene, &[(path.to_owned(), many)], &[])?;
     let report = sweep.report(&sweep.run(None, |_| Go::On)?).to_string();
-    // T = m v²/p grows with the speed.
-    let found = report.lines().filter(|line| line.starts_with("span max"));
-    assert_eq!(found.count(), 0, "a ring has no spans: {report}");
+    let told = |heading: &str| {
+        let lines = report.lines().filter(|line| line.starts_with(heading));
+        lines.count()
+    };
+    assert_eq!(told("unaccounted [J]"), 2, "least and greatest: {report}");
+    assert_eq!(told("span max"), 0, "a ring has no spans: {report}");
     assert_eq!(report.lines().last(), Some("variants: 50 of 50 done"));
     Ok(())
 }

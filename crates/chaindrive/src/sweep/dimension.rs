@@ -119,10 +119,10 @@ impl Coordinate {
         self.len() == 0
     }
 
-    /// An entry as a text.
+    /// An entry as a text; numbers with the shortest digits that read back to the same number.
     pub fn text(&self, index: usize) -> String {
         match self {
-            Self::Numbers(numbers) => numbers[index].to_string(),
+            Self::Numbers(numbers) => format!("{:?}", numbers[index]),
             Self::Whole(numbers) => numbers[index].to_string(),
             Self::Texts(texts) => texts[index].clone(),
         }
