@@ -8,6 +8,7 @@ mod dimension;
 mod report;
 mod stack;
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread::available_parallelism;
@@ -90,7 +91,7 @@ pub enum Outcome {
 /// A sweep in progress.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress<'a> {
-    /// One outcome a variant.
+    /// One outcome a variant that is run.
     pub outcomes: &'a [Outcome],
     /// Variants that are no longer open.
     pub finished: usize,
@@ -286,17 +287,32 @@ impl Sweep {
     pub fn run(
         &self,
         jobs: Option<usize>,
+        watch: impl FnMut(Progress<'_>) -> Go,
+    ) -> Result<Vec<Outcome>, SweepError> {
+        self.run_some(0..self.len, jobs, watch)
+    }
+
+    /// Runs some of the variants, see [`Sweep::run`]; what is beyond the last one is left out.
+    ///
+    /// # Errors
+    /// As [`Sweep::run`].
+    pub fn run_some(
+        &self,
+        variants: Range<usize>,
+        jobs: Option<usize>,
         mut watch: impl FnMut(Progress<'_>) -> Go,
     ) -> Result<Vec<Outcome>, SweepError> {
+        let (first, end) = (variants.start, variants.end.min(self.len));
+        let count = end.saturating_sub(first);
         let cores = || available_parallelism().map_or(1, usize::from);
-        let jobs = jobs.unwrap_or_else(cores).clamp(1, self.len);
+        let jobs = jobs.unwrap_or_else(cores).clamp(1, count.max(1));
         let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
         let pool = pool.map_err(|error| SweepError::Threads {
             reason: error.to_string(),
         })?;
-        let mut outcomes = vec![Outcome::Open; self.len];
+        let mut outcomes = vec![Outcome::Open; count];
         let stop = AtomicBool::new(false);
-        let next = AtomicUsize::new(0);
+        let next = AtomicUsize::new(first);
         let (sender, receiver) = channel();
         pool.in_place_scope(|scope| {
             for _ in 0..jobs {
@@ -305,7 +321,7 @@ impl Sweep {
                     // In their order, so that what is finished early is one stretch.
                     while !stop.load(Ordering::Relaxed) {
                         let index = next.fetch_add(1, Ordering::Relaxed);
-                        if index >= self.len {
+                        if index >= end {
                             break;
                         }
                         let outcome = self.carry_out(index, stop);
@@ -322,7 +338,7 @@ impl Sweep {
                 match receiver.recv_timeout(LOOK) {
                     Ok((index, outcome)) => {
                         finished += usize::from(outcome != Outcome::Open);
-                        outcomes[index] = outcome;
+                        outcomes[index - first] = outcome;
                     }
                     Err(RecvTimeoutError::Timeout) => {}
                     Err(RecvTimeoutError::Disconnected) => break,

@@ -59,6 +59,9 @@ fn any_number_of_threads_gives_the_bits_of_the_runs_one_by_one() -> Checked {
             assert_eq!(bits(one), bits(other), "variant {index} on {jobs} threads");
         }
     }
+    let some = sweep.run_some(4..9, None, |_| Go::On)?;
+    assert_eq!(some.len(), 2, "of six");
+    assert_eq!(bits(&some[1]), bits(&alone[5]));
     Ok(())
 }
 
