@@ -231,3 +231,20 @@ def test_the_command_writes_the_same_numbers(built_in, tmp_path):
         else:
             assert one.tolist() == other.tolist(), name
     assert stored.attrs["method"] == built_in.attrs["method"]
+
+
+def test_long_recordings_are_stored_in_stretches(tmp_path):
+    """Eight thousand samples of twenty links: more than a chunk holds, of a single variant."""
+    pytest.importorskip("zarr")
+    store = tmp_path / "ring.zarr"
+    arguments = ["chaindrive", "sweep", "spinning_ring", "-q", "-o", str(store)]
+    arguments += ["--vary", "chain.start.speed=300..400/2", "--record", "link_tension"]
+    assert cd._core._cli([*arguments, "--until", "8 ms", "--every", "1 us"]) == 0
+    vary = {"chain.start.speed": [300.0, 400.0]}
+    settings = {"until": 8e-3, "every": "1 us", "record": "link_tension"}
+    expected = cd.sweep(cd.scenes.spinning_ring(), vary, **settings)["link_tension"]
+    stored = xr.open_zarr(store, chunks=None)["link_tension"]
+    assert stored.encoding["chunks"] == (1, 6553, 20)
+    np.testing.assert_array_equal(stored, expected)
+    assert expected.shape == (2, 8001, 20)
+    assert np.isfinite(expected).all()

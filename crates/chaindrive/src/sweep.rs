@@ -183,17 +183,23 @@ impl Sweep {
                 }
                 Ok::<_, SceneError>(changed)
             };
-            let scenes = settings.iter().map(with).collect::<Result<Vec<_>, _>>()?;
-            let place = scenes[0].place(path);
+            let place = with(&settings[0])?.place(path);
             if places.contains(&place) {
                 return Err(SweepError::Twice { path: path.clone() });
             }
             places.push(place);
-            let every = |scene: &Scene| scene.run_defaults().every.map(f64::to_bits);
-            if !record.is_empty() && scenes.iter().any(|it| every(it) != every(&scenes[0])) {
-                return Err(SweepError::Intervals { path: path.clone() });
+            let mut every = None;
+            let mut data = Vec::new();
+            for setting in settings {
+                // A scene takes a hundred times the memory of its value: none is kept.
+                let scene = with(setting)?;
+                let interval = scene.run_defaults().every.map(f64::to_bits);
+                if !record.is_empty() && *every.get_or_insert(interval) != interval {
+                    return Err(SweepError::Intervals { path: path.clone() });
+                }
+                data.push(scene.datum(path));
             }
-            dimensions.push(Dimension::new(path, settings.clone(), &scenes)?);
+            dimensions.push(Dimension::new(path, settings.clone(), &data)?);
         }
         dimension::name_all(&mut dimensions);
         Ok(Self {

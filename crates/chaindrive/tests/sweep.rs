@@ -3,6 +3,7 @@
 use std::error::Error;
 use std::sync::atomic::AtomicBool;
 
+use chaindrive::record::SpanStatistics;
 use chaindrive::scene::{Datum, Scene};
 use chaindrive::sweep::{Account, Coordinate, Go, Outcome, Quantity, Setting, Statistic};
 use chaindrive::sweep::{Sweep, SweepError};
@@ -89,7 +90,7 @@ fn a_variant_is_the_run_of_its_scene() -> Checked {
         values.flatten().unwrap_or_default().to_vec()
     };
     assert_eq!(last(Quantity::Channel(Channel::SpanTension)), tension);
-    let means: Vec<f64> = summary.spans.iter().map(|span| span.mean()).collect();
+    let means: Vec<f64> = summary.spans.iter().map(SpanStatistics::mean).collect();
     assert_eq!(last(Quantity::Statistic(Statistic::SpanTensionMean)), means);
     let largest = Quantity::Statistic(Statistic::ContactForceMax);
     assert_eq!(last(largest), [summary.forces().max]);

@@ -59,7 +59,8 @@ impl Setting {
         let shares = (0..count).map(|i| i as f64 / (count - 1) as f64);
         match (read(first)?, read(last)?) {
             (Some(Datum::Whole(first)), Some(Datum::Whole(last))) => {
-                let (span, gaps) = (last.saturating_sub(first), count as i64 - 1);
+                let span = last.saturating_sub(first);
+                let gaps = i64::try_from(count - 1).unwrap_or(i64::MAX);
                 if span % gaps != 0 {
                     return Err(refuse(format!(
                         "only whole numbers are allowed here, and {count} do not fit evenly"
@@ -159,14 +160,13 @@ pub struct Dimension {
 }
 
 impl Dimension {
-    /// The values at `path` of the scenes that have them.
+    /// Settings of a path, and what they are in their scenes.
     pub(super) fn new(
         path: &str,
         settings: Vec<Setting>,
-        scenes: &[Scene],
+        data: &[Option<Datum>],
     ) -> Result<Self, SweepError> {
-        let data: Vec<_> = scenes.iter().map(|scene| scene.datum(path)).collect();
-        let (unit, values) = coordinate(&data, &settings);
+        let (unit, values) = coordinate(data, &settings);
         if let Some(value) = values.repeated() {
             return Err(SweepError::Repeated {
                 path: path.to_owned(),

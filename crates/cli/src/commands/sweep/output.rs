@@ -1,7 +1,7 @@
 //! Where a sweep goes: nowhere, a Zarr store, or a table with a row a variant.
 
 use std::fs::{self, File};
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, IntoInnerError, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -144,7 +144,7 @@ fn table(path: &Path, sweep: &Sweep, stacked: &Stacked, ending: &Ending) -> std:
         writeln!(file, "# incomplete: {reason}")?;
     }
     file.into_inner()
-        .map_err(|error| error.into_error())?
+        .map_err(IntoInnerError::into_error)?
         .sync_all()?;
     fs::rename(&part, path)
 }
