@@ -164,9 +164,9 @@ def _values(values: Any, path: str) -> tuple[str, ...]:
 
 def _counted(value: Any) -> Any:
     """Return a float that is a whole number as such: `numpy.linspace` may count teeth."""
-    if isinstance(value, float | np.floating) and value and float(value).is_integer():
-        return int(value)
-    return value
+    whole = isinstance(value, float | np.floating) and float(value).is_integer()
+    # Minus zero has no whole number.
+    return int(value) if whole and str(float(value)) != "-0.0" else value
 
 
 def _spread(

@@ -277,10 +277,10 @@ impl Sweep {
 
     /// Runs one variant on the calling thread, until it ends or `stop` is set.
     pub fn carry_out(&self, index: usize, stop: &AtomicBool) -> Outcome {
-        match self.variant(index) {
-            Ok(scene) => Account::of(&scene, &self.record, stop),
-            Err(error) => Outcome::Failed(error.to_string()),
-        }
+        account::outcome(|| {
+            let scene = self.variant(index).map_err(|error| error.to_string())?;
+            Account::attempt(&scene, &self.record, stop)
+        })
     }
 
     /// Runs all variants on `jobs` threads, as many as there are cores if absent, and returns their

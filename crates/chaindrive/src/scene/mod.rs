@@ -119,7 +119,7 @@ impl Scene {
     fn from_tree(tree: Node, text: &str, name: &str) -> Result<Self, SceneError> {
         let mut normalised = tree.clone();
         normalised.expand_chain();
-        let problems = validate::validate(&mut normalised, &schema::raw());
+        let problems = validate::validate(&mut normalised, schema::raw());
         if !problems.is_empty() {
             return Err(SceneError::new(name, problems));
         }

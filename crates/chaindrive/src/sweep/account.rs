@@ -200,7 +200,7 @@ pub struct Account {
 const LOOK: Duration = Duration::from_millis(50);
 
 /// Whatever goes wrong is the outcome, a panic included: the other variants are not its fault.
-fn outcome(attempt: impl FnOnce() -> Result<Option<Account>, String>) -> Outcome {
+pub(super) fn outcome(attempt: impl FnOnce() -> Result<Option<Account>, String>) -> Outcome {
     match catch_unwind(AssertUnwindSafe(attempt)) {
         Ok(Ok(Some(account))) => Outcome::Done(account),
         Ok(Ok(None)) => Outcome::Open,
@@ -217,13 +217,9 @@ fn outcome(attempt: impl FnOnce() -> Result<Option<Account>, String>) -> Outcome
 }
 
 impl Account {
-    /// Runs a scene as it suggests and keeps the account, with the channels of these names.
-    pub(super) fn of(scene: &Scene, record: &[String], stop: &AtomicBool) -> Outcome {
-        outcome(|| Self::attempt(scene, record, stop))
-    }
-
-    /// The account, `None` if it was told to stop, or what went wrong.
-    fn attempt(
+    /// Runs a scene as it suggests: the account, with the channels of these names, `None` if it was told to
+    /// stop, or what went wrong.
+    pub(super) fn attempt(
         scene: &Scene,
         record: &[String],
         stop: &AtomicBool,
