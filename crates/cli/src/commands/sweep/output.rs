@@ -67,9 +67,14 @@ impl Output {
         })
     }
 
-    /// Writes what is known, if there is more than before and the last time was a while ago.
+    /// Writes what is known, if there is more than before and the last time was a while ago: at once when the
+    /// first variant ends, for then the shape of the result is known.
     pub(super) fn keep(&mut self, sweep: &Sweep, state: Progress<'_>) -> Result<(), Failure> {
-        let due = WRITE_EVERY.max(self.took * SHARE);
+        let due = if self.known == 0 {
+            Duration::ZERO
+        } else {
+            WRITE_EVERY.max(self.took * SHARE)
+        };
         if state.finished == self.known || self.written.elapsed() < due {
             return Ok(());
         }
