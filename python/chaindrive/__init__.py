@@ -7,7 +7,8 @@
     ('time', 'link')
 
 A `Drive` is read from a scene file (`load`), from text, from a dict or from `scenes`; `simulate`
-moves it and returns an `xarray.Dataset` with names, units and provenance. Quantities are in SI
+moves it and returns an `xarray.Dataset` with names, units and provenance; `sweep` does so for many
+variants at once. Quantities are in SI
 units throughout; scene files may carry units of their own. Counter-clockwise angles, tensions and
 penetrations are positive.
 """
@@ -29,6 +30,7 @@ from chaindrive.errors import (
 from chaindrive.friction import Friction, friction
 from chaindrive.law import Law, law
 from chaindrive.simulation import simulate
+from chaindrive.sweeping import sweep
 
 __all__ = [
     "AssemblyError",
@@ -53,4 +55,5 @@ __all__ = [
     "scenes",
     "schema",
     "simulate",
+    "sweep",
 ]

@@ -11,6 +11,7 @@ __all__ = [
     "Drive",
     "Friction",
     "Law",
+    "Sweep",
     "__version__",
     "_cli",
     "catalogue",
@@ -88,6 +89,26 @@ class Law:
         self, penetration: _Floats, rate: _Floats, onset_rate: _Floats
     ) -> list[_Floats]: ...
     def energy(self, penetration: _Floats) -> _Floats: ...
+
+_Outcome: TypeAlias = tuple[
+    str | None, str, _Floats, list[tuple[str, list[str]]], list[tuple[str, _Floats]]
+]
+
+@final
+class Sweep:
+    def __new__(
+        cls,
+        text: str,
+        name: str,
+        vary: Sequence[tuple[str, Sequence[str]]],
+        record: Sequence[str],
+    ) -> Sweep: ...
+    def __len__(self) -> int: ...
+    def run(
+        self, jobs: int | None, progress: Callable[[float], object] | None
+    ) -> dict[str, Any]: ...
+    def part(self, first: int, end: int) -> list[_Outcome]: ...
+    def stack(self, outcomes: Sequence[_Outcome]) -> dict[str, Any]: ...
 
 def simulate(
     drive: Drive,

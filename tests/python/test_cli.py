@@ -50,11 +50,12 @@ def test_run_writes_a_store(tmp_path):
 @pytest.mark.parametrize("script", sorted((ROOT / "examples").glob("*.py")), ids=lambda p: p.stem)
 def test_examples_run(script, tmp_path):
     environment = os.environ | {"MPLBACKEND": "Agg"}
-    simulates = "--until" in script.read_text(encoding="utf-8")
+    text = script.read_text(encoding="utf-8")
+    short = {"--until": "0.01", "--rounds": "1"}
     done = run(
         sys.executable,
         script,
-        *(["--until", "0.01"] if simulates else []),
+        *(word for option, value in short.items() if option in text for word in (option, value)),
         "--results",
         tmp_path,
         cwd=tmp_path,

@@ -25,6 +25,7 @@ pub mod record;
 mod run;
 pub mod scene;
 mod simulate;
+pub mod sweep;
 
 pub use catalogue::CatalogueChain;
 pub use chaindrive_integrate::{Method, Statistics};

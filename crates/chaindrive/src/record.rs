@@ -10,7 +10,7 @@ use chaindrive_mechanics::{Energy, Flow, Observation, Store, System};
 pub use channel::{Axis, Channel};
 pub use event::{EventColumn, EventTable};
 pub use summary::{ContactStatistics, ForceStatistics, SpanStatistics, Summary};
-pub use zarr::{Ending, Existing, Provenance, WriteError, ZarrWriter};
+pub use zarr::{Ending, Existing, Provenance, SweepWriter, WriteError, ZarrWriter};
 
 /// One channel of a recording.
 #[derive(Clone, Debug)]

@@ -5,3 +5,4 @@ pub(crate) mod describe;
 pub(crate) mod lists;
 pub(crate) mod output;
 pub(crate) mod run;
+pub(crate) mod sweep;

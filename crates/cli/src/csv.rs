@@ -1,6 +1,6 @@
 //! Results as CSV: time, and a column `channel[label]` for every entry of every channel.
 //!
-//! Rows appear as they come. A run that did not reach its end closes with a comment line.
+//! Rows appear as they come. The table of a sweep is written elsewhere, but known here. A run that did not reach its end closes with a comment line.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Read, Write};
@@ -11,8 +11,11 @@ use chaindrive::{Channel, Recording, Simulation};
 
 use crate::failure::Failure;
 
-/// The first column, and how a file of ours is known.
-const FIRST: &str = "time";
+/// The first column of a run.
+const TIME: &str = "time";
+
+/// The first column of a sweep.
+pub(crate) const VARIANT: &str = "variant";
 
 /// A table in the making.
 #[derive(Debug)]
@@ -75,7 +78,7 @@ impl CsvWriter {
 }
 
 fn heading(simulation: &Simulation, channels: &[Channel]) -> Vec<String> {
-    let mut cells = vec![FIRST.to_owned()];
+    let mut cells = vec![TIME.to_owned()];
     for channel in channels {
         match labels(channel.axis(), simulation.system()) {
             None => cells.push(channel.name().to_owned()),
@@ -88,7 +91,7 @@ fn heading(simulation: &Simulation, channels: &[Channel]) -> Vec<String> {
     cells
 }
 
-fn quoted(cell: &str) -> String {
+pub(crate) fn quoted(cell: &str) -> String {
     if cell.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", cell.replace('"', "\"\""))
     } else {
@@ -96,14 +99,15 @@ fn quoted(cell: &str) -> String {
     }
 }
 
-fn failed(path: &Path, source: io::Error) -> Failure {
+pub(crate) fn failed(path: &Path, source: io::Error) -> Failure {
     Failure::File {
         path: path.display().to_string(),
         source,
     }
 }
 
-fn open(path: &Path, existing: Existing) -> Result<File, Failure> {
+/// Opens a file for a table, unless something else is there.
+pub(crate) fn open(path: &Path, existing: Existing) -> Result<File, Failure> {
     let taken = |found, hint| Failure::Taken {
         path: path.display().to_string(),
         found,
@@ -129,8 +133,11 @@ fn open(path: &Path, existing: Existing) -> Result<File, Failure> {
 fn is_table(path: &Path) -> io::Result<bool> {
     let mut begin = Vec::new();
     File::open(path)?
-        .take(FIRST.len() as u64 + 1)
+        .take(VARIANT.len() as u64 + 1)
         .read_to_end(&mut begin)?;
-    let first = begin.split(|byte| [b',', b'\n'].contains(byte)).next();
-    Ok(begin.is_empty() || (first == Some(FIRST.as_bytes()) && begin.len() > FIRST.len()))
+    let begins_with = |first: &str| {
+        let rest = begin.strip_prefix(first.as_bytes());
+        rest.is_some_and(|rest| matches!(rest.first(), Some(b',' | b'\n')))
+    };
+    Ok(begin.is_empty() || begins_with(TIME) || begins_with(VARIANT))
 }

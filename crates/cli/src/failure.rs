@@ -3,6 +3,7 @@
 use chaindrive::SimulationError;
 use chaindrive::record::WriteError;
 use chaindrive::scene::SceneError;
+use chaindrive::sweep::SweepError;
 
 /// Exit code of bad input; also that of arguments the parser refuses.
 pub(crate) const BAD_INPUT: u8 = 2;
@@ -36,6 +37,14 @@ pub(crate) enum Failure {
         source: SimulationError,
     },
 
+    /// What is to be varied is wrong, or the machine refuses threads.
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
+
+    /// The sweep is through, but without some variants; their messages are out.
+    #[error("{failed} of {variants} variants failed")]
+    Variants { failed: usize, variants: usize },
+
     /// The result could not be written.
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -63,10 +72,12 @@ pub(crate) enum Failure {
 impl Failure {
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
-            Self::Simulation { .. } => 1,
-            Self::Scene(_) | Self::Argument(_) | Self::Scenes { .. } | Self::Start { .. } => {
-                BAD_INPUT
-            }
+            Self::Simulation { .. } | Self::Variants { .. } => 1,
+            Self::Scene(_)
+            | Self::Argument(_)
+            | Self::Scenes { .. }
+            | Self::Start { .. }
+            | Self::Sweep(_) => BAD_INPUT,
             Self::Write(_) | Self::File { .. } | Self::Taken { .. } => 3,
             Self::Interrupted => crate::INTERRUPTED,
         }

@@ -5,10 +5,10 @@
 //! | exit code | meaning |
 //! |---|---|
 //! | 0 | done |
-//! | 1 | the simulation failed; a result keeps the samples so far and says so |
+//! | 1 | the simulation failed, or some variants of a sweep; a result keeps the rest and says so |
 //! | 2 | bad input; nothing was written |
 //! | 3 | the result could not be written |
-//! | 130 | interrupted; a result keeps the samples so far and says so |
+//! | 130 | interrupted; a result keeps the samples or variants so far and says so |
 
 mod commands;
 mod csv;
@@ -21,7 +21,7 @@ use std::ffi::OsString;
 
 use clap::{Parser, Subcommand};
 
-use commands::{check, describe, lists, run as run_command};
+use commands::{check, describe, lists, run as run_command, sweep};
 
 /// Exit code of a run that was stopped by Ctrl-C.
 pub const INTERRUPTED: u8 = 130;
@@ -29,10 +29,10 @@ pub const INTERRUPTED: u8 = 130;
 const EXIT_CODES: &str = "\
 Exit codes:
   0    done
-  1    the simulation failed; a result keeps the samples so far and says so
+  1    the simulation failed, or some variants of a sweep; a result keeps the rest and says so
   2    bad input; nothing was written
   3    the result could not be written
-  130  interrupted; a result keeps the samples so far and says so";
+  130  interrupted; a result keeps the samples or variants so far and says so";
 
 /// Simulates roller chain drives that are described in scene files.
 #[derive(Debug, Parser)]
@@ -45,6 +45,7 @@ struct Command {
 #[derive(Debug, Subcommand)]
 enum Verb {
     Run(run_command::Arguments),
+    Sweep(sweep::Arguments),
     Check(check::Arguments),
     Describe(describe::Arguments),
     Scenes(lists::Scenes),
@@ -80,6 +81,7 @@ where
     };
     let done = match &command.verb {
         Verb::Run(arguments) => run_command::run(arguments, interrupted),
+        Verb::Sweep(arguments) => sweep::sweep(arguments, interrupted),
         Verb::Check(arguments) => check::check(arguments),
         Verb::Describe(arguments) => describe::describe(arguments),
         Verb::Scenes(arguments) => lists::scenes(arguments),

@@ -1,4 +1,4 @@
-//! How far a run is, on a terminal; in a pipe, nothing.
+//! How far a run or a sweep is, on a terminal; in a pipe, nothing.
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -38,13 +38,32 @@ impl Progress {
 
     /// Shows how far the run is.
     pub(crate) fn show(&mut self, simulation: &Simulation) {
+        self.tell(simulation.progress(), |elapsed, left| {
+            let factor = simulation.time() / elapsed;
+            let time = simulation.time();
+            format!("t = {time:.4} s, {left} left, {factor:.3} × real time")
+        });
+    }
+
+    /// Shows how many variants are finished.
+    pub(crate) fn count(&mut self, finished: usize, all: usize) {
+        let share = finished as f64 / all.max(1) as f64;
+        self.tell(share, |_, left| match finished {
+            // Nothing is known about the time that a variant takes.
+            0 => format!("0 of {all} variants"),
+            _ => format!("{finished} of {all} variants, {left} left"),
+        });
+    }
+
+    /// Puts the bar at a share done, with a message made of the time elapsed and the time left.
+    fn tell(&mut self, done: f64, message: impl FnOnce(f64, &str) -> String) {
         let Some(bar) = &self.bar else { return };
         if self.shown.elapsed() < EVERY {
             return;
         }
         self.shown = Instant::now();
         let elapsed = self.began.elapsed().as_secs_f64();
-        let done = simulation.progress().max(f64::MIN_POSITIVE);
+        let done = done.max(f64::MIN_POSITIVE);
         let left = elapsed * (1.0 - done) / done;
         #[expect(
             clippy::cast_possible_truncation,
@@ -52,12 +71,7 @@ impl Progress {
             reason = "a share of a thousand"
         )]
         bar.set_position((done * PARTS as f64) as u64);
-        let factor = simulation.time() / elapsed;
-        bar.set_message(format!(
-            "t = {:.4} s, {} left, {factor:.3} × real time",
-            simulation.time(),
-            clock(left)
-        ));
+        bar.set_message(message(elapsed, &clock(left)));
     }
 }
 

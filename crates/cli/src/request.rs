@@ -97,6 +97,11 @@ impl SceneArguments {
 }
 
 impl RunArguments {
+    /// Whether channels are asked for, other than by the scene.
+    pub(crate) fn asks_for_channels(&self) -> bool {
+        self.record.iter().any(|name| !name.trim().is_empty())
+    }
+
     /// Writes the settings into the scene and reads all of them from there.
     ///
     /// The channels are names: which of them a chain has is known when it is assembled.

@@ -3,6 +3,7 @@
 use chaindrive::SimulationError;
 use chaindrive::record::WriteError;
 use chaindrive::scene::SceneError;
+use chaindrive::sweep::SweepError;
 use chaindrive_contact::ParameterError;
 use chaindrive_geometry::GeometryError;
 use chaindrive_integrate::IntegrationError;
@@ -118,6 +119,26 @@ impl IntoException for SimulationError {
                 suggestion.map(|name| format!("did you mean `{name}`?")),
             )),
             _ => python::SimulationError::new_err((message,)),
+        }
+    }
+}
+
+impl IntoException for SweepError {
+    fn exception(self) -> PyErr {
+        let message = self.to_string();
+        match self {
+            Self::Scene(error) => error.exception(),
+            Self::Channel(error) => error.exception(),
+            Self::Nothing | Self::TooMany { .. } => {
+                python::ParameterError::new_err((message, "vary"))
+            }
+            Self::Empty { path }
+            | Self::Twice { path }
+            | Self::Repeated { path, .. }
+            | Self::Intervals { path }
+            | Self::Range { path, .. } => python::ParameterError::new_err((message, path)),
+            Self::Threads { .. } => python::ParameterError::new_err((message, "jobs")),
+            _ => python::ParameterError::new_err((message,)),
         }
     }
 }

@@ -15,6 +15,7 @@ mod friction;
 mod kinematics;
 mod law;
 mod run;
+mod sweep;
 
 /// The compiled core of the package; use `chaindrive` instead.
 #[pyo3::pymodule(name = "_core")]
@@ -33,6 +34,9 @@ mod core {
     use crate::law::Law;
     #[pymodule_export]
     use crate::run::{channels, methods, simulate};
+
+    #[pymodule_export]
+    use crate::sweep::Sweep;
 
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "the name that Python expects")]

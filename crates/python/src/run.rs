@@ -16,7 +16,7 @@ use crate::drive::Drive;
 use crate::errors::{OrRaise, parameter};
 
 /// Between two looks at signals.
-const PATIENCE: Duration = Duration::from_millis(50);
+pub(crate) const PATIENCE: Duration = Duration::from_millis(50);
 
 /// Runs a drive and returns its recording: time, columns, labels and attributes.
 #[pyfunction]
@@ -218,7 +218,7 @@ fn advance(
 }
 
 /// Lets Python handle signals and tells it how far the run is.
-fn look(progress: Option<&Py<PyAny>>, share: f64) -> PyResult<()> {
+pub(crate) fn look(progress: Option<&Py<PyAny>>, share: f64) -> PyResult<()> {
     Python::attach(|py| {
         py.check_signals()?;
         progress.map_or(Ok(()), |tell| tell.call1(py, (share,)).map(drop))

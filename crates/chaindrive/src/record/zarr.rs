@@ -27,6 +27,7 @@
 mod error;
 mod events;
 mod story;
+mod sweep;
 mod target;
 mod track;
 
@@ -41,6 +42,7 @@ use zarrs::metadata::v3::{AdditionalFieldV3, GroupMetadataV3};
 
 pub use error::WriteError;
 pub use story::{Ending, Provenance};
+pub use sweep::SweepWriter;
 
 use super::{Axis, Channel, labels};
 use crate::Simulation;

@@ -50,6 +50,7 @@
 //! # Ok::<(), chaindrive::scene::SceneError>(())
 //! ```
 
+mod datum;
 mod edit;
 mod error;
 mod expected;
@@ -66,6 +67,7 @@ mod validate;
 use chaindrive_mechanics::{Drive, EventKinds};
 use serde::Deserialize;
 
+pub use datum::Datum;
 pub use error::{Problem, SceneError};
 pub use presets::presets;
 pub use schema::schema;
@@ -117,7 +119,7 @@ impl Scene {
     fn from_tree(tree: Node, text: &str, name: &str) -> Result<Self, SceneError> {
         let mut normalised = tree.clone();
         normalised.expand_chain();
-        let problems = validate::validate(&mut normalised, &schema::raw());
+        let problems = validate::validate(&mut normalised, schema::raw());
         if !problems.is_empty() {
             return Err(SceneError::new(name, problems));
         }

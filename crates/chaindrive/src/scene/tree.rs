@@ -145,6 +145,14 @@ impl Node {
         }
     }
 
+    /// The value at a path, with entries of lists by name or index.
+    pub(crate) fn find(&self, path: &str) -> Option<&Self> {
+        steps(path).try_fold(self, |node, step| match &node.value {
+            Value::List(items) => items.get(node.position(&step)?),
+            _ => node.get(&step),
+        })
+    }
+
     /// Position of the list entry with this index or with this `name`.
     pub(crate) fn position(&self, key: &str) -> Option<usize> {
         let Value::List(items) = &self.value else {

@@ -14,20 +14,36 @@ use super::tree::{Entry, Node, Value, push_step};
 /// Checks `tree` against `schema` and normalises it: quantities become SI numbers, bare names of
 /// kinds become tables.
 pub(crate) fn validate(tree: &mut Node, schema: &Json) -> Vec<Problem> {
-    let mut validator = Validator {
-        schema: Reading::new(schema),
-        problems: Vec::new(),
-    };
+    let mut validator = Validator::new(schema, "");
     validator.visit(tree, schema, "", None);
     validator.problems
+}
+
+/// As [`validate`], of a tree that is valid; returns the SI unit of the quantity at a path.
+pub(crate) fn unit_of(tree: &mut Node, schema: &Json, path: &str) -> Option<&'static str> {
+    let mut validator = Validator::new(schema, path);
+    validator.visit(tree, schema, "", None);
+    validator.unit
 }
 
 struct Validator<'s> {
     schema: Reading<'s>,
     problems: Vec<Problem>,
+    /// The place whose unit is wanted, and its unit once it was passed.
+    wanted: &'s str,
+    unit: Option<&'static str>,
 }
 
 impl<'s> Validator<'s> {
+    fn new(schema: &'s Json, wanted: &'s str) -> Self {
+        Self {
+            schema: Reading::new(schema),
+            problems: Vec::new(),
+            wanted,
+            unit: None,
+        }
+    }
+
     fn refuse(&mut self, problem: Problem) {
         self.problems.push(problem);
     }
@@ -265,10 +281,13 @@ impl<'s> Validator<'s> {
         &mut self,
         node: &mut Node,
         schema: &Json,
-        dimension: &Dimension,
+        dimension: &'static Dimension,
         path: &str,
         exponent: Option<f64>,
     ) {
+        if path == self.wanted {
+            self.unit = Some(dimension.unit);
+        }
         let value = match &node.value {
             Value::Integer(_) | Value::Float(_) => number(node).unwrap_or(f64::NAN),
             Value::Text(text) => {

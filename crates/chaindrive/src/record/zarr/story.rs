@@ -49,7 +49,7 @@ pub enum Ending {
 }
 
 impl Ending {
-    fn status(&self) -> &'static str {
+    pub(super) fn status(&self) -> &'static str {
         match self {
             Self::None => "running",
             Self::Complete => "complete",
@@ -151,25 +151,25 @@ fn assembly(story: &mut Story, simulation: &Simulation) {
 }
 
 /// Attributes in the order of their telling.
-struct Story(Map<String, Value>);
+pub(super) struct Story(pub(super) Map<String, Value>);
 
 impl Story {
-    fn text(&mut self, name: &str, text: &str) {
+    pub(super) fn text(&mut self, name: &str, text: &str) {
         self.0.insert(name.into(), text.into());
     }
 
-    fn count(&mut self, name: &str, count: u64) {
+    pub(super) fn count(&mut self, name: &str, count: u64) {
         self.0.insert(name.into(), count.into());
     }
 
     /// A number; JSON has none for infinity, such as the smallest of no steps.
-    fn number(&mut self, name: &str, number: f64) {
+    pub(super) fn number(&mut self, name: &str, number: f64) {
         if number.is_finite() {
             self.0.insert(name.into(), number.into());
         }
     }
 
-    fn list<T: Into<Value>>(&mut self, name: &str, items: impl IntoIterator<Item = T>) {
+    pub(super) fn list<T: Into<Value>>(&mut self, name: &str, items: impl IntoIterator<Item = T>) {
         let items = items.into_iter().map(Into::into).collect();
         self.0.insert(name.into(), Value::Array(items));
     }

@@ -24,6 +24,8 @@ pub(crate) use route::{Adjust, Events, Method, Route, Run, Tighten};
 pub(crate) use sprocket::{GapForm, PathPiece, Seat, Side, Sprocket, Support, TipForm, Tooth};
 pub(crate) use tensioner::{Carrier, Oil, Push, Tensioner};
 
+use std::sync::LazyLock;
+
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
@@ -82,7 +84,7 @@ fn settle() -> bool {
 /// Quantities carry their dimension as `x-dimension` and their SI unit as `x-unit`. The file
 /// `chaindrive.schema.json` is this value.
 pub fn schema() -> Value {
-    let mut schema = raw();
+    let mut schema = raw().clone();
     for_editors(&mut schema);
     let chain = &mut schema["properties"]["chain"];
     *chain = json!({
@@ -92,9 +94,10 @@ pub fn schema() -> Value {
     schema
 }
 
-/// The schema as derived, which the validator walks.
-pub(crate) fn raw() -> Value {
-    schemars::schema_for!(SceneText).to_value()
+/// The schema as derived, which the validator walks. Derived once: it takes longer than to read a scene.
+pub(crate) fn raw() -> &'static Value {
+    static RAW: LazyLock<Value> = LazyLock::new(|| schemars::schema_for!(SceneText).to_value());
+    &RAW
 }
 
 /// Brings the schema to what the validator accepts: no `null`, and short forms allowed.

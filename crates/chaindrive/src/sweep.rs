@@ -1,0 +1,363 @@
+//! Many drives at once: variants of a scene, run on all cores and stacked into labelled arrays.
+//!
+//! Parallelism is across runs and nowhere else: a variant is computed by one thread, so its numbers are
+//! those of a run on its own, bit for bit, whatever the number of threads.
+
+mod account;
+mod dimension;
+mod report;
+mod stack;
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread::available_parallelism;
+use std::time::Duration;
+
+pub use account::{Account, Quantity, Statistic};
+pub use dimension::{Coordinate, Dimension, Setting};
+pub use report::Report;
+pub use stack::{Stacked, StackedQuantity};
+
+use crate::scene::SceneError;
+use crate::{Channel, Scene, SimulationError};
+
+/// Why a sweep cannot begin.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "each message names its fields")]
+pub enum SweepError {
+    /// A path or a value is not of a scene.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+
+    /// A channel that does not exist.
+    #[error(transparent)]
+    Channel(#[from] SimulationError),
+
+    /// Nothing to do.
+    #[error(
+        "nothing is varied; give a path and its values, such as route.pretension = 10 kN, 15 kN"
+    )]
+    Nothing,
+
+    /// A path without values.
+    #[error("`{path}` has no values; give at least one")]
+    Empty { path: String },
+
+    /// Two paths to one place.
+    #[error("`{path}` is varied twice; give all of its values at once")]
+    Twice { path: String },
+
+    /// Two entries of a dimension are equal.
+    #[error("`{path}`: the value {value} stands twice; give each value once")]
+    Repeated { path: String, value: String },
+
+    /// A range that gives no values.
+    #[error("`{path}` = {range}: {reason}")]
+    Range {
+        path: String,
+        range: String,
+        reason: String,
+    },
+
+    /// More variants than memory could hold.
+    #[error("the sweep has more than {most} variants; split it")]
+    TooMany { most: usize },
+
+    /// Channels of runs whose samples are not at the same times.
+    #[error(
+        "channels cannot be stacked when the interval between samples is varied (`{path}`); record none, or leave `run.every` alone"
+    )]
+    Intervals { path: String },
+
+    /// The system refuses threads.
+    #[error("the threads cannot be started: {reason}; ask for fewer")]
+    Threads { reason: String },
+}
+
+/// How a variant ended.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Outcome {
+    /// Not yet, or not at all because the sweep was stopped.
+    #[default]
+    Open,
+    /// At its end.
+    Done(Account),
+    /// With this message.
+    Failed(String),
+}
+
+/// A sweep in progress.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress<'a> {
+    /// One outcome a variant that is run.
+    pub outcomes: &'a [Outcome],
+    /// Variants that are no longer open.
+    pub finished: usize,
+}
+
+/// Whether to go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Go {
+    /// With the next variants.
+    On,
+    /// No further; variants in work are given up.
+    NoFurther,
+}
+
+/// Variants of a scene: every combination of some values.
+///
+/// # Example
+///
+/// ```
+/// use chaindrive::sweep::{Coordinate, Go, Outcome, Setting, Sweep};
+/// use chaindrive::Scene;
+///
+/// let scene = Scene::preset("spinning_ring")?.replace("run.until", "2 ms")?;
+/// let speeds = ["300 rad/s", "400 rad/s"].map(|speed| Setting::Text(speed.into()));
+/// let vary = [("chain.start.speed".to_owned(), speeds.to_vec())];
+/// let sweep = Sweep::new(&scene, &vary, &[])?;
+/// assert_eq!(sweep.dimensions()[0].name, "speed");
+/// assert_eq!(sweep.dimensions()[0].values, Coordinate::Numbers(vec![300.0, 400.0]));
+///
+/// let outcomes = sweep.run(None, |_| Go::On)?;
+/// assert!(outcomes.iter().all(|outcome| matches!(outcome, Outcome::Done(_))));
+/// let stacked = sweep.stack(&outcomes);
+/// assert_eq!(stacked.shape, [2]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    scene: Scene,
+    dimensions: Vec<Dimension>,
+    record: Vec<String>,
+    len: usize,
+}
+
+/// Variants at most: at a second each they would take a week and a half.
+const MOST: usize = 1_000_000;
+
+/// Wall time between two looks at progress and interrupts while no variant ends.
+const LOOK: Duration = Duration::from_millis(50);
+
+impl Sweep {
+    /// Every combination of the values at the paths, in their order; the last path varies fastest.
+    /// `record` names channels to keep beside the statistics.
+    ///
+    /// # Errors
+    /// Every value is put into the scene, the first ones of the other paths beside it; what is not of a
+    /// scene is refused here, before hours have gone by. Values that do not go together are the failure
+    /// of their variants.
+    pub fn new(
+        scene: &Scene,
+        vary: &[(String, Vec<Setting>)],
+        record: &[String],
+    ) -> Result<Self, SweepError> {
+        Channel::check(record)?;
+        if vary.is_empty() {
+            return Err(SweepError::Nothing);
+        }
+        let mut len: usize = 1;
+        for (path, settings) in vary {
+            if settings.is_empty() {
+                return Err(SweepError::Empty { path: path.clone() });
+            }
+            len = len.saturating_mul(settings.len());
+        }
+        if len > MOST {
+            return Err(SweepError::TooMany { most: MOST });
+        }
+        let mut dimensions = Vec::new();
+        let mut places = Vec::new();
+        for (index, (path, settings)) in vary.iter().enumerate() {
+            let with = |setting: &Setting| {
+                let mut changed = scene.clone();
+                for (other, (path, settings)) in vary.iter().enumerate() {
+                    let setting = if other == index {
+                        setting
+                    } else {
+                        &settings[0]
+                    };
+                    changed = setting.put(&changed, path)?;
+                }
+                Ok::<_, SceneError>(changed)
+            };
+            let place = with(&settings[0])?.place(path);
+            if places.contains(&place) {
+                return Err(SweepError::Twice { path: path.clone() });
+            }
+            places.push(place);
+            let mut every = None;
+            let mut data = Vec::new();
+            for setting in settings {
+                // A scene takes a hundred times the memory of its value: none is kept.
+                let scene = with(setting)?;
+                let interval = scene.run_defaults().every.map(f64::to_bits);
+                if !record.is_empty() && *every.get_or_insert(interval) != interval {
+                    return Err(SweepError::Intervals { path: path.clone() });
+                }
+                data.push(scene.datum(path));
+            }
+            dimensions.push(Dimension::new(path, settings.clone(), &data)?);
+        }
+        dimension::name_all(&mut dimensions);
+        Ok(Self {
+            scene: scene.clone(),
+            dimensions,
+            record: record.to_vec(),
+            len,
+        })
+    }
+
+    /// The scene that is varied.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The swept dimensions.
+    pub fn dimensions(&self) -> &[Dimension] {
+        &self.dimensions
+    }
+
+    /// Names of the channels that are kept.
+    pub fn record(&self) -> &[String] {
+        &self.record
+    }
+
+    /// Number of variants.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there is no variant: never.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// The scene of a variant.
+    ///
+    /// # Errors
+    /// Values that do not go together.
+    pub fn variant(&self, index: usize) -> Result<Scene, SceneError> {
+        let mut scene = self.scene.clone();
+        for (dimension, at) in self.dimensions.iter().zip(self.indices(index)) {
+            scene = dimension.settings[at].put(&scene, &dimension.path)?;
+        }
+        Ok(scene)
+    }
+
+    /// A variant in words: `speed = 300 rad/s, pretension = 10000 N`; numbers have five digits.
+    pub fn label(&self, index: usize) -> String {
+        let dimensions = self.dimensions.iter().zip(self.indices(index));
+        let parts = dimensions.map(|(it, at)| {
+            let unit = it.unit.filter(|unit| *unit != "1");
+            let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
+            format!("{} = {}{unit}", it.name, it.values.short(at))
+        });
+        parts.collect::<Vec<_>>().join(", ")
+    }
+
+    /// Place of a variant along each dimension.
+    pub fn indices(&self, index: usize) -> Vec<usize> {
+        let mut left = index;
+        let mut indices: Vec<usize> = self
+            .dimensions
+            .iter()
+            .rev()
+            .map(|dimension| {
+                let at = left % dimension.values.len();
+                left /= dimension.values.len();
+                at
+            })
+            .collect();
+        indices.reverse();
+        indices
+    }
+
+    /// Runs one variant on the calling thread, until it ends or `stop` is set.
+    pub fn carry_out(&self, index: usize, stop: &AtomicBool) -> Outcome {
+        account::outcome(|| {
+            let scene = self.variant(index).map_err(|error| error.to_string())?;
+            Account::attempt(&scene, &self.record, stop)
+        })
+    }
+
+    /// Runs all variants on `jobs` threads, as many as there are cores if absent, and returns their
+    /// outcomes in the order of the variants.
+    ///
+    /// `watch` is called on the calling thread whenever a variant has ended, and every 50 ms.
+    ///
+    /// # Errors
+    /// [`SweepError::Threads`] when the system refuses threads. Variants that fail are outcomes.
+    pub fn run(
+        &self,
+        jobs: Option<usize>,
+        watch: impl FnMut(Progress<'_>) -> Go,
+    ) -> Result<Vec<Outcome>, SweepError> {
+        self.run_some(0..self.len, jobs, watch)
+    }
+
+    /// Runs some of the variants, see [`Sweep::run`]; what is beyond the last one is left out.
+    ///
+    /// # Errors
+    /// As [`Sweep::run`].
+    pub fn run_some(
+        &self,
+        variants: Range<usize>,
+        jobs: Option<usize>,
+        mut watch: impl FnMut(Progress<'_>) -> Go,
+    ) -> Result<Vec<Outcome>, SweepError> {
+        let (first, end) = (variants.start, variants.end.min(self.len));
+        let count = end.saturating_sub(first);
+        let cores = || available_parallelism().map_or(1, usize::from);
+        let jobs = jobs.unwrap_or_else(cores).clamp(1, count.max(1));
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
+        let pool = pool.map_err(|error| SweepError::Threads {
+            reason: error.to_string(),
+        })?;
+        let mut outcomes = vec![Outcome::Open; count];
+        let stop = AtomicBool::new(false);
+        let next = AtomicUsize::new(first);
+        let (sender, receiver) = channel();
+        pool.in_place_scope(|scope| {
+            for _ in 0..jobs {
+                let (sender, stop, next) = (sender.clone(), &stop, &next);
+                scope.spawn(move |_| {
+                    // In their order, so that what is finished early is one stretch.
+                    while !stop.load(Ordering::Relaxed) {
+                        let index = next.fetch_add(1, Ordering::Relaxed);
+                        if index >= end {
+                            break;
+                        }
+                        let outcome = self.carry_out(index, stop);
+                        if sender.send((index, outcome)).is_err() {
+                            break; // the watcher has panicked
+                        }
+                    }
+                });
+            }
+            drop(sender);
+            let receiver = receiver;
+            let mut finished = 0;
+            loop {
+                match receiver.recv_timeout(LOOK) {
+                    Ok((index, outcome)) => {
+                        finished += usize::from(outcome != Outcome::Open);
+                        outcomes[index - first] = outcome;
+                    }
+                    Err(RecvTimeoutError::Timeout) => {}
+                    Err(RecvTimeoutError::Disconnected) => break,
+                }
+                let progress = Progress {
+                    outcomes: &outcomes,
+                    finished,
+                };
+                if !stop.load(Ordering::Relaxed) && watch(progress) == Go::NoFurther {
+                    stop.store(true, Ordering::Relaxed);
+                }
+            }
+        });
+        Ok(outcomes)
+    }
+}

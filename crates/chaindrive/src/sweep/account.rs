@@ -1,0 +1,320 @@
+//! What is kept of one variant: statistics, and channels where they are asked for.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use chaindrive_mechanics::EventKinds;
+
+use super::Outcome;
+use crate::record::{ContactStatistics, EventTable, SpanStatistics, labels};
+use crate::{Channel, Recording, Run, Scene, Simulation, SimulationError, Stepping, Summary};
+
+macro_rules! statistics {
+    ($($variant:ident, $name:literal, $unit:literal, $along:expr, $text:literal;)*) => {
+        /// A number, or a number a span or kind of contact, that sums up a run.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Statistic {
+            $(#[doc = $text] $variant,)*
+        }
+
+        impl Statistic {
+            /// All statistics.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),*];
+
+            /// Name in results.
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name),* }
+            }
+
+            /// SI unit.
+            pub fn unit(self) -> &'static str {
+                match self { $(Self::$variant => $unit),* }
+            }
+
+            /// Dimension of its entries, if it has more than one.
+            pub fn along(self) -> Option<&'static str> {
+                match self { $(Self::$variant => $along),* }
+            }
+
+            /// One line of description.
+            pub fn description(self) -> &'static str {
+                match self { $(Self::$variant => $text),* }
+            }
+        }
+    };
+}
+
+/// Dimension of statistics by kind of contact, see [`EventTable::KINDS`].
+const KIND: &str = "contact_kind";
+
+statistics! {
+    SpanTensionMean, "span_tension_mean", "N", Some("span"), "mean over time of the span tension";
+    SpanTensionStd, "span_tension_std", "N", Some("span"), "standard deviation of the span tension";
+    SpanTensionMin, "span_tension_min", "N", Some("span"), "least sample of the span tension";
+    SpanTensionMax, "span_tension_max", "N", Some("span"), "greatest sample of the span tension";
+    ContactForceP50, "contact_force_p50", "N", None, "median of the forces between rollers and teeth";
+    ContactForceP90, "contact_force_p90", "N", None, "90th percentile of the forces between rollers and teeth";
+    ContactForceP99, "contact_force_p99", "N", None, "99th percentile of the forces between rollers and teeth";
+    ContactForceMax, "contact_force_max", "N", None, "largest sample of the forces between rollers and teeth";
+    EnergySupplied, "energy_supplied_total", "J", None, "energy put in by drivers, motions and torques";
+    EnergyDissipated, "energy_dissipated_total", "J", None, "energy lost";
+    EnergyResidualMax, "energy_residual_max", "J", None, "largest energy unaccounted for, with its sign";
+    ContactCount, "contact_count", "1", Some(KIND), "number of contacts logged";
+    ContactPeakMean, "contact_peak_mean", "N", Some(KIND), "mean of the largest forces of the contacts logged";
+    ContactPeakMax, "contact_peak_max", "N", Some(KIND), "largest force of the contacts logged";
+    ContactDuration, "contact_duration", "s", Some(KIND), "sum of the durations of the contacts logged";
+    Samples, "samples", "1", None, "number of samples";
+    Steps, "steps", "1", None, "number of steps";
+    Rejections, "rejections", "1", None, "number of steps that were rejected";
+    Evaluations, "evaluations", "1", None, "number of evaluations of the forces";
+    TimeReached, "time_reached", "s", None, "end of the run";
+    SteppingTime, "stepping_time", "s", None, "wall time spent in stepping";
+    RealTimeFactor, "real_time_factor", "1", None, "time simulated over wall time";
+}
+
+impl Statistic {
+    /// Whether it belongs to contacts that have to be logged.
+    pub fn is_of_logged_contacts(self) -> bool {
+        self.along() == Some(KIND)
+    }
+
+    /// Whether it is a measurement of the machine: all others are the same with every run.
+    pub fn is_measured(self) -> bool {
+        matches!(self, Self::SteppingTime | Self::RealTimeFactor)
+    }
+
+    fn read(self, simulation: &Simulation, summary: &Summary) -> Vec<f64> {
+        let spans = |of: fn(&SpanStatistics) -> f64| {
+            let values = summary.spans.iter().map(of);
+            // A span without a single finite sample has neither a least nor a greatest one.
+            values
+                .map(|value| if value.is_finite() { value } else { f64::NAN })
+                .collect()
+        };
+        let contacts = |of: fn(&ContactStatistics) -> f64| {
+            summary.contacts(simulation).iter().map(of).collect()
+        };
+        let counts = simulation.statistics();
+        let number = match self {
+            Self::SpanTensionMean => return spans(SpanStatistics::mean),
+            Self::SpanTensionStd => return spans(SpanStatistics::deviation),
+            Self::SpanTensionMin => return spans(|span| span.least),
+            Self::SpanTensionMax => return spans(|span| span.greatest),
+            Self::ContactCount => return contacts(|kind| kind.count as f64),
+            Self::ContactPeakMean => return contacts(ContactStatistics::mean),
+            Self::ContactPeakMax => return contacts(|kind| kind.greatest),
+            Self::ContactDuration => return contacts(|kind| kind.duration),
+            Self::ContactForceP50 => summary.forces().p50,
+            Self::ContactForceP90 => summary.forces().p90,
+            Self::ContactForceP99 => summary.forces().p99,
+            Self::ContactForceMax => summary.forces().max,
+            Self::EnergySupplied => summary.energy_supplied(),
+            Self::EnergyDissipated => summary.energy_dissipated(),
+            Self::EnergyResidualMax => summary.residual,
+            Self::Samples => summary.samples as f64,
+            Self::Steps => counts.steps as f64,
+            Self::Rejections => {
+                (counts.rejections + counts.error_rejections + counts.newton_failures) as f64
+            }
+            Self::Evaluations => counts.evaluations as f64,
+            Self::TimeReached => simulation.time(),
+            Self::SteppingTime => simulation.stepping_time(),
+            Self::RealTimeFactor => simulation.time() / simulation.stepping_time(),
+        };
+        vec![number]
+    }
+}
+
+/// A statistic or a channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// One account of the whole run.
+    Statistic(Statistic),
+    /// One account a sample.
+    Channel(Channel),
+}
+
+impl Quantity {
+    /// The quantity of a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        let statistic = Statistic::ALL.iter().find(|known| known.name() == name);
+        let channel = || Channel::ALL.iter().find(|known| known.name() == name);
+        statistic
+            .map(|&found| Self::Statistic(found))
+            .or_else(|| channel().map(|&found| Self::Channel(found)))
+    }
+
+    /// Name in results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Statistic(statistic) => statistic.name(),
+            Self::Channel(channel) => channel.name(),
+        }
+    }
+
+    /// SI unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Statistic(statistic) => statistic.unit(),
+            Self::Channel(channel) => channel.unit(),
+        }
+    }
+
+    /// One line of description.
+    pub fn description(self) -> &'static str {
+        match self {
+            Self::Statistic(statistic) => statistic.description(),
+            Self::Channel(channel) => channel.description(),
+        }
+    }
+
+    /// Whether it has an entry a sample.
+    pub fn is_sampled(self) -> bool {
+        matches!(self, Self::Channel(_))
+    }
+
+    /// Dimension of its entries beside time, if any.
+    pub fn along(self) -> Option<&'static str> {
+        match self {
+            Self::Statistic(statistic) => statistic.along(),
+            Self::Channel(channel) => channel.axis().name(),
+        }
+    }
+}
+
+/// What is kept of a run that reached its end.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Account {
+    /// Method of time stepping, as chosen.
+    pub method: String,
+    /// Sample times of the channels \[s\]; empty without channels.
+    pub time: Vec<f64>,
+    /// Labels of every dimension that the values have beside time.
+    pub labels: Vec<(String, Vec<String>)>,
+    /// Values, (time, labels) or less, flat.
+    pub values: Vec<(Quantity, Vec<f64>)>,
+}
+
+/// Wall time between two looks at whether to stop.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// Whatever goes wrong is the outcome, a panic included: the other variants are not its fault.
+pub(super) fn outcome(attempt: impl FnOnce() -> Result<Option<Account>, String>) -> Outcome {
+    match catch_unwind(AssertUnwindSafe(attempt)) {
+        Ok(Ok(Some(account))) => Outcome::Done(account),
+        Ok(Ok(None)) => Outcome::Open,
+        Ok(Err(message)) => Outcome::Failed(message),
+        Err(panic) => {
+            let text = panic.downcast_ref::<String>().map(String::as_str);
+            let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
+            Outcome::Failed(format!(
+                "the program failed, please report this as a bug: {}",
+                text.unwrap_or("without a message")
+            ))
+        }
+    }
+}
+
+impl Account {
+    /// Runs a scene as it suggests: the account, with the channels of these names, `None` if it was told to
+    /// stop, or what went wrong.
+    pub(super) fn attempt(
+        scene: &Scene,
+        record: &[String],
+        stop: &AtomicBool,
+    ) -> Result<Option<Self>, String> {
+        let drive = scene.drive().map_err(|error| error.to_string())?;
+        let failed = |error: SimulationError| error.to_string();
+        let run = Run::suggested(&scene.run_defaults());
+        let mut simulation = Simulation::start(&drive, &run).map_err(failed)?;
+        let channels = if record.is_empty() {
+            Vec::new()
+        } else {
+            Channel::chosen(record, simulation.system()).map_err(failed)?
+        };
+        let mut summary = Summary::new(&simulation);
+        let mut recording = Recording::new(&channels, simulation.system());
+        loop {
+            while !simulation.advance(LOOK).map_err(failed)? {
+                if stop.load(Ordering::Relaxed) {
+                    return Ok(None);
+                }
+            }
+            let Some(sample) = simulation.next_sample().map_err(failed)? else {
+                break;
+            };
+            summary.push(sample);
+            if !channels.is_empty() {
+                recording.push(sample);
+            }
+            summary.count(simulation.events());
+            if stop.load(Ordering::Relaxed) {
+                return Ok(None);
+            }
+        }
+        Ok(Some(Self::close(&simulation, &summary, recording, &run)))
+    }
+
+    fn close(simulation: &Simulation, summary: &Summary, recording: Recording, run: &Run) -> Self {
+        let names = summary.spans.iter().map(|span| span.name.clone());
+        let mut account = Self {
+            method: Stepping::from(simulation.method()).name().to_owned(),
+            time: recording.time,
+            labels: vec![("span".into(), names.collect())],
+            values: Vec::new(),
+        };
+        let logged = run.events != EventKinds::default();
+        if logged {
+            let kinds = EventTable::KINDS.map(str::to_owned);
+            account.labels.push((KIND.into(), kinds.into()));
+        }
+        for &statistic in Statistic::ALL {
+            if logged || !statistic.is_of_logged_contacts() {
+                let values = statistic.read(simulation, summary);
+                account
+                    .values
+                    .push((Quantity::Statistic(statistic), values));
+            }
+        }
+        for column in recording.columns {
+            let axis = column.channel.axis();
+            if let (Some(name), Some(labels)) = (axis.name(), labels(axis, simulation.system()))
+                && account.labels_along(name).is_none()
+            {
+                account.labels.push((name.into(), labels));
+            }
+            let channel = Quantity::Channel(column.channel);
+            account.values.push((channel, column.values));
+        }
+        account
+    }
+
+    /// Labels of a dimension.
+    pub fn labels_along(&self, dimension: &str) -> Option<&[String]> {
+        let found = self.labels.iter().find(|(name, _)| name == dimension);
+        found.map(|(_, labels)| labels.as_slice())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_an_outcome() {
+        for (panicking, words) in [
+            (outcome(|| panic!("roller {}", 7)), "roller 7"),
+            (outcome(|| panic!("roller")), "roller"),
+            (outcome(|| std::panic::panic_any(7)), "without a message"),
+        ] {
+            let Outcome::Failed(message) = panicking else {
+                panic!("a panic has passed for {panicking:?}");
+            };
+            assert!(
+                message.contains("bug") && message.ends_with(words),
+                "{message}"
+            );
+        }
+    }
+}

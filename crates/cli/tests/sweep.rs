@@ -1,0 +1,248 @@
+//! `chaindrive sweep`: what it writes, what it says, how it ends.
+#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use assert_cmd::cargo::CommandCargoExt;
+
+/// Runs a sweep and returns exit code, stdout and stderr.
+fn sweep(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let mut command = Command::cargo_bin("chaindrive").unwrap();
+    let command = command.current_dir(folder).arg("sweep").args(arguments);
+    let output = command.output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (
+        output.status.code().unwrap(),
+        text(output.stdout),
+        text(output.stderr),
+    )
+}
+
+fn attributes(store: &Path) -> serde_json::Value {
+    let group = fs::read(store.join("zarr.json")).unwrap();
+    let group: serde_json::Value = serde_json::from_slice(&group).unwrap();
+    group["attributes"].clone()
+}
+
+/// Crank speeds of the marine engine, as a range in turns, and its pretension, as a list.
+#[test]
+fn speeds_and_pretensions_of_the_marine_engine() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let arguments = [
+        "marine_engine",
+        "--vary",
+        "sprockets.crank.motion.speed=-80 rpm..-140 rpm/3",
+        "--vary",
+        "route.pretension=10 kN,20 kN",
+        "--until",
+        "1 ms",
+        "--record",
+        "span_tension",
+        "-j",
+        "2",
+        "-o",
+        "marine.zarr",
+    ];
+    let (code, out, err) = sweep(at, &arguments);
+    assert_eq!(
+        (code, err.as_str()),
+        (0, ""),
+        "nothing but errors in a pipe"
+    );
+    assert!(out.contains("speed [rad/s]  pretension [N]"), "{out}");
+    assert!(out.ends_with("variants: 6 of 6 done\n"), "{out}");
+    let about = attributes(&at.join("marine.zarr"));
+    assert_eq!(about["status"], "complete");
+    assert_eq!(about["method"], "verlet");
+    assert_eq!(about["finished"], 6);
+    let scene = about["scene"].as_str().unwrap();
+    assert!(scene.contains("until = \"1 ms\""), "{scene}");
+    let array = fs::read(at.join("marine.zarr/span_tension/zarr.json")).unwrap();
+    let array: serde_json::Value = serde_json::from_slice(&array).unwrap();
+    // (speed, pretension, time, span); samples every 0.2 ms.
+    assert_eq!(array["shape"], serde_json::json!([3, 2, 6, 4]));
+    assert_eq!(array["dimension_names"][0], "speed");
+
+    let (code, _, err) = sweep(at, &arguments);
+    assert_eq!(code, 3);
+    assert!(err.contains("already a result"), "{err}");
+    let again: Vec<&str> = arguments.into_iter().chain(["--overwrite", "-q"]).collect();
+    assert_eq!(sweep(at, &again), (0, String::new(), String::new()));
+}
+
+#[test]
+fn variants_that_fail_are_listed_and_the_others_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let (code, out, err) = sweep(
+        at,
+        &[
+            "spinning_ring",
+            "--vary",
+            "chain.start.speed=300 rad/s,1e300 rad/s",
+            "--until",
+            "1 ms",
+            "-o",
+            "ring.csv",
+        ],
+    );
+    assert_eq!(code, 1, "{err}");
+    assert!(out.contains("1 of 2 done, 1 failed"), "{out}");
+    let lines: Vec<&str> = err.lines().collect();
+    assert!(lines[0].starts_with("speed = 1.000e300 rad/s: "), "{err}");
+    assert_eq!(lines[1], "1 of 2 variants failed");
+    let table = fs::read_to_string(at.join("ring.csv")).unwrap();
+    let rows: Vec<&str> = table.lines().collect();
+    assert!(rows[0].starts_with("variant,speed,"), "{table}");
+    assert!(rows[0].ends_with(",error"), "{table}");
+    assert!(
+        rows[1].starts_with("0,300.0,") && rows[1].ends_with(','),
+        "{table}"
+    );
+    assert!(
+        rows[2].starts_with("1,1e300,NaN,") && rows[2].contains("flies apart"),
+        "{table}"
+    );
+    assert_eq!(rows.len(), 3, "{table}");
+    assert!(!at.join("ring.csv.part").exists());
+}
+
+#[test]
+fn what_is_wrong_is_refused_before_anything_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let cases: [(&[&str], i32, &str); 8] = [
+        (&["spinning_ring"], 2, "--vary"),
+        (
+            &["spinning_ring", "--vary", "chain.links"],
+            2,
+            "a path and its values",
+        ),
+        (&["spinning_ring", "--vary", "chain.lnks=20,22"], 2, "lnks"),
+        (
+            &["spinning_ring", "--vary", "chain.links=20,20"],
+            2,
+            "stands twice",
+        ),
+        (
+            &["spinning_ring", "--vary", "chain.mass=1 g..2 g"],
+            2,
+            "FIRST..LAST/COUNT",
+        ),
+        (
+            &["spinning_ring", "--vary", "chain.links=20", "-j", "0"],
+            2,
+            "--jobs",
+        ),
+        (
+            &[
+                "spinning_ring",
+                "--vary",
+                "chain.links=20",
+                "--record",
+                "link_tension",
+                "-o",
+                "a.csv",
+            ],
+            2,
+            "take a .zarr store",
+        ),
+        (
+            &[
+                "spinning_ring",
+                "--vary",
+                "chain.links=20",
+                "-o",
+                "notes.csv",
+                "--overwrite",
+            ],
+            3,
+            "not a table",
+        ),
+    ];
+    fs::write(at.join("notes.csv"), "variants of last week\n").unwrap();
+    for (arguments, expected, words) in cases {
+        let (code, out, err) = sweep(at, arguments);
+        assert_eq!((code, out.as_str()), (expected, ""), "{arguments:?}: {err}");
+        assert!(err.contains(words), "{arguments:?}: {err}");
+    }
+    assert_eq!(fs::read_dir(at).unwrap().count(), 1);
+}
+
+/// Waits until the result of the first variant is written.
+#[cfg(unix)]
+fn wait_for_a_variant(path: &Path) {
+    let begin = Instant::now();
+    loop {
+        let finished = if path.join("zarr.json").exists() {
+            attributes(path)["finished"].as_u64() > Some(0)
+        } else {
+            fs::metadata(path).is_ok_and(|file| file.is_file() && file.len() > 0)
+        };
+        if finished {
+            return;
+        }
+        assert!(
+            begin.elapsed() < Duration::from_mins(1),
+            "nothing was written"
+        );
+        sleep(Duration::from_millis(20));
+    }
+}
+
+/// The first variant ends at once, the others would take days.
+#[cfg(unix)]
+#[test]
+fn interrupted_it_keeps_what_is_finished() {
+    for out in ["long.zarr", "long.csv"] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut command = Command::cargo_bin("chaindrive").unwrap();
+        command
+            .current_dir(folder.path())
+            .args([
+                "sweep",
+                "spinning_ring",
+                "--every",
+                "1 ms",
+                "-j",
+                "2",
+                "-o",
+                out,
+            ])
+            .args(["--vary", "run.until=1 ms,2e4 s,3e4 s,4e4 s"])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped());
+        let child = command.spawn().unwrap();
+        let path = folder.path().join(out);
+        wait_for_a_variant(&path);
+        let sent = Command::new("kill")
+            .args(["-INT", &child.id().to_string()])
+            .status();
+        assert!(sent.unwrap().success());
+        let output = child.wait_with_output().unwrap();
+        let err = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(
+            (output.status.code(), err.as_str()),
+            (Some(130), "interrupted\n")
+        );
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert!(
+            text.ends_with("variants: 1 of 4 done, 3 not carried out\n"),
+            "{text}"
+        );
+        if path.is_dir() {
+            let about = attributes(&path);
+            assert_eq!(about["status"], "interrupted");
+            assert_eq!(about["finished"], 1);
+        } else {
+            let table = fs::read_to_string(path).unwrap();
+            assert_eq!(table.lines().last(), Some("# incomplete: interrupted"));
+            assert_eq!(table.matches("not carried out").count(), 3, "{table}");
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! Sweeps: without the interpreter's lock, stopped by Ctrl-C, with outcomes that travel between processes.
+
+use std::time::Instant;
+
+use chaindrive::Scene;
+use chaindrive::sweep::{self, Account, Coordinate, Go, Outcome, Progress, Quantity, Setting};
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::errors::{OrRaise, parameter};
+use crate::run::{PATIENCE, look};
+
+/// Variants of a scene.
+#[pyclass(frozen, module = "chaindrive._core")]
+#[derive(Debug)]
+pub(crate) struct Sweep(sweep::Sweep);
+
+/// An outcome in types that Python can pickle, bit by bit: what went wrong, or the method, sample times,
+/// labels and values.
+#[derive(IntoPyObject, FromPyObject)]
+struct Parts<'py>(
+    Option<String>,
+    String,
+    Bound<'py, PyArray1<f64>>,
+    Vec<(String, Vec<String>)>,
+    Vec<(String, Bound<'py, PyArray1<f64>>)>,
+);
+
+#[pymethods]
+impl Sweep {
+    /// Paths with their values as JSON, put into the scene of a text.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        text: &str,
+        name: &str,
+        vary: Vec<(String, Vec<String>)>,
+        record: Vec<String>,
+    ) -> PyResult<Self> {
+        let mut settings = Vec::new();
+        for (path, values) in vary {
+            let values = values.iter().map(|json| match serde_json::from_str(json) {
+                Ok(value) => Ok(Setting::Json(value)),
+                Err(error) => {
+                    let message = format!("{path}: {error}");
+                    Err(parameter(message, &path, "a value of JSON"))
+                }
+            });
+            let values = values.collect::<PyResult<_>>()?;
+            settings.push((path, values));
+        }
+        let scene = Scene::from_text(text, name).or_raise()?;
+        let sweep = py.detach(|| sweep::Sweep::new(&scene, &settings, &record));
+        Ok(Self(sweep.or_raise()?))
+    }
+
+    fn __len__(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Runs all variants and stacks them.
+    fn run<'py>(
+        &self,
+        py: Python<'py>,
+        jobs: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let outcomes = py.detach(|| self.carry_out(0, self.0.len(), jobs, progress.as_ref()))?;
+        self.stacked(py, &outcomes)
+    }
+
+    /// Runs the variants from `first` to before `end` on one thread, and returns their outcomes.
+    fn part<'py>(&self, py: Python<'py>, first: usize, end: usize) -> PyResult<Vec<Parts<'py>>> {
+        let outcomes = py.detach(|| self.carry_out(first, end, Some(1), None))?;
+        let parts = outcomes.into_iter().map(|outcome| parts(py, outcome));
+        Ok(parts.collect())
+    }
+
+    /// Stacks the outcomes of all variants.
+    fn stack<'py>(
+        &self,
+        py: Python<'py>,
+        outcomes: Vec<Parts<'py>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let outcomes = outcomes.into_iter().map(whole);
+        let outcomes: Vec<Outcome> = outcomes.collect::<PyResult<_>>()?;
+        if outcomes.len() != self.0.len() {
+            return Err(PyValueError::new_err("one outcome a variant is needed"));
+        }
+        self.stacked(py, &outcomes)
+    }
+}
+
+impl Sweep {
+    fn carry_out(
+        &self,
+        first: usize,
+        end: usize,
+        jobs: Option<usize>,
+        progress: Option<&Py<PyAny>>,
+    ) -> PyResult<Vec<Outcome>> {
+        let mut raised = None;
+        let mut looked = Instant::now();
+        let watch = |state: Progress<'_>| {
+            let all = state.outcomes.len();
+            if state.finished < all && looked.elapsed() < PATIENCE {
+                return Go::On;
+            }
+            looked = Instant::now();
+            match look(progress, state.finished as f64 / all as f64) {
+                Ok(()) => Go::On,
+                Err(error) => {
+                    raised = Some(error);
+                    Go::NoFurther
+                }
+            }
+        };
+        let outcomes = self.0.run_some(first..end, jobs, watch).or_raise()?;
+        raised.map_or(Ok(outcomes), Err)
+    }
+
+    fn stacked<'py>(&self, py: Python<'py>, outcomes: &[Outcome]) -> PyResult<Bound<'py, PyDict>> {
+        let stacked = py.detach(|| self.0.stack(outcomes));
+        let answer = PyDict::new(py);
+        let swept = PyList::empty(py);
+        for dimension in self.0.dimensions() {
+            let values = coordinate(py, &dimension.values)?;
+            swept.append((&dimension.name, &dimension.path, dimension.unit, values))?;
+        }
+        answer.set_item("swept", swept)?;
+        let time = stacked.time.map(|time| PyArray1::from_vec(py, time));
+        answer.set_item("time", time)?;
+        let labels = PyDict::new(py);
+        for (name, values) in &stacked.labels {
+            labels.set_item(name, coordinate(py, values)?)?;
+        }
+        answer.set_item("labels", labels)?;
+        let quantities = PyList::empty(py);
+        for it in stacked.quantities {
+            let values = PyArray1::from_vec(py, it.values).reshape(it.shape)?;
+            let quantity = it.quantity;
+            let (unit, text) = (quantity.unit(), quantity.description());
+            quantities.append((quantity.name(), it.dims, values, unit, text))?;
+        }
+        answer.set_item("quantities", quantities)?;
+        answer.set_item("errors", stacked.errors)?;
+        answer.set_item("methods", stacked.methods)?;
+        answer.set_item("summary", self.0.report(outcomes).to_string())?;
+        Ok(answer)
+    }
+}
+
+/// Numbers as an array, texts as a list.
+fn coordinate<'py>(py: Python<'py>, values: &Coordinate) -> PyResult<Bound<'py, PyAny>> {
+    Ok(match values {
+        Coordinate::Numbers(numbers) => PyArray1::from_slice(py, numbers).into_any(),
+        Coordinate::Whole(numbers) => PyArray1::from_slice(py, numbers).into_any(),
+        Coordinate::Texts(texts) => PyList::new(py, texts)?.into_any(),
+    })
+}
+
+fn parts(py: Python<'_>, outcome: Outcome) -> Parts<'_> {
+    let (error, account) = match outcome {
+        Outcome::Done(account) => (None, account),
+        Outcome::Failed(message) => (Some(message), Account::default()),
+        Outcome::Open => (Some("stopped".to_owned()), Account::default()),
+    };
+    let values = account
+        .values
+        .into_iter()
+        .map(|(quantity, values)| (quantity.name().to_owned(), PyArray1::from_vec(py, values)));
+    Parts(
+        error,
+        account.method,
+        PyArray1::from_vec(py, account.time),
+        account.labels,
+        values.collect(),
+    )
+}
+
+fn whole(parts: Parts<'_>) -> PyResult<Outcome> {
+    let Parts(error, method, time, labels, values) = parts;
+    if let Some(message) = error {
+        return Ok(Outcome::Failed(message));
+    }
+    let numbers = |array: &Bound<'_, PyArray1<f64>>| -> PyResult<Vec<f64>> {
+        let array: PyReadonlyArray1<'_, f64> = array.try_readonly()?;
+        Ok(array.as_slice()?.to_vec())
+    };
+    let values = values.iter().map(|(name, values)| {
+        let quantity = Quantity::from_name(name);
+        let quantity = quantity
+            .ok_or_else(|| PyValueError::new_err(format!("no quantity is named `{name}`")))?;
+        Ok((quantity, numbers(values)?))
+    });
+    Ok(Outcome::Done(Account {
+        method,
+        time: numbers(&time)?,
+        labels,
+        values: values.collect::<PyResult<_>>()?,
+    }))
+}

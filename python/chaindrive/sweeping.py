@@ -1,0 +1,242 @@
+"""Sweeps: many variants of a drive at once, on all cores or on other machines."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import Executor, Future, as_completed
+from functools import lru_cache
+from typing import Any, TypeAlias
+
+import numpy as np
+import xarray as xr
+
+from chaindrive import _core
+from chaindrive.drive import Drive, _json
+from chaindrive.errors import ParameterError, SimulationError
+from chaindrive.simulation import _Line, _listed
+
+__all__ = ["sweep"]
+
+_Recipe: TypeAlias = tuple[str, str, tuple[tuple[str, tuple[str, ...]], ...], tuple[str, ...]]
+"""What a sweep is made of: text and name of the scene, paths with values as JSON, channels."""
+
+# An executor gets so many chunks that its workers end at about the same time.
+_CHUNKS = 128
+# A chunk is sent back as a whole, and lost as a whole.
+_LARGEST_CHUNK = 32
+
+
+def sweep(
+    drive: Drive,
+    vary: Mapping[str, Any],
+    *,
+    until: float | str | None = None,
+    every: float | str | None = None,
+    record: str | Iterable[str] = (),
+    jobs: int | None = None,
+    executor: Executor | None = None,
+    progress: bool | Callable[[float], object] = False,
+) -> xr.Dataset:
+    """Simulate every combination of some values in a drive's scene and stack the results.
+
+    Every variant is computed by one thread as `simulate` would compute it, with the method of the
+    scene: the numbers do not depend on `jobs` or `executor`, to the last bit. The interpreter is
+    free for other threads meanwhile, and Ctrl-C stops the sweep.
+
+    Parameters
+    ----------
+    drive
+        What is varied.
+    vary
+        Values by dotted path, see `Drive.replace`; the last path varies fastest. Values are numbers
+        in SI units, texts with units, or whatever else stands at the path: a list, an array
+        such as ``numpy.linspace(10e3, 20e3, 11)``, or a single value.
+    until
+        End of the runs [s], or a text with a unit. This and the next come from the scene when
+        absent.
+    every
+        Interval between samples [s], or a text with a unit. Statistics are those of the samples.
+    record
+        Names of channels to keep, see `channels`. None unless asked for: they take the memory of a
+        run times the number of variants.
+    jobs
+        Variants at a time; as many as there are cores when absent.
+    executor
+        Who computes instead of threads of this process: any `concurrent.futures.Executor`, such as
+        a ``ProcessPoolExecutor``, or ``client.get_executor()`` of a Dask cluster.
+    progress
+        True for a line on stderr, or a function called with the share of variants done, 0 to 1.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimensions are those swept, named by the end of their paths, with coordinates in SI
+        units; `path` in their attributes is the whole path. Variables:
+
+        - statistics of each variant, such as ``span_tension_mean``, ``span_tension_std``,
+          ``span_tension_min``, ``span_tension_max`` (…, span), ``contact_force_p99``,
+          ``contact_force_max`` [N], ``energy_dissipated_total``, ``energy_residual_max`` [J],
+          ``steps``; those of contacts by kind where the scene logs them. ``stepping_time`` and
+          ``real_time_factor`` are measured, all others are the same with every sweep;
+        - channels, (…, time) or (…, time, labels), NaN where a variant has fewer samples or labels
+          than others;
+        - ``error`` (…), a text: why a variant failed, empty when it did not. Its numbers are NaN.
+
+        Attributes tell the ``scene`` that is varied, ``chaindrive_version``, ``method``, the number
+        of ``variants`` and of those ``failed``, ``wall_time`` [s] and a ``summary`` to print.
+
+    Raises
+    ------
+    SceneError
+        A path leads nowhere, or a value does not belong there; before anything runs.
+    ParameterError
+        Nothing is varied, a value stands twice, a channel does not exist.
+    SimulationError
+        The executor lost every variant.
+
+    Examples
+    --------
+    >>> import chaindrive as cd
+    >>> import numpy as np
+    >>> ring = cd.scenes.spinning_ring()
+    >>> result = cd.sweep(
+    ...     ring,
+    ...     {"chain.start.speed": np.linspace(300.0, 400.0, 3), "chain.mass": ["8 g", "9 g"]},
+    ...     until=2e-3,
+    ...     every=1e-3,
+    ...     record="link_tension",
+    ... )
+    >>> result["link_tension"].dims
+    ('speed', 'mass', 'time', 'link')
+    >>> bool((result["error"] == "").all())
+    True
+    """
+    if executor is not None and jobs is not None:
+        message = "`jobs` is for the threads of this process; the executor decides on its own"
+        raise ParameterError(message, "jobs", "leave it out, or give it to the executor")
+    if jobs is not None and jobs < 1:
+        raise ParameterError(f"jobs = {jobs}, must be at least 1", "jobs", "at least 1")
+    settings = {"run.until": until, "run.every": every}
+    settings = {path: value for path, value in settings.items() if value is not None}
+    if twice := settings.keys() & vary.keys():
+        path = min(twice)
+        name = path.removeprefix("run.")
+        raise ParameterError(f"`{path}` is varied, and given as `{name}`", name, "give one of them")
+    base = drive.replace(settings) if settings else drive
+    varied = tuple((path, _values(values, path)) for path, values in vary.items())
+    recipe = (base.text, base.name, varied, tuple(_listed(record)))
+    core = _core.Sweep(*recipe)
+    start = time.perf_counter()
+    line = _Line()
+    tell = progress if callable(progress) else line if progress else None
+    try:
+        if executor is None:
+            result = core.run(jobs, tell)
+        else:
+            result = core.stack(_spread(recipe, len(core), executor, tell))
+    finally:
+        line.close()
+    failed = sum(1 for error in result["errors"] if error)
+    attributes = {
+        "title": base.title,
+        "format": "chaindrive",
+        "chaindrive_version": _core.__version__,
+        "scene_name": base.name,
+        "scene": base.text,
+        "method": ", ".join(result["methods"]) or base.run_defaults["method"],
+        "swept": [path for path, _ in varied],
+        "variants": len(core),
+        "failed": failed,
+        "wall_time": time.perf_counter() - start,
+        "summary": result["summary"],
+    }
+    return _dataset(result, attributes)
+
+
+def _values(values: Any, path: str) -> tuple[str, ...]:
+    """Return every value at a path as JSON."""
+    if isinstance(values, np.ndarray | np.generic | xr.DataArray):
+        values = np.asarray(values).tolist()
+    single = isinstance(values, str | Mapping) or not isinstance(values, Iterable)
+    return tuple(_json(_counted(value), path) for value in ([values] if single else values))
+
+
+def _counted(value: Any) -> Any:
+    """Return a float that is a whole number as such: `numpy.linspace` may count teeth."""
+    whole = isinstance(value, float | np.floating) and float(value).is_integer()
+    # Minus zero has no whole number.
+    return int(value) if whole and str(float(value)) != "-0.0" else value
+
+
+def _spread(
+    recipe: _Recipe, count: int, executor: Executor, tell: Callable[[float], object] | None
+) -> list[Any]:
+    """Have an executor compute all variants, and return their outcomes in their order."""
+    size = min(max(count // _CHUNKS, 1), _LARGEST_CHUNK)
+    pending: dict[Future[list[Any]], range] = {}
+    outcomes: list[Any] = [None] * count
+    lost: list[Exception] = []
+    finished = 0
+    try:
+        for first in range(0, count, size):
+            chunk = range(first, min(first + size, count))
+            future = executor.submit(_part, _core.__version__, recipe, chunk.start, chunk.stop)
+            pending[future] = chunk
+        for future in as_completed(pending):
+            chunk = pending[future]
+            try:
+                outcomes[chunk.start : chunk.stop] = future.result()
+            except Exception as error:
+                # A worker that died, or that has no chaindrive: the other chunks are not its fault.
+                lost.append(error)
+                message = f"the executor lost this variant: {type(error).__name__}: {error}"
+                nothing: Any = (message, "", np.empty(0), [], [])
+                outcomes[chunk.start : chunk.stop] = [nothing] * len(chunk)
+            finished += len(chunk)
+            if tell is not None:
+                tell(finished / count)
+    finally:
+        for future in pending:
+            future.cancel()
+    if len(lost) == len(pending):
+        message = f"the executor lost every variant: {type(lost[0]).__name__}: {lost[0]}"
+        raise SimulationError(message, "executor") from lost[0]
+    return outcomes
+
+
+def _part(version: str, recipe: _Recipe, first: int, end: int) -> list[Any]:
+    """Compute some variants; called by an executor, in whatever process it likes."""
+    if version != _core.__version__:
+        message = f"a worker has chaindrive {_core.__version__} instead of {version}"
+        raise SimulationError(message, "executor", "install the same version everywhere")
+    return _made(recipe).part(first, end)
+
+
+@lru_cache(maxsize=1)
+def _made(recipe: _Recipe) -> _core.Sweep:
+    return _core.Sweep(*recipe)
+
+
+def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:
+    coordinates: dict[str, Any] = {}
+    swept = [name for name, *_ in result["swept"]]
+    for name, path, unit, values in result["swept"]:
+        about = {"long_name": path, "path": path} | ({} if unit is None else {"units": unit})
+        coordinates[name] = (name, _labels(values), about)
+    if result["time"] is not None:
+        coordinates["time"] = ("time", result["time"], {"units": "s", "long_name": "time"})
+    for name, values in result["labels"].items():
+        coordinates[name] = (name, _labels(values))
+    variables: dict[str, Any] = {}
+    for name, dims, values, unit, text in result["quantities"]:
+        variables[name] = (dims, values, {"units": unit, "long_name": text})
+    shape = [len(coordinates[name][1]) for name in swept]
+    errors = np.asarray(result["errors"], dtype=np.str_).reshape(shape)
+    about = {"long_name": "what went wrong; empty where nothing did"}
+    variables["error"] = (swept, errors, about)
+    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
+
+
+def _labels(values: Any) -> Any:
+    return np.asarray(values, dtype=np.str_) if isinstance(values, list) else values

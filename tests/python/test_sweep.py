@@ -1,0 +1,250 @@
+"""Sweeps: what one run gives, stacked; the same bits on threads, processes and other machines."""
+
+import multiprocessing
+import os
+import signal
+import threading
+import time
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import chaindrive as cd
+
+SPEED, PRETENSION = "sprockets.crank.motion.speed", "route.pretension"
+MEASURED = ["stepping_time", "real_time_factor"]
+SETTINGS = {"until": 4e-3, "every": 4e-4, "record": ["span_tension", "link_tension"]}
+# No drive finds a static equilibrium under the second torque.
+VARY = {
+    SPEED: np.linspace(-8.0, -14.0, 3),
+    "sprockets.camshaft.load[0].torque": ["5 kN m", 1e200],
+    PRETENSION: ["10 kN", 15e3],
+}
+
+
+def marine():
+    return cd.scenes.marine_two_sprockets()
+
+
+@pytest.fixture(scope="module")
+def built_in():
+    return cd.sweep(marine(), VARY, **SETTINGS)
+
+
+def assert_same_bits(one, other):
+    one, other = (result.drop_vars(MEASURED).drop_attrs(deep=False) for result in (one, other))
+    xr.testing.assert_identical(one, other)
+    for name in one.variables:
+        if one[name].dtype == np.float64:
+            assert one[name].to_numpy().tobytes() == other[name].to_numpy().tobytes(), name
+
+
+def test_a_variant_is_the_run_of_its_drive(built_in):
+    drive = marine().replace({SPEED: -11.0, PRETENSION: 15e3})
+    run = cd.simulate(drive, **SETTINGS)
+    variant = built_in.sel(speed=-11.0, torque=5e3, pretension=15e3)
+    assert variant["error"] == ""
+    for name in SETTINGS["record"]:
+        np.testing.assert_array_equal(variant[name], run[name])
+        assert variant[name].dims == run[name].dims
+        assert variant[name].attrs == run[name].attrs
+    tension = run["span_tension"]
+    np.testing.assert_array_equal(variant["span_tension_max"], tension.max("time"))
+    np.testing.assert_allclose(variant["span_tension_mean"], tension.mean("time"), rtol=1e-12)
+    np.testing.assert_allclose(variant["span_tension_std"], tension.std("time"), rtol=1e-6)
+    assert variant["steps"] == run.attrs["steps"]
+    assert variant["energy_dissipated_total"] == run.attrs["energy_dissipated"]
+    assert built_in.attrs["method"] == run.attrs["method"]
+
+
+def test_dimensions_are_named_and_have_units(built_in):
+    assert built_in["span_tension"].dims == ("speed", "torque", "pretension", "time", "span")
+    assert built_in["span_tension_mean"].dims == ("speed", "torque", "pretension", "span")
+    assert built_in["speed"].attrs == {"long_name": SPEED, "path": SPEED, "units": "rad/s"}
+    np.testing.assert_array_equal(built_in["pretension"], [10e3, 15e3])
+    assert built_in["time"].size == 11
+    assert cd.__version__ == built_in.attrs["chaindrive_version"]
+    assert "variants: 6 of 12 done, 6 failed" in built_in.attrs["summary"]
+    again = cd.Drive.from_toml(built_in.attrs["scene"])
+    assert again.run_defaults["until"] == SETTINGS["until"]
+
+
+def test_a_variant_that_fails_leaves_its_message_and_the_others(built_in):
+    failed = built_in.sel(torque=1e200)
+    assert all("static equilibrium" in text for text in failed["error"].to_numpy().flat)
+    assert bool(failed["span_tension_mean"].isnull().all())
+    fine = built_in.sel(torque=5e3)
+    assert bool((fine["error"] == "").all())
+    assert bool(fine["link_tension"].notnull().all())
+    assert built_in.attrs["failed"] == 6
+
+
+@pytest.mark.parametrize("jobs", [1, 2, 7])
+def test_any_number_of_threads_gives_the_same_bits(built_in, jobs):
+    assert_same_bits(cd.sweep(marine(), VARY, **SETTINGS, jobs=jobs), built_in)
+
+
+def test_processes_give_the_same_bits(built_in):
+    shares = []
+    fresh = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(2, mp_context=fresh) as executor:
+        result = cd.sweep(marine(), VARY, **SETTINGS, executor=executor, progress=shares.append)
+    assert_same_bits(result, built_in)
+    assert len(shares) == 12
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
+
+
+def test_a_dask_cluster_gives_the_same_bits(built_in, tmp_path):
+    distributed = pytest.importorskip("distributed")
+    here = {
+        "n_workers": 2,
+        "threads_per_worker": 1,
+        "processes": True,
+        "host": "127.0.0.1",
+        "dashboard_address": None,
+        "local_directory": tmp_path,
+    }
+    with distributed.LocalCluster(**here) as cluster, distributed.Client(cluster) as client:
+        processes = set(client.run(os.getpid).values())
+        assert len(processes - {os.getpid()}) == 2, "two processes other than this one"
+        with client.get_executor() as executor:
+            result = cd.sweep(marine(), VARY, **SETTINGS, executor=executor)
+    assert_same_bits(result, built_in)
+
+
+def test_a_worker_that_is_lost_is_the_failure_of_its_variants():
+    class Careless(ThreadPoolExecutor):
+        def submit(self, task, /, *arguments):
+            future = super().submit(task, *arguments)
+            if arguments[-2] == 1:
+                future = Future()
+                future.set_exception(OSError("the second machine was switched off"))
+            return future
+
+    with Careless(2) as executor:
+        result = cd.sweep(marine(), {PRETENSION: [10e3, 12e3, 14e3]}, until=1e-3, executor=executor)
+    assert [bool(error) for error in result["error"].to_numpy()] == [False, True, False]
+    assert "switched off" in str(result["error"][1].item())
+    assert np.isnan(result["contact_force_max"].to_numpy()).tolist() == [False, True, False]
+
+
+def test_an_executor_that_loses_everything_is_an_error():
+    class Broken(Executor):
+        def submit(self, task, /, *arguments):
+            return ThreadPoolExecutor(1).submit(task, "another version", *arguments[1:])
+
+    with pytest.raises(cd.SimulationError, match="instead of another version"):
+        cd.sweep(marine(), {PRETENSION: [10e3, 12e3]}, until=1e-3, executor=Broken())
+
+
+def test_values_may_be_anything_that_a_scene_takes():
+    vary = {
+        "sprockets.crank.teeth": np.linspace(58, 60, 3),
+        "gravity": [[0, 0], np.array([0.0, -9.81])],
+        "run.method": "rk4",
+        "settle": (True, False),
+        PRETENSION: xr.DataArray([10e3]),
+    }
+    result = cd.sweep(marine(), vary, until=2e-4)
+    assert result["error"].dims == ("teeth", "gravity", "method", "settle", "pretension")
+    assert result["teeth"].dtype == np.int64
+    assert result["teeth"].to_numpy().tolist() == [58, 59, 60]
+    assert result["method"].to_numpy().tolist() == ["rk4"]
+    assert result["settle"].to_numpy().tolist() == ["true", "false"]
+    assert result.sizes["gravity"] == 2
+    assert result.attrs["method"] == "rk4"
+
+
+@pytest.mark.parametrize(
+    ("vary", "settings", "error", "words"),
+    [
+        ({}, {}, cd.ParameterError, "nothing is varied"),
+        ({PRETENSION: []}, {}, cd.ParameterError, "no values"),
+        ({PRETENSION: ["1 kN", 1000]}, {}, cd.ParameterError, "stands twice"),
+        ({PRETENSION: [object()]}, {}, cd.ParameterError, "no place in a scene"),
+        ({PRETENSION: [np.nan]}, {}, cd.ParameterError, PRETENSION),
+        ({PRETENSION: ["1 mm"]}, {}, cd.SceneError, "is a length"),
+        ({"route.pretenson": [1.0]}, {}, cd.SceneError, "pretension"),
+        ({"chain.links": np.linspace(112, 113, 3)}, {}, cd.SceneError, "chain.links"),
+        ({"chain.links": [112]}, {"record": "link_tensoin"}, cd.ParameterError, "did you mean"),
+        ({"chain.links": [112]}, {"jobs": 0}, cd.ParameterError, "at least 1"),
+        ({"run.until": [1e-3]}, {"until": 1e-3}, cd.ParameterError, "until"),
+        ({"run.every": [1e-3, 2e-3]}, {"record": "contacts"}, cd.ParameterError, "interval"),
+    ],
+)
+def test_what_is_wrong_is_refused_before_anything_runs(vary, settings, error, words):
+    shares = []
+    with pytest.raises(error, match=words):
+        cd.sweep(marine(), vary, **settings, progress=shares.append)
+    assert shares == []
+
+
+def test_jobs_are_not_for_executors():
+    with ThreadPoolExecutor(1) as executor, pytest.raises(cd.ParameterError, match="executor"):
+        cd.sweep(marine(), VARY, jobs=2, executor=executor)
+
+
+def test_a_sweep_is_interrupted_and_leaves_the_interpreter_free():
+    """Variants that would take days; another thread of this interpreter sends the interrupt."""
+
+    def interrupt():
+        time.sleep(0.5)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    thread = threading.Thread(target=interrupt)
+    begin = time.monotonic()
+    thread.start()
+    with pytest.raises(KeyboardInterrupt):
+        cd.sweep(cd.scenes.spinning_ring(), {"run.until": [1e5, 2e5, 3e5]}, every=1e-2)
+    thread.join()
+    assert time.monotonic() - begin < 60.0
+
+
+def test_progress_that_raises_stops_the_sweep():
+    def enough(share):
+        raise RuntimeError(f"enough at {share}")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        cd.sweep(cd.scenes.spinning_ring(), {"run.until": [1e5, 2e5]}, every=1e-2, progress=enough)
+
+
+def test_the_command_writes_the_same_numbers(built_in, tmp_path):
+    pytest.importorskip("zarr")
+    store = tmp_path / "sweep.zarr"
+    arguments = ["chaindrive", "sweep", "marine_two_sprockets", "-q", "-o", str(store)]
+    arguments += ["--vary", f"{SPEED}=-8..-14/3"]
+    arguments += ["--vary", "sprockets.camshaft.load[0].torque=5 kN m,1e200"]
+    arguments += ["--vary", f"{PRETENSION}=10 kN,15 kN"]
+    arguments += ["--until", "4 ms", "--every", "0.4 ms", "--record", "span_tension,link_tension"]
+    assert cd._core._cli(arguments) == 1, "six variants fail"
+    stored = xr.open_zarr(store).load()
+    assert set(stored.variables) == set(built_in.variables)
+    for name in set(built_in.variables) - set(MEASURED):
+        assert stored[name].dims == built_in[name].dims, name
+        assert stored[name].attrs == built_in[name].attrs, name
+        one, other = stored[name].to_numpy(), built_in[name].to_numpy()
+        if other.dtype == np.float64:
+            assert one.tobytes() == other.tobytes(), name
+        else:
+            assert one.tolist() == other.tolist(), name
+    assert stored.attrs["method"] == built_in.attrs["method"]
+
+
+def test_long_recordings_are_stored_in_stretches(tmp_path):
+    """Eight thousand samples of twenty links: more than a chunk holds, of a single variant."""
+    pytest.importorskip("zarr")
+    store = tmp_path / "ring.zarr"
+    arguments = ["chaindrive", "sweep", "spinning_ring", "-q", "-o", str(store)]
+    arguments += ["--vary", "chain.start.speed=300..400/2", "--record", "link_tension"]
+    assert cd._core._cli([*arguments, "--until", "8 ms", "--every", "1 us"]) == 0
+    vary = {"chain.start.speed": [300.0, 400.0]}
+    settings = {"until": 8e-3, "every": "1 us", "record": "link_tension"}
+    expected = cd.sweep(cd.scenes.spinning_ring(), vary, **settings)["link_tension"]
+    stored = xr.open_zarr(store, chunks=None)["link_tension"]
+    assert stored.encoding["chunks"] == (1, 6553, 20)
+    np.testing.assert_array_equal(stored, expected)
+    assert expected.shape == (2, 8001, 20)
+    assert np.isfinite(expected).all()
