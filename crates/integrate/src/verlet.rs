@@ -99,13 +99,14 @@ impl WithSimd for Drift<'_> {
         let (q, q_rest) = S::as_mut_simd_f64s(self.q);
         let (p, p_rest) = S::as_mut_simd_f64s(&mut self.predicted[..n]);
         let [zero, step, half] = [0.0, h, 0.5 * h].map(|x| simd.splat_f64s(x));
+        // Not fused: a processor without the instruction would call a function for it.
+        let plus = |a, x, y| simd.add_f64s(simd.mul_f64s(a, x), y);
         let mut seen = zero;
         for i in 0..q.len() {
             // q⁺ = q + h v + ½ h² a,   v* = v + h a
-            let mean = simd.mul_add_f64s(half, a0[i], v0[i]);
-            q[i] = simd.mul_add_f64s(step, mean, q0[i]);
-            p[i] = simd.mul_add_f64s(step, a0[i], v0[i]);
-            seen = simd.mul_add_f64s(q[i], zero, seen);
+            q[i] = plus(step, plus(half, a0[i], v0[i]), q0[i]);
+            p[i] = plus(step, a0[i], v0[i]);
+            seen = plus(q[i], zero, seen);
         }
         let mut watch = Watch::default();
         watch.see(simd.reduce_sum_f64s(seen));
@@ -138,11 +139,12 @@ impl WithSimd for Kick<'_> {
         let (b0, b1) = S::as_simd_f64s(&self.a[..n]);
         let (v, v_rest) = S::as_mut_simd_f64s(self.v);
         let [zero, half] = [0.0, 0.5 * h].map(|x| simd.splat_f64s(x));
+        let plus = |a, x, y| simd.add_f64s(simd.mul_f64s(a, x), y);
         let mut seen = zero;
         for i in 0..v.len() {
             // v⁺ = v + ½ h (a + a⁺)
-            v[i] = simd.mul_add_f64s(half, simd.add_f64s(a0[i], b0[i]), v0[i]);
-            seen = simd.mul_add_f64s(v[i], zero, seen);
+            v[i] = plus(half, simd.add_f64s(a0[i], b0[i]), v0[i]);
+            seen = plus(v[i], zero, seen);
         }
         let mut watch = Watch::default();
         watch.see(simd.reduce_sum_f64s(seen));

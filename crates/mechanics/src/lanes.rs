@@ -200,6 +200,11 @@ impl<S: Simd> Mask<S> {
 
     #[inline(always)]
     pub(crate) fn any(self) -> bool {
+        // Masks of one byte have a bit a lane, which the library counts from the other end.
+        if size_of::<S::m64s>() == 1 {
+            let [bits] = pulp::bytemuck::cast::<S::m64s, [u8; 1]>(self.m);
+            return bits != 0;
+        }
         self.simd.first_true_m64s(self.m) < Wide::<S>::COUNT
     }
 }
@@ -246,5 +251,70 @@ impl<S: Simd> AddAssign for Lane<S> {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check<S: Simd>(simd: S) {
+        let w = Wide(simd);
+        let n = Wide::<S>::COUNT;
+        let x: Vec<f64> = (0..n).map(|i| 1.5 + i as f64).collect();
+        let lane = w.load(&x, 0);
+        let out = |lane: Lane<S>| {
+            let mut out = vec![0.0; n];
+            lane.store(&mut out, 0);
+            out
+        };
+        for count in 0..=n {
+            let mask = w.first(count);
+            assert_eq!(mask.any(), count > 0, "{count} of {n}");
+            let chosen = out(mask.select(lane, -lane));
+            for i in 0..n {
+                assert_eq!(chosen[i], if i < count { x[i] } else { -x[i] });
+            }
+            for other in 0..=n {
+                let both = out((mask & w.first(other)).select(w.splat(1.0), w.splat(0.0)));
+                assert_eq!(both.iter().sum::<f64>(), count.min(other) as f64);
+            }
+        }
+        for i in 0..n {
+            // One lane alone.
+            let mut one = vec![0.0; n];
+            one[i] = 1.0;
+            assert!(w.load(&one, 0).greater(w.splat(0.5)).any(), "{i} of {n}");
+        }
+        assert_eq!(lane.largest(), x[n - 1]);
+        assert_eq!(lane.smallest(), x[0]);
+        assert!((lane.sum() - x.iter().sum::<f64>()).abs() < 1e-12);
+        assert_eq!(out((-lane).abs()), x);
+        let [root, inverse] = lane.roots().map(out);
+        for i in 0..n {
+            assert!((root[i] / x[i].sqrt() - 1.0).abs() < 3e-16);
+            assert!((inverse[i] * x[i].sqrt() - 1.0).abs() < 1e-15);
+            assert!((out(lane.root())[i] / x[i].sqrt() - 1.0).abs() < 1e-15);
+        }
+        assert_eq!(out(w.splat(0.0).root()), vec![0.0; n]);
+    }
+
+    struct Check;
+
+    impl pulp::WithSimd for Check {
+        type Output = ();
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) {
+            check(simd);
+        }
+    }
+
+    #[test]
+    fn lanes_of_any_width_compute_alike() {
+        check(pulp::Scalar);
+        check(pulp::Scalar128b);
+        check(pulp::Scalar512b);
+        pulp::Arch::new().dispatch(Check);
     }
 }

@@ -14,7 +14,7 @@ mod equations;
 
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Continuity, Moment, SecondOrderSystem, Verdict, Weights};
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Arch, Scalar128b, Simd, WithSimd};
 
 pub(crate) use bodies::{
     Anchor, Rail, RailContact, RailSupport, Slide, Wheel, WheelRotation, WheelSupport,
@@ -66,6 +66,8 @@ pub struct System {
     /// When the windows are renewed: latest time, and accepted steps to go.
     renew: (f64, u32),
     arch: Arch,
+    /// Whether to compute as on a processor without AVX2.
+    oldest: bool,
 }
 
 /// An end roller whose motion or load is given.
@@ -153,6 +155,12 @@ impl System {
     /// Rejects steps in which a contact begins deeper than `depth` \[m\]; `None` accepts any.
     pub fn set_onset_depth(&mut self, depth: Option<f64>) {
         self.onset_depth = depth;
+    }
+
+    /// Computes the forces on particles as the oldest processor of this kind would, by twos: to see what wider lanes
+    /// gain.
+    pub fn compute_by_twos(&mut self) {
+        self.oldest = true;
     }
 
     /// Deepest penetration at which a contact may begin \[m\], if there is a limit.
@@ -470,13 +478,17 @@ impl SecondOrderSystem for System {
             self.bodies(at, a, rates, record);
             return;
         }
-        self.arch.dispatch(Forces {
-            system: self,
-            at,
-            a: &mut *a,
-            rates: &mut *rates,
-            record: &mut *record,
-        });
+        if self.oldest {
+            self.forces(Wide(Scalar128b), at, a, rates, record);
+        } else {
+            self.arch.dispatch(Forces {
+                system: self,
+                at,
+                a: &mut *a,
+                rates: &mut *rates,
+                record: &mut *record,
+            });
+        }
         self.plate_forces(at, a, rates, record);
         self.bodies(at, a, rates, record);
         if self.links.closed {

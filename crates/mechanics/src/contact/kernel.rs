@@ -7,7 +7,7 @@ use pulp::Simd;
 use super::answer::{Answer, LaneElastic};
 use super::rest::Clear;
 use super::{Contacts, Frame, Shape, Teeth, Touch};
-use crate::lanes::{LANES, Lane, Mask, Wide};
+use crate::lanes::{LANES, Lane, Mask, Wide, padded};
 use crate::profile::Profile;
 use crate::system::Rollers;
 
@@ -70,21 +70,22 @@ impl Contacts {
         touch.resize(self.slots * self.sides());
         let mut sums = Sums::new(w);
         let mut touching = false;
-        let mut slot = 0;
+        let mut base = 0;
         for run in &self.runs {
-            for offset in (0..run.count).step_by(Wide::<S>::COUNT) {
-                if self.memory.wake[slot] > t {
+            for offset in (0..padded(run.count)).step_by(Wide::<S>::COUNT) {
+                let slot = base + offset;
+                if offset >= run.count || self.memory.wake[slot] > t {
                     self.leave_open(w, slot, self.memory.wake[slot], touch);
-                } else {
-                    let here = Here {
-                        slot,
-                        roller: run.start + offset,
-                        valid: w.first(run.count - offset),
-                    };
-                    touching |= self.lane(w, dt, frame, here, rollers, touch, &mut sums);
+                    continue;
                 }
-                slot += Wide::<S>::COUNT;
+                let here = Here {
+                    slot,
+                    roller: run.start + offset,
+                    valid: w.first(run.count - offset),
+                };
+                touching |= self.lane(w, dt, frame, here, rollers, touch, &mut sums);
             }
+            base += padded(run.count);
         }
         if touching {
             sums.total(self.surface.friction != Friction::None)

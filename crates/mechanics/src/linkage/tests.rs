@@ -249,6 +249,49 @@ fn lanes_and_scalar_contacts_agree() {
     assert!(shares.iter().all(|count| *count > 10), "{shares:?}");
 }
 
+/// However many numbers go side by side, the forces are the same.
+#[test]
+fn lanes_of_any_width_agree() {
+    let mut parts = bicycle(ChainModel::Particles);
+    for sprocket in &mut parts.sprockets {
+        sprocket.flank = Some(Flank {
+            elastic: Elastic::Power(Power::linear(4e7)),
+            width: 4e-4,
+        });
+    }
+    let assembled = Drive::new(parts).unwrap().assemble().unwrap();
+    let system = assembled.system;
+    let mut by_twos = system.clone();
+    by_twos.compute_by_twos();
+    for shake in 0..40_u32 {
+        let mut q = assembled.q.clone();
+        let mut v = assembled.v.clone();
+        for (i, x) in q[..2 * system.stride].iter_mut().enumerate() {
+            *x += 2e-5 * f64::from(shake) * (f64::from(shake) + i as f64 % 104.0).sin();
+        }
+        for (i, v) in v[..2 * system.stride].iter_mut().enumerate() {
+            *v += 0.1 * (f64::from(3 * shake) + i as f64 % 104.0).cos();
+        }
+        let at = Moment {
+            t: 1e-5,
+            q: &q,
+            v: &v,
+        };
+        let [wide, narrow] = [&system, &by_twos].map(|system| {
+            let mut record = system.new_record();
+            let mut a = vec![0.0; q.len()];
+            let mut rates = vec![0.0; Flow::ALL.len()];
+            system.evaluate(at, &mut a, &mut rates, &mut record);
+            a.extend(rates);
+            a
+        });
+        let scale = wide.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        for (i, (x, y)) in wide.iter().zip(&narrow).enumerate() {
+            assert!((x - y).abs() < 1e-12 * scale, "{shake}, {i}: {x} {y}");
+        }
+    }
+}
+
 /// Pushed from the seat over to the flank at one depth, a roller meets no step in the force.
 #[test]
 fn the_law_changes_continuously_from_seat_to_flank() {

@@ -88,6 +88,7 @@ impl System {
             onset_depth: None,
             renew: (0.0, 0),
             arch: Arch::new(),
+            oldest: matches!(Arch::new(), Arch::Scalar),
         };
         let mut q = q;
         let mut v = vec![0.0; dofs];
