@@ -3,7 +3,8 @@
     python benchmarks/peers/compare.py            # some fifteen minutes
     python benchmarks/peers/compare.py --quick    # half a minute: does everything still run?
 
-Prints a table, writes results.json and the results in README.md, which says what is compared and how.
+Prints a table, and writes results.json and the results in README.md, which says what is compared
+and how.
 """
 
 import argparse
