@@ -25,7 +25,7 @@ use crate::contact::{Frame, Places, PlatePins, PlatePlaces, PlateTouch, Touch, W
 use crate::energy::Flow;
 use crate::events::EventLog;
 use crate::lanes::Wide;
-use crate::linkage::{Joining, Linkage, Play, Posture};
+use crate::linkage::{Linkage, Play, Posture};
 use crate::links::{Links, Pulls};
 use crate::motion::Course;
 use crate::{End, Motion};
@@ -149,14 +149,9 @@ impl System {
         self.onset_depth = depth;
     }
 
-    /// Whether implicit damping serves this drive: rigid links with play in their joints.
-    ///
-    /// Ideal joints hold the chain together by forces of their own, which a step of first order does
-    /// not follow through impacts.
-    pub fn suits_implicit_damping(&self) -> bool {
-        self.linkage
-            .as_ref()
-            .is_some_and(|linkage| matches!(linkage.joining, Joining::Clearance(_)))
+    /// Deepest penetration at which a contact may begin \[m\], if there is a limit.
+    pub fn onset_depth(&self) -> Option<f64> {
+        self.onset_depth
     }
 
     /// Number of rollers.
