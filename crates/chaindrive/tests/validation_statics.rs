@@ -359,3 +359,21 @@ fn a_worn_chain_settles() {
         compare(&what, &state.sprocket_torque[1..], &[1433.0], None, 1e-4);
     }
 }
+
+/// A chain worn by 4 % rides 9 mm outside the pitch circle of 57 teeth, and its spans still have a tension.
+#[test]
+fn spans_of_a_heavily_worn_chain_have_a_tension() {
+    let scene = Scene::preset("industrial_16b")
+        .and_then(|scene| scene.replace("chain.elongation", "0.04"))
+        .and_then(|scene| {
+            let adjust = r#"{ kind = "sprocket", name = "driven", direction = [1, 0], within = 0.1 }"#;
+            scene.replace("route.adjust", adjust)
+        })
+        .unwrap_or_else(|error| panic!("{error}"));
+    let state = settled(scene.text());
+    assert!(
+        state.span_tension.iter().all(|tension| *tension > 0.0),
+        "{:?}",
+        state.span_tension
+    );
+}
