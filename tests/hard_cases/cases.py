@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import chaindrive as cd
+import tooth_jump
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,9 @@ PARTICLES = [
         large({"contact.teeth.law": CONTACT_100}),
         0.5,
     ),
-    Case("e = 0", "restitution 0, Lankarani–Nikravesh", large({"contact.teeth.restitution": 0}), 0.5),
+    Case(
+        "e = 0", "restitution 0, Lankarani–Nikravesh", large({"contact.teeth.restitution": 0}), 0.5
+    ),
     Case(
         "e = 1",
         "restitution 1, undamped links: nothing is lost",
@@ -113,7 +116,12 @@ PARTICLES = [
         large({"sprockets.camshaft.load": [{"kind": "constant", "torque": "85 kN m"}]}),
         0.5,
     ),
-    Case("no gravity", "weightless and without pretension", large({"gravity": [0, 0], "route.pretension": 0}), 0.5),
+    Case(
+        "no gravity",
+        "weightless and without pretension",
+        large({"gravity": [0, 0], "route.pretension": 0}),
+        0.5,
+    ),
     Case(
         "worn and scattered",
         "16B chain, links 2 % too long, scattered by 0.3 %",
@@ -142,9 +150,15 @@ PARTICLES = [
         0.5,
         transient=0.0,
     ),
+    Case(
+        "tooth jump",
+        "worn chain jumps two teeth of an overloaded idler and lands",
+        tooth_jump.drive,
+        tooth_jump.UNTIL,
+    ),
 ]
 
-SHORT = 3e-3 # explicit methods take steps of 0.1 µs and less
+SHORT = 3e-3  # explicit methods take steps of 0.1 µs and less
 CLEARANCE = [
     Case("as it is", "bicycle, 104 links, 25 µm of play", bicycle(), SHORT),
     Case(
@@ -188,8 +202,15 @@ CLEARANCE = [
         bicycle({"sprockets.rear.load": [{"kind": "constant", "torque": "364 N m"}]}),
         SHORT,
     ),
-    Case("no gravity", "weightless and without pretension", bicycle({"gravity": [0, 0], "route.pretension": 0}), SHORT),
-    Case("step × 10", "ten times the step of the automatic choice", bicycle(), SHORT, step_factor=10),
+    Case(
+        "no gravity",
+        "weightless and without pretension",
+        bicycle({"gravity": [0, 0], "route.pretension": 0}),
+        SHORT,
+    ),
+    Case(
+        "step × 10", "ten times the step of the automatic choice", bicycle(), SHORT, step_factor=10
+    ),
     Case(
         "stop and reverse",
         "chainring stops within 0.1 ms, waits 0.5 ms, and reverses",

@@ -9,7 +9,7 @@ refused        an error with a place and a hint, before the run or during it
 WRONG          infinity or NaN in a result, or an open ledger without a word: a bug, always
 =============  ==================================================================================
 
-The ledger is added up here from the recorded stores and flows, not taken from the run's own account.
+The ledger is added up here from the recorded stores and flows, not taken from the run's account.
 """
 
 import math
@@ -119,8 +119,8 @@ def ledger(run):
 def is_finite(run):
     """Whether everything recorded is finite.
 
-    A span has no tension while no roller lies on one of its wheels; its NaN means that, and no other
-    channel may have one.
+    A span has no tension while no roller lies on one of its wheels; its NaN means that, and no
+    other channel may have one.
     """
     finite = all(np.isfinite(run[name].values).all() for name in CHANNELS if name != "span_tension")
     return finite and not np.isinf(run["span_tension"].values).any()
@@ -156,4 +156,3 @@ def judge(case, settings, drive=None):
     if verdict.deviation <= ALIKE:
         verdict.outcome = "converged"
     return verdict
-

@@ -1,7 +1,7 @@
 """Run every hard case with every method and write docs/hard-cases.md.
 
-    python tests/hard_cases/study.py            # some minutes
-    python tests/hard_cases/study.py --only "e = 1"
+python tests/hard_cases/study.py            # some minutes
+python tests/hard_cases/study.py --only "e = 1"
 """
 
 import argparse
@@ -53,7 +53,9 @@ def table(rows, methods, found):
                 mark = f" ({notes.setdefault(verdict.detail, len(notes) + 1)})"
             cells.append(f"{verdict}{mark}")
         lines.append(
-            f"| {case.name} | {case.what} | " + " | ".join(cells) + f" | {spread(found[case.name])} |"
+            f"| {case.name} | {case.what} | "
+            + " | ".join(cells)
+            + f" | {spread(found[case.name])} |"
         )
     lines.append("")
     lines += [f"({number}) {detail}  " for detail, number in notes.items()]
