@@ -1,8 +1,8 @@
 """A worn chain that jumps the teeth of an overloaded wheel, and lands again.
 
 The marine engine without guides, its chain worn by 3 %, its tensioner wheel moved out until the
-chain closes. The idler, which three pitches wrap, is braked for 20 ms: its slack side goes slack, rollers
-climb its teeth, pass the tips and fall into the next gaps.
+chain closes. The idler, which three pitches wrap, is braked for 20 ms: its slack side goes slack,
+rollers climb its teeth, pass the tips and fall into the next gaps.
 
     python tests/hard_cases/tooth_jump.py    # draws docs/tooth_jump.png and prints what happened
 """
