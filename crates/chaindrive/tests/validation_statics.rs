@@ -366,7 +366,8 @@ fn spans_of_a_heavily_worn_chain_have_a_tension() {
     let scene = Scene::preset("industrial_16b")
         .and_then(|scene| scene.replace("chain.elongation", "0.04"))
         .and_then(|scene| {
-            let adjust = r#"{ kind = "sprocket", name = "driven", direction = [1, 0], within = 0.1 }"#;
+            let adjust =
+                r#"{ kind = "sprocket", name = "driven", direction = [1, 0], within = 0.1 }"#;
             scene.replace("route.adjust", adjust)
         })
         .unwrap_or_else(|error| panic!("{error}"));

@@ -42,7 +42,9 @@ impl Newton<'_> {
                 break;
             };
             let factor = (cap / self.farthest(&step)).min(1.0);
-            step.iter_mut().for_each(|s| *s *= factor);
+            for s in &mut step {
+                *s *= factor;
+            }
             let mut tried = q.clone();
             self.go(&mut tried, &step, 1.0);
             let next = self.balance(&tried, load);
