@@ -15,9 +15,13 @@ fn main() {
     let mut system = assembled.system.clone();
     let links = system.links() as f64;
     let m = if system.can_solve() {
-        Method::ImplicitDamping { step: 1.4 * system.undamped_time_scale() }
+        Method::ImplicitDamping {
+            step: 1.4 * system.undamped_time_scale(),
+        }
     } else {
-        Method::Verlet { step: 0.5 * system.time_scale() }
+        Method::Verlet {
+            step: 0.5 * system.time_scale(),
+        }
     };
     let mut state = State::new(0.0, assembled.q.clone(), assembled.v.clone());
     let mut st = m.start(&mut system, &mut state).unwrap();
@@ -33,5 +37,10 @@ fn main() {
         all.push(ns);
     }
     all.sort_by(f64::total_cmp);
-    println!("{} links {links}: min {best:.2} median {:.2} ns per link-step, candidates {}", args[1], all[4], system.candidates());
+    println!(
+        "{} links {links}: min {best:.2} median {:.2} ns per link-step, candidates {}",
+        args[1],
+        all[4],
+        system.candidates()
+    );
 }

@@ -1,5 +1,7 @@
 //! Velocity Verlet with velocities predicted for the force evaluation.
 
+use pulp::{Arch, Simd, WithSimd};
+
 use crate::finite::Watch;
 use crate::state::{Snapshot, State};
 use crate::{Moment, SecondOrderSystem};
@@ -12,12 +14,15 @@ pub(crate) const LIMIT: f64 = 2.0;
 pub(crate) struct Verlet {
     /// Predicted velocities.
     predicted: Vec<f64>,
+    /// The processor's vector unit.
+    arch: Arch,
 }
 
 impl Verlet {
     pub(crate) fn new(dofs: usize) -> Self {
         Self {
             predicted: vec![0.0; dofs],
+            arch: Arch::new(),
         }
     }
 
@@ -46,15 +51,24 @@ impl Verlet {
         record: &mut S::Record,
     ) -> bool {
         to.t = from.t + h;
-        let mut watch = Watch::default();
-        drift(h, from, &mut to.q, &mut self.predicted, &mut watch);
+        let mut watch = self.arch.dispatch(Drift {
+            h,
+            from,
+            q: &mut to.q,
+            predicted: &mut self.predicted,
+        });
         let end = Moment {
             t: to.t,
             q: &to.q,
             v: &self.predicted,
         };
         system.evaluate(end, &mut to.a, &mut to.rates, record);
-        kick(h, from, &to.a, &mut to.v, &mut watch);
+        watch.join(self.arch.dispatch(Kick {
+            h,
+            from,
+            a: &to.a,
+            v: &mut to.v,
+        }));
         // The trapezoidal rule: y⁺ = y + ½ h (r + r⁺)
         for (i, y) in to.quadratures.iter_mut().enumerate() {
             *y = from.quadratures[i] + 0.5 * h * (from.rates[i] + to.rates[i]);
@@ -65,31 +79,56 @@ impl Verlet {
 }
 
 /// Positions and predicted velocities.
-#[inline]
-fn drift(h: f64, from: &State, q: &mut [f64], predicted: &mut [f64], watch: &mut Watch) {
-    let n = q.len();
-    let (q0, v0, a0) = (&from.q[..n], &from.v[..n], &from.a[..n]);
-    let predicted = &mut predicted[..n];
-    let mut seen = *watch;
-    for i in 0..n {
-        // q⁺ = q + h v + ½ h² a,   v* = v + h a
-        q[i] = q0[i] + h * (v0[i] + 0.5 * h * a0[i]);
-        predicted[i] = v0[i] + h * a0[i];
-        seen.see(q[i]);
+struct Drift<'a> {
+    h: f64,
+    from: &'a State,
+    q: &'a mut [f64],
+    predicted: &'a mut [f64],
+}
+
+impl WithSimd for Drift<'_> {
+    type Output = Watch;
+
+    // Inlined where the processor is known: a plain loop becomes lanes there.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Watch {
+        let Self { h, from, .. } = self;
+        let n = self.q.len();
+        let (q0, v0, a0) = (&from.q[..n], &from.v[..n], &from.a[..n]);
+        let (q, predicted) = (self.q, &mut self.predicted[..n]);
+        let mut seen = Watch::default();
+        for i in 0..n {
+            // q⁺ = q + h v + ½ h² a,   v* = v + h a
+            q[i] = q0[i] + h * (v0[i] + 0.5 * h * a0[i]);
+            predicted[i] = v0[i] + h * a0[i];
+            seen.see(q[i]);
+        }
+        seen
     }
-    *watch = seen;
 }
 
 /// Velocities.
-#[inline]
-fn kick(h: f64, from: &State, a: &[f64], v: &mut [f64], watch: &mut Watch) {
-    let n = v.len();
-    let (v0, a0, a) = (&from.v[..n], &from.a[..n], &a[..n]);
-    let mut seen = *watch;
-    for i in 0..n {
-        // v⁺ = v + ½ h (a + a⁺)
-        v[i] = v0[i] + 0.5 * h * (a0[i] + a[i]);
-        seen.see(v[i]);
+struct Kick<'a> {
+    h: f64,
+    from: &'a State,
+    a: &'a [f64],
+    v: &'a mut [f64],
+}
+
+impl WithSimd for Kick<'_> {
+    type Output = Watch;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Watch {
+        let Self { h, from, v, .. } = self;
+        let n = v.len();
+        let (v0, a0, a) = (&from.v[..n], &from.a[..n], &self.a[..n]);
+        let mut seen = Watch::default();
+        for i in 0..n {
+            // v⁺ = v + ½ h (a + a⁺)
+            v[i] = v0[i] + 0.5 * h * (a0[i] + a[i]);
+            seen.see(v[i]);
+        }
+        seen
     }
-    *watch = seen;
 }

@@ -126,6 +126,12 @@ impl<S: Simd> Lane<S> {
         self.simd.reduce_sum_f64s(self.v)
     }
 
+    /// Smallest lane.
+    #[inline(always)]
+    pub(crate) fn smallest(self) -> f64 {
+        self.simd.reduce_min_f64s(self.v)
+    }
+
     /// Largest lane.
     #[inline(always)]
     pub(crate) fn largest(self) -> f64 {

@@ -75,8 +75,10 @@ impl Links {
             let dy = w.load(rollers.y, i + 1) - w.load(rollers.y, i);
             let ux = w.load(rollers.vx, i + 1) - w.load(rollers.vx, i);
             let uy = w.load(rollers.vy, i + 1) - w.load(rollers.vy, i);
-            let length = (dx * dx + dy * dy).sqrt();
-            let inverse = length.recip();
+            // The root and the reciprocal side by side: 1/ℓ = ℓ · 1/ℓ².
+            let square = dx * dx + dy * dy;
+            let length = square.sqrt();
+            let inverse = length * square.recip();
             // ℓ̇ = d·u/ℓ
             let rate = (dx * ux + dy * uy) * inverse;
             let drag = w.load(&self.damping, i) * rate;

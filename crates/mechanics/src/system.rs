@@ -86,6 +86,8 @@ pub struct Record {
     pub(crate) wheel_wrenches: Vec<Wrench>,
     pub(crate) rail_wrenches: Vec<Wrench>,
     pulls: Pulls,
+    /// Frames of the wheels, then of the rails.
+    frames: Vec<Frame>,
     pub(crate) play: Play,
 }
 
@@ -138,7 +140,7 @@ impl PlatePins for Pins<'_, '_> {
     }
 }
 
-/// Accepted steps after which the time scales of rigid links are worked out again.
+/// Accepted steps after which the time scale is worked out again.
 const STEPS_PER_SCALE: u32 = 8;
 /// Accepted steps after which the windows are renewed at the latest.
 const STEPS_PER_WINDOW: u32 = 64;
@@ -242,22 +244,25 @@ impl System {
         let gravity = [self.gravity.x, self.gravity.y];
         rates[Flow::LinkLoss as usize] =
             self.links.act(w, &mut rollers, &mut record.pulls, gravity);
-        // One call of the kernel serves wheels and rails: it is inlined, and long.
+        // Frames are in memory well before the kernel loads them again.
         let wheels = self.wheels.len();
+        for (frame, wheel) in record.frames.iter_mut().zip(&self.wheels) {
+            (*frame, _, _) = self.wheel_frame(wheel, at);
+        }
+        for (frame, rail) in record.frames[wheels..].iter_mut().zip(&self.rails) {
+            *frame = rail.frame(at.t, at.q, at.v, &self.slides);
+        }
+        // One call of the kernel serves wheels and rails: it is inlined, and long.
         for i in 0..wheels + self.rails.len() {
-            let (frame, contacts, touch) = if i < wheels {
-                let wheel = &self.wheels[i];
-                let (frame, _, _) = self.wheel_frame(wheel, at);
-                (frame, &wheel.contacts, &mut record.teeth[i])
+            let (contacts, touch) = if i < wheels {
+                (&self.wheels[i].contacts, &mut record.teeth[i])
             } else {
-                let rail = &self.rails[i - wheels];
-                let RailContact::Circles(contacts) = &rail.contact else {
+                let RailContact::Circles(contacts) = &self.rails[i - wheels].contact else {
                     continue;
                 };
-                let frame = rail.frame(at.t, at.q, at.v, &self.slides);
-                (frame, contacts, &mut record.circles[i - wheels])
+                (contacts, &mut record.circles[i - wheels])
             };
-            let wrench = contacts.act(w, at.t, &frame, &mut rollers, touch);
+            let wrench = contacts.act(w, at.t, &record.frames[i], &mut rollers, touch);
             let loss = if i < wheels {
                 Flow::ToothLoss
             } else {
@@ -357,7 +362,7 @@ impl System {
     fn renew_time_scales(&mut self, record: &Record) {
         let scales = match &self.linkage {
             // Stiffness changes little from one step to the next, and the bound has a reserve.
-            Some(_) if !self.renew.1.is_multiple_of(STEPS_PER_SCALE) => return,
+            _ if !self.renew.1.is_multiple_of(STEPS_PER_SCALE) => return,
             Some(linkage) => linkage.stiffest(self, &record.play),
             None => [self.stiffest(record); 2],
         };
@@ -442,6 +447,7 @@ impl SecondOrderSystem for System {
             wheel_wrenches: vec![Wrench::default(); self.wheels.len()],
             rail_wrenches: vec![Wrench::default(); self.rails.len()],
             pulls: self.links.pulls(),
+            frames: vec![Frame::fixed(); self.wheels.len() + self.rails.len()],
             play: Play::default(),
         }
     }

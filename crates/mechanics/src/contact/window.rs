@@ -24,7 +24,7 @@ pub(crate) struct Places<'a> {
 }
 
 /// A slot that no roller held before: open, and far.
-const FAR: f64 = 1.0;
+pub(super) const FAR: f64 = 1.0;
 
 impl Contacts {
     /// Looks for the rollers within `margin` \[m\] of touching, and carries the memory over.
