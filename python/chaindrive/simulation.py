@@ -84,7 +84,8 @@ def simulate(
         infinite end. The
         attributes tell how it came about: ``scene`` (a text that reproduces the drive),
         ``chaindrive_version``, ``method``, ``step``, counts of steps, rejections and evaluations,
-        ``energy_supplied`` and ``energy_residual_largest`` [J], ``wall_time`` [s],
+        ``energy_supplied``, ``energy_moved`` and ``energy_residual_largest`` [J],
+        ``wall_time`` [s],
         ``real_time_factor``, ``ns_per_link_step``, and a ``summary`` to print.
 
     Raises

@@ -47,3 +47,56 @@ fn the_residual_of_verlet_falls_with_the_square_of_the_step() -> Result<(), Box<
     assert!((order - 2.0).abs() < 0.3, "{order}");
     Ok(())
 }
+
+/// A free chain is given nothing: what it may lose is judged by what it moves about, and a run that makes energy
+/// from nothing says so.
+#[test]
+fn a_run_without_a_driver_is_judged_too() -> Result<(), Box<dyn Error>> {
+    let drive = Scene::preset("hanging_chain")?.drive()?;
+    let run = Run {
+        until: 0.05,
+        every: 1e-3,
+        ..Run::default()
+    };
+    let mut simulation = Simulation::start(&drive, &run)?;
+    let mut summary = Summary::new(&simulation);
+    let mut last = None;
+    while let Some(sample) = simulation.next_sample()? {
+        summary.push(sample);
+        last = Some(sample.clone());
+    }
+    assert!(summary.energy_supplied().abs() < 1e-9);
+    assert!(!summary.is_ledger_open());
+
+    // The same chain, twice as much energy of motion as it can have.
+    let mut sample = last.ok_or("a run has samples")?;
+    sample.energy.stores[0] += 2.0 * summary.energy_moved().max(1.0);
+    summary.push(&sample);
+    assert!(summary.is_ledger_open());
+    let report = summary.report(&simulation).to_string();
+    assert!(report.contains("do not trust this run"), "{report}");
+    Ok(())
+}
+
+/// A driver that takes back what it gave has moved energy, though it has supplied none.
+#[test]
+fn a_driver_that_reverses_has_moved_energy() -> Result<(), Box<dyn Error>> {
+    let scene = Scene::preset("marine_two_sprockets")?.replace(
+        "sprockets.crank.motion",
+        r#"{ kind = "ramp", from = "-100 rpm", to = "100 rpm", start = "5 ms", duration = "10 ms" }"#,
+    )?;
+    let run = Run {
+        until: 0.05,
+        every: 1e-3,
+        ..Run::default()
+    };
+    let mut simulation = Simulation::start(&scene.drive()?, &run)?;
+    let mut summary = Summary::new(&simulation);
+    while let Some(sample) = simulation.next_sample()? {
+        summary.push(sample);
+    }
+    let (supplied, moved) = (summary.energy_supplied(), summary.energy_moved());
+    assert!(moved > 2.0 * supplied, "{moved} of {supplied}");
+    assert!(!summary.is_ledger_open());
+    Ok(())
+}

@@ -328,3 +328,53 @@ fn slack_strands_hang_as_hinged_links() {
         }
     }
 }
+
+/// A worn chain on the 16B drive, its wheels moved apart until it closes, finds its equilibrium: the teeth
+/// of the driven wheel carry its load, −M = 1433 N m, whatever the wear.
+///
+/// The path from no weight to all of it has folds, where rollers slide from one flank to the next.
+#[test]
+fn a_worn_chain_settles() {
+    let preset = Scene::preset("industrial_16b").expect("a preset");
+    let adjust = serde_json::json!({
+        "kind": "sprocket", "name": "driven", "direction": [1, 0], "within": 0.2
+    });
+    for (elongation, pretension) in [
+        (0.002, 0.0),
+        (0.002, 1500.0),
+        (0.01, 500.0),
+        (0.01, 5000.0),
+        (0.02, 1500.0),
+        (0.03, 1500.0),
+    ] {
+        let scene = preset
+            .replace_json("route.pretension", &pretension.into())
+            .and_then(|scene| scene.replace_json("route.adjust", &adjust))
+            // At rest: closing speeds would add damping forces.
+            .and_then(|scene| scene.replace_json("sprockets.driver.motion", &"held".into()))
+            .and_then(|scene| scene.replace_json("chain.elongation", &elongation.into()))
+            .unwrap_or_else(|error| panic!("{error}"));
+        let state = settled(scene.text());
+        let what = format!("torque at {elongation} and {pretension} N");
+        compare(&what, &state.sprocket_torque[1..], &[1433.0], None, 1e-4);
+    }
+}
+
+/// A chain worn by 4 % rides 9 mm outside the pitch circle of 57 teeth, and its spans still have a tension.
+#[test]
+fn spans_of_a_heavily_worn_chain_have_a_tension() {
+    let scene = Scene::preset("industrial_16b")
+        .and_then(|scene| scene.replace("chain.elongation", "0.04"))
+        .and_then(|scene| {
+            let adjust =
+                r#"{ kind = "sprocket", name = "driven", direction = [1, 0], within = 0.1 }"#;
+            scene.replace("route.adjust", adjust)
+        })
+        .unwrap_or_else(|error| panic!("{error}"));
+    let state = settled(scene.text());
+    assert!(
+        state.span_tension.iter().all(|tension| *tension > 0.0),
+        "{:?}",
+        state.span_tension
+    );
+}

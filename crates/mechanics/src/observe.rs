@@ -264,11 +264,16 @@ impl System {
         }
     }
 
-    /// First and last roller, in path order, that lie on a sprocket's pitch circle.
+    /// First and last roller, in path order, that lie on a sprocket: on its pitch circle, or as far outside as wear
+    /// lifts the chain.
     fn seated(&self, wheel: usize, centre: Point, out: &Observation) -> Option<(usize, usize)> {
         let wheel = &self.wheels[wheel];
-        // Half a pitch along the tangent a roller is p²/8R outside the pitch circle.
-        let reach = wheel.pitch_radius + self.pitch * self.pitch / (8.0 * wheel.pitch_radius);
+        // A worn chain rides higher by as much as it is longer. Half a pitch along the tangent a roller is
+        // p²/8R outside the circle on which it rides.
+        let rest: f64 = self.links.rest[..self.links.count].iter().sum();
+        let longer = (rest / (self.links.count as f64 * self.pitch)).max(1.0);
+        let circle = wheel.pitch_radius * longer;
+        let reach = circle + self.pitch * self.pitch / (8.0 * circle);
         let on = |i: &usize| {
             let d = Point::new(out.roller_x[*i], out.roller_y[*i]) - centre;
             d.norm_squared() < reach * reach

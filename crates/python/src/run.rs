@@ -292,6 +292,7 @@ fn attributes<'py>(
     answer.set_item("time_reached", time)?;
     answer.set_item("energy_supplied", summary.energy_supplied())?;
     answer.set_item("energy_dissipated", summary.energy_dissipated())?;
+    answer.set_item("energy_moved", summary.energy_moved())?;
     answer.set_item("energy_residual_largest", summary.residual)?;
     answer.set_item("contact_force_largest", summary.forces().max)?;
     answer.set_item("stepping_time", wall)?;

@@ -18,6 +18,7 @@ pub struct Summary {
     contacts: [ContactStatistics; EventTable::KINDS.len()],
     start: Option<Energy>,
     last: Energy,
+    turnover: Turnover,
     /// Largest energy residual in magnitude \[J\].
     pub residual: f64,
     /// Samples seen.
@@ -92,6 +93,49 @@ impl ContactStatistics {
     }
 }
 
+/// How much energy a run has moved about.
+///
+/// Net work is no measure for that: a driver that reverses takes back what it gave, and a chain that
+/// swings or spins freely is given nothing at all.
+#[derive(Clone, Copy, Debug, Default)]
+struct Turnover {
+    /// Σ |ΔW| over all flows and samples \[J\].
+    flowed: f64,
+    /// Least and greatest kinetic and stored energy \[J\].
+    ranges: Option<[[f64; 2]; 2]>,
+}
+
+impl Turnover {
+    fn push(&mut self, before: &Energy, now: &Energy) {
+        let flows = now.flows.iter().zip(&before.flows);
+        self.flowed += flows.map(|(now, before)| (now - before).abs()).sum::<f64>();
+        let stores = [now.kinetic(), now.stored()];
+        let ranges = self.ranges.get_or_insert(stores.map(|energy| [energy; 2]));
+        for (range, energy) in ranges.iter_mut().zip(stores) {
+            *range = [range[0].min(energy), range[1].max(energy)];
+        }
+    }
+
+    /// Half the flows, for what comes in goes out again, or the greatest change of a store \[J\].
+    fn moved(&self) -> f64 {
+        let ranges = self.ranges.unwrap_or_default();
+        ranges
+            .iter()
+            .map(|[least, greatest]| greatest - least)
+            .fold(0.5 * self.flowed, f64::max)
+    }
+
+    /// What rounding may leave \[J\].
+    fn rounding(&self) -> f64 {
+        let ranges = self.ranges.unwrap_or_default();
+        let largest = ranges
+            .iter()
+            .flatten()
+            .fold(0.0, |m: f64, e| m.max(e.abs()));
+        ROUNDING * largest
+    }
+}
+
 /// Forces are counted in millinewtons, to three digits.
 const COUNTS_PER_NEWTON: f64 = 1e3;
 
@@ -121,6 +165,7 @@ impl Summary {
             contacts: Default::default(),
             start: None,
             last: Energy::default(),
+            turnover: Turnover::default(),
             residual: 0.0,
             samples: 0,
         }
@@ -147,7 +192,9 @@ impl Summary {
             let count = (force * COUNTS_PER_NEWTON) as u64;
             self.forces.record(count.max(1)).ok();
         }
+        let before = self.start.map_or(sample.energy, |_| self.last);
         let start = *self.start.get_or_insert(sample.energy);
+        self.turnover.push(&before, &sample.energy);
         let residual = sample.energy.residual(&start);
         if residual.abs() > self.residual.abs() {
             self.residual = residual;
@@ -197,6 +244,17 @@ impl Summary {
             .iter()
             .map(|&flow| (self.last.flow(flow) - start.flow(flow)).abs())
             .sum()
+    }
+
+    /// Energy that has changed its form or owner since the start \[J\], as the samples see it: what the
+    /// residual is to be compared with.
+    pub fn energy_moved(&self) -> f64 {
+        self.turnover.moved()
+    }
+
+    /// Whether the ledger is too far from closing for the run to be trusted.
+    pub fn is_ledger_open(&self) -> bool {
+        self.residual.abs() > (OPEN_LEDGER * self.energy_moved()).max(self.turnover.rounding())
     }
 
     /// Energy lost since the start \[J\].
@@ -255,21 +313,20 @@ impl fmt::Display for Report<'_> {
         }
         contacts(f, summary, simulation)?;
         let supplied = summary.energy_supplied();
-        let relative = if supplied > 0.0 {
-            format!(
-                ", {:.1e} of it unaccounted for",
-                (summary.residual / supplied).abs()
-            )
+        let moved = summary.energy_moved();
+        let relative = if moved > 0.0 {
+            let share = (summary.residual / moved).abs();
+            format!(", {share:.1e} of the {moved:.4e} moved")
         } else {
             String::new()
         };
         writeln!(
             f,
-            "energy [J]               supplied {supplied:.4e}{relative}; residual {:.2e}, dissipated {:.4e}",
-            summary.residual,
-            summary.energy_dissipated()
+            "energy [J]               supplied {supplied:.4e}, dissipated {:.4e}; unaccounted for {:.2e}{relative}",
+            summary.energy_dissipated(),
+            summary.residual
         )?;
-        if supplied > 0.0 && summary.residual.abs() > OPEN_LEDGER * supplied {
+        if summary.is_ledger_open() {
             writeln!(
                 f,
                 "                         do not trust this run: the energy does not add up; take a smaller step, or method generalized-alpha for rigid links"
@@ -297,8 +354,11 @@ impl fmt::Display for Report<'_> {
     }
 }
 
-/// Share of the energy supplied that may be missing before a run is called into question.
+/// Share of the energy moved that may be missing before a run is called into question.
 const OPEN_LEDGER: f64 = 0.1;
+
+/// Share of the energy present below which a residual is taken for rounding.
+const ROUNDING: f64 = 1e-9;
 
 /// One line a kind of contact that was logged.
 fn contacts(f: &mut fmt::Formatter<'_>, summary: &Summary, simulation: &Simulation) -> fmt::Result {

@@ -9,6 +9,7 @@
 //! rollers is folded (0, N−1, 1, N−2, …) so that it becomes a band, with everything else as a border.
 
 mod contact;
+mod descend;
 
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
@@ -46,6 +47,9 @@ const CONVERGED: f64 = 1e-9;
 /// Residual that is accepted where rounding keeps the iteration from going further.
 const ACCEPTED: f64 = 1e-6;
 
+/// Share of gravity or load below which the path of equilibria is taken to have ended.
+const LEAST_SHARE: f64 = 1e-3;
+
 /// Brings `q` into equilibrium: pretension first, then gravity, then load.
 pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Statics>, AssemblyError> {
     let unknowns = Unknowns::new(system);
@@ -68,7 +72,10 @@ pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Static
         unknowns: &unknowns,
     };
     if taut {
-        let found = newton.solve(q, at, 300);
+        let mut found = newton.solve(q, at, 300);
+        if found.residual >= ACCEPTED {
+            found = newton.descend(q, at);
+        }
         *q = Newton::accept(found, "pretension", &mut statics)?;
     }
     let stages: [(&'static str, bool); 2] = [
@@ -100,8 +107,14 @@ pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Static
                 }
             } else {
                 step *= 0.35;
-                if step < 1e-6 {
-                    Newton::accept(found, stage, &mut statics)?;
+                if step < LEAST_SHARE {
+                    // The path ends here: let go with all of the load on.
+                    match stage {
+                        "gravity" => load.gravity = 1.0,
+                        _ => load.torque = 1.0,
+                    }
+                    *q = Newton::accept(newton.descend(q, load), stage, &mut statics)?;
+                    share = 1.0;
                 }
             }
         }
@@ -315,12 +328,7 @@ impl Newton<'_> {
             .iter()
             .copied()
             .fold(0.0, f64::max);
-        let cap = 0.2
-            * self
-                .system
-                .wheels
-                .first()
-                .map_or(self.system.pitch, |w| w.contacts.radius);
+        let cap = self.longest();
         let mut q = start.to_vec();
         let mut shift = 1e-7 * stiffness;
         let mut balance = self.balance(&q, load);
@@ -331,17 +339,8 @@ impl Newton<'_> {
             let Some(step) = self.step(&balance, &mut shift, stiffness) else {
                 break;
             };
-            let farthest = step
-                .iter()
-                .zip(&self.unknowns.scale)
-                .map(|(s, lever)| s.abs() * lever.sqrt())
-                .fold(0.0, f64::max);
-            let factor = (cap / farthest).min(1.0);
-            for (entry, row) in self.unknowns.row.iter().enumerate() {
-                if let Some(row) = row {
-                    q[entry] += factor * step[*row];
-                }
-            }
+            let factor = (cap / self.farthest(&step)).min(1.0);
+            self.go(&mut q, &step, factor);
             balance = self.balance(&q, load);
             let now = self.residual(&q, &balance);
             if !now.is_finite() {
@@ -371,6 +370,29 @@ impl Newton<'_> {
             residual,
             tensions: balance.tensions,
             contacts: balance.contacts,
+        }
+    }
+
+    /// Longest step of a roller \[m\]: a fifth of the radius that touches the teeth.
+    fn longest(&self) -> f64 {
+        let wheel = self.system.wheels.first();
+        0.2 * wheel.map_or(self.system.pitch, |wheel| wheel.contacts.radius)
+    }
+
+    /// How far a step moves anything \[m\].
+    fn farthest(&self, step: &[f64]) -> f64 {
+        let scaled = step.iter().zip(&self.unknowns.scale);
+        scaled
+            .map(|(s, lever)| s.abs() * lever.sqrt())
+            .fold(0.0, f64::max)
+    }
+
+    /// Moves along a share of a step.
+    fn go(&self, q: &mut [f64], step: &[f64], share: f64) {
+        for (entry, row) in self.unknowns.row.iter().enumerate() {
+            if let Some(row) = row {
+                q[entry] += share * step[*row];
+            }
         }
     }
 
