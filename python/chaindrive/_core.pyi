@@ -102,6 +102,7 @@ def simulate(
     events: Sequence[str],
     output: str | PathLike[str] | None,
     overwrite: bool,
+    error: bool,
     progress: Callable[[float], object] | None,
 ) -> Mapping[str, Any]: ...
 def catalogue() -> dict[str, Any]: ...

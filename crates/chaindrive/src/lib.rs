@@ -21,6 +21,7 @@
 pub mod catalogue;
 pub mod describe;
 mod error;
+pub mod precision;
 pub mod record;
 mod run;
 pub mod scene;
@@ -34,6 +35,7 @@ pub use chaindrive_mechanics::{
 };
 pub use describe::Description;
 pub use error::SimulationError;
+pub use precision::{Estimate, Judgement};
 pub use record::{Axis, Channel, EventTable, Recording, Summary};
 pub use run::{Run, Stepping};
 pub use scene::Scene;

@@ -159,6 +159,11 @@ impl System {
             .is_some_and(|linkage| matches!(linkage.joining, Joining::Clearance(_)))
     }
 
+    /// Pitch of the chain \[m\].
+    pub fn pitch(&self) -> f64 {
+        self.pitch
+    }
+
     /// Number of rollers.
     pub fn rollers(&self) -> usize {
         self.rollers

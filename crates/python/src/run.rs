@@ -1,12 +1,16 @@
 //! Runs: without the interpreter's lock, stopped by Ctrl-C, results handed over without a copy.
 
+use std::cell::RefCell;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use chaindrive::precision::Attribute;
 use chaindrive::record::{
     self, Ending, EventColumn, EventTable, Existing, Provenance, Recording, ZarrWriter,
 };
-use chaindrive::{Axis, Channel, EventKinds, Method, Run, Simulation, Stepping, Summary};
+use chaindrive::{
+    Axis, Channel, EventKinds, Judgement, Method, Run, Simulation, Stepping, Summary,
+};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
@@ -20,7 +24,7 @@ const PATIENCE: Duration = Duration::from_millis(50);
 
 /// Runs a drive and returns its recording: time, columns, labels and attributes.
 #[pyfunction]
-#[pyo3(signature = (drive, channels, *, until, every, method, step, tolerance, onset_depth, events, output, overwrite, progress))]
+#[pyo3(signature = (drive, channels, *, until, every, method, step, tolerance, onset_depth, events, output, overwrite, error, progress))]
 #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
 pub(crate) fn simulate<'py>(
     py: Python<'py>,
@@ -35,6 +39,7 @@ pub(crate) fn simulate<'py>(
     events: Vec<String>,
     output: Option<PathBuf>,
     overwrite: bool,
+    error: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     Channel::check(&channels).or_raise()?;
@@ -60,12 +65,17 @@ pub(crate) fn simulate<'py>(
         recording,
         contacts,
         summary,
-    } = py.detach(|| carry_out(drive, &run, &channels, output, progress.as_ref()))?;
+        judgement,
+    } = py.detach(|| carry_out(drive, &run, &channels, output, error, progress.as_ref()))?;
     let answer = PyDict::new(py);
     let recorded = recording.columns.iter().map(|column| column.channel);
     let recorded: Vec<Channel> = recorded.collect();
     answer.set_item("labels", labels(py, &recorded, &simulation)?)?;
-    answer.set_item("attributes", attributes(py, &simulation, &summary)?)?;
+    answer.set_item(
+        "attributes",
+        attributes(py, &simulation, &summary, &judgement)?,
+    )?;
+    answer.set_item("waveform_horizon", judgement.waveform_horizon())?;
     let samples = recording.len();
     answer.set_item("time", PyArray1::from_vec(py, recording.time))?;
     let columns = PyDict::new(py);
@@ -130,6 +140,23 @@ struct Outcome {
     recording: Recording,
     contacts: EventTable,
     summary: Summary,
+    judgement: Judgement,
+}
+
+/// How exact a run is; raises what Python wants raised meanwhile.
+fn judge(simulation: &Simulation, run: &Run, wanted: bool) -> (Judgement, PyResult<()>) {
+    if !wanted {
+        return (Judgement::SwitchedOff, Ok(()));
+    }
+    let raised = RefCell::new(None);
+    let watch = || {
+        Python::attach(|py| py.check_signals()).is_err_and(|error| {
+            raised.replace(Some(error));
+            true
+        })
+    };
+    let judgement = Judgement::of(simulation, run, &watch);
+    (judgement, raised.into_inner().map_or(Ok(()), Err))
 }
 
 fn carry_out(
@@ -137,6 +164,7 @@ fn carry_out(
     run: &Run,
     names: &[String],
     output: Option<(PathBuf, Existing)>,
+    error: bool,
     progress: Option<&Py<PyAny>>,
 ) -> PyResult<Outcome> {
     let mut simulation = Simulation::start(&drive.drive, run).or_raise()?;
@@ -156,11 +184,14 @@ fn carry_out(
         for event in simulation.outstanding_events() {
             contacts.push(&event);
         }
+        let (judgement, raised) = judge(&simulation, run, error);
+        raised?;
         return Ok(Outcome {
             simulation,
             recording,
             contacts,
             summary,
+            judgement,
         });
     };
     // On disk; nothing is kept in memory.
@@ -171,6 +202,10 @@ fn carry_out(
     let outcome = advance(&mut simulation, &mut summary, progress, |simulation| {
         writer.push(simulation).or_raise()
     });
+    let (judgement, raised) = match &outcome {
+        Ok(()) => judge(&simulation, run, error),
+        Err(_) => (Judgement::Interrupted, Ok(())),
+    };
     let ending = match &outcome {
         Ok(()) => Ending::Complete,
         Err(error) => Python::attach(|py| {
@@ -181,13 +216,17 @@ fn carry_out(
             }
         }),
     };
+    if !matches!(ending, Ending::Failed(_)) {
+        writer.judge(&judgement);
+    }
     let finished = writer.finish(&simulation, &ending).or_raise();
-    outcome.and(finished)?;
+    outcome.and(finished).and(raised)?;
     Ok(Outcome {
         simulation,
         recording,
         contacts,
         summary,
+        judgement,
     })
 }
 
@@ -250,6 +289,7 @@ fn attributes<'py>(
     py: Python<'py>,
     simulation: &Simulation,
     summary: &Summary,
+    judgement: &Judgement,
 ) -> PyResult<Bound<'py, PyDict>> {
     let answer = PyDict::new(py);
     let statistics = simulation.statistics();
@@ -294,7 +334,17 @@ fn attributes<'py>(
     answer.set_item("stepping_time", wall)?;
     answer.set_item("real_time_factor", time / wall)?;
     answer.set_item("ns_per_link_step", wall * 1e9 / link_steps)?;
-    answer.set_item("summary", summary.report(simulation).to_string())?;
+    let mut text = summary.report(simulation).to_string();
+    if *judgement != Judgement::SwitchedOff {
+        text = format!("{text}\n{judgement}");
+    }
+    answer.set_item("summary", text)?;
+    for (name, value) in judgement.attributes() {
+        match value {
+            Attribute::Text(text) => answer.set_item(name, text)?,
+            Attribute::Number(number) => answer.set_item(name, number)?,
+        }
+    }
     Ok(answer)
 }
 

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use chaindrive::describe::spans_at_rest;
 use chaindrive::record::{Ending, Existing, Provenance};
-use chaindrive::{Channel, Drive, Simulation, Summary};
+use chaindrive::{Channel, Drive, Judgement, Run, Simulation, Summary};
 use clap::Args;
 
 use super::output::{Output, Target};
@@ -30,6 +30,11 @@ pub(crate) struct Arguments {
     /// Replaces an earlier result of the same name
     #[arg(long)]
     overwrite: bool,
+
+    /// Leaves out the estimate of the numerical error that ends the run; it takes the time of some
+    /// 24 000 steps, whatever the length of the run
+    #[arg(long)]
+    no_error: bool,
 
     /// Prints errors only
     #[arg(short, long)]
@@ -59,15 +64,29 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
     )?;
 
     let mut summary = Summary::new(&simulation);
-    let ending = drive_to_the_end(
+    let mut output = output;
+    let mut ending = drive_to_the_end(
         &mut simulation,
-        output,
+        &mut output,
         &mut summary,
         arguments.quiet,
         interrupted,
     )?;
+    let judgement = judge(&simulation, &run, &ending, arguments.no_error, interrupted);
+    if let Some(judgement) = &judgement {
+        output.judge(judgement);
+    }
+    output.finish(&simulation, &ending.of_the_result())?;
     if !arguments.quiet && summary.samples > 0 {
-        print(at_rest(&drive, &simulation) + &summary.report(&simulation).to_string())?;
+        let said = judgement
+            .iter()
+            .filter(|judgement| **judgement != Judgement::SwitchedOff)
+            .map(|judgement| format!("\n{judgement}"));
+        let report = summary.report(&simulation).to_string();
+        print(at_rest(&drive, &simulation) + &report + &said.collect::<String>())?;
+    }
+    if judgement == Some(Judgement::Interrupted) {
+        ending = Stop::Interrupted;
     }
     match ending {
         Stop::End => Ok(()),
@@ -86,13 +105,40 @@ enum Stop {
     Failed(chaindrive::SimulationError),
 }
 
+impl Stop {
+    /// What the result says of it.
+    fn of_the_result(&self) -> Ending {
+        match self {
+            Self::End => Ending::Complete,
+            Self::Interrupted => Ending::Interrupted,
+            Self::Failed(error) => Ending::Failed(error.to_string()),
+        }
+    }
+}
+
+/// How exact the run is; nothing is said of one that failed.
+fn judge(
+    simulation: &Simulation,
+    run: &Run,
+    ending: &Stop,
+    switched_off: bool,
+    interrupted: &dyn Fn() -> bool,
+) -> Option<Judgement> {
+    match ending {
+        Stop::Failed(_) => None,
+        _ if switched_off => Some(Judgement::SwitchedOff),
+        Stop::Interrupted => Some(Judgement::Interrupted),
+        Stop::End => Some(Judgement::of(simulation, run, interrupted)),
+    }
+}
+
 /// Wall time between two looks at progress and interrupts while no sample is due.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// Samples until the end, and ends the result.
+/// Samples until the end.
 fn drive_to_the_end(
     simulation: &mut Simulation,
-    mut output: Output,
+    output: &mut Output,
     summary: &mut Summary,
     quiet: bool,
     interrupted: &dyn Fn() -> bool,
@@ -122,13 +168,6 @@ fn drive_to_the_end(
             break Stop::Interrupted;
         }
     };
-    drop(progress);
-    let ending = match &stop {
-        Stop::End => Ending::Complete,
-        Stop::Interrupted => Ending::Interrupted,
-        Stop::Failed(error) => Ending::Failed(error.to_string()),
-    };
-    output.finish(simulation, &ending)?;
     Ok(stop)
 }
 

@@ -7,6 +7,7 @@ use chaindrive_integrate::Method;
 use serde_json::{Map, Value};
 
 use super::FORMAT;
+use crate::precision::{Attribute, Judgement};
 use crate::{Run, Scene, Simulation, Stepping};
 
 /// Where a run came from.
@@ -65,6 +66,7 @@ pub(super) fn attributes(
     simulation: &Simulation,
     samples: u64,
     ending: &Ending,
+    judgement: Option<&Judgement>,
 ) -> Map<String, Value> {
     let mut story = Story(Map::new());
     story.text("title", &provenance.title);
@@ -100,6 +102,12 @@ pub(super) fn attributes(
     story.number("stepping_time", simulation.stepping_time());
     story.number("energy_residual_last", simulation.energy_residual());
     assembly(&mut story, simulation);
+    for (name, value) in judgement.map(Judgement::attributes).unwrap_or_default() {
+        match value {
+            Attribute::Text(text) => story.text(&name, &text),
+            Attribute::Number(number) => story.number(&name, number),
+        }
+    }
     story.0
 }
 

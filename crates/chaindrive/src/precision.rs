@@ -1,0 +1,27 @@
+//! How exact a run is: its chaos horizon, its numerical error, and the method that an accuracy takes.
+//!
+//! | question | answer |
+//! |---|---|
+//! | how long can waveforms of two correct runs agree? | [`Horizon`], by a twin that starts 1e-12 m apart |
+//! | how far is a run from the exact solution of its model? | [`estimate`], by a shadow run with half the step |
+//!
+//! All of it looks at the beginning of a run, a [`Window`] of a few teeth, so that its cost does not grow
+//! with the length of the run; and nothing of it looks at a clock, so that answers are the same to the
+//! last bit wherever the binary runs on the same kind of processor.
+
+mod compare;
+mod estimate;
+mod growth;
+mod horizon;
+mod judgement;
+mod trace;
+mod window;
+
+pub use compare::Compared;
+pub use estimate::{Attribute, Estimate, estimate};
+pub use horizon::{Horizon, Reach};
+pub use judgement::Judgement;
+pub use window::Window;
+
+/// Asked after every sample whether the user wants the calculation to stop.
+pub type Watch<'a> = &'a dyn Fn() -> bool;
