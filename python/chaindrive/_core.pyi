@@ -99,6 +99,7 @@ def simulate(
     step: float | None,
     tolerance: float,
     onset_depth: float | None,
+    accuracy: float | None,
     events: Sequence[str],
     output: str | PathLike[str] | None,
     overwrite: bool,

@@ -15,6 +15,7 @@ import xarray as xr
 from chaindrive import _core
 from chaindrive.channels import channels
 from chaindrive.drive import Drive
+from chaindrive.errors import ParameterError
 
 __all__ = ["simulate"]
 
@@ -29,6 +30,7 @@ def simulate(
     step: float | None = None,
     tolerance: float | None = None,
     onset_depth: float | None = None,
+    accuracy: float | None = None,
     events: str | Iterable[str] | None = None,
     output: str | PathLike[str] | None = None,
     overwrite: bool = False,
@@ -44,7 +46,7 @@ def simulate(
     drive
         What to simulate.
     until
-        End of the run [s]. This and the next seven come from the scene when absent.
+        End of the run [s]. This and the next eight come from the scene when absent.
     every
         Interval between samples [s]. Samples are interpolated: more of them do not change the
         motion.
@@ -63,6 +65,11 @@ def simulate(
     onset_depth
         Deepest penetration at which a contact may begin [m]: deeper steps are rejected and
         shortened. Absent: contacts begin wherever a step lands.
+    accuracy
+        Largest relative error of the tension [–], such as 0.01: method, step and onset depth are
+        chosen for it by short trials at the beginning of the run, the same ones every time. 0.01
+        when neither the scene nor the caller gives one of them or a tolerance. Not together with
+        these.
     events
         Contacts to log from touch to parting: of ``"teeth"``, ``"guides"``, ``"joints"``.
     output
@@ -73,7 +80,7 @@ def simulate(
         Whether an earlier result at `output` may be replaced.
     error
         Whether the run ends with an estimate of its own numerical error. It takes the time of some
-        24 000 steps, whatever the length of the run.
+        24 000 steps of the default length, whatever the length of the run.
     progress
         True for a line on stderr, or a function called with the share done, 0 to 1.
 
@@ -89,6 +96,10 @@ def simulate(
         ``chaindrive_version``, ``method``, ``step``, counts of steps, rejections and evaluations,
         ``energy_supplied`` and ``energy_residual_largest`` [J], ``wall_time`` [s],
         ``real_time_factor``, ``ns_per_link_step``, and a ``summary`` to print.
+
+        Where method and step were chosen, ``choice`` says which, why and how many were tried,
+        ``accuracy_error`` what error was found [–], and ``accuracy_kept`` whether ``accuracy`` is
+        ``"kept"`` or ``"not reached"``.
 
         The numerical error is estimated from the beginning of the run, ``error_window`` [s] long,
         by the difference from a run with half the step: ``error_span_tension`` and
@@ -121,6 +132,16 @@ def simulate(
     (3, 20)
     """
     defaults = drive.run_defaults
+    given = {"method": method, "step": step, "tolerance": tolerance, "onset_depth": onset_depth}
+    named = [name for name, value in given.items() if value is not None]
+    if accuracy is not None and named:
+        raise ParameterError(
+            f"`accuracy` chooses the method and its step, and `{named[0]}` is given as well",
+            "accuracy",
+            f"leave out `accuracy` or `{named[0]}`",
+        )
+    if accuracy is None and not named:
+        accuracy = defaults["accuracy"]
     if output is not None:
         _require_zarr()
     names = _listed(defaults["record"] if record is None else record)
@@ -132,6 +153,7 @@ def simulate(
         "step": defaults["step"] if step is None and method is None else step,
         "tolerance": defaults["tolerance"] if tolerance is None else tolerance,
         "onset_depth": defaults["onset_depth"] if onset_depth is None else onset_depth,
+        "accuracy": accuracy,
         "events": _listed(defaults["events"] if events is None else events),
     }
     start = time.perf_counter()

@@ -35,7 +35,7 @@ pub use chaindrive_mechanics::{
 };
 pub use describe::Description;
 pub use error::SimulationError;
-pub use precision::{Estimate, Judgement};
+pub use precision::{Choice, Estimate, Judgement};
 pub use record::{Axis, Channel, EventTable, Recording, Summary};
 pub use run::{Run, Stepping};
 pub use scene::Scene;

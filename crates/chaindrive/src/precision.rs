@@ -4,11 +4,15 @@
 //! |---|---|
 //! | how long can waveforms of two correct runs agree? | [`Horizon`], by a twin that starts 1e-12 m apart |
 //! | how far is a run from the exact solution of its model? | [`estimate`], by a shadow run with half the step |
+//! | which method and step keep an error? | [`choose`], by trying them from the cheapest on |
 //!
 //! All of it looks at the beginning of a run, a [`Window`] of a few teeth, so that its cost does not grow
 //! with the length of the run; and nothing of it looks at a clock, so that answers are the same to the
 //! last bit wherever the binary runs on the same kind of processor.
 
+mod attribute;
+mod candidates;
+mod choice;
 mod compare;
 mod estimate;
 mod growth;
@@ -17,8 +21,10 @@ mod judgement;
 mod trace;
 mod window;
 
+pub use attribute::Attribute;
+pub use choice::{ACCURACY, Choice, Promise, Trial, choose};
 pub use compare::Compared;
-pub use estimate::{Attribute, Estimate, estimate};
+pub use estimate::{Estimate, estimate};
 pub use horizon::{Horizon, Reach};
 pub use judgement::Judgement;
 pub use window::Window;

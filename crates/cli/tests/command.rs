@@ -77,6 +77,8 @@ fn a_run_writes_a_table() {
         "2 ms",
         "--every",
         "1 ms",
+        "--step",
+        "10 us",
         "-q",
     ];
     let record = ["--record", "energy_kinetic,link_tension", "-o", "ring.csv"];
@@ -447,4 +449,62 @@ fn the_marine_engine_runs() {
         assert!(out.contains(word), "{out}");
     }
     assert_eq!(group(&at.join("engine.zarr"))["attributes"]["samples"], 101);
+}
+
+#[test]
+fn a_run_says_how_exact_it_is_unless_told_not_to() {
+    let folder = folder();
+    let at = folder.path();
+    let short = [
+        "run",
+        "bicycle_slack",
+        "--until",
+        "6 ms",
+        "-o",
+        "run.zarr",
+        "--overwrite",
+    ];
+    let (code, out, err) = run(at, &short);
+    assert_eq!(code, 0, "{err}");
+    assert!(
+        out.contains("method chosen            implicit-damping"),
+        "{out}"
+    );
+    assert!(
+        out.contains("numerical error          against half the step"),
+        "{out}"
+    );
+    let attributes = &group(&at.join("run.zarr"))["attributes"];
+    assert_eq!(attributes["error_estimate"], "made");
+    assert_eq!(attributes["accuracy"], 0.01);
+    let horizon = attributes["waveform_horizon"].as_f64().unwrap();
+    let tension = group(&at.join("run.zarr").join("span_tension"));
+    assert_eq!(tension["attributes"]["waveform_horizon"], horizon);
+
+    let (code, out, err) = run(at, &[&short[..], &["--no-error"]].concat());
+    assert_eq!(code, 0, "{err}");
+    assert!(!out.contains("numerical error"), "{out}");
+    let attributes = &group(&at.join("run.zarr"))["attributes"];
+    assert_eq!(attributes["error_estimate"], "switched off");
+    assert!(attributes["error_span_tension"].is_null());
+}
+
+#[test]
+fn the_method_is_chosen_unless_it_is_given() {
+    let folder = folder();
+    let at = folder.path();
+    let short = ["run", "spinning_ring", "--until", "10 ms"];
+    let (_, out, _) = run(at, &[&short[..], &["--accuracy", "0.001 %"]].concat());
+    assert!(out.contains("within 0.001 %"), "{out}");
+    let (_, out, _) = run(at, &[&short[..], &["--set", "run.accuracy=2 %"]].concat());
+    assert!(out.contains("within 2.0 %"), "{out}");
+    let (_, out, _) = run(at, &[&short[..], &["--step", "10 us"]].concat());
+    assert!(!out.contains("method chosen"), "{out}");
+    let both = ["--accuracy", "1%", "--method", "rk4"];
+    let (code, _, err) = run(at, &[&short[..], &both].concat());
+    assert_eq!(code, 2);
+    assert!(err.contains("cannot be used with"), "{err}");
+    let (code, _, err) = run(at, &[&short[..], &["--accuracy", "120 %"]].concat());
+    assert_eq!(code, 2);
+    assert!(err.contains("accuracy"), "{err}");
 }

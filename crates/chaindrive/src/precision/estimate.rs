@@ -6,6 +6,7 @@ use chaindrive_integrate::Method;
 use chaindrive_mechanics::Assembled;
 
 use super::Watch;
+use super::attribute::Attribute;
 use super::compare::{Account, Compared, distances, rms};
 use super::horizon::{APART, Horizon, LIMIT, Reach};
 use super::trace::Trace;
@@ -52,18 +53,10 @@ pub struct Estimate {
     until: f64,
 }
 
-/// A value in the attributes of a result.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Attribute {
-    /// Text.
-    Text(String),
-    /// Finite number.
-    Number(f64),
-}
-
 /// Estimates the error of a run from its beginning.
 ///
-/// Costs at most some 24 000 steps of the run, whatever its length: see [`Window`].
+/// Costs some 24 000 evaluations for a run with its default step, and the more the shorter the step, whatever the
+/// length of the run: see [`Window`].
 ///
 /// # Errors
 /// [`SimulationError`] when one of the short runs fails, [`SimulationError::Interrupted`] when `watch`
@@ -256,7 +249,7 @@ impl fmt::Display for Reach {
 }
 
 /// Per cent, with the digits that mean something.
-fn percent(value: f64) -> String {
+pub(super) fn percent(value: f64) -> String {
     let value = 100.0 * value;
     if value.is_nan() {
         "none".to_owned()

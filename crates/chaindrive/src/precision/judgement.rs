@@ -3,7 +3,8 @@
 use std::fmt;
 
 use super::Watch;
-use super::estimate::{Attribute, Estimate, estimate};
+use super::attribute::Attribute;
+use super::estimate::{Estimate, estimate};
 use crate::{Run, Simulation, SimulationError};
 
 /// What is said about the error of a run at its end.

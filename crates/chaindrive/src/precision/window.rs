@@ -3,12 +3,15 @@
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem};
 use chaindrive_mechanics::{Assembled, Observation};
 
-use crate::Run;
+use crate::{Run, Stepping};
 
 /// Teeth that pass in a window.
 const TEETH: f64 = 8.0;
-/// Steps of the run that a window has at most: what bounds the cost of drives that turn slowly or not at all.
+/// Default steps of the drive that a window has at most: what bounds the cost of drives that turn slowly or
+/// not at all.
 const STEPS: f64 = 8000.0;
+/// Steps of the run itself that a window has at most, however short somebody wants them.
+const OWN_STEPS: f64 = 64_000.0;
 /// Samples of a window.
 const SAMPLES: f64 = 256.0;
 
@@ -27,13 +30,22 @@ impl Window {
     /// The window of a run.
     ///
     /// ```text
-    /// min(until, 8 p/v, 8000 h),   p/v: time in which a tooth passes, h: step
+    /// min(until, 8 p/v, 8000 h₀, 64 000 h),   p/v: time in which a tooth passes, h₀: default step, h: step
     /// ```
+    ///
+    /// A shorter step does not make the window shorter, until it is an eighth of the default one: errors are
+    /// compared over the same time.
     pub(super) fn of(start: &Assembled, run: &Run) -> Self {
         let period = period(start);
-        let step = typical_step(start, run);
+        let default = Run {
+            stepping: Stepping::Auto,
+            step: None,
+            ..run.clone()
+        };
+        let steps =
+            (STEPS * typical_step(start, &default)).min(OWN_STEPS * typical_step(start, run));
         let teeth = period.map_or(f64::INFINITY, |period| TEETH * period);
-        let until = run.until.min(teeth).min(STEPS * step);
+        let until = run.until.min(teeth).min(steps);
         Self {
             until,
             every: until / SAMPLES,

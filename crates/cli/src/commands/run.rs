@@ -4,14 +4,15 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use chaindrive::describe::spans_at_rest;
+use chaindrive::precision::choose;
 use chaindrive::record::{Ending, Existing, Provenance};
-use chaindrive::{Channel, Drive, Judgement, Run, Simulation, Summary};
+use chaindrive::{Channel, Drive, Judgement, Run, Simulation, SimulationError, Summary};
 use clap::Args;
 
 use super::output::{Output, Target};
 use crate::failure::Failure;
 use crate::progress::Progress;
-use crate::request::{RunArguments, SceneArguments};
+use crate::request::{Request, RunArguments, SceneArguments};
 use crate::stdout::print;
 
 /// Simulates a scene and ends with a summary.
@@ -32,7 +33,7 @@ pub(crate) struct Arguments {
     overwrite: bool,
 
     /// Leaves out the estimate of the numerical error that ends the run; it takes the time of some
-    /// 24 000 steps, whatever the length of the run
+    /// 24 000 steps of the default length, whatever the length of the run
     #[arg(long)]
     no_error: bool,
 
@@ -43,14 +44,27 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
     let target = Target::of(arguments.output.as_deref())?;
-    let (scene, run, names) = arguments.run.apply(arguments.scene.load()?)?;
+    let Request {
+        scene,
+        run,
+        record,
+        accuracy,
+    } = arguments.run.apply(arguments.scene.load()?)?;
     let drive = scene.drive()?;
     let failed = |source| Failure::Start {
         scene: scene.name().to_owned(),
         source,
     };
-    let mut simulation = Simulation::start(&drive, &run).map_err(failed)?;
-    let channels = Channel::chosen(&names, simulation.system()).map_err(failed)?;
+    let start = drive.assemble().map_err(|error| failed(error.into()))?;
+    let choice = match accuracy.map(|accuracy| choose(&start, &run, accuracy, interrupted)) {
+        None => None,
+        Some(Ok(choice)) => Some(choice),
+        Some(Err(SimulationError::Interrupted)) => return Err(Failure::Interrupted),
+        Some(Err(error)) => return Err(failed(error)),
+    };
+    let run = choice.as_ref().map_or(run, |choice| choice.run.clone());
+    let mut simulation = Simulation::from_assembled(start, &run).map_err(failed)?;
+    let channels = Channel::chosen(&record, simulation.system()).map_err(failed)?;
     let existing = if arguments.overwrite {
         Existing::Replace
     } else {
@@ -59,7 +73,10 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
     let output = target.begin(
         &simulation,
         &channels,
-        Provenance::of(&scene, &run),
+        Provenance {
+            choice: choice.clone(),
+            ..Provenance::of(&scene, &run)
+        },
         existing,
     )?;
 
@@ -82,8 +99,9 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
             .iter()
             .filter(|judgement| **judgement != Judgement::SwitchedOff)
             .map(|judgement| format!("\n{judgement}"));
+        let chosen = choice.map_or_else(String::new, |choice| format!("\n{choice}"));
         let report = summary.report(&simulation).to_string();
-        print(at_rest(&drive, &simulation) + &report + &said.collect::<String>())?;
+        print(at_rest(&drive, &simulation) + &report + &chosen + &said.collect::<String>())?;
     }
     if judgement == Some(Judgement::Interrupted) {
         ending = Stop::Interrupted;
@@ -102,7 +120,7 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
 enum Stop {
     End,
     Interrupted,
-    Failed(chaindrive::SimulationError),
+    Failed(SimulationError),
 }
 
 impl Stop {
