@@ -28,6 +28,7 @@ from chaindrive.errors import (
 )
 from chaindrive.friction import Friction, friction
 from chaindrive.law import Law, law
+from chaindrive.precision import work_precision
 from chaindrive.simulation import simulate
 
 __all__ = [
@@ -53,4 +54,5 @@ __all__ = [
     "scenes",
     "schema",
     "simulate",
+    "work_precision",
 ]

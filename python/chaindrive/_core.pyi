@@ -22,6 +22,7 @@ __all__ = [
     "presets",
     "schema",
     "simulate",
+    "work_precision",
 ]
 
 _Floats: TypeAlias = NDArray[np.float64]
@@ -105,6 +106,14 @@ def simulate(
     overwrite: bool,
     error: bool,
     progress: Callable[[float], object] | None,
+) -> Mapping[str, Any]: ...
+def work_precision(
+    drive: Drive,
+    variants: Sequence[tuple[str, float | None, float | None, float | None]],
+    *,
+    until: float | None,
+    repeats: int,
+    replicates: int,
 ) -> Mapping[str, Any]: ...
 def catalogue() -> dict[str, Any]: ...
 def presets() -> list[tuple[str, str]]: ...

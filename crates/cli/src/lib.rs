@@ -21,7 +21,7 @@ use std::ffi::OsString;
 
 use clap::{Parser, Subcommand};
 
-use commands::{check, describe, lists, run as run_command};
+use commands::{bench, check, describe, lists, run as run_command};
 
 /// Exit code of a run that was stopped by Ctrl-C.
 pub const INTERRUPTED: u8 = 130;
@@ -45,6 +45,7 @@ struct Command {
 #[derive(Debug, Subcommand)]
 enum Verb {
     Run(run_command::Arguments),
+    Bench(bench::Arguments),
     Check(check::Arguments),
     Describe(describe::Arguments),
     Scenes(lists::Scenes),
@@ -80,6 +81,7 @@ where
     };
     let done = match &command.verb {
         Verb::Run(arguments) => run_command::run(arguments, interrupted),
+        Verb::Bench(arguments) => bench::bench(arguments, interrupted),
         Verb::Check(arguments) => check::check(arguments),
         Verb::Describe(arguments) => describe::describe(arguments),
         Verb::Scenes(arguments) => lists::scenes(arguments),

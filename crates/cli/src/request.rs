@@ -27,7 +27,7 @@ pub(crate) struct SceneArguments {
 }
 
 /// What to run; absent settings are those of the scene.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(crate) struct RunArguments {
     /// End of the run, such as "1 s" or 1
     #[arg(long, value_name = "TIME")]
@@ -115,6 +115,14 @@ impl SceneArguments {
 }
 
 impl RunArguments {
+    /// Nothing but the end of the run.
+    pub(crate) fn until(until: Option<&str>) -> Self {
+        Self {
+            until: until.map(str::to_owned),
+            ..Self::default()
+        }
+    }
+
     /// Writes the settings into the scene and reads all of them from there.
     ///
     /// The channels are names: which of them a chain has is known when it is assembled.

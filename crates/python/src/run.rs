@@ -132,7 +132,8 @@ fn event_kinds(names: &[String]) -> PyResult<EventKinds> {
     Ok(kinds)
 }
 
-fn stepping(name: &str) -> PyResult<Stepping> {
+/// The method of a name.
+pub(crate) fn stepping(name: &str) -> PyResult<Stepping> {
     Stepping::from_name(name).ok_or_else(|| {
         let known = Stepping::ALL.map(Stepping::name).join(", ");
         let message = format!("no method is named `{name}`; there are {known}");
@@ -160,12 +161,15 @@ struct Precision {
 }
 
 /// Lets `work` look at Python's signals, and raises what it found there.
-fn watched<T>(work: impl FnOnce(&dyn Fn() -> bool) -> T) -> (T, PyResult<()>) {
+pub(crate) fn watched<T>(work: impl FnOnce(&dyn Fn() -> bool) -> T) -> (T, PyResult<()>) {
     let raised = RefCell::new(None);
     let watch = || {
-        Python::attach(|py| py.check_signals()).is_err_and(|error| {
-            raised.replace(Some(error));
-            true
+        Python::attach(|py| match py.check_signals() {
+            Ok(()) => false,
+            Err(error) => {
+                raised.replace(Some(error));
+                true
+            }
         })
     };
     let answer = work(&watch);

@@ -53,6 +53,15 @@ impl Window {
         }
     }
 
+    /// Another end \[s\], with as many samples.
+    pub(super) fn with_end(&self, until: f64) -> Self {
+        Self {
+            until,
+            every: until / (self.until / self.every).round(),
+            ..*self
+        }
+    }
+
     /// Its first half, with the same samples.
     pub(super) fn first_half(&self) -> Self {
         Self {
