@@ -32,7 +32,7 @@ pub use choice::{ACCURACY, Choice, Promise, Trial, choose};
 pub use compare::Compared;
 pub use errors::Errors;
 pub use estimate::{Estimate, estimate};
-pub use horizon::{Horizon, Reach};
+pub use horizon::{Horizon, Reach, horizon};
 pub use judgement::Judgement;
 pub use table::Number;
 pub use variant::Variant;

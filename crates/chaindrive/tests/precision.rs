@@ -1,7 +1,7 @@
 //! What a run says about its own exactness, against what more exact runs find.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
-use chaindrive::precision::{Attribute, Estimate, Reach, estimate};
+use chaindrive::precision::{Attribute, Estimate, Reach, estimate, horizon};
 use chaindrive::record::{Ending, Existing, Provenance, ZarrWriter};
 use chaindrive::{Channel, Judgement, Run, Scene, Simulation, SimulationError, Stepping};
 
@@ -214,4 +214,38 @@ fn a_stored_result_carries_its_error_and_its_horizon() {
     let horizon = judgement.waveform_horizon().unwrap();
     assert!(horizon < 6e-3);
     assert_eq!(stored(&path, "span_tension")["waveform_horizon"], horizon);
+}
+
+/// Twins are the same drive, less than 1e-12 m elsewhere: particles with the copies of a closed chain, and links.
+#[test]
+fn a_twin_starts_a_picometre_away() {
+    for scene in ["marine_two_sprockets", "bicycle"] {
+        let start = Scene::preset(scene).unwrap().drive().unwrap().assemble();
+        let start = start.unwrap();
+        let twin = start.nudged(1e-12);
+        let shifts: Vec<f64> = twin.q.iter().zip(&start.q).map(|(a, b)| a - b).collect();
+        // Coordinates of some metres round to 4e-16 m.
+        assert!(
+            shifts.iter().all(|shift| shift.abs() <= 1.001e-12),
+            "{scene}"
+        );
+        let moved = shifts.iter().filter(|shift| **shift != 0.0).count();
+        assert!(moved > start.system.rollers(), "{scene}: {moved}");
+        assert_eq!(start.nudged(1e-12).q, twin.q, "the pattern is fixed");
+        assert_eq!(twin.v, start.v);
+    }
+}
+
+/// Followed for longer, the extrapolated horizon of the marine engine becomes a measured one of the same size.
+#[test]
+fn extrapolation_finds_the_size_of_the_horizon() {
+    let start = Scene::preset("marine_engine").unwrap().drive().unwrap();
+    let start = start.assemble().unwrap();
+    let run = Run::default();
+    let short = horizon(&start, &run, 0.07, &never).unwrap();
+    let long = horizon(&start, &run, 0.4, &never).unwrap();
+    assert!(matches!(short.all, Reach::Extrapolated { .. }), "{short:?}");
+    assert!(matches!(long.all, Reach::Measured { .. }), "{long:?}");
+    let ratio = short.all.time().unwrap() / long.all.time().unwrap();
+    assert!((0.4..2.5).contains(&ratio), "{ratio}");
 }

@@ -1,8 +1,14 @@
 //! The chaos horizon: how long two runs that start 1e-12 m apart stay together.
 
+use chaindrive_mechanics::Assembled;
+
+use super::Watch;
 use super::compare::{Distance, distances};
+use super::estimate::pinned;
 use super::growth::{Growth, growth};
 use super::trace::Trace;
+use super::window::Window;
+use crate::{Run, SimulationError};
 
 /// How far the twin's rollers or links start from those of the run \[m\], see `Assembled::nudged`.
 pub(super) const APART: f64 = 1e-12;
@@ -72,6 +78,24 @@ impl Reach {
             },
         }
     }
+}
+
+/// The horizon of a run, found by following it and its twin for some time \[s\] instead of a
+/// [`Window`]: the longer, the less is extrapolated.
+///
+/// # Errors
+/// [`SimulationError`] when one of the two fails, [`SimulationError::Interrupted`] when `watch` says so.
+pub fn horizon(
+    start: &Assembled,
+    run: &Run,
+    follow: f64,
+    watch: Watch<'_>,
+) -> Result<Horizon, SimulationError> {
+    let run = pinned(start, run);
+    let window = Window::of(start, &run).with_end(follow);
+    let own = Trace::take(start, &run, &window, watch)?;
+    let twin = Trace::take(&start.nudged(APART), &run, &window, watch)?;
+    Ok(Horizon::of(&own, &twin))
 }
 
 impl Horizon {

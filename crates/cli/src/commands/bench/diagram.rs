@@ -27,6 +27,7 @@ pub(super) fn draw(table: &Table, title: &str, to: &Path) -> Result<(), Box<dyn 
         .configure_mesh()
         .x_desc(format!("wall time for {:.2e} s [s]", table.window))
         .y_desc("error of the tight span, rms [–]")
+        .max_light_lines(4)
         .x_label_formatter(&|value| format!("{value:.0e}"))
         .y_label_formatter(&|value| format!("{value:.0e}"))
         .draw()?;
@@ -51,6 +52,7 @@ pub(super) fn draw(table: &Table, title: &str, to: &Path) -> Result<(), Box<dyn 
     }
     chart
         .configure_series_labels()
+        .position(SeriesLabelPosition::LowerLeft)
         .background_style(WHITE.mix(0.8))
         .border_style(BLACK.mix(0.3))
         .draw()?;
