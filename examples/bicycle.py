@@ -22,7 +22,14 @@ TRANSIENT = 0.2  # share of a run that is left out of the statistics
 
 
 def run(drive, until, every=1e-4, **options):
-    return cd.simulate(drive, until=until, every=every, progress=False, **options)
+    return cd.simulate(
+        drive,
+        until=until,
+        every=every,
+        progress=False,
+        error=False,
+        **({"method": "auto"} | options),
+    )
 
 
 def meshing(result, sprocket, until):

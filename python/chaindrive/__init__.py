@@ -29,6 +29,7 @@ from chaindrive.errors import (
 )
 from chaindrive.friction import Friction, friction
 from chaindrive.law import Law, law
+from chaindrive.precision import work_precision
 from chaindrive.simulation import simulate
 from chaindrive.sweeping import sweep
 
@@ -56,4 +57,5 @@ __all__ = [
     "schema",
     "simulate",
     "sweep",
+    "work_precision",
 ]

@@ -23,6 +23,7 @@ __all__ = [
     "presets",
     "schema",
     "simulate",
+    "work_precision",
 ]
 
 _Floats: TypeAlias = NDArray[np.float64]
@@ -120,10 +121,20 @@ def simulate(
     step: float | None,
     tolerance: float,
     onset_depth: float | None,
+    accuracy: float | None,
     events: Sequence[str],
     output: str | PathLike[str] | None,
     overwrite: bool,
+    error: bool,
     progress: Callable[[float], object] | None,
+) -> Mapping[str, Any]: ...
+def work_precision(
+    drive: Drive,
+    variants: Sequence[tuple[str, float | None, float | None, float | None]],
+    *,
+    until: float | None,
+    repeats: int,
+    replicates: int,
 ) -> Mapping[str, Any]: ...
 def catalogue() -> dict[str, Any]: ...
 def presets() -> list[tuple[str, str]]: ...

@@ -1,4 +1,4 @@
-"""Plots: the layout of a drive, tensions over time, the chain at an instant.
+"""Plots: a drive, its chain at an instant, tensions over time, work against precision.
 
 Needs the extra ``plot`` (matplotlib). Every function draws into the axes it is given, or into
 new ones, and returns them; nothing is shown or saved.
@@ -17,7 +17,7 @@ from chaindrive.drive import Drive, _from_text
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["frame", "layout", "tension"]
+__all__ = ["frame", "layout", "tension", "work_precision"]
 
 _STEEL = "#8d99a6"
 _OUTLINE = "#3c4650"
@@ -139,6 +139,48 @@ def tension(run: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     if values.sizes[dim] <= 12:
         ax.legend(fontsize="small")
     ax.margins(x=0)
+    return ax
+
+
+def work_precision(table: xr.Dataset, *, ax: Axes | None = None, cost: str = "wall") -> Axes:
+    """Draw error against cost, both logarithmic, one line a method and onset depth.
+
+    Parameters
+    ----------
+    table
+        What `chaindrive.work_precision` returned.
+    ax
+        Where to draw; new axes when absent.
+    cost
+        Column for the abscissa: ``"wall"``, ``"cpu"`` or ``"evaluations"``.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = _axes(ax)
+    error = table["error_tight_span_tension"]
+    methods = table["method"].values.astype(str)
+    depths = table["onset_depth"].values
+    names = [
+        name if np.isnan(depth) else f"{name}, onset {depth:.0e} m"
+        for name, depth in zip(methods, depths, strict=True)
+    ]
+    for name in dict.fromkeys(names):
+        rows = np.array([other == name for other in names]) & np.isfinite(error.values)
+        if rows.any():
+            order = np.argsort(table[cost].values[rows])
+            ax.plot(table[cost].values[rows][order], error.values[rows][order], "o-", label=name)
+    agreement = table.attrs.get("agreement_tight_tension", 0.0)
+    if agreement > 0.0:
+        ax.axhline(agreement, color=_STEEL, linestyle=":", label="reference and check apart")
+    unit = table[cost].attrs["units"]
+    ax.set_xlabel(table[cost].attrs["long_name"] + ("" if unit == "1" else f" [{unit}]"))
+    ax.set_ylabel("error of the tight span, rms [–]")
+    ax.set_xscale("log")
+    ax.set_yscale("log")
+    ax.set_title(table.attrs.get("title", ""))
+    ax.legend()
     return ax
 
 

@@ -40,9 +40,11 @@ def sweep(
 ) -> xr.Dataset:
     """Simulate every combination of some values in a drive's scene and stack the results.
 
-    Every variant is computed by one thread as `simulate` would compute it, with the method of the
-    scene: the numbers do not depend on `jobs` or `executor`, to the last bit. The interpreter is
-    free for other threads meanwhile, and Ctrl-C stops the sweep.
+    Every variant is computed by one thread as `simulate` would compute it with the method of the
+    scene, or ``"auto"``: the numbers do not depend on `jobs` or `executor`, to the last bit. An
+    accuracy is kept where the scene asks for one (``run.accuracy``): each variant then begins with
+    trials of its own. The interpreter is free for other threads meanwhile, and Ctrl-C stops the
+    sweep.
 
     Parameters
     ----------

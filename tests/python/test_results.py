@@ -91,6 +91,7 @@ def test_provenance_reproduces_the_run():
         every=story["every"],
         record="link_tension",
         method=story["method"],
+        step=story["step"],
     )
     xr.testing.assert_identical(again["link_tension"], run["link_tension"])
 
@@ -160,3 +161,44 @@ def test_zarr_holds_what_memory_holds(tmp_path):
         cd.simulate(drive, **settings, output=tmp_path / "run.zarr")
     assert "overwrite" in caught.value.hint
     cd.simulate(drive, **settings, output=tmp_path / "run.zarr", overwrite=True)
+
+
+def test_a_run_says_how_exact_it_is() -> None:
+    run = cd.simulate(cd.scenes.bicycle_slack(), until=6e-3, every=1e-3, record="span_tension")
+    story = run.attrs
+    assert story["error_estimate"] == "made"
+    assert 0 < story["error_tight_span_tension"] < 0.05
+    assert story["error_contact_force"] >= story["error_contact_force_p50"]
+    assert "numerical error" in story["summary"]
+    # The waveform is good for a millisecond or two, and the variable says so.
+    assert run["span_tension"].attrs["waveform_horizon"] == story["waveform_horizon"] < 6e-3
+    assert story["chaos_horizon"] > story["waveform_horizon"]
+
+
+def test_the_error_can_be_left_out() -> None:
+    run = cd.simulate(cd.scenes.spinning_ring(), until=2e-3, error=False)
+    assert run.attrs["error_estimate"] == "switched off"
+    assert "error_span_tension" not in run.attrs
+    assert "numerical error" not in run.attrs["summary"]
+
+
+def test_the_method_is_chosen_for_an_accuracy() -> None:
+    drive = cd.scenes.spinning_ring()
+    coarse = cd.simulate(drive, until=0.02, accuracy=0.05).attrs
+    fine = cd.simulate(drive, until=0.02, accuracy=1e-5).attrs
+    assert coarse["accuracy_kept"] == fine["accuracy_kept"] == "kept"
+    assert fine["accuracy_error"] <= 1e-5
+    assert fine["evaluations"] > coarse["evaluations"]
+    assert fine["error_span_tension"] <= 1e-5
+    assert "cheapest" in fine["choice"]
+    # What is given is not chosen.
+    assert "choice" not in cd.simulate(drive, until=0.02, method="verlet").attrs
+
+
+def test_an_accuracy_and_a_method_do_not_go_together() -> None:
+    drive = cd.scenes.spinning_ring()
+    with pytest.raises(cd.ParameterError, match="`step` is given as well") as caught:
+        cd.simulate(drive, until=0.02, accuracy=0.01, step=1e-6)
+    assert caught.value.path == "accuracy"
+    with pytest.raises(cd.ParameterError, match="between 0 and 1"):
+        cd.simulate(drive, until=0.02, accuracy=2.0)

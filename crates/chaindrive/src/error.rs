@@ -48,6 +48,10 @@ pub enum SimulationError {
     )]
     Implicit { method: &'static str, works: String },
 
+    /// Somebody asked the calculation to stop.
+    #[error("interrupted")]
+    Interrupted,
+
     /// The motion ceased to be finite.
     #[error(
         "at t = {t:.6} s the {quantity} of {place} is no longer finite; try a smaller step, or look for a contact or damping that is too stiff for its mass"

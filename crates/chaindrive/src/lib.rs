@@ -21,6 +21,7 @@
 pub mod catalogue;
 pub mod describe;
 mod error;
+pub mod precision;
 pub mod record;
 mod run;
 pub mod scene;
@@ -35,6 +36,7 @@ pub use chaindrive_mechanics::{
 };
 pub use describe::Description;
 pub use error::SimulationError;
+pub use precision::{Choice, Estimate, Judgement};
 pub use record::{Axis, Channel, EventTable, Recording, Summary};
 pub use run::{Run, Stepping};
 pub use scene::Scene;

@@ -1,5 +1,6 @@
 //! The verbs.
 
+pub(crate) mod bench;
 pub(crate) mod check;
 pub(crate) mod describe;
 pub(crate) mod lists;

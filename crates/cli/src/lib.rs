@@ -21,7 +21,7 @@ use std::ffi::OsString;
 
 use clap::{Parser, Subcommand};
 
-use commands::{check, describe, lists, run as run_command, sweep};
+use commands::{bench, check, describe, lists, run as run_command, sweep};
 
 /// Exit code of a run that was stopped by Ctrl-C.
 pub const INTERRUPTED: u8 = 130;
@@ -46,6 +46,7 @@ struct Command {
 enum Verb {
     Run(run_command::Arguments),
     Sweep(sweep::Arguments),
+    Bench(bench::Arguments),
     Check(check::Arguments),
     Describe(describe::Arguments),
     Scenes(lists::Scenes),
@@ -82,6 +83,7 @@ where
     let done = match &command.verb {
         Verb::Run(arguments) => run_command::run(arguments, interrupted),
         Verb::Sweep(arguments) => sweep::sweep(arguments, interrupted),
+        Verb::Bench(arguments) => bench::bench(arguments, interrupted),
         Verb::Check(arguments) => check::check(arguments),
         Verb::Describe(arguments) => describe::describe(arguments),
         Verb::Scenes(arguments) => lists::scenes(arguments),

@@ -27,7 +27,7 @@ pub(crate) struct SceneArguments {
 }
 
 /// What to run; absent settings are those of the scene.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(crate) struct RunArguments {
     /// End of the run, such as "1 s" or 1
     #[arg(long, value_name = "TIME")]
@@ -53,6 +53,11 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "LENGTH")]
     onset_depth: Option<String>,
 
+    /// Largest relative error of the tension, such as 1%: method, step and onset depth are chosen for
+    /// it, and the choice is printed. 1% unless one of them or a tolerance is given
+    #[arg(long, value_name = "RATIO", conflicts_with_all = ["method", "step", "tolerance", "onset_depth"])]
+    accuracy: Option<String>,
+
     /// Channels to record, separated by commas, or all; `chaindrive channels` lists them
     #[arg(long, value_name = "CHANNELS", value_delimiter = ',')]
     record: Vec<String>,
@@ -60,6 +65,19 @@ pub(crate) struct RunArguments {
     /// Contacts to log, separated by commas: teeth, guides, joints; they go into Zarr results and the summary
     #[arg(long, value_name = "KINDS", value_delimiter = ',')]
     events: Vec<String>,
+}
+
+/// What was asked for.
+#[derive(Debug)]
+pub(crate) struct Request {
+    /// The scene, settings included.
+    pub(crate) scene: Scene,
+    /// Settings of the run.
+    pub(crate) run: Run,
+    /// Names of the channels to record.
+    pub(crate) record: Vec<String>,
+    /// Accuracy \[–\] that method and step are to be chosen for.
+    pub(crate) accuracy: Option<f64>,
 }
 
 /// Reads a scene file, stdin or an embedded scene.
@@ -102,10 +120,18 @@ impl RunArguments {
         self.record.iter().any(|name| !name.trim().is_empty())
     }
 
+    /// Nothing but the end of the run.
+    pub(crate) fn until(until: Option<&str>) -> Self {
+        Self {
+            until: until.map(str::to_owned),
+            ..Self::default()
+        }
+    }
+
     /// Writes the settings into the scene and reads all of them from there.
     ///
     /// The channels are names: which of them a chain has is known when it is assembled.
-    pub(crate) fn apply(&self, mut scene: Scene) -> Result<(Scene, Run, Vec<String>), Failure> {
+    pub(crate) fn apply(&self, mut scene: Scene) -> Result<Request, Failure> {
         let settings = [
             ("run.until", &self.until),
             ("run.every", &self.every),
@@ -113,6 +139,7 @@ impl RunArguments {
             ("run.step", &self.step),
             ("run.tolerance", &self.tolerance),
             ("run.onset_depth", &self.onset_depth),
+            ("run.accuracy", &self.accuracy),
         ];
         for (path, value) in settings {
             if let Some(value) = value {
@@ -135,6 +162,18 @@ impl RunArguments {
         };
         run.check().map_err(wrong)?;
         Channel::check(&wanted.record).map_err(wrong)?;
-        Ok((scene, run, wanted.record))
+        let given = [&self.method, &self.step, &self.tolerance, &self.onset_depth];
+        // What the command line says about the method goes before the accuracy of the scene.
+        let accuracy = if given.iter().any(|setting| setting.is_some()) {
+            None
+        } else {
+            wanted.chosen_accuracy()
+        };
+        Ok(Request {
+            scene,
+            run,
+            record: wanted.record,
+            accuracy,
+        })
     }
 }

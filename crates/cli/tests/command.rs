@@ -77,6 +77,8 @@ fn a_run_writes_a_table() {
         "2 ms",
         "--every",
         "1 ms",
+        "--step",
+        "10 us",
         "-q",
     ];
     let record = ["--record", "energy_kinetic,link_tension", "-o", "ring.csv"];
@@ -447,4 +449,110 @@ fn the_marine_engine_runs() {
         assert!(out.contains(word), "{out}");
     }
     assert_eq!(group(&at.join("engine.zarr"))["attributes"]["samples"], 101);
+}
+
+#[test]
+fn a_run_says_how_exact_it_is_unless_told_not_to() {
+    let folder = folder();
+    let at = folder.path();
+    let short = [
+        "run",
+        "bicycle_slack",
+        "--until",
+        "6 ms",
+        "-o",
+        "run.zarr",
+        "--overwrite",
+    ];
+    let (code, out, err) = run(at, &short);
+    assert_eq!(code, 0, "{err}");
+    assert!(
+        out.contains("method chosen            implicit-damping"),
+        "{out}"
+    );
+    assert!(
+        out.contains("numerical error          against half the step"),
+        "{out}"
+    );
+    let attributes = &group(&at.join("run.zarr"))["attributes"];
+    assert_eq!(attributes["error_estimate"], "made");
+    assert_eq!(attributes["accuracy"], 0.01);
+    let horizon = attributes["waveform_horizon"].as_f64().unwrap();
+    let tension = group(&at.join("run.zarr").join("span_tension"));
+    assert_eq!(tension["attributes"]["waveform_horizon"], horizon);
+
+    let (code, out, err) = run(at, &[&short[..], &["--no-error"]].concat());
+    assert_eq!(code, 0, "{err}");
+    assert!(!out.contains("numerical error"), "{out}");
+    let attributes = &group(&at.join("run.zarr"))["attributes"];
+    assert_eq!(attributes["error_estimate"], "switched off");
+    assert!(attributes["error_span_tension"].is_null());
+}
+
+#[test]
+fn the_method_is_chosen_unless_it_is_given() {
+    let folder = folder();
+    let at = folder.path();
+    let short = ["run", "spinning_ring", "--until", "10 ms"];
+    let (_, out, _) = run(at, &[&short[..], &["--accuracy", "0.001 %"]].concat());
+    assert!(out.contains("within 0.001 %"), "{out}");
+    let (_, out, _) = run(at, &[&short[..], &["--set", "run.accuracy=2 %"]].concat());
+    assert!(out.contains("within 2.0 %"), "{out}");
+    let (_, out, _) = run(at, &[&short[..], &["--step", "10 us"]].concat());
+    assert!(!out.contains("method chosen"), "{out}");
+    let both = ["--accuracy", "1%", "--method", "rk4"];
+    let (code, _, err) = run(at, &[&short[..], &both].concat());
+    assert_eq!(code, 2);
+    assert!(err.contains("cannot be used with"), "{err}");
+    let (code, _, err) = run(at, &[&short[..], &["--accuracy", "120 %"]].concat());
+    assert_eq!(code, 2);
+    assert!(err.contains("accuracy"), "{err}");
+}
+
+#[test]
+fn the_bench_prints_a_table_and_saves_it_with_its_diagram() {
+    let folder = folder();
+    let at = folder.path();
+    let short = [
+        "bench",
+        "spinning_ring",
+        "--until",
+        "5 ms",
+        "--repeats",
+        "1",
+    ];
+    let methods = [
+        "--methods",
+        "verlet,rk4,generalized-alpha",
+        "--steps",
+        "4e-5,2e-5",
+    ];
+    let (code, out, err) = run(at, &[&short[..], &methods].concat());
+    assert_eq!(code, 0, "{err}");
+    assert!(
+        out.contains("checked by               dormand-prince"),
+        "{out}"
+    );
+    assert!(out.contains("verlet, step 4.00e-5 s"), "{out}");
+    assert!(
+        out.contains("choose verlet"),
+        "a method that fails stays: {out}"
+    );
+    let csv = fs::read_to_string(at.join("work-precision.csv")).unwrap();
+    assert!(csv.starts_with("method,step,tolerance,onset_depth,wall,cpu,"));
+    assert_eq!(csv.lines().count(), 1 + 6 + 2);
+    let svg = fs::read_to_string(at.join("work-precision.svg")).unwrap();
+    for word in ["<svg", "verlet", "rk4", "wall time", "Spinning ring"] {
+        assert!(svg.contains(word), "{word}");
+    }
+
+    let (code, _, err) = run(at, &short);
+    assert_eq!(code, 3, "{err}");
+    assert!(err.contains("--overwrite"), "{err}");
+    let (code, _, err) = run(
+        at,
+        &["bench", "spinning_ring", "--steps", "1e-5", "-o", "other"],
+    );
+    assert_eq!(code, 2);
+    assert!(err.contains("--methods"), "{err}");
 }

@@ -30,6 +30,7 @@ mod linkage;
 mod links;
 mod modes;
 mod motion;
+mod nudge;
 mod observe;
 mod profile;
 mod rigid;

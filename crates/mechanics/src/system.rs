@@ -168,6 +168,11 @@ impl System {
         self.onset_depth
     }
 
+    /// Pitch of the chain \[m\].
+    pub fn pitch(&self) -> f64 {
+        self.pitch
+    }
+
     /// Number of rollers.
     pub fn rollers(&self) -> usize {
         self.rollers

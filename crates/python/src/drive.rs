@@ -139,6 +139,8 @@ impl Drive {
         answer.set_item("step", run.step)?;
         answer.set_item("tolerance", run.tolerance)?;
         answer.set_item("onset_depth", run.onset_depth)?;
+        let accuracy = self.scene.run_defaults().chosen_accuracy();
+        answer.set_item("accuracy", accuracy)?;
         let kinds = [
             ("teeth", run.events.teeth),
             ("guides", run.events.guides),

@@ -14,6 +14,7 @@ mod errors;
 mod friction;
 mod kinematics;
 mod law;
+mod precision;
 mod run;
 mod sweep;
 
@@ -32,6 +33,8 @@ mod core {
     use crate::kinematics::{centre_distance_for, links_for, polygon_action};
     #[pymodule_export]
     use crate::law::Law;
+    #[pymodule_export]
+    use crate::precision::work_precision;
     #[pymodule_export]
     use crate::run::{channels, methods, simulate};
 

@@ -1,12 +1,16 @@
 //! Runs: without the interpreter's lock, stopped by Ctrl-C, results handed over without a copy.
 
+use std::cell::RefCell;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use chaindrive::precision::{Attribute, choose};
 use chaindrive::record::{
     self, Ending, EventColumn, EventTable, Existing, Provenance, Recording, ZarrWriter,
 };
-use chaindrive::{Axis, Channel, EventKinds, Method, Run, Simulation, Stepping, Summary};
+use chaindrive::{
+    Axis, Channel, Choice, EventKinds, Judgement, Method, Run, Simulation, Stepping, Summary,
+};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
@@ -20,7 +24,7 @@ pub(crate) const PATIENCE: Duration = Duration::from_millis(50);
 
 /// Runs a drive and returns its recording: time, columns, labels and attributes.
 #[pyfunction]
-#[pyo3(signature = (drive, channels, *, until, every, method, step, tolerance, onset_depth, events, output, overwrite, progress))]
+#[pyo3(signature = (drive, channels, *, until, every, method, step, tolerance, onset_depth, accuracy, events, output, overwrite, error, progress))]
 #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
 pub(crate) fn simulate<'py>(
     py: Python<'py>,
@@ -32,9 +36,11 @@ pub(crate) fn simulate<'py>(
     step: Option<f64>,
     tolerance: f64,
     onset_depth: Option<f64>,
+    accuracy: Option<f64>,
     events: Vec<String>,
     output: Option<PathBuf>,
     overwrite: bool,
+    error: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     Channel::check(&channels).or_raise()?;
@@ -47,6 +53,7 @@ pub(crate) fn simulate<'py>(
         onset_depth,
         events: event_kinds(&events)?,
     };
+    let logged = run.events != EventKinds::default();
     let output = output.map(|path| {
         let existing = if overwrite {
             Existing::Replace
@@ -60,12 +67,21 @@ pub(crate) fn simulate<'py>(
         recording,
         contacts,
         summary,
-    } = py.detach(|| carry_out(drive, &run, &channels, output, progress.as_ref()))?;
+        judgement,
+        choice,
+    } = py.detach(|| {
+        let precision = Precision { accuracy, error };
+        carry_out(drive, run, &channels, output, precision, progress.as_ref())
+    })?;
     let answer = PyDict::new(py);
     let recorded = recording.columns.iter().map(|column| column.channel);
     let recorded: Vec<Channel> = recorded.collect();
     answer.set_item("labels", labels(py, &recorded, &simulation)?)?;
-    answer.set_item("attributes", attributes(py, &simulation, &summary)?)?;
+    answer.set_item(
+        "attributes",
+        attributes(py, &simulation, &summary, &judgement, choice.as_ref())?,
+    )?;
+    answer.set_item("waveform_horizon", judgement.waveform_horizon())?;
     let samples = recording.len();
     answer.set_item("time", PyArray1::from_vec(py, recording.time))?;
     let columns = PyDict::new(py);
@@ -78,7 +94,7 @@ pub(crate) fn simulate<'py>(
         columns.set_item(column.channel.name(), values)?;
     }
     answer.set_item("columns", columns)?;
-    if run.events != EventKinds::default() {
+    if logged {
         answer.set_item("events", event_columns(py, contacts)?)?;
     }
     Ok(answer)
@@ -116,7 +132,8 @@ fn event_kinds(names: &[String]) -> PyResult<EventKinds> {
     Ok(kinds)
 }
 
-fn stepping(name: &str) -> PyResult<Stepping> {
+/// The method of a name.
+pub(crate) fn stepping(name: &str) -> PyResult<Stepping> {
     Stepping::from_name(name).ok_or_else(|| {
         let known = Stepping::ALL.map(Stepping::name).join(", ");
         let message = format!("no method is named `{name}`; there are {known}");
@@ -130,16 +147,62 @@ struct Outcome {
     recording: Recording,
     contacts: EventTable,
     summary: Summary,
+    judgement: Judgement,
+    choice: Option<Choice>,
+}
+
+/// What is wanted besides the run.
+#[derive(Clone, Copy)]
+struct Precision {
+    /// Accuracy that method and step are to be chosen for.
+    accuracy: Option<f64>,
+    /// Whether the run ends with an estimate of its error.
+    error: bool,
+}
+
+/// Lets `work` look at Python's signals, and raises what it found there.
+pub(crate) fn watched<T>(work: impl FnOnce(&dyn Fn() -> bool) -> T) -> (T, PyResult<()>) {
+    let raised = RefCell::new(None);
+    let watch = || {
+        Python::attach(|py| match py.check_signals() {
+            Ok(()) => false,
+            Err(error) => {
+                raised.replace(Some(error));
+                true
+            }
+        })
+    };
+    let answer = work(&watch);
+    (answer, raised.into_inner().map_or(Ok(()), Err))
+}
+
+/// How exact a run is; raises what Python wants raised meanwhile.
+fn judge(simulation: &Simulation, run: &Run, wanted: bool) -> (Judgement, PyResult<()>) {
+    if !wanted {
+        return (Judgement::SwitchedOff, Ok(()));
+    }
+    watched(|watch| Judgement::of(simulation, run, watch))
 }
 
 fn carry_out(
     drive: &Drive,
-    run: &Run,
+    run: Run,
     names: &[String],
     output: Option<(PathBuf, Existing)>,
+    precision: Precision,
     progress: Option<&Py<PyAny>>,
 ) -> PyResult<Outcome> {
-    let mut simulation = Simulation::start(&drive.drive, run).or_raise()?;
+    let start = drive.drive.assemble().or_raise()?;
+    let choice = match precision.accuracy {
+        None => None,
+        Some(accuracy) => {
+            let (choice, raised) = watched(|watch| choose(&start, &run, accuracy, watch));
+            raised?;
+            Some(choice.or_raise()?)
+        }
+    };
+    let run = choice.as_ref().map_or(run, |choice| choice.run.clone());
+    let mut simulation = Simulation::from_assembled(start, &run).or_raise()?;
     let channels = Channel::chosen(names, simulation.system()).or_raise()?;
     let channels = channels.as_slice();
     let mut summary = Summary::new(&simulation);
@@ -156,21 +219,32 @@ fn carry_out(
         for event in simulation.outstanding_events() {
             contacts.push(&event);
         }
+        let (judgement, raised) = judge(&simulation, &run, precision.error);
+        raised?;
         return Ok(Outcome {
             simulation,
             recording,
             contacts,
             summary,
+            judgement,
+            choice,
         });
     };
     // On disk; nothing is kept in memory.
     let recording = Recording::new(&[], simulation.system());
-    let provenance = Provenance::of(&drive.scene, run);
+    let provenance = Provenance {
+        choice: choice.clone(),
+        ..Provenance::of(&drive.scene, &run)
+    };
     let mut writer =
         ZarrWriter::create(&path, &simulation, channels, provenance, existing).or_raise()?;
     let outcome = advance(&mut simulation, &mut summary, progress, |simulation| {
         writer.push(simulation).or_raise()
     });
+    let (judgement, raised) = match &outcome {
+        Ok(()) => judge(&simulation, &run, precision.error),
+        Err(_) => (Judgement::Interrupted, Ok(())),
+    };
     let ending = match &outcome {
         Ok(()) => Ending::Complete,
         Err(error) => Python::attach(|py| {
@@ -181,13 +255,18 @@ fn carry_out(
             }
         }),
     };
+    if !matches!(ending, Ending::Failed(_)) {
+        writer.judge(&judgement);
+    }
     let finished = writer.finish(&simulation, &ending).or_raise();
-    outcome.and(finished)?;
+    outcome.and(finished).and(raised)?;
     Ok(Outcome {
         simulation,
         recording,
         contacts,
         summary,
+        judgement,
+        choice,
     })
 }
 
@@ -250,6 +329,8 @@ fn attributes<'py>(
     py: Python<'py>,
     simulation: &Simulation,
     summary: &Summary,
+    judgement: &Judgement,
+    choice: Option<&Choice>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let answer = PyDict::new(py);
     let statistics = simulation.statistics();
@@ -298,7 +379,21 @@ fn attributes<'py>(
     answer.set_item("stepping_time", wall)?;
     answer.set_item("real_time_factor", time / wall)?;
     answer.set_item("ns_per_link_step", wall * 1e9 / link_steps)?;
-    answer.set_item("summary", summary.report(simulation).to_string())?;
+    let mut text = summary.report(simulation).to_string();
+    if let Some(choice) = choice {
+        text = format!("{text}\n{choice}");
+    }
+    if *judgement != Judgement::SwitchedOff {
+        text = format!("{text}\n{judgement}");
+    }
+    answer.set_item("summary", text)?;
+    let chosen = choice.map(Choice::attributes).unwrap_or_default();
+    for (name, value) in chosen.into_iter().chain(judgement.attributes()) {
+        match value {
+            Attribute::Text(text) => answer.set_item(name, text)?,
+            Attribute::Number(number) => answer.set_item(name, number)?,
+        }
+    }
     Ok(answer)
 }
 

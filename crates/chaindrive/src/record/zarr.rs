@@ -46,6 +46,7 @@ pub use sweep::SweepWriter;
 
 use super::{Axis, Channel, labels};
 use crate::Simulation;
+use crate::precision::Judgement;
 use error::Fault;
 use events::EventTracks;
 use target::{Storage, Target};
@@ -100,6 +101,7 @@ pub struct ZarrWriter {
     /// Metadata of the arrays that do not grow.
     fixed: Vec<(&'static str, Value)>,
     start: Option<Energy>,
+    judgement: Option<Judgement>,
     samples: u64,
     committed: Instant,
 }
@@ -175,6 +177,7 @@ impl ZarrWriter {
             events: events.transpose()?,
             fixed,
             start: None,
+            judgement: None,
             samples: 0,
             committed: Instant::now(),
         };
@@ -216,6 +219,19 @@ impl ZarrWriter {
     pub fn flush(&mut self, simulation: &Simulation) -> Result<(), WriteError> {
         let committed = self.commit(simulation, &Ending::None);
         committed.map_err(|fault| at(&self.path, fault))
+    }
+
+    /// Takes in what is said about the error of the run; it is stored with the next commit.
+    ///
+    /// Where waveforms cease to mean anything within the run, every channel gets the attribute
+    /// `waveform_horizon` \[s\]: samples behind it are for statistics.
+    pub fn judge(&mut self, judgement: &Judgement) {
+        if let Some(horizon) = judgement.waveform_horizon() {
+            for (_, track) in &mut self.tracks {
+                track.tell("waveform_horizon", horizon.into());
+            }
+        }
+        self.judgement = Some(judgement.clone());
     }
 
     /// Commits for the last time and says how the run ended.
@@ -265,6 +281,7 @@ impl ZarrWriter {
                 simulation,
                 self.samples,
                 ending,
+                self.judgement.as_ref(),
             ))
             .with_additional_fields(fields.into_iter().collect());
         Group::new_with_metadata(self.storage.clone(), "/", metadata.into())?.store_metadata()?;

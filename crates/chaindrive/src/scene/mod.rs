@@ -173,6 +173,7 @@ impl Scene {
             step: run.step.map(|time| time.0),
             tolerance: run.tolerance.map(|ratio| ratio.0),
             onset_depth: run.onset_depth.map(|depth| depth.0),
+            accuracy: run.accuracy.map(|ratio| ratio.0),
             record: run.record.clone().unwrap_or_default(),
             events: events(&run.events),
         }
@@ -195,10 +196,25 @@ pub struct RunDefaults {
     pub tolerance: Option<f64>,
     /// Deepest penetration at which a contact may begin \[m\].
     pub onset_depth: Option<f64>,
+    /// Relative error of the tension that method and step are to be chosen for \[–\].
+    pub accuracy: Option<f64>,
     /// Channels to record; empty when the scene leaves them open.
     pub record: Vec<String>,
     /// Contacts to log.
     pub events: EventKinds,
+}
+
+impl RunDefaults {
+    /// The accuracy \[–\] that method and step are chosen for: what is asked for, or
+    /// [`ACCURACY`](crate::precision::ACCURACY) where method, step, tolerance and onset depth are all left open.
+    pub fn chosen_accuracy(&self) -> Option<f64> {
+        let open = self.method.is_none()
+            && self.step.is_none()
+            && self.tolerance.is_none()
+            && self.onset_depth.is_none();
+        self.accuracy
+            .or_else(|| open.then_some(crate::precision::ACCURACY))
+    }
 }
 
 fn events(named: &[schema::Events]) -> EventKinds {

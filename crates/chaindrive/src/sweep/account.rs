@@ -7,6 +7,7 @@ use std::time::Duration;
 use chaindrive_mechanics::EventKinds;
 
 use super::Outcome;
+use crate::precision::choose;
 use crate::record::{ContactStatistics, EventTable, SpanStatistics, labels};
 use crate::{Channel, Recording, Run, Scene, Simulation, SimulationError, Stepping, Summary};
 
@@ -226,8 +227,20 @@ impl Account {
     ) -> Result<Option<Self>, String> {
         let drive = scene.drive().map_err(|error| error.to_string())?;
         let failed = |error: SimulationError| error.to_string();
-        let run = Run::suggested(&scene.run_defaults());
-        let mut simulation = Simulation::start(&drive, &run).map_err(failed)?;
+        let wanted = scene.run_defaults();
+        let mut run = Run::suggested(&wanted);
+        run.check().map_err(failed)?;
+        let assembled = drive.assemble().map_err(|error| error.to_string())?;
+        // Only what is asked for: trials in every variant would double the cost of short ones.
+        if let Some(accuracy) = wanted.accuracy {
+            let stopped = || stop.load(Ordering::Relaxed);
+            run = match choose(&assembled, &run, accuracy, &stopped) {
+                Ok(choice) => choice.run,
+                Err(SimulationError::Interrupted) => return Ok(None),
+                Err(error) => return Err(failed(error)),
+            };
+        }
+        let mut simulation = Simulation::from_assembled(assembled, &run).map_err(failed)?;
         let channels = if record.is_empty() {
             Vec::new()
         } else {

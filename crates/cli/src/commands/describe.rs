@@ -4,7 +4,7 @@ use chaindrive::Description;
 use clap::Args;
 
 use crate::failure::Failure;
-use crate::request::{RunArguments, SceneArguments};
+use crate::request::{Request, RunArguments, SceneArguments};
 use crate::stdout::print;
 
 /// Describes what a run would simulate: route, statics, model, time scales, cost.
@@ -22,7 +22,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn describe(arguments: &Arguments) -> Result<(), Failure> {
-    let (scene, run, _) = arguments.run.apply(arguments.scene.load()?)?;
+    let Request { scene, run, .. } = arguments.run.apply(arguments.scene.load()?)?;
     let description = Description::of(&scene.drive()?, &run).map_err(|source| Failure::Start {
         scene: scene.name().to_owned(),
         source,

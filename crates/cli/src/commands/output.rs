@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use chaindrive::record::{Ending, Existing, Provenance, ZarrWriter};
-use chaindrive::{Channel, Simulation};
+use chaindrive::{Channel, Judgement, Simulation};
 
 use crate::csv::CsvWriter;
 use crate::failure::Failure;
@@ -68,6 +68,13 @@ impl Output {
             Self::Nowhere => Ok(()),
             Self::Zarr(writer) => Ok(writer.push(simulation)?),
             Self::Csv(writer) => writer.push(simulation),
+        }
+    }
+
+    /// Tells the result how exact it is; a table of numbers has no place for it.
+    pub(crate) fn judge(&mut self, judgement: &Judgement) {
+        if let Self::Zarr(writer) = self {
+            writer.judge(judgement);
         }
     }
 

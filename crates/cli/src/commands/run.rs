@@ -4,14 +4,15 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use chaindrive::describe::spans_at_rest;
+use chaindrive::precision::choose;
 use chaindrive::record::{Ending, Existing, Provenance};
-use chaindrive::{Channel, Drive, Simulation, Summary};
+use chaindrive::{Channel, Drive, Judgement, Run, Simulation, SimulationError, Summary};
 use clap::Args;
 
 use super::output::{Output, Target};
 use crate::failure::Failure;
 use crate::progress::Progress;
-use crate::request::{RunArguments, SceneArguments};
+use crate::request::{Request, RunArguments, SceneArguments};
 use crate::stdout::print;
 
 /// Simulates a scene and ends with a summary.
@@ -31,6 +32,11 @@ pub(crate) struct Arguments {
     #[arg(long)]
     overwrite: bool,
 
+    /// Leaves out the estimate of the numerical error that ends the run; it takes the time of some
+    /// 24 000 steps of the default length, whatever the length of the run
+    #[arg(long)]
+    no_error: bool,
+
     /// Prints errors only
     #[arg(short, long)]
     quiet: bool,
@@ -38,14 +44,27 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
     let target = Target::of(arguments.output.as_deref())?;
-    let (scene, run, names) = arguments.run.apply(arguments.scene.load()?)?;
+    let Request {
+        scene,
+        run,
+        record,
+        accuracy,
+    } = arguments.run.apply(arguments.scene.load()?)?;
     let drive = scene.drive()?;
     let failed = |source| Failure::Start {
         scene: scene.name().to_owned(),
         source,
     };
-    let mut simulation = Simulation::start(&drive, &run).map_err(failed)?;
-    let channels = Channel::chosen(&names, simulation.system()).map_err(failed)?;
+    let start = drive.assemble().map_err(|error| failed(error.into()))?;
+    let choice = match accuracy.map(|accuracy| choose(&start, &run, accuracy, interrupted)) {
+        None => None,
+        Some(Ok(choice)) => Some(choice),
+        Some(Err(SimulationError::Interrupted)) => return Err(Failure::Interrupted),
+        Some(Err(error)) => return Err(failed(error)),
+    };
+    let run = choice.as_ref().map_or(run, |choice| choice.run.clone());
+    let mut simulation = Simulation::from_assembled(start, &run).map_err(failed)?;
+    let channels = Channel::chosen(&record, simulation.system()).map_err(failed)?;
     let existing = if arguments.overwrite {
         Existing::Replace
     } else {
@@ -54,20 +73,38 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
     let output = target.begin(
         &simulation,
         &channels,
-        Provenance::of(&scene, &run),
+        Provenance {
+            choice: choice.clone(),
+            ..Provenance::of(&scene, &run)
+        },
         existing,
     )?;
 
     let mut summary = Summary::new(&simulation);
-    let ending = drive_to_the_end(
+    let mut output = output;
+    let mut ending = drive_to_the_end(
         &mut simulation,
-        output,
+        &mut output,
         &mut summary,
         arguments.quiet,
         interrupted,
     )?;
+    let judgement = judge(&simulation, &run, &ending, arguments.no_error, interrupted);
+    if let Some(judgement) = &judgement {
+        output.judge(judgement);
+    }
+    output.finish(&simulation, &ending.of_the_result())?;
     if !arguments.quiet && summary.samples > 0 {
-        print(at_rest(&drive, &simulation) + &summary.report(&simulation).to_string())?;
+        let said = judgement
+            .iter()
+            .filter(|judgement| **judgement != Judgement::SwitchedOff)
+            .map(|judgement| format!("\n{judgement}"));
+        let chosen = choice.map_or_else(String::new, |choice| format!("\n{choice}"));
+        let report = summary.report(&simulation).to_string();
+        print(at_rest(&drive, &simulation) + &report + &chosen + &said.collect::<String>())?;
+    }
+    if judgement == Some(Judgement::Interrupted) {
+        ending = Stop::Interrupted;
     }
     match ending {
         Stop::End => Ok(()),
@@ -83,16 +120,43 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
 enum Stop {
     End,
     Interrupted,
-    Failed(chaindrive::SimulationError),
+    Failed(SimulationError),
+}
+
+impl Stop {
+    /// What the result says of it.
+    fn of_the_result(&self) -> Ending {
+        match self {
+            Self::End => Ending::Complete,
+            Self::Interrupted => Ending::Interrupted,
+            Self::Failed(error) => Ending::Failed(error.to_string()),
+        }
+    }
+}
+
+/// How exact the run is; nothing is said of one that failed.
+fn judge(
+    simulation: &Simulation,
+    run: &Run,
+    ending: &Stop,
+    switched_off: bool,
+    interrupted: &dyn Fn() -> bool,
+) -> Option<Judgement> {
+    match ending {
+        Stop::Failed(_) => None,
+        _ if switched_off => Some(Judgement::SwitchedOff),
+        Stop::Interrupted => Some(Judgement::Interrupted),
+        Stop::End => Some(Judgement::of(simulation, run, interrupted)),
+    }
 }
 
 /// Wall time between two looks at progress and interrupts while no sample is due.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// Samples until the end, and ends the result.
+/// Samples until the end.
 fn drive_to_the_end(
     simulation: &mut Simulation,
-    mut output: Output,
+    output: &mut Output,
     summary: &mut Summary,
     quiet: bool,
     interrupted: &dyn Fn() -> bool,
@@ -122,13 +186,6 @@ fn drive_to_the_end(
             break Stop::Interrupted;
         }
     };
-    drop(progress);
-    let ending = match &stop {
-        Stop::End => Ending::Complete,
-        Stop::Interrupted => Ending::Interrupted,
-        Stop::Failed(error) => Ending::Failed(error.to_string()),
-    };
-    output.finish(simulation, &ending)?;
     Ok(stop)
 }
 

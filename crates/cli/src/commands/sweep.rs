@@ -13,7 +13,7 @@ use clap::Args;
 use super::output::Target;
 use crate::failure::Failure;
 use crate::progress::Progress;
-use crate::request::{RunArguments, SceneArguments};
+use crate::request::{Request, RunArguments, SceneArguments};
 use crate::stdout::print;
 use output::Output;
 
@@ -68,10 +68,10 @@ pub(crate) struct Arguments {
 
 pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
     let target = Target::of(arguments.output.as_deref())?;
-    let (scene, _, names) = arguments.run.apply(arguments.scene.load()?)?;
+    let Request { scene, record, .. } = arguments.run.apply(arguments.scene.load()?)?;
     // A scene suggests channels for a run; times the number of variants they are only kept on demand.
     let asked = arguments.run.asks_for_channels();
-    let record = if asked { names } else { Vec::new() };
+    let record = if asked { record } else { Vec::new() };
     let varied = arguments.vary.iter().map(|text| vary::read(&scene, text));
     let varied = varied.collect::<Result<Vec<_>, _>>()?;
     let sweep = Sweep::new(&scene, &varied, &record)?;

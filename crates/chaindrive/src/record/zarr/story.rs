@@ -7,6 +7,7 @@ use chaindrive_integrate::Method;
 use serde_json::{Map, Value};
 
 use super::FORMAT;
+use crate::precision::{Attribute, Choice, Judgement};
 use crate::{Run, Scene, Simulation, Stepping};
 
 /// Where a run came from.
@@ -20,6 +21,8 @@ pub struct Provenance {
     pub scene_name: String,
     /// Settings of the run.
     pub run: Run,
+    /// How method and step were chosen, if they were.
+    pub choice: Option<Choice>,
 }
 
 impl Provenance {
@@ -30,6 +33,7 @@ impl Provenance {
             scene: scene.text().to_owned(),
             scene_name: scene.name().to_owned(),
             run: run.clone(),
+            choice: None,
         }
     }
 }
@@ -65,6 +69,7 @@ pub(super) fn attributes(
     simulation: &Simulation,
     samples: u64,
     ending: &Ending,
+    judgement: Option<&Judgement>,
 ) -> Map<String, Value> {
     let mut story = Story(Map::new());
     story.text("title", &provenance.title);
@@ -100,6 +105,14 @@ pub(super) fn attributes(
     story.number("stepping_time", simulation.stepping_time());
     story.number("energy_residual_last", simulation.energy_residual());
     assembly(&mut story, simulation);
+    let choice = provenance.choice.as_ref().map(Choice::attributes);
+    let judgement = judgement.map(Judgement::attributes);
+    for (name, value) in [choice, judgement].into_iter().flatten().flatten() {
+        match value {
+            Attribute::Text(text) => story.text(&name, &text),
+            Attribute::Number(number) => story.number(&name, number),
+        }
+    }
     story.0
 }
 

@@ -104,6 +104,11 @@ impl Track {
         Ok(())
     }
 
+    /// Adds an attribute; takes effect with the metadata.
+    pub(super) fn tell(&mut self, name: &str, value: Value) {
+        self.array.attributes_mut().insert(name.into(), value);
+    }
+
     /// Makes the array as long as there are samples; takes effect with its metadata.
     pub(super) fn set_length(&mut self, samples: u64) -> Result<(), Fault> {
         let mut shape = self.array.shape().to_vec();

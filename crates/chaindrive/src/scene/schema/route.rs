@@ -102,6 +102,11 @@ pub(crate) struct Run {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) onset_depth: Option<Length>,
+    /// Relative error of the tension that method, step and onset depth are chosen for, 0 to 1; it takes the
+    /// place of what is said about them. Absent: 0.01, unless one of them or a tolerance is given.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
+    pub(crate) accuracy: Option<Ratio>,
     /// Channels to record.
     #[serde(default)]
     pub(crate) record: Option<Vec<String>>,

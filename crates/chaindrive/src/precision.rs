@@ -1,0 +1,43 @@
+//! How exact a run is: its chaos horizon, its numerical error, and the method that an accuracy takes.
+//!
+//! | question | answer |
+//! |---|---|
+//! | how long can waveforms of two correct runs agree? | [`Horizon`], by a twin that starts 1e-12 m apart |
+//! | how far is a run from the exact solution of its model? | [`estimate`], by a shadow run with half the step |
+//! | which method and step keep an error? | [`choose`], by trying them from the cheapest on |
+//!
+//! | what do methods and steps cost, and how exact are they? | [`work_precision`], against a reference that is checked |
+//!
+//! All of it looks at the beginning of a run, a [`Window`] of a few teeth, so that its cost does not grow
+//! with the length of the run; and nothing of it decides by a clock, so that answers are the same to the
+//! last bit wherever the binary runs on the same kind of processor.
+
+mod attribute;
+mod candidates;
+mod choice;
+mod compare;
+mod errors;
+mod estimate;
+mod growth;
+mod horizon;
+mod judgement;
+mod table;
+mod trace;
+mod variant;
+mod window;
+mod work;
+
+pub use attribute::Attribute;
+pub use choice::{ACCURACY, Choice, Promise, Trial, choose};
+pub use compare::Compared;
+pub use errors::Errors;
+pub use estimate::{Estimate, estimate};
+pub use horizon::{Horizon, Reach, horizon};
+pub use judgement::Judgement;
+pub use table::Number;
+pub use variant::Variant;
+pub use window::Window;
+pub use work::{Row, Study, Table, work_precision};
+
+/// Asked after every sample whether the user wants the calculation to stop.
+pub type Watch<'a> = &'a dyn Fn() -> bool;

@@ -1,0 +1,283 @@
+//! The cheapest method and step that keep an accuracy, found by trying.
+
+use std::fmt;
+
+use chaindrive_mechanics::Assembled;
+
+use super::Watch;
+use super::attribute::Attribute;
+use super::candidates::{Candidate, Entry, entries, work};
+use super::compare::{Account, distances, rms};
+use super::estimate::{percent, pinned};
+use super::horizon::{APART, Horizon, Reach};
+use super::trace::Trace;
+use super::window::Window;
+use crate::{Run, SimulationError, Stepping};
+
+/// Accuracy that a run has unless told otherwise \[–\].
+pub const ACCURACY: f64 = 0.01;
+
+/// What is kept within the accuracy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Promise {
+    /// The tension of the tight span at every moment of the window, root mean square.
+    Waveform,
+    /// Mean and root mean square of the tension of every span, or no more than chance makes of them: the
+    /// chaos horizon lies within the window.
+    Statistics,
+    /// Nothing: the chain carries no tension that could be compared.
+    Nothing,
+}
+
+/// A candidate that was tried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trial {
+    /// Method.
+    pub stepping: Stepping,
+    /// Step \[s\].
+    pub step: f64,
+    /// Deepest first penetration \[m\], where steps are rejected for it.
+    pub onset_depth: Option<f64>,
+    /// Bound of its error \[–\]; infinite if it failed.
+    pub error: f64,
+    /// Evaluations and solutions of equations a simulated second \[1/s\].
+    pub work: f64,
+}
+
+/// Method and step for a drive, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choice {
+    /// The run with method, step and onset depth.
+    pub run: Run,
+    /// Accuracy asked for \[–\].
+    pub accuracy: f64,
+    /// Bound of the error of the run chosen \[–\].
+    pub error: f64,
+    /// Whether it keeps the accuracy; if not, it is the best of the list.
+    pub kept: bool,
+    /// What of.
+    pub promise: Promise,
+    /// Time over which candidates were compared \[s\].
+    pub window: f64,
+    /// All that were tried, in that order.
+    pub trials: Vec<Trial>,
+}
+
+/// Traces of the runs so far, so that none is taken twice.
+struct Trials<'a> {
+    start: &'a Assembled,
+    run: &'a Run,
+    window: Window,
+    watch: Watch<'a>,
+    taken: Vec<(Candidate, Option<Trace>)>,
+}
+
+impl Trials<'_> {
+    /// Place of the trace of a candidate; none if it fails.
+    fn place(&mut self, candidate: Candidate) -> Result<Option<usize>, SimulationError> {
+        let known = self.taken.iter().position(|(known, _)| *known == candidate);
+        let place = if let Some(place) = known {
+            place
+        } else {
+            let run = candidate.run(self.run);
+            let trace = match Trace::take(self.start, &run, &self.window, self.watch) {
+                Ok(trace) => Some(trace),
+                Err(SimulationError::Interrupted) => return Err(SimulationError::Interrupted),
+                // Too long a step for this drive: out of the race, not the end of it.
+                Err(_) => None,
+            };
+            self.taken.push((candidate, trace));
+            self.taken.len() - 1
+        };
+        Ok(self.taken[place].1.is_some().then_some(place))
+    }
+
+    /// The traces of a candidate and its judge, if both are there.
+    fn pair(&mut self, entry: &Entry) -> Result<Option<(&Trace, &Trace)>, SimulationError> {
+        let places = (self.place(entry.candidate)?, self.place(entry.judge)?);
+        let (Some(candidate), Some(judge)) = places else {
+            return Ok(None);
+        };
+        let trace = |place: usize| self.taken[place].1.as_ref();
+        Ok(trace(candidate).zip(trace(judge)))
+    }
+
+    /// Which promise the drive allows, and by how much the statistics of equal runs differ.
+    fn promise(&mut self, first: Candidate) -> Result<(Promise, f64), SimulationError> {
+        let Some(place) = self.place(first)? else {
+            return Ok((Promise::Waveform, 0.0));
+        };
+        let Some(base) = &self.taken[place].1 else {
+            return Ok((Promise::Waveform, 0.0));
+        };
+        // A tension of nothing has no relative error.
+        if base.mean_tension() <= 0.0 {
+            return Ok((Promise::Nothing, 0.0));
+        }
+        let twin = Trace::take(
+            &self.start.nudged(APART),
+            &first.run(self.run),
+            &self.window,
+            self.watch,
+        )?;
+        let promise = match Horizon::of(base, &twin).tight {
+            Reach::Measured { .. } => Promise::Statistics,
+            _ => Promise::Waveform,
+        };
+        Ok((promise, statistics(&twin, base)))
+    }
+}
+
+/// Chooses the cheapest candidate whose error stays within the accuracy.
+///
+/// ```text
+/// e = ‖T − T′‖ / T̄ · caution ≤ accuracy,   T′: tension by a sharper candidate
+/// ```
+///
+/// Candidates are tried from the cheapest on, each against a sharper one of the list, over half a [`Window`]. Within the
+/// chaos horizon the waveform of the tight span counts, beyond it mean and root mean square of all spans. If none is
+/// good enough, the run gets the best, and [`Choice::kept`] is false. Counts decide and never clocks: the same drive
+/// gets the same answer.
+///
+/// # Errors
+/// [`SimulationError::Setting`] for an accuracy that is not between 0 and 1,
+/// [`SimulationError::Interrupted`] when `watch` says so, and what keeps the twin from running.
+pub fn choose(
+    start: &Assembled,
+    run: &Run,
+    accuracy: f64,
+    watch: Watch<'_>,
+) -> Result<Choice, SimulationError> {
+    if !(accuracy > 0.0 && accuracy < 1.0) {
+        return Err(SimulationError::Setting {
+            name: "accuracy",
+            value: accuracy,
+            allowed: "between 0 and 1, such as 0.01",
+        });
+    }
+    let automatic = Run {
+        stepping: Stepping::Auto,
+        step: None,
+        onset_depth: None,
+        ..run.clone()
+    };
+    let window = Window::of(start, &pinned(start, &automatic)).first_half();
+    let entries = entries(start, run);
+    let mut trials = Trials {
+        start,
+        run,
+        window,
+        watch,
+        taken: Vec::new(),
+    };
+    let (promise, spread) = trials.promise(entries[0].candidate)?;
+    let mut choice = Choice {
+        run: automatic,
+        accuracy,
+        error: f64::INFINITY,
+        kept: false,
+        promise,
+        window: window.until,
+        trials: Vec::new(),
+    };
+    if promise == Promise::Nothing {
+        return Ok(choice);
+    }
+    for entry in &entries {
+        let found = trials.pair(entry)?.map(|(candidate, judge)| {
+            let apart = match promise {
+                Promise::Statistics => (statistics(candidate, judge) - spread).max(0.0),
+                _ => rms(distances(candidate, judge).iter().map(|d| d.tight)),
+            };
+            (apart * entry.caution(), work(candidate))
+        });
+        let (error, work) = found.unwrap_or((f64::INFINITY, f64::NAN));
+        let candidate = entry.candidate;
+        choice.trials.push(Trial {
+            stepping: candidate.stepping,
+            step: candidate.step,
+            onset_depth: candidate.onset_depth,
+            error,
+            work,
+        });
+        // NaN is no error to be content with.
+        if error < choice.error {
+            choice.error = error;
+            choice.run = candidate.run(run);
+        }
+        if error <= accuracy {
+            choice.kept = true;
+            break;
+        }
+    }
+    Ok(choice)
+}
+
+/// Largest relative difference of means and root mean squares of the tensions.
+fn statistics(of: &Trace, from: &Trace) -> f64 {
+    let (of, from) = (Account::of(of, usize::MAX), Account::of(from, usize::MAX));
+    of.mean_apart(&from).max(of.rms_apart(&from))
+}
+
+impl Choice {
+    /// The choice as attributes of a result.
+    pub fn attributes(&self) -> Vec<(String, Attribute)> {
+        let kept = match (self.promise, self.kept) {
+            (Promise::Nothing, _) => "nothing to compare",
+            (_, true) => "kept",
+            (_, false) => "not reached",
+        };
+        let mut list = vec![
+            ("accuracy".to_owned(), Attribute::Number(self.accuracy)),
+            ("accuracy_kept".to_owned(), Attribute::Text(kept.to_owned())),
+            ("choice".to_owned(), Attribute::Text(self.reason())),
+        ];
+        if self.error.is_finite() {
+            let error = Attribute::Number(self.error);
+            list.push(("accuracy_error".to_owned(), error));
+        }
+        list
+    }
+
+    /// What was chosen and why, in a sentence.
+    pub fn reason(&self) -> String {
+        let (asked, window) = (percent(self.accuracy), self.window);
+        let what = match self.promise {
+            Promise::Waveform => "the waveform of the tight span",
+            Promise::Statistics => "mean and rms of the tension (the motion is chaotic)",
+            Promise::Nothing => {
+                return "the method's own step, because the chain carries no tension to compare"
+                    .to_owned();
+            }
+        };
+        let Some(step) = self.run.step else {
+            return format!(
+                "the method's own step, because none of {} candidates could be compared",
+                self.trials.len()
+            );
+        };
+        let name = self.run.stepping.name();
+        let depth = self
+            .run
+            .onset_depth
+            .map_or_else(String::new, |depth| format!(", onset depth {depth:.0e} m"));
+        let error = percent(self.error);
+        if self.kept {
+            format!(
+                "{name}, step {step:.2e} s{depth}: the cheapest that keeps {what} within {asked} over {window:.1e} s; found {error}, {} tried",
+                self.trials.len()
+            )
+        } else {
+            format!(
+                "{name}, step {step:.2e} s{depth}: the best of {} tried; {what} errs by {error} over {window:.1e} s, {asked} is not reached",
+                self.trials.len()
+            )
+        }
+    }
+}
+
+impl fmt::Display for Choice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "method chosen            {}", self.reason())
+    }
+}

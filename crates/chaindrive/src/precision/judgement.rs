@@ -1,0 +1,75 @@
+//! The estimate of a run, or why there is none.
+
+use std::fmt;
+
+use super::Watch;
+use super::attribute::Attribute;
+use super::estimate::{Estimate, estimate};
+use crate::{Run, Simulation, SimulationError};
+
+/// What is said about the error of a run at its end.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Judgement {
+    /// An estimate.
+    Made(Box<Estimate>),
+    /// None, because nobody wanted it.
+    SwitchedOff,
+    /// None, because somebody stopped the run or the estimate.
+    Interrupted,
+    /// None, because a run with half the step or its twin failed; with the reason.
+    Failed(String),
+}
+
+impl Judgement {
+    /// Judges a run, whatever becomes of the attempt.
+    pub fn of(simulation: &Simulation, run: &Run, watch: Watch<'_>) -> Self {
+        match estimate(simulation.assembled(), run, watch) {
+            Ok(made) => Self::Made(Box::new(made)),
+            Err(SimulationError::Interrupted) => Self::Interrupted,
+            Err(error) => Self::Failed(error.to_string()),
+        }
+    }
+
+    /// The estimate, if there is one.
+    pub fn estimate(&self) -> Option<&Estimate> {
+        match self {
+            Self::Made(estimate) => Some(estimate),
+            Self::SwitchedOff | Self::Interrupted | Self::Failed(_) => None,
+        }
+    }
+
+    /// When the waveforms of the run cease to mean anything \[s\], if that is within the run.
+    pub fn waveform_horizon(&self) -> Option<f64> {
+        self.estimate().and_then(Estimate::waveform_ends_within)
+    }
+
+    /// What a result says about itself: `error_estimate`, and what was found.
+    pub fn attributes(&self) -> Vec<(String, Attribute)> {
+        let word = match self {
+            Self::Made(_) => "made".to_owned(),
+            Self::SwitchedOff => "switched off".to_owned(),
+            Self::Interrupted => "interrupted".to_owned(),
+            Self::Failed(reason) => format!("failed: {reason}"),
+        };
+        let mut list = vec![("error_estimate".to_owned(), Attribute::Text(word))];
+        list.extend(
+            self.estimate()
+                .map(Estimate::attributes)
+                .unwrap_or_default(),
+        );
+        list
+    }
+}
+
+impl fmt::Display for Judgement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Made(estimate) => estimate.fmt(f),
+            Self::SwitchedOff => write!(f, "numerical error          not estimated: switched off"),
+            Self::Interrupted => write!(f, "numerical error          not estimated: interrupted"),
+            Self::Failed(reason) => {
+                write!(f, "numerical error          not estimated: {reason}")
+            }
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! How much of a run is looked at: long enough for a few teeth, short enough to cost little.
+
+use chaindrive_integrate::{Method, Moment, SecondOrderSystem};
+use chaindrive_mechanics::{Assembled, Observation};
+
+use crate::{Run, Stepping};
+
+/// Teeth that pass in a window.
+const TEETH: f64 = 8.0;
+/// Default steps of the drive that a window has at most: what bounds the cost of drives that turn slowly or
+/// not at all.
+const STEPS: f64 = 8000.0;
+/// Steps of the run itself that a window has at most, however short somebody wants them.
+const OWN_STEPS: f64 = 64_000.0;
+/// Samples of a window.
+const SAMPLES: f64 = 256.0;
+
+/// A short stretch at the beginning of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// End \[s\].
+    pub until: f64,
+    /// Interval between samples \[s\].
+    pub every: f64,
+    /// Time in which a tooth passes \[s\]; none without a chain that runs over sprockets.
+    pub period: Option<f64>,
+}
+
+impl Window {
+    /// The window of a run.
+    ///
+    /// ```text
+    /// min(until, 8 p/v, 8000 h₀, 64 000 h),   p/v: time in which a tooth passes, h₀: default step, h: step
+    /// ```
+    ///
+    /// A shorter step does not make the window shorter, until it is an eighth of the default one: errors are
+    /// compared over the same time.
+    pub(super) fn of(start: &Assembled, run: &Run) -> Self {
+        let period = period(start);
+        let default = Run {
+            stepping: Stepping::Auto,
+            step: None,
+            ..run.clone()
+        };
+        let steps =
+            (STEPS * typical_step(start, &default)).min(OWN_STEPS * typical_step(start, run));
+        let teeth = period.map_or(f64::INFINITY, |period| TEETH * period);
+        let until = run.until.min(teeth).min(steps);
+        Self {
+            until,
+            every: until / SAMPLES,
+            period,
+        }
+    }
+
+    /// Another end \[s\], with as many samples.
+    pub(super) fn with_end(&self, until: f64) -> Self {
+        Self {
+            until,
+            every: until / (self.until / self.every).round(),
+            ..*self
+        }
+    }
+
+    /// Its first half, with the same samples.
+    pub(super) fn first_half(&self) -> Self {
+        Self {
+            until: 0.5 * self.until,
+            ..*self
+        }
+    }
+}
+
+/// The step that a run will take \[s\]; under error control, that of the stiffest mode.
+pub(super) fn typical_step(start: &Assembled, run: &Run) -> f64 {
+    match run.method(&start.system) {
+        Method::Verlet { step }
+        | Method::Rk4 { step }
+        | Method::ImplicitDamping { step }
+        | Method::GeneralizedAlpha { step, .. } => step,
+        Method::DormandPrince { max_step, .. } => max_step.min(start.system.time_scale()),
+    }
+}
+
+/// p/v at the start \[s\]; none without spans, or for a chain at rest.
+fn period(start: &Assembled) -> Option<f64> {
+    let system = &start.system;
+    let mut record = system.new_record();
+    let mut observation = Observation::default();
+    let at = Moment {
+        t: 0.0,
+        q: &start.q,
+        v: &start.v,
+    };
+    let flows = vec![0.0; system.quadratures()];
+    system.observe(at, &flows, &mut record, &mut observation);
+    let speeds = observation
+        .roller_vx
+        .iter()
+        .zip(&observation.roller_vy)
+        .map(|(x, y)| x.hypot(*y));
+    let speed = speeds.sum::<f64>() / observation.roller_vx.len() as f64;
+    let period = system.pitch() / speed;
+    (!system.span_names().is_empty() && period.is_finite()).then_some(period)
+}

@@ -1,0 +1,149 @@
+//! The method and step that an accuracy chooses keep it, by the judgement of runs that had no part in the choice.
+#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
+
+use chaindrive::precision::{ACCURACY, Choice, Promise, choose};
+use chaindrive::{Assembled, Run, Scene, Simulation, SimulationError, Stepping};
+
+fn start(scene: &str) -> Assembled {
+    let drive = Scene::preset(scene).unwrap().drive().unwrap();
+    drive.assemble().unwrap()
+}
+
+fn chosen(start: &Assembled, accuracy: f64) -> Choice {
+    let run = Run {
+        until: 1.0,
+        ..Run::default()
+    };
+    choose(start, &run, accuracy, &|| false).unwrap()
+}
+
+/// Tensions of the spans at 64 moments of a window \[N\].
+fn tensions(start: &Assembled, run: &Run, until: f64) -> Vec<Vec<f64>> {
+    let run = Run {
+        until,
+        every: until / 64.0,
+        ..run.clone()
+    };
+    let mut simulation = Simulation::from_assembled(start.clone(), &run).unwrap();
+    let mut found = Vec::new();
+    while let Some(sample) = simulation.next_sample().unwrap() {
+        found.push(sample.span_tension.clone());
+    }
+    found
+}
+
+/// Error of the tight span, the first one of all these drives, over the mean tension of all spans.
+fn error(start: &Assembled, choice: &Choice, reference: &Run, until: f64) -> f64 {
+    let found = tensions(start, &choice.run, until);
+    let exact = tensions(start, reference, until);
+    let square: f64 = found
+        .iter()
+        .zip(&exact)
+        .map(|(a, b)| (a[0] - b[0]).powi(2))
+        .sum();
+    let all: f64 = exact.iter().flatten().sum();
+    let mean = all / exact.iter().flatten().count() as f64;
+    (square / found.len() as f64).sqrt() / mean
+}
+
+#[test]
+fn the_marine_drives_keep_what_was_asked() {
+    for scene in ["marine_two_sprockets", "marine_engine"] {
+        let start = start(scene);
+        for accuracy in [0.01, 0.001] {
+            let choice = chosen(&start, accuracy);
+            assert!(choice.kept, "{scene}: {choice}");
+            assert_eq!(choice.promise, Promise::Waveform);
+            assert!(choice.error <= accuracy);
+            let reference = Run {
+                stepping: Stepping::Rk4,
+                step: Some(2e-6),
+                onset_depth: Some(1e-8),
+                ..Run::default()
+            };
+            let error = error(&start, &choice, &reference, choice.window);
+            assert!(error <= accuracy, "{scene}: {error:.1e}, {choice}");
+            assert!(error > 1e-9, "the reference is another run");
+        }
+    }
+}
+
+/// RK4 resolves the joints' damping, which the method chosen treats implicitly: two independent ways.
+#[test]
+fn the_bicycle_keeps_what_was_asked() {
+    let start = start("bicycle");
+    let choice = chosen(&start, ACCURACY);
+    assert!(choice.kept, "{choice}");
+    assert_eq!(choice.run.stepping, Stepping::ImplicitDamping);
+    let reference = Run {
+        stepping: Stepping::Rk4,
+        step: Some(0.4e-6),
+        ..Run::default()
+    };
+    // Half the window: RK4 takes twenty times as long as the run.
+    let until = 0.5 * choice.window;
+    let error = error(&start, &choice, &reference, until);
+    assert!((1e-9..=ACCURACY).contains(&error), "{error:.1e}, {choice}");
+}
+
+/// A slack chain's twins part within the window: statistics are promised, and the reason says so.
+#[test]
+fn beyond_the_horizon_statistics_are_promised() {
+    let choice = chosen(&start("bicycle_slack"), ACCURACY);
+    assert_eq!(choice.promise, Promise::Statistics);
+    assert!(choice.to_string().contains("chaotic"), "{choice}");
+}
+
+#[test]
+fn more_accuracy_takes_more_work_and_the_answer_is_always_the_same() {
+    let start = start("marine_two_sprockets");
+    let work = |choice: &Choice| choice.trials.last().unwrap().work;
+    let [coarse, fine] = [0.05, 1e-3].map(|accuracy| chosen(&start, accuracy));
+    assert!(work(&fine) > work(&coarse), "{coarse}\n{fine}");
+    assert!(coarse.trials.len() < fine.trials.len());
+    assert_eq!(chosen(&start, 1e-3), fine);
+}
+
+#[test]
+fn what_cannot_be_reached_is_said() {
+    let choice = chosen(&start("spinning_ring"), 1e-15);
+    assert!(!choice.kept);
+    assert!(choice.error > 1e-15 && choice.error < 1e-6, "{choice}");
+    assert!(choice.to_string().contains("is not reached"), "{choice}");
+}
+
+#[test]
+fn an_accuracy_is_a_share() {
+    let ring = start("spinning_ring");
+    for accuracy in [0.0, -0.1, 1.0, f64::NAN] {
+        let refused = choose(&ring, &Run::default(), accuracy, &|| false);
+        assert!(matches!(
+            refused,
+            Err(SimulationError::Setting {
+                name: "accuracy",
+                ..
+            })
+        ));
+    }
+    let stopped = choose(&ring, &Run::default(), 0.01, &|| true);
+    assert!(matches!(stopped, Err(SimulationError::Interrupted)));
+}
+
+/// What a scene or a caller says about the method is kept; only what is left open is chosen.
+#[test]
+fn a_scene_with_a_step_keeps_it() {
+    let wanted = |text: &str| {
+        let scene = Scene::preset("spinning_ring").unwrap();
+        let scene = match text.split_once('=') {
+            Some((path, value)) => scene.replace(path, value).unwrap(),
+            None => scene,
+        };
+        scene.run_defaults().chosen_accuracy()
+    };
+    assert_eq!(wanted(""), Some(ACCURACY));
+    assert_eq!(wanted("run.accuracy=0.2 %"), Some(0.002));
+    assert_eq!(wanted("run.step=1 us"), None);
+    assert_eq!(wanted("run.method=rk4"), None);
+    assert_eq!(wanted("run.tolerance=1e-6"), None);
+    assert_eq!(wanted("run.onset_depth=1 um"), None);
+}

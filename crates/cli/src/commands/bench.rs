@@ -1,0 +1,153 @@
+//! `chaindrive bench`: what do methods and steps cost, and how exact are they?
+
+mod diagram;
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use chaindrive::precision::{Study, Table, Variant, work_precision};
+use chaindrive::{SimulationError, Stepping};
+use clap::Args;
+
+use crate::failure::Failure;
+use crate::request::{Request, RunArguments, SceneArguments};
+use crate::stdout::print;
+
+/// Measures work and precision of methods and steps on a scene; prints a table, saves it and a diagram.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+
+    /// Time over which to compare, from the start; absent: four teeth, less for short steps
+    #[arg(long, value_name = "TIME")]
+    until: Option<String>,
+
+    /// Methods to compare, separated by commas; absent: the usual ones with the usual steps
+    #[arg(long, value_delimiter = ',', value_parser = Stepping::ALL.map(Stepping::name))]
+    methods: Vec<String>,
+
+    /// Steps [s] of the methods with fixed steps, separated by commas; absent: the method's own
+    #[arg(long, value_name = "SECONDS", value_delimiter = ',')]
+    steps: Vec<f64>,
+
+    /// Tolerances of dormand-prince, separated by commas; absent: that of the scene
+    #[arg(long, value_name = "RATIOS", value_delimiter = ',')]
+    tolerances: Vec<f64>,
+
+    /// Deepest first penetration [m] in all runs; absent: none
+    #[arg(long, value_name = "METRES")]
+    onset_depth: Option<f64>,
+
+    /// Timed runs of which the median is taken
+    #[arg(long, default_value_t = Study::default().repeats)]
+    repeats: usize,
+
+    /// Runs of the reference that start 1e-12 m apart, for the spread of the statistics
+    #[arg(long, default_value_t = Study::default().replicates)]
+    replicates: usize,
+
+    /// Name of the files, to which .csv and .svg are added; absent: work-precision
+    #[arg(short, long, value_name = "NAME", default_value = "work-precision")]
+    output: PathBuf,
+
+    /// Replaces earlier files of these names
+    #[arg(long)]
+    overwrite: bool,
+}
+
+pub(crate) fn bench(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
+    let files = ["csv", "svg"].map(|extension| named(&arguments.output, extension));
+    let taken = files.iter().find(|path| path.exists());
+    if let Some(path) = taken.filter(|_| !arguments.overwrite) {
+        return Err(Failure::Taken {
+            path: path.display().to_string(),
+            found: "there is already a file here",
+            hint: ", or pass --overwrite",
+        });
+    }
+    let settings = RunArguments::until(arguments.until.as_deref());
+    let Request { scene, run, .. } = settings.apply(arguments.scene.load()?)?;
+    let failed = |source| match source {
+        SimulationError::Interrupted => Failure::Interrupted,
+        source => Failure::Start {
+            scene: scene.name().to_owned(),
+            source,
+        },
+    };
+    let start = scene
+        .drive()?
+        .assemble()
+        .map_err(|error| failed(error.into()))?;
+    let study = Study {
+        variants: variants(arguments)?,
+        until: arguments.until.is_some().then_some(run.until),
+        repeats: arguments.repeats,
+        replicates: arguments.replicates,
+    };
+    let table = work_precision(&start, &run, &study, interrupted).map_err(failed)?;
+    save(&table, &files, &scene_title(scene.name(), scene.title()))?;
+    print(table)
+}
+
+fn scene_title(name: &str, title: &str) -> String {
+    if title.is_empty() { name } else { title }.to_owned()
+}
+
+fn named(base: &Path, extension: &str) -> PathBuf {
+    let mut name = base.as_os_str().to_owned();
+    name.push(".");
+    name.push(extension);
+    name.into()
+}
+
+/// Every method with every step or tolerance.
+fn variants(arguments: &Arguments) -> Result<Vec<Variant>, Failure> {
+    if arguments.methods.is_empty() {
+        let given = [
+            ("--steps", !arguments.steps.is_empty()),
+            ("--tolerances", !arguments.tolerances.is_empty()),
+            ("--onset-depth", arguments.onset_depth.is_some()),
+        ];
+        if let Some((name, _)) = given.iter().find(|(_, given)| *given) {
+            let message = format!("{name} belongs to methods: name them with --methods");
+            return Err(Failure::Argument(message));
+        }
+    }
+    let methods = arguments
+        .methods
+        .iter()
+        .filter_map(|name| Stepping::from_name(name));
+    let mut list = Vec::new();
+    for stepping in methods {
+        let adaptive = stepping == Stepping::DormandPrince;
+        let of = |value: Option<f64>| Variant {
+            stepping,
+            step: value.filter(|_| !adaptive),
+            tolerance: value.filter(|_| adaptive),
+            onset_depth: arguments.onset_depth,
+        };
+        let values = if adaptive {
+            &arguments.tolerances
+        } else {
+            &arguments.steps
+        };
+        if values.is_empty() {
+            list.push(of(None));
+        }
+        list.extend(values.iter().map(|value| of(Some(*value))));
+    }
+    Ok(list)
+}
+
+fn save(table: &Table, [csv, svg]: &[PathBuf; 2], title: &str) -> Result<(), Failure> {
+    let failed = |path: &Path, source| Failure::File {
+        path: path.display().to_string(),
+        source,
+    };
+    let file = File::create(csv).map_err(|source| failed(csv, source))?;
+    let written = table.write_csv(file);
+    written.map_err(|error| failed(csv, error.into()))?;
+    diagram::draw(table, title, svg)
+        .map_err(|error| failed(svg, std::io::Error::other(error.to_string())))
+}
