@@ -85,7 +85,7 @@ where
         Verb::Sweep(arguments) => sweep::sweep(arguments, interrupted),
         Verb::Bench(arguments) => bench::bench(arguments, interrupted),
         Verb::Check(arguments) => check::check(arguments),
-        Verb::Describe(arguments) => describe::describe(arguments),
+        Verb::Describe(arguments) => describe::describe(arguments, interrupted),
         Verb::Scenes(arguments) => lists::scenes(arguments),
         Verb::Schema => lists::schema(),
         Verb::Channels => lists::channels(),

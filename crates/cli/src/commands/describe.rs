@@ -1,6 +1,7 @@
 //! `chaindrive describe`: what would be simulated?
 
-use chaindrive::Description;
+use chaindrive::precision::choose;
+use chaindrive::{Description, SimulationError};
 use clap::Args;
 
 use crate::failure::Failure;
@@ -21,12 +22,32 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-pub(crate) fn describe(arguments: &Arguments) -> Result<(), Failure> {
-    let Request { scene, run, .. } = arguments.run.apply(arguments.scene.load()?)?;
-    let description = Description::of(&scene.drive()?, &run).map_err(|source| Failure::Start {
-        scene: scene.name().to_owned(),
-        source,
-    })?;
+pub(crate) fn describe(
+    arguments: &Arguments,
+    interrupted: &dyn Fn() -> bool,
+) -> Result<(), Failure> {
+    let Request {
+        scene,
+        run,
+        accuracy,
+        ..
+    } = arguments.run.apply(arguments.scene.load()?)?;
+    let failed = |source| match source {
+        SimulationError::Interrupted => Failure::Interrupted,
+        source => Failure::Start {
+            scene: scene.name().to_owned(),
+            source,
+        },
+    };
+    let drive = scene.drive()?;
+    // What a run would do, it would do by the method that it would choose.
+    let choice = accuracy.map(|accuracy| {
+        let start = drive.assemble()?;
+        choose(&start, &run, accuracy, interrupted)
+    });
+    let choice = choice.transpose().map_err(failed)?;
+    let run = choice.as_ref().map_or(run, |choice| choice.run.clone());
+    let description = Description::of(&drive, &run).map_err(failed)?;
     if arguments.json {
         let json = serde_json::to_string_pretty(&description);
         print(json.map_err(|error| Failure::Argument(error.to_string()))?)
@@ -38,8 +59,9 @@ pub(crate) fn describe(arguments: &Arguments) -> Result<(), Failure> {
             title
         };
         print(format_args!(
-            "{title}\n{}",
-            description.to_string().trim_end()
+            "{title}\n{}{}",
+            description.to_string().trim_end(),
+            choice.map_or_else(String::new, |choice| format!("\n\n{choice}"))
         ))
     }
 }
