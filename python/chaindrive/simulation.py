@@ -61,7 +61,8 @@ def simulate(
         Relative tolerance of the adaptive method [–].
     onset_depth
         Deepest penetration at which a contact may begin [m]: deeper steps are rejected and
-        shortened. Absent: contacts begin wherever a step lands.
+        shortened. Absent: contacts begin wherever a step lands, but with implicit damping no
+        deeper than an approach at 1 m/s takes them in a step.
     events
         Contacts to log from touch to parting: of ``"teeth"``, ``"guides"``, ``"joints"``.
     output

@@ -48,13 +48,6 @@ pub enum SimulationError {
     )]
     Implicit { method: &'static str, works: String },
 
-    /// Implicit damping was asked for a chain with ideal joints.
-    #[error(
-        "method = `implicit-damping` does not hold ideal joints together through impacts; choose verlet, \
-         rk4, dormand-prince or generalized-alpha"
-    )]
-    IdealJoints,
-
     /// The motion ceased to be finite.
     #[error(
         "at t = {t:.6} s the {quantity} of {place} is no longer finite; try a smaller step, or look for a contact or damping that is too stiff for its mass"

@@ -20,7 +20,8 @@ pub struct Run {
     /// Relative tolerance of the adaptive method.
     pub tolerance: f64,
     /// Deepest penetration at which a contact may begin \[m\]; deeper steps are rejected and
-    /// shortened. Absent: contacts begin wherever the step lands.
+    /// shortened. Absent: contacts begin wherever the step lands, but with implicit damping no deeper than
+    /// an approach at 1 m/s takes them in a step.
     pub onset_depth: Option<f64>,
     /// Contacts to log; none cost nothing.
     pub events: EventKinds,
@@ -86,7 +87,7 @@ impl Stepping {
     #[must_use]
     pub fn suited(self, system: &System) -> Self {
         match self {
-            Self::Auto if system.suits_implicit_damping() => Self::ImplicitDamping,
+            Self::Auto if system.can_solve() => Self::ImplicitDamping,
             Self::Auto => Self::Verlet,
             chosen => chosen,
         }
@@ -126,6 +127,13 @@ const RK4_STEP: f64 = 0.25;
 /// The same without the damping: implicit damping has Verlet's limit on the springs, and none on the
 /// dampers. The bicycle drive errs by 0.04 % in its tight span at this step.
 const IMPLICIT_DAMPING_STEP: f64 = 1.4;
+
+/// Speed of approach \[m/s\] up to which a contact may begin wherever a step of implicit damping lands.
+///
+/// A pin strikes its bush for three microseconds, hardly longer than a step. What it has gained in depth when it is
+/// first seen inside is energy from nowhere; at the speeds of heavy impacts that feeds itself. The bicycle drive with a
+/// slack chain at 100 rad/s overflows without this, and closes its ledger to 2 % with it, at the same cost.
+const ONSET_SPEED: f64 = 1.0;
 
 /// Generalized-α has no limit, but contacts open and close: at twice Verlet's step the stiffest mode is still followed.
 const GENERALIZED_ALPHA_STEP: f64 = 1.0;
@@ -194,6 +202,14 @@ impl Run {
             });
         }
         Ok(())
+    }
+
+    /// Deepest penetration at which a contact may begin \[m\], if there is a limit.
+    pub fn onset_depth_with(&self, method: &Method) -> Option<f64> {
+        match method {
+            Method::ImplicitDamping { step } => self.onset_depth.or(Some(ONSET_SPEED * step)),
+            _ => self.onset_depth,
+        }
     }
 
     /// The method for a system, with a default step where none is given.

@@ -6,7 +6,7 @@ use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Statistics,
 use chaindrive_mechanics::{Assembled, ContactEvent, Drive, Energy, Observation, Record, System};
 
 use crate::SimulationError;
-use crate::run::{Run, Stepping};
+use crate::run::Run;
 
 /// A run in progress: ask it for one sample after the other.
 ///
@@ -66,14 +66,8 @@ impl Simulation {
         run.check()?;
         let mut system = assembled.system.clone();
         let mut state = State::new(0.0, assembled.q.clone(), assembled.v.clone());
-        if run.stepping == Stepping::ImplicitDamping
-            && SecondOrderSystem::can_solve(&system)
-            && !system.suits_implicit_damping()
-        {
-            return Err(SimulationError::IdealJoints);
-        }
         let method = run.method(&system);
-        system.set_onset_depth(run.onset_depth);
+        system.set_onset_depth(run.onset_depth_with(&method));
         system.log_events(run.events);
         let stepper = method
             .start(&mut system, &mut state)

@@ -186,6 +186,13 @@ fn bars_of(id: &str, links: usize, shorten: f64) -> (Vec<f64>, Vec<f64>, f64) {
         .collect();
     strand.settle = true;
     let found = frequencies(&strand, [mass, mass, inertia]);
+    // What the steps are chosen by: under tension pins swing in their bushes fast, however small their play.
+    let scale = strand.assemble().system.undamped_time_scale();
+    let fastest = 1.0 / (TAU * found[found.len() - 1]);
+    assert!(
+        scale < 1.001 * fastest && scale > 0.3 * fastest,
+        "{scale:e} {fastest:e}"
+    );
     (
         found,
         case.list("bars.expected.frequency"),

@@ -15,10 +15,16 @@ pub(crate) struct Watch(u64);
 
 impl Watch {
     /// Takes note of a value.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn see(&mut self, value: f64) {
         // A full exponent carries into the sign bit.
         self.0 |= (value.to_bits() & EXPONENT).wrapping_add(CARRY);
+    }
+
+    /// Takes note of what another has seen.
+    #[inline]
+    pub(crate) fn join(&mut self, other: Self) {
+        self.0 |= other.0;
     }
 
     /// Takes note of all values.

@@ -1,5 +1,7 @@
 //! Velocity Verlet with velocities predicted for the force evaluation.
 
+use pulp::{Arch, Simd, WithSimd};
+
 use crate::finite::Watch;
 use crate::state::{Snapshot, State};
 use crate::{Moment, SecondOrderSystem};
@@ -12,12 +14,15 @@ pub(crate) const LIMIT: f64 = 2.0;
 pub(crate) struct Verlet {
     /// Predicted velocities.
     predicted: Vec<f64>,
+    /// The processor's vector unit.
+    arch: Arch,
 }
 
 impl Verlet {
     pub(crate) fn new(dofs: usize) -> Self {
         Self {
             predicted: vec![0.0; dofs],
+            arch: Arch::new(),
         }
     }
 
@@ -46,15 +51,24 @@ impl Verlet {
         record: &mut S::Record,
     ) -> bool {
         to.t = from.t + h;
-        let mut watch = Watch::default();
-        drift(h, from, &mut to.q, &mut self.predicted, &mut watch);
+        let mut watch = self.arch.dispatch(Drift {
+            h,
+            from,
+            q: &mut to.q,
+            predicted: &mut self.predicted,
+        });
         let end = Moment {
             t: to.t,
             q: &to.q,
             v: &self.predicted,
         };
         system.evaluate(end, &mut to.a, &mut to.rates, record);
-        kick(h, from, &to.a, &mut to.v, &mut watch);
+        watch.join(self.arch.dispatch(Kick {
+            h,
+            from,
+            a: &to.a,
+            v: &mut to.v,
+        }));
         // The trapezoidal rule: y⁺ = y + ½ h (r + r⁺)
         for (i, y) in to.quadratures.iter_mut().enumerate() {
             *y = from.quadratures[i] + 0.5 * h * (from.rates[i] + to.rates[i]);
@@ -64,32 +78,78 @@ impl Verlet {
     }
 }
 
-/// Positions and predicted velocities.
-#[inline]
-fn drift(h: f64, from: &State, q: &mut [f64], predicted: &mut [f64], watch: &mut Watch) {
-    let n = q.len();
-    let (q0, v0, a0) = (&from.q[..n], &from.v[..n], &from.a[..n]);
-    let predicted = &mut predicted[..n];
-    let mut seen = *watch;
-    for i in 0..n {
-        // q⁺ = q + h v + ½ h² a,   v* = v + h a
-        q[i] = q0[i] + h * (v0[i] + 0.5 * h * a0[i]);
-        predicted[i] = v0[i] + h * a0[i];
-        seen.see(q[i]);
+/// Positions and predicted velocities. Infinity and NaN show in the sum of 0 × everything.
+struct Drift<'a> {
+    h: f64,
+    from: &'a State,
+    q: &'a mut [f64],
+    predicted: &'a mut [f64],
+}
+
+impl WithSimd for Drift<'_> {
+    type Output = Watch;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Watch {
+        let Self { h, from, .. } = self;
+        let n = self.q.len();
+        let (q0, q1) = S::as_simd_f64s(&from.q[..n]);
+        let (v0, v1) = S::as_simd_f64s(&from.v[..n]);
+        let (a0, a1) = S::as_simd_f64s(&from.a[..n]);
+        let (q, q_rest) = S::as_mut_simd_f64s(self.q);
+        let (p, p_rest) = S::as_mut_simd_f64s(&mut self.predicted[..n]);
+        let [zero, step, half] = [0.0, h, 0.5 * h].map(|x| simd.splat_f64s(x));
+        let mut seen = zero;
+        for i in 0..q.len() {
+            // q⁺ = q + h v + ½ h² a,   v* = v + h a
+            let mean = simd.mul_add_f64s(half, a0[i], v0[i]);
+            q[i] = simd.mul_add_f64s(step, mean, q0[i]);
+            p[i] = simd.mul_add_f64s(step, a0[i], v0[i]);
+            seen = simd.mul_add_f64s(q[i], zero, seen);
+        }
+        let mut watch = Watch::default();
+        watch.see(simd.reduce_sum_f64s(seen));
+        for i in 0..q_rest.len() {
+            q_rest[i] = q1[i] + h * (v1[i] + 0.5 * h * a1[i]);
+            p_rest[i] = v1[i] + h * a1[i];
+            watch.see(q_rest[i]);
+        }
+        watch
     }
-    *watch = seen;
 }
 
 /// Velocities.
-#[inline]
-fn kick(h: f64, from: &State, a: &[f64], v: &mut [f64], watch: &mut Watch) {
-    let n = v.len();
-    let (v0, a0, a) = (&from.v[..n], &from.a[..n], &a[..n]);
-    let mut seen = *watch;
-    for i in 0..n {
-        // v⁺ = v + ½ h (a + a⁺)
-        v[i] = v0[i] + 0.5 * h * (a0[i] + a[i]);
-        seen.see(v[i]);
+struct Kick<'a> {
+    h: f64,
+    from: &'a State,
+    a: &'a [f64],
+    v: &'a mut [f64],
+}
+
+impl WithSimd for Kick<'_> {
+    type Output = Watch;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Watch {
+        let Self { h, from, .. } = self;
+        let n = self.v.len();
+        let (v0, v1) = S::as_simd_f64s(&from.v[..n]);
+        let (a0, a1) = S::as_simd_f64s(&from.a[..n]);
+        let (b0, b1) = S::as_simd_f64s(&self.a[..n]);
+        let (v, v_rest) = S::as_mut_simd_f64s(self.v);
+        let [zero, half] = [0.0, 0.5 * h].map(|x| simd.splat_f64s(x));
+        let mut seen = zero;
+        for i in 0..v.len() {
+            // v⁺ = v + ½ h (a + a⁺)
+            v[i] = simd.mul_add_f64s(half, simd.add_f64s(a0[i], b0[i]), v0[i]);
+            seen = simd.mul_add_f64s(v[i], zero, seen);
+        }
+        let mut watch = Watch::default();
+        watch.see(simd.reduce_sum_f64s(seen));
+        for i in 0..v_rest.len() {
+            v_rest[i] = v1[i] + 0.5 * h * (a1[i] + b1[i]);
+            watch.see(v_rest[i]);
+        }
+        watch
     }
-    *watch = seen;
 }

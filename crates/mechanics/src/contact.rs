@@ -5,15 +5,18 @@
 //! such slot the contact remembers, since the last accepted state, the gap, the closing speed
 //! and, while closed, the inverse of the speed at touch.
 
+mod answer;
 mod kernel;
 mod plates;
+mod rest;
 mod scalar;
 mod window;
 
 use chaindrive_contact::elastic::ElasticLaw;
-use chaindrive_contact::{Friction, dissipation::Action};
 use chaindrive_geometry::{Point, Vector};
 
+use answer::Answer;
+pub(crate) use answer::LawNumbers;
 pub(crate) use kernel::Wrench;
 pub(crate) use plates::{PlateContact, PlatePins, PlatePlaces, PlateTouch};
 pub(crate) use window::{Places, Run};
@@ -69,6 +72,8 @@ pub(crate) struct Contacts {
     pub(crate) surface: Surface,
     /// What is different on the flanks.
     pub(crate) flank: Option<Flank>,
+    /// The two, ready for lanes.
+    answer: Answer,
     /// Radius of the touching circles \[m\].
     pub(crate) radius: f64,
     /// Runs of rollers that can touch.
@@ -79,7 +84,7 @@ pub(crate) struct Contacts {
     pub(crate) axis_x: Vec<f64>,
     pub(crate) axis_y: Vec<f64>,
     /// State of each slot at the last accepted step, for one or two sides.
-    pub(crate) memory: Touch,
+    pub(crate) memory: Box<Touch>,
     /// When that was \[s\].
     pub(crate) accepted: f64,
 }
@@ -99,6 +104,8 @@ pub(crate) struct Touch {
     pub(crate) stick: Vec<f64>,
     /// Share of the flank's law; kept where there is one.
     pub(crate) share: Vec<f64>,
+    /// Until when \[s\] nothing can touch in the lane that begins with this slot.
+    pub(crate) wake: Vec<f64>,
 }
 
 impl Touch {
@@ -112,12 +119,17 @@ impl Touch {
             &mut self.force,
             &mut self.stick,
             &mut self.share,
+            &mut self.wake,
         ] {
             values.fill(0.0);
         }
     }
 
+    #[inline]
     pub(crate) fn resize(&mut self, slots: usize) {
+        if self.wake.len() == slots {
+            return;
+        }
         for values in [
             &mut self.inverse_onset,
             &mut self.gap,
@@ -125,70 +137,26 @@ impl Touch {
             &mut self.force,
             &mut self.stick,
             &mut self.share,
+            &mut self.wake,
         ] {
             values.resize(slots, 0.0);
         }
     }
 }
 
-/// The law, taken apart into what the kernel needs.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LawNumbers {
-    /// χ of a hysteretic law, otherwise zero.
-    pub(crate) factor: f64,
-    /// Viscous damping, otherwise zero \[N s/m\].
-    pub(crate) damping: f64,
-    /// Floor of the speed at touch \[m/s\], positive.
-    pub(crate) floor: f64,
-    /// Coefficient of Coulomb friction, zero with any other law.
-    pub(crate) friction: f64,
-    /// Slope of the friction force at rest per normal force, μ/v_s \[s/m\].
-    pub(crate) friction_slope: f64,
-    /// Square of the regularising slip speed \[m²/s²\].
-    pub(crate) slip_speed_squared: f64,
-    /// Any other friction law, asked lane by lane.
-    pub(crate) general: Option<Friction>,
-}
-
-impl LawNumbers {
-    pub(crate) fn new(surface: &Surface) -> Self {
-        let (factor, damping) = match surface.law.dissipation.action() {
-            Action::None => (0.0, 0.0),
-            Action::Hysteretic { factor } => (factor, 0.0),
-            Action::Viscous { damping } => (0.0, damping),
-        };
-        let (friction, slip_speed) = match surface.friction {
-            Friction::Coulomb(coulomb) => (coulomb.coefficient, coulomb.slip_speed),
-            _ => (0.0, 1.0),
-        };
-        let general = match surface.friction {
-            Friction::None | Friction::Coulomb(_) => None,
-            other => Some(other),
-        };
-        Self {
-            factor,
-            damping,
-            floor: surface.floor(),
-            friction,
-            friction_slope: friction / slip_speed,
-            slip_speed_squared: slip_speed * slip_speed,
-            general,
-        }
-    }
-}
-
 impl Contacts {
-    pub(crate) fn new(shape: Shape, surface: Surface, radius: f64) -> Self {
+    pub(crate) fn new(shape: Shape, surface: Surface, flank: Option<Flank>, radius: f64) -> Self {
         Self {
             shape,
             surface,
-            flank: None,
+            flank,
+            answer: Answer::new(&surface, flank),
             radius,
             runs: Vec::new(),
             slots: 0,
             axis_x: Vec::new(),
             axis_y: Vec::new(),
-            memory: Touch::default(),
+            memory: Box::default(),
             accepted: 0.0,
         }
     }

@@ -12,6 +12,7 @@ mod bearing;
 mod blocks;
 pub(crate) mod build;
 mod element;
+mod held;
 mod hinge;
 mod implicit;
 mod impulses;

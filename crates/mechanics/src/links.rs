@@ -75,8 +75,7 @@ impl Links {
             let dy = w.load(rollers.y, i + 1) - w.load(rollers.y, i);
             let ux = w.load(rollers.vx, i + 1) - w.load(rollers.vx, i);
             let uy = w.load(rollers.vy, i + 1) - w.load(rollers.vy, i);
-            let length = (dx * dx + dy * dy).sqrt();
-            let inverse = length.recip();
+            let [length, inverse] = (dx * dx + dy * dy).roots();
             // ℓ̇ = d·u/ℓ
             let rate = (dx * ux + dy * uy) * inverse;
             let drag = w.load(&self.damping, i) * rate;

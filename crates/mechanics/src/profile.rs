@@ -38,6 +38,8 @@ pub(crate) struct Profile {
     pub(crate) features: Vec<Feature>,
     /// Whether any feature is straight.
     pub(crate) has_straights: bool,
+    /// Whether the surface bulges everywhere and turns outward at every joint: convex.
+    pub(crate) bulges: bool,
     /// First feature behind a hollow that is not hollow itself: where the flank begins.
     pub(crate) flank: Option<usize>,
 }
@@ -65,10 +67,12 @@ impl Profile {
     /// outward and, where asked, at the open ends.
     pub(crate) fn new(pieces: &[Piece], open_start: bool, open_end: bool) -> Self {
         let mut features = Vec::new();
+        let mut bulges = true;
         let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else {
             return Self {
                 features,
                 has_straights: false,
+                bulges: false,
                 flank: None,
             };
         };
@@ -82,6 +86,7 @@ impl Profile {
                 if turn > TANGENT {
                     features.push(corner(piece.start(), before));
                 } else if turn < -TANGENT {
+                    bulges = false;
                     along = (before + along).normalize();
                 }
             }
@@ -98,9 +103,11 @@ impl Profile {
                 let behind = features.iter().skip(hollow).position(|f| f.sign > 0.0)?;
                 Some(hollow + behind)
             });
+        bulges &= features.iter().all(|f| f.sign > 0.0);
         Self {
             features,
             has_straights,
+            bulges,
             flank,
         }
     }

@@ -25,7 +25,7 @@ use crate::contact::{Frame, Places, PlatePins, PlatePlaces, PlateTouch, Touch, W
 use crate::energy::Flow;
 use crate::events::EventLog;
 use crate::lanes::Wide;
-use crate::linkage::{Joining, Linkage, Play, Posture};
+use crate::linkage::{Linkage, Play, Posture};
 use crate::links::{Links, Pulls};
 use crate::motion::Course;
 use crate::{End, Motion};
@@ -79,13 +79,19 @@ pub(crate) struct HeldEnd {
 
 /// What one evaluation leaves behind: contact states, work space and what the bodies felt.
 #[derive(Clone, Debug, Default)]
+#[expect(
+    clippy::vec_box,
+    reason = "what changes hands at every step is a pointer, not seven vectors"
+)]
 pub struct Record {
-    pub(crate) teeth: Vec<Touch>,
-    pub(crate) circles: Vec<Touch>,
+    pub(crate) teeth: Vec<Box<Touch>>,
+    pub(crate) circles: Vec<Box<Touch>>,
     pub(crate) plates: Vec<Vec<PlateTouch>>,
     pub(crate) wheel_wrenches: Vec<Wrench>,
     pub(crate) rail_wrenches: Vec<Wrench>,
     pulls: Pulls,
+    /// Frames of the wheels, then of the rails.
+    frames: Vec<Frame>,
     pub(crate) play: Play,
 }
 
@@ -138,10 +144,10 @@ impl PlatePins for Pins<'_, '_> {
     }
 }
 
-/// Accepted steps after which the time scales of rigid links are worked out again.
+/// Accepted steps after which the time scale is worked out again.
 const STEPS_PER_SCALE: u32 = 8;
 /// Accepted steps after which the windows are renewed at the latest.
-const STEPS_PER_WINDOW: u32 = 64;
+const STEPS_PER_WINDOW: u32 = 256;
 
 impl System {
     /// Rejects steps in which a contact begins deeper than `depth` \[m\]; `None` accepts any.
@@ -149,14 +155,9 @@ impl System {
         self.onset_depth = depth;
     }
 
-    /// Whether implicit damping serves this drive: rigid links with play in their joints.
-    ///
-    /// Ideal joints hold the chain together by forces of their own, which a step of first order does
-    /// not follow through impacts.
-    pub fn suits_implicit_damping(&self) -> bool {
-        self.linkage
-            .as_ref()
-            .is_some_and(|linkage| matches!(linkage.joining, Joining::Clearance(_)))
+    /// Deepest penetration at which a contact may begin \[m\], if there is a limit.
+    pub fn onset_depth(&self) -> Option<f64> {
+        self.onset_depth
     }
 
     /// Number of rollers.
@@ -247,22 +248,25 @@ impl System {
         let gravity = [self.gravity.x, self.gravity.y];
         rates[Flow::LinkLoss as usize] =
             self.links.act(w, &mut rollers, &mut record.pulls, gravity);
-        // One call of the kernel serves wheels and rails: it is inlined, and long.
+        // Frames are in memory well before the kernel loads them again.
         let wheels = self.wheels.len();
+        for (frame, wheel) in record.frames.iter_mut().zip(&self.wheels) {
+            (*frame, _, _) = self.wheel_frame(wheel, at);
+        }
+        for (frame, rail) in record.frames[wheels..].iter_mut().zip(&self.rails) {
+            *frame = rail.frame(at.t, at.q, at.v, &self.slides);
+        }
+        // One call of the kernel serves wheels and rails: it is inlined, and long.
         for i in 0..wheels + self.rails.len() {
-            let (frame, contacts, touch) = if i < wheels {
-                let wheel = &self.wheels[i];
-                let (frame, _, _) = self.wheel_frame(wheel, at);
-                (frame, &wheel.contacts, &mut record.teeth[i])
+            let (contacts, touch) = if i < wheels {
+                (&self.wheels[i].contacts, &mut record.teeth[i])
             } else {
-                let rail = &self.rails[i - wheels];
-                let RailContact::Circles(contacts) = &rail.contact else {
+                let RailContact::Circles(contacts) = &self.rails[i - wheels].contact else {
                     continue;
                 };
-                let frame = rail.frame(at.t, at.q, at.v, &self.slides);
-                (frame, contacts, &mut record.circles[i - wheels])
+                (contacts, &mut record.circles[i - wheels])
             };
-            let wrench = contacts.act(w, at.t, &frame, &mut rollers, touch);
+            let wrench = contacts.act(w, at.t, &record.frames[i], &mut rollers, touch);
             let loss = if i < wheels {
                 Flow::ToothLoss
             } else {
@@ -362,7 +366,7 @@ impl System {
     fn renew_time_scales(&mut self, record: &Record) {
         let scales = match &self.linkage {
             // Stiffness changes little from one step to the next, and the bound has a reserve.
-            Some(_) if !self.renew.1.is_multiple_of(STEPS_PER_SCALE) => return,
+            _ if !self.renew.1.is_multiple_of(STEPS_PER_SCALE) => return,
             Some(linkage) => linkage.stiffest(self, &record.play),
             None => [self.stiffest(record); 2],
         };
@@ -439,7 +443,7 @@ impl SecondOrderSystem for System {
     type Record = Record;
 
     fn new_record(&self) -> Record {
-        let touches = |count: usize| vec![Touch::default(); count];
+        let touches = |count: usize| vec![Box::<Touch>::default(); count];
         Record {
             teeth: touches(self.wheels.len()),
             circles: touches(self.rails.len()),
@@ -447,6 +451,7 @@ impl SecondOrderSystem for System {
             wheel_wrenches: vec![Wrench::default(); self.wheels.len()],
             rail_wrenches: vec![Wrench::default(); self.rails.len()],
             pulls: self.links.pulls(),
+            frames: vec![Frame::fixed(); self.wheels.len() + self.rails.len()],
             play: Play::default(),
         }
     }
@@ -476,9 +481,10 @@ impl SecondOrderSystem for System {
         self.bodies(at, a, rates, record);
         if self.links.closed {
             let n = self.stride;
+            // A ghost behind the first turn copies one of the turn before.
             for ghost in self.rollers..n {
-                a[ghost] = a[ghost % self.rollers];
-                a[n + ghost] = a[n + ghost % self.rollers];
+                a[ghost] = a[ghost - self.rollers];
+                a[n + ghost] = a[n + ghost - self.rollers];
             }
         } else {
             self.hold_ends(at, a, rates);

@@ -108,11 +108,6 @@ impl IntoException for SimulationError {
             Self::Implicit { works, .. } => {
                 parameter(message, "method", &format!("one of {works}"))
             }
-            Self::IdealJoints => parameter(
-                message,
-                "method",
-                "one of verlet, rk4, dormand-prince, generalized-alpha",
-            ),
             Self::AbsentChannel { .. } => python::ParameterError::new_err((
                 message,
                 "record",

@@ -275,6 +275,9 @@ fn attributes<'py>(
             answer.set_item("max_step", max_step)?;
         }
     }
+    if let Some(depth) = simulation.system().onset_depth() {
+        answer.set_item("onset_depth", depth)?;
+    }
     answer.set_item("steps", statistics.steps)?;
     answer.set_item("rejections", statistics.rejections)?;
     answer.set_item("error_rejections", statistics.error_rejections)?;

@@ -201,7 +201,7 @@ impl Bench {
     }
 }
 
-/// Places on a circle about the origin, n of them, the distance of neighbours `length`.
+/// Places on a circle about the origin, `count` of them, the distance of neighbours `length`.
 pub(crate) fn circle(count: usize, length: f64) -> Vec<[f64; 2]> {
     let step = std::f64::consts::TAU / count as f64;
     let radius = 0.5 * length / (0.5 * step).sin();

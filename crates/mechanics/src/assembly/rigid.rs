@@ -8,6 +8,9 @@ use crate::{AssemblyError, Drive, Joint, RigidLinks, System, linkage};
 const PRESSED: f64 = 1e-6;
 /// Stiffness of a rigid link while it is laid, in those of the teeth.
 const HARD: f64 = 1e3;
+/// The same where there is no pretension: a slack chain hangs free, and links much stiffer than its weight
+/// keep Newton's method from finding how.
+const HANGING: f64 = 10.0;
 /// Relative error of the pretension that is left.
 const MET: f64 = 1e-3;
 
@@ -26,11 +29,12 @@ impl Drive {
             return self.assemble_as_is();
         }
         let mut parts = self.parts().clone();
-        parts.chain.stiffness.fill(HARD * teeth);
         let asked = match &parts.layout {
             Layout::Route { fit, .. } => fit.pretension,
             Layout::Points { .. } => 0.0,
         };
+        let hard = if asked > 0.0 { HARD } else { HANGING };
+        parts.chain.stiffness.fill(hard * teeth);
         let (mut given, mut before) = (asked, None);
         for _ in 0..20 {
             if let Layout::Route { fit, .. } = &mut parts.layout {

@@ -1,11 +1,12 @@
 //! The inner loop: eight rollers against one profile.
 
 use chaindrive_contact::dissipation::RATIO_LIMIT;
-use chaindrive_contact::elastic::ElasticLaw;
-use chaindrive_contact::{Elastic, Friction, Rub};
+use chaindrive_contact::{Friction, Rub};
 use pulp::Simd;
 
-use super::{Contacts, Frame, LawNumbers, Shape, Teeth, Touch};
+use super::answer::{Answer, LaneElastic};
+use super::rest::Clear;
+use super::{Contacts, Frame, Shape, Teeth, Touch};
 use crate::lanes::{LANES, Lane, Mask, Wide};
 use crate::profile::Profile;
 use crate::system::Rollers;
@@ -29,42 +30,6 @@ pub(crate) struct Wrench {
     pub(crate) first_depth: f64,
     /// Smallest share of the step after which such a contact began.
     pub(crate) first_share: f64,
-}
-
-/// An elastic law on lanes, chosen once per body; the depth is not negative.
-#[derive(Clone, Copy)]
-enum LaneElastic {
-    /// g = K δ
-    Linear(f64),
-    /// g = K δ √δ
-    Hertz(f64),
-    /// Any law, one lane after the other.
-    General(Elastic),
-}
-
-impl LaneElastic {
-    fn new(law: Elastic) -> Self {
-        match law {
-            Elastic::Power(power) if is(power.exponent, 1.0) => Self::Linear(power.stiffness),
-            Elastic::Power(power) if is(power.exponent, 1.5) => Self::Hertz(power.stiffness),
-            law => Self::General(law),
-        }
-    }
-
-    #[inline(always)]
-    fn force<S: Simd>(self, w: Wide<S>, depth: Lane<S>) -> Lane<S> {
-        match self {
-            Self::Linear(stiffness) => w.splat(stiffness) * depth,
-            Self::Hertz(stiffness) => w.splat(stiffness) * depth * depth.sqrt(),
-            Self::General(law) => depth.one_by_one(|depth| general(law, depth)),
-        }
-    }
-}
-
-/// Kept out of line: a general law is too long to be copied into every kernel.
-#[inline(never)]
-fn general(law: Elastic, depth: f64) -> f64 {
-    if depth > 0.0 { law.force(depth) } else { 0.0 }
 }
 
 /// Turns normal forces into friction forces and slips into damping; kept out of line like the laws.
@@ -103,29 +68,32 @@ impl Contacts {
     ) -> Wrench {
         let dt = t - self.accepted;
         touch.resize(self.slots * self.sides());
-        let law = Response {
-            elastic: LaneElastic::new(self.surface.law.elastic),
-            numbers: LawNumbers::new(&self.surface),
-            dt,
-            flank: self.flank.map(|flank| LaneFlank {
-                elastic: LaneElastic::new(flank.elastic),
-                scale: 0.5 / flank.width,
-            }),
-        };
         let mut sums = Sums::new(w);
+        let mut touching = false;
         let mut slot = 0;
         for run in &self.runs {
             for offset in (0..run.count).step_by(Wide::<S>::COUNT) {
-                let here = Here {
-                    slot,
-                    roller: run.start + offset,
-                    valid: w.first(run.count - offset),
-                };
-                self.lane(w, &law, frame, here, rollers, touch, &mut sums);
+                if self.memory.wake[slot] > t {
+                    self.leave_open(w, slot, self.memory.wake[slot], touch);
+                } else {
+                    let here = Here {
+                        slot,
+                        roller: run.start + offset,
+                        valid: w.first(run.count - offset),
+                    };
+                    touching |= self.lane(w, dt, frame, here, rollers, touch, &mut sums);
+                }
                 slot += Wide::<S>::COUNT;
             }
         }
-        sums.total()
+        if touching {
+            sums.total(self.surface.friction != Friction::None)
+        } else {
+            Wrench {
+                first_share: 1.0,
+                ..Wrench::default()
+            }
+        }
     }
 
     #[inline(always)]
@@ -136,13 +104,13 @@ impl Contacts {
     fn lane<S: Simd>(
         &self,
         w: Wide<S>,
-        law: &Response,
+        dt: f64,
         frame: &Frame,
         here: Here<S>,
         rollers: &mut Rollers<'_>,
         touch: &mut Touch,
         sums: &mut Sums<S>,
-    ) {
+    ) -> bool {
         let i = here.roller;
         // d = q − o,   u = v − v_o − ω ẑ × d
         let dx = w.load(rollers.x, i) - w.splat(frame.origin.x);
@@ -158,7 +126,15 @@ impl Contacts {
         let (place, near) = match &self.shape {
             Shape::Teeth(teeth) => {
                 let reach = teeth.tip_radius + self.radius;
-                let near = w.splat(reach * reach).greater(dx * dx + dy * dy) & here.valid;
+                let away = dx * dx + dy * dy - w.splat(reach * reach);
+                let near = w.splat(0.0).greater(away) & here.valid;
+                if !near.any() {
+                    // |d| − R ≥ (d² − R²)/(3 R) up to |d| = 2 R
+                    let gap = away * w.splat(1.0 / (3.0 * reach));
+                    let rest = here.clear(w, gap, None, &motion, rollers).rest(w, dt);
+                    self.leave_open(w, here.slot, self.accepted + dt + rest, touch);
+                    return false;
+                }
                 (self.fold(w, teeth, frame, here.slot, dx, dy), near)
             }
             Shape::Rail { reference, .. } => {
@@ -173,10 +149,12 @@ impl Contacts {
                 (place, here.valid)
             }
         };
+        touch.wake[here.slot] = 0.0;
+        let mut touching = false;
         for side in 0..self.sides() {
             let face = self.face(w, side, &place);
             let mut found = look(w, face.profile, face.sign * place.x, place.y, self.radius);
-            let flank = law.flank.map(|flank| {
+            let flank = self.answer.flank.map(|flank| {
                 let beyond = beyond_hollow(w, face.profile, face.sign * place.x, place.y);
                 flank.elastic_and_share(w, beyond)
             });
@@ -188,8 +166,15 @@ impl Contacts {
             found.nx = face.sign * found.nx;
             let hit = place.world(&found, near);
             let slot = side * self.slots + here.slot;
-            self.respond(w, law, flank, &motion, &hit, slot, i, rollers, touch, sums);
+            let closing = self.respond(w, dt, flank, &motion, &hit, slot, i, rollers, touch, sums);
+            touching |= closing.is_none();
+            if let (Some(closing), Shape::Rail { profile, .. }) = (closing, &self.shape) {
+                let closing = (profile.bulges && frame.spin == 0.0).then_some(closing);
+                let clear = here.clear(w, hit.gap, closing, &motion, rollers);
+                touch.wake[here.slot] = self.accepted + dt + clear.rest(w, dt);
+            }
         }
+        touching
     }
 
     /// What a side of the slots looks at: the whole rail, the half of a symmetric gap on the
@@ -286,7 +271,7 @@ impl Contacts {
         (w.load(&rubs, 0), w.load(&drags, 0))
     }
 
-    /// Force, memory and sums of one lane of candidate contacts.
+    /// Force, memory and sums of one lane of candidate contacts; the closing speeds if none is closed.
     #[inline(always)]
     #[expect(
         clippy::too_many_arguments,
@@ -295,7 +280,7 @@ impl Contacts {
     fn respond<S: Simd>(
         &self,
         w: Wide<S>,
-        law: &Response,
+        dt: f64,
         flank: Option<(LaneElastic, Lane<S>)>,
         motion: &Motion<S>,
         hit: &Hit<S>,
@@ -304,10 +289,10 @@ impl Contacts {
         rollers: &mut Rollers<'_>,
         touch: &mut Touch,
         sums: &mut Sums<S>,
-    ) {
-        let Response {
+    ) -> Option<Lane<S>> {
+        let Answer {
             elastic, numbers, ..
-        } = law;
+        } = &self.answer;
         let zero = w.splat(0.0);
         let gap = hit.near.select(hit.gap, w.splat(1.0));
         // δ̇ = −n·u
@@ -319,7 +304,7 @@ impl Contacts {
         if !closed.any() {
             zero.store(&mut touch.inverse_onset, slot);
             zero.store(&mut touch.force, slot);
-            return;
+            return Some(closing);
         }
         let before = w.load(&self.memory.inverse_onset, slot);
         let mut inverse = closed.select(before, zero);
@@ -332,6 +317,7 @@ impl Contacts {
             let onset = closing_before + share * (closing - closing_before);
             let inverse_onset = onset.max(w.splat(numbers.floor)).recip();
             inverse = fresh.select(inverse_onset, inverse);
+            sums.fresh = true;
             let fresh_depth = fresh.select(depth, zero);
             sums.first_depth = sums.first_depth.max(fresh_depth);
             sums.first_share = sums.first_share.min(fresh.select(share, w.splat(1.0)));
@@ -372,7 +358,7 @@ impl Contacts {
         if let Some(friction) = numbers.general {
             let radius = w.splat(self.radius);
             let slip = tx * motion.ux + ty * motion.uy + motion.spin * radius;
-            let (rub, drag) = self.rub(w, &friction, law.dt, force, slip, slot, touch);
+            let (rub, drag) = self.rub(w, &friction, dt, force, slip, slot, touch);
             fx += rub * tx;
             fy += rub * ty;
             moment = motion.dy * fx - motion.dx * fy + rub * radius;
@@ -391,13 +377,8 @@ impl Contacts {
         // −∂F/∂ġ = χ g/v + c, and μ F/v_s across
         let normal = damping * inverse + closed.select(w.splat(numbers.damping), zero);
         sums.damping = sums.damping.max(normal + across);
+        None
     }
-}
-
-#[inline(always)]
-#[expect(clippy::float_cmp, reason = "an exponent is chosen, not computed")]
-fn is(exponent: f64, value: f64) -> bool {
-    exponent == value
 }
 
 /// The surface that each lane faces, in the frame of the profile.
@@ -430,8 +411,8 @@ fn look<S: Simd>(w: Wide<S>, profile: &Profile, x: Lane<S>, y: Lane<S>, radius: 
         }
     }
     let (ex, ey) = (x - cx, y - cy);
-    let distance = (ex * ex + ey * ey).max(w.splat(f64::MIN_POSITIVE)).sqrt();
-    let scale = sign * distance.recip();
+    let [distance, inverse] = (ex * ex + ey * ey).roots();
+    let scale = sign * inverse;
     let contact_radius = w.splat(radius);
     let mut found = Found {
         // g = ±(|q − c| − R) − r
@@ -449,34 +430,6 @@ fn look<S: Simd>(w: Wide<S>, profile: &Profile, x: Lane<S>, y: Lane<S>, radius: 
         found.ny = straight.select(my, found.ny);
     }
     found
-}
-
-/// How a body answers to indentation.
-struct Response {
-    elastic: LaneElastic,
-    numbers: LawNumbers,
-    /// Time since the last accepted state \[s\].
-    dt: f64,
-    /// What is different on flanks.
-    flank: Option<LaneFlank>,
-}
-
-/// A flank on lanes.
-#[derive(Clone, Copy)]
-struct LaneFlank {
-    elastic: LaneElastic,
-    /// 1/(2w) \[1/m\].
-    scale: f64,
-}
-
-impl LaneFlank {
-    /// Its law, and its share as [`Flank::share`](crate::Flank) has it.
-    #[inline(always)]
-    fn elastic_and_share<S: Simd>(self, w: Wide<S>, beyond: Lane<S>) -> (LaneElastic, Lane<S>) {
-        let x = beyond * w.splat(self.scale) + w.splat(0.5);
-        let x = x.max(w.splat(0.0)).min(w.splat(1.0));
-        (self.elastic, x * x * (w.splat(3.0) - w.splat(2.0) * x))
-    }
 }
 
 /// How far beyond the hollow the rollers are; infinite where there is none.
@@ -506,6 +459,32 @@ struct Here<S: Simd> {
     slot: usize,
     roller: usize,
     valid: Mask<S>,
+}
+
+impl<S: Simd> Here<S> {
+    /// What open contacts with these gaps want to know before they rest.
+    #[inline(always)]
+    fn clear(
+        self,
+        w: Wide<S>,
+        gap: Lane<S>,
+        closing: Option<Lane<S>>,
+        motion: &Motion<S>,
+        rollers: &Rollers<'_>,
+    ) -> Clear<S> {
+        let zero = w.splat(0.0);
+        let (ax, ay) = (
+            w.load(rollers.ax, self.roller),
+            w.load(rollers.ay, self.roller),
+        );
+        let only = |lane: Lane<S>| self.valid.select(lane, zero);
+        Clear {
+            gap: self.valid.select(gap, w.splat(f64::MAX)),
+            closing: closing.map(only),
+            speed: only(motion.ux * motion.ux + motion.uy * motion.uy),
+            thrust: only(ax * ax + ay * ay),
+        }
+    }
 }
 
 /// Velocity relative to the body at the roller centres, and the lever arms.
@@ -561,6 +540,8 @@ struct Sums<S: Simd> {
     friction_loss: Lane<S>,
     depth: Lane<S>,
     damping: Lane<S>,
+    /// Whether contacts began; only then the rest counts.
+    fresh: bool,
     first_depth: Lane<S>,
     first_share: Lane<S>,
 }
@@ -577,22 +558,33 @@ impl<S: Simd> Sums<S> {
             friction_loss: zero,
             depth: zero,
             damping: zero,
+            fresh: false,
             first_depth: zero,
             first_share: w.splat(1.0),
         }
     }
 
     #[inline(always)]
-    fn total(&self) -> Wrench {
+    fn total(&self, rubbing: bool) -> Wrench {
+        let (first_depth, first_share) = if self.fresh {
+            (self.first_depth.largest(), self.first_share.smallest())
+        } else {
+            (0.0, 1.0)
+        };
+        let friction_loss = if rubbing {
+            self.friction_loss.sum()
+        } else {
+            0.0
+        };
         Wrench {
             force: [self.fx.sum(), self.fy.sum()],
             moment: self.moment.sum(),
             normal_loss: self.normal_loss.sum(),
-            friction_loss: self.friction_loss.sum(),
+            friction_loss,
             depth: self.depth.largest(),
             damping: self.damping.largest(),
-            first_depth: self.first_depth.largest(),
-            first_share: -(-self.first_share).largest(),
+            first_depth,
+            first_share,
         }
     }
 }

@@ -24,14 +24,14 @@ pub(crate) struct Places<'a> {
 }
 
 /// A slot that no roller held before: open, and far.
-const FAR: f64 = 1.0;
+pub(super) const FAR: f64 = 1.0;
 
 impl Contacts {
     /// Looks for the rollers within `margin` \[m\] of touching, and carries the memory over.
     pub(crate) fn renew(&mut self, frame: &Frame, places: Places<'_>, margin: f64) {
         let runs = self.near_runs(frame, places, margin);
         let slots = runs.iter().map(|run| padded(run.count)).sum();
-        let mut memory = Touch::default();
+        let mut memory = Box::<Touch>::default();
         memory.resize(slots * self.sides());
         memory.gap.fill(FAR);
         let mut axes = (vec![1.0; slots], vec![0.0; slots]);

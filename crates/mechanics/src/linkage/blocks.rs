@@ -48,6 +48,35 @@ impl Blocks {
         }
     }
 
+    /// Takes the product of the matrix with known values, by block and on the border, from the right-hand sides.
+    pub(crate) fn subtract_product(
+        &mut self,
+        known: impl Fn(usize) -> Vector3<f64>,
+        edge: &DVector<f64>,
+    ) {
+        let links = self.diagonal.len();
+        let border = edge.len();
+        for i in 0..links {
+            let own = known(i);
+            self.right[i] -= self.diagonal[i] * own;
+            if i + 1 < links {
+                self.right[i] -= self.below[i].transpose() * known(i + 1);
+                self.right[i + 1] -= self.below[i] * own;
+            }
+            for j in 0..border {
+                let row = self.beside[i * border + j];
+                self.right[i] -= row * edge[j];
+                self.right_border[j] -= row.dot(&own);
+            }
+        }
+        for j in 0..border {
+            for k in 0..border {
+                // Only the lower half is kept.
+                self.right_border[j] -= self.corner[(j.max(k), j.min(k))] * edge[k];
+            }
+        }
+    }
+
     /// Solves in place: the right-hand sides become the solution. False if a pivot vanishes.
     pub(crate) fn solve(&mut self) -> bool {
         let links = self.diagonal.len();
@@ -106,7 +135,7 @@ impl Blocks {
 mod tests {
     use super::*;
 
-    /// Against a dense solution of the same matrix, with and without a border.
+    /// Against a dense solution and product of the same matrix, with and without a border.
     #[test]
     fn agrees_with_a_dense_solution() {
         for (links, border) in [(1, 0), (5, 0), (7, 4), (3, 1)] {
@@ -151,6 +180,15 @@ mod tests {
                 blocks.right_border[j] = 0.3;
                 right[3 * links + j] = 0.3;
             }
+            let known = DVector::from_fn(size, |_, _| next());
+            let mut less = blocks.clone();
+            let edge = known.rows(3 * links, border).into_owned();
+            less.subtract_product(|i| known.fixed_rows::<3>(3 * i).into_owned(), &edge);
+            let left = &right - &dense * &known;
+            for i in 0..links {
+                assert!((less.right[i] - left.fixed_rows::<3>(3 * i)).norm() < 1e-13);
+            }
+            assert!((less.right_border - left.rows(3 * links, border)).norm() < 1e-13);
             let exact = dense.lu().solve(&right).unwrap();
             assert!(blocks.solve());
             for i in 0..links {

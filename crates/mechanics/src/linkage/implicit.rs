@@ -12,8 +12,9 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Moment, Weights};
 use nalgebra::{Matrix3, Vector3};
 
+use super::held::Asked;
 use super::loose::Loose;
-use super::{Blocks, Element, Joining, Linkage, Mate, Mount, Partner, Play, cross, turned};
+use super::{Blocks, Element, Joining, Linkage, Mount, Partner, Play, cross, turned};
 use crate::System;
 use crate::system::{WheelRotation, WheelSupport};
 
@@ -23,15 +24,6 @@ pub(super) enum Row {
     Nothing,
     Body(usize, Vector3<f64>),
     Border([(usize, f64); 3]),
-}
-
-/// What J x is to be at the hinges.
-#[derive(Clone, Copy)]
-pub(super) enum Asked<'a> {
-    /// What J b is.
-    Kept,
-    /// These values, by joint.
-    Given(&'a [Vector]),
 }
 
 /// Where a body's unknowns stand.
@@ -94,7 +86,9 @@ impl Linkage {
         });
         let opening: Vec<Vector> = opening.collect();
         let mut change = vec![0.0; v.len()];
-        let solved = self.eliminate(system, none, play, &mut change, Asked::Given(&opening));
+        // Every pass leaves 1e-5 of what was missing.
+        let solved =
+            (0..3).all(|_| self.eliminate(system, none, play, &mut change, Asked::Given(&opening)));
         for (v, change) in v.iter_mut().zip(&change) {
             *v += change;
         }
@@ -133,12 +127,20 @@ impl Linkage {
         for element in &play.elements {
             sum.add(element, &play.mounts, weights);
         }
-        if matches!(self.joining, Joining::Hinges(_)) {
-            sum.add_hinges(play, weights, x, asked);
+        let known = matches!(self.joining, Joining::Hinges(_)).then(|| x.to_vec());
+        if let Some(b) = &known {
+            if weights.stiffness > 0.0 {
+                sum.add_hinge_turns(play, weights.stiffness);
+            }
+            sum.subtract_known(b);
+            sum.add_hinges(play, weights, b, asked);
         }
         let solved = sum.eliminate_rollers() && blocks.solve();
         if solved {
             self.read(&blocks, &loose, border, x);
+            for (x, b) in x.iter_mut().zip(known.iter().flatten()) {
+                *x += b;
+            }
         }
         play.blocks = blocks;
         play.loose = loose;
@@ -239,76 +241,16 @@ impl System {
     }
 }
 
-struct Sum<'a> {
-    linkage: &'a Linkage,
-    blocks: &'a mut Blocks,
-    loose: &'a mut [Loose],
-    border: usize,
+/// The system under assembly.
+pub(super) struct Sum<'a> {
+    pub(super) linkage: &'a Linkage,
+    pub(super) blocks: &'a mut Blocks,
+    pub(super) loose: &'a mut [Loose],
+    pub(super) border: usize,
 }
 
-/// How much stiffer a hinge is than everything else in the matrix.
-///
-/// J x then equals J b to about 1e-7 of its size; the stabilisation of the hinges takes the rest.
-const HINGE: f64 = 1e7;
-
 impl Sum<'_> {
-    /// Ideal joints as very heavy rows: W Jᵀ (J x − J b) keeps J x at what the accelerations b ask for.
-    fn add_hinges(&mut self, play: &Play, weights: Weights, b: &[f64], asked: Asked<'_>) {
-        let linkage = self.linkage;
-        let heaviest = linkage
-            .bodies
-            .iter()
-            .fold(0.0_f64, |m, body| m.max(body.mass));
-        let stiffest = play.elements.iter().fold(0.0_f64, |m, element| {
-            m.max(weights.damping * element.damping + weights.stiffness * element.stiffness)
-        });
-        let weight = HINGE * (heaviest + stiffest);
-        for (index, joint) in linkage.joints.iter().enumerate() {
-            let Some(mates) = joint.pair else { continue };
-            let sides = mates.map(|mate| match mate {
-                Mate::Link { link, end } => Some((link, play.posture.tips[link][end].arm)),
-                Mate::Ground(_) => None,
-            });
-            if weights.stiffness > 0.0 {
-                // What the joint force adds to the rotation of the links: λ·arm, where it holds them.
-                let force = play.pin_forces[index];
-                for (side, force) in sides.into_iter().zip([-force, force]) {
-                    if let Some((body, arm)) = side {
-                        self.add_turn(body, weights.stiffness * force.dot(&arm).max(0.0));
-                    }
-                }
-            }
-            for direction in [Vector::x(), Vector::y()] {
-                let [hole, pin] = sides.map(|side| {
-                    side.map(|(body, arm)| {
-                        let row = Vector3::new(direction.x, direction.y, cross(arm, direction));
-                        let known = Vector3::from_column_slice(&b[3 * body..3 * body + 3]);
-                        (body, row, row.dot(&known))
-                    })
-                });
-                let asked = match asked {
-                    Asked::Kept => pin.map_or(0.0, |p| p.2) - hole.map_or(0.0, |h| h.2),
-                    Asked::Given(values) => direction.dot(&values[index]),
-                };
-                for (side, sign) in [(pin, 1.0), (hole, -1.0)] {
-                    if let Some((body, row, _)) = side {
-                        self.force(body, row * (sign * weight * asked));
-                    }
-                }
-                match (pin, hole) {
-                    (Some((a, row, _)), Some((b, other, _))) => {
-                        self.square(Some(a), row, Row::Body(b, other), weight);
-                    }
-                    (Some((body, row, _)), None) | (None, Some((body, row, _))) => {
-                        self.square(Some(body), row, Row::Nothing, weight);
-                    }
-                    (None, None) => {}
-                }
-            }
-        }
-    }
-
-    fn force(&mut self, body: usize, force: Vector3<f64>) {
+    pub(super) fn force(&mut self, body: usize, force: Vector3<f64>) {
         match self.linkage.place(body) {
             Place::Link(i) => self.blocks.right[i] += force,
             Place::Corner => {
@@ -373,7 +315,7 @@ impl Sum<'_> {
         }
     }
 
-    fn add_turn(&mut self, body: usize, value: f64) {
+    pub(super) fn add_turn(&mut self, body: usize, value: f64) {
         match self.linkage.place(body) {
             Place::Link(i) => self.blocks.diagonal[i][(2, 2)] += value,
             Place::Corner => self.blocks.corner[(2, 2)] += value,
@@ -382,7 +324,13 @@ impl Sum<'_> {
     }
 
     /// Adds w (a − b)ᵀ(a − b).
-    fn square(&mut self, a: Option<usize>, row: Vector3<f64>, partner: Row, weight: f64) {
+    pub(super) fn square(
+        &mut self,
+        a: Option<usize>,
+        row: Vector3<f64>,
+        partner: Row,
+        weight: f64,
+    ) {
         if weight <= 0.0 {
             return;
         }

@@ -354,7 +354,7 @@ impl Line {
 mod tests {
     use chaindrive_integrate::Weights;
 
-    use crate::linkage::implicit::Asked;
+    use crate::linkage::held::Asked;
     use crate::linkage::tests::started;
 
     /// The bodies' own equations, block by block, give the same answer: two independent eliminations.

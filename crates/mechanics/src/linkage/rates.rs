@@ -17,7 +17,7 @@ impl Linkage {
     /// 1/ω of the stiffest mode \[s\], with its damping and without.
     ///
     /// ```text
-    /// k (a − b)² ≤ 2 k (a² + b²)   ⇒   ω² ≤ max over bodies of λ(S),   S = M^(−½) Σ 2 k Jₙᵀ Jₙ M^(−½)
+    /// k (a − b)² ≤ 2 k (a² + b²)   ⇒   ω² ≤ max over bodies of λ(S),   S = M^(−½) Σ 2 (k Jₙᵀ Jₙ + F/|e| J_tᵀ J_t) M^(−½)
     /// D alike with the damping,    1/ω = 1/(D + √(D² + ω²))
     /// ```
     ///
@@ -36,7 +36,9 @@ impl Linkage {
                 let along = self.scaled_row(body, arm, n, 0.0);
                 let across = self.scaled_row(body, arm, t, lever);
                 let square = along * along.transpose();
-                sums[body][0] += square * (share * element.stiffness);
+                let pivoting = self.scaled_row(body, arm, t, 0.0);
+                sums[body][0] += square * (share * element.stiffness)
+                    + pivoting * pivoting.transpose() * (share * element.across.max(0.0));
                 sums[body][1] += square * (share * element.damping)
                     + across * across.transpose() * (share * element.drag);
             };

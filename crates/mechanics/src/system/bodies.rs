@@ -103,6 +103,25 @@ pub(crate) struct Anchor {
     turn: [f64; 2],
 }
 
+/// Coefficients of the series: 1/(2k)! and 1/(2k+1)!.
+const COSINE: [f64; 7] = [
+    1.0,
+    1.0 / 2.0,
+    1.0 / 24.0,
+    1.0 / 720.0,
+    1.0 / 40_320.0,
+    1.0 / 3_628_800.0,
+    1.0 / 479_001_600.0,
+];
+const SINE: [f64; 6] = [
+    1.0,
+    1.0 / 6.0,
+    1.0 / 120.0,
+    1.0 / 5040.0,
+    1.0 / 362_880.0,
+    1.0 / 39_916_800.0,
+];
+
 impl Anchor {
     pub(crate) fn at(angle: f64) -> Self {
         Self {
@@ -120,18 +139,11 @@ impl Anchor {
         if d.abs() > 0.35 {
             return [angle.cos(), angle.sin()];
         }
-        let s = d * d;
-        // cos Δ = 1 − Δ²/2 + …,   sin Δ = Δ − Δ³/6 + …
-        let cosine = 1.0
-            - s / 2.0
-                * (1.0
-                    - s / 12.0
-                        * (1.0
-                            - s / 30.0 * (1.0 - s / 56.0 * (1.0 - s / 90.0 * (1.0 - s / 132.0)))));
-        let sine = d
-            * (1.0
-                - s / 6.0
-                    * (1.0 - s / 20.0 * (1.0 - s / 42.0 * (1.0 - s / 72.0 * (1.0 - s / 110.0)))));
+        // cos Δ = Σ (−Δ²)ᵏ/(2k)!,   sin Δ = Δ Σ (−Δ²)ᵏ/(2k+1)!
+        let s = -d * d;
+        let series = |terms: &[f64]| terms.iter().rev().fold(0.0, |sum, term| sum * s + term);
+        let cosine = series(&COSINE);
+        let sine = d * series(&SINE);
         let [c, si] = self.turn;
         [c * cosine - si * sine, si * cosine + c * sine]
     }

@@ -234,10 +234,12 @@ fn wheel(
     };
     Wheel {
         name: sprocket.name.clone(),
-        contacts: Contacts {
-            flank: sprocket.flank,
-            ..Contacts::new(Shape::Teeth(teeth), sprocket.surface, radius)
-        },
+        contacts: Contacts::new(
+            Shape::Teeth(teeth),
+            sprocket.surface,
+            sprocket.flank,
+            radius,
+        ),
         centre: sprocket.centre,
         angle,
         rotation,
@@ -292,7 +294,7 @@ fn rail(guide: &Guide, parts: &Parts) -> Result<Rail, AssemblyError> {
             reference,
             bounds,
         };
-        RailContact::Circles(Contacts::new(shape, guide.surface, radius))
+        RailContact::Circles(Contacts::new(shape, guide.surface, None, radius))
     };
     Ok(Rail {
         name: guide.name.clone(),

@@ -83,7 +83,7 @@ pub(super) fn attributes(
     story.number("time_reached", simulation.time());
     story.count("samples", samples);
     method(&mut story, simulation.method());
-    if let Some(depth) = provenance.run.onset_depth {
+    if let Some(depth) = simulation.system().onset_depth() {
         story.number("onset_depth", depth);
     }
     let statistics = simulation.statistics();
