@@ -255,6 +255,10 @@ impl<S: Simd> AddAssign for Lane<S> {
 }
 
 #[cfg(test)]
+#[expect(
+    clippy::float_cmp,
+    reason = "what is only moved about stays what it was"
+)]
 mod tests {
     use super::*;
 
