@@ -1,8 +1,9 @@
 """Write docs/how-fast-how-accurate.md: what this machine measures of speed and error.
 
-Run it as ``make report``, or ``python benchmarks/report.py [--quick] [--docs FOLDER]``. It takes some ten minutes on
-one core and should have the machine to itself. The table beside other programs is the last one
-that ``benchmarks/peers/compare.py`` left in results.json: those want an environment of their own.
+Run it as ``make report``, or ``python benchmarks/report.py [--quick] [--docs FOLDER]``. It takes
+some ten minutes on one core and should have the machine to itself. The table beside other programs
+is the last one that ``benchmarks/peers/compare.py`` left in results.json: those want an environment
+of their own.
 """
 
 import argparse
@@ -38,18 +39,22 @@ class Report:
     claims: list[tuple[str, str, str, bool]] = field(default_factory=list)
 
     def say(self, *lines: str) -> None:
+        """Add lines to the page, and print them."""
         self.lines.extend(lines)
         print("\n".join(lines), flush=True)
 
     def table(self, head: list[str], rows: list[list[str]]) -> None:
+        """Add a table."""
         self.say("", "| " + " | ".join(head) + " |", "|" + "---|" * len(head))
         self.say(*("| " + " | ".join(row) + " |" for row in rows), "")
 
     def claim(self, what: str, wanted: str, found: str, met: bool) -> None:
+        """Answer one of the targets."""
         self.claims.append((what, wanted, found, met))
 
     @property
     def repeats(self) -> int:
+        """How often times are taken."""
         return 1 if self.quick else 5
 
 
@@ -67,7 +72,8 @@ def kernels(report: Report) -> None:
     report.say(
         "## The inner loop",
         "",
-        "Whole step with the default method: forces, contacts, energy ledger, step control. Nanoseconds per link and "
+        "Whole step with the default method: forces, contacts, energy ledger, step control. "
+        "Nanoseconds per link and "
         f"step, median and least of {report.repeats}.",
     )
     marine = cd.scenes.marine_engine()
@@ -85,12 +91,11 @@ def kernels(report: Report) -> None:
         rows.append([name, f"{found[name][0]:.1f}", f"{found[name][1]:.1f}"])
     report.table(["drive", "ns", "least"], rows)
     median = found["marine engine, four sprockets"][0]
-    report.claim(
-        "whole Verlet step, four sprockets", "≤ 7 ns", f"{median:.1f} ns", median <= 7.0
-    )
+    report.claim("whole Verlet step, four sprockets", "≤ 7 ns", f"{median:.1f} ns", median <= 7.0)
 
     report.say(
-        "What a feature costs where a scene has it, in ns per link and step of the marine drive without guides; a "
+        "What a feature costs where a scene has it, in ns per link and step of the marine drive "
+        "without guides; a "
         "scene that has not pays nothing, since its list is empty or its law another kernel.",
     )
     base = found["marine engine, four sprockets"][0]
@@ -101,11 +106,22 @@ def kernels(report: Report) -> None:
             {},
         ),
         "LuGre friction on the teeth": (
-            bare.replace({"contact.teeth.friction": {"kind": "lugre", "coefficient": 0.1}}),
+            bare.replace(
+                {
+                    "contact.teeth.friction": {
+                        "kind": "lugre",
+                        "coefficient": 0.1,
+                        "static_coefficient": 0.12,
+                        "stiffness": 1e4,
+                    }
+                }
+            ),
             {},
         ),
         "Johnson's law on the teeth": (
-            bare.replace({"contact.teeth.law": {"kind": "johnson", "length": "50 mm", "clearance": "0.3 mm"}}),
+            bare.replace(
+                {"contact.teeth.law": {"kind": "johnson", "length": "50 mm", "clearance": "0.3 mm"}}
+            ),
             {},
         ),
         "onset depth of 1 µm": (bare, {"onset_depth": 1e-6}),
@@ -123,10 +139,10 @@ def kernels(report: Report) -> None:
 
 
 def long_chain(links: int) -> cd.Drive:
-    """Two sprockets of twelve teeth as far apart as the chain reaches, without gravity."""
+    """Two sprockets of ten teeth as far apart as the chain reaches, without gravity."""
     pitch = 0.0254
-    apart = 0.5 * (links - 12) * pitch
-    sprocket = {"teeth": 12, "contact": {"restitution": 0.8}}
+    apart = 0.5 * (links - 10) * pitch
+    sprocket = {"teeth": 10, "contact": {"restitution": 0.8}}
     return cd.Drive.from_dict(
         {
             "title": f"{links} links",
@@ -152,13 +168,15 @@ def lengths(report: Report) -> None:
     report.say(
         "## Length of the chain",
         "",
-        "Two sprockets of twelve teeth, ever farther apart.",
+        "Two sprockets of ten teeth, ever farther apart.",
     )
     counts = [20, 50, 100, 200, 500, 1000, 2000, 5000]
     counts = counts[:2] if report.quick else counts
     costs = []
     for links in counts:
-        costs.append(cost(long_chain(links), report, until=2.0 / links, step=4e-6, method="verlet")[0])
+        costs.append(
+            cost(long_chain(links), report, until=2.0 / links, step=4e-6, method="verlet")[0]
+        )
     report.table(
         ["links", *map(str, counts)],
         [["ns per link and step", *(f"{ns:.1f}" for ns in costs)]],
@@ -187,7 +205,8 @@ import chaindrive as cd
 drive = cd.scenes.marine_two_sprockets()
 until, output, record = float(sys.argv[1]), sys.argv[2], sys.argv[3].split(",")
 options = {"output": output} if output else {}
-run = cd.simulate(drive, until=until, every=2e-4, record=record, method="auto", error=False, **options)
+options |= {"until": until, "every": 2e-4, "record": record, "method": "auto", "error": False}
+run = cd.simulate(drive, **options)
 print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, run.nbytes / 1e6)
 """
 
@@ -227,8 +246,10 @@ def precision(report: Report) -> None:
     report.say(
         "## Work and precision",
         "",
-        "`chaindrive.work_precision`: errors against a reference that a second method confirms, root mean square over the "
-        "mean; cheapest rows within an error. Real time: simulated over processor time, median of the repeats.",
+        "`chaindrive.work_precision`: errors against a reference that a second method confirms, "
+        "root mean square over the "
+        "mean; cheapest rows within an error. Real time: simulated over processor time, median "
+        "of the repeats.",
     )
     drives = {
         "marine_two_sprockets": cd.scenes.marine_two_sprockets(),
@@ -245,7 +266,7 @@ def precision(report: Report) -> None:
         cd.plot.work_precision(table, ax=axis)
         axis.set_title(name, fontsize=9)
         window = float(table.attrs["window"])
-        agreement = float(table.attrs.get("agreement_tight_span_tension", np.nan))
+        agreement = float(table.attrs.get("agreement_tight_tension", np.nan))
         for limit in (0.01, 0.001):
             best = cheapest(table, limit)
             if best is None:
@@ -262,7 +283,11 @@ def precision(report: Report) -> None:
                     f"{100 * agreement:.1g} %",
                 ]
             )
-            wanted = {("marine_engine", 0.01): 8.0, ("marine_engine", 0.001): 3.0, ("bicycle", 0.001): 0.3}
+            wanted = {
+                ("marine_engine", 0.01): 8.0,
+                ("marine_engine", 0.001): 3.0,
+                ("bicycle", 0.001): 0.3,
+            }
             if (name, limit) in wanted:
                 least = wanted[name, limit]
                 report.claim(
@@ -272,7 +297,8 @@ def precision(report: Report) -> None:
                     factor >= least,
                 )
     report.table(
-        ["drive", "within", "method", "error of the tight span", "× real time", "references apart"], rows
+        ["drive", "within", "method", "error of the tight span", "× real time", "references apart"],
+        rows,
     )
     plt.tight_layout()
     plt.savefig(report.folder / "work_precision.png", dpi=70)
@@ -303,8 +329,10 @@ def long_runs(report: Report) -> None:
     report.say(
         "## Statistics of long runs",
         "",
-        f"{until:g} s of the marine engine, the first tenth left out. Replicates are five RK4 runs at 1 µm onset depth "
-        "that begin with pretensions a billionth apart; chaos makes them different runs of the same drive.",
+        f"{until:g} s of the marine engine, the first tenth left out. Replicates are five RK4 "
+        "runs at 1 µm onset depth "
+        "that begin with pretensions a billionth apart; chaos makes them different runs of the "
+        "same drive.",
     )
     drive = cd.scenes.marine_engine()
     options = {"until": until, "every": 2e-4, "record": "span_tension", "error": False}
@@ -363,15 +391,18 @@ def sweeps(report: Report) -> None:
             )
             walls.append(time.perf_counter() - begin)
         measured = ["stepping_time", "real_time_factor"]
-        equal &= results[0].drop_vars(measured).identical(results[1].drop_vars(measured))
+        equal &= results[0].drop_vars(measured).equals(results[1].drop_vars(measured))
         ratios.append(walls[0] / walls[1])
     ratio = statistics.median(ratios)
     report.say(
         "## Sweeps",
         "",
-        f"{count[0] * count[1]} variants of the marine engine over speed and pretension, 20 ms each: {cores} threads "
-        f"take the serial time over {ratio:.2f} (median of {len(ratios)}, {min(ratios):.2f} to {max(ratios):.2f}); "
-        f"the numbers are {'the same to the last bit' if equal else 'NOT the same'}. See [sweeps](sweeps.md).",
+        f"{count[0] * count[1]} variants of the marine engine over speed and pretension, 20 ms "
+        f"each: {cores} threads "
+        f"take the serial time over {ratio:.2f} (median of {len(ratios)}, {min(ratios):.2f} to "
+        f"{max(ratios):.2f}); "
+        f"the numbers are {'the same to the last bit' if equal else 'NOT the same'}. See "
+        "[sweeps](sweeps.md).",
         "",
     )
     report.claim(
@@ -384,11 +415,14 @@ def sweeps(report: Report) -> None:
 
 def peers(report: Report) -> None:
     found = json.loads((HERE / "peers" / "results.json").read_text(encoding="utf-8"))
-    versions = ", ".join(f"{name} {number}" for name, number in found["machine"]["versions"].items())
+    versions = ", ".join(
+        f"{name} {number}" for name, number in found["machine"]["versions"].items()
+    )
     report.say(
         "## Beside other programs",
         "",
-        f"The same drive, side by side in one run, processor time at equal error of the tension (≤ 2 %); {versions}. How, "
+        "The same drive, side by side in one run, processor time at equal error of the tension "
+        f"(≤ 2 %); {versions}. How, "
         "and what to read into it: [benchmarks/peers](../benchmarks/peers/README.md).",
     )
     rows = []
@@ -420,7 +454,9 @@ def machine() -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description="Measure speed and error, and write the page.")
     parser.add_argument("--quick", action="store_true", help="only see that everything works")
-    parser.add_argument("--docs", type=Path, default=HERE.parent / "docs", help="folder to write to")
+    parser.add_argument(
+        "--docs", type=Path, default=HERE.parent / "docs", help="folder to write to"
+    )
     arguments = parser.parse_args()
     arguments.docs.mkdir(parents=True, exist_ok=True)
     report = Report(arguments.quick, arguments.docs)
@@ -431,15 +467,20 @@ def main() -> None:
     report.say(
         "# How fast, how accurate",
         "",
-        "Written by `make report`; nothing on this page is typed by hand. Every target that was set is listed with what "
+        "Written by `make report`; nothing on this page is typed by hand. Every target that was "
+        "set is listed with what "
         "was found, met or not.",
         "",
-        f"{machine()}, {os.cpu_count()} cores, load {load:.1f} at the start; {platform.system()}, Python "
+        f"{machine()}, {os.cpu_count()} cores, load {load:.1f} at the start; "
+        f"{platform.system()}, Python "
         f"{platform.python_version()}, chaindrive {cd.__version__}.",
     )
     report.table(
         ["target", "wanted", "found", ""],
-        [[what, wanted, found, "met" if met else "**missed**"] for what, wanted, found, met in report.claims],
+        [
+            [what, wanted, found, "met" if met else "**missed**"]
+            for what, wanted, found, met in report.claims
+        ],
     )
     page = report.folder / "how-fast-how-accurate.md"
     page.write_text("\n".join(report.lines + body) + "\n", encoding="utf-8")
