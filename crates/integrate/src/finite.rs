@@ -21,12 +21,6 @@ impl Watch {
         self.0 |= (value.to_bits() & EXPONENT).wrapping_add(CARRY);
     }
 
-    /// Takes note of what another has seen.
-    #[inline]
-    pub(crate) fn join(&mut self, other: Self) {
-        self.0 |= other.0;
-    }
-
     /// Takes note of all values.
     #[inline]
     pub(crate) fn see_all(&mut self, values: &[f64]) {

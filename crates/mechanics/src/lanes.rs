@@ -115,6 +115,15 @@ impl<S: Simd> Lane<S> {
         }
     }
 
+    /// 1/√x of positive numbers, to a few units in the last place.
+    #[inline(always)]
+    pub(crate) fn inverse_root(self) -> Self {
+        match self.estimate() {
+            Some(estimate) => estimate.newton(self).newton(self),
+            None => self.sqrt() * self.recip(),
+        }
+    }
+
     /// √x alone.
     #[inline(always)]
     pub(crate) fn root(self) -> Self {
@@ -298,6 +307,7 @@ mod tests {
         for i in 0..n {
             assert!((root[i] / x[i].sqrt() - 1.0).abs() < 3e-16);
             assert!((inverse[i] * x[i].sqrt() - 1.0).abs() < 1e-15);
+            assert!((out(lane.inverse_root())[i] * x[i].sqrt() - 1.0).abs() < 1e-15);
             assert!((out(lane.root())[i] / x[i].sqrt() - 1.0).abs() < 1e-15);
         }
         assert_eq!(out(w.splat(0.0).root()), vec![0.0; n]);

@@ -75,7 +75,9 @@ impl Links {
             let dy = w.load(rollers.y, i + 1) - w.load(rollers.y, i);
             let ux = w.load(rollers.vx, i + 1) - w.load(rollers.vx, i);
             let uy = w.load(rollers.vy, i + 1) - w.load(rollers.vy, i);
-            let [length, inverse] = (dx * dx + dy * dy).roots();
+            let square = dx * dx + dy * dy;
+            let inverse = square.inverse_root();
+            let length = square * inverse;
             // ℓ̇ = d·u/ℓ
             let rate = (dx * ux + dy * uy) * inverse;
             let drag = w.load(&self.damping, i) * rate;
