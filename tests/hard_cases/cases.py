@@ -132,7 +132,7 @@ PARTICLES = [
         "6 to 150 teeth",
         "16B chain around the smallest wheel in use and a very large one",
         industrial({"sprockets.driver.teeth": 6, "sprockets.driven.teeth": 150}, links=176),
-        0.2,
+        0.05,
     ),
     Case("sharp guides", "marine engine, guides that begin and end in a corner", sharp_guides, 0.5),
     Case("step × 10", "ten times the step of the automatic choice", large(), 0.5, step_factor=10),
@@ -152,7 +152,7 @@ PARTICLES = [
     ),
     Case(
         "tooth jump",
-        "worn chain jumps two teeth of an overloaded idler and lands",
+        "worn chain jumps three teeth of an overloaded idler and lands",
         tooth_jump.drive,
         tooth_jump.UNTIL,
     ),
@@ -200,7 +200,7 @@ CLEARANCE = [
         "10 kN",
         "load of 10 kN in the tight span, above the breaking load",
         bicycle({"sprockets.rear.load": [{"kind": "constant", "torque": "364 N m"}]}),
-        SHORT,
+        0.3e-3,
     ),
     Case(
         "no gravity",

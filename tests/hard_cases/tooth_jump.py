@@ -95,7 +95,9 @@ def _register(drive, run, at, near):
     now = run.sel(time=at, method="nearest")
     away = np.stack([now["roller_x"].values, now["roller_y"].values], axis=1) - centre
     pitch_radius = 0.0889 / (2 * np.sin(np.pi / teeth))
-    on = np.flatnonzero(np.abs(np.hypot(*away.T) / pitch_radius - 1) < 0.03)
+    # Worn links ride outside the pitch circle by as much as they are longer.
+    ride = 1 + drive.to_dict()["chain"]["elongation"]
+    on = np.flatnonzero(np.abs(np.hypot(*away.T) / pitch_radius - ride) < 0.03)
     if len(on) < 2:
         raise ValueError(f"at {at} s {len(on)} rollers lie on the idler, needs two")
     # Gap axes of the laid chain: rollers of the drawing sit in them exactly.

@@ -378,3 +378,37 @@ fn spans_of_a_heavily_worn_chain_have_a_tension() {
         state.span_tension
     );
 }
+
+/// A worn chain sets off with its wheels, however high it rides on them: every roller that touches teeth has the
+/// velocity of the wheel at its place, ω ẑ × d.
+#[test]
+fn a_worn_chain_sets_off_with_its_wheels() {
+    let scene = Scene::preset("industrial_16b")
+        .and_then(|scene| scene.replace("chain.elongation", "0.03"))
+        .and_then(|scene| {
+            let adjust =
+                r#"{ kind = "sprocket", name = "driven", direction = [1, 0], within = 0.1 }"#;
+            scene.replace("route.adjust", adjust)
+        })
+        .unwrap_or_else(|error| panic!("{error}"));
+    let state = settled(scene.text());
+    let mut touching = 0;
+    for i in 0..state.roller_x.len() {
+        if state.contact_force[i] <= 0.0 {
+            continue;
+        }
+        touching += 1;
+        let slip = (0..2).map(|wheel| {
+            let (dx, dy) = (
+                state.roller_x[i] - state.sprocket_x[wheel],
+                state.roller_y[i] - state.sprocket_y[wheel],
+            );
+            let spin = state.sprocket_speed[wheel];
+            (state.roller_vx[i] + spin * dy).hypot(state.roller_vy[i] - spin * dx)
+        });
+        // The chain runs at 2.4 m/s.
+        let least = slip.fold(f64::INFINITY, f64::min);
+        assert!(least < 1e-9, "roller {i} slips at {least} m/s");
+    }
+    assert!(touching > 20, "{touching}");
+}

@@ -6,7 +6,7 @@ use chaindrive_integrate::{Moment, SecondOrderSystem};
 use crate::contact::{Frame, PlateContact};
 use crate::energy::{Energy, Flow, Store};
 use crate::linkage::rates::LinkPlaces;
-use crate::system::{Pins, RailContact, Record, WheelRotation, WheelSupport};
+use crate::system::{Pins, RailContact, Record, Wheel, WheelRotation, WheelSupport};
 use crate::{Carrier, System};
 
 /// Everything that can be read off one state. SI units; arrays in the order of the drive.
@@ -264,15 +264,21 @@ impl System {
         }
     }
 
+    /// Radius \[m\] of the circle on which the rollers of a wheel lie: its pitch circle, or that of a worn chain, which
+    /// rides higher by as much as it is longer.
+    pub(crate) fn riding_radius(&self, wheel: &Wheel) -> f64 {
+        let rest: f64 = self.links.rest[..self.links.count].iter().sum();
+        let nominal = self.links.count as f64 * self.pitch;
+        // R ℓ/p
+        wheel.pitch_radius * (rest / nominal).max(1.0)
+    }
+
     /// First and last roller, in path order, that lie on a sprocket: on its pitch circle, or as far outside as wear
     /// lifts the chain.
     fn seated(&self, wheel: usize, centre: Point, out: &Observation) -> Option<(usize, usize)> {
         let wheel = &self.wheels[wheel];
-        // A worn chain rides higher by as much as it is longer. Half a pitch along the tangent a roller is
-        // p²/8R outside the circle on which it rides.
-        let rest: f64 = self.links.rest[..self.links.count].iter().sum();
-        let longer = (rest / (self.links.count as f64 * self.pitch)).max(1.0);
-        let circle = wheel.pitch_radius * longer;
+        // Half a pitch along the tangent a roller is p²/8R outside the circle on which it rides.
+        let circle = self.riding_radius(wheel);
         let reach = circle + self.pitch * self.pitch / (8.0 * circle);
         let on = |i: &usize| {
             let d = Point::new(out.roller_x[*i], out.roller_y[*i]) - centre;

@@ -48,11 +48,11 @@ pub(super) fn along_route(system: &System, stops: &[Stop], q: &[f64], v: &mut [f
             v[dof + 1] = 0.0;
         }
         let (frame, _, _) = system.wheel_frame(wheel, at);
-        let half = 0.5 * wheel.pitch;
-        let seat = wheel.pitch_radius.hypot(half);
+        let circle = system.riding_radius(wheel);
+        let seat = circle.hypot(0.5 * wheel.pitch);
         for (i, place) in seats.iter_mut().enumerate() {
             if (Point::new(q[i], q[system.stride + i]) - frame.origin).norm()
-                < 0.5 * (wheel.pitch_radius + seat)
+                < 0.5 * (circle + seat)
             {
                 *place = Some(index);
             }
