@@ -14,7 +14,7 @@ def run(method, step, until, every=EVERY, onset_depth=None):
     """
     drive = scene()
     settings = {"every": every, "record": "link_tension", "method": method, "step": step}
-    settings["onset_depth"] = onset_depth
+    settings |= {"onset_depth": onset_depth, "error": False}
     begin = time.process_time()
     cd.simulate(drive, until=1e-9, **settings)
     assembled = time.process_time()
