@@ -66,7 +66,7 @@ def test_clearance_joints_agree(case):
 
 
 def test_a_chain_jumps_a_tooth_and_lands():
-    """The worn chain jumps three teeth, all methods agree on the number, and the tension comes back.
+    """The worn chain jumps three teeth; all methods agree on that, and the tension comes back.
 
     Counted twice: from the gaps in which the rollers sit, and from the angles of the wheels.
     """
