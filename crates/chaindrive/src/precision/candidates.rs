@@ -35,7 +35,7 @@ const IMPLICIT_DAMPING: [f64; 5] = [1.4, 0.7, 0.35, 0.175, 0.0875];
 
 /// What suits a drive, from the cheapest to the dearest.
 ///
-/// Particles and ideal joints: Verlet, then Runge–Kutta with rejection. Clearance joints: implicit damping, whose error
+/// Particles: Verlet, then Runge–Kutta with rejection. Rigid links: implicit damping, whose error
 /// falls to 0.01 % before explicit methods, which have to follow the damping, become cheaper.
 pub(super) fn entries(start: &Assembled, run: &Run) -> Vec<Entry> {
     let system = &start.system;

@@ -52,10 +52,10 @@ const TOLERANCES: [f64; 3] = [1e-5, 1e-6, 1e-7];
 /// The same in units of 1/ω without damping, for methods that do not have to.
 const IMPLICIT_DAMPING: [f64; 4] = [1.4, 0.7, 0.35, 0.175];
 const GENERALIZED_ALPHA: [f64; 3] = [2.0, 1.0, 0.5];
-/// Reference and check of particles and ideal joints.
+/// Reference and check of particles.
 const REFERENCE: (f64, f64) = (0.0625, 1e-8);
 const CHECK: (f64, f64) = (1e-9, 1e-8);
-/// Reference and check of clearance joints, whose contacts are many times softer than their damping is stiff.
+/// Reference and check of rigid links, whose contacts are many times softer than their damping is stiff.
 const CLEARANCE_REFERENCE: f64 = 0.5;
 const CLEARANCE_CHECK: f64 = 0.25;
 
@@ -111,8 +111,8 @@ pub(super) fn usual(start: &Assembled) -> Vec<Variant> {
 
 /// The reference, and an independent method that it is checked with.
 ///
-/// Particles and ideal joints: Runge–Kutta of fourth order with rejected first penetrations, and Dormand–Prince under
-/// error control. Clearance joints: Runge–Kutta and Verlet, both with steps that follow the damping of the joints.
+/// Particles: Runge–Kutta of fourth order with rejected first penetrations, and Dormand–Prince under
+/// error control. Rigid links: Runge–Kutta and Verlet, both with steps that follow the damping of the joints.
 pub(super) fn references(start: &Assembled) -> [Variant; 2] {
     if start.system.can_solve() {
         return [
