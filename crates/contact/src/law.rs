@@ -187,6 +187,17 @@ impl Prepared {
         self.curve.energy(penetration)
     }
 
+    /// K \[N/mⁿ\] and n of an elastic law g = K δⁿ, for those who take powers of many numbers at a time.
+    #[inline]
+    pub fn power(&self) -> Option<[f64; 2]> {
+        match self.curve {
+            Curve::Linear(stiffness) => Some([stiffness, 1.0]),
+            Curve::Hertz(stiffness) => Some([stiffness, 1.5]),
+            Curve::Power(power) => Some([power.stiffness, power.exponent]),
+            Curve::Logarithmic(_) | Curve::Conformal(_) => None,
+        }
+    }
+
     /// What the dissipation does, its constants worked out.
     #[inline]
     pub fn action(&self) -> Action {

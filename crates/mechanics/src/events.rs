@@ -174,14 +174,11 @@ impl System {
         }
         let base = base + self.rails.len();
         if let Some(linkage) = self.linkage.as_ref().filter(|_| kinds.joints) {
-            for (kind, touches) in linkage.touches().into_iter().enumerate() {
-                for (joint, touch) in touches.iter().enumerate() {
-                    let pair = if kind == 0 {
-                        ContactPair::Joint { joint }
-                    } else {
-                        ContactPair::Roller { joint }
-                    };
-                    let seen = (touch.onset > 0.0).then_some((touch.onset, touch.force));
+            for joint in 0..linkage.joints.len() {
+                let pairs = [ContactPair::Joint { joint }, ContactPair::Roller { joint }];
+                for (kind, (pair, seen)) in
+                    pairs.into_iter().zip(linkage.touching(joint)).enumerate()
+                {
                     log.see((base + kind) * rollers + joint, pair, t, seen);
                 }
             }

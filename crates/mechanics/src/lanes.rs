@@ -4,9 +4,14 @@
 //! which one runs is decided when the system is built. No operation is fused, and sums are taken
 //! in a fixed order: the same machine gives the same bits.
 
+mod power;
+mod turn;
+
 use std::ops::{Add, AddAssign, BitAnd, Mul, Neg, Sub};
 
 use pulp::Simd;
+
+pub(crate) use power::FixedPower;
 
 /// Largest number of lanes of any processor: what arrays are padded to.
 pub(crate) const LANES: usize = 8;

@@ -19,6 +19,7 @@ mod impulses;
 mod loose;
 mod meshing;
 mod observe;
+mod pins;
 mod posture;
 pub(crate) mod rates;
 pub(crate) mod settle;
@@ -30,12 +31,14 @@ mod tests;
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
 use nalgebra::Vector3;
+use pulp::Arch;
 
 pub(crate) use bearing::{Bearing, Part, PinTouch, Tally};
 pub(crate) use blocks::Blocks;
 pub(crate) use element::{Element, Mount, Partner, cross, turned};
 pub(crate) use hinge::Hinges;
-pub(crate) use posture::{Posture, free_part};
+pub(crate) use pins::{Pairs, PinMemory, Pins};
+pub(crate) use posture::{Posture, Shapes, free_part};
 
 use crate::End;
 use crate::energy::Flow;
@@ -74,6 +77,8 @@ pub(crate) struct FreeRollers {
     pub(crate) bearing: Bearing,
     /// Body of the roller at every joint.
     pub(crate) body: Vec<Option<usize>>,
+    /// The link that each of them sits on.
+    pub(crate) link: Vec<usize>,
 }
 
 /// How neighbouring links are joined.
@@ -94,7 +99,10 @@ pub(crate) struct Linkage {
     pub(crate) stride: usize,
     pub(crate) pitch: f64,
     pub(crate) bodies: Vec<Body>,
+    /// The links among them, for lanes.
+    pub(crate) shapes: Shapes,
     pub(crate) joints: Vec<JointMates>,
+    pub(crate) pairs: Pairs,
     pub(crate) joining: Joining,
     pub(crate) free_rollers: Option<FreeRollers>,
     /// Whether what runs on the teeth turns with its link: a bush.
@@ -104,13 +112,14 @@ pub(crate) struct Linkage {
     pub(crate) memory: Memory,
     /// 1/ω of the stiffest mode, damping included and left out \[s\].
     pub(crate) time_scales: [f64; 2],
+    pub(crate) arch: Arch,
 }
 
 /// State of all joints at an accepted moment.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Memory {
     pub(crate) time: f64,
-    pub(crate) joints: Vec<PinTouch>,
+    pub(crate) joints: PinMemory,
     /// Of the free rollers on their bushes, by joint.
     pub(crate) bushes: Vec<PinTouch>,
 }
@@ -122,10 +131,13 @@ pub(crate) struct Play {
     /// Force and moment on every body \[N, N, N m\].
     pub(crate) forces: Vec<Vector3<f64>>,
     pub(crate) memory: Memory,
-    /// Force on the pin of every joint \[N\].
-    pub(crate) pin_forces: Vec<Vector>,
-    /// Force on both ends of every link, whatever it comes from \[N\].
+    /// Pins in bushes with clearance.
+    pub(crate) pins: Pins,
+    /// Force on the pin of every ideal joint \[N\].
+    pub(crate) hinge_forces: Vec<Vector>,
+    /// Force on both ends of every link \[N\], but what pins in bushes exert.
     pub(crate) end_forces: Vec<[Vector; 2]>,
+    /// All closed contacts, but those of pins in bushes.
     pub(crate) elements: Vec<Element>,
     pub(crate) mounts: Vec<Mount>,
     pub(crate) tally: Tally,
@@ -154,18 +166,11 @@ impl Linkage {
         let mut play = std::mem::take(&mut record.play);
         self.pose(at, &mut play.posture);
         play.elements.clear();
-        play.tally = Tally::new();
         play.memory.time = at.t;
-        play.forces.clear();
-        let gravity = system.gravity;
-        play.forces.extend(
-            self.bodies
-                .iter()
-                .map(|body| Vector3::new(body.mass * gravity.x, body.mass * gravity.y, 0.0)),
-        );
         play.end_forces.clear();
         play.end_forces.resize(self.links, [Vector::zeros(); 2]);
-        self.joint_forces(at, rates, &mut play);
+        play.tally = self.joint_forces(at, rates, &mut play);
+        self.body_forces(system.gravity, &mut play);
         self.roller_forces(at, rates, &mut play);
         self.end_loads(rates, &mut play);
         system.mesh(self, at, rates, record, &mut play);
@@ -184,37 +189,58 @@ impl Linkage {
         record.play = play;
     }
 
-    /// Pins in their bushes.
-    fn joint_forces(&self, at: Moment<'_>, rates: &mut [f64], play: &mut Play) {
-        let count = self.joints.len();
-        play.memory.joints.resize(count, PinTouch::OPEN);
-        play.pin_forces.clear();
-        play.pin_forces.resize(count, Vector::zeros());
+    /// Pins in their bushes; how contacts began.
+    fn joint_forces(&self, at: Moment<'_>, rates: &mut [f64], play: &mut Play) -> Tally {
         let Joining::Clearance(bearing) = &self.joining else {
-            return;
+            return Tally::new();
         };
-        let dt = at.t - self.memory.time;
-        let mut tally = play.tally;
-        for (index, joint) in self.joints.iter().enumerate() {
-            let Some(mates) = joint.pair else { continue };
-            let [hole, pin] = mates.map(|mate| self.part(mate, at, &play.posture));
-            let before = &self.memory.joints[index];
-            let (touch, element) = bearing.touch(index, &hole, &pin, before, dt, &mut tally);
-            play.memory.joints[index] = touch;
-            if let Some(element) = element {
-                let push = element.push();
-                play.pin_forces[index] = push;
-                play.apply(&element, push);
-                rates[Flow::Motions as usize] += supplied(&mates, push, &hole, &pin);
-            }
+        let mut tally = self.arch.dispatch(pins::Contacts {
+            linkage: self,
+            bearing,
+            posture: &play.posture,
+            memory: &mut play.memory.joints,
+            pins: &mut play.pins,
+        });
+        if bearing.rubs() {
+            let dt = at.t - self.memory.time;
+            let (memory, pins) = (&mut play.memory.joints, &mut play.pins);
+            tally.friction_loss = bearing.rub(self, &play.posture, dt, memory, pins);
+        }
+        if self.closed {
+            play.pins.close(self.links);
+        } else {
+            let push = |joint| play.pins.push(joint);
+            let part = |end| self.ground(end, at);
+            // The side before the first joint feels the opposite of the push.
+            rates[Flow::Motions as usize] += part(1).velocity.dot(&push(self.links))
+                - part(0).velocity.dot(&push(0));
         }
         rates[Flow::JointLoss as usize] += tally.normal_loss;
         rates[Flow::FrictionLoss as usize] += tally.friction_loss;
-        play.tally = Tally {
+        Tally {
             normal_loss: 0.0,
             friction_loss: 0.0,
             ..tally
-        };
+        }
+    }
+
+    /// Weight of all bodies, and what the pins do to the links.
+    fn body_forces(&self, gravity: Vector, play: &mut Play) {
+        play.forces.clear();
+        play.forces.extend(
+            self.bodies
+                .iter()
+                .map(|body| Vector3::new(body.mass * gravity.x, body.mass * gravity.y, 0.0)),
+        );
+        if matches!(self.joining, Joining::Clearance(_)) {
+            let pins = &play.pins;
+            for (link, force) in play.forces[..self.links].iter_mut().enumerate() {
+                let next = link + 1;
+                force.x += pins.push_x[link] - pins.push_x[next];
+                force.y += pins.push_y[link] - pins.push_y[next];
+                force.z += pins.moment_after[link] + pins.moment_before[next];
+            }
+        }
     }
 
     /// Bushes in their rollers.
@@ -256,7 +282,7 @@ impl Linkage {
                 continue;
             };
             let link = if index == 0 { 0 } else { self.links - 1 };
-            let tip = play.posture.tips[link][index];
+            let tip = play.posture.tip(link, index);
             play.forces[link] += Vector3::new(force.x, force.y, cross(tip.arm, *force));
             play.end_forces[link][index] += force;
             rates[Flow::DriveTorque as usize] += force.dot(&tip.velocity);
@@ -265,18 +291,51 @@ impl Linkage {
 
     /// Elastic energy of the joints \[J\].
     pub(crate) fn stored(&self, memory: &Memory) -> f64 {
-        let energy = |bearing: &Bearing, touches: &[PinTouch]| -> f64 {
-            let closed = touches.iter().filter(|touch| touch.gap < 0.0);
-            closed.map(|touch| bearing.energy(touch)).sum()
-        };
         let mut sum = 0.0;
         if let Joining::Clearance(bearing) = &self.joining {
-            sum += energy(bearing, &memory.joints);
+            let gaps = &memory.joints.gap[..self.joints.len()];
+            let closed = gaps.iter().filter(|gap| **gap < 0.0);
+            sum += closed.map(|&gap| bearing.energy(gap)).sum::<f64>();
         }
         if let Some(free) = &self.free_rollers {
-            sum += energy(&free.bearing, &memory.bushes);
+            let closed = memory.bushes.iter().filter(|touch| touch.gap < 0.0);
+            sum += closed.map(|touch| free.bearing.energy(touch.gap)).sum::<f64>();
         }
         sum
+    }
+
+    /// All closed contacts, those of pins in bushes first.
+    pub(crate) fn each_element(&self, play: &Play, mut visit: impl FnMut(&Element)) {
+        if let Joining::Clearance(bearing) = &self.joining {
+            for joint in 0..self.joints.len() {
+                let (memory, posture) = (&play.memory.joints, &play.posture);
+                if let Some(element) = play.pins.element(joint, self, bearing, memory, posture) {
+                    visit(&element);
+                }
+            }
+        }
+        play.elements.iter().for_each(visit);
+    }
+
+    /// Force on the pin of a joint \[N\].
+    pub(crate) fn pin_force(&self, play: &Play, joint: usize) -> Vector {
+        match &self.joining {
+            Joining::Hinges(_) => play.hinge_forces[joint],
+            Joining::Clearance(_) if self.pairs.pin_after[joint] => play.pins.push(joint),
+            Joining::Clearance(_) => -play.pins.push(joint),
+        }
+    }
+
+    /// Tension of every link \[N\]: half of what stretches it from both ends, joints and teeth together.
+    pub(crate) fn tension(&self, play: &Play, link: usize) -> f64 {
+        let [first, second] = [0, 1].map(|end| play.posture.tip(link, end));
+        let along = (second.place - first.place).normalize();
+        let [at_first, at_second] = play.end_forces[link];
+        let mut stretch = at_second - at_first;
+        if matches!(self.joining, Joining::Clearance(_)) {
+            stretch -= play.pins.push(link + 1) + play.pins.push(link);
+        }
+        0.5 * along.dot(&stretch)
     }
 }
 
@@ -291,14 +350,6 @@ fn supplied(mates: &[Mate; 2], push: Vector, hole: &Part, pin: &Part) -> f64 {
 }
 
 impl Play {
-    /// Tension of every link \[N\]: half of what stretches it from both ends, joints and teeth together.
-    pub(crate) fn tension(&self, link: usize) -> f64 {
-        let [first, second] = self.posture.tips[link];
-        let along = (second.place - first.place).normalize();
-        let [at_first, at_second] = self.end_forces[link];
-        0.5 * along.dot(&(at_second - at_first))
-    }
-
     /// Applies a contact to the bodies it joins and keeps it for the implicit system.
     #[inline]
     pub(crate) fn apply(&mut self, element: &Element, push: Vector) {

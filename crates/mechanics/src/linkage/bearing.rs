@@ -8,12 +8,15 @@ use chaindrive_contact::{Approach, Friction, Prepared, Response, interpolated_on
 use chaindrive_geometry::{Point, Vector};
 
 use super::element::{Element, Partner, turned};
+use super::pins::PinLaw;
 use crate::drive::Surface;
 
 /// A bore and what turns in it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bearing {
     pub(crate) law: Prepared,
+    /// The same for lanes.
+    pub(crate) pins: PinLaw,
     /// Least speed at touch \[m/s\].
     pub(crate) floor: f64,
     pub(crate) friction: Friction,
@@ -23,7 +26,7 @@ pub(crate) struct Bearing {
     pub(crate) radius: f64,
 }
 
-/// State of a joint at one instant.
+/// State of one contact at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PinTouch {
     /// Gap −δ \[m\], negative in contact.
@@ -96,12 +99,13 @@ impl Tally {
 }
 
 /// Eccentricity below which a pin has no direction \[m\].
-const CENTRED: f64 = 1e-12;
+pub(super) const CENTRED: f64 = 1e-12;
 
 impl Bearing {
     pub(crate) fn new(surface: &Surface, bore: f64, radius: f64) -> Self {
         Self {
             law: surface.law.prepared(),
+            pins: PinLaw::new(surface.law.prepared()),
             floor: surface.floor(),
             friction: surface.friction,
             clearance: bore - radius,
@@ -150,9 +154,7 @@ impl Bearing {
         });
         touch.force = answer.force;
         tally.normal_loss += (answer.force - answer.elastic) * touch.closing;
-        // Both surfaces at the middle of the overlap: R_hole + δ/2 and R_pin − δ/2 from the centres.
-        let lever_pin = self.radius - 0.5 * depth;
-        let lever_hole = self.radius + self.clearance + 0.5 * depth;
+        let [lever_pin, lever_hole] = self.levers(depth);
         let mut element = Element {
             joint,
             a: pin.body,
@@ -182,9 +184,18 @@ impl Bearing {
         (touch, Some(element))
     }
 
-    /// Stored energy \[J\].
-    pub(crate) fn energy(&self, touch: &PinTouch) -> f64 {
-        self.law.energy(-touch.gap)
+    /// From the centres of pin and hole to where they touch \[m\].
+    pub(super) fn levers(&self, depth: f64) -> [f64; 2] {
+        // Both surfaces at the middle of the overlap: R_pin − δ/2 and R_hole + δ/2.
+        [
+            self.radius - 0.5 * depth,
+            self.radius + self.clearance + 0.5 * depth,
+        ]
+    }
+
+    /// Stored energy \[J\] of a contact with this gap \[m\].
+    pub(crate) fn energy(&self, gap: f64) -> f64 {
+        self.law.energy(-gap)
     }
 }
 

@@ -2,10 +2,11 @@
 
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
+use pulp::Arch;
 
 use super::{
-    Bearing, Body, FreeRollers, Hinges, Joining, JointMates, Linkage, Mate, Memory, PinTouch, Play,
-    turned,
+    Bearing, Body, FreeRollers, Hinges, Joining, JointMates, Linkage, Mate, Memory, Pairs, PinMemory,
+    PinTouch, Play, Shapes, turned,
 };
 use crate::End;
 use crate::chain::Chain;
@@ -34,7 +35,7 @@ impl Converted {
             v: &self.v,
         };
         linkage.pose(at, &mut play.posture);
-        play.pin_forces = vec![Vector::zeros(); linkage.joints.len()];
+        play.hinge_forces = vec![Vector::zeros(); linkage.joints.len()];
         let mut v = self.v.clone();
         if linkage.project(&self.system, at, &mut play, &mut v) {
             self.v = v;
@@ -64,6 +65,7 @@ pub(crate) fn convert(
             let length = (place(after(link)) - place(link)).norm();
             linkage.bodies[link] = body(links, link, length, 0.0);
         }
+        linkage.shapes = Shapes::of(&linkage.bodies[..linkage.links]);
     }
     let mut chain_q = Vec::with_capacity(linkage.dofs());
     let mut chain_v = Vec::with_capacity(linkage.dofs());
@@ -207,6 +209,7 @@ fn compile(system: &System, parts: &Parts, links: &RigidLinks) -> Linkage {
         .collect();
     let free_rollers = match &links.rollers {
         RollerModel::Free(roller) => {
+            let mut link_of = Vec::new();
             let body = joints
                 .iter()
                 .map(|mates| {
@@ -214,6 +217,7 @@ fn compile(system: &System, parts: &Parts, links: &RigidLinks) -> Linkage {
                         return None;
                     };
                     links.is_inner(link).then(|| {
+                        link_of.push(link);
                         bodies.push(Body {
                             mass: roller.mass,
                             inertia: roller.inertia,
@@ -226,28 +230,31 @@ fn compile(system: &System, parts: &Parts, links: &RigidLinks) -> Linkage {
             Some(FreeRollers {
                 bearing: Bearing::new(&roller.surface, roller.bore_radius, roller.bush_radius),
                 body,
+                link: link_of,
             })
         }
         RollerModel::Lumped { .. } | RollerModel::Bush => None,
     };
-    let open = |count: usize| vec![PinTouch::OPEN; count];
     Linkage {
         links: count,
         closed: chain.is_closed(),
         stride: system.stride,
         pitch: chain.pitch,
+        shapes: Shapes::of(&bodies[..count]),
         bodies,
         memory: Memory {
             time: 0.0,
-            joints: open(joints.len()),
-            bushes: open(joints.len()),
+            joints: PinMemory::open(joints.len()),
+            bushes: vec![PinTouch::OPEN; joints.len()],
         },
+        pairs: Pairs::of(&joints),
         joints,
         joining,
         free_rollers,
         bush_turns: links.rollers == RollerModel::Bush,
         ends: system.ends.clone(),
         time_scales: [f64::INFINITY; 2],
+        arch: Arch::new(),
     }
 }
 

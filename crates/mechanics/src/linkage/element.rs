@@ -78,12 +78,7 @@ impl Element {
     pub(crate) fn rub(&mut self, friction: &Friction, rub: Rub, slip: f64) {
         self.rub = rub.force;
         self.drag = rub.damping;
-        // A law with a state sticks by itself, and its tangent knows how.
-        self.secant = if friction.has_state() || slip.abs() < f64::MIN_POSITIVE {
-            rub.damping
-        } else {
-            rub.damping.max(-rub.force / slip)
-        };
+        self.secant = secant(friction, rub, slip);
     }
 
     pub(crate) fn tangent(&self) -> Vector {
@@ -103,5 +98,15 @@ impl Element {
     /// Moment on b about its centre of mass, or about the origin of its frame \[N m\].
     pub(crate) fn moment_b(&self, push: Vector) -> f64 {
         -cross(self.arm_b, push) - self.lever_b * self.rub
+    }
+}
+
+/// |R/slip| \[N s/m\], or the tangent where that is steeper.
+pub(super) fn secant(friction: &Friction, rub: Rub, slip: f64) -> f64 {
+    // A law with a state sticks by itself, and its tangent knows how.
+    if friction.has_state() || slip.abs() < f64::MIN_POSITIVE {
+        rub.damping
+    } else {
+        rub.damping.max(-rub.force / slip)
     }
 }

@@ -50,7 +50,7 @@ impl Sum<'_> {
         for (index, joint) in linkage.joints.iter().enumerate() {
             let Some(mates) = joint.pair else { continue };
             let sides = mates.map(|mate| match mate {
-                Mate::Link { link, end } => Some((link, play.posture.tips[link][end].arm)),
+                Mate::Link { link, end } => Some((link, play.posture.tip(link, end).arm)),
                 Mate::Ground(_) => None,
             });
             for direction in [Vector::x(), Vector::y()] {
@@ -85,11 +85,11 @@ impl Sum<'_> {
 
     /// What the joint forces add to the rotation of the links: λ·arm, where it holds them.
     pub(super) fn add_hinge_turns(&mut self, play: &Play, weight: f64) {
-        for (joint, force) in self.linkage.joints.iter().zip(&play.pin_forces) {
+        for (joint, force) in self.linkage.joints.iter().zip(&play.hinge_forces) {
             let Some(mates) = joint.pair else { continue };
             for (mate, force) in mates.into_iter().zip([-force, *force]) {
                 if let Mate::Link { link, end } = mate {
-                    let arm = play.posture.tips[link][end].arm;
+                    let arm = play.posture.tip(link, end).arm;
                     self.add_turn(link, weight * force.dot(&arm).max(0.0));
                 }
             }

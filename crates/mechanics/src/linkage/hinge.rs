@@ -46,6 +46,9 @@ impl Hinges {
         let held: Vec<usize> = (0..linkage.joints.len())
             .filter(|&joint| linkage.joints[joint].pair.is_some())
             .collect();
+        play.hinge_forces.clear();
+        play.hinge_forces
+            .resize(linkage.joints.len(), Vector::zeros());
         let count = held.len();
         if count == 0 {
             return;
@@ -95,7 +98,7 @@ impl Hinges {
             let Some(mates) = linkage.joints[joint].pair else {
                 continue;
             };
-            play.pin_forces[joint] = *force;
+            play.hinge_forces[joint] = *force;
             for limb in limbs(&mates, play) {
                 if let Some(body) = limb.body {
                     let push = force * limb.sign;
@@ -124,7 +127,7 @@ fn limbs(mates: &[Mate; 2], play: &Play) -> [Limb; 2] {
     [(mates[0], -1.0), (mates[1], 1.0)].map(|(mate, sign)| match mate {
         Mate::Link { link, end } => Limb {
             body: Some(link),
-            arm: play.posture.tips[link][end].arm,
+            arm: play.posture.tip(link, end).arm,
             sign,
         },
         Mate::Ground(_) => Limb {

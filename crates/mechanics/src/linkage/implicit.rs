@@ -124,9 +124,7 @@ impl Linkage {
             loose: &mut loose,
             border,
         };
-        for element in &play.elements {
-            sum.add(element, &play.mounts, weights);
-        }
+        self.each_element(play, |element| sum.add(element, &play.mounts, weights));
         let known = matches!(self.joining, Joining::Hinges(_)).then(|| x.to_vec());
         if let Some(b) = &known {
             if weights.stiffness > 0.0 {

@@ -4,349 +4,219 @@
 //! y = c d J x,   x = b − M⁻¹ Jᵀ y     ⇒     (1/(c d) + J M⁻¹ Jᵀ) y = J b
 //! ```
 //!
-//! Rows are the normals of closed contacts, and their tangents where they rub. In the order of the joints the
-//! matrix is a narrow band: the rows at a joint share links with those of its neighbours only. The wheels and
-//! tensioners stay unknowns of their own behind the band, with a negative diagonal; so do the rows of the
-//! last joint of a closed chain, which also touch the first. Quasi-definite: no pivoting is needed.
+//! Every joint has a row for its normal, and one for its tangent where pins rub; joints share a link with their
+//! neighbours only. Whatever else touches a link, or the free rollers on it, is eliminated first: it couples the two joints of
+//! that link, and the wheels. What is left is a narrow band with a border of wheels, tensioners, and the last joint of a
+//! closed chain. Wheels have a negative diagonal. Quasi-definite: no pivoting is needed.
 //!
 //! # Source
 //! Quasi-definite systems: R. J. Vanderbei, *SIAM J. Optim.* **5**, 1995, 100–113.
 
-use chaindrive_geometry::Vector;
-use nalgebra::{DMatrix, DVector, Vector3};
+mod band;
+mod local;
 
-use super::implicit::{Row, partner_row};
-use super::{Element, Linkage, Play, cross};
+use super::{Bearing, Joining, Linkage, Play};
 use crate::System;
+use crate::linkage::element::turned;
+use band::{Band, Place};
+use local::Local;
 
-/// One row of J over the chain's bodies, with the partner's sign in it.
-#[derive(Clone, Copy, Debug)]
-struct Line {
-    bodies: [(usize, Vector3<f64>); 2],
-    /// The same rows times M⁻¹.
-    mobile: [Vector3<f64>; 2],
-    /// Entries over the wheels and tensioners, as they stand on the partner's side.
-    border: [(usize, f64); 3],
-    /// c d.
+/// One row of J of a joint.
+///
+/// u over the velocity of the link behind the joint and −u over that of the link before it, with the levers of their rotations.
+#[derive(Clone, Copy, Debug, Default)]
+struct JointRow {
+    direction: [f64; 2],
+    turn_before: f64,
+    turn_after: f64,
+    /// c d; zero where there is no contact.
     weight: f64,
 }
-
-const NOBODY: usize = usize::MAX;
 
 /// The rows of one step and their factors.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Impulses {
-    lines: Vec<Line>,
-    /// First line of every joint, and one more entry.
-    starts: Vec<usize>,
-    order: Vec<usize>,
-    /// Band: entries of line i from column `first[i]` to i, at `offset[i]`.
-    first: Vec<usize>,
-    offset: Vec<usize>,
-    band: Vec<f64>,
-    beside: Vec<f64>,
-    y: Vec<f64>,
-    corner: DMatrix<f64>,
-    right: DVector<f64>,
+    rows: Vec<JointRow>,
+    band: Band,
+    local: Local,
 }
 
 impl Linkage {
     /// x ← (M + c C)⁻¹ M x; false if a pivot vanishes.
     pub(crate) fn damp(&self, system: &System, c: f64, play: &mut Play, x: &mut [f64]) -> bool {
+        let Joining::Clearance(bearing) = &self.joining else {
+            return false;
+        };
         let mut work = std::mem::take(&mut play.impulses);
-        work.gather(self, c, play);
-        let solved = work.solve(self, system, c, x);
+        let solved = if bearing.rubs() {
+            work.solve::<2>(self, bearing, system, c, play, x)
+        } else {
+            work.solve::<1>(self, bearing, system, c, play, x)
+        };
         play.impulses = work;
         solved
     }
 }
 
 impl Impulses {
-    /// Collects the rows and sorts them by joint.
-    fn gather(&mut self, linkage: &Linkage, c: f64, play: &Play) {
-        // Counting sort by joint.
-        let joints = linkage.joints.len();
-        self.starts.clear();
-        self.starts.resize(joints + 1, 0);
-        for element in &play.elements {
-            self.starts[element.joint + 1] +=
-                usize::from(element.damping > 0.0) + usize::from(element.secant > 0.0);
-        }
-        for joint in 0..joints {
-            self.starts[joint + 1] += self.starts[joint];
-        }
-        self.order.clear();
-        self.order.extend_from_slice(&self.starts[..joints]);
-        self.lines.resize(self.starts[joints], Line::EMPTY);
-        for element in &play.elements {
-            let levers = [element.lever_a, element.lever_b];
-            let rows = [
-                (element.normal, [0.0; 2], element.damping),
-                (element.tangent(), levers, element.secant),
-            ];
-            for (direction, levers, damping) in rows {
-                if damping > 0.0 {
-                    let place = &mut self.order[element.joint];
-                    self.lines[*place].set(linkage, element, play, direction, levers);
-                    self.lines[*place].weight = c * damping;
-                    *place += 1;
-                }
-            }
-        }
-    }
-
-    fn solve(&mut self, linkage: &Linkage, system: &System, c: f64, x: &mut [f64]) -> bool {
-        let joints = linkage.joints.len();
-        // Lines from here on belong to the last joint of a closed chain: they go behind the band.
-        let row = if linkage.closed {
-            self.starts[joints - 1]
-        } else {
-            self.lines.len()
-        };
-        let last = self.lines.len() - row;
+    /// With R rows a joint.
+    fn solve<const R: usize>(
+        &mut self,
+        linkage: &Linkage,
+        bearing: &Bearing,
+        system: &System,
+        c: f64,
+        play: &Play,
+        x: &mut [f64],
+    ) -> bool {
+        self.rows::<R>(linkage, bearing, c, play);
         let wheels = x.len() - linkage.dofs();
-        let border = last + wheels;
-        self.fill(linkage, row, border, x);
-        if self.corner.nrows() == border {
-            self.corner.fill(0.0);
-        } else {
-            self.corner = DMatrix::zeros(border, border);
-            self.right = DVector::zeros(border);
-        }
-        self.fill_corner(linkage, system, c, row, x);
-        if !self.factor(row, border) {
+        self.band.clear::<R>(linkage, wheels);
+        self.fill::<R>(linkage, x);
+        self.fill_wheels(linkage, system, c, x);
+        self.local.gather(linkage, c, play);
+        if !self.local.condense::<R>(linkage, &self.rows, &mut self.band, x) {
             return false;
         }
-        if border > 0 && !self.corner.clone().lu().solve_mut(&mut self.right) {
+        if !self.band.factor::<R>() {
             return false;
         }
-        self.substitute(row, border);
-        for (i, line) in self.lines.iter().enumerate() {
-            let y = if i < row {
-                self.y[i]
-            } else {
-                self.right[i - row]
-            };
-            for ((body, _), mobile) in line.bodies.iter().zip(&line.mobile) {
-                if *body != NOBODY {
-                    for k in 0..3 {
-                        x[3 * body + k] -= mobile[k] * y;
-                    }
-                }
-            }
-        }
-        for j in 0..wheels {
-            x[linkage.dofs() + j] = self.right[last + j];
-        }
+        self.band.substitute::<R>();
+        self.apply::<R>(linkage, x);
+        self.local.apply::<R>(linkage, &self.band, x);
+        let first = self.band.border - wheels;
+        x[linkage.dofs()..].copy_from_slice(&self.band.edge[first..]);
         true
     }
 
-    /// The band, the columns beside it, and J b.
-    fn fill(&mut self, linkage: &Linkage, row: usize, border: usize, x: &[f64]) {
-        self.first.clear();
-        self.offset.clear();
-        self.band.clear();
-        self.beside.clear();
-        self.beside.resize(row * border, 0.0);
-        self.y.clear();
-        let last = self.lines.len() - row;
+    fn rows<const R: usize>(&mut self, linkage: &Linkage, bearing: &Bearing, c: f64, play: &Play) {
         let joints = linkage.joints.len();
-        for joint in 0..joints {
-            let (start, end) = (self.starts[joint], self.starts[joint + 1].min(row));
-            let first = if joint > 0 { self.starts[joint - 1] } else { 0 };
-            for i in start..end {
-                let line = &self.lines[i];
-                self.first.push(first);
-                self.offset.push(self.band.len());
-                for j in first..i {
-                    self.band.push(line.times(&self.lines[j]));
-                }
-                self.band.push(1.0 / line.weight + line.times(line));
-                self.y.push(line.applied(x));
-                // The last joint's lines are neighbours of the first joint's and of the last but one's.
-                if joint == 0 || joint + 2 == joints {
-                    for k in 0..last {
-                        self.beside[i * border + k] = line.times(&self.lines[row + k]);
-                    }
-                }
-                for &(j, value) in &line.border {
-                    if j != NOBODY {
-                        self.beside[i * border + last + j] += value;
-                    }
-                }
+        let (pins, memory) = (&play.pins, &play.memory.joints);
+        self.rows.resize(R * joints, JointRow::default());
+        for (joint, rows) in self.rows.chunks_exact_mut(R).enumerate() {
+            rows[0] = JointRow {
+                direction: [pins.normal_x[joint], pins.normal_y[joint]],
+                turn_before: pins.turn_before[joint],
+                turn_after: pins.turn_after[joint],
+                weight: c * pins.damping[joint],
+            };
+            if R == 2 {
+                let levers =
+                    bearing.side_levers(linkage.pairs.pin_after[joint], -memory.gap[joint]);
+                let tangent = turned(pins.normal(joint));
+                let (before, after) = (&play.posture.before, &play.posture.after);
+                rows[1] = JointRow {
+                    direction: [tangent.x, tangent.y],
+                    turn_before: before.arm_x[joint] * tangent.y - before.arm_y[joint] * tangent.x
+                        + levers[0],
+                    turn_after: after.arm_x[joint] * tangent.y - after.arm_y[joint] * tangent.x
+                        + levers[1],
+                    weight: c * pins.rubs[joint].secant,
+                };
             }
         }
     }
 
-    fn fill_corner(&mut self, linkage: &Linkage, system: &System, c: f64, row: usize, x: &[f64]) {
-        let last = self.lines.len() - row;
-        for k in 0..last {
-            let line = &self.lines[row + k];
-            for m in 0..=k {
-                let value = line.times(&self.lines[row + m]);
-                self.corner[(k, m)] += value;
-                if m < k {
-                    self.corner[(m, k)] += value;
+    /// The rows of the joints among themselves, and J b.
+    fn fill<const R: usize>(&mut self, linkage: &Linkage, b: &[f64]) {
+        let joints = linkage.joints.len();
+        let shapes = &linkage.shapes;
+        let mut known = [0.0; 3];
+        if linkage.closed {
+            known.copy_from_slice(&b[3 * linkage.links - 3..3 * linkage.links]);
+        }
+        // Inverse mass and inertia, and b, of the link before.
+        let mut before = if linkage.closed {
+            let last = linkage.links - 1;
+            ([shapes.inverse_mass[last], shapes.inverse_inertia[last]], known)
+        } else {
+            ([0.0; 2], [0.0; 3])
+        };
+        for joint in 0..joints {
+            let after = if joint < linkage.links {
+                (
+                    [shapes.inverse_mass[joint], shapes.inverse_inertia[joint]],
+                    [b[3 * joint], b[3 * joint + 1], b[3 * joint + 2]],
+                )
+            } else {
+                ([0.0; 2], [0.0; 3])
+            };
+            let rows = &self.rows[R * joint..R * (joint + 1)];
+            for (p, row) in rows.iter().enumerate() {
+                let place = self.band.place::<R>(joint, p);
+                if row.weight <= 0.0 {
+                    self.band.add(place, place, 1.0);
+                    continue;
+                }
+                let [x, y] = row.direction;
+                let (mobility, turning) = (before.0[0] + after.0[0], [before.0[1], after.0[1]]);
+                for (o, other) in rows[..=p].iter().enumerate() {
+                    if other.weight <= 0.0 {
+                        continue;
+                    }
+                    let mut value = mobility * (x * other.direction[0] + y * other.direction[1])
+                        + turning[0] * row.turn_before * other.turn_before
+                        + turning[1] * row.turn_after * other.turn_after;
+                    if o == p {
+                        value += 1.0 / row.weight;
+                    }
+                    self.band.add(place, self.band.place::<R>(joint, o), value);
+                }
+                let right = x * (after.1[0] - before.1[0]) + y * (after.1[1] - before.1[1])
+                    + row.turn_after * after.1[2]
+                    - row.turn_before * before.1[2];
+                self.band.add_right(place, right);
+                // Through the link before, to the joint at its beginning.
+                let neighbour = match joint {
+                    0 if linkage.closed => joints - 1,
+                    0 => continue,
+                    _ => joint - 1,
+                };
+                for (o, other) in self.rows[R * neighbour..R * (neighbour + 1)].iter().enumerate() {
+                    if other.weight > 0.0 {
+                        let value = before.0[0]
+                            * (x * other.direction[0] + y * other.direction[1])
+                            + before.0[1] * row.turn_before * other.turn_after;
+                        let there = self.band.place::<R>(neighbour, o);
+                        self.band.add(place, there, -value);
+                    }
                 }
             }
-            self.corner[(k, k)] += 1.0 / line.weight;
-            self.right[k] = line.applied(x);
-            for &(j, value) in &line.border {
-                if j != NOBODY {
-                    self.corner[(k, last + j)] += value;
-                    self.corner[(last + j, k)] += value;
-                }
-            }
+            before = after;
         }
-        for dof in linkage.dofs()..x.len() {
-            let j = dof - linkage.dofs();
-            let inertia = system.border_inertias[j];
-            self.corner[(last + j, last + j)] = -inertia;
-            self.right[last + j] = -inertia * x[dof];
+    }
+
+    fn fill_wheels(&mut self, linkage: &Linkage, system: &System, c: f64, b: &[f64]) {
+        let first = self.band.border - (b.len() - linkage.dofs());
+        for (j, &inertia) in system.border_inertias.iter().enumerate() {
+            let place = Place::Border(first + j);
+            self.band.add(place, place, -inertia);
+            self.band.add_right(place, -inertia * b[linkage.dofs() + j]);
         }
-        let corner = &mut self.corner;
         system.each_support(|dof, _, damping| {
-            let j = last + dof - linkage.dofs();
-            corner[(j, j)] -= c * damping;
+            let place = Place::Border(first + dof - linkage.dofs());
+            self.band.add(place, place, -c * damping);
         });
     }
 
-    /// L D Lᵀ in place; the corner and the right-hand sides are carried along.
-    fn factor(&mut self, row: usize, border: usize) -> bool {
-        for i in 0..row {
-            let (first, offset) = (self.first[i], self.offset[i]);
-            let here = |j: usize| offset + j - first;
-            // Entries times D until the line is done: u_j = a_j − Σ u_k l_jk
-            for j in first..i {
-                let from = self.first[j].max(first);
-                let there = self.offset[j] - self.first[j];
-                let mut sum = self.band[here(j)];
-                for k in from..j {
-                    sum -= self.band[here(k)] * self.band[there + k];
-                }
-                self.band[here(j)] = sum;
+    /// x ← b − M⁻¹ Jᵀ y of the joints.
+    fn apply<const R: usize>(&self, linkage: &Linkage, x: &mut [f64]) {
+        let shapes = &linkage.shapes;
+        let joints = linkage.joints.len();
+        for link in 0..linkage.links {
+            let next = if link + 1 < joints { link + 1 } else { 0 };
+            let mut impulse = [0.0; 3];
+            for p in 0..R {
+                let (row, y) = (self.rows[R * link + p], self.band.found::<R>(link, p));
+                let (other, z) = (self.rows[R * next + p], self.band.found::<R>(next, p));
+                impulse[0] += row.direction[0] * y - other.direction[0] * z;
+                impulse[1] += row.direction[1] * y - other.direction[1] * z;
+                impulse[2] += row.turn_after * y - other.turn_before * z;
             }
-            let mut pivot = self.band[here(i)];
-            for j in first..i {
-                let scaled = self.band[here(j)];
-                let factor = scaled / self.band[self.offset[j] + j - self.first[j]];
-                pivot -= scaled * factor;
-                self.band[here(j)] = factor;
-                self.y[i] -= factor * self.y[j];
-                for b in 0..border {
-                    let value = self.beside[j * border + b];
-                    self.beside[i * border + b] -= factor * value;
-                }
-            }
-            if pivot.is_nan() || pivot <= 0.0 {
-                return false;
-            }
-            self.band[here(i)] = pivot;
-            // The border below: S −= cᵀ c / d
-            let inverse = 1.0 / pivot;
-            for b in 0..border {
-                let value = self.beside[i * border + b];
-                if value != 0.0 {
-                    let scaled = value * inverse;
-                    for other in 0..border {
-                        self.corner[(b, other)] -= scaled * self.beside[i * border + other];
-                    }
-                    self.right[b] -= scaled * self.y[i];
-                }
-            }
+            x[3 * link] -= shapes.inverse_mass[link] * impulse[0];
+            x[3 * link + 1] -= shapes.inverse_mass[link] * impulse[1];
+            x[3 * link + 2] -= shapes.inverse_inertia[link] * impulse[2];
         }
-        true
-    }
-
-    /// Back through D and Lᵀ.
-    fn substitute(&mut self, row: usize, border: usize) {
-        for i in 0..row {
-            let mut value = self.y[i];
-            for b in 0..border {
-                value -= self.beside[i * border + b] * self.right[b];
-            }
-            self.y[i] = value / self.band[self.offset[i] + i - self.first[i]];
-        }
-        for i in (0..row).rev() {
-            let (first, offset) = (self.first[i], self.offset[i]);
-            for j in first..i {
-                self.y[j] -= self.band[offset + j - first] * self.y[i];
-            }
-        }
-    }
-}
-
-impl Line {
-    const EMPTY: Self = Self {
-        bodies: [(NOBODY, Vector3::new(0.0, 0.0, 0.0)); 2],
-        mobile: [Vector3::new(0.0, 0.0, 0.0); 2],
-        border: [(NOBODY, 0.0); 3],
-        weight: 0.0,
-    };
-
-    /// The row of an element along a direction.
-    #[inline]
-    fn set(
-        &mut self,
-        linkage: &Linkage,
-        element: &Element,
-        play: &Play,
-        direction: Vector,
-        levers: [f64; 2],
-    ) {
-        self.bodies = Self::EMPTY.bodies;
-        self.border = Self::EMPTY.border;
-        if let Some(body) = element.a {
-            let turn = cross(element.arm_a, direction) + levers[0];
-            self.bodies[0] = (body, Vector3::new(direction.x, direction.y, turn));
-        }
-        match partner_row(element, &play.mounts, direction, levers[1]) {
-            Row::Nothing => {}
-            Row::Body(body, row) => self.bodies[1] = (body, -row),
-            Row::Border(entries) => {
-                let skip = if linkage.closed { 3 } else { 0 };
-                for (entry, (j, value)) in self.border.iter_mut().zip(entries) {
-                    if j != usize::MAX {
-                        *entry = (j - skip, value);
-                    }
-                }
-            }
-        }
-        for (mobile, (body, row)) in self.mobile.iter_mut().zip(&self.bodies) {
-            if *body != NOBODY {
-                let b = &linkage.bodies[*body];
-                *mobile = Vector3::new(row.x / b.mass, row.y / b.mass, row.z / b.inertia);
-            }
-        }
-    }
-
-    /// Jᵢ M⁻¹ Jⱼᵀ.
-    #[inline]
-    fn times(&self, other: &Self) -> f64 {
-        let mut sum = 0.0;
-        for ((body, _), mobile) in self.bodies.iter().zip(&self.mobile) {
-            if *body == NOBODY {
-                continue;
-            }
-            for (there, row) in &other.bodies {
-                if body == there {
-                    sum += mobile.dot(row);
-                }
-            }
-        }
-        sum
-    }
-
-    /// J b over the chain's bodies.
-    #[inline]
-    fn applied(&self, b: &[f64]) -> f64 {
-        let mut sum = 0.0;
-        for (body, row) in &self.bodies {
-            if *body != NOBODY {
-                sum += row.x * b[3 * body] + row.y * b[3 * body + 1] + row.z * b[3 * body + 2];
-            }
-        }
-        sum
     }
 }
 

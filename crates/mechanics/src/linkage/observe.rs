@@ -3,7 +3,7 @@
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
 
-use super::{Joining, Linkage, Mate, PinTouch, Play};
+use super::{Joining, Linkage, Mate, Play};
 use crate::energy::{Energy, Store};
 use crate::observe::Observation;
 
@@ -21,7 +21,7 @@ impl Linkage {
         copy(&mut out.roller_vy, &play.posture.vy);
         out.link_tension.clear();
         out.link_tension
-            .extend((0..self.links).map(|link| play.tension(link)));
+            .extend((0..self.links).map(|link| self.tension(play, link)));
         out.link_angle.clear();
         out.link_angle
             .extend((0..self.links).map(|link| at.q[3 * link + 2]));
@@ -38,14 +38,14 @@ impl Linkage {
         }
         for (index, joint) in self.joints.iter().enumerate() {
             let offset = self.offset(index, at, play);
-            let force = play.pin_forces[index];
+            let force = self.pin_force(play, index);
             out.joint_offset_x.push(offset.x);
             out.joint_offset_y.push(offset.y);
             out.joint_force_x.push(force.x);
             out.joint_force_y.push(force.y);
             out.joint_force.push(force.norm());
             out.joint_depth.push(match &self.joining {
-                Joining::Clearance(_) => (-play.memory.joints[index].gap).max(0.0),
+                Joining::Clearance(_) => (-play.memory.joints.gap[index]).max(0.0),
                 Joining::Hinges(_) => 0.0,
             });
             out.joint_angle.push(match joint.pair {
@@ -78,9 +78,15 @@ impl Linkage {
         out.stores[Store::Joints as usize] += self.stored(&play.memory);
     }
 
-    /// States of the joints and of the bushes in their rollers, for those who count impacts.
-    pub(crate) fn touches(&self) -> [&[PinTouch]; 2] {
-        [&self.memory.joints, &self.memory.bushes]
+    /// Speed at touch \[m/s\] and force \[N\] of a closed joint, and of a closed bush in its roller, for those
+    /// who count impacts.
+    pub(crate) fn touching(&self, joint: usize) -> [Option<(f64, f64)>; 2] {
+        let pin = matches!(self.joining, Joining::Clearance(_))
+            .then(|| self.memory.joints.closed(joint))
+            .flatten();
+        let bush = self.memory.bushes.get(joint);
+        let bush = bush.filter(|touch| touch.onset > 0.0);
+        [pin, bush.map(|touch| (touch.onset, touch.force))]
     }
 }
 

@@ -2,11 +2,12 @@
 
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
+use pulp::{Simd, WithSimd};
 
 use super::bearing::Part;
-use super::element::turned;
 use super::{Linkage, Mate};
 use crate::End;
+use crate::lanes::{LANES, Lane, Wide, padded};
 
 /// One joint end of a link.
 #[derive(Clone, Copy, Debug)]
@@ -19,62 +20,185 @@ pub(crate) struct Tip {
     pub(crate) arm: Vector,
 }
 
-impl Default for Tip {
-    fn default() -> Self {
-        Self {
-            place: Point::origin(),
-            velocity: Vector::zeros(),
-            arm: Vector::zeros(),
-        }
-    }
+/// One side of every joint, whole lanes: places, velocities, arms from the centre of mass, angular speeds.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sides {
+    pub(crate) x: Vec<f64>,
+    pub(crate) y: Vec<f64>,
+    pub(crate) vx: Vec<f64>,
+    pub(crate) vy: Vec<f64>,
+    pub(crate) arm_x: Vec<f64>,
+    pub(crate) arm_y: Vec<f64>,
+    pub(crate) spin: Vec<f64>,
 }
 
 /// Places and velocities that follow from the coordinates.
+///
+/// Link i lies between the joints i and i + 1; behind the last link of a closed chain comes joint 0 again, once more
+/// under the number after the last.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Posture {
-    /// Both ends of every link.
-    pub(crate) tips: Vec<[Tip; 2]>,
+    /// At every joint the end of the link before it.
+    pub(crate) before: Sides,
+    /// At every joint the end of the link behind it.
+    pub(crate) after: Sides,
     /// Centres of the circles that run on the teeth, (stride,), and their velocities; behind the last
     /// roller of a closed chain stand copies of the first ones.
     pub(crate) x: Vec<f64>,
     pub(crate) y: Vec<f64>,
     pub(crate) vx: Vec<f64>,
     pub(crate) vy: Vec<f64>,
+    /// Coordinates and velocities of the links, each by itself.
+    links: [Vec<f64>; 6],
+}
+
+/// Constants of the links, whole lanes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Shapes {
+    /// Both joint ends from the centre of mass, in the frame of the link \[m\].
+    arms: [[Vec<f64>; 2]; 2],
+    pub(crate) inverse_mass: Vec<f64>,
+    pub(crate) inverse_inertia: Vec<f64>,
+}
+
+impl Shapes {
+    /// Reads them off the links.
+    pub(crate) fn of(links: &[super::Body]) -> Self {
+        let all = |value: &dyn Fn(&super::Body) -> f64| {
+            let mut values: Vec<f64> = links.iter().map(value).collect();
+            values.resize(padded(links.len()), 0.0);
+            values
+        };
+        Self {
+            arms: [0, 1]
+                .map(|end| [all(&|link| link.arms[end].x), all(&|link| link.arms[end].y)]),
+            inverse_mass: all(&|link| 1.0 / link.mass),
+            inverse_inertia: all(&|link| 1.0 / link.inertia),
+        }
+    }
+}
+
+impl Sides {
+    fn all(&mut self) -> [&mut Vec<f64>; 7] {
+        [
+            &mut self.x,
+            &mut self.y,
+            &mut self.vx,
+            &mut self.vy,
+            &mut self.arm_x,
+            &mut self.arm_y,
+            &mut self.spin,
+        ]
+    }
+
+    fn tip(&self, joint: usize) -> Tip {
+        Tip {
+            place: Point::new(self.x[joint], self.y[joint]),
+            velocity: Vector::new(self.vx[joint], self.vy[joint]),
+            arm: Vector::new(self.arm_x[joint], self.arm_y[joint]),
+        }
+    }
+
+    fn set(&mut self, joint: usize, part: &Part) {
+        self.x[joint] = part.place.x;
+        self.y[joint] = part.place.y;
+        self.vx[joint] = part.velocity.x;
+        self.vy[joint] = part.velocity.y;
+        self.arm_x[joint] = part.arm.x;
+        self.arm_y[joint] = part.arm.y;
+        self.spin[joint] = part.spin;
+    }
+}
+
+impl Posture {
+    /// One end of a link: 0 towards the joint of its own number, 1 towards the next.
+    #[inline]
+    pub(crate) fn tip(&self, link: usize, end: usize) -> Tip {
+        if end == 0 {
+            self.after.tip(link)
+        } else {
+            self.before.tip(link + 1)
+        }
+    }
+
+    fn resize(&mut self, linkage: &Linkage) {
+        // Stores of whole lanes begin one joint behind the links.
+        let count = padded(linkage.links) + LANES;
+        let sides = [&mut self.before, &mut self.after];
+        for values in sides.into_iter().flat_map(Sides::all) {
+            values.resize(count, 0.0);
+        }
+        for values in &mut self.links {
+            values.resize(padded(linkage.links), 0.0);
+        }
+        for values in [&mut self.x, &mut self.y, &mut self.vx, &mut self.vy] {
+            values.resize(linkage.stride.max(padded(linkage.joints.len())), 0.0);
+        }
+    }
 }
 
 impl Linkage {
     /// Works out the posture of a state.
     pub(crate) fn pose(&self, at: Moment<'_>, posture: &mut Posture) {
-        posture.tips.resize(self.links, [Tip::default(); 2]);
-        for (link, tips) in posture.tips.iter_mut().enumerate() {
-            let body = &self.bodies[link];
-            let [x, y, angle] = [0, 1, 2].map(|k| at.q[3 * link + k]);
-            let [vx, vy, spin] = [0, 1, 2].map(|k| at.v[3 * link + k]);
-            let (s, c) = angle.sin_cos();
-            for (tip, arm) in tips.iter_mut().zip(&body.arms) {
-                // P = r + R(φ) s,   Ṗ = ṙ + ω ẑ × R s
-                let arm = Vector::new(c * arm.x - s * arm.y, s * arm.x + c * arm.y);
-                *tip = Tip {
-                    place: Point::new(x + arm.x, y + arm.y),
-                    velocity: Vector::new(vx, vy) + turned(arm) * spin,
-                    arm,
-                };
+        if posture.links[0].len() != padded(self.links) {
+            posture.resize(self);
+        }
+        for link in 0..self.links {
+            for k in 0..3 {
+                posture.links[k][link] = at.q[3 * link + k];
+                posture.links[3 + k][link] = at.v[3 * link + k];
             }
         }
-        for values in [
-            &mut posture.x,
-            &mut posture.y,
-            &mut posture.vx,
-            &mut posture.vy,
-        ] {
-            values.resize(self.stride, 0.0);
+        self.arch.dispatch(Ends {
+            linkage: self,
+            posture,
+        });
+        self.pose_ends(at, posture);
+        self.pose_rollers(at, posture);
+    }
+
+    /// What is beside the first and the last link.
+    fn pose_ends(&self, at: Moment<'_>, posture: &mut Posture) {
+        let last = self.links;
+        if self.closed {
+            let tip = posture.before.tip(last);
+            let spin = posture.before.spin[last];
+            posture.before.set(0, &of_link(last - 1, tip, spin));
+            let tip = posture.after.tip(0);
+            let spin = posture.after.spin[0];
+            posture.after.set(last, &of_link(0, tip, spin));
+        } else {
+            posture.before.set(0, &self.ground(0, at));
+            posture.after.set(last, &self.ground(1, at));
         }
-        for joint in 0..self.stride {
-            let roller = if joint < self.joints.len() {
-                let part = self.roller(joint, at, posture);
-                [part.place.x, part.place.y, part.velocity.x, part.velocity.y]
-            } else if self.closed {
-                let k = joint % self.joints.len();
+    }
+
+    fn pose_rollers(&self, at: Moment<'_>, posture: &mut Posture) {
+        let joints = self.joints.len();
+        for (joint, mates) in self.joints.iter().enumerate() {
+            let roller = match self.free_rollers.as_ref().and_then(|free| free.body[joint]) {
+                Some(body) => {
+                    let part = free_part(body, at);
+                    [part.place.x, part.place.y, part.velocity.x, part.velocity.y]
+                }
+                None => {
+                    let side = match mates.carrier {
+                        Mate::Link { end: 0, .. } | Mate::Ground(1) => &posture.after,
+                        Mate::Link { .. } | Mate::Ground(_) => &posture.before,
+                    };
+                    [side.x[joint], side.y[joint], side.vx[joint], side.vy[joint]]
+                }
+            };
+            [
+                posture.x[joint],
+                posture.y[joint],
+                posture.vx[joint],
+                posture.vy[joint],
+            ] = roller;
+        }
+        for joint in joints..self.stride {
+            let roller = if self.closed {
+                let k = joint % joints;
                 [posture.x[k], posture.y[k], posture.vx[k], posture.vy[k]]
             } else {
                 // Behind a strand stand still points one pitch apart.
@@ -107,36 +231,86 @@ impl Linkage {
     pub(crate) fn part(&self, mate: Mate, at: Moment<'_>, posture: &Posture) -> Part {
         match mate {
             Mate::Link { link, end } => {
-                let tip = &posture.tips[link][end];
-                Part {
-                    body: Some(link),
-                    place: tip.place,
-                    velocity: tip.velocity,
-                    arm: tip.arm,
-                    spin: at.v[3 * link + 2],
-                }
+                of_link(link, posture.tip(link, end), at.v[3 * link + 2])
             }
-            Mate::Ground(end) => {
-                let held = &self.ends[end];
-                let (shift, velocity) = match &held.end {
-                    End::Driven { x, y } => {
-                        let (x, y) = (x.at(at.t), y.at(at.t));
-                        (
-                            Vector::new(x.position, y.position),
-                            Vector::new(x.rate, y.rate),
-                        )
-                    }
-                    End::Free | End::Fixed | End::Pulled { .. } => {
-                        (Vector::zeros(), Vector::zeros())
-                    }
-                };
-                Part {
-                    body: None,
-                    place: held.place + shift,
-                    velocity,
-                    arm: Vector::zeros(),
-                    spin: 0.0,
-                }
+            Mate::Ground(end) => self.ground(end, at),
+        }
+    }
+
+    /// A support at an end of the strand.
+    pub(super) fn ground(&self, end: usize, at: Moment<'_>) -> Part {
+        let held = self.ends.get(end);
+        let (shift, velocity) = match held.map(|held| &held.end) {
+            Some(End::Driven { x, y }) => {
+                let (x, y) = (x.at(at.t), y.at(at.t));
+                (
+                    Vector::new(x.position, y.position),
+                    Vector::new(x.rate, y.rate),
+                )
+            }
+            Some(End::Free | End::Fixed | End::Pulled { .. }) | None => {
+                (Vector::zeros(), Vector::zeros())
+            }
+        };
+        Part {
+            body: None,
+            place: held.map_or_else(Point::origin, |held| held.place) + shift,
+            velocity,
+            arm: Vector::zeros(),
+            spin: 0.0,
+        }
+    }
+}
+
+fn of_link(link: usize, tip: Tip, spin: f64) -> Part {
+    Part {
+        body: Some(link),
+        place: tip.place,
+        velocity: tip.velocity,
+        arm: tip.arm,
+        spin,
+    }
+}
+
+/// The ends of all links, as one call that is compiled for every kind of processor.
+struct Ends<'a> {
+    linkage: &'a Linkage,
+    posture: &'a mut Posture,
+}
+
+impl WithSimd for Ends<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let w = Wide(simd);
+        let shapes = &self.linkage.shapes;
+        let Posture {
+            before,
+            after,
+            links,
+            ..
+        } = self.posture;
+        let [x, y, angle, vx, vy, spin] = links;
+        for start in (0..self.linkage.links).step_by(Wide::<S>::COUNT) {
+            let [x, y, vx, vy, spin] = [&x, &y, &vx, &vy, &spin].map(|all| w.load(all, start));
+            let [s, c] = w.load(angle, start).sin_cos();
+            // Link i begins at joint i and ends at the next.
+            for (side, [arm_x, arm_y], joint) in [
+                (&mut *after, &shapes.arms[0], start),
+                (&mut *before, &shapes.arms[1], start + 1),
+            ] {
+                // P = r + R(φ) s,   Ṗ = ṙ + ω ẑ × R s
+                let [a, b] = [w.load(arm_x, start), w.load(arm_y, start)];
+                let [arm_x, arm_y] = [c * a - s * b, s * a + c * b];
+                let put = |value: Lane<S>, to: &mut [f64]| value.store(to, joint);
+                put(x + arm_x, &mut side.x);
+                put(y + arm_y, &mut side.y);
+                put(vx - spin * arm_y, &mut side.vx);
+                put(vy + spin * arm_x, &mut side.vy);
+                put(arm_x, &mut side.arm_x);
+                put(arm_y, &mut side.arm_y);
+                put(spin, &mut side.spin);
             }
         }
     }

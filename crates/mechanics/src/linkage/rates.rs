@@ -25,7 +25,7 @@ impl Linkage {
     /// 1.1 for the chain, 11 for the wheel, and 1 where the wheel does not answer. Friction counts as damping.
     pub(crate) fn stiffest(&self, system: &System, play: &Play) -> [f64; 2] {
         let mut sums = vec![[Matrix3::zeros(); 2]; self.bodies.len()];
-        for element in &play.elements {
+        self.each_element(play, |element| {
             let (n, t) = (element.normal, element.tangent());
             let share = match element.b {
                 Partner::Ground => 1.0,
@@ -48,7 +48,7 @@ impl Linkage {
             if let Partner::Body(body) = element.b {
                 add(body, element.arm_b, element.lever_b);
             }
-        }
+        });
         let [mut squared, mut damping] = sums.iter().fold([0.0_f64; 2], |[k, d], sum| {
             [k.max(largest(&sum[0])), d.max(largest(&sum[1]))]
         });
@@ -151,23 +151,23 @@ pub(crate) struct LinkPlaces<'a>(pub(crate) &'a Play);
 
 impl PlatePlaces for LinkPlaces<'_> {
     fn place(&self, link: usize, end: usize) -> Point {
-        self.0.posture.tips[link][end].place
+        self.0.posture.tip(link, end).place
     }
 }
 
 impl PlatePlaces for LinkPins<'_> {
     fn place(&self, link: usize, end: usize) -> Point {
-        self.0.posture.tips[link][end].place
+        self.0.posture.tip(link, end).place
     }
 }
 
 impl PlatePins for LinkPins<'_> {
     fn velocity(&self, link: usize, end: usize) -> Vector {
-        self.0.posture.tips[link][end].velocity
+        self.0.posture.tip(link, end).velocity
     }
 
     fn push(&mut self, link: usize, end: usize, force: Vector) {
-        let arm = self.0.posture.tips[link][end].arm;
+        let arm = self.0.posture.tip(link, end).arm;
         self.0.forces[link] += Vector3::new(force.x, force.y, cross(arm, force));
     }
 }

@@ -13,7 +13,7 @@
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Moment, SecondOrderSystem, Weights};
 
-use super::{Joining, Linkage};
+use super::{Joining, Linkage, Shapes};
 use crate::energy::Flow;
 use crate::system::{RailSupport, Record, System, WheelRotation, WheelSupport};
 use crate::{AssemblyError, End, Motion};
@@ -121,7 +121,7 @@ fn mean_tension(system: &System, q: &[f64]) -> f64 {
         return 0.0;
     };
     let sum: f64 = (0..linkage.links)
-        .map(|link| record.play.tension(link))
+        .map(|link| linkage.tension(&record.play, link))
         .sum();
     sum / linkage.links as f64
 }
@@ -271,11 +271,8 @@ impl System {
                 worst = worst.max(wheel.inertia * a[dof].abs() / wheel.pitch_radius);
             }
         }
-        let pressed = record
-            .play
-            .elements
-            .iter()
-            .fold(0.0_f64, |m, element| m.max(element.force));
+        let mut pressed = 0.0_f64;
+        linkage.each_element(&record.play, |element| pressed = pressed.max(element.force));
         let weight = linkage
             .bodies
             .iter()
@@ -313,5 +310,6 @@ impl Linkage {
             body.arms[0] -= along * (0.5 * change);
             body.arms[1] += along * (0.5 * change);
         }
+        self.shapes = Shapes::of(&self.bodies[..self.links]);
     }
 }

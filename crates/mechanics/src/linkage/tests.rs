@@ -175,7 +175,7 @@ fn pretension_is_met() {
         system.evaluate(at, &mut a, &mut rates, &mut record);
         let linkage = system.linkage.as_ref().unwrap();
         let sum: f64 = (0..linkage.links)
-            .map(|link| record.play.tension(link))
+            .map(|link| linkage.tension(&record.play, link))
             .sum();
         let mean = sum / linkage.links as f64;
         assert!(
