@@ -41,6 +41,9 @@ pub(crate) struct Impulses {
     local: Local,
 }
 
+/// Unknowns of wheels and tensioners that this elimination has room for.
+pub(super) const MOST_WHEELS: usize = 19;
+
 impl Linkage {
     /// x ← (M + c C)⁻¹ M x; false if a pivot vanishes.
     pub(crate) fn damp(&self, system: &System, c: f64, play: &mut Play, x: &mut [f64]) -> bool {
@@ -48,10 +51,14 @@ impl Linkage {
             return false;
         };
         let mut work = std::mem::take(&mut play.impulses);
-        let solved = if bearing.rubs() {
-            work.solve::<2>(self, bearing, system, c, play, x)
-        } else {
-            work.solve::<1>(self, bearing, system, c, play, x)
+        // A link's rows have so many columns around them: two joints, the wheels, the right-hand side.
+        let wheels = x.len() - self.dofs();
+        let solved = match (bearing.rubs(), wheels) {
+            (false, ..=1) => work.solve::<1, 4>(self, bearing, system, c, play, x),
+            (false, 2..=5) => work.solve::<1, 8>(self, bearing, system, c, play, x),
+            (true, ..=3) => work.solve::<2, 8>(self, bearing, system, c, play, x),
+            (_, ..=MOST_WHEELS) => work.solve::<2, 24>(self, bearing, system, c, play, x),
+            _ => false,
         };
         play.impulses = work;
         solved
@@ -59,8 +66,8 @@ impl Linkage {
 }
 
 impl Impulses {
-    /// With R rows a joint.
-    fn solve<const R: usize>(
+    /// With R rows a joint, and room for C columns around a link.
+    fn solve<const R: usize, const C: usize>(
         &mut self,
         linkage: &Linkage,
         bearing: &Bearing,
@@ -75,15 +82,15 @@ impl Impulses {
         self.fill::<R>(linkage, x);
         self.fill_wheels(linkage, system, c, x);
         self.local.gather(linkage, c, play);
-        if !self.local.condense::<R>(linkage, &self.rows, &mut self.band, x) {
-            return false;
-        }
-        if !self.band.factor::<R>() {
+        let condensed = self
+            .local
+            .condense::<R, C>(linkage, &self.rows, &mut self.band, x);
+        if !condensed || !self.band.factor::<R>() {
             return false;
         }
         self.band.substitute::<R>();
         self.apply::<R>(linkage, x);
-        self.local.apply::<R>(linkage, &self.band, x);
+        self.local.apply::<R, C>(linkage, &self.band, x);
         let first = self.band.border - wheels;
         x[linkage.dofs()..].copy_from_slice(&self.band.edge[first..]);
         true
@@ -111,7 +118,7 @@ impl Impulses {
                         + levers[0],
                     turn_after: after.arm_x[joint] * tangent.y - after.arm_y[joint] * tangent.x
                         + levers[1],
-                    weight: c * pins.rubs[joint].secant,
+                    weight: c * pins.rubs.get(joint).map_or(0.0, |rub| rub.secant),
                 };
             }
         }

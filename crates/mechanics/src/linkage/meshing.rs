@@ -237,13 +237,17 @@ impl ToothLaw {
     /// Answer at a distance beyond the end of the hollow; writes down the flank's share.
     #[inline]
     fn respond(&self, approach: Approach, beyond: f64, share: &mut f64) -> Response {
-        let seat = self.seat.respond(approach);
-        match &self.flank {
-            None => seat,
-            Some((flank, law)) => {
-                *share = flank.share(beyond);
-                between(seat, law.respond(approach), *share)
-            }
+        let Some((flank, law)) = &self.flank else {
+            return self.seat.respond(approach);
+        };
+        *share = flank.share(beyond);
+        // Between the two there is little way; most contacts need one law only.
+        if *share <= 0.0 {
+            self.seat.respond(approach)
+        } else if *share >= 1.0 {
+            law.respond(approach)
+        } else {
+            between(self.seat.respond(approach), law.respond(approach), *share)
         }
     }
 }

@@ -59,11 +59,19 @@ pub(crate) struct Shapes {
     arms: [[Vec<f64>; 2]; 2],
     pub(crate) inverse_mass: Vec<f64>,
     pub(crate) inverse_inertia: Vec<f64>,
+    /// Roots of inverse mass and inertia of every body, free rollers included.
+    pub(crate) roots: Vec<[f64; 2]>,
 }
 
 impl Shapes {
-    /// Reads them off the links.
-    pub(crate) fn of(links: &[super::Body]) -> Self {
+    /// Reads them off the bodies, of which the first are links.
+    pub(crate) fn of(bodies: &[super::Body], links: usize) -> Self {
+        let inverse_root = |value: f64| 1.0 / value.sqrt();
+        let roots = bodies
+            .iter()
+            .map(|body| [inverse_root(body.mass), inverse_root(body.inertia)])
+            .collect();
+        let links = &bodies[..links];
         let all = |value: &dyn Fn(&super::Body) -> f64| {
             let mut values: Vec<f64> = links.iter().map(value).collect();
             values.resize(padded(links.len()), 0.0);
@@ -74,6 +82,7 @@ impl Shapes {
                 .map(|end| [all(&|link| link.arms[end].x), all(&|link| link.arms[end].y)]),
             inverse_mass: all(&|link| 1.0 / link.mass),
             inverse_inertia: all(&|link| 1.0 / link.inertia),
+            roots,
         }
     }
 }

@@ -3,7 +3,7 @@
 use chaindrive_geometry::{Point, Vector};
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Joining, Linkage, Partner, Play, cross};
+use super::{Joining, Linkage, Partner, Play, cross, turned};
 use crate::System;
 use crate::contact::{PlatePins, PlatePlaces};
 
@@ -25,30 +25,36 @@ impl Linkage {
     /// 1.1 for the chain, 11 for the wheel, and 1 where the wheel does not answer. Friction counts as damping.
     pub(crate) fn stiffest(&self, system: &System, play: &Play) -> [f64; 2] {
         let mut sums = vec![[Matrix3::zeros(); 2]; self.bodies.len()];
-        self.each_element(play, |element| {
-            let (n, t) = (element.normal, element.tangent());
+        self.add_joints(play, &mut sums);
+        for element in &play.elements {
             let share = match element.b {
                 Partner::Ground => 1.0,
                 Partner::Body(_) => 2.0,
                 Partner::Mount(_) => WHEEL_SHARE,
             };
-            let mut add = |body: usize, arm: Vector, lever: f64| {
-                let along = self.scaled_row(body, arm, n, 0.0);
-                let across = self.scaled_row(body, arm, t, lever);
-                let square = along * along.transpose();
-                let pivoting = self.scaled_row(body, arm, t, 0.0);
-                sums[body][0] += square * (share * element.stiffness)
-                    + pivoting * pivoting.transpose() * (share * element.across.max(0.0));
-                sums[body][1] += square * (share * element.damping)
-                    + across * across.transpose() * (share * element.drag);
+            let [sides, [n, t]] = [
+                [element.arm_a, element.arm_b],
+                [element.normal, element.tangent()],
+            ];
+            let other = match element.b {
+                Partner::Body(body) => Some(body),
+                Partner::Ground | Partner::Mount(_) => None,
             };
-            if let Some(body) = element.a {
-                add(body, element.arm_a, element.lever_a);
+            for (body, arm, lever) in [
+                (element.a, sides[0], element.lever_a),
+                (other, sides[1], element.lever_b),
+            ] {
+                let Some(body) = body else { continue };
+                let along = self.scaled_row(body, n, cross(arm, n));
+                let pivoting = self.scaled_row(body, t, cross(arm, t));
+                let across = self.scaled_row(body, t, cross(arm, t) + lever);
+                let sum = &mut sums[body];
+                add_square(&mut sum[0], along, share * element.stiffness);
+                add_square(&mut sum[0], pivoting, share * element.across.max(0.0));
+                add_square(&mut sum[1], along, share * element.damping);
+                add_square(&mut sum[1], across, share * element.drag);
             }
-            if let Partner::Body(body) = element.b {
-                add(body, element.arm_b, element.lever_b);
-            }
-        });
+        }
         let [mut squared, mut damping] = sums.iter().fold([0.0_f64; 2], |[k, d], sum| {
             [k.max(largest(&sum[0])), d.max(largest(&sum[1]))]
         });
@@ -98,16 +104,68 @@ impl Linkage {
         squared
     }
 
+    /// Pins in bushes, straight from their arrays.
+    fn add_joints(&self, play: &Play, sums: &mut [[Matrix3<f64>; 2]]) {
+        let Joining::Clearance(bearing) = &self.joining else {
+            return;
+        };
+        let (pins, posture) = (&play.pins, &play.posture);
+        for joint in 0..self.joints.len() {
+            let stiffness = pins.stiffness[joint];
+            let rubbing = pins.rubs.get(joint).copied().unwrap_or_default();
+            if stiffness <= 0.0 && rubbing.drag <= 0.0 {
+                continue;
+            }
+            let n = pins.normal(joint);
+            let t = turned(n);
+            let before = match joint {
+                0 => self.closed.then(|| self.links - 1),
+                _ => Some(joint - 1),
+            };
+            let after = (joint < self.links).then_some(joint);
+            let share = if before.is_some() && after.is_some() {
+                2.0
+            } else {
+                1.0
+            };
+            let depth = -play.memory.joints.gap[joint];
+            let levers = bearing.side_levers(self.pairs.pin_after[joint], depth);
+            for (body, side, lever) in [
+                (before, &posture.before, levers[0]),
+                (after, &posture.after, levers[1]),
+            ] {
+                let Some(body) = body else { continue };
+                let arm = Vector::new(side.arm_x[joint], side.arm_y[joint]);
+                let along = self.scaled_row(body, n, cross(arm, n));
+                let pivoting = self.scaled_row(body, t, cross(arm, t));
+                let sum = &mut sums[body];
+                add_square(&mut sum[0], along, share * stiffness);
+                add_square(&mut sum[0], pivoting, share * pins.across[joint]);
+                add_square(&mut sum[1], along, share * pins.damping[joint]);
+                if rubbing.drag > 0.0 {
+                    let across = self.scaled_row(body, t, cross(arm, t) + lever);
+                    add_square(&mut sum[1], across, share * rubbing.drag);
+                }
+            }
+        }
+    }
+
     /// A row of J M^(−½).
-    fn scaled_row(&self, body: usize, arm: Vector, direction: Vector, lever: f64) -> Vector3<f64> {
-        let b = &self.bodies[body];
-        let root = 1.0 / b.mass.sqrt();
-        let turn = cross(arm, direction) + lever;
-        Vector3::new(
-            direction.x * root,
-            direction.y * root,
-            turn / b.inertia.sqrt(),
-        )
+    #[inline]
+    fn scaled_row(&self, body: usize, direction: Vector, turn: f64) -> Vector3<f64> {
+        let [root, turning] = self.shapes.roots[body];
+        Vector3::new(direction.x * root, direction.y * root, turn * turning)
+    }
+}
+
+/// S += w r rᵀ
+#[inline]
+fn add_square(sum: &mut Matrix3<f64>, row: Vector3<f64>, weight: f64) {
+    let scaled = row * weight;
+    for j in 0..3 {
+        for i in 0..3 {
+            sum[(i, j)] += row[i] * scaled[j];
+        }
     }
 }
 

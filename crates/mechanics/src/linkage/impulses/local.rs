@@ -42,20 +42,29 @@ pub(super) struct Local {
     around: Vec<f64>,
 }
 
-/// Where the couplings of a link's lines lead to: its joints, then the wheels.
-fn places<const R: usize>(linkage: &Linkage, band: &Band, link: usize) -> impl Fn(usize) -> Place + use<R> {
-    let next = if linkage.closed && link + 1 == linkage.links {
-        0
-    } else {
-        link + 1
-    };
-    let joints: [[Place; R]; 2] =
-        [link, next].map(|joint| std::array::from_fn(|p| band.place::<R>(joint, p)));
-    let first = if linkage.closed { R } else { 0 };
-    move |column| match column {
-        column if column < R => joints[0][column],
-        column if column < 2 * R => joints[1][column - R],
-        column => Place::Border(first + column - 2 * R),
+/// Where the columns of a link lead to: its joints, the wheels, and the right-hand side behind them.
+struct Around<const R: usize> {
+    joints: [[Place; R]; 2],
+    /// First wheel in the border.
+    first: usize,
+}
+
+impl<const R: usize> Around<R> {
+    fn of(linkage: &Linkage, band: &Band, link: usize) -> Self {
+        let joints = [link, linkage.joint_behind(link)];
+        Self {
+            joints: joints.map(|joint| std::array::from_fn(|p| band.place::<R>(joint, p))),
+            first: if linkage.closed { R } else { 0 },
+        }
+    }
+
+    #[inline]
+    fn place(&self, column: usize) -> Place {
+        if column < 2 * R {
+            self.joints[column / R][column % R]
+        } else {
+            Place::Border(self.first + column - 2 * R)
+        }
     }
 }
 
@@ -92,108 +101,126 @@ impl Local {
         }
     }
 
-    /// Eliminates all rows; false if a pivot vanishes.
-    pub(super) fn condense<const R: usize>(
+    /// Eliminates all rows, with at most C columns around them; false if a pivot vanishes.
+    pub(super) fn condense<const R: usize, const C: usize>(
         &mut self,
         linkage: &Linkage,
         rows: &[JointRow],
         band: &mut Band,
         b: &[f64],
     ) -> bool {
-        let wheels = b.len() - linkage.dofs();
-        let width = 2 * R + wheels + 1;
+        let columns = 2 * R + b.len() - linkage.dofs();
+        let known = columns;
         self.factors.clear();
         self.around.clear();
+        self.around.resize(self.lines.len() * C, 0.0);
+        let mut around = self.around.as_chunks_mut::<C>().0;
         for link in 0..linkage.links {
             let lines = &self.lines[self.starts[link]..self.starts[link + 1]];
             if lines.is_empty() {
                 continue;
             }
             let count = lines.len();
-            let (factors, around) = (self.factors.len(), self.around.len());
+            let begin = self.factors.len();
+            self.factors.resize(begin + count * count, 0.0);
+            let factors = &mut self.factors[begin..];
+            let (here, rest) = around.split_at_mut(count);
+            around = rest;
             for (i, line) in lines.iter().enumerate() {
-                for (j, other) in lines.iter().enumerate() {
-                    let own = if i == j { 1.0 / line.weight } else { 0.0 };
-                    // The upper half is never looked at.
-                    self.factors
-                        .push(if j <= i { line.times(other) + own } else { 0.0 });
+                for (j, other) in lines[..=i].iter().enumerate() {
+                    factors[i * count + j] = line.times(other);
                 }
-                self.around.resize(self.around.len() + width, 0.0);
-                let last = self.around.len() - width;
-                line.look_around::<R>(linkage, rows, link, b, &mut self.around[last..]);
+                factors[i * count + i] += 1.0 / line.weight;
+                line.look_around::<R>(linkage, rows, link, &mut here[i]);
+                here[i][known] = line.applied(b);
             }
-            let factors = &mut self.factors[factors..];
-            let around = &mut self.around[around..];
-            let place = places::<R>(linkage, band, link);
+            let mut sum = [[0.0; C]; C];
             for i in 0..count {
                 let pivot = factors[i * count + i];
                 if pivot.is_nan() || pivot <= 0.0 {
                     return false;
                 }
                 let inverse = 1.0 / pivot;
-                let (done, rest) = around.split_at_mut((i + 1) * width);
-                let here = &done[i * width..];
-                for (k, below) in rest.chunks_exact_mut(width).enumerate() {
-                    let k = i + 1 + k;
+                let own = here[i];
+                for k in i + 1..count {
                     let factor = factors[k * count + i] * inverse;
                     for j in i + 1..=k {
                         factors[k * count + j] -= factor * factors[j * count + i];
                     }
-                    for (below, here) in below.iter_mut().zip(here) {
-                        *below -= factor * here;
+                    for (below, own) in here[k].iter_mut().zip(own) {
+                        *below -= factor * own;
                     }
                 }
                 for k in i + 1..count {
                     factors[k * count + i] *= inverse;
                 }
-                for (x, &value) in here[..width - 1].iter().enumerate() {
-                    if value == 0.0 {
-                        continue;
-                    }
+                for (sum, value) in sum.iter_mut().zip(own) {
                     let scaled = value * inverse;
-                    for (y, other) in here[..=x].iter().enumerate() {
-                        band.add(place(x), place(y), -scaled * other);
+                    for (sum, own) in sum.iter_mut().zip(own) {
+                        *sum += scaled * own;
                     }
-                    band.add_right(place(x), -scaled * here[width - 1]);
                 }
+            }
+            let places = Around::<R>::of(linkage, band, link);
+            for (x, sum) in sum[..columns].iter().enumerate() {
+                let place = places.place(x);
+                for (y, value) in sum[..=x].iter().enumerate() {
+                    band.add(place, places.place(y), -value);
+                }
+                band.add_right(place, -sum[known]);
             }
         }
         true
     }
 
     /// x ← x − M⁻¹ Jᵀ y of these rows.
-    pub(super) fn apply<const R: usize>(&mut self, linkage: &Linkage, band: &Band, x: &mut [f64]) {
-        let wheels = x.len() - linkage.dofs();
-        let width = 2 * R + wheels + 1;
-        let (mut factors, mut around) = (0, 0);
+    pub(super) fn apply<const R: usize, const C: usize>(
+        &mut self,
+        linkage: &Linkage,
+        band: &Band,
+        x: &mut [f64],
+    ) {
+        let columns = 2 * R + x.len() - linkage.dofs();
+        let mut factors = &self.factors[..];
+        let mut around = self.around.as_chunks_mut::<C>().0;
         for link in 0..linkage.links {
             let lines = &self.lines[self.starts[link]..self.starts[link + 1]];
             let count = lines.len();
             if count == 0 {
                 continue;
             }
-            let place = places::<R>(linkage, band, link);
+            let places = Around::<R>::of(linkage, band, link);
+            let mut found = [0.0; C];
+            for (column, found) in found[..columns].iter_mut().enumerate() {
+                *found = -band.at(places.place(column));
+            }
+            found[columns] = 1.0;
+            let (here, rest) = around.split_at_mut(count);
+            around = rest;
             for i in (0..count).rev() {
-                let here = around + i * width;
-                let mut value = self.around[here + width - 1];
-                for column in 0..width - 1 {
-                    value -= self.around[here + column] * band.at(place(column));
-                }
-                value /= self.factors[factors + i * count + i];
+                let known: f64 = here[i].iter().zip(found).map(|(a, z)| a * z).sum();
+                let mut value = known / factors[i * count + i];
                 for k in i + 1..count {
-                    value -= self.factors[factors + k * count + i]
-                        * self.around[around + k * width + width - 1];
+                    value -= factors[k * count + i] * here[k][columns];
                 }
-                self.around[here + width - 1] = value;
+                here[i][columns] = value;
                 lines[i].apply(value, x);
             }
-            factors += count * count;
-            around += count * width;
+            factors = &factors[count * count..];
         }
     }
 }
 
 impl Linkage {
+    /// The joint at the end of a link.
+    pub(super) fn joint_behind(&self, link: usize) -> usize {
+        if self.closed && link + 1 == self.links {
+            0
+        } else {
+            link + 1
+        }
+    }
+
     /// The link that a contact is eliminated with.
     fn home(&self, element: &Element) -> usize {
         let body = match (element.a, element.b) {
@@ -268,21 +295,16 @@ impl Line {
         sum
     }
 
-    /// Jᵢ M⁻¹ Jⱼᵀ with the rows of the two joints of a link, entries over the wheels, and J b.
+    /// Jᵢ M⁻¹ Jⱼᵀ with the rows of the two joints of a link, and entries over the wheels.
     #[inline]
     fn look_around<const R: usize>(
         &self,
         linkage: &Linkage,
         rows: &[JointRow],
         link: usize,
-        b: &[f64],
         out: &mut [f64],
     ) {
-        let next = if linkage.closed && link + 1 == linkage.links {
-            0
-        } else {
-            link + 1
-        };
+        let next = linkage.joint_behind(link);
         for ((body, _), mobile) in self.bodies.iter().zip(&self.mobile) {
             if *body != link {
                 continue;
@@ -304,7 +326,6 @@ impl Line {
                 out[2 * R + j] += value;
             }
         }
-        out[out.len() - 1] = self.applied(b);
     }
 
     /// x ← x − M⁻¹ Jᵀ y
