@@ -65,7 +65,7 @@ pub(crate) fn convert(
             let length = (place(after(link)) - place(link)).norm();
             linkage.bodies[link] = body(links, link, length, 0.0);
         }
-        linkage.shapes = Shapes::of(&linkage.bodies, linkage.links);
+        linkage.shapes = Shapes::of(&linkage.bodies, linkage.links, linkage.closed);
     }
     let mut chain_q = Vec::with_capacity(linkage.dofs());
     let mut chain_v = Vec::with_capacity(linkage.dofs());
@@ -240,7 +240,7 @@ fn compile(system: &System, parts: &Parts, links: &RigidLinks) -> Linkage {
         closed: chain.is_closed(),
         stride: system.stride,
         pitch: chain.pitch,
-        shapes: Shapes::of(&bodies, count),
+        shapes: Shapes::of(&bodies, count, chain.is_closed()),
         bodies,
         memory: Memory {
             time: 0.0,

@@ -57,33 +57,54 @@ pub(crate) struct Posture {
 pub(crate) struct Shapes {
     /// Both joint ends from the centre of mass, in the frame of the link \[m\].
     arms: [[Vec<f64>; 2]; 2],
-    pub(crate) inverse_mass: Vec<f64>,
-    pub(crate) inverse_inertia: Vec<f64>,
+    /// Inverse mass \[1/kg\] and inertia \[1/(kg m²)\] of link i behind place i + 1; before the first link of a
+    /// closed chain comes the last, and beside those of an open one nothing that moves.
+    pub(crate) mobility: Vec<f64>,
+    pub(crate) turning: Vec<f64>,
     /// Roots of inverse mass and inertia of every body, free rollers included.
     pub(crate) roots: Vec<[f64; 2]>,
 }
 
 impl Shapes {
     /// Reads them off the bodies, of which the first are links.
-    pub(crate) fn of(bodies: &[super::Body], links: usize) -> Self {
+    pub(crate) fn of(bodies: &[super::Body], links: usize, closed: bool) -> Self {
         let inverse_root = |value: f64| 1.0 / value.sqrt();
         let roots = bodies
             .iter()
             .map(|body| [inverse_root(body.mass), inverse_root(body.inertia)])
             .collect();
-        let links = &bodies[..links];
+        let count = links;
+        let links = &bodies[..count];
         let all = |value: &dyn Fn(&super::Body) -> f64| {
             let mut values: Vec<f64> = links.iter().map(value).collect();
             values.resize(padded(links.len()), 0.0);
             values
         };
+        let shifted = |value: &dyn Fn(&super::Body) -> f64| {
+            let mut values = vec![0.0; padded(count + 1) + LANES];
+            for (value_of, link) in values[1..].iter_mut().zip(links) {
+                *value_of = value(link);
+            }
+            if closed {
+                values[0] = values[count];
+                values[count + 1] = values[1];
+            }
+            values
+        };
         Self {
             arms: [0, 1]
                 .map(|end| [all(&|link| link.arms[end].x), all(&|link| link.arms[end].y)]),
-            inverse_mass: all(&|link| 1.0 / link.mass),
-            inverse_inertia: all(&|link| 1.0 / link.inertia),
+            mobility: shifted(&|link| 1.0 / link.mass),
+            turning: shifted(&|link| 1.0 / link.inertia),
             roots,
         }
+    }
+}
+
+impl Shapes {
+    /// Length of arrays by joint with one more at either end, in whole lanes.
+    pub(crate) fn lanes(&self) -> usize {
+        self.mobility.len()
     }
 }
 

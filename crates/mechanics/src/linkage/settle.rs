@@ -310,6 +310,6 @@ impl Linkage {
             body.arms[0] -= along * (0.5 * change);
             body.arms[1] += along * (0.5 * change);
         }
-        self.shapes = Shapes::of(&self.bodies, self.links);
+        self.shapes = Shapes::of(&self.bodies, self.links, self.closed);
     }
 }

@@ -9,7 +9,7 @@ use chaindrive_integrate::{Moment, SecondOrderSystem};
 
 use crate::energy::Flow;
 use crate::{
-    Adjust, Chain, ChainModel, Clearance, Drive, Ends, Fit, Flank, FreeRoller, Joint, Layout,
+    Adjust, Chain, ChainModel, Clearance, Drive, End, Ends, Fit, Flank, FreeRoller, Joint, Layout,
     LinkBody, Motion, Parts, Record, RigidLinks, RollerModel, Rotation, Sprocket, Stop, Support,
     Surface, System, Tighten, Torque,
 };
@@ -121,14 +121,63 @@ pub(super) fn free_rollers() -> RollerModel {
     })
 }
 
-/// The bicycle drive with clearance joints, evaluated at its start, and the accelerations there.
-pub(super) fn started(free: bool) -> (System, Record, Vec<f64>) {
-    let rollers = if free {
-        free_rollers()
-    } else {
-        RollerModel::Lumped { mass: 0.453e-3 }
+/// What the equations of the step must hold for.
+pub(super) fn kinds() -> Vec<(&'static str, Parts)> {
+    let lumped = RollerModel::Lumped { mass: 0.453e-3 };
+    let smooth = |mut parts: Parts| {
+        if let ChainModel::Rigid(links) = &mut parts.chain.model
+            && let Joint::Clearance(joint) = &mut links.joint
+        {
+            joint.surface.friction = Friction::None;
+        }
+        for sprocket in &mut parts.sprockets {
+            sprocket.surface.friction = Friction::None;
+        }
+        parts
     };
-    let parts = bicycle(links(clearance(), rollers));
+    let rough = bicycle(links(clearance(), lumped));
+    let mut sprung = smooth(rough.clone());
+    sprung.sprockets[1].support = Support::Springs {
+        stiffness: [1e7; 2],
+        damping: [1e3; 2],
+    };
+    vec![
+        ("lumped rollers, smooth", smooth(rough.clone())),
+        ("lumped rollers, rough", rough.clone()),
+        ("bush chain, rough", bicycle(links(clearance(), RollerModel::Bush))),
+        (
+            "free rollers, smooth",
+            smooth(bicycle(links(clearance(), free_rollers()))),
+        ),
+        ("free rollers, rough", bicycle(links(clearance(), free_rollers()))),
+        ("sprung wheel", sprung),
+        ("strand, smooth", smooth(strand(rough.clone()))),
+        ("strand, rough", strand(rough)),
+    ]
+}
+
+/// Eleven links of a chain held at both ends, a little longer than they are apart.
+fn strand(mut parts: Parts) -> Parts {
+    let links = 11;
+    parts.chain.lengths.truncate(links);
+    parts.chain.stiffness.truncate(links);
+    parts.chain.damping.truncate(links);
+    parts.chain.masses = vec![parts.chain.masses[0]; links + 1];
+    parts.chain.ends = Ends::Open([End::Fixed, End::Fixed]);
+    parts.sprockets.clear();
+    let pitch = parts.chain.pitch + 30e-6;
+    parts.layout = Layout::Points {
+        positions: (0..=links)
+            .map(|i| Point::new(pitch * i as f64, 1e-6 * (i % 3) as f64))
+            .collect(),
+        velocities: vec![Vector::zeros(); links + 1],
+    };
+    parts.settle = false;
+    parts
+}
+
+/// A drive evaluated at its start, with some accelerations.
+pub(super) fn started(parts: Parts) -> (System, Record, Vec<f64>) {
     let assembled = Drive::new(parts).unwrap().assemble().unwrap();
     let system = assembled.system;
     let mut record = system.new_record();

@@ -10,8 +10,9 @@
 use chaindrive_geometry::Vector;
 use nalgebra::Vector3;
 
-use super::band::{Band, Place};
-use super::{JointRow, Linkage, Play};
+use super::rows::Rows;
+use super::tridiagonal::{Place, Tridiagonal};
+use super::{Linkage, Play};
 use crate::linkage::implicit::{Row, partner_row};
 use crate::linkage::{Element, Partner, cross};
 
@@ -50,10 +51,10 @@ struct Around<const R: usize> {
 }
 
 impl<const R: usize> Around<R> {
-    fn of(linkage: &Linkage, band: &Band, link: usize) -> Self {
-        let joints = [link, linkage.joint_behind(link)];
+    fn of(linkage: &Linkage, joints: &Tridiagonal, link: usize) -> Self {
+        let ends = [link, linkage.joint_behind(link)];
         Self {
-            joints: joints.map(|joint| std::array::from_fn(|p| band.place::<R>(joint, p))),
+            joints: ends.map(|joint| std::array::from_fn(|p| joints.place(joint, p))),
             first: if linkage.closed { R } else { 0 },
         }
     }
@@ -102,11 +103,12 @@ impl Local {
     }
 
     /// Eliminates all rows, with at most C columns around them; false if a pivot vanishes.
+    #[inline(always)]
     pub(super) fn condense<const R: usize, const C: usize>(
         &mut self,
         linkage: &Linkage,
-        rows: &[JointRow],
-        band: &mut Band,
+        rows: &[Rows; 2],
+        joints: &mut Tridiagonal,
         b: &[f64],
     ) -> bool {
         let columns = 2 * R + b.len() - linkage.dofs();
@@ -161,23 +163,24 @@ impl Local {
                     }
                 }
             }
-            let places = Around::<R>::of(linkage, band, link);
+            let places = Around::<R>::of(linkage, joints, link);
             for (x, sum) in sum[..columns].iter().enumerate() {
                 let place = places.place(x);
                 for (y, value) in sum[..=x].iter().enumerate() {
-                    band.add(place, places.place(y), -value);
+                    joints.add::<R, C>(place, places.place(y), -value);
                 }
-                band.add_right(place, -sum[known]);
+                joints.add_right::<R, C>(place, -sum[known]);
             }
         }
         true
     }
 
     /// x ← x − M⁻¹ Jᵀ y of these rows.
+    #[inline(always)]
     pub(super) fn apply<const R: usize, const C: usize>(
         &mut self,
         linkage: &Linkage,
-        band: &Band,
+        joints: &Tridiagonal,
         x: &mut [f64],
     ) {
         let columns = 2 * R + x.len() - linkage.dofs();
@@ -189,10 +192,10 @@ impl Local {
             if count == 0 {
                 continue;
             }
-            let places = Around::<R>::of(linkage, band, link);
+            let places = Around::<R>::of(linkage, joints, link);
             let mut found = [0.0; C];
             for (column, found) in found[..columns].iter_mut().enumerate() {
-                *found = -band.at(places.place(column));
+                *found = -joints.at(places.place(column));
             }
             found[columns] = 1.0;
             let (here, rest) = around.split_at_mut(count);
@@ -300,7 +303,7 @@ impl Line {
     fn look_around<const R: usize>(
         &self,
         linkage: &Linkage,
-        rows: &[JointRow],
+        rows: &[Rows; 2],
         link: usize,
         out: &mut [f64],
     ) {
@@ -310,15 +313,10 @@ impl Line {
                 continue;
             }
             for p in 0..R {
-                let (row, other) = (&rows[R * link + p], &rows[R * next + p]);
-                if row.weight > 0.0 {
-                    let [x, y] = row.direction;
-                    out[p] += mobile.x * x + mobile.y * y + mobile.z * row.turn_after;
-                }
-                if other.weight > 0.0 {
-                    let [x, y] = other.direction;
-                    out[R + p] -= mobile.x * x + mobile.y * y + mobile.z * other.turn_before;
-                }
+                let [x, y, _, turn] = rows[p].at(link);
+                out[p] += mobile.x * x + mobile.y * y + mobile.z * turn;
+                let [x, y, turn, _] = rows[p].at(next);
+                out[R + p] -= mobile.x * x + mobile.y * y + mobile.z * turn;
             }
         }
         for &(j, value) in &self.border {

@@ -1,0 +1,134 @@
+//! The rows of J of the joints, by lanes.
+//!
+//! u over the velocity of the link after the joint and −u over that of the link before, with the levers of their rotations.
+
+use pulp::Simd;
+
+use crate::lanes::{Lane, Wide};
+use crate::linkage::element::turned;
+use crate::linkage::{Bearing, Linkage, Play};
+
+/// One row a joint, whole lanes; all zero where there is no contact.
+///
+/// The number after the last joint of a closed chain stands for the first one again.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rows {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    turn_before: Vec<f64>,
+    turn_after: Vec<f64>,
+    /// c d; zero where there is no contact.
+    pub(super) weight: Vec<f64>,
+}
+
+/// Rows side by side.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RowLane<S: Simd> {
+    pub(super) x: Lane<S>,
+    pub(super) y: Lane<S>,
+    pub(super) turn_before: Lane<S>,
+    pub(super) turn_after: Lane<S>,
+}
+
+impl<S: Simd> RowLane<S> {
+    #[inline(always)]
+    pub(super) fn dot(&self, other: &Self) -> Lane<S> {
+        self.x * other.x + self.y * other.y
+    }
+}
+
+impl Rows {
+    fn all(&mut self) -> [&mut Vec<f64>; 5] {
+        [
+            &mut self.x,
+            &mut self.y,
+            &mut self.turn_before,
+            &mut self.turn_after,
+            &mut self.weight,
+        ]
+    }
+
+    fn resize(&mut self, count: usize) {
+        for values in self.all() {
+            values.resize(count, 0.0);
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn load<S: Simd>(&self, w: Wide<S>, start: usize) -> RowLane<S> {
+        RowLane {
+            x: w.load(&self.x, start),
+            y: w.load(&self.y, start),
+            turn_before: w.load(&self.turn_before, start),
+            turn_after: w.load(&self.turn_after, start),
+        }
+    }
+
+    /// Direction and levers of one joint: x, y, before, after.
+    #[inline(always)]
+    pub(super) fn at(&self, joint: usize) -> [f64; 4] {
+        [
+            self.x[joint],
+            self.y[joint],
+            self.turn_before[joint],
+            self.turn_after[joint],
+        ]
+    }
+
+    /// The normals of all joints.
+    #[inline(always)]
+    pub(super) fn set_normals<S: Simd>(&mut self, w: Wide<S>, play: &Play, c: f64) {
+        let pins = &play.pins;
+        let count = pins.normal_x.len();
+        if self.x.len() != count {
+            self.resize(count);
+        }
+        let zero = w.splat(0.0);
+        for start in (0..count).step_by(Wide::<S>::COUNT) {
+            let weight = w.splat(c) * w.load(&pins.damping, start);
+            let present = weight.greater(zero);
+            for (from, to) in [
+                (&pins.normal_x, &mut self.x),
+                (&pins.normal_y, &mut self.y),
+                (&pins.turn_before, &mut self.turn_before),
+                (&pins.turn_after, &mut self.turn_after),
+            ] {
+                present.select(w.load(from, start), zero).store(to, start);
+            }
+            weight.store(&mut self.weight, start);
+        }
+    }
+
+    /// The tangents of the joints whose pins rub.
+    pub(super) fn set_tangents(
+        &mut self,
+        linkage: &Linkage,
+        bearing: &Bearing,
+        play: &Play,
+        c: f64,
+    ) {
+        let (pins, memory) = (&play.pins, &play.memory.joints);
+        self.resize(pins.normal_x.len());
+        self.all().into_iter().for_each(|values| values.fill(0.0));
+        for (joint, rub) in pins.rubs.iter().enumerate() {
+            if rub.secant <= 0.0 {
+                continue;
+            }
+            let levers = bearing.side_levers(linkage.pairs.pin_after[joint], -memory.gap[joint]);
+            let t = turned(pins.normal(joint));
+            let (before, after) = (&play.posture.before, &play.posture.after);
+            self.x[joint] = t.x;
+            self.y[joint] = t.y;
+            self.turn_before[joint] =
+                before.arm_x[joint] * t.y - before.arm_y[joint] * t.x + levers[0];
+            self.turn_after[joint] =
+                after.arm_x[joint] * t.y - after.arm_y[joint] * t.x + levers[1];
+            self.weight[joint] = c * rub.secant;
+        }
+        if linkage.closed {
+            for values in self.all() {
+                values[linkage.links] = values[0];
+            }
+        }
+    }
+}

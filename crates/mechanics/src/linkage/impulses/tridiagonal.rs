@@ -1,0 +1,359 @@
+//! A block-tridiagonal matrix with a border, one block a joint.
+
+use crate::lanes::{LANES, padded};
+use crate::linkage::Linkage;
+
+/// Where an unknown stands.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Place {
+    /// Joint, and row of it.
+    Row(usize, usize),
+    Border(usize),
+}
+
+/// Blocks of R rows, a border, and one right-hand side.
+///
+/// The last joint of a closed chain stands first in the border, before the wheels. The elimination begins at both ends and meets
+/// in the middle: two recurrences at a time take as long as one.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Tridiagonal {
+    /// Entries (p, o) of the joints' own blocks, o ≤ p, by joint; after the elimination of their inverses.
+    own: [Vec<f64>; 4],
+    /// Entries of the blocks (joint + 1, joint): row p there, column o here; after the elimination of L.
+    coupling: [Vec<f64>; 4],
+    right: [Vec<f64>; 2],
+    /// C columns for every row: the border, and the right-hand side behind it.
+    beside: Vec<f64>,
+    /// The border's own equations in the same columns.
+    corner: Vec<f64>,
+    border: usize,
+    /// Joints with blocks.
+    count: usize,
+    /// The unknowns of the border, once they are found.
+    edge: Vec<f64>,
+    /// The unknowns of the joints, the first one of a closed chain once more behind the last.
+    found: [Vec<f64>; 2],
+}
+
+/// Place of an entry of a block.
+const fn entry(p: usize, o: usize) -> usize {
+    2 * p + o
+}
+
+impl Tridiagonal {
+    /// Makes room; entries of the blocks are written, not added, by the lanes.
+    #[inline(always)]
+    pub(super) fn clear<const R: usize, const C: usize>(&mut self, linkage: &Linkage, wheels: usize) {
+        let joints = linkage.joints.len();
+        let held = if linkage.closed { R } else { 0 };
+        self.border = held + wheels;
+        self.count = joints - usize::from(linkage.closed);
+        let lanes = padded(joints);
+        if self.own[0].len() != lanes {
+            for values in self.own.iter_mut().chain(&mut self.coupling).chain(&mut self.right) {
+                values.resize(lanes, 0.0);
+            }
+            for values in &mut self.found {
+                values.resize(lanes + LANES, 0.0);
+            }
+        }
+        self.beside.clear();
+        self.beside.resize(self.count * R * C, 0.0);
+        self.corner.clear();
+        self.corner.resize(self.border * C, 0.0);
+        self.edge.resize(self.border, 0.0);
+    }
+
+    /// Entries (p, o) of the blocks of the joints.
+    #[inline(always)]
+    pub(super) fn own(&mut self, p: usize, o: usize) -> &mut [f64] {
+        &mut self.own[entry(p, o)]
+    }
+
+    /// Entries of the blocks between a joint and the next: row p of that one, column o of this one.
+    #[inline(always)]
+    pub(super) fn coupling(&mut self, p: usize, o: usize) -> &mut [f64] {
+        &mut self.coupling[entry(p, o)]
+    }
+
+    #[inline(always)]
+    pub(super) fn right(&mut self, p: usize) -> &mut [f64] {
+        &mut self.right[p]
+    }
+
+    /// Unknowns of the joints.
+    #[inline(always)]
+    pub(super) fn found(&self, p: usize) -> &[f64] {
+        &self.found[p]
+    }
+
+    /// Unknowns of the wheels and tensioners.
+    #[inline(always)]
+    pub(super) fn wheels(&self, wheels: usize) -> &[f64] {
+        &self.edge[self.border - wheels..]
+    }
+
+    /// Moves right-hand sides, and the last joint of a closed chain, to where they are eliminated.
+    #[inline(always)]
+    pub(super) fn take_in<const R: usize, const C: usize>(&mut self, linkage: &Linkage) {
+        for joint in 0..self.count {
+            for p in 0..R {
+                self.beside[(R * joint + p) * C + self.border] = self.right[p][joint];
+            }
+        }
+        if !linkage.closed {
+            return;
+        }
+        let last = self.count;
+        for p in 0..R {
+            self.add_right::<R, C>(Place::Border(p), self.right[p][last]);
+            for o in 0..R {
+                if o <= p {
+                    let value = self.own[entry(p, o)][last];
+                    self.add::<R, C>(Place::Border(p), Place::Border(o), value);
+                }
+                // From the last joint back to the one before it, and on to the first.
+                let value = self.coupling[entry(p, o)][last - 1];
+                self.add::<R, C>(Place::Border(p), Place::Row(last - 1, o), value);
+                let value = self.coupling[entry(p, o)][last];
+                self.add::<R, C>(Place::Row(0, p), Place::Border(o), value);
+            }
+        }
+    }
+
+    /// Where the row p of a joint stands.
+    #[inline(always)]
+    pub(super) fn place(&self, joint: usize, p: usize) -> Place {
+        if joint < self.count {
+            Place::Row(joint, p)
+        } else {
+            Place::Border(p)
+        }
+    }
+
+    /// Adds to an entry and to its mirror image.
+    #[inline(always)]
+    pub(super) fn add<const R: usize, const C: usize>(&mut self, a: Place, b: Place, value: f64) {
+        match (a, b) {
+            (Place::Row(i, p), Place::Row(j, o)) => {
+                if i == j {
+                    self.own[entry(p.max(o), p.min(o))][i] += value;
+                } else if i > j {
+                    self.coupling[entry(p, o)][j] += value;
+                } else {
+                    self.coupling[entry(o, p)][i] += value;
+                }
+            }
+            (Place::Row(i, p), Place::Border(j)) | (Place::Border(j), Place::Row(i, p)) => {
+                self.beside[(R * i + p) * C + j] += value;
+            }
+            (Place::Border(i), Place::Border(j)) => {
+                self.corner[i * C + j] += value;
+                if i != j {
+                    self.corner[j * C + i] += value;
+                }
+            }
+        }
+    }
+
+    /// Adds to a right-hand side.
+    #[inline(always)]
+    pub(super) fn add_right<const R: usize, const C: usize>(&mut self, place: Place, value: f64) {
+        match place {
+            Place::Row(i, p) => self.beside[(R * i + p) * C + self.border] += value,
+            Place::Border(i) => self.corner[i * C + self.border] += value,
+        }
+    }
+
+    /// L D Lᵀ in place; border and right-hand sides are carried along. False if a pivot vanishes.
+    #[inline(always)]
+    pub(super) fn factor<const R: usize, const C: usize>(&mut self) -> bool {
+        let middle = self.count / 2;
+        let mut corner = [[0.0; C]; C];
+        let mut sound = true;
+        for k in 0..=middle {
+            let behind = self.count - 1 - k;
+            if k < middle {
+                sound &= self.eliminate::<R, C>(k, Some((k + 1, k, false)), &mut corner);
+            }
+            if behind > middle {
+                sound &=
+                    self.eliminate::<R, C>(behind, Some((behind - 1, behind - 1, true)), &mut corner);
+            }
+        }
+        sound &= self.eliminate::<R, C>(middle, None, &mut corner);
+        for (i, sum) in corner[..self.border].iter().enumerate() {
+            for (j, sum) in sum[..=self.border].iter().enumerate() {
+                self.corner[i * C + j] -= sum;
+            }
+        }
+        sound && self.factor_corner::<C>()
+    }
+
+    /// Eliminates a joint into (neighbour, place of their coupling, whether it is the neighbour's rows that come first).
+    #[inline(always)]
+    fn eliminate<const R: usize, const C: usize>(
+        &mut self,
+        joint: usize,
+        into: Option<(usize, usize, bool)>,
+        corner: &mut [[f64; C]; C],
+    ) -> bool {
+        let block: [[f64; R]; R] = std::array::from_fn(|p| {
+            std::array::from_fn(|o| self.own[entry(p.max(o), p.min(o))][joint])
+        });
+        let Some(inverse) = inverse(block) else {
+            return false;
+        };
+        for p in 0..R {
+            for o in 0..=p {
+                self.own[entry(p, o)][joint] = inverse[p][o];
+            }
+        }
+        let rows = self.beside.as_chunks_mut::<C>().0;
+        let here: [[f64; C]; R] = std::array::from_fn(|p| rows[R * joint + p]);
+        // D⁻¹ times everything beside.
+        let scaled: [[f64; C]; R] = std::array::from_fn(|p| {
+            std::array::from_fn(|b| (0..R).map(|o| inverse[p][o] * here[o][b]).sum())
+        });
+        for p in 0..R {
+            for (corner, own) in corner.iter_mut().zip(here[p]) {
+                for (corner, scaled) in corner.iter_mut().zip(scaled[p]) {
+                    *corner += own * scaled;
+                }
+            }
+        }
+        let Some((neighbour, coupling, first)) = into else {
+            return true;
+        };
+        // Rows of the neighbour, columns of this joint.
+        let between: [[f64; R]; R] = std::array::from_fn(|p| {
+            std::array::from_fn(|o| {
+                let place = if first { entry(o, p) } else { entry(p, o) };
+                self.coupling[place][coupling]
+            })
+        });
+        let factor: [[f64; R]; R] = std::array::from_fn(|p| {
+            std::array::from_fn(|o| (0..R).map(|q| between[p][q] * inverse[q][o]).sum())
+        });
+        for p in 0..R {
+            for o in 0..R {
+                self.coupling[entry(p, o)][coupling] = factor[p][o];
+                if o <= p {
+                    let sum: f64 = (0..R).map(|q| factor[p][q] * between[o][q]).sum();
+                    self.own[entry(p, o)][neighbour] -= sum;
+                }
+                for (there, here) in rows[R * neighbour + p].iter_mut().zip(here[o]) {
+                    *there -= factor[p][o] * here;
+                }
+            }
+        }
+        true
+    }
+
+    #[inline(always)]
+    fn factor_corner<const C: usize>(&mut self) -> bool {
+        let rows = self.corner.as_chunks_mut::<C>().0;
+        for i in 0..self.border {
+            let (done, rest) = rows.split_at_mut(i + 1);
+            let here = &done[i];
+            let inverse = 1.0 / here[i];
+            if !inverse.is_finite() {
+                return false;
+            }
+            for below in rest {
+                let factor = below[i] * inverse;
+                for (below, here) in below.iter_mut().zip(here) {
+                    *below -= factor * here;
+                }
+            }
+        }
+        true
+    }
+
+    /// Back through the border, D and Lᵀ, from the middle outward.
+    #[inline(always)]
+    pub(super) fn substitute<const R: usize, const C: usize>(&mut self, linkage: &Linkage) {
+        for i in (0..self.border).rev() {
+            let row = &self.corner[i * C..(i + 1) * C];
+            let known = row[i + 1..self.border].iter().zip(&self.edge[i + 1..]);
+            let sum: f64 = known.map(|(a, x)| a * x).sum();
+            self.edge[i] = (row[self.border] - sum) / row[i];
+        }
+        let mut edge = [0.0; C];
+        for (edge, found) in edge.iter_mut().zip(&self.edge) {
+            *edge = -found;
+        }
+        edge[self.border] = 1.0;
+        let middle = self.count / 2;
+        self.find::<R, C>(middle, None, &edge);
+        for k in (0..middle).rev() {
+            self.find::<R, C>(k, Some((k + 1, k)), &edge);
+            let behind = self.count - 1 - k;
+            if behind > middle {
+                self.find::<R, C>(behind, Some((behind - 1, behind - 1)), &edge);
+            }
+        }
+        if linkage.closed {
+            for p in 0..R {
+                self.found[p][self.count] = self.edge[p];
+                self.found[p][linkage.links] = self.found[p][0];
+            }
+        }
+    }
+
+    /// y = D⁻¹ (r − beside·edge) − Lᵀ y of the neighbour
+    #[inline(always)]
+    fn find<const R: usize, const C: usize>(
+        &mut self,
+        joint: usize,
+        from: Option<(usize, usize)>,
+        edge: &[f64; C],
+    ) {
+        let rows = self.beside.as_chunks::<C>().0;
+        let right: [f64; R] = std::array::from_fn(|p| {
+            rows[R * joint + p].iter().zip(edge).map(|(a, x)| a * x).sum()
+        });
+        for p in 0..R {
+            let mut value: f64 = (0..R)
+                .map(|o| self.own[entry(p.max(o), p.min(o))][joint] * right[o])
+                .sum();
+            if let Some((neighbour, coupling)) = from {
+                for o in 0..R {
+                    value -= self.coupling[entry(o, p)][coupling] * self.found[o][neighbour];
+                }
+            }
+            self.found[p][joint] = value;
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn at(&self, place: Place) -> f64 {
+        match place {
+            Place::Row(joint, p) => self.found[p][joint],
+            Place::Border(i) => self.edge[i],
+        }
+    }
+}
+
+/// Inverse of a small symmetric matrix; none where it is not positive.
+#[inline(always)]
+fn inverse<const R: usize>(block: [[f64; R]; R]) -> Option<[[f64; R]; R]> {
+    if R == 1 {
+        let inverse = 1.0 / block[0][0];
+        return (inverse > 0.0).then_some([[inverse; R]; R]);
+    }
+    let determinant = block[0][0] * block[1][1] - block[1][0] * block[1][0];
+    let scale = 1.0 / determinant;
+    let sound = block[0][0] > 0.0 && scale > 0.0;
+    sound.then(|| {
+        std::array::from_fn(|p| {
+            std::array::from_fn(|o| {
+                if p == o {
+                    scale * block[1 - p][1 - p]
+                } else {
+                    -scale * block[1][0]
+                }
+            })
+        })
+    })
+}
