@@ -87,6 +87,9 @@ pub(crate) struct Contacts {
     pub(crate) memory: Box<Touch>,
     /// When that was \[s\].
     pub(crate) accepted: f64,
+    /// Whether the circles belong to rigid links. Faces are then written down for implicit steps, and no lane rests: a link that is
+    /// struck at its other end moves at once.
+    pub(crate) for_links: bool,
 }
 
 /// Contact state per slot; two-sided profiles hold the left side behind the right one.
@@ -106,6 +109,39 @@ pub(crate) struct Touch {
     pub(crate) share: Vec<f64>,
     /// Until when \[s\] nothing can touch in the lane that begins with this slot.
     pub(crate) wake: Vec<f64>,
+    /// What implicit steps want to know; kept for rigid links only, and valid where a contact is closed.
+    pub(crate) faces: Faces,
+}
+
+/// The surfaces that closed contacts press on, per slot.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Faces {
+    /// Outward normal of the surface.
+    pub(crate) normal_x: Vec<f64>,
+    pub(crate) normal_y: Vec<f64>,
+    /// Curvature of the level line of the gap through the roller centre \[1/m\], positive around a bulge.
+    pub(crate) bend: Vec<f64>,
+    /// ∂F/∂δ \[N/m\] and ∂F/∂δ̇ \[N s/m\].
+    pub(crate) stiffness: Vec<f64>,
+    pub(crate) damping: Vec<f64>,
+}
+
+impl Faces {
+    #[inline]
+    fn resize(&mut self, slots: usize) {
+        if self.bend.len() == slots {
+            return;
+        }
+        for values in [
+            &mut self.normal_x,
+            &mut self.normal_y,
+            &mut self.bend,
+            &mut self.stiffness,
+            &mut self.damping,
+        ] {
+            values.resize(slots, 0.0);
+        }
+    }
 }
 
 impl Touch {
@@ -158,6 +194,7 @@ impl Contacts {
             axis_y: Vec::new(),
             memory: Box::default(),
             accepted: 0.0,
+            for_links: false,
         }
     }
 

@@ -144,6 +144,8 @@ pub(crate) struct Play {
     pub(crate) blocks: Blocks,
     pub(crate) loose: Vec<loose::Loose>,
     pub(crate) impulses: impulses::Impulses,
+    /// Work space.
+    pub(crate) unused: [Vec<f64>; 3],
 }
 
 impl Linkage {

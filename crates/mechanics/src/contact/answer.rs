@@ -2,11 +2,11 @@
 
 use chaindrive_contact::dissipation::Action;
 use chaindrive_contact::elastic::ElasticLaw;
-use chaindrive_contact::{Elastic, Friction};
+use chaindrive_contact::{Elastic, Friction, Law};
 use pulp::Simd;
 
 use crate::drive::{Flank, Surface};
-use crate::lanes::{Lane, Wide};
+use crate::lanes::{FixedPower, Lane, Wide};
 
 /// The laws of one body.
 #[derive(Clone, Copy, Debug)]
@@ -20,10 +20,13 @@ pub(super) struct Answer {
 impl Answer {
     pub(super) fn new(surface: &Surface, flank: Option<Flank>) -> Self {
         Self {
-            elastic: LaneElastic::new(surface.law.elastic),
+            elastic: LaneElastic::new(&surface.law),
             numbers: LawNumbers::new(surface),
             flank: flank.map(|flank| LaneFlank {
-                elastic: LaneElastic::new(flank.elastic),
+                elastic: LaneElastic::new(&Law {
+                    elastic: flank.elastic,
+                    ..surface.law
+                }),
                 scale: 0.5 / flank.width,
             }),
         }
@@ -83,25 +86,46 @@ pub(super) enum LaneElastic {
     Linear(f64),
     /// g = K δ √δ
     Hertz(f64),
+    /// g = K δ δⁿ⁻¹: K, n, and the power.
+    Power(f64, f64, FixedPower),
     /// Any law, one lane after the other.
     General(Elastic),
 }
 
+/// A depth \[m\] that no power is taken below; the force there is nothing beside rounding.
+const LEAST_DEPTH: f64 = 1e-30;
+
 impl LaneElastic {
-    fn new(law: Elastic) -> Self {
-        match law {
-            Elastic::Power(power) if is(power.exponent, 1.0) => Self::Linear(power.stiffness),
-            Elastic::Power(power) if is(power.exponent, 1.5) => Self::Hertz(power.stiffness),
-            law => Self::General(law),
+    fn new(law: &Law) -> Self {
+        match law.prepared().power() {
+            Some([stiffness, n]) if is(n, 1.0) => Self::Linear(stiffness),
+            Some([stiffness, n]) if is(n, 1.5) => Self::Hertz(stiffness),
+            Some([stiffness, n]) => Self::Power(stiffness, n, FixedPower::new(n - 1.0)),
+            None => Self::General(law.elastic),
         }
     }
 
     #[inline(always)]
-    pub(super) fn force<S: Simd>(self, w: Wide<S>, depth: Lane<S>) -> Lane<S> {
+    pub(super) fn force<S: Simd>(&self, w: Wide<S>, depth: Lane<S>) -> Lane<S> {
         match self {
-            Self::Linear(stiffness) => w.splat(stiffness) * depth,
-            Self::Hertz(stiffness) => w.splat(stiffness) * depth * depth.root(),
-            Self::General(law) => depth.one_by_one(|depth| general(law, depth)),
+            Self::Linear(stiffness) => w.splat(*stiffness) * depth,
+            Self::Hertz(stiffness) => w.splat(*stiffness) * depth * depth.root(),
+            Self::Power(stiffness, _, lower) => {
+                w.splat(*stiffness) * depth * lower.of(w, depth.max(w.splat(LEAST_DEPTH)))
+            }
+            Self::General(law) => depth.one_by_one(|depth| general(*law, depth)),
+        }
+    }
+
+    /// dg/dδ of lanes with a force g.
+    #[inline(always)]
+    pub(super) fn slope<S: Simd>(&self, w: Wide<S>, depth: Lane<S>, force: Lane<S>) -> Lane<S> {
+        let power = |n: f64| w.splat(n) * force * depth.max(w.splat(LEAST_DEPTH)).recip();
+        match self {
+            Self::Linear(stiffness) => w.splat(*stiffness),
+            Self::Hertz(_) => power(1.5),
+            Self::Power(_, n, _) => power(*n),
+            Self::General(law) => depth.one_by_one(|depth| slope(*law, depth)),
         }
     }
 }
@@ -110,6 +134,11 @@ impl LaneElastic {
 #[inline(never)]
 fn general(law: Elastic, depth: f64) -> f64 {
     if depth > 0.0 { law.force(depth) } else { 0.0 }
+}
+
+#[inline(never)]
+fn slope(law: Elastic, depth: f64) -> f64 {
+    law.stiffness(depth)
 }
 
 /// A flank on lanes.
@@ -124,13 +153,13 @@ impl LaneFlank {
     /// Its law, and its share as [`Flank::share`](crate::Flank) has it.
     #[inline(always)]
     pub(super) fn elastic_and_share<S: Simd>(
-        self,
+        &self,
         w: Wide<S>,
         beyond: Lane<S>,
-    ) -> (LaneElastic, Lane<S>) {
+    ) -> (&LaneElastic, Lane<S>) {
         let x = beyond * w.splat(self.scale) + w.splat(0.5);
         let x = x.max(w.splat(0.0)).min(w.splat(1.0));
-        (self.elastic, x * x * (w.splat(3.0) - w.splat(2.0) * x))
+        (&self.elastic, x * x * (w.splat(3.0) - w.splat(2.0) * x))
     }
 }
 

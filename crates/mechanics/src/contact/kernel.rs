@@ -68,6 +68,9 @@ impl Contacts {
     ) -> Wrench {
         let dt = t - self.accepted;
         touch.resize(self.slots * self.sides());
+        if self.for_links {
+            touch.faces.resize(self.slots * self.sides());
+        }
         let mut sums = Sums::new(w);
         let mut touching = false;
         let mut base = 0;
@@ -129,6 +132,10 @@ impl Contacts {
                 let reach = teeth.tip_radius + self.radius;
                 let away = dx * dx + dy * dy - w.splat(reach * reach);
                 let near = w.splat(0.0).greater(away) & here.valid;
+                if !near.any() && self.for_links {
+                    self.leave_open(w, here.slot, 0.0, touch);
+                    return false;
+                }
                 if !near.any() {
                     // |d| − R ≥ (d² − R²)/(3 R) up to |d| = 2 R
                     let gap = away * w.splat(1.0 / (3.0 * reach));
@@ -155,7 +162,7 @@ impl Contacts {
         for side in 0..self.sides() {
             let face = self.face(w, side, &place);
             let mut found = look(w, face.profile, face.sign * place.x, place.y, self.radius);
-            let flank = self.answer.flank.map(|flank| {
+            let flank = self.answer.flank.as_ref().map(|flank| {
                 let beyond = beyond_hollow(w, face.profile, face.sign * place.x, place.y);
                 flank.elastic_and_share(w, beyond)
             });
@@ -169,6 +176,9 @@ impl Contacts {
             let slot = side * self.slots + here.slot;
             let closing = self.respond(w, dt, flank, &motion, &hit, slot, i, rollers, touch, sums);
             touching |= closing.is_none();
+            if self.for_links {
+                continue;
+            }
             if let (Some(closing), Shape::Rail { profile, .. }) = (closing, &self.shape) {
                 let closing = (profile.bulges && frame.spin == 0.0).then_some(closing);
                 let clear = here.clear(w, hit.gap, closing, &motion, rollers);
@@ -282,7 +292,7 @@ impl Contacts {
         &self,
         w: Wide<S>,
         dt: f64,
-        flank: Option<(LaneElastic, Lane<S>)>,
+        flank: Option<(&LaneElastic, Lane<S>)>,
         motion: &Motion<S>,
         hit: &Hit<S>,
         slot: usize,
@@ -326,7 +336,8 @@ impl Contacts {
         inverse.store(&mut touch.inverse_onset, slot);
 
         // F = max(0, g + χ g min(δ̇/v, 4) + c δ̇)
-        let mut stored = elastic.force(w, depth);
+        let on_seat = elastic.force(w, depth);
+        let mut stored = on_seat;
         if let Some((on_flank, share)) = flank {
             // g = (1 − s) g_seat + s g_flank
             stored = stored + share * (on_flank.force(w, depth) - stored);
@@ -378,6 +389,26 @@ impl Contacts {
         // −∂F/∂ġ = χ g/v + c, and μ F/v_s across
         let normal = damping * inverse + closed.select(w.splat(numbers.damping), zero);
         sums.damping = sums.damping.max(normal + across);
+        if self.for_links {
+            // ∂F/∂δ = k (1 + χ min(δ̇/v, 4)); both derivatives are zero where a limit holds the force.
+            let mut slope = elastic.slope(w, depth, on_seat);
+            if let Some((on_flank, share)) = flank {
+                let other = on_flank.slope(w, depth, on_flank.force(w, depth));
+                slope = slope + share * (other - slope);
+            }
+            let pressed = force.greater(zero);
+            let share = w.splat(1.0) + w.splat(numbers.factor) * ratio;
+            let free = w.splat(RATIO_LIMIT).greater(closing * inverse);
+            let damping = free.select(damping * inverse, zero) + w.splat(numbers.damping);
+            let faces = &mut touch.faces;
+            pressed
+                .select(slope * share, zero)
+                .store(&mut faces.stiffness, slot);
+            pressed.select(damping, zero).store(&mut faces.damping, slot);
+            hit.nx.store(&mut faces.normal_x, slot);
+            hit.ny.store(&mut faces.normal_y, slot);
+            hit.bend.store(&mut faces.bend, slot);
+        }
         None
     }
 }
@@ -420,6 +451,7 @@ fn look<S: Simd>(w: Wide<S>, profile: &Profile, x: Lane<S>, y: Lane<S>, radius: 
         gap: sign * (distance - r) - contact_radius,
         nx: scale * ex,
         ny: scale * ey,
+        bend: scale,
         in_first,
     };
     if profile.has_straights {
@@ -429,6 +461,7 @@ fn look<S: Simd>(w: Wide<S>, profile: &Profile, x: Lane<S>, y: Lane<S>, radius: 
         found.gap = straight.select(gap, found.gap);
         found.nx = straight.select(mx, found.nx);
         found.ny = straight.select(my, found.ny);
+        found.bend = straight.select(zero, found.bend);
     }
     found
 }
@@ -513,6 +546,7 @@ impl<S: Simd> Place<S> {
             gap: found.gap,
             nx: found.nx * self.ay + found.ny * self.ax,
             ny: found.ny * self.ay - found.nx * self.ax,
+            bend: found.bend,
             near,
         }
     }
@@ -522,6 +556,8 @@ struct Found<S: Simd> {
     gap: Lane<S>,
     nx: Lane<S>,
     ny: Lane<S>,
+    /// Curvature of the level line of the gap.
+    bend: Lane<S>,
     in_first: Mask<S>,
 }
 
@@ -529,6 +565,7 @@ struct Hit<S: Simd> {
     gap: Lane<S>,
     nx: Lane<S>,
     ny: Lane<S>,
+    bend: Lane<S>,
     near: Mask<S>,
 }
 

@@ -12,7 +12,7 @@ use crate::End;
 use crate::chain::Chain;
 use crate::drive::{Layout, Parts};
 use crate::rigid::{Joint, RigidLinks, RollerModel};
-use crate::system::{System, WheelRotation, WheelSupport};
+use crate::system::{RailContact, System, WheelRotation, WheelSupport};
 
 /// Coordinates and velocities of a converted system.
 pub(crate) struct Converted {
@@ -105,6 +105,14 @@ pub(crate) fn convert(
     chain_q.extend_from_slice(&q[old..]);
     chain_v.extend_from_slice(&v[old..]);
     system.dofs = chain_q.len();
+    for wheel in &mut system.wheels {
+        wheel.contacts.for_links = true;
+    }
+    for rail in &mut system.rails {
+        if let RailContact::Circles(contacts) = &mut rail.contact {
+            contacts.for_links = true;
+        }
+    }
     system.linkage = Some(linkage);
     Converted {
         system,

@@ -3,11 +3,13 @@
 use chaindrive_contact::{Approach, Friction, Law, Prepared, Response, interpolated_onset};
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
+use pulp::{Simd, WithSimd};
 
 use super::{Element, Linkage, Mount, Part, Partner, Play, Tally, turned};
 use crate::contact::{Contacts, Frame, Touch, Wrench};
 use crate::energy::Flow;
-use crate::system::{RailContact, RailSupport, Record, System, Wheel, WheelRotation, WheelSupport};
+use crate::lanes::Wide;
+use crate::system::{RailContact, RailSupport, Record, Rollers, System, Wheel, WheelRotation, WheelSupport};
 use crate::{Carrier, Flank};
 
 impl System {
@@ -102,9 +104,118 @@ impl System {
     }
 }
 
+/// The contacts of one wheel or rail as one call that is compiled for every kind of processor.
+struct Touching<'a> {
+    contacts: &'a Contacts,
+    frame: &'a Frame,
+    t: f64,
+    rollers: Rollers<'a>,
+    touch: &'a mut Touch,
+}
+
+impl WithSimd for Touching<'_> {
+    type Output = Wrench;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, simd: S) -> Wrench {
+        self.contacts.act(
+            Wide(simd),
+            self.t,
+            self.frame,
+            &mut self.rollers,
+            self.touch,
+        )
+    }
+}
+
 impl Linkage {
     /// All contacts of the rollers with one wheel or rail.
     fn roll(
+        &self,
+        contacts: &Contacts,
+        frame: &Frame,
+        mount: usize,
+        at: Moment<'_>,
+        touch: &mut Touch,
+        play: &mut Play,
+    ) -> Wrench {
+        if contacts.surface.friction == Friction::None {
+            self.roll_freely(contacts, frame, mount, at, touch, play)
+        } else {
+            self.roll_and_rub(contacts, frame, mount, at, touch, play)
+        }
+    }
+
+    /// Without friction: all rollers at once.
+    fn roll_freely(
+        &self,
+        contacts: &Contacts,
+        frame: &Frame,
+        mount: usize,
+        at: Moment<'_>,
+        touch: &mut Touch,
+        play: &mut Play,
+    ) -> Wrench {
+        let posture = &play.posture;
+        // What the kernel adds up for particles is not wanted here.
+        let [ax, ay, weightless] = &mut play.unused;
+        for values in [&mut *ax, ay, weightless] {
+            values.resize(posture.x.len(), 0.0);
+        }
+        let wrench = self.arch.dispatch(Touching {
+            contacts,
+            frame,
+            t: at.t,
+            rollers: Rollers {
+                x: &posture.x,
+                y: &posture.y,
+                vx: &posture.vx,
+                vy: &posture.vy,
+                ax,
+                ay,
+                inverse_mass: weightless,
+            },
+            touch,
+        });
+        contacts.for_each_slot(|slot, joint| {
+            for side in 0..contacts.sides() {
+                let index = side * contacts.slots + slot;
+                if touch.inverse_onset[index] <= 0.0 {
+                    continue;
+                }
+                let faces = &touch.faces;
+                let d = Point::new(play.posture.x[joint], play.posture.y[joint]) - frame.origin;
+                let (body, arm) = self.bearer(joint, &play.posture);
+                // Elements look from the surface's material outward through the roller: n = −n_surface.
+                let normal = -Vector::new(faces.normal_x[index], faces.normal_y[index]);
+                let (force, bend) = (touch.force[index], faces.bend[index]);
+                let element = Element {
+                    joint: joint % self.joints.len(),
+                    a: body,
+                    b: Partner::Mount(mount),
+                    arm_a: arm,
+                    arm_b: d,
+                    pivot_b: pivot(d, normal, bend),
+                    lever_a: 0.0,
+                    lever_b: contacts.radius,
+                    normal,
+                    force,
+                    rub: 0.0,
+                    stiffness: faces.stiffness[index],
+                    damping: faces.damping[index],
+                    drag: 0.0,
+                    secant: 0.0,
+                    // −F × bend of the gap's level line: a seat holds a roller, a bulge sheds it.
+                    across: -force * bend,
+                };
+                play.apply(&element, normal * -force);
+            }
+        });
+        wrench
+    }
+
+    /// With friction, one roller after the other.
+    fn roll_and_rub(
         &self,
         contacts: &Contacts,
         frame: &Frame,
@@ -269,5 +380,64 @@ fn pivot(d: Vector, normal: Vector, bend: f64) -> Vector {
         d + normal / bend
     } else {
         d
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linkage::tests::{kinds, set_off};
+
+    /// Without friction both ways must find the same contacts.
+    #[test]
+    fn all_at_once_is_as_one_by_one() {
+        for (kind, parts) in kinds().into_iter().filter(|(kind, _)| kind.ends_with("rollers, smooth")) {
+            let (system, mut record, q, v) = set_off(parts);
+            let linkage = system.linkage.as_ref().unwrap();
+            let at = Moment {
+                t: 0.0,
+                q: &q,
+                v: &v,
+            };
+            let mut play = record.play.clone();
+            for (i, wheel) in system.wheels.iter().enumerate() {
+                let (frame, _, _) = system.wheel_frame(wheel, at);
+                let mut found = |freely: bool| {
+                    play.elements.clear();
+                    let touch = &mut record.teeth[i];
+                    let contacts = &wheel.contacts;
+                    let wrench = if freely {
+                        linkage.roll_freely(contacts, &frame, i, at, touch, &mut play)
+                    } else {
+                        linkage.roll_and_rub(contacts, &frame, i, at, touch, &mut play)
+                    };
+                    play.elements.sort_by_key(|element| element.joint);
+                    (wrench, play.elements.clone())
+                };
+                let (wrench, elements) = found(true);
+                let (other, others) = found(false);
+                assert!(elements.len() > 4, "{kind}, {i}");
+                assert_eq!(elements.len(), others.len(), "{kind}, {i}");
+                let size = elements.iter().fold(0.0_f64, |m, e| m.max(e.force));
+                let near = |a: f64, b: f64, size: f64| (a - b).abs() <= 1e-9 * size.max(b.abs());
+                assert!(near(wrench.moment, other.moment, 1e-2 * size), "{kind}, {i}");
+                assert!(near(wrench.depth, other.depth, 0.0), "{kind}, {i}");
+                for (a, b) in elements.iter().zip(&others) {
+                    assert_eq!((a.joint, a.a, a.b), (b.joint, b.a, b.b));
+                    for (a, b, size) in [
+                        (a.force, b.force, size),
+                        (a.stiffness, b.stiffness, 0.0),
+                        (a.damping, b.damping, 0.0),
+                        (a.across, b.across, 0.0),
+                        (a.normal.x, b.normal.x, 1.0),
+                        (a.normal.y, b.normal.y, 1.0),
+                        (a.pivot_b.x, b.pivot_b.x, 1.0),
+                        (a.pivot_b.y, b.pivot_b.y, 1.0),
+                    ] {
+                        assert!(near(a, b, size), "{kind}, {i}: {a} {b}");
+                    }
+                }
+            }
+        }
     }
 }

@@ -256,6 +256,18 @@ impl Linkage {
         }
     }
 
+    /// The body that bears that circle, and the circle's centre from its centre of mass \[m\].
+    pub(super) fn bearer(&self, joint: usize, posture: &Posture) -> (Option<usize>, Vector) {
+        let joint = joint % self.joints.len();
+        if let Some(body) = self.free_rollers.as_ref().and_then(|free| free.body[joint]) {
+            return (Some(body), Vector::zeros());
+        }
+        match self.joints[joint].carrier {
+            Mate::Link { link, end } => (Some(link), posture.tip(link, end).arm),
+            Mate::Ground(_) => (None, Vector::zeros()),
+        }
+    }
+
     /// One side of a joint.
     #[inline]
     pub(crate) fn part(&self, mate: Mate, at: Moment<'_>, posture: &Posture) -> Part {

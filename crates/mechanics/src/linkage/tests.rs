@@ -176,17 +176,32 @@ fn strand(mut parts: Parts) -> Parts {
     parts
 }
 
-/// A drive evaluated at its start, with some accelerations.
-pub(super) fn started(parts: Parts) -> (System, Record, Vec<f64>) {
+/// A drive at its start: coordinates and velocities.
+pub(super) fn set_off(parts: Parts) -> (System, Record, Vec<f64>, Vec<f64>) {
     let assembled = Drive::new(parts).unwrap().assemble().unwrap();
     let system = assembled.system;
     let mut record = system.new_record();
     let mut a = vec![0.0; system.dofs()];
     let mut rates = vec![0.0; Flow::ALL.len()];
+    let (q, v) = (assembled.q, assembled.v);
     let at = Moment {
         t: 0.0,
-        q: &assembled.q,
-        v: &assembled.v,
+        q: &q,
+        v: &v,
+    };
+    system.evaluate(at, &mut a, &mut rates, &mut record);
+    (system, record, q, v)
+}
+
+/// The same with the accelerations there.
+pub(super) fn started(parts: Parts) -> (System, Record, Vec<f64>) {
+    let (system, mut record, q, v) = set_off(parts);
+    let mut a = vec![0.0; system.dofs()];
+    let mut rates = vec![0.0; Flow::ALL.len()];
+    let at = Moment {
+        t: 0.0,
+        q: &q,
+        v: &v,
     };
     system.evaluate(at, &mut a, &mut rates, &mut record);
     (system, record, a)
