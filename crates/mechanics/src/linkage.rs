@@ -37,6 +37,8 @@ pub(crate) use bearing::{Bearing, Part, PinTouch, Tally};
 pub(crate) use blocks::Blocks;
 pub(crate) use element::{Element, Mount, Partner, cross, turned};
 pub(crate) use hinge::Hinges;
+pub(crate) use impulses::Impulses;
+pub(crate) use meshing::Felt;
 pub(crate) use pins::{Pairs, PinMemory, Pins};
 pub(crate) use posture::{Posture, Shapes, free_part};
 
@@ -135,15 +137,12 @@ pub(crate) struct Play {
     pub(crate) pins: Pins,
     /// Force on the pin of every ideal joint \[N\].
     pub(crate) hinge_forces: Vec<Vector>,
-    /// Force on both ends of every link \[N\], but what pins in bushes exert.
-    pub(crate) end_forces: Vec<[Vector; 2]>,
     /// All closed contacts, but those of pins in bushes.
     pub(crate) elements: Vec<Element>,
     pub(crate) mounts: Vec<Mount>,
     pub(crate) tally: Tally,
     pub(crate) blocks: Blocks,
     pub(crate) loose: Vec<loose::Loose>,
-    pub(crate) impulses: impulses::Impulses,
     /// Work space.
     pub(crate) unused: [Vec<f64>; 3],
 }
@@ -165,30 +164,24 @@ impl Linkage {
     ) {
         rates.fill(0.0);
         a[self.dofs()..].fill(0.0);
-        let mut play = std::mem::take(&mut record.play);
+        let (play, felt) = record.split();
         self.pose(at, &mut play.posture);
         play.elements.clear();
         play.memory.time = at.t;
-        play.end_forces.clear();
-        play.end_forces.resize(self.links, [Vector::zeros(); 2]);
-        play.tally = self.joint_forces(at, rates, &mut play);
-        self.body_forces(system.gravity, &mut play);
-        self.roller_forces(at, rates, &mut play);
-        self.end_loads(rates, &mut play);
-        system.mesh(self, at, rates, record, &mut play);
+        play.tally = self.joint_forces(at, rates, play);
+        self.body_forces(system.gravity, play);
+        self.roller_forces(at, rates, play);
+        self.end_loads(rates, play);
+        system.mesh(self, at, rates, felt, play);
         if let Joining::Hinges(hinges) = &self.joining {
-            hinges.hold(self, at, rates, &mut play);
+            hinges.hold(self, at, rates, play);
         }
-        for (body, (force, a)) in self
-            .bodies
-            .iter()
-            .zip(play.forces.iter().zip(a.chunks_exact_mut(3)))
-        {
-            a[0] = force.x / body.mass;
-            a[1] = force.y / body.mass;
-            a[2] = force.z / body.inertia;
+        let chain = a.chunks_exact_mut(3).zip(&play.forces);
+        for ((a, force), [mobility, turning]) in chain.zip(&self.shapes.mobilities) {
+            a[0] = force.x * mobility;
+            a[1] = force.y * mobility;
+            a[2] = force.z * turning;
         }
-        record.play = play;
     }
 
     /// Pins in their bushes; how contacts began.
@@ -286,7 +279,6 @@ impl Linkage {
             let link = if index == 0 { 0 } else { self.links - 1 };
             let tip = play.posture.tip(link, index);
             play.forces[link] += Vector3::new(force.x, force.y, cross(tip.arm, *force));
-            play.end_forces[link][index] += force;
             rates[Flow::DriveTorque as usize] += force.dot(&tip.velocity);
         }
     }
@@ -328,16 +320,45 @@ impl Linkage {
         }
     }
 
-    /// Tension of every link \[N\]: half of what stretches it from both ends, joints and teeth together.
-    pub(crate) fn tension(&self, play: &Play, link: usize) -> f64 {
-        let [first, second] = [0, 1].map(|end| play.posture.tip(link, end));
-        let along = (second.place - first.place).normalize();
-        let [at_first, at_second] = play.end_forces[link];
-        let mut stretch = at_second - at_first;
-        if matches!(self.joining, Joining::Clearance(_)) {
-            stretch -= play.pins.push(link + 1) + play.pins.push(link);
+    /// Tension of all links \[N\]: half of what stretches them from both ends, joints, teeth and given loads together.
+    pub(crate) fn tensions(&self, play: &Play) -> Vec<f64> {
+        let mut stretch = vec![[Vector::zeros(); 2]; self.links];
+        let mut load = |body: Option<usize>, joint: usize, force: Vector| {
+            // Rollers have no ends.
+            if let Some(ends) = body.and_then(|body| stretch.get_mut(body)) {
+                ends[usize::from(Some(joint) != body)] += force;
+            }
+        };
+        for joint in 0..self.joints.len() {
+            let Some(mates) = self.joints[joint].pair else {
+                continue;
+            };
+            let force = self.pin_force(play, joint);
+            for (mate, force) in mates.into_iter().zip([-force, force]) {
+                if let Mate::Link { link, .. } = mate {
+                    load(Some(link), joint, force);
+                }
+            }
         }
-        0.5 * along.dot(&stretch)
+        for element in &play.elements {
+            load(element.a, element.joint, element.push());
+            if let Partner::Body(body) = element.b {
+                load(Some(body), element.joint, -element.push());
+            }
+        }
+        for (index, held) in self.ends.iter().enumerate() {
+            if let End::Pulled { force } = &held.end {
+                let link = if index == 0 { 0 } else { self.links - 1 };
+                load(Some(link), link + index, *force);
+            }
+        }
+        let links = stretch.iter().enumerate();
+        links
+            .map(|(link, [at_first, at_second])| {
+                let [first, second] = [0, 1].map(|end| play.posture.tip(link, end).place);
+                0.5 * (second - first).normalize().dot(&(at_second - at_first))
+            })
+            .collect()
     }
 }
 
@@ -357,20 +378,10 @@ impl Play {
     pub(crate) fn apply(&mut self, element: &Element, push: Vector) {
         if let Some(body) = element.a {
             self.forces[body] += Vector3::new(push.x, push.y, element.moment_a(push));
-            self.load_end(body, element.joint, push);
         }
         if let Partner::Body(body) = element.b {
             self.forces[body] -= Vector3::new(push.x, push.y, -element.moment_b(push));
-            self.load_end(body, element.joint, -push);
         }
         self.elements.push(*element);
-    }
-
-    /// Writes down a force on the end of a link at a joint; rollers have none.
-    #[inline]
-    pub(crate) fn load_end(&mut self, body: usize, joint: usize, force: Vector) {
-        if let Some(ends) = self.end_forces.get_mut(body) {
-            ends[usize::from(joint != body)] += force;
-        }
     }
 }

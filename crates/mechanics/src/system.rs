@@ -25,7 +25,7 @@ use crate::contact::{Frame, Places, PlatePins, PlatePlaces, PlateTouch, Touch, W
 use crate::energy::Flow;
 use crate::events::EventLog;
 use crate::lanes::Wide;
-use crate::linkage::{Linkage, Play, Posture};
+use crate::linkage::{Felt, Impulses, Linkage, Play, Posture};
 use crate::links::{Links, Pulls};
 use crate::motion::Course;
 use crate::{End, Motion};
@@ -95,6 +95,21 @@ pub struct Record {
     /// Frames of the wheels, then of the rails.
     frames: Vec<Frame>,
     pub(crate) play: Play,
+    impulses: Impulses,
+}
+
+impl Record {
+    /// The chain of rigid links, and what it touches.
+    pub(crate) fn split(&mut self) -> (&mut Play, Felt<'_>) {
+        let felt = Felt {
+            teeth: &mut self.teeth,
+            circles: &mut self.circles,
+            plates: &mut self.plates,
+            wheel_wrenches: &mut self.wheel_wrenches,
+            rail_wrenches: &mut self.rail_wrenches,
+        };
+        (&mut self.play, felt)
+    }
 }
 
 /// The rollers' part of a state, and of its accelerations.
@@ -466,6 +481,7 @@ impl SecondOrderSystem for System {
             pulls: self.links.pulls(),
             frames: vec![Frame::fixed(); self.wheels.len() + self.rails.len()],
             play: Play::default(),
+            impulses: Impulses::default(),
         }
     }
 
@@ -589,7 +605,7 @@ impl SecondOrderSystem for System {
 
     fn solve(&self, weights: Weights, record: &mut Record, x: &mut [f64]) -> bool {
         match &self.linkage {
-            Some(linkage) => linkage.solve(self, weights, &mut record.play, x),
+            Some(linkage) => linkage.solve(self, weights, &mut record.play, &mut record.impulses, x),
             None => false,
         }
     }

@@ -120,13 +120,14 @@ impl LaneElastic {
     /// dg/dδ of lanes with a force g.
     #[inline(always)]
     pub(super) fn slope<S: Simd>(&self, w: Wide<S>, depth: Lane<S>, force: Lane<S>) -> Lane<S> {
-        let power = |n: f64| w.splat(n) * force * depth.max(w.splat(LEAST_DEPTH)).recip();
-        match self {
-            Self::Linear(stiffness) => w.splat(*stiffness),
-            Self::Hertz(_) => power(1.5),
-            Self::Power(_, n, _) => power(*n),
-            Self::General(law) => depth.one_by_one(|depth| slope(*law, depth)),
-        }
+        let exponent = match self {
+            Self::Linear(_) => 1.0,
+            Self::Hertz(_) => 1.5,
+            Self::Power(_, n, _) => *n,
+            Self::General(law) => return depth.one_by_one(|depth| slope(*law, depth)),
+        };
+        // k = n g/δ
+        w.splat(exponent) * force * depth.max(w.splat(LEAST_DEPTH)).recip()
     }
 }
 

@@ -162,10 +162,14 @@ impl Contacts {
         for side in 0..self.sides() {
             let face = self.face(w, side, &place);
             let mut found = look(w, face.profile, face.sign * place.x, place.y, self.radius);
-            let flank = self.answer.flank.as_ref().map(|flank| {
-                let beyond = beyond_hollow(w, face.profile, face.sign * place.x, place.y);
-                flank.elastic_and_share(w, beyond)
-            });
+            // No closure: it would be compiled for the oldest processor.
+            let flank = match &self.answer.flank {
+                Some(flank) => {
+                    let beyond = beyond_hollow(w, face.profile, face.sign * place.x, place.y);
+                    Some(flank.elastic_and_share(w, beyond))
+                }
+                None => None,
+            };
             if face.seat_across {
                 // A seat across the axis belongs to the right half alone.
                 let wrong = w.splat(0.0).greater(face.sign * place.x) & found.in_first;

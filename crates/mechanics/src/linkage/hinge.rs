@@ -103,7 +103,6 @@ impl Hinges {
                 if let Some(body) = limb.body {
                     let push = force * limb.sign;
                     play.forces[body] += Vector3::new(push.x, push.y, cross(limb.arm, push));
-                    play.load_end(body, joint, push);
                 }
             }
             let [hole, pin] = mates.map(|mate| linkage.part(mate, at, &play.posture));

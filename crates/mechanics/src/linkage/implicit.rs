@@ -15,7 +15,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::held::Asked;
 use super::impulses::MOST_WHEELS;
 use super::loose::Loose;
-use super::{Blocks, Element, Joining, Linkage, Mount, Partner, Play, cross, turned};
+use super::{Blocks, Element, Impulses, Joining, Linkage, Mount, Partner, Play, cross, turned};
 use crate::System;
 use crate::system::{WheelRotation, WheelSupport};
 
@@ -58,11 +58,12 @@ impl Linkage {
         system: &System,
         weights: Weights,
         play: &mut Play,
+        impulses: &mut Impulses,
         x: &mut [f64],
     ) -> bool {
         let few = x.len() - self.dofs() <= MOST_WHEELS;
         if weights.stiffness <= 0.0 && few && matches!(self.joining, Joining::Clearance(_)) {
-            return self.damp(system, weights.damping, play, x);
+            return self.damp(system, weights.damping, play, impulses, x);
         }
         self.eliminate(system, weights, play, x, Asked::Kept)
     }

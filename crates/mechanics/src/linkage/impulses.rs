@@ -41,11 +41,17 @@ pub(super) const MOST_WHEELS: usize = 19;
 
 impl Linkage {
     /// x ← (M + c C)⁻¹ M x; false if a pivot vanishes.
-    pub(crate) fn damp(&self, system: &System, c: f64, play: &mut Play, x: &mut [f64]) -> bool {
+    pub(crate) fn damp(
+        &self,
+        system: &System,
+        c: f64,
+        play: &Play,
+        work: &mut Impulses,
+        x: &mut [f64],
+    ) -> bool {
         let Joining::Clearance(bearing) = &self.joining else {
             return false;
         };
-        let mut work = std::mem::take(&mut play.impulses);
         let wheels = x.len() - self.dofs();
         let step = Step {
             linkage: self,
@@ -55,15 +61,13 @@ impl Linkage {
             play,
         };
         // Around a link there are its two joints, the wheels, and the right-hand side.
-        let solved = match (bearing.rubs(), wheels) {
+        match (bearing.rubs(), wheels) {
             (false, ..=1) => work.solve::<1, 4>(step, x),
             (false, 2..=5) => work.solve::<1, 8>(step, x),
             (true, ..=3) => work.solve::<2, 8>(step, x),
             (_, ..=MOST_WHEELS) => work.solve::<2, 24>(step, x),
             _ => false,
-        };
-        play.impulses = work;
-        solved
+        }
     }
 }
 
@@ -262,6 +266,7 @@ impl<const R: usize, const C: usize> WithSimd for Solution<'_, R, C> {
 mod tests {
     use chaindrive_integrate::Weights;
 
+    use super::Impulses;
     use crate::linkage::held::Asked;
     use crate::linkage::tests::{kinds, started};
 
@@ -273,7 +278,8 @@ mod tests {
             let linkage = system.linkage.as_ref().unwrap();
             let c = 2e-6;
             let mut impulses = b.clone();
-            assert!(linkage.damp(&system, c, &mut record.play, &mut impulses));
+            let mut work = Impulses::default();
+            assert!(linkage.damp(&system, c, &record.play, &mut work, &mut impulses));
             let mut blocks = b.clone();
             let weights = Weights {
                 damping: c,

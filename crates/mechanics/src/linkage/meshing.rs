@@ -6,11 +6,20 @@ use chaindrive_integrate::Moment;
 use pulp::{Simd, WithSimd};
 
 use super::{Element, Linkage, Mount, Part, Partner, Play, Tally, turned};
-use crate::contact::{Contacts, Frame, Touch, Wrench};
+use crate::contact::{Contacts, Frame, PlateTouch, Touch, Wrench};
 use crate::energy::Flow;
 use crate::lanes::Wide;
-use crate::system::{RailContact, RailSupport, Record, Rollers, System, Wheel, WheelRotation, WheelSupport};
+use crate::system::{RailContact, RailSupport, Rollers, System, Wheel, WheelRotation, WheelSupport};
 use crate::{Carrier, Flank};
+
+/// What wheels and rails feel, and how they are touched.
+pub(crate) struct Felt<'a> {
+    pub(crate) teeth: &'a mut [Box<Touch>],
+    pub(crate) circles: &'a mut [Box<Touch>],
+    pub(crate) plates: &'a mut [Vec<PlateTouch>],
+    pub(crate) wheel_wrenches: &'a mut [Wrench],
+    pub(crate) rail_wrenches: &'a mut [Wrench],
+}
 
 impl System {
     /// Contacts of a linkage with wheels and rails.
@@ -19,18 +28,18 @@ impl System {
         linkage: &Linkage,
         at: Moment<'_>,
         rates: &mut [f64],
-        record: &mut Record,
+        felt: Felt<'_>,
         play: &mut Play,
     ) {
         play.mounts.clear();
         for (i, wheel) in self.wheels.iter().enumerate() {
             let (frame, _, _) = self.wheel_frame(wheel, at);
             play.mounts.push(self.wheel_mount(linkage, wheel, &frame));
-            let touch = &mut record.teeth[i];
+            let touch = &mut felt.teeth[i];
             let wrench = linkage.roll(&wheel.contacts, &frame, i, at, touch, play);
             rates[Flow::ToothLoss as usize] += wrench.normal_loss;
             rates[Flow::FrictionLoss as usize] += wrench.friction_loss;
-            record.wheel_wrenches[i] = wrench;
+            felt.wheel_wrenches[i] = wrench;
         }
         for (i, rail) in self.rails.iter().enumerate() {
             let frame = rail.frame(at.t, at.q, at.v, &self.slides);
@@ -39,7 +48,7 @@ impl System {
             let number = self.wheels.len() + i;
             let wrench = match &rail.contact {
                 RailContact::Circles(contacts) => {
-                    let touch = &mut record.circles[i];
+                    let touch = &mut felt.circles[i];
                     linkage.roll(contacts, &frame, number, at, touch, play)
                 }
                 RailContact::Plates(plates) => {
@@ -49,13 +58,13 @@ impl System {
                         &frame,
                         &mut pins,
                         linkage.links,
-                        &mut record.plates[i],
+                        &mut felt.plates[i],
                     )
                 }
             };
             rates[Flow::GuideLoss as usize] += wrench.normal_loss;
             rates[Flow::FrictionLoss as usize] += wrench.friction_loss;
-            record.rail_wrenches[i] = wrench;
+            felt.rail_wrenches[i] = wrench;
         }
     }
 

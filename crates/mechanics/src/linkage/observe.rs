@@ -20,8 +20,7 @@ impl Linkage {
         copy(&mut out.roller_vx, &play.posture.vx);
         copy(&mut out.roller_vy, &play.posture.vy);
         out.link_tension.clear();
-        out.link_tension
-            .extend((0..self.links).map(|link| self.tension(play, link)));
+        out.link_tension.extend(self.tensions(play));
         out.link_angle.clear();
         out.link_angle
             .extend((0..self.links).map(|link| at.q[3 * link + 2]));

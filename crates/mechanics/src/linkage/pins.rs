@@ -74,22 +74,28 @@ pub(crate) struct Pairs {
     present: Vec<f64>,
     /// Whether the side after has the pin.
     pub(crate) pin_after: Vec<bool>,
+    /// One where the side after has what carries the roller, zero elsewhere, whole lanes.
+    pub(crate) bush_after: Vec<f64>,
 }
 
 impl Pairs {
     pub(crate) fn of(joints: &[JointMates]) -> Self {
-        let mut present: Vec<f64> = joints
-            .iter()
-            .map(|joint| f64::from(u8::from(joint.pair.is_some())))
-            .collect();
-        present.resize(padded(joints.len()), 0.0);
+        let flags = |flag: &dyn Fn(&JointMates) -> bool| {
+            let mut flags: Vec<f64> = joints
+                .iter()
+                .map(|joint| f64::from(u8::from(flag(joint))))
+                .collect();
+            flags.resize(padded(joints.len()), 0.0);
+            flags
+        };
         let after = |mate| matches!(mate, Mate::Link { end: 0, .. } | Mate::Ground(1));
         Self {
-            present,
+            present: flags(&|joint| joint.pair.is_some()),
             pin_after: joints
                 .iter()
                 .map(|joint| joint.pair.is_some_and(|[_, pin]| after(pin)))
                 .collect(),
+            bush_after: flags(&|joint| after(joint.carrier)),
         }
     }
 }

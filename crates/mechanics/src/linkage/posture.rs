@@ -61,17 +61,18 @@ pub(crate) struct Shapes {
     /// closed chain comes the last, and beside those of an open one nothing that moves.
     pub(crate) mobility: Vec<f64>,
     pub(crate) turning: Vec<f64>,
-    /// Roots of inverse mass and inertia of every body, free rollers included.
+    /// Inverse mass and inertia of every body, free rollers included.
+    pub(crate) mobilities: Vec<[f64; 2]>,
+    /// Their roots.
     pub(crate) roots: Vec<[f64; 2]>,
 }
 
 impl Shapes {
     /// Reads them off the bodies, of which the first are links.
     pub(crate) fn of(bodies: &[super::Body], links: usize, closed: bool) -> Self {
-        let inverse_root = |value: f64| 1.0 / value.sqrt();
-        let roots = bodies
+        let mobilities: Vec<[f64; 2]> = bodies
             .iter()
-            .map(|body| [inverse_root(body.mass), inverse_root(body.inertia)])
+            .map(|body| [1.0 / body.mass, 1.0 / body.inertia])
             .collect();
         let count = links;
         let links = &bodies[..count];
@@ -96,7 +97,8 @@ impl Shapes {
                 .map(|end| [all(&|link| link.arms[end].x), all(&|link| link.arms[end].y)]),
             mobility: shifted(&|link| 1.0 / link.mass),
             turning: shifted(&|link| 1.0 / link.inertia),
-            roots,
+            roots: mobilities.iter().map(|all| all.map(f64::sqrt)).collect(),
+            mobilities,
         }
     }
 }
@@ -205,46 +207,38 @@ impl Linkage {
 
     fn pose_rollers(&self, at: Moment<'_>, posture: &mut Posture) {
         let joints = self.joints.len();
-        for (joint, mates) in self.joints.iter().enumerate() {
-            let roller = match self.free_rollers.as_ref().and_then(|free| free.body[joint]) {
-                Some(body) => {
-                    let part = free_part(body, at);
-                    [part.place.x, part.place.y, part.velocity.x, part.velocity.y]
-                }
-                None => {
-                    let side = match mates.carrier {
-                        Mate::Link { end: 0, .. } | Mate::Ground(1) => &posture.after,
-                        Mate::Link { .. } | Mate::Ground(_) => &posture.before,
-                    };
-                    [side.x[joint], side.y[joint], side.vx[joint], side.vy[joint]]
-                }
-            };
-            [
-                posture.x[joint],
-                posture.y[joint],
-                posture.vx[joint],
-                posture.vy[joint],
-            ] = roller;
+        self.arch.dispatch(Circles {
+            on_after: &self.pairs.bush_after,
+            posture,
+        });
+        if let Some(free) = &self.free_rollers {
+            for (joint, body) in free.body.iter().enumerate() {
+                let Some(body) = *body else { continue };
+                let part = free_part(body, at);
+                posture.x[joint] = part.place.x;
+                posture.y[joint] = part.place.y;
+                posture.vx[joint] = part.velocity.x;
+                posture.vy[joint] = part.velocity.y;
+            }
         }
         for joint in joints..self.stride {
-            let roller = if self.closed {
-                let k = joint % joints;
-                [posture.x[k], posture.y[k], posture.vx[k], posture.vy[k]]
-            } else {
+            for values in [
+                &mut posture.x,
+                &mut posture.y,
+                &mut posture.vx,
+                &mut posture.vy,
+            ] {
+                values[joint] = if self.closed {
+                    values[joint - joints]
+                } else {
+                    0.0
+                };
+            }
+            if !self.closed {
                 // Behind a strand stand still points one pitch apart.
-                [
-                    posture.x[joint - 1] + self.pitch,
-                    posture.y[joint - 1],
-                    0.0,
-                    0.0,
-                ]
-            };
-            [
-                posture.x[joint],
-                posture.y[joint],
-                posture.vx[joint],
-                posture.vy[joint],
-            ] = roller;
+                posture.x[joint] = posture.x[joint - 1] + self.pitch;
+                posture.y[joint] = posture.y[joint - 1];
+            }
         }
     }
 
@@ -353,6 +347,44 @@ impl WithSimd for Ends<'_> {
                 put(arm_x, &mut side.arm_x);
                 put(arm_y, &mut side.arm_y);
                 put(spin, &mut side.spin);
+            }
+        }
+    }
+}
+
+/// The circles of rollers that are fixed to their links, as one call that is compiled for every kind of processor.
+struct Circles<'a> {
+    /// One where the bush is on the side after, zero elsewhere.
+    on_after: &'a [f64],
+    posture: &'a mut Posture,
+}
+
+impl WithSimd for Circles<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let w = Wide(simd);
+        let Posture {
+            before,
+            after,
+            x,
+            y,
+            vx,
+            vy,
+            ..
+        } = self.posture;
+        for start in (0..self.on_after.len()).step_by(Wide::<S>::COUNT) {
+            let on_after = w.load(self.on_after, start).greater(w.splat(0.0));
+            for (to, after, before) in [
+                (&mut *x, &after.x, &before.x),
+                (&mut *y, &after.y, &before.y),
+                (&mut *vx, &after.vx, &before.vx),
+                (&mut *vy, &after.vy, &before.vy),
+            ] {
+                on_after
+                    .select(w.load(after, start), w.load(before, start))
+                    .store(to, start);
             }
         }
     }

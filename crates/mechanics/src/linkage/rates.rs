@@ -1,7 +1,7 @@
 //! Time scales of a linkage, and its plates as guides see them.
 
 use chaindrive_geometry::{Point, Vector};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 use super::{Joining, Linkage, Partner, Play, cross, turned};
 use crate::System;
@@ -24,7 +24,7 @@ impl Linkage {
     /// λ is the largest eigenvalue of a three-by-three matrix. Against a wheel the contact is shared unevenly:
     /// 1.1 for the chain, 11 for the wheel, and 1 where the wheel does not answer. Friction counts as damping.
     pub(crate) fn stiffest(&self, system: &System, play: &Play) -> [f64; 2] {
-        let mut sums = vec![[Matrix3::zeros(); 2]; self.bodies.len()];
+        let mut sums = vec![[Packed::default(); 2]; self.bodies.len()];
         self.add_joints(play, &mut sums);
         for element in &play.elements {
             let share = match element.b {
@@ -105,7 +105,7 @@ impl Linkage {
     }
 
     /// Pins in bushes, straight from their arrays.
-    fn add_joints(&self, play: &Play, sums: &mut [[Matrix3<f64>; 2]]) {
+    fn add_joints(&self, play: &Play, sums: &mut [[Packed; 2]]) {
         let Joining::Clearance(bearing) = &self.joining else {
             return;
         };
@@ -158,15 +158,19 @@ impl Linkage {
     }
 }
 
+/// A symmetric matrix of three rows: diagonal, then entries (1, 0), (2, 0), (2, 1).
+type Packed = [f64; 6];
+
 /// S += w r rᵀ
 #[inline]
-fn add_square(sum: &mut Matrix3<f64>, row: Vector3<f64>, weight: f64) {
+fn add_square(sum: &mut Packed, row: Vector3<f64>, weight: f64) {
     let scaled = row * weight;
-    for j in 0..3 {
-        for i in 0..3 {
-            sum[(i, j)] += row[i] * scaled[j];
-        }
+    for k in 0..3 {
+        sum[k] += row[k] * scaled[k];
     }
+    sum[3] += row[1] * scaled[0];
+    sum[4] += row[2] * scaled[0];
+    sum[5] += row[2] * scaled[1];
 }
 
 /// Largest eigenvalue of a positive semidefinite matrix, from above.
@@ -174,10 +178,14 @@ fn add_square(sum: &mut Matrix3<f64>, row: Vector3<f64>, weight: f64) {
 /// ```text
 /// m = tr/3,  p² = |S − m|²/6:   λ ≤ m + 2 p
 /// ```
-fn largest(matrix: &Matrix3<f64>) -> f64 {
-    let mean = matrix.trace() / 3.0;
-    let deviation = matrix - Matrix3::identity() * mean;
-    mean + 2.0 * (deviation.norm_squared() / 6.0).sqrt()
+fn largest(matrix: &Packed) -> f64 {
+    let [x, y, z, yx, zx, zy] = matrix;
+    let mean = (x + y + z) / 3.0;
+    let off = yx * yx + zx * zx + zy * zy;
+    let diagonal = [x, y, z].map(|value| (value - mean) * (value - mean));
+    // Every entry beside the diagonal counts twice.
+    let squared = diagonal.iter().sum::<f64>() + 2.0 * off;
+    mean + 2.0 * (squared / 6.0).sqrt()
 }
 
 impl Play {

@@ -120,9 +120,7 @@ fn mean_tension(system: &System, q: &[f64]) -> f64 {
     let Some(linkage) = &system.linkage else {
         return 0.0;
     };
-    let sum: f64 = (0..linkage.links)
-        .map(|link| linkage.tension(&record.play, link))
-        .sum();
+    let sum: f64 = linkage.tensions(&record.play).iter().sum();
     sum / linkage.links as f64
 }
 

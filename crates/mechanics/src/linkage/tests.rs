@@ -238,9 +238,7 @@ fn pretension_is_met() {
         };
         system.evaluate(at, &mut a, &mut rates, &mut record);
         let linkage = system.linkage.as_ref().unwrap();
-        let sum: f64 = (0..linkage.links)
-            .map(|link| linkage.tension(&record.play, link))
-            .sum();
+        let sum: f64 = linkage.tensions(&record.play).iter().sum();
         let mean = sum / linkage.links as f64;
         assert!(
             (mean / 60.0 - 1.0).abs() < 2e-3,

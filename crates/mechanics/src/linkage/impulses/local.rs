@@ -11,7 +11,7 @@ use chaindrive_geometry::Vector;
 use nalgebra::Vector3;
 
 use super::rows::Rows;
-use super::tridiagonal::{Place, Tridiagonal};
+use super::tridiagonal::Tridiagonal;
 use super::{Linkage, Play};
 use crate::linkage::implicit::{Row, partner_row};
 use crate::linkage::{Element, Partner, cross};
@@ -37,36 +37,10 @@ pub(super) struct Local {
     /// First line of every link, and one more entry.
     starts: Vec<usize>,
     order: Vec<usize>,
-    /// L D Lᵀ of one link behind that of another, whole squares.
+    /// L and the inverse of D of one link behind those of another, whole squares.
     factors: Vec<f64>,
     /// Couplings of every line with what is around it, eliminated as far as the factors are, right-hand sides behind.
     around: Vec<f64>,
-}
-
-/// Where the columns of a link lead to: its joints, the wheels, and the right-hand side behind them.
-struct Around<const R: usize> {
-    joints: [[Place; R]; 2],
-    /// First wheel in the border.
-    first: usize,
-}
-
-impl<const R: usize> Around<R> {
-    fn of(linkage: &Linkage, joints: &Tridiagonal, link: usize) -> Self {
-        let ends = [link, linkage.joint_behind(link)];
-        Self {
-            joints: ends.map(|joint| std::array::from_fn(|p| joints.place(joint, p))),
-            first: if linkage.closed { R } else { 0 },
-        }
-    }
-
-    #[inline]
-    fn place(&self, column: usize) -> Place {
-        if column < 2 * R {
-            self.joints[column / R][column % R]
-        } else {
-            Place::Border(self.first + column - 2 * R)
-        }
-    }
 }
 
 impl Local {
@@ -156,6 +130,7 @@ impl Local {
                 for k in i + 1..count {
                     factors[k * count + i] *= inverse;
                 }
+                factors[i * count + i] = inverse;
                 for (sum, value) in sum.iter_mut().zip(own) {
                     let scaled = value * inverse;
                     for (sum, own) in sum.iter_mut().zip(own) {
@@ -163,14 +138,7 @@ impl Local {
                     }
                 }
             }
-            let places = Around::<R>::of(linkage, joints, link);
-            for (x, sum) in sum[..columns].iter().enumerate() {
-                let place = places.place(x);
-                for (y, value) in sum[..=x].iter().enumerate() {
-                    joints.add::<R, C>(place, places.place(y), -value);
-                }
-                joints.add_right::<R, C>(place, -sum[known]);
-            }
+            joints.subtract::<R, C>(link, linkage.joint_behind(link), &sum);
         }
         true
     }
@@ -192,17 +160,12 @@ impl Local {
             if count == 0 {
                 continue;
             }
-            let places = Around::<R>::of(linkage, joints, link);
-            let mut found = [0.0; C];
-            for (column, found) in found[..columns].iter_mut().enumerate() {
-                *found = -joints.at(places.place(column));
-            }
-            found[columns] = 1.0;
+            let found = joints.around::<R, C>(link, linkage.joint_behind(link));
             let (here, rest) = around.split_at_mut(count);
             around = rest;
             for i in (0..count).rev() {
                 let known: f64 = here[i].iter().zip(found).map(|(a, z)| a * z).sum();
-                let mut value = known / factors[i * count + i];
+                let mut value = known * factors[i * count + i];
                 for k in i + 1..count {
                     value -= factors[k * count + i] * here[k][columns];
                 }
@@ -275,8 +238,8 @@ impl Line {
         }
         for (mobile, (body, row)) in self.mobile.iter_mut().zip(&self.bodies) {
             if *body != NOBODY {
-                let b = &linkage.bodies[*body];
-                *mobile = Vector3::new(row.x / b.mass, row.y / b.mass, row.z / b.inertia);
+                let [mobility, turning] = linkage.shapes.mobilities[*body];
+                *mobile = Vector3::new(row.x * mobility, row.y * mobility, row.z * turning);
             }
         }
     }

@@ -27,6 +27,8 @@ pub(super) struct Tridiagonal {
     /// The border's own equations in the same columns.
     corner: Vec<f64>,
     border: usize,
+    /// Rows of a joint in the border.
+    held: usize,
     /// Joints with blocks.
     count: usize,
     /// The unknowns of the border, once they are found.
@@ -45,8 +47,8 @@ impl Tridiagonal {
     #[inline(always)]
     pub(super) fn clear<const R: usize, const C: usize>(&mut self, linkage: &Linkage, wheels: usize) {
         let joints = linkage.joints.len();
-        let held = if linkage.closed { R } else { 0 };
-        self.border = held + wheels;
+        self.held = if linkage.closed { R } else { 0 };
+        self.border = self.held + wheels;
         self.count = joints - usize::from(linkage.closed);
         let lanes = padded(joints);
         if self.own[0].len() != lanes {
@@ -121,14 +123,85 @@ impl Tridiagonal {
         }
     }
 
-    /// Where the row p of a joint stands.
+    /// Where a column stands that is counted from the rows of two joints on, over the wheels.
     #[inline(always)]
-    pub(super) fn place(&self, joint: usize, p: usize) -> Place {
-        if joint < self.count {
-            Place::Row(joint, p)
-        } else {
-            Place::Border(p)
+    fn place<const R: usize>(&self, joints: [usize; 2], column: usize) -> Place {
+        if column >= 2 * R {
+            return Place::Border(self.held + column - 2 * R);
         }
+        let joint = joints[column / R];
+        if joint < self.count {
+            Place::Row(joint, column % R)
+        } else {
+            Place::Border(column % R)
+        }
+    }
+
+    /// Subtracts a symmetric matrix over the rows of two neighbours, the wheels, and the right-hand side.
+    #[inline(always)]
+    pub(super) fn subtract<const R: usize, const C: usize>(
+        &mut self,
+        first: usize,
+        second: usize,
+        sum: &[[f64; C]; C],
+    ) {
+        let wheels = self.border - self.held;
+        let known = 2 * R + wheels;
+        if first >= self.count || second >= self.count {
+            // Beside the joint that closes the chain.
+            for (x, sum) in sum[..known].iter().enumerate() {
+                let place = self.place::<R>([first, second], x);
+                for (y, value) in sum[..=x].iter().enumerate() {
+                    let other = self.place::<R>([first, second], y);
+                    self.add::<R, C>(place, other, -value);
+                }
+                self.add_right::<R, C>(place, -sum[known]);
+            }
+            return;
+        }
+        for p in 0..R {
+            for o in 0..R {
+                if o <= p {
+                    self.own[entry(p, o)][first] -= sum[p][o];
+                    self.own[entry(p, o)][second] -= sum[R + p][R + o];
+                }
+                self.coupling[entry(p, o)][first] -= sum[R + p][o];
+            }
+            for (joint, sum) in [(first, &sum[p]), (second, &sum[R + p])] {
+                let from = (R * joint + p) * C + self.held;
+                let beside = &mut self.beside[from..=from + wheels];
+                for (beside, sum) in beside.iter_mut().zip(&sum[2 * R..]) {
+                    *beside -= sum;
+                }
+            }
+        }
+        for (wheel, sum) in sum[2 * R..known].iter().enumerate() {
+            let from = (self.held + wheel) * C + self.held;
+            let corner = &mut self.corner[from..=from + wheels];
+            for (corner, sum) in corner.iter_mut().zip(&sum[2 * R..]) {
+                *corner -= sum;
+            }
+        }
+    }
+
+    /// The unknowns over the same columns with a negative sign, and one on the right-hand side.
+    #[inline(always)]
+    pub(super) fn around<const R: usize, const C: usize>(
+        &self,
+        first: usize,
+        second: usize,
+    ) -> [f64; C] {
+        let mut around = [0.0; C];
+        for p in 0..R {
+            around[p] = -self.found[p][first];
+            around[R + p] = -self.found[p][second];
+        }
+        let wheels = &self.edge[self.held..];
+        for (around, found) in around[2 * R..].iter_mut().zip(wheels) {
+            *around = -found;
+        }
+        around[2 * R + wheels.len()] = 1.0;
+        around
     }
 
     /// Adds to an entry and to its mirror image.
@@ -323,14 +396,6 @@ impl Tridiagonal {
                 }
             }
             self.found[p][joint] = value;
-        }
-    }
-
-    #[inline(always)]
-    pub(super) fn at(&self, place: Place) -> f64 {
-        match place {
-            Place::Row(joint, p) => self.found[p][joint],
-            Place::Border(i) => self.edge[i],
         }
     }
 }
