@@ -302,8 +302,7 @@ impl Linkage {
     pub(crate) fn each_element(&self, play: &Play, mut visit: impl FnMut(&Element)) {
         if let Joining::Clearance(bearing) = &self.joining {
             for joint in 0..self.joints.len() {
-                let (memory, posture) = (&play.memory.joints, &play.posture);
-                if let Some(element) = play.pins.element(joint, self, bearing, memory, posture) {
+                if let Some(element) = play.pins.element(joint, self, bearing, &play.posture) {
                     visit(&element);
                 }
             }

@@ -35,6 +35,9 @@ pub(crate) struct PinMemory {
 /// What the joints exert, whole lanes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pins {
+    /// Gap \[m\] and normal force \[N\]. The memory has them too, but changes hands when a step is accepted.
+    pub(crate) gap: Vec<f64>,
+    pub(crate) force: Vec<f64>,
     /// n, from the centre of the side before to that of the side after.
     pub(crate) normal_x: Vec<f64>,
     pub(crate) normal_y: Vec<f64>,
@@ -186,8 +189,10 @@ impl PinMemory {
 }
 
 impl Pins {
-    fn all(&mut self) -> [&mut Vec<f64>; 11] {
+    fn all(&mut self) -> [&mut Vec<f64>; 13] {
         [
+            &mut self.gap,
+            &mut self.force,
             &mut self.normal_x,
             &mut self.normal_y,
             &mut self.turn_before,
@@ -235,12 +240,10 @@ impl Pins {
         joint: usize,
         linkage: &Linkage,
         bearing: &Bearing,
-        memory: &PinMemory,
         posture: &Posture,
     ) -> Option<Element> {
         let [hole, pin] = linkage.joints[joint].pair?;
-        let force = memory.force[joint];
-        if memory.gap[joint] >= 0.0 || memory.inverse_onset[joint] <= 0.0 {
+        if self.gap[joint] >= 0.0 {
             return None;
         }
         let side = |mate| match mate {
@@ -249,7 +252,7 @@ impl Pins {
         };
         let ((a, arm_a), (b, arm_b)) = (side(pin), side(hole));
         let normal = self.normal(joint);
-        let [lever_pin, lever_hole] = bearing.levers(-memory.gap[joint]);
+        let [lever_pin, lever_hole] = bearing.levers(-self.gap[joint]);
         let rub = self.rubs.get(joint).copied().unwrap_or_default();
         Some(Element {
             joint,
@@ -265,7 +268,7 @@ impl Pins {
             } else {
                 -normal
             },
-            force,
+            force: self.force[joint],
             rub: rub.force,
             stiffness: self.stiffness[joint],
             damping: self.damping[joint],
@@ -326,6 +329,7 @@ impl Contacts<'_> {
                 nx * (at(&after.vx) - at(&before.vx)) + ny * (at(&after.vy) - at(&before.vy));
             let touching = directed & zero.greater(gap);
             gap.store(&mut memory.gap, start);
+            gap.store(&mut pins.gap, start);
             closing.store(&mut memory.closing, start);
             nx.store(&mut pins.normal_x, start);
             ny.store(&mut pins.normal_y, start);
@@ -356,6 +360,7 @@ impl Contacts<'_> {
             let damping = limit.greater(ratio).select(factor * elastic * onset, zero) + viscous;
             let across = force * inverse;
             force.store(&mut memory.force, start);
+            force.store(&mut pins.force, start);
             across.store(&mut pins.across, start);
             pressed
                 .select(slope * share, zero)

@@ -128,7 +128,7 @@ impl Linkage {
             } else {
                 1.0
             };
-            let depth = -play.memory.joints.gap[joint];
+            let depth = -pins.gap[joint];
             let levers = bearing.side_levers(self.pairs.pin_after[joint], depth);
             for (body, side, lever) in [
                 (before, &posture.before, levers[0]),

@@ -107,14 +107,14 @@ impl Rows {
         play: &Play,
         c: f64,
     ) {
-        let (pins, memory) = (&play.pins, &play.memory.joints);
+        let pins = &play.pins;
         self.resize(pins.normal_x.len());
         self.all().into_iter().for_each(|values| values.fill(0.0));
         for (joint, rub) in pins.rubs.iter().enumerate() {
             if rub.secant <= 0.0 {
                 continue;
             }
-            let levers = bearing.side_levers(linkage.pairs.pin_after[joint], -memory.gap[joint]);
+            let levers = bearing.side_levers(linkage.pairs.pin_after[joint], -pins.gap[joint]);
             let t = turned(pins.normal(joint));
             let (before, after) = (&play.posture.before, &play.posture.after);
             self.x[joint] = t.x;
