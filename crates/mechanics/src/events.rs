@@ -3,6 +3,7 @@
 //! Kept on accepted states only. A contact that is lost and found again within one step was never
 //! seen to end; starts and ends are exact to the step.
 
+use crate::contact::Contacts;
 use crate::system::{RailContact, System};
 
 /// What touched what.
@@ -133,43 +134,34 @@ impl System {
         };
         let kinds = log.kinds;
         let rollers = self.rollers;
-        let mut seen: Vec<Option<(f64, f64)>> = vec![None; rollers];
         for (index, wheel) in self.wheels.iter().enumerate().filter(|_| kinds.teeth) {
-            seen.fill(None);
-            wheel.contacts.for_each_closed(|roller, onset, force| {
-                join(&mut seen[roller % rollers], onset, force);
-            });
-            for (roller, seen) in seen.iter().enumerate() {
+            wheel.contacts.each_candidate(|roller, seen| {
                 let pair = ContactPair::Tooth {
                     sprocket: index,
                     roller,
                 };
-                log.see(index * rollers + roller, pair, t, *seen);
-            }
+                log.see(index * rollers + roller, pair, t, seen);
+            });
         }
         let base = self.wheels.len();
         for (index, rail) in self.rails.iter().enumerate().filter(|_| kinds.guides) {
-            seen.fill(None);
-            match &rail.contact {
-                RailContact::Circles(contacts) => {
-                    contacts.for_each_closed(|roller, onset, force| {
-                        join(&mut seen[roller % rollers], onset, force);
-                    });
-                }
-                RailContact::Plates(plates) => {
-                    for (link, touch) in plates.memory.iter().enumerate() {
-                        if touch.onset > 0.0 {
-                            join(&mut seen[link], touch.onset, touch.force);
-                        }
-                    }
-                }
-            }
-            for (roller, seen) in seen.iter().enumerate() {
+            let mut see = |roller: usize, seen| {
                 let pair = ContactPair::Guide {
                     guide: index,
                     roller,
                 };
-                log.see((base + index) * rollers + roller, pair, t, *seen);
+                log.see((base + index) * rollers + roller, pair, t, seen);
+            };
+            match &rail.contact {
+                RailContact::Circles(contacts) => contacts.each_candidate(see),
+                RailContact::Plates(plates) => {
+                    for (link, touch) in plates.memory.iter().enumerate() {
+                        see(
+                            link,
+                            (touch.onset > 0.0).then_some((touch.onset, touch.force)),
+                        );
+                    }
+                }
             }
         }
         let base = base + self.rails.len();
@@ -188,8 +180,24 @@ impl System {
     }
 }
 
-/// Both flanks of a gap count as one contact.
-fn join(seen: &mut Option<(f64, f64)>, onset: f64, force: f64) {
-    let (speed, sum) = seen.unwrap_or((0.0, 0.0));
-    *seen = Some((speed.max(onset), sum + force));
+impl Contacts {
+    /// Calls `visit` with every roller near this body, and the speed at touch and the force of its contact, if it has one.
+    ///
+    /// A roller is open long before it ceases to be near.
+    fn each_candidate(&self, mut visit: impl FnMut(usize, Option<(f64, f64)>)) {
+        let sides = self.sides();
+        self.for_each_slot(|slot, roller| {
+            // Both flanks of a gap count as one contact.
+            let mut seen: Option<(f64, f64)> = None;
+            for side in 0..sides {
+                let index = side * self.slots + slot;
+                let inverse = self.memory.inverse_onset[index];
+                if inverse > 0.0 {
+                    let (speed, force) = seen.unwrap_or((0.0, 0.0));
+                    seen = Some((speed.max(1.0 / inverse), force + self.memory.force[index]));
+                }
+            }
+            visit(roller, seen);
+        });
+    }
 }

@@ -207,8 +207,8 @@ impl Linkage {
             let push = |joint| play.pins.push(joint);
             let part = |end| self.ground(end, at);
             // The side before the first joint feels the opposite of the push.
-            rates[Flow::Motions as usize] += part(1).velocity.dot(&push(self.links))
-                - part(0).velocity.dot(&push(0));
+            rates[Flow::Motions as usize] +=
+                part(1).velocity.dot(&push(self.links)) - part(0).velocity.dot(&push(0));
         }
         rates[Flow::JointLoss as usize] += tally.normal_loss;
         rates[Flow::FrictionLoss as usize] += tally.friction_loss;
@@ -229,11 +229,13 @@ impl Linkage {
         );
         if matches!(self.joining, Joining::Clearance(_)) {
             let pins = &play.pins;
-            for (link, force) in play.forces[..self.links].iter_mut().enumerate() {
-                let next = link + 1;
-                force.x += pins.push_x[link] - pins.push_x[next];
-                force.y += pins.push_y[link] - pins.push_y[next];
-                force.z += pins.moment_after[link] + pins.moment_before[next];
+            let pushes = pins.push_x.windows(2).zip(pins.push_y.windows(2));
+            let moments = pins.moment_after.iter().zip(&pins.moment_before[1..]);
+            let links = play.forces[..self.links].iter_mut();
+            for (force, ((x, y), (after, before))) in links.zip(pushes.zip(moments)) {
+                force.x += x[0] - x[1];
+                force.y += y[0] - y[1];
+                force.z += after + before;
             }
         }
     }
@@ -293,7 +295,9 @@ impl Linkage {
         }
         if let Some(free) = &self.free_rollers {
             let closed = memory.bushes.iter().filter(|touch| touch.gap < 0.0);
-            sum += closed.map(|touch| free.bearing.energy(touch.gap)).sum::<f64>();
+            sum += closed
+                .map(|touch| free.bearing.energy(touch.gap))
+                .sum::<f64>();
         }
         sum
     }

@@ -161,8 +161,9 @@ impl PlatePins for Pins<'_, '_> {
     }
 }
 
-/// Accepted steps after which the time scale is worked out again.
+/// Accepted steps after which the time scale is worked out again; rigid links hardly change theirs while they touch.
 const STEPS_PER_SCALE: u32 = 8;
+const STEPS_PER_LINK_SCALE: u32 = 16;
 /// Accepted steps after which the windows are renewed at the latest.
 const STEPS_PER_WINDOW: u32 = 256;
 
@@ -392,9 +393,16 @@ impl System {
     }
 
     fn renew_time_scales(&mut self, record: &Record) {
+        let steps = if self.linkage.is_some() {
+            STEPS_PER_LINK_SCALE
+        } else {
+            STEPS_PER_SCALE
+        };
+        // Stiffness changes little from one step to the next, and the bound has a reserve.
+        if !self.renew.1.is_multiple_of(steps) {
+            return;
+        }
         let scales = match &self.linkage {
-            // Stiffness changes little from one step to the next, and the bound has a reserve.
-            _ if !self.renew.1.is_multiple_of(STEPS_PER_SCALE) => return,
             Some(linkage) => linkage.stiffest(self, &record.play),
             None => [self.stiffest(record); 2],
         };
@@ -605,7 +613,9 @@ impl SecondOrderSystem for System {
 
     fn solve(&self, weights: Weights, record: &mut Record, x: &mut [f64]) -> bool {
         match &self.linkage {
-            Some(linkage) => linkage.solve(self, weights, &mut record.play, &mut record.impulses, x),
+            Some(linkage) => {
+                linkage.solve(self, weights, &mut record.play, &mut record.impulses, x)
+            }
             None => false,
         }
     }

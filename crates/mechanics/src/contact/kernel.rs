@@ -408,7 +408,9 @@ impl Contacts {
             pressed
                 .select(slope * share, zero)
                 .store(&mut faces.stiffness, slot);
-            pressed.select(damping, zero).store(&mut faces.damping, slot);
+            pressed
+                .select(damping, zero)
+                .store(&mut faces.damping, slot);
             hit.nx.store(&mut faces.normal_x, slot);
             hit.ny.store(&mut faces.normal_y, slot);
             hit.bend.store(&mut faces.bend, slot);

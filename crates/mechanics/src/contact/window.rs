@@ -111,20 +111,6 @@ impl Contacts {
         None
     }
 
-    /// Calls `visit` with (roller, speed at touch, force) for every closed side of the last accepted state.
-    pub(crate) fn for_each_closed(&self, mut visit: impl FnMut(usize, f64, f64)) {
-        let sides = self.sides();
-        for_each_slot(&self.runs, |slot, roller| {
-            for side in 0..sides {
-                let index = side * self.slots + slot;
-                let inverse = self.memory.inverse_onset[index];
-                if inverse > 0.0 {
-                    visit(roller, 1.0 / inverse, self.memory.force[index]);
-                }
-            }
-        });
-    }
-
     /// Calls `visit` with (slot, roller) for every slot in use.
     pub(crate) fn for_each_slot(&self, visit: impl FnMut(usize, usize)) {
         for_each_slot(&self.runs, visit);

@@ -55,8 +55,8 @@ impl<S: Simd> Lane<S> {
         let squared = r * r;
         // r + r³ (S₁ + S₂ r² + …),   1 − r²/2 + r⁴ (C₁ + C₂ r² + …)
         let sine = r + r * squared * horner(squared, SINE);
-        let cosine = w.splat(1.0) - w.splat(0.5) * squared
-            + squared * squared * horner(squared, COSINE);
+        let cosine =
+            w.splat(1.0) - w.splat(0.5) * squared + squared * squared * horner(squared, COSINE);
         // Quadrant −2 to 2, both ends the same.
         let quadrant = k - w.splat(4.0) * (k * w.splat(0.25)).rounded();
         let size = quadrant.abs();

@@ -5,8 +5,8 @@ use chaindrive_integrate::Moment;
 use pulp::Arch;
 
 use super::{
-    Bearing, Body, FreeRollers, Hinges, Joining, JointMates, Linkage, Mate, Memory, Pairs, PinMemory,
-    PinTouch, Play, Shapes, turned,
+    Bearing, Body, FreeRollers, Hinges, Joining, JointMates, Linkage, Mate, Memory, Pairs,
+    PinMemory, PinTouch, Play, Shapes, turned,
 };
 use crate::End;
 use crate::chain::Chain;

@@ -115,9 +115,9 @@ impl Impulses {
         self.fill::<S, R, C>(w, linkage);
         self.fill_wheels::<R, C>(linkage, system, c, x);
         self.local.gather(linkage, c, play);
-        let condensed =
-            self.local
-                .condense::<R, C>(linkage, &self.rows, &mut self.joints, x);
+        let condensed = self
+            .local
+            .condense::<R, C>(linkage, &self.rows, &mut self.joints, x);
         if !condensed || !self.joints.factor::<R, C>() {
             return false;
         }
@@ -132,12 +132,17 @@ impl Impulses {
     #[inline(always)]
     fn know(&mut self, linkage: &Linkage, b: &[f64]) {
         let links = linkage.links;
-        for (k, known) in self.known.iter_mut().enumerate() {
+        for known in &mut self.known {
             known.resize(linkage.shapes.lanes(), 0.0);
-            for (link, known) in known[1..=links].iter_mut().enumerate() {
-                *known = b[3 * link + k];
-            }
-            if linkage.closed {
+        }
+        let [x, y, turn] = &mut self.known;
+        let all = b[..3 * links].as_chunks::<3>().0;
+        let places = x[1..].iter_mut().zip(&mut y[1..]).zip(&mut turn[1..]);
+        for (b, ((x, y), turn)) in all.iter().zip(places) {
+            [*x, *y, *turn] = *b;
+        }
+        if linkage.closed {
+            for known in &mut self.known {
                 known[0] = known[links];
                 known[links + 1] = known[1];
             }
@@ -231,17 +236,20 @@ impl Impulses {
                 w.load(&shapes.mobility, start + 1),
                 w.load(&shapes.turning, start + 1),
             );
-            for ((impulse, mobility), change) in
-                impulse.into_iter().zip([mass, mass, inertia]).zip(&mut self.known)
+            for ((impulse, mobility), change) in impulse
+                .into_iter()
+                .zip([mass, mass, inertia])
+                .zip(&mut self.known)
             {
                 (impulse * mobility).store(change, start);
             }
         }
         let [dx, dy, turn] = &self.known;
-        for (link, x) in x[..3 * linkage.links].chunks_exact_mut(3).enumerate() {
-            x[0] -= dx[link];
-            x[1] -= dy[link];
-            x[2] -= turn[link];
+        let all = x[..3 * linkage.links].as_chunks_mut::<3>().0;
+        for (x, ((dx, dy), turn)) in all.iter_mut().zip(dx.iter().zip(dy).zip(turn)) {
+            x[0] -= dx;
+            x[1] -= dy;
+            x[2] -= turn;
         }
     }
 }

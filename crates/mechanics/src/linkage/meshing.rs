@@ -9,7 +9,9 @@ use super::{Element, Linkage, Mount, Part, Partner, Play, Tally, turned};
 use crate::contact::{Contacts, Frame, PlateTouch, Touch, Wrench};
 use crate::energy::Flow;
 use crate::lanes::Wide;
-use crate::system::{RailContact, RailSupport, Rollers, System, Wheel, WheelRotation, WheelSupport};
+use crate::system::{
+    RailContact, RailSupport, Rollers, System, Wheel, WheelRotation, WheelSupport,
+};
 use crate::{Carrier, Flank};
 
 /// What wheels and rails feel, and how they are touched.
@@ -53,13 +55,7 @@ impl System {
                 }
                 RailContact::Plates(plates) => {
                     let mut pins = super::rates::LinkPins(play);
-                    plates.act(
-                        at.t,
-                        &frame,
-                        &mut pins,
-                        linkage.links,
-                        &mut felt.plates[i],
-                    )
+                    plates.act(at.t, &frame, &mut pins, linkage.links, &mut felt.plates[i])
                 }
             };
             rates[Flow::GuideLoss as usize] += wrench.normal_loss;
@@ -400,7 +396,10 @@ mod tests {
     /// Without friction both ways must find the same contacts.
     #[test]
     fn all_at_once_is_as_one_by_one() {
-        for (kind, parts) in kinds().into_iter().filter(|(kind, _)| kind.ends_with("rollers, smooth")) {
+        for (kind, parts) in kinds()
+            .into_iter()
+            .filter(|(kind, _)| kind.ends_with("rollers, smooth"))
+        {
             let (system, mut record, q, v) = set_off(parts);
             let linkage = system.linkage.as_ref().unwrap();
             let at = Moment {
@@ -429,7 +428,10 @@ mod tests {
                 assert_eq!(elements.len(), others.len(), "{kind}, {i}");
                 let size = elements.iter().fold(0.0_f64, |m, e| m.max(e.force));
                 let near = |a: f64, b: f64, size: f64| (a - b).abs() <= 1e-9 * size.max(b.abs());
-                assert!(near(wrench.moment, other.moment, 1e-2 * size), "{kind}, {i}");
+                assert!(
+                    near(wrench.moment, other.moment, 1e-2 * size),
+                    "{kind}, {i}"
+                );
                 assert!(near(wrench.depth, other.depth, 0.0), "{kind}, {i}");
                 for (a, b) in elements.iter().zip(&others) {
                     assert_eq!((a.joint, a.a, a.b), (b.joint, b.a, b.b));

@@ -315,10 +315,7 @@ impl Contacts<'_> {
         let mut tally = Tally::new();
         for start in (0..joints).step_by(Wide::<S>::COUNT) {
             let at = |all: &[f64]| w.load(all, start);
-            let [ex, ey] = [
-                at(&after.x) - at(&before.x),
-                at(&after.y) - at(&before.y),
-            ];
+            let [ex, ey] = [at(&after.x) - at(&before.x), at(&after.y) - at(&before.y)];
             let [eccentricity, inverse] = (ex * ex + ey * ey).roots();
             let present = at(present).greater(zero);
             let gap = present.select(clearance - eccentricity, w.splat(PinTouch::OPEN.gap));
@@ -444,11 +441,10 @@ impl Bearing {
             let push = tangent * rub.force;
             pins.push_x[joint] += push.x;
             pins.push_y[joint] += push.y;
-            let arm = |side: &super::posture::Sides| Vector::new(side.arm_x[joint], side.arm_y[joint]);
-            pins.moment_after[joint] +=
-                super::cross(arm(after), push) + levers[1] * rub.force;
-            pins.moment_before[joint] -=
-                super::cross(arm(before), push) + levers[0] * rub.force;
+            let arm =
+                |side: &super::posture::Sides| Vector::new(side.arm_x[joint], side.arm_y[joint]);
+            pins.moment_after[joint] += super::cross(arm(after), push) + levers[1] * rub.force;
+            pins.moment_before[joint] -= super::cross(arm(before), push) + levers[0] * rub.force;
         }
         loss
     }
@@ -457,7 +453,11 @@ impl Bearing {
     pub(super) fn side_levers(&self, pin_after: bool, depth: f64) -> [f64; 2] {
         let [pin, hole] = self.levers(depth);
         // Seen along n, the touching point lies behind the pin's centre if the pin is on the side before.
-        if pin_after { [hole, pin] } else { [-pin, -hole] }
+        if pin_after {
+            [hole, pin]
+        } else {
+            [-pin, -hole]
+        }
     }
 
     pub(super) fn rubs(&self) -> bool {

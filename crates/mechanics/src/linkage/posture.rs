@@ -93,8 +93,7 @@ impl Shapes {
             values
         };
         Self {
-            arms: [0, 1]
-                .map(|end| [all(&|link| link.arms[end].x), all(&|link| link.arms[end].y)]),
+            arms: [0, 1].map(|end| [all(&|link| link.arms[end].x), all(&|link| link.arms[end].y)]),
             mobility: shifted(&|link| 1.0 / link.mass),
             turning: shifted(&|link| 1.0 / link.inertia),
             roots: mobilities.iter().map(|all| all.map(f64::sqrt)).collect(),
@@ -175,10 +174,11 @@ impl Linkage {
         if posture.links[0].len() != padded(self.links) {
             posture.resize(self);
         }
-        for link in 0..self.links {
-            for k in 0..3 {
-                posture.links[k][link] = at.q[3 * link + k];
-                posture.links[3 + k][link] = at.v[3 * link + k];
+        let [x, y, angle, vx, vy, spin] = &mut posture.links;
+        for (from, [a, b, c]) in [(at.q, [x, y, angle]), (at.v, [vx, vy, spin])] {
+            let links = from[..3 * self.links].as_chunks::<3>().0;
+            for (((from, a), b), c) in links.iter().zip(a).zip(b).zip(c) {
+                [*a, *b, *c] = *from;
             }
         }
         self.arch.dispatch(Ends {
@@ -266,9 +266,7 @@ impl Linkage {
     #[inline]
     pub(crate) fn part(&self, mate: Mate, at: Moment<'_>, posture: &Posture) -> Part {
         match mate {
-            Mate::Link { link, end } => {
-                of_link(link, posture.tip(link, end), at.v[3 * link + 2])
-            }
+            Mate::Link { link, end } => of_link(link, posture.tip(link, end), at.v[3 * link + 2]),
             Mate::Ground(end) => self.ground(end, at),
         }
     }

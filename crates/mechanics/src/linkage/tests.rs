@@ -144,12 +144,18 @@ pub(super) fn kinds() -> Vec<(&'static str, Parts)> {
     vec![
         ("lumped rollers, smooth", smooth(rough.clone())),
         ("lumped rollers, rough", rough.clone()),
-        ("bush chain, rough", bicycle(links(clearance(), RollerModel::Bush))),
+        (
+            "bush chain, rough",
+            bicycle(links(clearance(), RollerModel::Bush)),
+        ),
         (
             "free rollers, smooth",
             smooth(bicycle(links(clearance(), free_rollers()))),
         ),
-        ("free rollers, rough", bicycle(links(clearance(), free_rollers()))),
+        (
+            "free rollers, rough",
+            bicycle(links(clearance(), free_rollers())),
+        ),
         ("sprung wheel", sprung),
         ("strand, smooth", smooth(strand(rough.clone()))),
         ("strand, rough", strand(rough)),

@@ -45,14 +45,23 @@ const fn entry(p: usize, o: usize) -> usize {
 impl Tridiagonal {
     /// Makes room; entries of the blocks are written, not added, by the lanes.
     #[inline(always)]
-    pub(super) fn clear<const R: usize, const C: usize>(&mut self, linkage: &Linkage, wheels: usize) {
+    pub(super) fn clear<const R: usize, const C: usize>(
+        &mut self,
+        linkage: &Linkage,
+        wheels: usize,
+    ) {
         let joints = linkage.joints.len();
         self.held = if linkage.closed { R } else { 0 };
         self.border = self.held + wheels;
         self.count = joints - usize::from(linkage.closed);
         let lanes = padded(joints);
         if self.own[0].len() != lanes {
-            for values in self.own.iter_mut().chain(&mut self.coupling).chain(&mut self.right) {
+            for values in self
+                .own
+                .iter_mut()
+                .chain(&mut self.coupling)
+                .chain(&mut self.right)
+            {
                 values.resize(lanes, 0.0);
             }
             for values in &mut self.found {
@@ -250,8 +259,11 @@ impl Tridiagonal {
                 sound &= self.eliminate::<R, C>(k, Some((k + 1, k, false)), &mut corner);
             }
             if behind > middle {
-                sound &=
-                    self.eliminate::<R, C>(behind, Some((behind - 1, behind - 1, true)), &mut corner);
+                sound &= self.eliminate::<R, C>(
+                    behind,
+                    Some((behind - 1, behind - 1, true)),
+                    &mut corner,
+                );
             }
         }
         sound &= self.eliminate::<R, C>(middle, None, &mut corner);
@@ -384,7 +396,11 @@ impl Tridiagonal {
     ) {
         let rows = self.beside.as_chunks::<C>().0;
         let right: [f64; R] = std::array::from_fn(|p| {
-            rows[R * joint + p].iter().zip(edge).map(|(a, x)| a * x).sum()
+            rows[R * joint + p]
+                .iter()
+                .zip(edge)
+                .map(|(a, x)| a * x)
+                .sum()
         });
         for p in 0..R {
             let mut value: f64 = (0..R)
