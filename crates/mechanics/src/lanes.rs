@@ -96,18 +96,23 @@ impl<S: Simd> Lane<S> {
 
     /// √x, to the last place, and 1/√x, to a few units of it, of numbers that are not negative.
     ///
-    /// Processors with AVX-512 have an estimate to 14 bits, which two of Newton's iterations and a fused correction make
-    /// whole in half of the time of a root and a division.
+    /// Processors with AVX-512 have an estimate y of 1/√x to 14 bits, which the binomial series makes whole in half of the
+    /// time of a root and a division:
+    ///
+    /// ```text
+    /// e = 1 − x y²,   1/√x = y (1 + ½ e + ⅜ e² + 5/16 e³ + …)
+    /// ```
     #[inline(always)]
     pub(crate) fn roots(self) -> [Self; 2] {
         let x = self.max(Wide(self.simd).splat(TINY));
-        if let Some(estimate) = x.estimate() {
-            let inverse = estimate.newton(x).newton(x);
-            let root = x * inverse;
-            // d + ½ (x − d²)/d
-            let missing = x.with(self.simd.mul_add_f64s((-root).v, root.v, x.v));
-            let half = Wide(self.simd).splat(0.5) * inverse;
-            [root + missing * half, inverse]
+        if let Some(y) = x.estimate() {
+            let of = Wide(self.simd);
+            let [root, missing, curve] = y.series(x);
+            // d + ½ (x − d²)/d: d lacks the third power, 1/d the second
+            let d = (root * missing).fused(curve, root);
+            let half = (y * missing).fused(of.splat(0.25), of.splat(0.5) * y);
+            let exact = (-d).fused(d, x).fused(half, d);
+            [exact, y.whole(missing, curve)]
         } else {
             // Side by side, not one after the other: 1/√x = √x · 1/x.
             let root = x.sqrt();
@@ -119,7 +124,10 @@ impl<S: Simd> Lane<S> {
     #[inline(always)]
     pub(crate) fn inverse_root(self) -> Self {
         match self.estimate() {
-            Some(estimate) => estimate.newton(self).newton(self),
+            Some(y) => {
+                let [_, missing, curve] = y.series(self);
+                y.whole(missing, curve)
+            }
             None => self.sqrt() * self.recip(),
         }
     }
@@ -129,7 +137,7 @@ impl<S: Simd> Lane<S> {
     pub(crate) fn root(self) -> Self {
         let x = self.max(Wide(self.simd).splat(TINY));
         match x.estimate() {
-            Some(estimate) => self * estimate.newton(x).newton(x),
+            Some(_) => self * x.inverse_root(),
             None => self.sqrt(),
         }
     }
@@ -146,11 +154,27 @@ impl<S: Simd> Lane<S> {
         None
     }
 
-    /// y (3 − x y²)/2
+    /// x y, e = 1 − x y² and ½ + ⅜ e of an estimate y of 1/√x.
     #[inline(always)]
-    fn newton(self, x: Self) -> Self {
+    fn series(self, x: Self) -> [Self; 3] {
         let of = Wide(self.simd);
-        self * (of.splat(1.5) - of.splat(0.5) * x * self * self)
+        let root = x * self;
+        let missing = (-root).fused(self, of.splat(1.0));
+        let curve = missing.fused(of.splat(0.375), of.splat(0.5));
+        [root, missing, curve]
+    }
+
+    /// y + y e (½ + ⅜ e + 5/16 e²): what the estimate stands for.
+    #[inline(always)]
+    fn whole(self, missing: Self, curve: Self) -> Self {
+        let cubic = (missing * missing).fused(Wide(self.simd).splat(0.3125), curve);
+        (self * missing).fused(cubic, self)
+    }
+
+    /// self · factor + term, rounded once: for processors with the instruction.
+    #[inline(always)]
+    fn fused(self, factor: Self, term: Self) -> Self {
+        self.with(self.simd.mul_add_f64s(self.v, factor.v, term.v))
     }
 
     #[inline(always)]
