@@ -11,15 +11,16 @@ mod plates;
 mod rest;
 mod scalar;
 mod window;
+mod wrench;
 
 use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_geometry::{Point, Vector};
 
 use answer::Answer;
 pub(crate) use answer::LawNumbers;
-pub(crate) use kernel::Wrench;
 pub(crate) use plates::{PlateContact, PlatePins, PlatePlaces, PlateTouch};
 pub(crate) use window::{Places, Run};
+pub(crate) use wrench::Wrench;
 
 use crate::drive::{Flank, Surface};
 use crate::profile::{GapHalves, Profile};

@@ -5,32 +5,12 @@ use chaindrive_contact::{Friction, Rub};
 use pulp::Simd;
 
 use super::answer::{Answer, LaneElastic};
-use super::rest::Clear;
+use super::rest::{CLOSE, Clear};
+use super::wrench::{Sums, Wrench};
 use super::{Contacts, Frame, Shape, Teeth, Touch};
 use crate::lanes::{LANES, Lane, Mask, Wide, padded};
 use crate::profile::Profile;
 use crate::system::Rollers;
-
-/// What the rollers do to a body, and what the step control wants to know.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Wrench {
-    /// Force on the body \[N\].
-    pub(crate) force: [f64; 2],
-    /// Moment about the frame's origin \[N m\].
-    pub(crate) moment: f64,
-    /// Power dissipated normal to the surface \[W\].
-    pub(crate) normal_loss: f64,
-    /// Power dissipated by friction \[W\].
-    pub(crate) friction_loss: f64,
-    /// Deepest penetration \[m\].
-    pub(crate) depth: f64,
-    /// Largest damping of one contact, along the normal and across \[N s/m\].
-    pub(crate) damping: f64,
-    /// Deepest penetration of a contact that opened this step \[m\].
-    pub(crate) first_depth: f64,
-    /// Smallest share of the step after which such a contact began.
-    pub(crate) first_share: f64,
-}
 
 /// Turns normal forces into friction forces and slips into damping; kept out of line like the laws.
 #[inline(never)]
@@ -132,7 +112,8 @@ impl Contacts {
                 if !near.any() {
                     // |d| − R ≥ (d² − R²)/(3 R) up to |d| = 2 R
                     let gap = away * w.splat(1.0 / (3.0 * reach));
-                    let rest = here.clear(w, gap, None, &motion, rollers).rest(w, dt);
+                    let clear = here.clear(w, gap, None, &motion, rollers);
+                    let rest = clear.rest(w, dt, 0.0);
                     self.leave_open(w, here.slot, self.accepted + dt + rest, touch);
                     return false;
                 }
@@ -150,8 +131,9 @@ impl Contacts {
                 (place, here.valid)
             }
         };
-        touch.wake[here.slot] = 0.0;
         let mut touching = false;
+        let mut open = w.splat(f64::MAX);
+        let mut approach = None;
         for side in 0..self.sides() {
             let face = self.face(w, side, &place);
             let mut found = look(w, face.profile, face.sign * place.x, place.y, self.radius);
@@ -169,13 +151,26 @@ impl Contacts {
             let slot = side * self.slots + here.slot;
             let closing = self.respond(w, dt, flank, &motion, &hit, slot, i, rollers, touch, sums);
             touching |= closing.is_none();
-            if let (Some(closing), Shape::Rail { profile, .. }) = (closing, &self.shape) {
-                let closing = (profile.bulges && frame.spin == 0.0).then_some(closing);
-                let clear = here.clear(w, hit.gap, closing, &motion, rollers);
-                touch.wake[here.slot] = self.accepted + dt + clear.rest(w, dt);
-            }
+            open = open.min(hit.gap);
+            approach = closing;
         }
-        touching
+        touch.wake[here.slot] = 0.0;
+        if touching {
+            return true;
+        }
+        let (close, convex) = match &self.shape {
+            Shape::Teeth(_) => {
+                let close = w.splat(CLOSE * self.radius).greater(open) & here.valid;
+                (close.any(), false)
+            }
+            Shape::Rail { profile, .. } => (false, profile.bulges && frame.spin == 0.0),
+        };
+        if !close {
+            let approach = approach.filter(|_| convex);
+            let clear = here.clear(w, open, approach, &motion, rollers);
+            touch.wake[here.slot] = self.accepted + dt + clear.rest(w, dt, frame.spin);
+        }
+        false
     }
 
     /// What a side of the slots looks at: the whole rail, the half of a symmetric gap on the
@@ -484,6 +479,7 @@ impl<S: Simd> Here<S> {
             closing: closing.map(only),
             speed: only(motion.ux * motion.ux + motion.uy * motion.uy),
             thrust: only(ax * ax + ay * ay),
+            lever: only(motion.dx * motion.dx + motion.dy * motion.dy),
         }
     }
 }
@@ -530,62 +526,4 @@ struct Hit<S: Simd> {
     nx: Lane<S>,
     ny: Lane<S>,
     near: Mask<S>,
-}
-
-/// Lane<S>-wise sums over all slots of a body.
-struct Sums<S: Simd> {
-    fx: Lane<S>,
-    fy: Lane<S>,
-    moment: Lane<S>,
-    normal_loss: Lane<S>,
-    friction_loss: Lane<S>,
-    depth: Lane<S>,
-    damping: Lane<S>,
-    /// Whether contacts began; only then the rest counts.
-    fresh: bool,
-    first_depth: Lane<S>,
-    first_share: Lane<S>,
-}
-
-impl<S: Simd> Sums<S> {
-    #[inline(always)]
-    fn new(w: Wide<S>) -> Self {
-        let zero = w.splat(0.0);
-        Self {
-            fx: zero,
-            fy: zero,
-            moment: zero,
-            normal_loss: zero,
-            friction_loss: zero,
-            depth: zero,
-            damping: zero,
-            fresh: false,
-            first_depth: zero,
-            first_share: w.splat(1.0),
-        }
-    }
-
-    #[inline(always)]
-    fn total(&self, rubbing: bool) -> Wrench {
-        let (first_depth, first_share) = if self.fresh {
-            (self.first_depth.largest(), self.first_share.smallest())
-        } else {
-            (0.0, 1.0)
-        };
-        let friction_loss = if rubbing {
-            self.friction_loss.sum()
-        } else {
-            0.0
-        };
-        Wrench {
-            force: [self.fx.sum(), self.fy.sum()],
-            moment: self.moment.sum(),
-            normal_loss: self.normal_loss.sum(),
-            friction_loss,
-            depth: self.depth.largest(),
-            damping: self.damping.largest(),
-            first_depth,
-            first_share,
-        }
-    }
 }

@@ -3,7 +3,7 @@
 use chaindrive_geometry::Point;
 
 use super::{Contacts, Frame, Shape, Teeth, Touch};
-use crate::lanes::padded;
+use crate::lanes::{LANES, padded};
 
 /// A run of consecutive rollers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,6 +23,9 @@ pub(crate) struct Places<'a> {
     pub(crate) count: usize,
 }
 
+/// Share of the roller radius below which a gap may close before the windows are renewed.
+const LIKELY: f64 = 0.1;
+
 /// A slot that no roller held before: open, and far.
 pub(super) const FAR: f64 = 1.0;
 
@@ -30,6 +33,7 @@ impl Contacts {
     /// Looks for the rollers within `margin` \[m\] of touching, and carries the memory over.
     pub(crate) fn renew(&mut self, frame: &Frame, places: Places<'_>, margin: f64) {
         let runs = self.near_runs(frame, places, margin);
+        let runs: Vec<Run> = runs.into_iter().flat_map(|run| self.aligned(run)).collect();
         let slots = runs.iter().map(|run| padded(run.count)).sum();
         let mut memory = Box::<Touch>::default();
         memory.resize(slots * self.sides());
@@ -97,6 +101,28 @@ impl Contacts {
             }
         }
         runs
+    }
+
+    /// Cuts a few rollers off the beginning of a run, where those likely to touch then need fewer lanes: lanes of rollers that
+    /// come and go rest.
+    fn aligned(&self, run: Run) -> impl Iterator<Item = Run> {
+        let likely = |k: &usize| {
+            let slot = self.slot_of(run.start + k);
+            slot.is_some_and(|slot| {
+                let gaps = (0..self.sides()).map(|side| self.memory.gap[side * self.slots + slot]);
+                gaps.fold(FAR, f64::min) < LIKELY * self.radius
+            })
+        };
+        let first = (0..run.count).find(likely);
+        let last = (0..run.count).rfind(likely);
+        let cut = first.zip(last).map_or(0, |(first, last)| {
+            let lanes = |cut: &usize| (last - cut) / LANES - (first - cut) / LANES;
+            (0..=first.min(LANES - 1)).min_by_key(lanes).unwrap_or(0)
+        });
+        let (start, count) = (run.start, run.count);
+        let parts = [(start, cut), (start + cut, count - cut)];
+        let parts = parts.map(|(start, count)| Run { start, count });
+        parts.into_iter().filter(|part| part.count > 0)
     }
 
     /// The slot that holds `roller`, if any.
