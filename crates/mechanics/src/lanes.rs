@@ -30,6 +30,19 @@ pub(crate) struct Lane<S: Simd> {
     v: S::f64s,
 }
 
+/// An array seen lane by lane; what does not fill a lane is left out.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lanes<'a, S: Simd> {
+    simd: S,
+    whole: &'a [S::f64s],
+}
+
+/// An array written lane by lane.
+#[derive(Debug)]
+pub(crate) struct LanesMut<'a, S: Simd> {
+    whole: &'a mut [S::f64s],
+}
+
 /// Truth values side by side.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Mask<S: Simd> {
@@ -58,11 +71,39 @@ impl<S: Simd> Wide<S> {
         self.lane(whole[0])
     }
 
+    /// Looks at an array once, for loops without further checks of its length.
+    #[inline(always)]
+    pub(crate) fn lanes(self, slice: &[f64]) -> Lanes<'_, S> {
+        let (simd, (whole, _)) = (self.0, S::as_simd_f64s(slice));
+        Lanes { simd, whole }
+    }
+
+    /// The same for writing.
+    #[inline(always)]
+    pub(crate) fn lanes_mut(self, slice: &mut [f64]) -> LanesMut<'_, S> {
+        let (whole, _) = S::as_mut_simd_f64s(slice);
+        LanesMut { whole }
+    }
+
     /// True in the first `count` lanes.
     #[inline(always)]
     pub(crate) fn first(self, count: usize) -> Mask<S> {
         const PLACES: [f64; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
         self.splat(count as f64).greater(self.load(&PLACES, 0))
+    }
+}
+
+impl<S: Simd> Lanes<'_, S> {
+    #[inline(always)]
+    pub(crate) fn get(&self, lane: usize) -> Lane<S> {
+        Wide(self.simd).lane(self.whole[lane])
+    }
+}
+
+impl<S: Simd> LanesMut<'_, S> {
+    #[inline(always)]
+    pub(crate) fn set(&mut self, lane: usize, value: Lane<S>) {
+        self.whole[lane] = value.v;
     }
 }
 
@@ -193,6 +234,15 @@ impl<S: Simd> Lane<S> {
             simd: self.simd,
             m: self.simd.greater_than_f64s(self.v, other.v),
         }
+    }
+
+    /// The lanes one further on: first the last of `before`, then all but the last of `self`.
+    #[inline(always)]
+    pub(crate) fn after(self, before: Self) -> Self {
+        let [here, there] = [self, before].map(|lane| self.simd.rotate_right_f64s(lane.v, 1));
+        Wide(self.simd)
+            .first(1)
+            .select(self.with(there), self.with(here))
     }
 
     /// Applies a function to one lane after the other.

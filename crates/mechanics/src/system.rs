@@ -26,7 +26,7 @@ use crate::energy::Flow;
 use crate::events::EventLog;
 use crate::lanes::Wide;
 use crate::linkage::{Linkage, Play, Posture};
-use crate::links::{Links, Pulls};
+use crate::links::Links;
 use crate::motion::Course;
 use crate::{End, Motion};
 
@@ -91,7 +91,6 @@ pub struct Record {
     pub(crate) plates: Vec<Vec<PlateTouch>>,
     pub(crate) wheel_wrenches: Vec<Wrench>,
     pub(crate) rail_wrenches: Vec<Wrench>,
-    pulls: Pulls,
     /// Frames of the wheels, then of the rails.
     frames: Vec<Frame>,
     pub(crate) play: Play,
@@ -208,6 +207,7 @@ impl System {
             .sum()
     }
 
+    #[inline(always)]
     pub(crate) fn view<'a>(&'a self, q: &'a [f64], v: &'a [f64], a: &'a mut [f64]) -> Rollers<'a> {
         let n = self.stride;
         let (ax, rest) = a.split_at_mut(n);
@@ -218,7 +218,7 @@ impl System {
             vy: &v[n..2 * n],
             ax,
             ay: &mut rest[..n],
-            inverse_mass: &self.inverse_masses,
+            inverse_mass: &self.inverse_masses[..n],
         }
     }
 
@@ -259,8 +259,7 @@ impl System {
         a[2 * self.stride..].fill(0.0);
         let mut rollers = self.view(at.q, at.v, a);
         let gravity = [self.gravity.x, self.gravity.y];
-        rates[Flow::LinkLoss as usize] =
-            self.links.act(w, &mut rollers, &mut record.pulls, gravity);
+        rates[Flow::LinkLoss as usize] = self.links.act(w, &mut rollers, gravity);
         // Frames are in memory well before the kernel loads them again.
         let wheels = self.wheels.len();
         for (frame, wheel) in record.frames.iter_mut().zip(&self.wheels) {
@@ -463,7 +462,6 @@ impl SecondOrderSystem for System {
             plates: vec![Vec::new(); self.rails.len()],
             wheel_wrenches: vec![Wrench::default(); self.wheels.len()],
             rail_wrenches: vec![Wrench::default(); self.rails.len()],
-            pulls: self.links.pulls(),
             frames: vec![Frame::fixed(); self.wheels.len() + self.rails.len()],
             play: Play::default(),
         }
