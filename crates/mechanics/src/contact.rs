@@ -7,9 +7,11 @@
 
 mod answer;
 mod kernel;
+mod look;
 mod plates;
 mod rest;
 mod scalar;
+mod slots;
 mod window;
 mod wrench;
 

@@ -11,8 +11,6 @@
 
 use pulp::Simd;
 
-use super::window::FAR;
-use super::{Contacts, Touch};
 use crate::lanes::{Lane, Wide};
 
 /// Steps of which rests are made: shorter ones do not pay, and after longer ones the chain may have turned to anything.
@@ -66,28 +64,6 @@ impl<S: Simd> Clear<S> {
     }
 }
 
-impl Contacts {
-    /// A lane without contacts, at rest until some time \[s\].
-    #[inline(always)]
-    pub(super) fn leave_open<S: Simd>(
-        &self,
-        w: Wide<S>,
-        slot: usize,
-        until: f64,
-        touch: &mut Touch,
-    ) {
-        let zero = w.splat(0.0);
-        for side in 0..self.sides() {
-            let slot = side * self.slots + slot;
-            w.splat(FAR).store(&mut touch.gap, slot);
-            zero.store(&mut touch.closing, slot);
-            zero.store(&mut touch.inverse_onset, slot);
-            zero.store(&mut touch.force, slot);
-        }
-        touch.wake[slot] = until;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use chaindrive_contact::dissipation::Dissipation;
@@ -97,7 +73,7 @@ mod tests {
     use pulp::{Arch, WithSimd};
 
     use super::*;
-    use crate::contact::{Frame, Places, Shape, Teeth};
+    use crate::contact::{Contacts, Frame, Places, Shape, Teeth, Touch};
     use crate::drive::Surface;
     use crate::profile::{GapHalves, Profile};
     use crate::system::Rollers;
