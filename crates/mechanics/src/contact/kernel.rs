@@ -5,7 +5,7 @@ use chaindrive_contact::{Friction, Rub};
 use pulp::Simd;
 
 use super::answer::{Answer, LaneElastic};
-use super::look::{Hit, Place};
+use super::look::{Half, Hit, Place};
 use super::rest::{CLOSE, Clear};
 use super::slots::Slots;
 use super::window::FAR;
@@ -53,20 +53,29 @@ impl Contacts {
         let mut slots = Slots::new(w, self, touch);
         let mut sums = Sums::new(w);
         let mut touching = false;
-        for (eight, run) in self.runs.iter().enumerate() {
-            for offset in (0..LANES).step_by(Wide::<S>::COUNT) {
-                let lane = (eight * LANES + offset) / Wide::<S>::COUNT;
-                let wake = slots.wake(lane);
-                if offset >= run.count || wake > t {
-                    slots.leave_open(w, lane, wake);
-                    continue;
+        // Copies: what may change while slots are written is read from memory again for every lane.
+        let (frame, answer) = (*frame, self.answer);
+        for side in 0..self.sides() {
+            let half = self.half(side);
+            for (eight, run) in self.runs.iter().enumerate() {
+                for offset in (0..LANES).step_by(Wide::<S>::COUNT) {
+                    let place = (eight * LANES + offset) / Wide::<S>::COUNT;
+                    let lane = side * slots.lanes() + place;
+                    let wake = slots.wake(lane);
+                    if offset >= run.count || wake > t {
+                        slots.leave_open(w, lane, wake);
+                        continue;
+                    }
+                    let here = Here {
+                        lane,
+                        axis: place,
+                        roller: run.start + offset,
+                        valid: w.first(run.count - offset),
+                    };
+                    let (slots, sums) = (&mut slots, &mut sums);
+                    touching |=
+                        self.lane(w, dt, &frame, &half, &answer, here, rollers, slots, sums);
                 }
-                let here = Here {
-                    lane,
-                    roller: run.start + offset,
-                    valid: w.first(run.count - offset),
-                };
-                touching |= self.lane(w, dt, frame, here, rollers, &mut slots, &mut sums);
             }
         }
         if touching {
@@ -79,6 +88,7 @@ impl Contacts {
         }
     }
 
+    /// One lane; whether any of its rollers touches.
     #[inline(always)]
     #[expect(
         clippy::too_many_arguments,
@@ -89,6 +99,8 @@ impl Contacts {
         w: Wide<S>,
         dt: f64,
         frame: &Frame,
+        half: &Half<'_>,
+        answer: &Answer,
         here: Here<S>,
         rollers: &mut Rollers<'_>,
         slots: &mut Slots<'_, S>,
@@ -120,36 +132,26 @@ impl Contacts {
                     slots.leave_open(w, here.lane, self.accepted + dt + rest);
                     return false;
                 }
-                Place::in_gap(w, teeth, frame, slots.axis(here.lane), [dx, dy])
+                Place::in_gap(w, teeth, frame, slots.axis(here.axis), [dx, dy])
             }
             Shape::Rail { reference, .. } => Place::at_rail(w, *reference, frame, [dx, dy]),
         };
-        let mut touching = false;
-        let mut open = w.splat(f64::MAX);
-        let mut approach = None;
-        for side in 0..self.sides() {
-            let face = self.face(w, side, &place);
-            let found = face.look(w, self.radius);
-            let flank = self.answer.flank.map(|flank| {
-                let beyond = face.beyond_hollow(w);
-                flank.elastic_and_share(w, beyond)
-            });
-            let hit = place.world(&found);
-            let lane = side * slots.lanes() + here.lane;
-            let closing = self.respond(
-                w, dt, flank, &motion, &hit, near, lane, i, rollers, slots, sums,
-            );
-            touching |= closing.is_none();
-            open = open.min(hit.gap);
-            approach = closing;
-        }
-        if touching {
+        let face = half.face(w, &place);
+        let found = face.look(w, self.radius);
+        let flank = answer.flank.map(|flank| {
+            let beyond = face.beyond_hollow(w);
+            flank.elastic_and_share(w, beyond)
+        });
+        let hit = place.world(&found);
+        let Some(closing) = self.respond(
+            w, dt, answer, flank, &motion, &hit, near, here, rollers, slots, sums,
+        ) else {
             slots.set_wake(here.lane, 0.0);
             return true;
-        }
+        };
         let (close, convex) = match &self.shape {
             Shape::Teeth(_) => {
-                let close = w.splat(CLOSE * self.radius).greater(open) & here.valid;
+                let close = w.splat(CLOSE * self.radius).greater(hit.gap) & here.valid;
                 (close.any(), false)
             }
             Shape::Rail { profile, .. } => (false, profile.bulges && frame.spin == 0.0),
@@ -157,8 +159,7 @@ impl Contacts {
         let rest = if close {
             0.0
         } else {
-            let approach = approach.filter(|_| convex);
-            let clear = here.clear(w, open, approach, &motion, rollers);
+            let clear = here.clear(w, hit.gap, convex.then_some(closing), &motion, rollers);
             clear.rest(w, dt, frame.spin)
         };
         slots.set_wake(here.lane, self.accepted + dt + rest);
@@ -199,19 +200,20 @@ impl Contacts {
         &self,
         w: Wide<S>,
         dt: f64,
+        answer: &Answer,
         flank: Option<(LaneElastic, Lane<S>)>,
         motion: &Motion<S>,
         hit: &Hit<S>,
         near: Mask<S>,
-        lane: usize,
-        roller: usize,
+        here: Here<S>,
         rollers: &mut Rollers<'_>,
         slots: &mut Slots<'_, S>,
         sums: &mut Sums<S>,
     ) -> Option<Lane<S>> {
         let Answer {
             elastic, numbers, ..
-        } = &self.answer;
+        } = answer;
+        let Here { lane, roller, .. } = here;
         let zero = w.splat(0.0);
         let gap = near.select(hit.gap, w.splat(FAR));
         // δ̇ = −n·u
@@ -303,7 +305,9 @@ impl Contacts {
 /// Where a lane of slots stands.
 #[derive(Clone, Copy)]
 struct Here<S: Simd> {
+    /// Among all lanes, and among those of one side.
     lane: usize,
+    axis: usize,
     roller: usize,
     valid: Mask<S>,
 }

@@ -30,15 +30,31 @@ pub(super) struct Hit<S: Simd> {
     pub(super) ny: Lane<S>,
 }
 
-/// The profile that a lane looks at, and from where.
-pub(super) struct Face<'a, S: Simd> {
+/// What a side of the slots looks at: the whole rail, the half of a symmetric gap on the roller's side, or one half of a gap
+/// that must be looked at twice.
+pub(super) struct Half<'a> {
     profile: &'a Profile,
-    x: Lane<S>,
-    y: Lane<S>,
-    /// −1 where the profile's half is mirrored: x is that of its own half, at x ≥ 0.
-    sign: Lane<S>,
+    mirror: Mirror,
     /// Whether the first feature lies across the axis and belongs to the other half where x < 0.
     seat_across: bool,
+}
+
+/// How places come to the half that a profile describes, at x ≥ 0.
+#[derive(Clone, Copy)]
+enum Mirror {
+    Never,
+    Always,
+    /// Where x < 0.
+    Nearest,
+}
+
+/// The profile that a lane looks at, and from where.
+pub(super) struct Face<'a, S: Simd> {
+    half: &'a Half<'a>,
+    x: Lane<S>,
+    y: Lane<S>,
+    /// −1 where mirrored.
+    sign: Lane<S>,
 }
 
 impl<S: Simd> Place<S> {
@@ -106,29 +122,38 @@ impl<S: Simd> Place<S> {
 }
 
 impl Contacts {
-    /// What a side of the slots looks at: the whole rail, the half of a symmetric gap on the
-    /// roller's side, or one half of a gap that must be looked at twice.
     #[inline(always)]
-    pub(super) fn face<S: Simd>(&self, w: Wide<S>, side: usize, place: &Place<S>) -> Face<'_, S> {
-        let (one, zero) = (w.splat(1.0), w.splat(0.0));
-        let (profile, x, sign, seat_across) = match &self.shape {
-            Shape::Rail { profile, .. } => (profile, place.x, one, false),
-            Shape::Teeth(Teeth { halves, .. }) if halves.two_sided => {
-                let profile = [&halves.right, &halves.left][side];
-                let (x, sign) = [(place.x, one), (-place.x, -one)][side];
-                (profile, x, sign, profile.features[0].sign < 0.0)
-            }
-            Shape::Teeth(Teeth { halves, .. }) => {
-                let sign = place.x.greater(zero).select(one, -one);
-                (&halves.right, place.x.abs(), sign, false)
-            }
+    pub(super) fn half(&self, side: usize) -> Half<'_> {
+        let (profile, mirror) = match &self.shape {
+            Shape::Rail { profile, .. } => (profile, Mirror::Never),
+            Shape::Teeth(Teeth { halves, .. }) => match (halves.two_sided, side) {
+                (false, _) => (&halves.right, Mirror::Nearest),
+                (true, 0) => (&halves.right, Mirror::Never),
+                (true, _) => (&halves.left, Mirror::Always),
+            },
+        };
+        Half {
+            profile,
+            mirror,
+            seat_across: self.sides() > 1 && profile.features[0].sign < 0.0,
+        }
+    }
+}
+
+impl Half<'_> {
+    #[inline(always)]
+    pub(super) fn face<S: Simd>(&self, w: Wide<S>, place: &Place<S>) -> Face<'_, S> {
+        let (one, x) = (w.splat(1.0), place.x);
+        let (x, sign) = match self.mirror {
+            Mirror::Never => (x, one),
+            Mirror::Always => (-x, -one),
+            Mirror::Nearest => (x.abs(), x.greater(w.splat(0.0)).select(one, -one)),
         };
         Face {
-            profile,
+            half: self,
             x,
             y: place.y,
             sign,
-            seat_across,
         }
     }
 }
@@ -137,7 +162,7 @@ impl<S: Simd> Face<'_, S> {
     /// Gap and normal.
     #[inline(always)]
     pub(super) fn look(&self, w: Wide<S>, radius: f64) -> Found<S> {
-        let (profile, x, y) = (self.profile, self.x, self.y);
+        let (profile, x, y) = (self.half.profile, self.x, self.y);
         let zero = w.splat(0.0);
         let first = &profile.features[0];
         let mut cx = w.splat(first.centre.x);
@@ -150,6 +175,9 @@ impl<S: Simd> Face<'_, S> {
         for index in 1..profile.features.len() {
             let f = &profile.features[index];
             passed = passed & self.ahead(w, index).greater(zero);
+            if !passed.any() {
+                break;
+            }
             cx = passed.select(w.splat(f.centre.x), cx);
             cy = passed.select(w.splat(f.centre.y), cy);
             r = passed.select(w.splat(f.radius), r);
@@ -173,7 +201,7 @@ impl<S: Simd> Face<'_, S> {
             nx = straight.select(mx, nx);
             ny = straight.select(my, ny);
         }
-        if self.seat_across {
+        if self.half.seat_across {
             // A seat across the axis belongs to the right half alone.
             let mut wrong = zero.greater(x);
             if profile.features.len() > 1 {
@@ -191,7 +219,7 @@ impl<S: Simd> Face<'_, S> {
     /// How far beyond the hollow the rollers are; infinite where there is none.
     #[inline(always)]
     pub(super) fn beyond_hollow(&self, w: Wide<S>) -> Lane<S> {
-        match self.profile.flank {
+        match self.half.profile.flank {
             Some(index) => self.ahead(w, index),
             None => w.splat(f64::MAX),
         }
@@ -200,7 +228,7 @@ impl<S: Simd> Face<'_, S> {
     /// How far beyond the line where a feature begins.
     #[inline(always)]
     fn ahead(&self, w: Wide<S>, index: usize) -> Lane<S> {
-        let f = &self.profile.features[index];
+        let f = &self.half.profile.features[index];
         (self.x - w.splat(f.start.x)) * w.splat(f.along.x)
             + (self.y - w.splat(f.start.y)) * w.splat(f.along.y)
     }

@@ -14,7 +14,6 @@ pub(super) struct Slots<'a, S: Simd> {
     wake: &'a [f64],
     until: &'a mut [f64],
     stick: (&'a [f64], &'a mut [f64]),
-    sides: usize,
     lanes: usize,
 }
 
@@ -57,7 +56,6 @@ impl<'a, S: Simd> Slots<'a, S> {
             wake: &memory.wake[..n],
             until: &mut touch.wake[..n],
             stick: (&memory.stick[..n], &mut touch.stick[..n]),
-            sides,
             lanes: slots / Wide::<S>::COUNT,
         }
     }
@@ -68,7 +66,7 @@ impl<'a, S: Simd> Slots<'a, S> {
         self.lanes
     }
 
-    /// Gap axes in the wheel's frame.
+    /// Gap axes in the wheel's frame; one for both sides.
     #[inline(always)]
     pub(super) fn axis(&self, lane: usize) -> [Lane<S>; 2] {
         [self.axis[0].get(lane), self.axis[1].get(lane)]
@@ -96,13 +94,10 @@ impl<'a, S: Simd> Slots<'a, S> {
     #[inline(always)]
     pub(super) fn leave_open(&mut self, w: Wide<S>, lane: usize, until: f64) {
         let zero = w.splat(0.0);
-        for side in 0..self.sides {
-            let lane = side * self.lanes + lane;
-            self.now.gap.set(lane, w.splat(FAR));
-            self.now.closing.set(lane, zero);
-            self.now.inverse_onset.set(lane, zero);
-            self.now.force.set(lane, zero);
-        }
+        self.now.gap.set(lane, w.splat(FAR));
+        self.now.closing.set(lane, zero);
+        self.now.inverse_onset.set(lane, zero);
+        self.now.force.set(lane, zero);
         self.set_wake(lane, until);
     }
 }
