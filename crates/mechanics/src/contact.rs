@@ -7,19 +7,22 @@
 
 mod answer;
 mod kernel;
+mod look;
 mod plates;
 mod rest;
 mod scalar;
+mod slots;
 mod window;
+mod wrench;
 
 use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_geometry::{Point, Vector};
 
 use answer::Answer;
 pub(crate) use answer::LawNumbers;
-pub(crate) use kernel::Wrench;
 pub(crate) use plates::{PlateContact, PlatePins, PlatePlaces, PlateTouch};
 pub(crate) use window::{Places, Run};
+pub(crate) use wrench::Wrench;
 
 use crate::drive::{Flank, Surface};
 use crate::profile::{GapHalves, Profile};
@@ -128,7 +131,7 @@ pub(crate) struct Faces {
 
 impl Faces {
     #[inline]
-    fn resize(&mut self, slots: usize) {
+    pub(crate) fn resize(&mut self, slots: usize) {
         if self.bend.len() == slots {
             return;
         }

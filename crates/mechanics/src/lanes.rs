@@ -35,6 +35,19 @@ pub(crate) struct Lane<S: Simd> {
     v: S::f64s,
 }
 
+/// An array seen lane by lane; what does not fill a lane is left out.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lanes<'a, S: Simd> {
+    simd: S,
+    whole: &'a [S::f64s],
+}
+
+/// An array written lane by lane.
+#[derive(Debug)]
+pub(crate) struct LanesMut<'a, S: Simd> {
+    whole: &'a mut [S::f64s],
+}
+
 /// Truth values side by side.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Mask<S: Simd> {
@@ -63,11 +76,40 @@ impl<S: Simd> Wide<S> {
         self.lane(whole[0])
     }
 
+    /// Looks at an array once, for loops without further checks of its length.
+    #[inline(always)]
+    pub(crate) fn lanes(self, slice: &[f64]) -> Lanes<'_, S> {
+        let (simd, (whole, _)) = (self.0, S::as_simd_f64s(slice));
+        Lanes { simd, whole }
+    }
+
+    /// The same for writing.
+    #[inline(always)]
+    #[expect(clippy::unused_self, reason = "made like the others, from the vector unit")]
+    pub(crate) fn lanes_mut(self, slice: &mut [f64]) -> LanesMut<'_, S> {
+        let (whole, _) = S::as_mut_simd_f64s(slice);
+        LanesMut { whole }
+    }
+
     /// True in the first `count` lanes.
     #[inline(always)]
     pub(crate) fn first(self, count: usize) -> Mask<S> {
         const PLACES: [f64; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
         self.splat(count as f64).greater(self.load(&PLACES, 0))
+    }
+}
+
+impl<S: Simd> Lanes<'_, S> {
+    #[inline(always)]
+    pub(crate) fn get(&self, lane: usize) -> Lane<S> {
+        Wide(self.simd).lane(self.whole[lane])
+    }
+}
+
+impl<S: Simd> LanesMut<'_, S> {
+    #[inline(always)]
+    pub(crate) fn set(&mut self, lane: usize, value: Lane<S>) {
+        self.whole[lane] = value.v;
     }
 }
 
@@ -101,18 +143,23 @@ impl<S: Simd> Lane<S> {
 
     /// √x, to the last place, and 1/√x, to a few units of it, of numbers that are not negative.
     ///
-    /// Processors with AVX-512 have an estimate to 14 bits, which two of Newton's iterations and a fused correction make
-    /// whole in half of the time of a root and a division.
+    /// Processors with AVX-512 have an estimate y of 1/√x to 14 bits, which the binomial series makes whole in half of the
+    /// time of a root and a division:
+    ///
+    /// ```text
+    /// e = 1 − x y²,   1/√x = y (1 + ½ e + ⅜ e² + 5/16 e³ + …)
+    /// ```
     #[inline(always)]
     pub(crate) fn roots(self) -> [Self; 2] {
         let x = self.max(Wide(self.simd).splat(TINY));
-        if let Some(estimate) = x.estimate() {
-            let inverse = estimate.newton(x).newton(x);
-            let root = x * inverse;
-            // d + ½ (x − d²)/d
-            let missing = x.with(self.simd.mul_add_f64s((-root).v, root.v, x.v));
-            let half = Wide(self.simd).splat(0.5) * inverse;
-            [root + missing * half, inverse]
+        if let Some(y) = x.estimate() {
+            let of = Wide(self.simd);
+            let [root, missing, curve] = y.series(x);
+            // d + ½ (x − d²)/d: d lacks the third power, 1/d the second
+            let d = (root * missing).fused(curve, root);
+            let half = (y * missing).fused(of.splat(0.25), of.splat(0.5) * y);
+            let exact = (-d).fused(d, x).fused(half, d);
+            [exact, y.whole(missing, curve)]
         } else {
             // Side by side, not one after the other: 1/√x = √x · 1/x.
             let root = x.sqrt();
@@ -124,7 +171,10 @@ impl<S: Simd> Lane<S> {
     #[inline(always)]
     pub(crate) fn inverse_root(self) -> Self {
         match self.estimate() {
-            Some(estimate) => estimate.newton(self).newton(self),
+            Some(y) => {
+                let [_, missing, curve] = y.series(self);
+                y.whole(missing, curve)
+            }
             None => self.sqrt() * self.recip(),
         }
     }
@@ -134,7 +184,7 @@ impl<S: Simd> Lane<S> {
     pub(crate) fn root(self) -> Self {
         let x = self.max(Wide(self.simd).splat(TINY));
         match x.estimate() {
-            Some(estimate) => self * estimate.newton(x).newton(x),
+            Some(_) => self * x.inverse_root(),
             None => self.sqrt(),
         }
     }
@@ -151,11 +201,27 @@ impl<S: Simd> Lane<S> {
         None
     }
 
-    /// y (3 − x y²)/2
+    /// x y, e = 1 − x y² and ½ + ⅜ e of an estimate y of 1/√x.
     #[inline(always)]
-    fn newton(self, x: Self) -> Self {
+    fn series(self, x: Self) -> [Self; 3] {
         let of = Wide(self.simd);
-        self * (of.splat(1.5) - of.splat(0.5) * x * self * self)
+        let root = x * self;
+        let missing = (-root).fused(self, of.splat(1.0));
+        let curve = missing.fused(of.splat(0.375), of.splat(0.5));
+        [root, missing, curve]
+    }
+
+    /// y + y e (½ + ⅜ e + 5/16 e²): what the estimate stands for.
+    #[inline(always)]
+    fn whole(self, missing: Self, curve: Self) -> Self {
+        let cubic = (missing * missing).fused(Wide(self.simd).splat(0.3125), curve);
+        (self * missing).fused(cubic, self)
+    }
+
+    /// self · factor + term, rounded once: for processors with the instruction.
+    #[inline(always)]
+    fn fused(self, factor: Self, term: Self) -> Self {
+        self.with(self.simd.mul_add_f64s(self.v, factor.v, term.v))
     }
 
     #[inline(always)]
@@ -174,6 +240,15 @@ impl<S: Simd> Lane<S> {
             simd: self.simd,
             m: self.simd.greater_than_f64s(self.v, other.v),
         }
+    }
+
+    /// The lanes one further on: first the last of `before`, then all but the last of `self`.
+    #[inline(always)]
+    pub(crate) fn after(self, before: Self) -> Self {
+        let [here, there] = [self, before].map(|lane| self.simd.rotate_right_f64s(lane.v, 1));
+        Wide(self.simd)
+            .first(1)
+            .select(self.with(there), self.with(here))
     }
 
     /// Applies a function to one lane after the other.

@@ -89,7 +89,7 @@ pub(crate) enum Joining {
     /// Ends held together.
     Hinges(Hinges),
     /// A pin in every bush.
-    Clearance(Bearing),
+    Clearance(Box<Bearing>),
 }
 
 /// A chain of rigid links.
@@ -164,7 +164,7 @@ impl Linkage {
     ) {
         rates.fill(0.0);
         a[self.dofs()..].fill(0.0);
-        let (play, felt) = record.split();
+        let (play, mut felt) = record.split();
         self.pose(at, &mut play.posture);
         play.elements.clear();
         play.memory.time = at.t;
@@ -172,7 +172,7 @@ impl Linkage {
         self.body_forces(system.gravity, play);
         self.roller_forces(at, rates, play);
         self.end_loads(rates, play);
-        system.mesh(self, at, rates, felt, play);
+        system.mesh(self, at, rates, &mut felt, play);
         if let Joining::Hinges(hinges) = &self.joining {
             hinges.hold(self, at, rates, play);
         }

@@ -22,13 +22,6 @@ pub(crate) struct Links {
     pub(crate) damping: Vec<f64>,
 }
 
-/// Work space: the pulls of the links, shifted by one so that entry i is the link before roller i.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Pulls {
-    x: Vec<f64>,
-    y: Vec<f64>,
-}
-
 impl Links {
     pub(crate) fn new(chain: &Chain) -> Self {
         let count = chain.links();
@@ -52,13 +45,6 @@ impl Links {
         self.rest.len() + LANES
     }
 
-    pub(crate) fn pulls(&self) -> Pulls {
-        Pulls {
-            x: vec![0.0; self.stride()],
-            y: vec![0.0; self.stride()],
-        }
-    }
-
     /// Sets the accelerations of the rollers to gravity and the links' pulls, and returns the
     /// power \[W\] lost in the dampers.
     #[inline(always)]
@@ -66,45 +52,51 @@ impl Links {
         &self,
         w: Wide<S>,
         rollers: &mut Rollers<'_>,
-        pulls: &mut Pulls,
         gravity: [f64; 2],
     ) -> f64 {
-        let mut loss = w.splat(0.0);
-        for i in (0..self.rest.len()).step_by(Wide::<S>::COUNT) {
-            let dx = w.load(rollers.x, i + 1) - w.load(rollers.x, i);
-            let dy = w.load(rollers.y, i + 1) - w.load(rollers.y, i);
-            let ux = w.load(rollers.vx, i + 1) - w.load(rollers.vx, i);
-            let uy = w.load(rollers.vy, i + 1) - w.load(rollers.vy, i);
+        let n = self.rest.len();
+        let [rest, stiffness, damping, inverse_mass] = [
+            &self.rest,
+            &self.stiffness,
+            &self.damping,
+            rollers.inverse_mass,
+        ]
+        .map(|values| w.lanes(&values[..n]));
+        let courses = [rollers.x, rollers.y, rollers.vx, rollers.vy];
+        let [x, y, vx, vy] = courses.map(|values| w.lanes(&values[..n]));
+        let [x_next, y_next, vx_next, vy_next] = courses.map(|values| w.lanes(&values[1..=n]));
+        let mut ax = w.lanes_mut(&mut rollers.ax[..n]);
+        let mut ay = w.lanes_mut(&mut rollers.ay[..n]);
+        let [gx, gy] = gravity.map(|g| w.splat(g));
+        let zero = w.splat(0.0);
+        let (mut loss, mut before) = (zero, [zero; 2]);
+        for i in 0..n / Wide::<S>::COUNT {
+            let dx = x_next.get(i) - x.get(i);
+            let dy = y_next.get(i) - y.get(i);
+            let ux = vx_next.get(i) - vx.get(i);
+            let uy = vy_next.get(i) - vy.get(i);
             let square = dx * dx + dy * dy;
             let inverse = square.inverse_root();
             let length = square * inverse;
             // ℓ̇ = d·u/ℓ
             let rate = (dx * ux + dy * uy) * inverse;
-            let drag = w.load(&self.damping, i) * rate;
+            let drag = damping.get(i) * rate;
             // T = k (ℓ − p) + d ℓ̇
-            let tension = w.load(&self.stiffness, i) * (length - w.load(&self.rest, i)) + drag;
+            let tension = stiffness.get(i) * (length - rest.get(i)) + drag;
             let scale = tension * inverse;
-            (scale * dx).store(&mut pulls.x, i + 1);
-            (scale * dy).store(&mut pulls.y, i + 1);
+            let pull = [scale * dx, scale * dy];
             loss += drag * rate;
-        }
-        pulls.x[0] = if self.closed {
-            pulls.x[self.count]
-        } else {
-            0.0
-        };
-        pulls.y[0] = if self.closed {
-            pulls.y[self.count]
-        } else {
-            0.0
-        };
-        for i in (0..self.rest.len()).step_by(Wide::<S>::COUNT) {
             // m a = T₊ u₊ − T₋ u₋ + m g
-            let inverse_mass = w.load(rollers.inverse_mass, i);
-            let fx = w.load(&pulls.x, i + 1) - w.load(&pulls.x, i);
-            let fy = w.load(&pulls.y, i + 1) - w.load(&pulls.y, i);
-            (fx * inverse_mass + w.splat(gravity[0])).store(rollers.ax, i);
-            (fy * inverse_mass + w.splat(gravity[1])).store(rollers.ay, i);
+            let fx = pull[0] - pull[0].after(before[0]);
+            let fy = pull[1] - pull[1].after(before[1]);
+            ax.set(i, fx * inverse_mass.get(i) + gx);
+            ay.set(i, fy * inverse_mass.get(i) + gy);
+            before = pull;
+        }
+        if self.closed {
+            // The roller behind the last link is the first one again, and what pulls there is missing here.
+            rollers.ax[0] += rollers.ax[self.count] - gravity[0];
+            rollers.ay[0] += rollers.ay[self.count] - gravity[1];
         }
         loss.sum()
     }

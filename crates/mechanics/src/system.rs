@@ -11,6 +11,7 @@
 mod bodies;
 mod build;
 mod equations;
+mod rates;
 
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Continuity, Moment, SecondOrderSystem, Verdict, Weights};
@@ -26,7 +27,7 @@ use crate::energy::Flow;
 use crate::events::EventLog;
 use crate::lanes::Wide;
 use crate::linkage::{Felt, Impulses, Linkage, Play, Posture};
-use crate::links::{Links, Pulls};
+use crate::links::Links;
 use crate::motion::Course;
 use crate::{End, Motion};
 
@@ -91,7 +92,6 @@ pub struct Record {
     pub(crate) plates: Vec<Vec<PlateTouch>>,
     pub(crate) wheel_wrenches: Vec<Wrench>,
     pub(crate) rail_wrenches: Vec<Wrench>,
-    pulls: Pulls,
     /// Frames of the wheels, then of the rails.
     frames: Vec<Frame>,
     pub(crate) play: Play,
@@ -161,9 +161,6 @@ impl PlatePins for Pins<'_, '_> {
     }
 }
 
-/// Accepted steps after which the time scale is worked out again; rigid links hardly change theirs while they touch.
-const STEPS_PER_SCALE: u32 = 8;
-const STEPS_PER_LINK_SCALE: u32 = 16;
 /// Accepted steps after which the windows are renewed at the latest.
 const STEPS_PER_WINDOW: u32 = 256;
 
@@ -224,6 +221,7 @@ impl System {
             .sum()
     }
 
+    #[inline(always)]
     pub(crate) fn view<'a>(&'a self, q: &'a [f64], v: &'a [f64], a: &'a mut [f64]) -> Rollers<'a> {
         let n = self.stride;
         let (ax, rest) = a.split_at_mut(n);
@@ -234,7 +232,7 @@ impl System {
             vy: &v[n..2 * n],
             ax,
             ay: &mut rest[..n],
-            inverse_mass: &self.inverse_masses,
+            inverse_mass: &self.inverse_masses[..n],
         }
     }
 
@@ -275,8 +273,7 @@ impl System {
         a[2 * self.stride..].fill(0.0);
         let mut rollers = self.view(at.q, at.v, a);
         let gravity = [self.gravity.x, self.gravity.y];
-        rates[Flow::LinkLoss as usize] =
-            self.links.act(w, &mut rollers, &mut record.pulls, gravity);
+        rates[Flow::LinkLoss as usize] = self.links.act(w, &mut rollers, gravity);
         // Frames are in memory well before the kernel loads them again.
         let wheels = self.wheels.len();
         for (frame, wheel) in record.frames.iter_mut().zip(&self.wheels) {
@@ -391,68 +388,6 @@ impl System {
             STEPS_PER_WINDOW,
         );
     }
-
-    fn renew_time_scales(&mut self, record: &Record) {
-        let steps = if self.linkage.is_some() {
-            STEPS_PER_LINK_SCALE
-        } else {
-            STEPS_PER_SCALE
-        };
-        // Stiffness changes little from one step to the next, and the bound has a reserve.
-        if !self.renew.1.is_multiple_of(steps) {
-            return;
-        }
-        let scales = match &self.linkage {
-            Some(linkage) => linkage.stiffest(self, &record.play),
-            None => [self.stiffest(record); 2],
-        };
-        self.time_scale = scales[0];
-        if let Some(linkage) = &mut self.linkage {
-            linkage.time_scales = scales;
-        }
-    }
-
-    /// 1/ω of the stiffest mode as estimated from the links, the deepest contact and the damping.
-    ///
-    /// ```text
-    /// ω_s = D + √(D² + ω²),   ω² = max Σ k/m + max k_c/m,   D = Σ d/m
-    /// ```
-    ///
-    /// The damping rate enters because Verlet's predicted velocity limits h D to 1.
-    fn stiffest(&self, record: &Record) -> f64 {
-        let [mut squared, mut damping] = self.link_rates;
-        let (mut contact, mut drag) = (0.0_f64, 0.0_f64);
-        for (wheel, wrench) in self.wheels.iter().zip(&record.wheel_wrenches) {
-            let stiffness = wheel.contacts.surface.stiffness(wrench.depth);
-            let seated: usize = wheel.contacts.runs.iter().map(|run| run.count).sum();
-            let mobility = wheel.mobility(&self.slides);
-            let shared = mobility * seated as f64;
-            contact = contact.max(stiffness * (self.lightest + shared));
-            drag = drag.max(wrench.damping * (self.lightest + shared));
-        }
-        for (rail, wrench) in self.rails.iter().zip(&record.rail_wrenches) {
-            let surface = match &rail.contact {
-                RailContact::Circles(contacts) => &contacts.surface,
-                RailContact::Plates(plates) => &plates.surface,
-            };
-            contact = contact.max(surface.stiffness(wrench.depth) * self.lightest);
-            drag = drag.max(wrench.damping * self.lightest);
-        }
-        squared += contact;
-        damping += drag;
-        for wheel in &self.wheels {
-            let [own, drag] = wheel.own_rates();
-            squared = squared.max(own);
-            damping = damping.max(drag);
-        }
-        for slide in &self.slides {
-            let (_, lever) = slide.carrier.extension(0.0);
-            let light = lever * lever / slide.inertia;
-            squared = squared.max(slide.push.stiffness() * light);
-            damping = damping.max(slide.push.damping() * light);
-        }
-        1.0 / (damping + (damping * damping + squared).sqrt())
-    }
 }
 
 /// The kernels as one call, compiled for every kind of processor.
@@ -486,7 +421,6 @@ impl SecondOrderSystem for System {
             plates: vec![Vec::new(); self.rails.len()],
             wheel_wrenches: vec![Wrench::default(); self.wheels.len()],
             rail_wrenches: vec![Wrench::default(); self.rails.len()],
-            pulls: self.links.pulls(),
             frames: vec![Frame::fixed(); self.wheels.len() + self.rails.len()],
             play: Play::default(),
             impulses: Impulses::default(),

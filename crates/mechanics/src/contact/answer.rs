@@ -9,7 +9,7 @@ use crate::drive::{Flank, Surface};
 use crate::lanes::{FixedPower, Lane, Wide};
 
 /// The laws of one body.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Answer {
     pub(super) elastic: LaneElastic,
     pub(super) numbers: LawNumbers,
@@ -80,14 +80,14 @@ impl LawNumbers {
 }
 
 /// An elastic law on lanes, chosen once per body; the depth is not negative.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) enum LaneElastic {
     /// g = K δ
     Linear(f64),
     /// g = K δ √δ
     Hertz(f64),
     /// g = K δ δⁿ⁻¹: K, n, and the power.
-    Power(f64, f64, FixedPower),
+    Power(f64, f64, Box<FixedPower>),
     /// Any law, one lane after the other.
     General(Elastic),
 }
@@ -100,7 +100,7 @@ impl LaneElastic {
         match law.prepared().power() {
             Some([stiffness, n]) if is(n, 1.0) => Self::Linear(stiffness),
             Some([stiffness, n]) if is(n, 1.5) => Self::Hertz(stiffness),
-            Some([stiffness, n]) => Self::Power(stiffness, n, FixedPower::new(n - 1.0)),
+            Some([stiffness, n]) => Self::Power(stiffness, n, Box::new(FixedPower::new(n - 1.0))),
             None => Self::General(law.elastic),
         }
     }
@@ -143,7 +143,7 @@ fn slope(law: Elastic, depth: f64) -> f64 {
 }
 
 /// A flank on lanes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct LaneFlank {
     elastic: LaneElastic,
     /// 1/(2w) \[1/m\].

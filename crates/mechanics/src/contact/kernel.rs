@@ -1,36 +1,18 @@
-//! The inner loop: eight rollers against one profile.
+//! The inner loop: lanes of rollers against one body.
 
 use chaindrive_contact::dissipation::RATIO_LIMIT;
 use chaindrive_contact::{Friction, Rub};
 use pulp::Simd;
 
 use super::answer::{Answer, LaneElastic};
-use super::rest::Clear;
-use super::{Contacts, Frame, Shape, Teeth, Touch};
-use crate::lanes::{LANES, Lane, Mask, Wide, padded};
-use crate::profile::Profile;
+use super::look::{Half, Hit, Place};
+use super::rest::{CLOSE, Clear};
+use super::slots::Slots;
+use super::window::FAR;
+use super::wrench::{Sums, Wrench};
+use super::{Contacts, Frame, Shape, Touch};
+use crate::lanes::{LANES, Lane, Mask, Wide};
 use crate::system::Rollers;
-
-/// What the rollers do to a body, and what the step control wants to know.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Wrench {
-    /// Force on the body \[N\].
-    pub(crate) force: [f64; 2],
-    /// Moment about the frame's origin \[N m\].
-    pub(crate) moment: f64,
-    /// Power dissipated normal to the surface \[W\].
-    pub(crate) normal_loss: f64,
-    /// Power dissipated by friction \[W\].
-    pub(crate) friction_loss: f64,
-    /// Deepest penetration \[m\].
-    pub(crate) depth: f64,
-    /// Largest damping of one contact, along the normal and across \[N s/m\].
-    pub(crate) damping: f64,
-    /// Deepest penetration of a contact that opened this step \[m\].
-    pub(crate) first_depth: f64,
-    /// Smallest share of the step after which such a contact began.
-    pub(crate) first_share: f64,
-}
 
 /// Turns normal forces into friction forces and slips into damping; kept out of line like the laws.
 #[inline(never)]
@@ -68,27 +50,42 @@ impl Contacts {
     ) -> Wrench {
         let dt = t - self.accepted;
         touch.resize(self.slots * self.sides());
-        if self.for_links {
-            touch.faces.resize(self.slots * self.sides());
-        }
+        let mut slots = Slots::new(w, self, touch);
         let mut sums = Sums::new(w);
         let mut touching = false;
-        let mut base = 0;
-        for run in &self.runs {
-            for offset in (0..padded(run.count)).step_by(Wide::<S>::COUNT) {
-                let slot = base + offset;
-                if offset >= run.count || self.memory.wake[slot] > t {
-                    self.leave_open(w, slot, self.memory.wake[slot], touch);
-                    continue;
+        // A copy: what may change while slots are written is read from memory again for every lane.
+        let frame = *frame;
+        for side in 0..self.sides() {
+            let half = self.half(side);
+            for (eight, run) in self.runs.iter().enumerate() {
+                for offset in (0..LANES).step_by(Wide::<S>::COUNT) {
+                    let place = (eight * LANES + offset) / Wide::<S>::COUNT;
+                    let lane = side * slots.lanes() + place;
+                    let wake = slots.wake(lane);
+                    if offset >= run.count || wake > t {
+                        slots.leave_open(w, lane, wake);
+                        continue;
+                    }
+                    let here = Here {
+                        lane,
+                        axis: place,
+                        roller: run.start + offset,
+                        valid: w.first(run.count - offset),
+                    };
+                    let (slots, sums) = (&mut slots, &mut sums);
+                    touching |= self.lane(
+                        w,
+                        dt,
+                        &frame,
+                        &half,
+                        &self.answer,
+                        here,
+                        rollers,
+                        slots,
+                        sums,
+                    );
                 }
-                let here = Here {
-                    slot,
-                    roller: run.start + offset,
-                    valid: w.first(run.count - offset),
-                };
-                touching |= self.lane(w, dt, frame, here, rollers, touch, &mut sums);
             }
-            base += padded(run.count);
         }
         if touching {
             sums.total(self.surface.friction != Friction::None)
@@ -100,6 +97,7 @@ impl Contacts {
         }
     }
 
+    /// One lane; whether any of its rollers touches.
     #[inline(always)]
     #[expect(
         clippy::too_many_arguments,
@@ -110,9 +108,11 @@ impl Contacts {
         w: Wide<S>,
         dt: f64,
         frame: &Frame,
+        half: &Half<'_>,
+        answer: &Answer,
         here: Here<S>,
         rollers: &mut Rollers<'_>,
-        touch: &mut Touch,
+        slots: &mut Slots<'_, S>,
         sums: &mut Sums<S>,
     ) -> bool {
         let i = here.roller;
@@ -127,163 +127,64 @@ impl Contacts {
             dy,
             spin,
         };
-        let (place, near) = match &self.shape {
+        let mut near = here.valid;
+        let place = match &self.shape {
             Shape::Teeth(teeth) => {
                 let reach = teeth.tip_radius + self.radius;
                 let away = dx * dx + dy * dy - w.splat(reach * reach);
-                let near = w.splat(0.0).greater(away) & here.valid;
+                near = w.splat(0.0).greater(away) & near;
                 if !near.any() && self.for_links {
-                    self.leave_open(w, here.slot, 0.0, touch);
+                    slots.leave_open(w, here.lane, 0.0);
                     return false;
                 }
                 if !near.any() {
                     // |d| − R ≥ (d² − R²)/(3 R) up to |d| = 2 R
                     let gap = away * w.splat(1.0 / (3.0 * reach));
-                    let rest = here.clear(w, gap, None, &motion, rollers).rest(w, dt);
-                    self.leave_open(w, here.slot, self.accepted + dt + rest, touch);
+                    let clear = here.clear(w, gap, None, &motion, rollers);
+                    let rest = clear.rest(w, dt, 0.0);
+                    slots.leave_open(w, here.lane, self.accepted + dt + rest);
                     return false;
                 }
-                (self.fold(w, teeth, frame, here.slot, dx, dy), near)
+                Place::in_gap(w, teeth, frame, slots.axis(here.axis), [dx, dy])
             }
-            Shape::Rail { reference, .. } => {
-                // q' = reference + Rᵀ d; the frame's y axis is (−s, c)
-                let (c, s) = (w.splat(frame.turn[0]), w.splat(frame.turn[1]));
-                let place = Place {
-                    x: c * dx + s * dy + w.splat(reference.x),
-                    y: c * dy - s * dx + w.splat(reference.y),
-                    ax: -s,
-                    ay: c,
-                };
-                (place, here.valid)
-            }
+            Shape::Rail { reference, .. } => Place::at_rail(w, *reference, frame, [dx, dy]),
         };
-        touch.wake[here.slot] = 0.0;
-        let mut touching = false;
-        for side in 0..self.sides() {
-            let face = self.face(w, side, &place);
-            let mut found = look(w, face.profile, face.sign * place.x, place.y, self.radius);
-            // No closure: it would be compiled for the oldest processor.
-            let flank = match &self.answer.flank {
-                Some(flank) => {
-                    let beyond = beyond_hollow(w, face.profile, face.sign * place.x, place.y);
-                    Some(flank.elastic_and_share(w, beyond))
-                }
-                None => None,
-            };
-            if face.seat_across {
-                // A seat across the axis belongs to the right half alone.
-                let wrong = w.splat(0.0).greater(face.sign * place.x) & found.in_first;
-                found.gap = wrong.select(w.splat(1.0), found.gap);
+        let face = half.face(w, &place);
+        let found = face.look(w, self.radius);
+        // No closure: it would be compiled for the oldest processor.
+        let flank = match &answer.flank {
+            Some(flank) => {
+                let beyond = face.beyond_hollow(w);
+                Some(flank.elastic_and_share(w, beyond))
             }
-            found.nx = face.sign * found.nx;
-            let hit = place.world(&found, near);
-            let slot = side * self.slots + here.slot;
-            let closing = self.respond(w, dt, flank, &motion, &hit, slot, i, rollers, touch, sums);
-            touching |= closing.is_none();
-            if self.for_links {
-                continue;
-            }
-            if let (Some(closing), Shape::Rail { profile, .. }) = (closing, &self.shape) {
-                let closing = (profile.bulges && frame.spin == 0.0).then_some(closing);
-                let clear = here.clear(w, hit.gap, closing, &motion, rollers);
-                touch.wake[here.slot] = self.accepted + dt + clear.rest(w, dt);
-            }
+            None => None,
+        };
+        let hit = place.world(&found);
+        let Some(closing) = self.respond(
+            w, dt, answer, flank, &motion, &hit, near, here, rollers, slots, sums,
+        ) else {
+            slots.set_wake(here.lane, 0.0);
+            return true;
+        };
+        if self.for_links {
+            slots.set_wake(here.lane, 0.0);
+            return false;
         }
-        touching
-    }
-
-    /// What a side of the slots looks at: the whole rail, the half of a symmetric gap on the
-    /// roller's side, or one half of a gap that must be looked at twice.
-    #[inline(always)]
-    fn face<S: Simd>(&self, w: Wide<S>, side: usize, place: &Place<S>) -> Face<'_, S> {
-        let (one, zero) = (w.splat(1.0), w.splat(0.0));
-        match &self.shape {
-            Shape::Rail { profile, .. } => Face {
-                profile,
-                sign: one,
-                seat_across: false,
-            },
-            Shape::Teeth(teeth) if teeth.halves.two_sided => {
-                let profile = [&teeth.halves.right, &teeth.halves.left][side];
-                Face {
-                    profile,
-                    sign: if side == 0 { one } else { -one },
-                    seat_across: profile.features[0].sign < 0.0,
-                }
+        let (close, convex) = match &self.shape {
+            Shape::Teeth(_) => {
+                let close = w.splat(CLOSE * self.radius).greater(hit.gap) & here.valid;
+                (close.any(), false)
             }
-            Shape::Teeth(teeth) => Face {
-                profile: &teeth.halves.right,
-                sign: place.x.greater(zero).select(one, -one),
-                seat_across: false,
-            },
-        }
-    }
-
-    /// The rollers in the frames of the gaps they are nearest to.
-    #[inline(always)]
-    fn fold<S: Simd>(
-        &self,
-        w: Wide<S>,
-        teeth: &Teeth,
-        frame: &Frame,
-        slot: usize,
-        dx: Lane<S>,
-        dy: Lane<S>,
-    ) -> Place<S> {
-        let (c, s) = (w.splat(frame.turn[0]), w.splat(frame.turn[1]));
-        let ex = w.load(&self.axis_x, slot);
-        let ey = w.load(&self.axis_y, slot);
-        // a = R(θ) e,   x = d × a,   y = d · a
-        let ax = c * ex - s * ey;
-        let ay = s * ex + c * ey;
-        let x = dx * ay - dy * ax;
-        let y = dx * ax + dy * ay;
-        // Beyond the middle of a tooth the next gap is meant: turn the axis by one pitch.
-        let beyond = x.abs().greater(y * w.splat(teeth.tan_half));
-        let (one, zero) = (w.splat(1.0), w.splat(0.0));
-        let sign = x.greater(zero).select(one, -one);
-        let cp = beyond.select(w.splat(teeth.pitch_turn[0]), one);
-        let sp = beyond.select(sign * w.splat(teeth.pitch_turn[1]), zero);
-        let ax2 = cp * ax + sp * ay;
-        let ay2 = cp * ay - sp * ax;
-        Place {
-            x: dx * ay2 - dy * ax2,
-            y: dx * ax2 + dy * ay2,
-            ax: ax2,
-            ay: ay2,
-        }
-    }
-
-    /// Friction of any law: force along the tangent, and damping.
-    #[inline(always)]
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "the inner loop, split for reading only"
-    )]
-    fn rub<S: Simd>(
-        &self,
-        w: Wide<S>,
-        friction: &Friction,
-        dt: f64,
-        force: Lane<S>,
-        slip: Lane<S>,
-        slot: usize,
-        touch: &mut Touch,
-    ) -> (Lane<S>, Lane<S>) {
-        let slots = slot..slot + Wide::<S>::COUNT;
-        let [mut rubs, mut drags] = [[0.0; LANES]; 2];
-        force.store(&mut rubs, 0);
-        slip.store(&mut drags, 0);
-        let before = &self.memory.stick[slots.clone()];
-        rub_one_by_one(
-            friction,
-            dt,
-            before,
-            &mut rubs,
-            &mut drags,
-            &mut touch.stick[slots],
-        );
-        (w.load(&rubs, 0), w.load(&drags, 0))
+            Shape::Rail { profile, .. } => (false, profile.bulges && frame.spin == 0.0),
+        };
+        let rest = if close {
+            0.0
+        } else {
+            let clear = here.clear(w, hit.gap, convex.then_some(closing), &motion, rollers);
+            clear.rest(w, dt, frame.spin)
+        };
+        slots.set_wake(here.lane, self.accepted + dt + rest);
+        false
     }
 
     /// Force, memory and sums of one lane of candidate contacts; the closing speeds if none is closed.
@@ -296,38 +197,40 @@ impl Contacts {
         &self,
         w: Wide<S>,
         dt: f64,
+        answer: &Answer,
         flank: Option<(&LaneElastic, Lane<S>)>,
         motion: &Motion<S>,
         hit: &Hit<S>,
-        slot: usize,
-        roller: usize,
+        near: Mask<S>,
+        here: Here<S>,
         rollers: &mut Rollers<'_>,
-        touch: &mut Touch,
+        slots: &mut Slots<'_, S>,
         sums: &mut Sums<S>,
     ) -> Option<Lane<S>> {
         let Answer {
             elastic, numbers, ..
-        } = &self.answer;
+        } = answer;
+        let Here { lane, roller, .. } = here;
         let zero = w.splat(0.0);
-        let gap = hit.near.select(hit.gap, w.splat(1.0));
+        let gap = near.select(hit.gap, w.splat(FAR));
         // δ̇ = −n·u
         let closing = -(hit.nx * motion.ux + hit.ny * motion.uy);
-        gap.store(&mut touch.gap, slot);
-        closing.store(&mut touch.closing, slot);
+        slots.now.gap.set(lane, gap);
+        slots.now.closing.set(lane, closing);
         let depth = (-gap).max(zero);
         let closed = depth.greater(zero);
         if !closed.any() {
-            zero.store(&mut touch.inverse_onset, slot);
-            zero.store(&mut touch.force, slot);
+            slots.now.inverse_onset.set(lane, zero);
+            slots.now.force.set(lane, zero);
             return Some(closing);
         }
-        let before = w.load(&self.memory.inverse_onset, slot);
+        let before = slots.before.inverse_onset.get(lane);
         let mut inverse = closed.select(before, zero);
         let fresh = closed & w.splat(f64::MIN_POSITIVE).greater(before);
         if fresh.any() {
             // v = v_a + s (v_b − v_a),   s = g_a/(g_a − g_b)
-            let gap_before = w.load(&self.memory.gap, slot).max(zero);
-            let closing_before = w.load(&self.memory.closing, slot);
+            let gap_before = slots.before.gap.get(lane).max(zero);
+            let closing_before = slots.before.closing.get(lane);
             let share = gap_before * (gap_before + depth).recip();
             let onset = closing_before + share * (closing - closing_before);
             let inverse_onset = onset.max(w.splat(numbers.floor)).recip();
@@ -337,7 +240,7 @@ impl Contacts {
             sums.first_depth = sums.first_depth.max(fresh_depth);
             sums.first_share = sums.first_share.min(fresh.select(share, w.splat(1.0)));
         }
-        inverse.store(&mut touch.inverse_onset, slot);
+        slots.now.inverse_onset.set(lane, inverse);
 
         // F = max(0, g + χ g min(δ̇/v, 4) + c δ̇)
         let on_seat = elastic.force(w, depth);
@@ -345,14 +248,14 @@ impl Contacts {
         if let Some((on_flank, share)) = flank {
             // g = (1 − s) g_seat + s g_flank
             stored = stored + share * (on_flank.force(w, depth) - stored);
-            share.store(&mut touch.share, slot);
+            slots.now.share.set(lane, share);
         }
         let ratio = (closing * inverse).min(w.splat(RATIO_LIMIT));
-        let damping = w.splat(numbers.factor) * stored;
+        let factor = w.splat(numbers.factor);
         let viscous = w.splat(numbers.damping) * closing;
-        let raw = stored + damping * ratio + viscous;
+        let raw = stored * (w.splat(1.0) + factor * ratio) + viscous;
         let force = closed.select(raw.max(zero), zero);
-        force.store(&mut touch.force, slot);
+        slots.now.force.set(lane, force);
 
         let (tx, ty) = (-hit.ny, hit.nx);
         let (mut fx, mut fy) = (force * hit.nx, force * hit.ny);
@@ -362,8 +265,8 @@ impl Contacts {
             // slip = t·u + ω r,   f = −μ F slip/√(slip² + v_s²)
             let radius = w.splat(self.radius);
             let slip = tx * motion.ux + ty * motion.uy + motion.spin * radius;
-            let reach = (slip * slip + w.splat(numbers.slip_speed_squared)).sqrt();
-            let rub = -(w.splat(numbers.friction) * force * slip * reach.recip());
+            let reach = slip * slip + w.splat(numbers.slip_speed_squared);
+            let rub = -(w.splat(numbers.friction) * force * slip * reach.inverse_root());
             fx += rub * tx;
             fy += rub * ty;
             // M = −(d − r n) × F
@@ -374,7 +277,7 @@ impl Contacts {
         if let Some(friction) = numbers.general {
             let radius = w.splat(self.radius);
             let slip = tx * motion.ux + ty * motion.uy + motion.spin * radius;
-            let (rub, drag) = self.rub(w, &friction, dt, force, slip, slot, touch);
+            let (rub, drag) = rub(w, &friction, dt, force, slip, lane, slots);
             fx += rub * tx;
             fy += rub * ty;
             moment = motion.dy * fx - motion.dx * fy + rub * radius;
@@ -391,9 +294,9 @@ impl Contacts {
         sums.normal_loss += (force - closed.select(stored, zero)) * closing;
         sums.depth = sums.depth.max(depth);
         // −∂F/∂ġ = χ g/v + c, and μ F/v_s across
-        let normal = damping * inverse + closed.select(w.splat(numbers.damping), zero);
+        let normal = factor * stored * inverse + closed.select(w.splat(numbers.damping), zero);
         sums.damping = sums.damping.max(normal + across);
-        if self.for_links {
+        if let Some(faces) = &mut slots.faces {
             // ∂F/∂δ = k (1 + χ min(δ̇/v, 4)); both derivatives are zero where a limit holds the force.
             let mut slope = elastic.slope(w, depth, on_seat);
             if let Some((on_flank, share)) = flank {
@@ -401,102 +304,44 @@ impl Contacts {
                 slope = slope + share * (other - slope);
             }
             let pressed = force.greater(zero);
-            let share = w.splat(1.0) + w.splat(numbers.factor) * ratio;
             let free = w.splat(RATIO_LIMIT).greater(closing * inverse);
-            let damping = free.select(damping * inverse, zero) + w.splat(numbers.damping);
-            let faces = &mut touch.faces;
-            pressed
-                .select(slope * share, zero)
-                .store(&mut faces.stiffness, slot);
-            pressed
-                .select(damping, zero)
-                .store(&mut faces.damping, slot);
-            hit.nx.store(&mut faces.normal_x, slot);
-            hit.ny.store(&mut faces.normal_y, slot);
-            hit.bend.store(&mut faces.bend, slot);
+            let damping = free.select(factor * stored * inverse, zero) + w.splat(numbers.damping);
+            let stiffness = slope * (w.splat(1.0) + factor * ratio);
+            faces.stiffness.set(lane, pressed.select(stiffness, zero));
+            faces.damping.set(lane, pressed.select(damping, zero));
+            faces.normal_x.set(lane, hit.nx);
+            faces.normal_y.set(lane, hit.ny);
+            faces.bend.set(lane, hit.bend);
         }
         None
     }
 }
 
-/// The surface that each lane faces, in the frame of the profile.
+/// Friction of any law: force along the tangent, and damping.
 #[inline(always)]
-fn look<S: Simd>(w: Wide<S>, profile: &Profile, x: Lane<S>, y: Lane<S>, radius: f64) -> Found<S> {
-    let zero = w.splat(0.0);
-    let first = &profile.features[0];
-    let mut cx = w.splat(first.centre.x);
-    let mut cy = w.splat(first.centre.y);
-    let mut r = w.splat(first.radius);
-    let mut sign = w.splat(first.sign);
-    let mut mx = w.splat(first.straight.x);
-    let mut my = w.splat(first.straight.y);
-    let mut passed = w.first(Wide::<S>::COUNT);
-    let mut in_first = w.first(Wide::<S>::COUNT);
-    for (index, f) in profile.features.iter().enumerate().skip(1) {
-        let ahead = (x - w.splat(f.start.x)) * w.splat(f.along.x)
-            + (y - w.splat(f.start.y)) * w.splat(f.along.y);
-        if index == 1 {
-            in_first = zero.greater(ahead);
-        }
-        passed = passed & ahead.greater(zero);
-        cx = passed.select(w.splat(f.centre.x), cx);
-        cy = passed.select(w.splat(f.centre.y), cy);
-        r = passed.select(w.splat(f.radius), r);
-        sign = passed.select(w.splat(f.sign), sign);
-        if profile.has_straights {
-            mx = passed.select(w.splat(f.straight.x), mx);
-            my = passed.select(w.splat(f.straight.y), my);
-        }
-    }
-    let (ex, ey) = (x - cx, y - cy);
-    let [distance, inverse] = (ex * ex + ey * ey).roots();
-    let scale = sign * inverse;
-    let contact_radius = w.splat(radius);
-    let mut found = Found {
-        // g = ±(|q − c| − R) − r
-        gap: sign * (distance - r) - contact_radius,
-        nx: scale * ex,
-        ny: scale * ey,
-        bend: scale,
-        in_first,
-    };
-    if profile.has_straights {
-        // g = n·(q − p) − r
-        let straight = (mx * mx + my * my).greater(zero);
-        let gap = mx * ex + my * ey - contact_radius;
-        found.gap = straight.select(gap, found.gap);
-        found.nx = straight.select(mx, found.nx);
-        found.ny = straight.select(my, found.ny);
-        found.bend = straight.select(zero, found.bend);
-    }
-    found
-}
-
-/// How far beyond the hollow the rollers are; infinite where there is none.
-#[inline(always)]
-fn beyond_hollow<S: Simd>(w: Wide<S>, profile: &Profile, x: Lane<S>, y: Lane<S>) -> Lane<S> {
-    match profile.flank {
-        Some(index) => {
-            let f = &profile.features[index];
-            (x - w.splat(f.start.x)) * w.splat(f.along.x)
-                + (y - w.splat(f.start.y)) * w.splat(f.along.y)
-        }
-        None => w.splat(f64::MAX),
-    }
-}
-
-/// The profile that a lane looks at.
-struct Face<'a, S: Simd> {
-    profile: &'a Profile,
-    /// Mirrors x so that the profile's half is at x ≥ 0.
-    sign: Lane<S>,
-    seat_across: bool,
+fn rub<S: Simd>(
+    w: Wide<S>,
+    friction: &Friction,
+    dt: f64,
+    force: Lane<S>,
+    slip: Lane<S>,
+    lane: usize,
+    slots: &mut Slots<'_, S>,
+) -> (Lane<S>, Lane<S>) {
+    let [mut rubs, mut drags] = [[0.0; LANES]; 2];
+    force.store(&mut rubs, 0);
+    slip.store(&mut drags, 0);
+    let (before, stick) = slots.stick(lane);
+    rub_one_by_one(friction, dt, before, &mut rubs, &mut drags, stick);
+    (w.load(&rubs, 0), w.load(&drags, 0))
 }
 
 /// Where a lane of slots stands.
 #[derive(Clone, Copy)]
 struct Here<S: Simd> {
-    slot: usize,
+    /// Among all lanes, and among those of one side.
+    lane: usize,
+    axis: usize,
     roller: usize,
     valid: Mask<S>,
 }
@@ -523,6 +368,7 @@ impl<S: Simd> Here<S> {
             closing: closing.map(only),
             speed: only(motion.ux * motion.ux + motion.uy * motion.uy),
             thrust: only(ax * ax + ay * ay),
+            lever: only(motion.dx * motion.dx + motion.dy * motion.dy),
         }
     }
 }
@@ -534,101 +380,4 @@ struct Motion<S: Simd> {
     dx: Lane<S>,
     dy: Lane<S>,
     spin: Lane<S>,
-}
-
-/// Roller centres in gap frames, and the gap axes in the world.
-struct Place<S: Simd> {
-    x: Lane<S>,
-    y: Lane<S>,
-    ax: Lane<S>,
-    ay: Lane<S>,
-}
-
-impl<S: Simd> Place<S> {
-    #[inline(always)]
-    fn world(&self, found: &Found<S>, near: Mask<S>) -> Hit<S> {
-        // The gap's x axis is its y axis turned by −90°.
-        Hit {
-            gap: found.gap,
-            nx: found.nx * self.ay + found.ny * self.ax,
-            ny: found.ny * self.ay - found.nx * self.ax,
-            bend: found.bend,
-            near,
-        }
-    }
-}
-
-struct Found<S: Simd> {
-    gap: Lane<S>,
-    nx: Lane<S>,
-    ny: Lane<S>,
-    /// Curvature of the level line of the gap.
-    bend: Lane<S>,
-    in_first: Mask<S>,
-}
-
-struct Hit<S: Simd> {
-    gap: Lane<S>,
-    nx: Lane<S>,
-    ny: Lane<S>,
-    bend: Lane<S>,
-    near: Mask<S>,
-}
-
-/// Lane<S>-wise sums over all slots of a body.
-struct Sums<S: Simd> {
-    fx: Lane<S>,
-    fy: Lane<S>,
-    moment: Lane<S>,
-    normal_loss: Lane<S>,
-    friction_loss: Lane<S>,
-    depth: Lane<S>,
-    damping: Lane<S>,
-    /// Whether contacts began; only then the rest counts.
-    fresh: bool,
-    first_depth: Lane<S>,
-    first_share: Lane<S>,
-}
-
-impl<S: Simd> Sums<S> {
-    #[inline(always)]
-    fn new(w: Wide<S>) -> Self {
-        let zero = w.splat(0.0);
-        Self {
-            fx: zero,
-            fy: zero,
-            moment: zero,
-            normal_loss: zero,
-            friction_loss: zero,
-            depth: zero,
-            damping: zero,
-            fresh: false,
-            first_depth: zero,
-            first_share: w.splat(1.0),
-        }
-    }
-
-    #[inline(always)]
-    fn total(&self, rubbing: bool) -> Wrench {
-        let (first_depth, first_share) = if self.fresh {
-            (self.first_depth.largest(), self.first_share.smallest())
-        } else {
-            (0.0, 1.0)
-        };
-        let friction_loss = if rubbing {
-            self.friction_loss.sum()
-        } else {
-            0.0
-        };
-        Wrench {
-            force: [self.fx.sum(), self.fy.sum()],
-            moment: self.moment.sum(),
-            normal_loss: self.normal_loss.sum(),
-            friction_loss,
-            depth: self.depth.largest(),
-            damping: self.damping.largest(),
-            first_depth,
-            first_share,
-        }
-    }
 }

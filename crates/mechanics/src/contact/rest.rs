@@ -6,13 +6,11 @@
 //!
 //! s is the relative speed, a the acceleration of the roller. Beside a face that bulges everywhere and does not turn,
 //! the gap of a roller in straight motion is convex in time, so that its closing speed bounds it; s is that speed, and a
-//! quarter of the whole for what the chain may do meanwhile. Half of the gap is left when the lane is looked at again,
+//! quarter of the whole for what the chain may do meanwhile. Where the body turns, s and a are those that it sees. Half of the gap is left when the lane is looked at again,
 //! so a contact never begins on stale memory.
 
 use pulp::Simd;
 
-use super::window::FAR;
-use super::{Contacts, Touch};
 use crate::lanes::{Lane, Wide};
 
 /// Steps of which rests are made: shorter ones do not pay, and after longer ones the chain may have turned to anything.
@@ -20,6 +18,9 @@ const SHORTEST: f64 = 4.0;
 const LONGEST: f64 = 16.0;
 /// Steps before the end at which the lane is looked at again, should the steps grow.
 const EARLY: f64 = 2.0;
+/// Share of the roller radius below which gaps to teeth are looked at in every step. What a wheel's own acceleration takes
+/// from a gap during a rest is some tens of indentations, and those are thousands of times smaller than a roller.
+pub(super) const CLOSE: f64 = 0.04;
 /// Share of the speed that may turn towards the face.
 const TURNING: f64 = 0.25;
 
@@ -33,19 +34,26 @@ pub(super) struct Clear<S: Simd> {
     /// Squares of the relative speeds \[m²/s²\] and of the accelerations \[m²/s⁴\].
     pub(super) speed: Lane<S>,
     pub(super) thrust: Lane<S>,
+    /// Squares of the distances from the body's origin \[m²\].
+    pub(super) lever: Lane<S>,
 }
 
 impl<S: Simd> Clear<S> {
-    /// How long \[s\] the lane may rest with steps of length dt; zero if it may not.
+    /// How long \[s\] the lane may rest with steps of length dt beside a body that turns at `spin` \[rad/s\]; zero if it may
+    /// not.
     #[inline(always)]
-    pub(super) fn rest(&self, w: Wide<S>, dt: f64) -> f64 {
+    pub(super) fn rest(&self, w: Wide<S>, dt: f64, spin: f64) -> f64 {
         let gap = self.gap.smallest();
         let whole = self.speed.largest().sqrt();
         let speed = match self.closing {
             Some(closing) => closing.max(w.splat(0.0)).largest() + TURNING * whole,
             None => whole,
         };
-        let thrust = self.thrust.largest().sqrt();
+        let mut thrust = self.thrust.largest().sqrt();
+        if spin.abs() > 0.0 {
+            // |a − 2 ω × u − ω × (ω × d)|
+            thrust += spin.abs() * (2.0 * whole + spin.abs() * self.lever.largest().sqrt());
+        }
         let rest = (0.3 * gap / speed).min((0.4 * gap / thrust).sqrt());
         // Not a number, where nothing moves: no rest.
         if rest > SHORTEST * dt && dt > 0.0 {
@@ -56,45 +64,24 @@ impl<S: Simd> Clear<S> {
     }
 }
 
-impl Contacts {
-    /// A lane without contacts, at rest until some time \[s\].
-    #[inline(always)]
-    pub(super) fn leave_open<S: Simd>(
-        &self,
-        w: Wide<S>,
-        slot: usize,
-        until: f64,
-        touch: &mut Touch,
-    ) {
-        let zero = w.splat(0.0);
-        for side in 0..self.sides() {
-            let slot = side * self.slots + slot;
-            w.splat(FAR).store(&mut touch.gap, slot);
-            zero.store(&mut touch.closing, slot);
-            zero.store(&mut touch.inverse_onset, slot);
-            zero.store(&mut touch.force, slot);
-        }
-        touch.wake[slot] = until;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use chaindrive_contact::dissipation::Dissipation;
     use chaindrive_contact::elastic::Power;
     use chaindrive_contact::{Elastic, Friction, Law};
-    use chaindrive_geometry::{Piece, Point, Segment};
+    use chaindrive_geometry::{Piece, Point, Seat, Segment, Tip, ToothForm, ToothGap, Vector};
     use pulp::{Arch, WithSimd};
 
     use super::*;
-    use crate::contact::{Frame, Places, Shape};
+    use crate::contact::{Contacts, Frame, Places, Shape, Teeth, Touch};
     use crate::drive::Surface;
-    use crate::profile::Profile;
+    use crate::profile::{GapHalves, Profile};
     use crate::system::Rollers;
 
     struct Look<'a> {
         contacts: &'a Contacts,
         t: f64,
+        frame: Frame,
         rollers: Rollers<'a>,
         touch: &'a mut Touch,
     }
@@ -104,27 +91,16 @@ mod tests {
 
         #[inline(always)]
         fn with_simd<S: Simd>(mut self, simd: S) {
-            let frame = Frame::fixed();
-            let wide = Wide(simd);
+            let (t, rollers, touch) = (self.t, &mut self.rollers, self.touch);
             self.contacts
-                .act(wide, self.t, &frame, &mut self.rollers, self.touch);
+                .act(Wide(simd), t, &self.frame, rollers, touch);
         }
     }
 
-    /// Rollers slide along a bent bar at 6 m/s and fall on it: some lane rests, and a contact is seen in the very step
-    /// that the distance says.
-    #[test]
-    fn no_contact_begins_unseen() {
-        let points = [[0.4, -0.05], [0.1, 0.0], [-0.4, 0.0]].map(|[x, y]| Point::new(x, y));
-        let pieces = points.windows(2).map(|ends| {
-            Piece::Segment(Segment {
-                start: ends[0],
-                end: ends[1],
-            })
-        });
-        let profile = Profile::new(&pieces.collect::<Vec<_>>(), true, true);
-        assert!(profile.bulges);
-        let radius = 0.01;
+    const RADIUS: f64 = 0.01;
+    const DT: f64 = 1e-5;
+
+    fn contacts(shape: Shape) -> Contacts {
         let surface = Surface {
             law: Law {
                 elastic: Elastic::Power(Power::linear(1e6)),
@@ -133,36 +109,34 @@ mod tests {
             },
             friction: Friction::None,
         };
-        let shape = Shape::Rail {
-            profile: profile.clone(),
-            reference: Point::origin(),
-            bounds: [Point::new(-0.4, -0.05), Point::new(0.4, 0.0)],
-        };
-        let mut contacts = Contacts::new(shape, surface, None, radius);
+        Contacts::new(shape, surface, None, RADIUS)
+    }
+
+    /// Moves rollers along given paths past a body: a contact must be seen in the very step that the distance says.
+    /// Counts lanes at rest and rollers in contact.
+    fn watch(
+        contacts: &mut Contacts,
+        frame: impl Fn(f64) -> Frame,
+        path: impl Fn(usize, f64) -> [f64; 2],
+        acceleration: f64,
+    ) -> [usize; 2] {
         let count = 24;
-        let place = |i: usize, t: f64| {
-            let (i, along) = (i as f64, -6.0);
-            let height = 0.011 + 0.0005 * i + 3e-3 * (0.2 * i).sin();
-            [
-                0.3 - 0.02 * i + along * t,
-                height + 0.05 * (3.0 * i).cos() * t - 300.0 * t * t,
-            ]
-        };
         let [mut x, mut y, mut vx, mut vy] = [(); 4].map(|()| vec![0.0; count]);
-        let (mut ax, mut ay) = (vec![0.0; count], vec![-600.0; count]);
+        let (mut ax, mut ay) = (vec![0.0; count], vec![acceleration; count]);
         let inverse_mass = vec![0.0; count];
         let mut touch = Box::<Touch>::default();
-        let (dt, mut rested, mut touched) = (1e-5, 0, 0);
+        let (mut rested, mut touched) = (0, 0);
         for step in 0..900 {
-            let t = f64::from(step) * dt;
+            let t = f64::from(step) * DT;
             for i in 0..count {
-                let ([x0, y0], [x1, y1]) = (place(i, t), place(i, t + 1e-6));
+                let ([x0, y0], [x1, y1]) = (path(i, t), path(i, t + 1e-6));
                 (x[i], y[i]) = (x0, y0);
                 (vx[i], vy[i]) = ((x1 - x0) / 1e-6, (y1 - y0) / 1e-6);
             }
+            let here = frame(t);
             if step % 64 == 0 {
                 let (x, y) = (&x, &y);
-                contacts.renew(&Frame::fixed(), Places { x, y, count }, 0.1);
+                contacts.renew(&here, Places { x, y, count }, 0.1);
             }
             rested += contacts.memory.wake.iter().filter(|w| **w > t).count();
             let rollers = Rollers {
@@ -175,22 +149,91 @@ mod tests {
                 inverse_mass: &inverse_mass,
             };
             Arch::new().dispatch(Look {
-                contacts: &contacts,
+                contacts,
                 t,
+                frame: here,
                 rollers,
                 touch: &mut touch,
             });
             std::mem::swap(&mut contacts.memory, &mut touch);
             contacts.accepted = t;
             for i in 0..count {
-                let inside = profile.probe(Point::new(x[i], y[i]), radius).gap < 0.0;
-                let seen = contacts
-                    .slot_of(i)
-                    .is_some_and(|slot| contacts.memory.inverse_onset[slot] > 0.0);
+                let slot = contacts.slot_of(i);
+                let faces = slot.map(|slot| contacts.faces(&here, slot, Point::new(x[i], y[i])));
+                let inside = faces.into_iter().flatten().flatten().any(|f| f.gap < 0.0);
+                let seen = slot.is_some_and(|slot| contacts.memory.inverse_onset[slot] > 0.0);
                 assert_eq!(inside, seen, "roller {i} at {t}");
                 touched += usize::from(seen);
             }
         }
+        [rested, touched]
+    }
+
+    /// Rollers slide along a bent bar at 6 m/s and fall on it.
+    #[test]
+    fn no_contact_begins_unseen() {
+        let points = [[0.4, -0.05], [0.1, 0.0], [-0.4, 0.0]].map(|[x, y]| Point::new(x, y));
+        let pieces = points.windows(2).map(|ends| {
+            Piece::Segment(Segment {
+                start: ends[0],
+                end: ends[1],
+            })
+        });
+        let profile = Profile::new(&pieces.collect::<Vec<_>>(), true, true);
+        assert!(profile.bulges);
+        let mut contacts = contacts(Shape::Rail {
+            profile,
+            reference: Point::origin(),
+            bounds: [Point::new(-0.4, -0.05), Point::new(0.4, 0.0)],
+        });
+        let path = |i: usize, t: f64| {
+            let (i, along) = (i as f64, -6.0);
+            let height = 0.011 + 0.0005 * i + 3e-3 * (0.2 * i).sin();
+            [
+                0.3 - 0.02 * i + along * t,
+                height + 0.05 * (3.0 * i).cos() * t - 300.0 * t * t,
+            ]
+        };
+        let [rested, touched] = watch(&mut contacts, |_| Frame::fixed(), path, -600.0);
+        assert!(rested > 500, "{rested}");
+        assert!(touched > 1000, "{touched}");
+    }
+
+    /// Rollers fly over a turning wheel, faster than its rim, and fall on its teeth.
+    #[test]
+    fn no_contact_with_teeth_begins_unseen() {
+        let (pitch, count) = (0.03, 40);
+        let form = ToothForm::Iso606 {
+            gap: 0.5,
+            tip: Tip::Mid,
+            seat: Seat::Bottom,
+        };
+        let gap = ToothGap::new(count, pitch, 2.0 * RADIUS, &form).unwrap();
+        let step = std::f64::consts::TAU / f64::from(count);
+        let mut contacts = contacts(Shape::Teeth(Teeth {
+            halves: GapHalves::new(gap.pieces(), RADIUS),
+            count,
+            tan_half: (0.5 * step).tan(),
+            pitch_turn: [step.cos(), step.sin()],
+            tip_radius: gap.tip_radius,
+        }));
+        let (centre, rim) = (Point::new(0.0, -gap.pitch_radius), 6.0);
+        let spin = rim / gap.pitch_radius;
+        let frame = |t: f64| Frame {
+            origin: centre,
+            turn: [(spin * t).cos(), (spin * t).sin()],
+            velocity: Vector::zeros(),
+            spin,
+        };
+        let path = |i: usize, t: f64| {
+            let i = i as f64;
+            let height = 0.01 + 1e-3 * i + 1e-3 * (0.7 * i).sin();
+            [
+                0.15 - pitch * i - 1.3 * rim * t,
+                height - (3.0 + (3.0 * i).cos()) * t - 150.0 * t * t,
+            ]
+        };
+        let [rested, touched] = watch(&mut contacts, frame, path, -300.0);
         assert!(rested > 500, "{rested}");
         assert!(touched > 1000, "{touched}");
     }

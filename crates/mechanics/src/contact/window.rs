@@ -3,9 +3,9 @@
 use chaindrive_geometry::Point;
 
 use super::{Contacts, Frame, Shape, Teeth, Touch};
-use crate::lanes::padded;
+use crate::lanes::LANES;
 
-/// A run of consecutive rollers.
+/// A run of consecutive rollers, no more than one lane of eight holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Run {
     /// First roller.
@@ -23,6 +23,9 @@ pub(crate) struct Places<'a> {
     pub(crate) count: usize,
 }
 
+/// Share of the roller radius below which a gap may close before the windows are renewed.
+const LIKELY: f64 = 0.1;
+
 /// A slot that no roller held before: open, and far.
 pub(super) const FAR: f64 = 1.0;
 
@@ -30,7 +33,8 @@ impl Contacts {
     /// Looks for the rollers within `margin` \[m\] of touching, and carries the memory over.
     pub(crate) fn renew(&mut self, frame: &Frame, places: Places<'_>, margin: f64) {
         let runs = self.near_runs(frame, places, margin);
-        let slots = runs.iter().map(|run| padded(run.count)).sum();
+        let runs: Vec<Run> = runs.into_iter().flat_map(|run| self.cut(run)).collect();
+        let slots = runs.len() * LANES;
         let mut memory = Box::<Touch>::default();
         memory.resize(slots * self.sides());
         memory.gap.fill(FAR);
@@ -99,16 +103,37 @@ impl Contacts {
         runs
     }
 
+    /// Cuts a run into lanes of eight rollers. The first takes fewer, where those likely to touch then need fewer lanes:
+    /// lanes of rollers that come and go rest.
+    fn cut(&self, run: Run) -> impl Iterator<Item = Run> {
+        let likely = |k: &usize| {
+            let slot = self.slot_of(run.start + k);
+            slot.is_some_and(|slot| {
+                let gaps = (0..self.sides()).map(|side| self.memory.gap[side * self.slots + slot]);
+                gaps.fold(FAR, f64::min) < LIKELY * self.radius
+            })
+        };
+        let first = (0..run.count).find(likely);
+        let last = (0..run.count).rfind(likely);
+        let few = first.zip(last).map_or(0, |(first, last)| {
+            let lanes = |few: &usize| (last - few) / LANES - (first - few) / LANES;
+            (0..=first.min(LANES - 1)).min_by_key(lanes).unwrap_or(0)
+        });
+        let part = move |(start, end): (usize, usize)| Run {
+            start: run.start + start,
+            count: end - start,
+        };
+        let starts = (few..run.count).step_by(LANES);
+        let whole = starts.map(move |start| (start, run.count.min(start + LANES)));
+        let first = (few > 0).then_some((0, few));
+        first.into_iter().chain(whole).map(part)
+    }
+
     /// The slot that holds `roller`, if any.
     pub(crate) fn slot_of(&self, roller: usize) -> Option<usize> {
-        let mut base = 0;
-        for run in &self.runs {
-            if (run.start..run.start + run.count).contains(&roller) {
-                return Some(base + roller - run.start);
-            }
-            base += padded(run.count);
-        }
-        None
+        let holds = |run: &Run| (run.start..run.start + run.count).contains(&roller);
+        let lane = self.runs.iter().position(holds)?;
+        Some(lane * LANES + roller - self.runs[lane].start)
     }
 
     /// Calls `visit` with (slot, roller) for every slot in use.
@@ -118,12 +143,10 @@ impl Contacts {
 }
 
 fn for_each_slot(runs: &[Run], mut visit: impl FnMut(usize, usize)) {
-    let mut base = 0;
-    for run in runs {
+    for (lane, run) in runs.iter().enumerate() {
         for k in 0..run.count {
-            visit(base + k, run.start + k);
+            visit(lane * LANES + k, run.start + k);
         }
-        base += padded(run.count);
     }
 }
 

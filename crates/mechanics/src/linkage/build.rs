@@ -194,11 +194,11 @@ fn compile(system: &System, parts: &Parts, links: &RigidLinks) -> Linkage {
         Joint::Ideal => Joining::Hinges(Hinges {
             rate: stabilisation(parts),
         }),
-        Joint::Clearance(joint) => Joining::Clearance(Bearing::new(
+        Joint::Clearance(joint) => Joining::Clearance(Box::new(Bearing::new(
             &joint.surface,
             joint.bore_radius,
             joint.pin_radius,
-        )),
+        ))),
     };
     let play = match &joining {
         Joining::Hinges(_) => 0.0,

@@ -162,10 +162,7 @@ impl Impulses {
             // The links before and after the joint, and for the coupling with the next joint the latter.
             let mass = [before, after].map(|at| w.load(&shapes.mobility, at));
             let inertia = [before, after].map(|at| w.load(&shapes.turning, at));
-            let b = [before, after].map(|at| {
-                let all = [0, 1, 2].map(|k| w.load(&self.known[k], at));
-                all
-            });
+            let b = [before, after].map(|at| [0, 1, 2].map(|k| w.load(&self.known[k], at)));
             for p in 0..R {
                 let row = rows[p].load(w, start);
                 let next = rows[p].load(w, start + 1);

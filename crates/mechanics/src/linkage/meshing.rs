@@ -30,7 +30,7 @@ impl System {
         linkage: &Linkage,
         at: Moment<'_>,
         rates: &mut [f64],
-        felt: Felt<'_>,
+        felt: &mut Felt<'_>,
         play: &mut Play,
     ) {
         play.mounts.clear();

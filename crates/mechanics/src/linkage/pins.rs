@@ -134,25 +134,22 @@ impl PinLaw {
     /// Elastic force and stiffness at depths that are positive.
     #[inline(always)]
     fn elastic<S: Simd>(&self, w: Wide<S>, depth: Lane<S>) -> [Lane<S>; 2] {
-        match &self.power {
-            Some((stiffness, exponent, lower)) => {
-                // g = K δ δⁿ⁻¹,   k = n K δⁿ⁻¹
-                let secant = w.splat(*stiffness) * lower.of(w, depth);
-                [secant * depth, w.splat(*exponent) * secant]
-            }
-            None => {
-                let at = |depth| {
-                    self.law.respond(Approach {
-                        penetration: depth,
-                        rate: 0.0,
-                        onset_rate: 1.0,
-                    })
-                };
-                [
-                    depth.one_by_one(|depth| at(depth).elastic),
-                    depth.one_by_one(|depth| at(depth).stiffness),
-                ]
-            }
+        if let Some((stiffness, exponent, lower)) = &self.power {
+            // g = K δ δⁿ⁻¹,   k = n K δⁿ⁻¹
+            let secant = w.splat(*stiffness) * lower.of(w, depth);
+            [secant * depth, w.splat(*exponent) * secant]
+        } else {
+            let at = |depth| {
+                self.law.respond(Approach {
+                    penetration: depth,
+                    rate: 0.0,
+                    onset_rate: 1.0,
+                })
+            };
+            [
+                depth.one_by_one(|depth| at(depth).elastic),
+                depth.one_by_one(|depth| at(depth).stiffness),
+            ]
         }
     }
 }

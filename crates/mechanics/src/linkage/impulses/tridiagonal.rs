@@ -1,5 +1,7 @@
 //! A block-tridiagonal matrix with a border, one block a joint.
 
+use std::cmp::Ordering;
+
 use crate::lanes::{LANES, padded};
 use crate::linkage::Linkage;
 
@@ -218,13 +220,12 @@ impl Tridiagonal {
     pub(super) fn add<const R: usize, const C: usize>(&mut self, a: Place, b: Place, value: f64) {
         match (a, b) {
             (Place::Row(i, p), Place::Row(j, o)) => {
-                if i == j {
-                    self.own[entry(p.max(o), p.min(o))][i] += value;
-                } else if i > j {
-                    self.coupling[entry(p, o)][j] += value;
-                } else {
-                    self.coupling[entry(o, p)][i] += value;
-                }
+                let entries = match i.cmp(&j) {
+                    Ordering::Equal => &mut self.own[entry(p.max(o), p.min(o))],
+                    Ordering::Greater => &mut self.coupling[entry(p, o)],
+                    Ordering::Less => &mut self.coupling[entry(o, p)],
+                };
+                entries[i.min(j)] += value;
             }
             (Place::Row(i, p), Place::Border(j)) | (Place::Border(j), Place::Row(i, p)) => {
                 self.beside[(R * i + p) * C + j] += value;
