@@ -2,19 +2,13 @@
 
 use super::{RailContact, Record, System};
 
-/// Accepted steps after which the time scale is worked out again; rigid links hardly change theirs while they touch.
+/// Accepted steps after which the time scale is worked out again. Rarer, and impacts of pins get steps that are too long.
 const STEPS_PER_SCALE: u32 = 8;
-const STEPS_PER_LINK_SCALE: u32 = 16;
 
 impl System {
     pub(super) fn renew_time_scales(&mut self, record: &Record) {
-        let steps = if self.linkage.is_some() {
-            STEPS_PER_LINK_SCALE
-        } else {
-            STEPS_PER_SCALE
-        };
         // Stiffness changes little from one step to the next, and the bound has a reserve.
-        if !self.renew.1.is_multiple_of(steps) {
+        if !self.renew.1.is_multiple_of(STEPS_PER_SCALE) {
             return;
         }
         let scales = match &self.linkage {
