@@ -85,7 +85,10 @@ impl<S: Simd> Wide<S> {
 
     /// The same for writing.
     #[inline(always)]
-    #[expect(clippy::unused_self, reason = "made like the others, from the vector unit")]
+    #[expect(
+        clippy::unused_self,
+        reason = "made like the others, from the vector unit"
+    )]
     pub(crate) fn lanes_mut(self, slice: &mut [f64]) -> LanesMut<'_, S> {
         let (whole, _) = S::as_mut_simd_f64s(slice);
         LanesMut { whole }
