@@ -44,7 +44,7 @@ def sweep(
     scene, or ``"auto"``: the numbers do not depend on `jobs` or `executor`, to the last bit. An
     accuracy is kept where the scene asks for one (``run.accuracy``): each variant then begins with
     trials of its own. The interpreter is free for other threads meanwhile, and Ctrl-C stops the
-    sweep.
+    sweep: what is finished is the `result` of the ``KeyboardInterrupt``.
 
     Parameters
     ----------
@@ -86,7 +86,8 @@ def sweep(
         - ``error`` (…), a text: why a variant failed, empty when it did not. Its numbers are NaN.
 
         Attributes tell the ``scene`` that is varied, ``chaindrive_version``, ``method``, the number
-        of ``variants`` and of those ``failed``, ``wall_time`` [s] and a ``summary`` to print.
+        of ``variants`` and of those ``finished`` and ``failed``, ``status`` (``"complete"`` or
+        ``"interrupted"``), ``wall_time`` [s] and a ``summary`` to print.
 
     Raises
     ------
@@ -96,6 +97,10 @@ def sweep(
         Nothing is varied, a value stands twice, a channel does not exist.
     SimulationError
         The executor lost every variant.
+    KeyboardInterrupt
+        Ctrl-C. Its attribute `result` is the dataset as it would have been returned, with the
+        variants that were finished; ``error`` of the others says that they were not carried out.
+        Of an executor the chunks count that had come back.
 
     Examples
     --------
@@ -136,10 +141,11 @@ def sweep(
         if executor is None:
             result = core.run(jobs, tell)
         else:
-            result = core.stack(_spread(recipe, len(core), executor, tell))
+            outcomes, interrupt = _spread(recipe, len(core), executor, tell)
+            result = core.stack(outcomes) | {"stop": interrupt}
     finally:
         line.close()
-    failed = sum(1 for error in result["errors"] if error)
+    stop: Any = result["stop"]
     attributes = {
         "title": base.title,
         "format": "chaindrive",
@@ -149,11 +155,20 @@ def sweep(
         "method": ", ".join(result["methods"]) or base.run_defaults["method"],
         "swept": [path for path, _ in varied],
         "variants": len(core),
-        "failed": failed,
+        "finished": result["finished"],
+        "failed": result["failed"],
+        "status": "complete" if stop is None else "interrupted",
         "wall_time": time.perf_counter() - start,
         "summary": result["summary"],
     }
-    return _dataset(result, attributes)
+    dataset = _dataset(result, attributes)
+    if stop is not None:
+        # The very exception, for a class of its own would change the exit code of a script.
+        stop.result = dataset
+        done = f"{result['finished']} of {len(core)} variants are done"
+        stop.add_note(f"{done}: `except KeyboardInterrupt as stop` finds them in `stop.result`")
+        raise stop
+    return dataset
 
 
 def _values(values: Any, path: str) -> tuple[str, ...]:
@@ -173,13 +188,17 @@ def _counted(value: Any) -> Any:
 
 def _spread(
     recipe: _Recipe, count: int, executor: Executor, tell: Callable[[float], object] | None
-) -> list[Any]:
-    """Have an executor compute all variants, and return their outcomes in their order."""
+) -> tuple[list[Any], KeyboardInterrupt | None]:
+    """Have an executor compute all variants, and return their outcomes in their order.
+
+    After Ctrl-C, which is returned too, None stands for those that had not come back.
+    """
     size = min(max(count // _CHUNKS, 1), _LARGEST_CHUNK)
     pending: dict[Future[list[Any]], range] = {}
     outcomes: list[Any] = [None] * count
     lost: list[Exception] = []
     finished = 0
+    stop = None
     try:
         for first in range(0, count, size):
             chunk = range(first, min(first + size, count))
@@ -198,13 +217,15 @@ def _spread(
             finished += len(chunk)
             if tell is not None:
                 tell(finished / count)
+    except KeyboardInterrupt as interrupt:
+        stop = interrupt
     finally:
         for future in pending:
             future.cancel()
-    if len(lost) == len(pending):
+    if stop is None and len(lost) == len(pending):
         message = f"the executor lost every variant: {type(lost[0]).__name__}: {lost[0]}"
         raise SimulationError(message, "executor") from lost[0]
-    return outcomes
+    return outcomes, stop
 
 
 def _part(version: str, recipe: _Recipe, first: int, end: int) -> list[Any]:

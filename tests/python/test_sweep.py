@@ -188,20 +188,66 @@ def test_jobs_are_not_for_executors():
         cd.sweep(marine(), VARY, jobs=2, executor=executor)
 
 
-def test_a_sweep_is_interrupted_and_leaves_the_interpreter_free():
-    """Variants that would take days; another thread of this interpreter sends the interrupt."""
+def interrupt_after(wait):
+    """Send Ctrl-C from another thread of this interpreter, which has to be free for it."""
 
     def interrupt():
+        wait()
+        # By now the sweep waits for what never ends.
         time.sleep(0.5)
         os.kill(os.getpid(), signal.SIGINT)
 
     thread = threading.Thread(target=interrupt)
-    begin = time.monotonic()
     thread.start()
-    with pytest.raises(KeyboardInterrupt):
-        cd.sweep(cd.scenes.spinning_ring(), {"run.until": [1e5, 2e5, 3e5]}, every=1e-2)
+    return thread
+
+
+def test_an_interrupted_sweep_leaves_the_interpreter_free_and_keeps_what_is_finished():
+    """A variant that ends at once, and three that would take days."""
+    finished = threading.Event()
+    thread = interrupt_after(finished.wait)
+    begin = time.monotonic()
+    vary = {"run.until": [1e-3, 1e5, 2e5, 3e5]}
+
+    def progress(share):
+        if share > 0.0:
+            finished.set()
+
+    with pytest.raises(KeyboardInterrupt) as caught:
+        cd.sweep(cd.scenes.spinning_ring(), vary, every=5e-4, jobs=2, progress=progress)
     thread.join()
     assert time.monotonic() - begin < 60.0
+    assert caught.type is KeyboardInterrupt, "scripts end as after any other Ctrl-C"
+    assert "1 of 4 variants are done" in caught.value.__notes__[0]
+    kept = caught.value.result
+    alone = cd.sweep(cd.scenes.spinning_ring(), {"run.until": [1e-3]}, every=5e-4)
+    assert_same_bits(kept.isel(until=[0]), alone)
+    assert [bool(text) for text in kept["error"].to_numpy()] == [False, True, True, True]
+    assert "not carried out" in str(kept["error"][1].item())
+    assert bool(kept["steps"][1:].isnull().all())
+    told = {name: kept.attrs[name] for name in ["status", "variants", "finished", "failed"]}
+    assert told == {"status": "interrupted", "variants": 4, "finished": 1, "failed": 0}
+    assert alone.attrs["status"] == "complete"
+
+
+def test_an_interrupted_executor_keeps_the_chunks_that_came_back():
+    class Endless(ThreadPoolExecutor):
+        """Never ends the second variant."""
+
+        def submit(self, task, /, *arguments):
+            return Future() if arguments[-2] == 1 else super().submit(task, *arguments)
+
+    returned = threading.Event()
+    thread = interrupt_after(returned.wait)
+    settings = {"until": 1e-3, "progress": lambda share: share > 0.5 and returned.set()}
+    with Endless(1) as executor, pytest.raises(KeyboardInterrupt) as caught:
+        cd.sweep(marine(), {PRETENSION: [10e3, 12e3, 14e3]}, **settings, executor=executor)
+    thread.join()
+    kept = caught.value.result
+    assert [bool(text) for text in kept["error"].to_numpy()] == [False, True, False]
+    assert kept.attrs["finished"] == 2
+    whole = cd.sweep(marine(), {PRETENSION: [10e3, 12e3, 14e3]}, until=1e-3)
+    assert_same_bits(kept.isel(pretension=[0, 2]), whole.isel(pretension=[0, 2]))
 
 
 def test_progress_that_raises_stops_the_sweep():
