@@ -103,6 +103,7 @@ class Sweep:
         name: str,
         vary: Sequence[tuple[str, Sequence[str]]],
         record: Sequence[str],
+        given: Sequence[tuple[str, str]] = ...,
     ) -> Sweep: ...
     def __len__(self) -> int: ...
     def run(

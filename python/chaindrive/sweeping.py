@@ -34,17 +34,21 @@ def sweep(
     until: float | str | None = None,
     every: float | str | None = None,
     record: str | Iterable[str] = (),
+    accuracy: float | str | None = None,
     jobs: int | None = None,
     executor: Executor | None = None,
     progress: bool | Callable[[float], object] = False,
 ) -> xr.Dataset:
     """Simulate every combination of some values in a drive's scene and stack the results.
 
-    Every variant is computed by one thread as `simulate` would compute it with the method of the
-    scene, or ``"auto"``: the numbers do not depend on `jobs` or `executor`, to the last bit. An
-    accuracy is kept where the scene asks for one (``run.accuracy``): each variant then begins with
-    trials of its own. The interpreter is free for other threads meanwhile, and Ctrl-C stops the
-    sweep: what is finished is the `result` of the ``KeyboardInterrupt``.
+    Every variant is computed by one thread: the numbers do not depend on `jobs` or `executor`, to
+    the last bit. They are those of `simulate` with the same method. Where neither names one the
+    two differ: `simulate` chooses method and step for an accuracy of 1 %, a sweep takes
+    ``method="auto"`` with its default step, for the trials in every variant would double the cost
+    of short ones. `accuracy` has each variant choose for itself.
+
+    The interpreter is free for other threads meanwhile, and Ctrl-C stops the sweep: what is
+    finished is the `result` of the ``KeyboardInterrupt``.
 
     Parameters
     ----------
@@ -62,6 +66,12 @@ def sweep(
     record
         Names of channels to keep, see `channels`. None unless asked for: they take the memory of a
         run times the number of variants.
+    accuracy
+        Largest relative error of the tension [–], such as 0.01 or ``"1 %"``: every variant begins
+        with the trials of ``simulate(…, accuracy=…)``, and gives its bits. The same as
+        ``run.accuracy`` in the scene. Other settings of the run are given or varied as values of
+        the scene: ``run.method``, ``run.step``, ``run.tolerance``, ``run.onset_depth``,
+        ``run.events``.
     jobs
         Variants at a time; as many as there are cores when absent.
     executor
@@ -79,7 +89,8 @@ def sweep(
         - statistics of each variant, such as ``span_tension_mean``, ``span_tension_std``,
           ``span_tension_min``, ``span_tension_max`` (…, span), ``contact_force_p99``,
           ``contact_force_max`` [N], ``energy_dissipated_total``, ``energy_residual_max`` [J],
-          ``steps``; those of contacts by kind where the scene logs them. ``stepping_time`` and
+          ``steps``; those of contacts by kind where the scene logs them; ``accuracy_error`` and
+          ``accuracy_kept`` (1 or 0) where an accuracy was asked for. ``stepping_time`` and
           ``real_time_factor`` are measured, all others are the same with every sweep;
         - channels, (…, time) or (…, time, labels), NaN where a variant has fewer samples or labels
           than others;
@@ -94,7 +105,8 @@ def sweep(
     SceneError
         A path leads nowhere, or a value does not belong there; before anything runs.
     ParameterError
-        Nothing is varied, a value stands twice, a channel does not exist.
+        Nothing is varied, a value stands twice, a channel does not exist; a value is varied that is
+        given as an argument too, or that an accuracy chooses.
     SimulationError
         The executor lost every variant.
     KeyboardInterrupt
@@ -124,16 +136,13 @@ def sweep(
         raise ParameterError(message, "jobs", "leave it out, or give it to the executor")
     if jobs is not None and jobs < 1:
         raise ParameterError(f"jobs = {jobs}, must be at least 1", "jobs", "at least 1")
-    settings = {"run.until": until, "run.every": every}
-    settings = {path: value for path, value in settings.items() if value is not None}
-    if twice := settings.keys() & vary.keys():
-        path = min(twice)
-        name = path.removeprefix("run.")
-        raise ParameterError(f"`{path}` is varied, and given as `{name}`", name, "give one of them")
+    arguments = {"until": until, "every": every, "accuracy": accuracy}
+    settings = {f"run.{name}": value for name, value in arguments.items() if value is not None}
     base = drive.replace(settings) if settings else drive
     varied = tuple((path, _values(values, path)) for path, values in vary.items())
     recipe = (base.text, base.name, varied, tuple(_listed(record)))
-    core = _core.Sweep(*recipe)
+    given = [(path, path.removeprefix("run.")) for path in settings]
+    core = _core.Sweep(*recipe, given)
     start = time.perf_counter()
     line = _Line()
     tell = progress if callable(progress) else line if progress else None

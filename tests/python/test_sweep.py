@@ -60,6 +60,40 @@ def test_a_variant_is_the_run_of_its_drive(built_in):
     assert built_in.attrs["method"] == run.attrs["method"]
 
 
+@pytest.mark.parametrize("asked", ["argument", "scene"])
+def test_with_an_accuracy_every_variant_chooses_as_its_run_does(asked):
+    """The default step is the answer for neither variant, and the answers are different ones."""
+    settings = {"until": 4e-3, "every": 4e-4}
+    speeds = {SPEED: [-8.0, -60.0]}
+    if asked == "argument":
+        result = cd.sweep(marine(), speeds, **settings, record="link_tension", accuracy=1e-3)
+    else:
+        drive = marine().replace({"run.accuracy": "0.1 %"})
+        result = cd.sweep(drive, speeds, **settings, record="link_tension")
+    plain = cd.sweep(marine(), speeds, **settings)
+    assert "accuracy_kept" not in plain
+    assert len(np.unique(result["steps"])) == 2
+    for speed in [-8.0, -60.0]:
+        drive = marine().replace({SPEED: speed})
+        run = cd.simulate(drive, **settings, record="link_tension", accuracy=1e-3, error=False)
+        variant = result.sel(speed=speed)
+        assert variant["error"] == ""
+        assert (
+            variant["link_tension"].to_numpy().tobytes() == run["link_tension"].to_numpy().tobytes()
+        )
+        assert variant["steps"] == run.attrs["steps"]
+        assert variant["steps"] != plain["steps"].sel(speed=speed)
+        assert variant["accuracy_error"] == run.attrs["accuracy_error"]
+        assert bool(variant["accuracy_kept"] == 1) == (run.attrs["accuracy_kept"] == "kept")
+
+
+def test_an_accuracy_that_is_not_reached_is_told():
+    result = cd.sweep(marine(), {PRETENSION: [10e3]}, until=1e-3, accuracy=1e-12)
+    assert result["accuracy_kept"].to_numpy().tolist() == [0.0]
+    assert float(result["accuracy_error"][0]) > 1e-12
+    assert "1 without the accuracy asked for" in result.attrs["summary"]
+
+
 def test_dimensions_are_named_and_have_units(built_in):
     assert built_in["span_tension"].dims == ("speed", "torque", "pretension", "time", "span")
     assert built_in["span_tension_mean"].dims == ("speed", "torque", "pretension", "span")
@@ -172,7 +206,14 @@ def test_values_may_be_anything_that_a_scene_takes():
         ({"chain.links": np.linspace(112, 113, 3)}, {}, cd.SceneError, "chain.links"),
         ({"chain.links": [112]}, {"record": "link_tensoin"}, cd.ParameterError, "did you mean"),
         ({"chain.links": [112]}, {"jobs": 0}, cd.ParameterError, "at least 1"),
-        ({"run.until": [1e-3]}, {"until": 1e-3}, cd.ParameterError, "until"),
+        ({"run.until": [1e-3]}, {"until": 1e-3}, cd.ParameterError, "given as `until` as well"),
+        ({" run.every": [1e-3]}, {"every": 1e-3}, cd.ParameterError, "given as `every` as well"),
+        ({"run": [{"step": 1e-6}]}, {"until": 1e-3}, cd.ParameterError, "`run` is varied"),
+        ({"run.accuracy": [0.1]}, {"accuracy": 0.1}, cd.ParameterError, "given as `accuracy`"),
+        ({"run.step": [1e-6]}, {"accuracy": 0.1}, cd.ParameterError, "asks for an accuracy"),
+        ({PRETENSION: [1e3], "route": [{}]}, {}, cd.ParameterError, "and then replaced"),
+        ({PRETENSION: [1e3]}, {"accuracy": 2.0}, cd.SceneError, "run.accuracy: 2, must be"),
+        ({PRETENSION: [1e3]}, {"accuracy": "1 mm"}, cd.SceneError, "is a length"),
         ({"run.every": [1e-3, 2e-3]}, {"record": "contacts"}, cd.ParameterError, "interval"),
     ],
 )

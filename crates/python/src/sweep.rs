@@ -30,14 +30,17 @@ struct Parts<'py>(
 
 #[pymethods]
 impl Sweep {
-    /// Paths with their values as JSON, put into the scene of a text.
+    /// Paths with their values as JSON, put into the scene of a text; `given` are paths that have been put there
+    /// before, with what the caller calls them.
     #[new]
+    #[pyo3(signature = (text, name, vary, record, given=Vec::new()))]
     fn new(
         py: Python<'_>,
         text: &str,
         name: &str,
         vary: Vec<(String, Vec<String>)>,
         record: Vec<String>,
+        given: Vec<(String, String)>,
     ) -> PyResult<Self> {
         let mut settings = Vec::new();
         for (path, values) in vary {
@@ -53,7 +56,9 @@ impl Sweep {
         }
         let scene = Scene::from_text(text, name).or_raise()?;
         let sweep = py.detach(|| sweep::Sweep::new(&scene, &settings, &record));
-        Ok(Self(sweep.or_raise()?))
+        let sweep = sweep.or_raise()?;
+        sweep.check_given(&given).or_raise()?;
+        Ok(Self(sweep))
     }
 
     fn __len__(&self) -> usize {
