@@ -325,6 +325,20 @@ def schema() -> dict[str, Any]:
     return cast("dict[str, Any]", json.loads(_core.schema()))
 
 
+def _needed(drive: object) -> None:
+    """Refuse what is not a drive, such as the name of a preset."""
+    if not isinstance(drive, Drive):
+        needed = "a Drive: chaindrive.load(path), or one of chaindrive.scenes"
+        raise TypeError(f"the drive is {type(drive).__name__} {drive!r}, needed is {needed}")
+
+
+def _number(drive: Drive, name: str, value: float | str | None) -> float | None:
+    """Return a setting of a run in SI units; a text is read as the scene reads it."""
+    if isinstance(value, str):
+        return cast("float", drive.replace({f"run.{name}": value}).run_defaults[name])
+    return value
+
+
 def _from_text(text: str, name: str) -> Drive:
     return Drive._of(_core.Drive.from_text(text, name))
 

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from chaindrive import _core
-from chaindrive.drive import Drive, _json
+from chaindrive.drive import Drive, _json, _needed
 from chaindrive.errors import ParameterError, SimulationError
 from chaindrive.simulation import _Line, _listed
 
@@ -131,6 +131,9 @@ def sweep(
     >>> bool((result["error"] == "").all())
     True
     """
+    _needed(drive)
+    if not isinstance(vary, Mapping):
+        raise TypeError(f"vary is a {type(vary).__name__}, needed is a dict of values by path")
     if executor is not None and jobs is not None:
         message = "`jobs` is for the threads of this process; the executor decides on its own"
         raise ParameterError(message, "jobs", "leave it out, or give it to the executor")
@@ -184,7 +187,7 @@ def _values(values: Any, path: str) -> tuple[str, ...]:
     """Return every value at a path as JSON."""
     if isinstance(values, np.ndarray | np.generic | xr.DataArray):
         values = np.asarray(values).tolist()
-    single = isinstance(values, str | Mapping) or not isinstance(values, Iterable)
+    single = isinstance(values, str | bytes | Mapping) or not isinstance(values, Iterable)
     return tuple(_json(_counted(value), path) for value in ([values] if single else values))
 
 

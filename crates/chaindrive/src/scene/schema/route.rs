@@ -106,7 +106,7 @@ pub(crate) struct Run {
     /// Relative error of the tension that method, step and onset depth are chosen for, 0 to 1; it takes the
     /// place of what is said about them. Absent: 0.01, unless one of them or a tolerance is given.
     #[serde(default)]
-    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
+    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
     pub(crate) accuracy: Option<Ratio>,
     /// Channels to record.
     #[serde(default)]
