@@ -158,7 +158,9 @@ class Drive:
         -------
         Description
             A dict of the facts in SI units that prints as a text. The cost is measured by a few
-            hundred steps of the run that the scene suggests.
+            hundred steps of the run that the scene suggests, with the default step where it names
+            none; ``facts["cost"]["unless_chosen_for"]`` is the accuracy [–] for which `simulate`
+            then chooses another.
 
         Raises
         ------
@@ -321,6 +323,20 @@ def load(path: str | PathLike[str]) -> Drive:
 def schema() -> dict[str, Any]:
     """Return the JSON Schema of scene files (draft 2020-12), for editors and programs."""
     return cast("dict[str, Any]", json.loads(_core.schema()))
+
+
+def _needed(drive: object) -> None:
+    """Refuse what is not a drive, such as the name of a preset."""
+    if not isinstance(drive, Drive):
+        needed = "a Drive: chaindrive.load(path), or one of chaindrive.scenes"
+        raise TypeError(f"the drive is {type(drive).__name__} {drive!r}, needed is {needed}")
+
+
+def _number(drive: Drive, name: str, value: float | str | None) -> float | None:
+    """Return a setting of a run in SI units; a text is read as the scene reads it."""
+    if isinstance(value, str):
+        return cast("float", drive.replace({f"run.{name}": value}).run_defaults[name])
+    return value
 
 
 def _from_text(text: str, name: str) -> Drive:

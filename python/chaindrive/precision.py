@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from chaindrive import _core
-from chaindrive.drive import Drive
+from chaindrive.drive import Drive, _needed, _number
 from chaindrive.errors import ParameterError
 
 __all__ = ["work_precision"]
@@ -19,10 +19,10 @@ def work_precision(
     drive: Drive,
     *,
     methods: str | Iterable[str] = (),
-    steps: Iterable[float] = (),
-    tolerances: Iterable[float] = (),
-    onset_depth: float | None = None,
-    until: float | None = None,
+    steps: Iterable[float | str] = (),
+    tolerances: Iterable[float | str] = (),
+    onset_depth: float | str | None = None,
+    until: float | str | None = None,
     repeats: int = 5,
     replicates: int = 2,
 ) -> xr.Dataset:
@@ -38,7 +38,7 @@ def work_precision(
     methods
         Names of methods, see `simulate`; empty for the usual ones with the usual steps.
     steps
-        Steps of the methods with fixed steps [s]; empty for each method's own.
+        Steps of the methods with fixed steps [s], or texts with units; empty for each method's own.
     tolerances
         Relative tolerances of ``"dormand-prince"`` [–]; empty for that of the scene.
     onset_depth
@@ -66,7 +66,8 @@ def work_precision(
     Raises
     ------
     ParameterError
-        A setting out of range, or steps without methods.
+        A setting out of range, steps without methods, or steps or tolerances that none of the
+        methods takes.
     SimulationError
         Reference or check fail; a method that fails keeps its row.
 
@@ -82,18 +83,36 @@ def work_precision(
     """
     names = [methods] if isinstance(methods, str) else list(methods)
     steps, tolerances = list(steps), list(tolerances)
+    _needed(drive)
+    for name, count in [("repeats", repeats), ("replicates", replicates)]:
+        if count < 1:
+            raise ParameterError(f"{name} = {count}, must be at least 1", name, "at least 1")
     if not names and (steps or tolerances or onset_depth is not None):
         message = "steps, tolerances and onset depths belong to methods"
         raise ParameterError(message, "methods", "name the methods")
+    adaptive = [name == "dormand-prince" for name in names]
+    if names and steps and all(adaptive):
+        message = "steps are for methods with fixed steps, and there is none among `methods`"
+        raise ParameterError(message, "steps", "leave them out, or name such a method")
+    if tolerances and not any(adaptive):
+        message = "tolerances are for dormand-prince, which is not among `methods`"
+        raise ParameterError(message, "tolerances", "leave them out, or name it")
+    depth = _number(drive, "onset_depth", onset_depth)
     variants: list[tuple[str, float | None, float | None, float | None]] = []
+    none: list[float | str | None] = [None]
     for name in names:
-        adaptive = name == "dormand-prince"
-        values: list[float | None] = list(tolerances if adaptive else steps) or [None]
-        for value in values:
-            step, tolerance = (None, value) if adaptive else (value, None)
-            variants.append((name, step, tolerance, onset_depth))
+        if name == "dormand-prince":
+            for value in [*tolerances] or none:
+                variants.append((name, None, _number(drive, "tolerance", value), depth))
+        else:
+            for value in [*steps] or none:
+                variants.append((name, _number(drive, "step", value), None, depth))
     result = _core.work_precision(
-        drive._inner, variants, until=until, repeats=repeats, replicates=replicates
+        drive._inner,
+        variants,
+        until=_number(drive, "until", until),
+        repeats=repeats,
+        replicates=replicates,
     )
     variables: dict[str, Any] = {
         "method": ("run", np.asarray(result["method"], dtype=np.str_)),

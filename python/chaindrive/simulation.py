@@ -14,7 +14,7 @@ import xarray as xr
 
 from chaindrive import _core
 from chaindrive.channels import channels
-from chaindrive.drive import Drive
+from chaindrive.drive import Drive, _needed, _number
 from chaindrive.errors import ParameterError
 
 __all__ = ["simulate"]
@@ -23,14 +23,14 @@ __all__ = ["simulate"]
 def simulate(
     drive: Drive,
     *,
-    until: float | None = None,
-    every: float | None = None,
+    until: float | str | None = None,
+    every: float | str | None = None,
     record: str | Iterable[str] | None = None,
     method: str | None = None,
-    step: float | None = None,
-    tolerance: float | None = None,
-    onset_depth: float | None = None,
-    accuracy: float | None = None,
+    step: float | str | None = None,
+    tolerance: float | str | None = None,
+    onset_depth: float | str | None = None,
+    accuracy: float | str | None = None,
     events: str | Iterable[str] | None = None,
     output: str | PathLike[str] | None = None,
     overwrite: bool = False,
@@ -46,7 +46,8 @@ def simulate(
     drive
         What to simulate.
     until
-        End of the run [s]. This and the next eight come from the scene when absent.
+        End of the run [s], or a text with a unit, as all quantities here may be. This and the next
+        eight come from the scene when absent.
     every
         Interval between samples [s]. Samples are interpolated: more of them do not change the
         motion.
@@ -69,8 +70,8 @@ def simulate(
     accuracy
         Largest relative error of the tension [–], such as 0.01: method, step and onset depth are
         chosen for it by short trials at the beginning of the run, the same ones every time. 0.01
-        when neither the scene nor the caller gives one of them or a tolerance. Not together with
-        these.
+        when neither the scene nor the caller gives one of them or a tolerance: unlike `sweep`,
+        which chooses only where it is asked to. Not together with these.
     events
         Contacts to log from touch to parting: of ``"teeth"``, ``"guides"``, ``"joints"``.
     output
@@ -117,6 +118,8 @@ def simulate(
 
     Raises
     ------
+    SceneError
+        A text that is not of the setting's dimension.
     ParameterError
         A setting out of range or a channel that does not exist.
     AssemblyError
@@ -133,6 +136,7 @@ def simulate(
     >>> run["link_tension"].shape
     (3, 20)
     """
+    _needed(drive)
     defaults = drive.run_defaults
     given = {"method": method, "step": step, "tolerance": tolerance, "onset_depth": onset_depth}
     named = [name for name, value in given.items() if value is not None]
@@ -147,15 +151,24 @@ def simulate(
     if output is not None:
         _require_zarr()
     names = _listed(defaults["record"] if record is None else record)
+    quantities = {
+        "until": until,
+        "every": every,
+        "step": step,
+        "tolerance": tolerance,
+        "onset_depth": onset_depth,
+        "accuracy": accuracy,
+    }
+    read = {name: _number(drive, name, value) for name, value in quantities.items()}
     settings: dict[str, Any] = {
-        "until": defaults["until"] if until is None else until,
-        "every": defaults["every"] if every is None else every,
+        "until": defaults["until"] if until is None else read["until"],
+        "every": defaults["every"] if every is None else read["every"],
         "method": defaults["method"] if method is None else method,
         # The step of the scene goes with the method of the scene.
-        "step": defaults["step"] if step is None and method is None else step,
-        "tolerance": defaults["tolerance"] if tolerance is None else tolerance,
-        "onset_depth": defaults["onset_depth"] if onset_depth is None else onset_depth,
-        "accuracy": accuracy,
+        "step": defaults["step"] if step is None and method is None else read["step"],
+        "tolerance": defaults["tolerance"] if tolerance is None else read["tolerance"],
+        "onset_depth": defaults["onset_depth"] if onset_depth is None else read["onset_depth"],
+        "accuracy": read["accuracy"],
         "events": _listed(defaults["events"] if events is None else events),
     }
     start = time.perf_counter()

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from chaindrive import _core
-from chaindrive.drive import Drive, _json
+from chaindrive.drive import Drive, _json, _needed
 from chaindrive.errors import ParameterError, SimulationError
 from chaindrive.simulation import _Line, _listed
 
@@ -34,17 +34,21 @@ def sweep(
     until: float | str | None = None,
     every: float | str | None = None,
     record: str | Iterable[str] = (),
+    accuracy: float | str | None = None,
     jobs: int | None = None,
     executor: Executor | None = None,
     progress: bool | Callable[[float], object] = False,
 ) -> xr.Dataset:
     """Simulate every combination of some values in a drive's scene and stack the results.
 
-    Every variant is computed by one thread as `simulate` would compute it with the method of the
-    scene, or ``"auto"``: the numbers do not depend on `jobs` or `executor`, to the last bit. An
-    accuracy is kept where the scene asks for one (``run.accuracy``): each variant then begins with
-    trials of its own. The interpreter is free for other threads meanwhile, and Ctrl-C stops the
-    sweep.
+    Every variant is computed by one thread: the numbers do not depend on `jobs` or `executor`, to
+    the last bit. They are those of `simulate` with the same method. Where neither names one the
+    two differ: `simulate` chooses method and step for an accuracy of 1 %, a sweep takes
+    ``method="auto"`` with its default step, for the trials in every variant would double the cost
+    of short ones. `accuracy` has each variant choose for itself.
+
+    The interpreter is free for other threads meanwhile, and Ctrl-C stops the sweep: what is
+    finished is the `result` of the ``KeyboardInterrupt``.
 
     Parameters
     ----------
@@ -62,6 +66,12 @@ def sweep(
     record
         Names of channels to keep, see `channels`. None unless asked for: they take the memory of a
         run times the number of variants.
+    accuracy
+        Largest relative error of the tension [–], such as 0.01 or ``"1 %"``: every variant begins
+        with the trials of ``simulate(…, accuracy=…)``, and gives its bits. The same as
+        ``run.accuracy`` in the scene. Other settings of the run are given or varied as values of
+        the scene: ``run.method``, ``run.step``, ``run.tolerance``, ``run.onset_depth``,
+        ``run.events``.
     jobs
         Variants at a time; as many as there are cores when absent.
     executor
@@ -79,23 +89,30 @@ def sweep(
         - statistics of each variant, such as ``span_tension_mean``, ``span_tension_std``,
           ``span_tension_min``, ``span_tension_max`` (…, span), ``contact_force_p99``,
           ``contact_force_max`` [N], ``energy_dissipated_total``, ``energy_residual_max`` [J],
-          ``steps``; those of contacts by kind where the scene logs them. ``stepping_time`` and
+          ``steps``; those of contacts by kind where the scene logs them; ``accuracy_error`` and
+          ``accuracy_kept`` (1 or 0) where an accuracy was asked for. ``stepping_time`` and
           ``real_time_factor`` are measured, all others are the same with every sweep;
         - channels, (…, time) or (…, time, labels), NaN where a variant has fewer samples or labels
           than others;
         - ``error`` (…), a text: why a variant failed, empty when it did not. Its numbers are NaN.
 
         Attributes tell the ``scene`` that is varied, ``chaindrive_version``, ``method``, the number
-        of ``variants`` and of those ``failed``, ``wall_time`` [s] and a ``summary`` to print.
+        of ``variants`` and of those ``finished`` and ``failed``, ``status`` (``"complete"`` or
+        ``"interrupted"``), ``wall_time`` [s] and a ``summary`` to print.
 
     Raises
     ------
     SceneError
         A path leads nowhere, or a value does not belong there; before anything runs.
     ParameterError
-        Nothing is varied, a value stands twice, a channel does not exist.
+        Nothing is varied, a value stands twice, a channel does not exist; a value is varied that is
+        given as an argument too, or that an accuracy chooses.
     SimulationError
         The executor lost every variant.
+    KeyboardInterrupt
+        Ctrl-C. Its attribute `result` is the dataset as it would have been returned, with the
+        variants that were finished; ``error`` of the others says that they were not carried out.
+        Of an executor the chunks count that had come back.
 
     Examples
     --------
@@ -114,21 +131,21 @@ def sweep(
     >>> bool((result["error"] == "").all())
     True
     """
+    _needed(drive)
+    if not isinstance(vary, Mapping):
+        raise TypeError(f"vary is a {type(vary).__name__}, needed is a dict of values by path")
     if executor is not None and jobs is not None:
         message = "`jobs` is for the threads of this process; the executor decides on its own"
         raise ParameterError(message, "jobs", "leave it out, or give it to the executor")
     if jobs is not None and jobs < 1:
         raise ParameterError(f"jobs = {jobs}, must be at least 1", "jobs", "at least 1")
-    settings = {"run.until": until, "run.every": every}
-    settings = {path: value for path, value in settings.items() if value is not None}
-    if twice := settings.keys() & vary.keys():
-        path = min(twice)
-        name = path.removeprefix("run.")
-        raise ParameterError(f"`{path}` is varied, and given as `{name}`", name, "give one of them")
+    arguments = {"until": until, "every": every, "accuracy": accuracy}
+    settings = {f"run.{name}": value for name, value in arguments.items() if value is not None}
     base = drive.replace(settings) if settings else drive
     varied = tuple((path, _values(values, path)) for path, values in vary.items())
     recipe = (base.text, base.name, varied, tuple(_listed(record)))
-    core = _core.Sweep(*recipe)
+    given = [(path, path.removeprefix("run.")) for path in settings]
+    core = _core.Sweep(*recipe, given)
     start = time.perf_counter()
     line = _Line()
     tell = progress if callable(progress) else line if progress else None
@@ -136,10 +153,11 @@ def sweep(
         if executor is None:
             result = core.run(jobs, tell)
         else:
-            result = core.stack(_spread(recipe, len(core), executor, tell))
+            outcomes, interrupt = _spread(recipe, len(core), executor, tell)
+            result = core.stack(outcomes) | {"stop": interrupt}
     finally:
         line.close()
-    failed = sum(1 for error in result["errors"] if error)
+    stop: Any = result["stop"]
     attributes = {
         "title": base.title,
         "format": "chaindrive",
@@ -149,18 +167,27 @@ def sweep(
         "method": ", ".join(result["methods"]) or base.run_defaults["method"],
         "swept": [path for path, _ in varied],
         "variants": len(core),
-        "failed": failed,
+        "finished": result["finished"],
+        "failed": result["failed"],
+        "status": "complete" if stop is None else "interrupted",
         "wall_time": time.perf_counter() - start,
         "summary": result["summary"],
     }
-    return _dataset(result, attributes)
+    dataset = _dataset(result, attributes)
+    if stop is not None:
+        # The very exception, for a class of its own would change the exit code of a script.
+        stop.result = dataset
+        done = f"{result['finished']} of {len(core)} variants are done"
+        stop.add_note(f"{done}: `except KeyboardInterrupt as stop` finds them in `stop.result`")
+        raise stop
+    return dataset
 
 
 def _values(values: Any, path: str) -> tuple[str, ...]:
     """Return every value at a path as JSON."""
     if isinstance(values, np.ndarray | np.generic | xr.DataArray):
         values = np.asarray(values).tolist()
-    single = isinstance(values, str | Mapping) or not isinstance(values, Iterable)
+    single = isinstance(values, str | bytes | Mapping) or not isinstance(values, Iterable)
     return tuple(_json(_counted(value), path) for value in ([values] if single else values))
 
 
@@ -173,13 +200,17 @@ def _counted(value: Any) -> Any:
 
 def _spread(
     recipe: _Recipe, count: int, executor: Executor, tell: Callable[[float], object] | None
-) -> list[Any]:
-    """Have an executor compute all variants, and return their outcomes in their order."""
+) -> tuple[list[Any], KeyboardInterrupt | None]:
+    """Have an executor compute all variants, and return their outcomes in their order.
+
+    After Ctrl-C, which is returned too, None stands for those that had not come back.
+    """
     size = min(max(count // _CHUNKS, 1), _LARGEST_CHUNK)
     pending: dict[Future[list[Any]], range] = {}
     outcomes: list[Any] = [None] * count
     lost: list[Exception] = []
     finished = 0
+    stop = None
     try:
         for first in range(0, count, size):
             chunk = range(first, min(first + size, count))
@@ -198,13 +229,15 @@ def _spread(
             finished += len(chunk)
             if tell is not None:
                 tell(finished / count)
+    except KeyboardInterrupt as interrupt:
+        stop = interrupt
     finally:
         for future in pending:
             future.cancel()
-    if len(lost) == len(pending):
+    if stop is None and len(lost) == len(pending):
         message = f"the executor lost every variant: {type(lost[0]).__name__}: {lost[0]}"
         raise SimulationError(message, "executor") from lost[0]
-    return outcomes
+    return outcomes, stop
 
 
 def _part(version: str, recipe: _Recipe, first: int, end: int) -> list[Any]:

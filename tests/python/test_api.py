@@ -107,6 +107,18 @@ def test_description_is_a_dict_and_a_text():
     json.dumps(description)
 
 
+def test_a_description_says_where_a_run_will_choose_another_step():
+    drive = cd.scenes.marine_two_sprockets()
+    description = drive.describe()
+    assert description["cost"]["unless_chosen_for"] == 0.01
+    assert "by default; a run chooses them for an accuracy of 1 %" in str(description)
+    asking = drive.replace({"run.accuracy": 0.002}).describe()
+    assert "for an accuracy of 0.2 %" in str(asking)
+    named = drive.replace({"run.method": "verlet"}).describe()
+    assert named["cost"]["unless_chosen_for"] is None
+    assert "by default" not in str(named)
+
+
 def test_schema_is_a_schema():
     assert "chain" in cd.schema()["properties"]
 

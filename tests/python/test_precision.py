@@ -55,3 +55,48 @@ def test_steps_without_methods_are_refused():
         cd.work_precision(cd.scenes.spinning_ring(), steps=[1e-5])
     with pytest.raises(cd.ParameterError, match="repeats"):
         cd.work_precision(cd.scenes.spinning_ring(), repeats=0)
+
+
+@pytest.mark.parametrize(
+    ("settings", "error", "words"),
+    [
+        ({"methods": "verlet", "steps": [1e-6, 0.0]}, cd.ParameterError, "step = 0, must be posit"),
+        ({"methods": "verlet", "steps": [np.nan]}, cd.ParameterError, "step = NaN"),
+        ({"methods": "verlet", "steps": [1e-300]}, cd.ParameterError, "step = 1e-300, must be at"),
+        ({"methods": "verlet", "steps": ["1 kg"]}, cd.SceneError, "run.step"),
+        ({"methods": "verlet", "onset_depth": -1.0}, cd.ParameterError, "onset_depth = -1"),
+        ({"methods": "dormand-prince", "tolerances": [0.0]}, cd.ParameterError, "tolerance = 0"),
+        ({"methods": "dormand-prince", "steps": [1e-6]}, cd.ParameterError, "none among"),
+        ({"methods": "verlet", "tolerances": [1e-6]}, cd.ParameterError, "not among"),
+        ({"until": "1 kg"}, cd.SceneError, "run.until"),
+        ({"until": -1.0}, cd.ParameterError, "until = -1"),
+        ({"repeats": -1}, cd.ParameterError, "repeats = -1, must be at least 1"),
+        ({"replicates": 0}, cd.ParameterError, "replicates = 0"),
+    ],
+)
+def test_what_is_out_of_range_is_refused_at_once(settings, error, words):
+    with pytest.raises(error, match=words):
+        cd.work_precision(cd.scenes.spinning_ring(), **settings)
+
+
+def test_settings_are_texts_with_units_too():
+    ring = cd.scenes.spinning_ring()
+    texts = {"until": "2 ms", "every": "1 ms", "step": "10 us", "onset_depth": "1 um"}
+    numbers = {"until": 2e-3, "every": 1e-3, "step": 1e-5, "onset_depth": 1e-6}
+    one, other = (
+        cd.simulate(ring, **settings, record="link_tension") for settings in (texts, numbers)
+    )
+    np.testing.assert_array_equal(one["link_tension"], other["link_tension"])
+    assert one.attrs["step"] == 1e-5
+    chosen = cd.simulate(ring, until="2 ms", every="1 ms", accuracy="0.1 %")
+    assert chosen.attrs["accuracy"] == 1e-3
+    with pytest.raises(cd.SceneError, match=r"run\.accuracy"):
+        cd.simulate(ring, accuracy="1 mm")
+
+
+@pytest.mark.parametrize("drive", ["marine_engine", None])
+def test_what_is_not_a_drive_is_told_what_is(drive):
+    calls = [cd.simulate, cd.work_precision, lambda drive: cd.sweep(drive, {"chain.links": [20]})]
+    for call in calls:
+        with pytest.raises(TypeError, match=r"chaindrive\.load"):
+            call(drive)

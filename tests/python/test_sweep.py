@@ -60,6 +60,40 @@ def test_a_variant_is_the_run_of_its_drive(built_in):
     assert built_in.attrs["method"] == run.attrs["method"]
 
 
+@pytest.mark.parametrize("asked", ["argument", "scene"])
+def test_with_an_accuracy_every_variant_chooses_as_its_run_does(asked):
+    """The default step is the answer for neither variant, and the answers are different ones."""
+    settings = {"until": 4e-3, "every": 4e-4}
+    speeds = {SPEED: [-8.0, -60.0]}
+    if asked == "argument":
+        result = cd.sweep(marine(), speeds, **settings, record="link_tension", accuracy=1e-3)
+    else:
+        drive = marine().replace({"run.accuracy": "0.1 %"})
+        result = cd.sweep(drive, speeds, **settings, record="link_tension")
+    plain = cd.sweep(marine(), speeds, **settings)
+    assert "accuracy_kept" not in plain
+    assert len(np.unique(result["steps"])) == 2
+    for speed in [-8.0, -60.0]:
+        drive = marine().replace({SPEED: speed})
+        run = cd.simulate(drive, **settings, record="link_tension", accuracy=1e-3, error=False)
+        variant = result.sel(speed=speed)
+        assert variant["error"] == ""
+        assert (
+            variant["link_tension"].to_numpy().tobytes() == run["link_tension"].to_numpy().tobytes()
+        )
+        assert variant["steps"] == run.attrs["steps"]
+        assert variant["steps"] != plain["steps"].sel(speed=speed)
+        assert variant["accuracy_error"] == run.attrs["accuracy_error"]
+        assert bool(variant["accuracy_kept"] == 1) == (run.attrs["accuracy_kept"] == "kept")
+
+
+def test_an_accuracy_that_is_not_reached_is_told():
+    result = cd.sweep(marine(), {PRETENSION: [10e3]}, until=1e-3, accuracy=1e-12)
+    assert result["accuracy_kept"].to_numpy().tolist() == [0.0]
+    assert float(result["accuracy_error"][0]) > 1e-12
+    assert "1 without the accuracy asked for" in result.attrs["summary"]
+
+
 def test_dimensions_are_named_and_have_units(built_in):
     assert built_in["span_tension"].dims == ("speed", "torque", "pretension", "time", "span")
     assert built_in["span_tension_mean"].dims == ("speed", "torque", "pretension", "span")
@@ -172,7 +206,22 @@ def test_values_may_be_anything_that_a_scene_takes():
         ({"chain.links": np.linspace(112, 113, 3)}, {}, cd.SceneError, "chain.links"),
         ({"chain.links": [112]}, {"record": "link_tensoin"}, cd.ParameterError, "did you mean"),
         ({"chain.links": [112]}, {"jobs": 0}, cd.ParameterError, "at least 1"),
-        ({"run.until": [1e-3]}, {"until": 1e-3}, cd.ParameterError, "until"),
+        ({"run.until": [1e-3]}, {"until": 1e-3}, cd.ParameterError, "given as `until` as well"),
+        ({" run.every": [1e-3]}, {"every": 1e-3}, cd.ParameterError, "given as `every` as well"),
+        ({"run": [{"step": 1e-6}]}, {"until": 1e-3}, cd.ParameterError, "`run` is varied"),
+        ({"run.accuracy": [0.1]}, {"accuracy": 0.1}, cd.ParameterError, "given as `accuracy`"),
+        ({"run.step": [1e-6]}, {"accuracy": 0.1}, cd.ParameterError, "asks for an accuracy"),
+        ({PRETENSION: [1e3], "route": [{}]}, {}, cd.ParameterError, "and then replaced"),
+        (
+            {PRETENSION: [1e3]},
+            {"accuracy": 2.0},
+            cd.SceneError,
+            "run.accuracy: 2, must be less than 1",
+        ),
+        ({PRETENSION: [1e3]}, {"accuracy": 1.0}, cd.SceneError, "must be less than 1"),
+        ({PRETENSION: b"abc"}, {}, cd.ParameterError, "bytes has no place"),
+        ([PRETENSION], {}, TypeError, "a dict of values by path"),
+        ({PRETENSION: [1e3]}, {"accuracy": "1 mm"}, cd.SceneError, "is a length"),
         ({"run.every": [1e-3, 2e-3]}, {"record": "contacts"}, cd.ParameterError, "interval"),
     ],
 )
@@ -188,20 +237,66 @@ def test_jobs_are_not_for_executors():
         cd.sweep(marine(), VARY, jobs=2, executor=executor)
 
 
-def test_a_sweep_is_interrupted_and_leaves_the_interpreter_free():
-    """Variants that would take days; another thread of this interpreter sends the interrupt."""
+def interrupt_after(wait):
+    """Send Ctrl-C from another thread of this interpreter, which has to be free for it."""
 
     def interrupt():
+        wait()
+        # By now the sweep waits for what never ends.
         time.sleep(0.5)
         os.kill(os.getpid(), signal.SIGINT)
 
     thread = threading.Thread(target=interrupt)
-    begin = time.monotonic()
     thread.start()
-    with pytest.raises(KeyboardInterrupt):
-        cd.sweep(cd.scenes.spinning_ring(), {"run.until": [1e5, 2e5, 3e5]}, every=1e-2)
+    return thread
+
+
+def test_an_interrupted_sweep_leaves_the_interpreter_free_and_keeps_what_is_finished():
+    """A variant that ends at once, and three that would take days."""
+    finished = threading.Event()
+    thread = interrupt_after(finished.wait)
+    begin = time.monotonic()
+    vary = {"run.until": [1e-3, 1e5, 2e5, 3e5]}
+
+    def progress(share):
+        if share > 0.0:
+            finished.set()
+
+    with pytest.raises(KeyboardInterrupt) as caught:
+        cd.sweep(cd.scenes.spinning_ring(), vary, every=5e-4, jobs=2, progress=progress)
     thread.join()
     assert time.monotonic() - begin < 60.0
+    assert caught.type is KeyboardInterrupt, "scripts end as after any other Ctrl-C"
+    assert "1 of 4 variants are done" in caught.value.__notes__[0]
+    kept = caught.value.result
+    alone = cd.sweep(cd.scenes.spinning_ring(), {"run.until": [1e-3]}, every=5e-4)
+    assert_same_bits(kept.isel(until=[0]), alone)
+    assert [bool(text) for text in kept["error"].to_numpy()] == [False, True, True, True]
+    assert "not carried out" in str(kept["error"][1].item())
+    assert bool(kept["steps"][1:].isnull().all())
+    told = {name: kept.attrs[name] for name in ["status", "variants", "finished", "failed"]}
+    assert told == {"status": "interrupted", "variants": 4, "finished": 1, "failed": 0}
+    assert alone.attrs["status"] == "complete"
+
+
+def test_an_interrupted_executor_keeps_the_chunks_that_came_back():
+    class Endless(ThreadPoolExecutor):
+        """Never ends the second variant."""
+
+        def submit(self, task, /, *arguments):
+            return Future() if arguments[-2] == 1 else super().submit(task, *arguments)
+
+    returned = threading.Event()
+    thread = interrupt_after(returned.wait)
+    settings = {"until": 1e-3, "progress": lambda share: share > 0.5 and returned.set()}
+    with Endless(1) as executor, pytest.raises(KeyboardInterrupt) as caught:
+        cd.sweep(marine(), {PRETENSION: [10e3, 12e3, 14e3]}, **settings, executor=executor)
+    thread.join()
+    kept = caught.value.result
+    assert [bool(text) for text in kept["error"].to_numpy()] == [False, True, False]
+    assert kept.attrs["finished"] == 2
+    whole = cd.sweep(marine(), {PRETENSION: [10e3, 12e3, 14e3]}, until=1e-3)
+    assert_same_bits(kept.isel(pretension=[0, 2]), whole.isel(pretension=[0, 2]))
 
 
 def test_progress_that_raises_stops_the_sweep():

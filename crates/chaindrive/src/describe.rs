@@ -174,6 +174,15 @@ impl Description {
     }
 }
 
+impl Description {
+    /// Says that a run will choose method and step for this accuracy, if for any, instead of those described.
+    #[must_use]
+    pub fn unless_chosen_for(mut self, accuracy: Option<f64>) -> Self {
+        self.cost.unless_chosen_for = accuracy;
+        self
+    }
+}
+
 /// Everything that can be read off the assembled drive.
 fn at_start(assembled: &Assembled) -> Observation {
     let system = &assembled.system;

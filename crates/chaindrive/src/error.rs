@@ -11,7 +11,7 @@ use crate::{Run, Stepping};
 #[expect(missing_docs, reason = "each message names its fields")]
 pub enum SimulationError {
     /// A setting of the run is out of range.
-    #[error("{name} = {value}, must be {allowed}")]
+    #[error("{name} = {}, must be {allowed}", shown(*.value))]
     Setting {
         name: &'static str,
         value: f64,
@@ -94,6 +94,16 @@ impl SimulationError {
             },
             other => Self::Integration(other),
         }
+    }
+}
+
+/// A number without hundreds of zeros.
+fn shown(value: f64) -> String {
+    let plain = !value.is_finite() || value == 0.0 || (1e-6..1e15).contains(&value.abs());
+    if plain {
+        value.to_string()
+    } else {
+        format!("{value:e}")
     }
 }
 

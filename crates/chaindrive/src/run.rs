@@ -119,6 +119,9 @@ impl From<Method> for Stepping {
     }
 }
 
+/// Steps of a run at most: at a microsecond each they would take eleven days.
+const MOST_STEPS: f64 = 1e12;
+
 /// Default steps in units of 1/ω of the stiffest mode. Verlet is stable to 2; contacts stiffen
 /// as they are pressed, and accuracy asks for a quarter of that anyway.
 const VERLET_STEP: f64 = 0.5;
@@ -194,6 +197,14 @@ impl Run {
         self.step.map_or(Ok(()), |step| positive("step", step))?;
         self.onset_depth
             .map_or(Ok(()), |depth| positive("onset_depth", depth))?;
+        // Time would stand still: t + h = t.
+        if self.step.is_some_and(|step| self.until / step > MOST_STEPS) {
+            return Err(SimulationError::Setting {
+                name: "step",
+                value: self.step.unwrap_or_default(),
+                allowed: "at least 1e-12 of `until`",
+            });
+        }
         if self.until / self.every > 1e9 {
             return Err(SimulationError::Setting {
                 name: "every",

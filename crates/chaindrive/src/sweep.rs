@@ -41,6 +41,22 @@ pub enum SweepError {
     )]
     Nothing,
 
+    /// A path within another that is put in later.
+    #[error(
+        "`{path}` is varied, and then replaced by the values of `{by}`; name `{by}` first, or leave out one of them"
+    )]
+    Covered { path: String, by: String },
+
+    /// A setting that a varied path replaces.
+    #[error("`{path}` is varied, and given as `{given}` as well; give one of them")]
+    Given { path: String, given: String },
+
+    /// A method or step that an accuracy chooses.
+    #[error(
+        "`{path}` is varied, but `run.accuracy` asks for an accuracy, and method and step are chosen for it; leave out one of them"
+    )]
+    Chosen { path: String },
+
     /// A path without values.
     #[error("`{path}` has no values; give at least one")]
     Empty { path: String },
@@ -138,6 +154,9 @@ pub struct Sweep {
 /// Variants at most: at a second each they would take a week and a half.
 const MOST: usize = 1_000_000;
 
+/// What an accuracy chooses, whatever the scene says about it.
+const CHOSEN: [&str; 4] = ["run.method", "run.step", "run.tolerance", "run.onset_depth"];
+
 /// Wall time between two looks at progress and interrupts while no variant ends.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -183,9 +202,22 @@ impl Sweep {
                 }
                 Ok::<_, SceneError>(changed)
             };
-            let place = with(&settings[0])?.place(path);
+            let first = with(&settings[0])?;
+            let place = first.place(path);
             if places.contains(&place) {
                 return Err(SweepError::Twice { path: path.clone() });
+            }
+            let covered = places
+                .iter()
+                .find(|earlier| first.encloses(&place, earlier));
+            if let Some(covered) = covered {
+                return Err(SweepError::Covered {
+                    path: covered.clone(),
+                    by: path.clone(),
+                });
+            }
+            if CHOSEN.contains(&place.as_str()) && first.run_defaults().accuracy.is_some() {
+                return Err(SweepError::Chosen { path: path.clone() });
             }
             places.push(place);
             let mut every = None;
@@ -208,6 +240,29 @@ impl Sweep {
             record: record.to_vec(),
             len,
         })
+    }
+
+    /// Refuses settings that a varied path would silently replace: pairs of the path in the scene, into which they
+    /// have been put, and of what the user calls them.
+    ///
+    /// # Errors
+    /// [`SweepError::Given`] for the first one.
+    pub fn check_given(&self, given: &[(String, String)]) -> Result<(), SweepError> {
+        for (path, name) in given {
+            let chosen = CHOSEN.contains(&self.scene.place(path).as_str());
+            let replaces = |varied: &str| {
+                let accuracy = chosen && self.scene.place(varied) == "run.accuracy";
+                accuracy || self.scene.encloses(varied, path)
+            };
+            let mut varied = self.dimensions.iter().map(|dimension| &dimension.path);
+            if let Some(varied) = varied.find(|varied| replaces(varied)) {
+                return Err(SweepError::Given {
+                    path: varied.clone(),
+                    given: name.clone(),
+                });
+            }
+        }
+        Ok(())
     }
 
     /// The scene that is varied.

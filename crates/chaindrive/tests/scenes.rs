@@ -106,6 +106,33 @@ fn a_scene_in_json_stays_json() {
 }
 
 #[test]
+fn a_value_is_left_out_and_the_rest_of_the_text_stays() {
+    let scene = Scene::preset("marine_engine").unwrap();
+    let asking = scene.replace("run.accuracy", "0.1 %").unwrap();
+    assert_eq!(asking.run_defaults().accuracy, Some(1e-3));
+    let again = asking.without("run.accuracy").unwrap();
+    assert_eq!(again.text(), scene.text());
+    // What is not there is not missed.
+    assert_eq!(scene.without("run.accuracy").unwrap(), scene);
+    let idle = scene.without("sprockets.camshaft.load").unwrap();
+    assert!(!idle.text().contains("camshaft load"), "{}", idle.text());
+    assert!(idle.datum("sprockets.camshaft.load[0].torque").is_none());
+    let json = r#"{"chain": {"pitch": "10 mm", "links": 8, "mass": 0.01, "stiffness": 1e6,
+        "start": {"kind": "ring", "speed": "100 rad/s"}}, "run": {"step": 1e-6, "accuracy": 0.01}}"#;
+    let ring = Scene::from_text(json, "ring.json").unwrap();
+    let ring = ring.without("run.accuracy").unwrap();
+    assert_eq!(ring.run_defaults().accuracy, None);
+    assert_eq!(ring.run_defaults().step, Some(1e-6));
+    for (path, words) in [
+        ("chain.links", "chain.links: missing"),
+        ("sprockets[0]", "nothing can be left out here"),
+    ] {
+        let error = scene.without(path).unwrap_err().to_string();
+        assert!(error.contains(words), "{path}: {error}");
+    }
+}
+
+#[test]
 fn replacements_that_lead_nowhere() {
     let scene = Scene::preset("marine_engine").unwrap();
     for (path, value, fragment) in [

@@ -97,6 +97,29 @@ fn a_variant_is_the_run_of_its_scene() -> Checked {
     Ok(())
 }
 
+/// What one path puts in and another one replaces would be the same in every variant.
+#[test]
+fn a_path_that_another_one_replaces_is_refused() -> Checked {
+    let steps = texts("run.step", ["1 us", "2 us"]);
+    let tables = texts("run", ["{}", "{ method = 'rk4' }"]);
+    let scene = marine("1 ms")?;
+    let covered = Sweep::new(&scene, &[steps.clone(), tables.clone()], &[]);
+    assert!(matches!(covered, Err(SweepError::Covered { .. })));
+    assert_eq!(Sweep::new(&scene, &[tables, steps.clone()], &[])?.len(), 4);
+
+    let asking = scene.replace("run.accuracy", "1 %")?;
+    let chosen = Sweep::new(&asking, std::slice::from_ref(&steps), &[]);
+    assert!(matches!(chosen, Err(SweepError::Chosen { .. })));
+    for vary in [
+        [steps.clone(), texts("run.accuracy", ["1 %", "2 %"])],
+        [texts("run.accuracy", ["1 %", "2 %"]), steps.clone()],
+    ] {
+        let chosen = Sweep::new(&scene, &vary, &[]);
+        assert!(matches!(chosen, Err(SweepError::Chosen { .. })));
+    }
+    Ok(())
+}
+
 #[test]
 fn dimensions_are_named_by_the_end_of_their_path_and_keep_si_values() -> Checked {
     let vary = [

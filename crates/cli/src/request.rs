@@ -99,6 +99,14 @@ pub(crate) fn load(name: &str) -> Result<Scene, Failure> {
 }
 
 impl SceneArguments {
+    /// Paths that are changed, and how the command line says so.
+    pub(crate) fn given(&self) -> Vec<(String, String)> {
+        let paths = self.set.iter().filter_map(|change| change.split_once('='));
+        paths
+            .map(|(path, _)| (path.trim().to_owned(), format!("--set {}", path.trim())))
+            .collect()
+    }
+
     /// The scene with its changes.
     pub(crate) fn load(&self) -> Result<Scene, Failure> {
         let mut scene = load(&self.scene)?;
@@ -128,20 +136,44 @@ impl RunArguments {
         }
     }
 
+    /// What is given: paths in the scene, and the options of the command line.
+    pub(crate) fn given(&self) -> Vec<(String, String)> {
+        let named = [
+            ("run.record", "--record", &self.record),
+            ("run.events", "--events", &self.events),
+        ];
+        let named = named.map(|(path, option, names)| (path, option, !names.is_empty()));
+        let settings = self.settings();
+        let settings = settings.map(|(path, option, value)| (path, option, value.is_some()));
+        let all = settings.into_iter().chain(named);
+        all.filter(|(.., given)| *given)
+            .map(|(path, option, _)| (path.to_owned(), option.to_owned()))
+            .collect()
+    }
+
+    /// Path in the scene, option and value.
+    fn settings(&self) -> [(&'static str, &'static str, &Option<String>); 7] {
+        [
+            ("run.until", "--until", &self.until),
+            ("run.every", "--every", &self.every),
+            ("run.method", "--method", &self.method),
+            ("run.step", "--step", &self.step),
+            ("run.tolerance", "--tolerance", &self.tolerance),
+            ("run.onset_depth", "--onset-depth", &self.onset_depth),
+            ("run.accuracy", "--accuracy", &self.accuracy),
+        ]
+    }
+
     /// Writes the settings into the scene and reads all of them from there.
     ///
     /// The channels are names: which of them a chain has is known when it is assembled.
     pub(crate) fn apply(&self, mut scene: Scene) -> Result<Request, Failure> {
-        let settings = [
-            ("run.until", &self.until),
-            ("run.every", &self.every),
-            ("run.method", &self.method),
-            ("run.step", &self.step),
-            ("run.tolerance", &self.tolerance),
-            ("run.onset_depth", &self.onset_depth),
-            ("run.accuracy", &self.accuracy),
-        ];
-        for (path, value) in settings {
+        // What the command line says about the method goes before the accuracy of the scene.
+        let method = [&self.method, &self.step, &self.tolerance, &self.onset_depth];
+        if method.iter().any(|setting| setting.is_some()) {
+            scene = scene.without("run.accuracy")?;
+        }
+        for (path, _, value) in self.settings() {
             if let Some(value) = value {
                 scene = scene.replace(path, value)?;
             }
@@ -162,13 +194,7 @@ impl RunArguments {
         };
         run.check().map_err(wrong)?;
         Channel::check(&wanted.record).map_err(wrong)?;
-        let given = [&self.method, &self.step, &self.tolerance, &self.onset_depth];
-        // What the command line says about the method goes before the accuracy of the scene.
-        let accuracy = if given.iter().any(|setting| setting.is_some()) {
-            None
-        } else {
-            wanted.chosen_accuracy()
-        };
+        let accuracy = wanted.chosen_accuracy();
         Ok(Request {
             scene,
             run,

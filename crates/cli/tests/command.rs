@@ -1,4 +1,4 @@
-//! Every verb of the command, its exit codes, and what it leaves on disk.
+//! The verbs of the command, their exit codes, and what they leave on disk.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use std::fs;
@@ -507,52 +507,4 @@ fn the_method_is_chosen_unless_it_is_given() {
     let (code, _, err) = run(at, &[&short[..], &["--accuracy", "120 %"]].concat());
     assert_eq!(code, 2);
     assert!(err.contains("accuracy"), "{err}");
-}
-
-#[test]
-fn the_bench_prints_a_table_and_saves_it_with_its_diagram() {
-    let folder = folder();
-    let at = folder.path();
-    let short = [
-        "bench",
-        "spinning_ring",
-        "--until",
-        "5 ms",
-        "--repeats",
-        "1",
-    ];
-    let methods = [
-        "--methods",
-        "verlet,rk4,generalized-alpha",
-        "--steps",
-        "4e-5,2e-5",
-    ];
-    let (code, out, err) = run(at, &[&short[..], &methods].concat());
-    assert_eq!(code, 0, "{err}");
-    assert!(
-        out.contains("checked by               dormand-prince"),
-        "{out}"
-    );
-    assert!(out.contains("verlet, step 4.00e-5 s"), "{out}");
-    assert!(
-        out.contains("choose verlet"),
-        "a method that fails stays: {out}"
-    );
-    let csv = fs::read_to_string(at.join("work-precision.csv")).unwrap();
-    assert!(csv.starts_with("method,step,tolerance,onset_depth,wall,cpu,"));
-    assert_eq!(csv.lines().count(), 1 + 6 + 2);
-    let svg = fs::read_to_string(at.join("work-precision.svg")).unwrap();
-    for word in ["<svg", "verlet", "rk4", "wall time", "Spinning ring"] {
-        assert!(svg.contains(word), "{word}");
-    }
-
-    let (code, _, err) = run(at, &short);
-    assert_eq!(code, 3, "{err}");
-    assert!(err.contains("--overwrite"), "{err}");
-    let (code, _, err) = run(
-        at,
-        &["bench", "spinning_ring", "--steps", "1e-5", "-o", "other"],
-    );
-    assert_eq!(code, 2);
-    assert!(err.contains("--methods"), "{err}");
 }

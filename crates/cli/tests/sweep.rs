@@ -174,6 +174,102 @@ fn what_is_wrong_is_refused_before_anything_is_written() {
     assert_eq!(fs::read_dir(at).unwrap().count(), 1);
 }
 
+/// Neither of two answers to one question wins silently.
+#[test]
+fn what_is_varied_is_not_given_as_well() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let cases: [(&[&str], &str); 9] = [
+        (
+            &["--vary", "run.until=1 ms,2 ms", "--until", "3 ms"],
+            "`run.until` is varied, and given as `--until` as well; give one of them",
+        ),
+        (
+            &["--vary", "run . every=1 ms", "--every", "3 ms"],
+            "given as `--every`",
+        ),
+        (
+            &["--vary", "run={method='rk4'},{}", "--step", "1 us"],
+            "`run` is varied, and given as `--step`",
+        ),
+        (
+            &[
+                "--vary",
+                "run.record=['link_tension']",
+                "--record",
+                "contacts",
+            ],
+            "given as `--record`",
+        ),
+        (
+            &["--vary", "run.events=['teeth'],[]", "--events", "teeth"],
+            "given as `--events`",
+        ),
+        (
+            &["--vary", "chain.mass=1 g,2 g", "--set", "chain.mass=3 g"],
+            "given as `--set chain.mass`",
+        ),
+        (
+            &["--vary", "run.accuracy=1%,2%", "--method", "rk4"],
+            "`run.accuracy` is varied, and given as `--method`",
+        ),
+        (
+            &["--vary", "run.step=1 us,2 us", "--accuracy", "1%"],
+            "`run.accuracy` asks for an accuracy",
+        ),
+        (
+            &["--vary", "chain.mass=1 g,2 g", "--vary", "chain='08B-1'"],
+            "`chain.mass` is varied, and then replaced",
+        ),
+    ];
+    for (arguments, words) in cases {
+        let arguments = [&["spinning_ring", "-o", "a.zarr"], arguments].concat();
+        let (code, out, err) = sweep(at, &arguments);
+        assert_eq!((code, out.as_str()), (2, ""), "{arguments:?}: {err}");
+        assert!(err.contains(words), "{arguments:?}: {err}");
+    }
+    assert_eq!(fs::read_dir(at).unwrap().count(), 0);
+}
+
+/// The command line speaks last, in a sweep as in a run.
+#[test]
+fn a_named_method_goes_before_the_accuracy_of_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = [
+        "spinning_ring",
+        "--set",
+        "run.accuracy=1%",
+        "--vary",
+        "chain.start.speed=300",
+        "--until",
+        "1 ms",
+        "-o",
+        "a.zarr",
+        "--method",
+        "rk4",
+    ];
+    let (code, _, err) = sweep(folder.path(), &arguments);
+    assert_eq!((code, err.as_str()), (0, ""));
+    let about = attributes(&folder.path().join("a.zarr"));
+    assert_eq!(about["method"], "rk4");
+    // The text reproduces what was done.
+    let scene = about["scene"].as_str().unwrap();
+    assert!(!scene.contains("accuracy"), "{scene}");
+}
+
+#[test]
+fn the_help_says_that_a_sweep_has_no_accuracy_of_its_own() {
+    let (code, out, _) = sweep(Path::new("."), &["--help"]);
+    assert_eq!(code, 0);
+    let out = out.split_whitespace().collect::<Vec<_>>().join(" ");
+    for words in [
+        "There a sweep takes the default step",
+        "None unless given here",
+    ] {
+        assert!(out.contains(words), "{words}: {out}");
+    }
+}
+
 /// Waits until the result of the first variant is written.
 #[cfg(unix)]
 fn wait_for_a_variant(path: &Path) {

@@ -190,7 +190,8 @@ impl Drive {
     fn describe(&self, py: Python<'_>) -> PyResult<(String, String)> {
         let description = py
             .detach(|| Description::of(&self.drive, &self.run()))
-            .or_raise()?;
+            .or_raise()?
+            .unless_chosen_for(self.scene.run_defaults().chosen_accuracy());
         let json = serde_json::to_string(&description)
             .map_err(|error| parameter(error.to_string(), "description", "finite"))?;
         Ok((description.to_string(), json))

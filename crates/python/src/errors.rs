@@ -135,8 +135,13 @@ impl IntoException for SweepError {
             Self::Empty { path }
             | Self::Twice { path }
             | Self::Repeated { path, .. }
+            | Self::Covered { path, .. }
+            | Self::Chosen { path }
             | Self::Intervals { path }
             | Self::Range { path, .. } => python::ParameterError::new_err((message, path)),
+            Self::Given { given, .. } => {
+                python::ParameterError::new_err((message, given, "give one of them"))
+            }
             Self::Threads { .. } => python::ParameterError::new_err((message, "jobs")),
             _ => python::ParameterError::new_err((message,)),
         }

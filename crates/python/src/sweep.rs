@@ -5,7 +5,7 @@ use std::time::Instant;
 use chaindrive::Scene;
 use chaindrive::sweep::{self, Account, Coordinate, Go, Outcome, Progress, Quantity, Setting};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -30,14 +30,17 @@ struct Parts<'py>(
 
 #[pymethods]
 impl Sweep {
-    /// Paths with their values as JSON, put into the scene of a text.
+    /// Paths with their values as JSON, put into the scene of a text; `given` are paths that have been put there
+    /// before, with what the caller calls them.
     #[new]
+    #[pyo3(signature = (text, name, vary, record, given=Vec::new()))]
     fn new(
         py: Python<'_>,
         text: &str,
         name: &str,
         vary: Vec<(String, Vec<String>)>,
         record: Vec<String>,
+        given: Vec<(String, String)>,
     ) -> PyResult<Self> {
         let mut settings = Vec::new();
         for (path, values) in vary {
@@ -53,38 +56,53 @@ impl Sweep {
         }
         let scene = Scene::from_text(text, name).or_raise()?;
         let sweep = py.detach(|| sweep::Sweep::new(&scene, &settings, &record));
-        Ok(Self(sweep.or_raise()?))
+        let sweep = sweep.or_raise()?;
+        sweep.check_given(&given).or_raise()?;
+        Ok(Self(sweep))
     }
 
     fn __len__(&self) -> usize {
         self.0.len()
     }
 
-    /// Runs all variants and stacks them.
+    /// Runs all variants and stacks them. An interrupt by the user is not raised: it is the entry `stop` of the
+    /// answer, and what it left undone is open.
     fn run<'py>(
         &self,
         py: Python<'py>,
         jobs: Option<usize>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let outcomes = py.detach(|| self.carry_out(0, self.0.len(), jobs, progress.as_ref()))?;
-        self.stacked(py, &outcomes)
+        let (outcomes, raised) =
+            py.detach(|| self.carry_out(0, self.0.len(), jobs, progress.as_ref()))?;
+        let answer = self.stacked(py, &outcomes)?;
+        match raised {
+            None => answer.set_item("stop", py.None())?,
+            Some(stop) if stop.is_instance_of::<PyKeyboardInterrupt>(py) => {
+                answer.set_item("stop", stop)?;
+            }
+            Some(error) => return Err(error),
+        }
+        Ok(answer)
     }
 
     /// Runs the variants from `first` to before `end` on one thread, and returns their outcomes.
     fn part<'py>(&self, py: Python<'py>, first: usize, end: usize) -> PyResult<Vec<Parts<'py>>> {
-        let outcomes = py.detach(|| self.carry_out(first, end, Some(1), None))?;
+        let (outcomes, raised) = py.detach(|| self.carry_out(first, end, Some(1), None))?;
+        raised.map_or(Ok(()), Err)?;
         let parts = outcomes.into_iter().map(|outcome| parts(py, outcome));
         Ok(parts.collect())
     }
 
-    /// Stacks the outcomes of all variants.
+    /// Stacks the outcomes of all variants; None for those that were not carried out.
     fn stack<'py>(
         &self,
         py: Python<'py>,
-        outcomes: Vec<Parts<'py>>,
+        outcomes: Vec<Option<Parts<'py>>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let outcomes = outcomes.into_iter().map(whole);
+        let outcomes = outcomes
+            .into_iter()
+            .map(|parts| parts.map_or(Ok(Outcome::Open), whole));
         let outcomes: Vec<Outcome> = outcomes.collect::<PyResult<_>>()?;
         if outcomes.len() != self.0.len() {
             return Err(PyValueError::new_err("one outcome a variant is needed"));
@@ -94,13 +112,14 @@ impl Sweep {
 }
 
 impl Sweep {
+    /// The outcomes so far, and what Python raised meanwhile: then some of them are open.
     fn carry_out(
         &self,
         first: usize,
         end: usize,
         jobs: Option<usize>,
         progress: Option<&Py<PyAny>>,
-    ) -> PyResult<Vec<Outcome>> {
+    ) -> PyResult<(Vec<Outcome>, Option<PyErr>)> {
         let mut raised = None;
         let mut looked = Instant::now();
         let watch = |state: Progress<'_>| {
@@ -118,7 +137,7 @@ impl Sweep {
             }
         };
         let outcomes = self.0.run_some(first..end, jobs, watch).or_raise()?;
-        raised.map_or(Ok(outcomes), Err)
+        Ok((outcomes, raised))
     }
 
     fn stacked<'py>(&self, py: Python<'py>, outcomes: &[Outcome]) -> PyResult<Bound<'py, PyDict>> {
@@ -146,6 +165,9 @@ impl Sweep {
         }
         answer.set_item("quantities", quantities)?;
         answer.set_item("errors", stacked.errors)?;
+        let count = |of: fn(&Outcome) -> bool| outcomes.iter().filter(|it| of(it)).count();
+        answer.set_item("finished", count(|it| matches!(it, Outcome::Done(_))))?;
+        answer.set_item("failed", count(|it| matches!(it, Outcome::Failed(_))))?;
         answer.set_item("methods", stacked.methods)?;
         answer.set_item("summary", self.0.report(outcomes).to_string())?;
         Ok(answer)

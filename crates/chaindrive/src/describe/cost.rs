@@ -29,6 +29,8 @@ pub struct Cost {
     pub real_time_ratio: f64,
     /// Steps measured.
     pub measured: u64,
+    /// Accuracy \[–\] that a run chooses another method or step for; absent where it takes these.
+    pub unless_chosen_for: Option<f64>,
 }
 
 /// Steps to warm up with, and to measure.
@@ -77,5 +79,6 @@ pub(super) fn measure(assembled: &Assembled, run: &Run) -> Result<Cost, Simulati
         run_time,
         real_time_ratio: run_time / run.until,
         measured: taken,
+        unless_chosen_for: None,
     })
 }

@@ -170,6 +170,13 @@ impl Description {
             "method",
             &format!("{}, step {mean}{:.3e} s", cost.method, cost.step),
         )?;
+        if let Some(accuracy) = cost.unless_chosen_for {
+            let text = format!(
+                "by default; a run chooses them for an accuracy of {} %",
+                accuracy * 100.0
+            );
+            row(f, "", &text)?;
+        }
         let extent = format!(
             "{} s in {:.0} steps, {:.0} samples",
             cost.until, cost.steps, cost.samples

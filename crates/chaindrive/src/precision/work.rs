@@ -101,6 +101,13 @@ pub fn work_precision(
     watch: Watch<'_>,
 ) -> Result<Table, SimulationError> {
     let window = window(start, run, study)?;
+    for variant in &study.variants {
+        let wanted = Run {
+            until: window.until,
+            ..variant.run(run)
+        };
+        wanted.check()?;
+    }
     let taken =
         |variant: &Variant, from: &Assembled| Trace::take(from, &variant.run(run), &window, watch);
     let [reference, check] = references(start);

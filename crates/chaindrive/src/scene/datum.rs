@@ -1,6 +1,6 @@
 //! Looks up single values of a scene, as they were understood: quantities in SI units.
 
-use super::tree::Value;
+use super::tree::{Value, steps};
 use super::{Scene, schema, validate};
 
 /// A value of a scene.
@@ -40,6 +40,22 @@ impl Scene {
             Value::Truth(truth) => Some(Datum::Text(truth.to_string())),
             Value::List(_) | Value::Table(_) | Value::Date => None,
         }
+    }
+
+    /// Whether a place is another one, or lies in it: what is put at `outer` takes the place of what is at `inner`.
+    ///
+    /// ```
+    /// use chaindrive::Scene;
+    ///
+    /// let scene = Scene::preset("marine_engine")?;
+    /// assert!(scene.encloses("sprockets.crank", "sprockets[0].teeth"));
+    /// assert!(!scene.encloses("sprockets[0].teeth", "sprockets.crank"));
+    /// # Ok::<(), chaindrive::scene::SceneError>(())
+    /// ```
+    pub fn encloses(&self, outer: &str, inner: &str) -> bool {
+        let (outer, inner) = (self.place(outer), self.place(inner));
+        steps(&inner).zip(steps(&outer)).all(|(a, b)| a == b)
+            && steps(&outer).count() <= steps(&inner).count()
     }
 
     /// A path in its written form, with entries of lists by index: what two names of one place share.

@@ -40,6 +40,30 @@ impl Scene {
         }
     }
 
+    /// The scene without the value at a path, checked anew; the scene as it is if there is none.
+    ///
+    /// # Errors
+    /// As [`Scene::replace`]: a path that leads nowhere, a value that cannot be missed.
+    pub fn without(&self, path: &str) -> Result<Self, SceneError> {
+        if self.tree.find(path).is_none() {
+            return Ok(self.clone());
+        }
+        let keys = self.keys(path)?;
+        let text = if is_json(&self.text) {
+            let mut root: Json = serde_json::from_str(&self.text).unwrap_or_default();
+            take_json(&mut root, &keys)
+                .ok_or_else(|| self.refuse(path, "nothing can be left out here", None))?;
+            format!("{root:#}\n")
+        } else {
+            let text = self.text.strip_prefix('\u{feff}').unwrap_or(&self.text);
+            let mut document: DocumentMut = text.parse().unwrap_or_default();
+            take_toml(document.as_item_mut(), &keys)
+                .ok_or_else(|| self.refuse(path, "nothing can be left out here", None))?;
+            document.to_string()
+        };
+        Self::from_text(&text, &self.name)
+    }
+
     fn put(&self, path: &str, json: &Json, toml: Toml) -> Result<Self, SceneError> {
         let keys = self.keys(path)?;
         let text = if is_json(&self.text) {
@@ -204,6 +228,33 @@ fn put_inline(place: &mut Toml, keys: &[Key], value: Toml) -> Option<()> {
         }
     };
     put_inline(next, rest, value)
+}
+
+/// Takes a key out of a table.
+fn take_json(root: &mut Json, keys: &[Key]) -> Option<()> {
+    let (Key::Name(last), way) = keys.split_last()? else {
+        return None;
+    };
+    let table = way.iter().try_fold(root, |place, key| match key {
+        Key::Index(index) => place.get_mut(index),
+        Key::Name(name) => place.get_mut(name),
+    });
+    // `remove` would put the last entry in its place.
+    table?.as_object_mut()?.shift_remove(last)?;
+    Some(())
+}
+
+/// Takes a key out of a table.
+fn take_toml(root: &mut Item, keys: &[Key]) -> Option<()> {
+    let (Key::Name(last), way) = keys.split_last()? else {
+        return None;
+    };
+    let table = way.iter().try_fold(root, |place, key| match key {
+        Key::Index(index) => place.get_mut(*index),
+        Key::Name(name) => place.get_mut(name.as_str()),
+    });
+    table?.as_table_like_mut()?.remove(last)?;
+    Some(())
 }
 
 /// Puts a value where another one was and keeps the comment behind it.

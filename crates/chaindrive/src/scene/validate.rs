@@ -350,6 +350,9 @@ impl<'s> Validator<'s> {
                 Some(0.0) => Some("not negative".to_owned()),
                 least => Some(format!("at least {}", least.unwrap_or_default())),
             }
+        } else if limit("exclusiveMaximum").is_some_and(|most| value >= most) {
+            let most = limit("exclusiveMaximum").unwrap_or_default();
+            Some(format!("less than {most}"))
         } else if limit("maximum").is_some_and(|most| value > most) {
             Some(format!("at most {}", limit("maximum").unwrap_or_default()))
         } else {

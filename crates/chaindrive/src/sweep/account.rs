@@ -7,7 +7,7 @@ use std::time::Duration;
 use chaindrive_mechanics::EventKinds;
 
 use super::Outcome;
-use crate::precision::choose;
+use crate::precision::{Choice, Promise, choose};
 use crate::record::{ContactStatistics, EventTable, SpanStatistics, labels};
 use crate::{Channel, Recording, Run, Scene, Simulation, SimulationError, Stepping, Summary};
 
@@ -65,6 +65,8 @@ statistics! {
     ContactPeakMean, "contact_peak_mean", "N", Some(KIND), "mean of the largest forces of the contacts logged";
     ContactPeakMax, "contact_peak_max", "N", Some(KIND), "largest force of the contacts logged";
     ContactDuration, "contact_duration", "s", Some(KIND), "sum of the durations of the contacts logged";
+    AccuracyError, "accuracy_error", "1", None, "bound of the error found while method and step were chosen for an accuracy";
+    AccuracyKept, "accuracy_kept", "1", None, "1 where the accuracy asked for is kept, 0 where no method on the list keeps it";
     Samples, "samples", "1", None, "number of samples";
     Steps, "steps", "1", None, "number of steps";
     Rejections, "rejections", "1", None, "number of steps that were rejected";
@@ -80,12 +82,17 @@ impl Statistic {
         self.along() == Some(KIND)
     }
 
+    /// Whether it belongs to an accuracy that has to be asked for.
+    pub fn is_of_a_choice(self) -> bool {
+        matches!(self, Self::AccuracyError | Self::AccuracyKept)
+    }
+
     /// Whether it is a measurement of the machine: all others are the same with every run.
     pub fn is_measured(self) -> bool {
         matches!(self, Self::SteppingTime | Self::RealTimeFactor)
     }
 
-    fn read(self, simulation: &Simulation, summary: &Summary) -> Vec<f64> {
+    fn read(self, simulation: &Simulation, summary: &Summary, choice: Option<&Choice>) -> Vec<f64> {
         let spans = |of: fn(&SpanStatistics) -> f64| {
             let values = summary.spans.iter().map(of);
             // A span without a single finite sample has neither a least nor a greatest one.
@@ -113,6 +120,11 @@ impl Statistic {
             Self::EnergySupplied => summary.energy_supplied(),
             Self::EnergyDissipated => summary.energy_dissipated(),
             Self::EnergyResidualMax => summary.residual,
+            Self::AccuracyError => choice.map_or(f64::NAN, |choice| choice.error),
+            Self::AccuracyKept => match choice {
+                Some(choice) if choice.promise != Promise::Nothing => f64::from(choice.kept),
+                _ => f64::NAN,
+            },
             Self::Samples => summary.samples as f64,
             Self::Steps => counts.steps as f64,
             Self::Rejections => {
@@ -232,13 +244,17 @@ impl Account {
         run.check().map_err(failed)?;
         let assembled = drive.assemble().map_err(|error| error.to_string())?;
         // Only what is asked for: trials in every variant would double the cost of short ones.
+        let mut chosen = None;
         if let Some(accuracy) = wanted.accuracy {
             let stopped = || stop.load(Ordering::Relaxed);
-            run = match choose(&assembled, &run, accuracy, &stopped) {
-                Ok(choice) => choice.run,
+            match choose(&assembled, &run, accuracy, &stopped) {
+                Ok(choice) => {
+                    run = choice.run.clone();
+                    chosen = Some(choice);
+                }
                 Err(SimulationError::Interrupted) => return Ok(None),
                 Err(error) => return Err(failed(error)),
-            };
+            }
         }
         let mut simulation = Simulation::from_assembled(assembled, &run).map_err(failed)?;
         let channels = if record.is_empty() {
@@ -266,10 +282,18 @@ impl Account {
                 return Ok(None);
             }
         }
-        Ok(Some(Self::close(&simulation, &summary, recording, &run)))
+        let choice = chosen.as_ref();
+        let account = Self::close(&simulation, &summary, recording, &run, choice);
+        Ok(Some(account))
     }
 
-    fn close(simulation: &Simulation, summary: &Summary, recording: Recording, run: &Run) -> Self {
+    fn close(
+        simulation: &Simulation,
+        summary: &Summary,
+        recording: Recording,
+        run: &Run,
+        choice: Option<&Choice>,
+    ) -> Self {
         let names = summary.spans.iter().map(|span| span.name.clone());
         let mut account = Self {
             method: Stepping::from(simulation.method()).name().to_owned(),
@@ -283,8 +307,10 @@ impl Account {
             account.labels.push((KIND.into(), kinds.into()));
         }
         for &statistic in Statistic::ALL {
-            if logged || !statistic.is_of_logged_contacts() {
-                let values = statistic.read(simulation, summary);
+            let wanted = (logged || !statistic.is_of_logged_contacts())
+                && (choice.is_some() || !statistic.is_of_a_choice());
+            if wanted {
+                let values = statistic.read(simulation, summary, choice);
                 account
                     .values
                     .push((Quantity::Statistic(statistic), values));

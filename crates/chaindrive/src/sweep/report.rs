@@ -45,6 +45,11 @@ const COLUMNS: [Column; 6] = [
 ];
 
 impl Account {
+    /// Whether no method on the list kept the accuracy that was asked for.
+    fn misses(&self) -> bool {
+        self.largest(Statistic::AccuracyKept) < 1.0
+    }
+
     /// The largest entry of a statistic; NaN when there is none.
     fn largest(&self, statistic: Statistic) -> f64 {
         let found = self.values.iter();
@@ -105,6 +110,10 @@ impl fmt::Display for Report<'_> {
         write!(f, "variants: {finished} of {all} done")?;
         if failed > 0 {
             write!(f, ", {failed} failed")?;
+        }
+        let missed = self.done().filter(|(_, account)| account.misses()).count();
+        if missed > 0 {
+            write!(f, ", {missed} without the accuracy asked for")?;
         }
         if finished + failed < all {
             write!(f, ", {} not carried out", all - finished - failed)?;

@@ -156,7 +156,7 @@ fn coordinate((name, labels): (String, Vec<String>)) -> (String, Coordinate) {
 fn quantities(accounts: &[Option<&Account>]) -> Vec<Quantity> {
     let always = Statistic::ALL
         .iter()
-        .filter(|it| !it.is_of_logged_contacts());
+        .filter(|it| !it.is_of_logged_contacts() && !it.is_of_a_choice());
     let mut all: Vec<Quantity> = always.map(|&it| Quantity::Statistic(it)).collect();
     for (quantity, _) in accounts
         .iter()

@@ -6,7 +6,8 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use chaindrive::precision::{Study, Table, Variant, work_precision};
-use chaindrive::{SimulationError, Stepping};
+use chaindrive::scene::RunDefaults;
+use chaindrive::{Scene, SimulationError, Stepping};
 use clap::Args;
 
 use crate::failure::Failure;
@@ -27,17 +28,17 @@ pub(crate) struct Arguments {
     #[arg(long, value_delimiter = ',', value_parser = Stepping::ALL.map(Stepping::name))]
     methods: Vec<String>,
 
-    /// Steps [s] of the methods with fixed steps, separated by commas; absent: the method's own
-    #[arg(long, value_name = "SECONDS", value_delimiter = ',')]
-    steps: Vec<f64>,
+    /// Steps of the methods with fixed steps, such as "1 us,2 us"; absent: the method's own
+    #[arg(long, value_name = "TIMES", value_delimiter = ',')]
+    steps: Vec<String>,
 
     /// Tolerances of dormand-prince, separated by commas; absent: that of the scene
     #[arg(long, value_name = "RATIOS", value_delimiter = ',')]
-    tolerances: Vec<f64>,
+    tolerances: Vec<String>,
 
-    /// Deepest first penetration [m] in all runs; absent: none
-    #[arg(long, value_name = "METRES")]
-    onset_depth: Option<f64>,
+    /// Deepest first penetration in all runs, such as "1 um"; absent: none
+    #[arg(long, value_name = "LENGTH")]
+    onset_depth: Option<String>,
 
     /// Timed runs of which the median is taken
     #[arg(long, default_value_t = Study::default().repeats)]
@@ -57,15 +58,6 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn bench(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
-    let files = ["csv", "svg"].map(|extension| named(&arguments.output, extension));
-    let taken = files.iter().find(|path| path.exists());
-    if let Some(path) = taken.filter(|_| !arguments.overwrite) {
-        return Err(Failure::Taken {
-            path: path.display().to_string(),
-            found: "there is already a file here",
-            hint: ", or pass --overwrite",
-        });
-    }
     let settings = RunArguments::until(arguments.until.as_deref());
     let Request { scene, run, .. } = settings.apply(arguments.scene.load()?)?;
     let failed = |source| match source {
@@ -80,14 +72,56 @@ pub(crate) fn bench(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
         .assemble()
         .map_err(|error| failed(error.into()))?;
     let study = Study {
-        variants: variants(arguments)?,
+        variants: variants(arguments, &scene)?,
         until: arguments.until.is_some().then_some(run.until),
         repeats: arguments.repeats,
         replicates: arguments.replicates,
     };
+    let files = ["csv", "svg"].map(|extension| named(&arguments.output, extension));
+    free(&files, arguments.overwrite)?;
     let table = work_precision(&start, &run, &study, interrupted).map_err(failed)?;
-    save(&table, &files, &scene_title(scene.name(), scene.title()))?;
-    print(table)
+    print(&table)?;
+    save(&table, &files, &scene_title(scene.name(), scene.title()))
+}
+
+/// Finds out before minutes of work whether the files can be written.
+fn free(files: &[PathBuf; 2], overwrite: bool) -> Result<(), Failure> {
+    let taken = files.iter().find(|path| path.exists());
+    if let Some(path) = taken.filter(|_| !overwrite) {
+        return Err(Failure::Taken {
+            path: path.display().to_string(),
+            found: "there is already a file here",
+            hint: ", or pass --overwrite",
+        });
+    }
+    let folder = files[0]
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    match folder.map(std::fs::metadata) {
+        Some(Err(source)) => Err(Failure::File {
+            path: files[0].display().to_string(),
+            source,
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// A value of an option, read as the scene reads the same setting, units included.
+fn read(
+    scene: &Scene,
+    (option, path): (&str, &str),
+    text: &str,
+    of: fn(&RunDefaults) -> Option<f64>,
+) -> Result<Option<f64>, Failure> {
+    let changed = scene.replace(path, text).map_err(|error| {
+        let problems = error.problems.iter();
+        let said = problems.map(|problem| match &problem.hint {
+            Some(hint) => format!("{}; {hint}", problem.message),
+            None => problem.message.clone(),
+        });
+        Failure::Argument(format!("{option}: {}", said.collect::<Vec<_>>().join("; ")))
+    })?;
+    Ok(of(&changed.run_defaults()))
 }
 
 fn scene_title(name: &str, title: &str) -> String {
@@ -102,7 +136,23 @@ fn named(base: &Path, extension: &str) -> PathBuf {
 }
 
 /// Every method with every step or tolerance.
-fn variants(arguments: &Arguments) -> Result<Vec<Variant>, Failure> {
+fn variants(arguments: &Arguments, scene: &Scene) -> Result<Vec<Variant>, Failure> {
+    let read_all = |names, texts: &[String], of| {
+        let values = texts.iter().map(|text| read(scene, names, text, of));
+        values.collect::<Result<Vec<_>, _>>()
+    };
+    let steps = read_all(("--steps", "run.step"), &arguments.steps, |run| run.step)?;
+    let tolerances = read_all(
+        ("--tolerances", "run.tolerance"),
+        &arguments.tolerances,
+        |run| run.tolerance,
+    )?;
+    let onset_depth = read_all(
+        ("--onset-depth", "run.onset_depth"),
+        arguments.onset_depth.as_slice(),
+        |run| run.onset_depth,
+    )?;
+    let onset_depth = onset_depth.first().copied().flatten();
     if arguments.methods.is_empty() {
         let given = [
             ("--steps", !arguments.steps.is_empty()),
@@ -113,6 +163,28 @@ fn variants(arguments: &Arguments) -> Result<Vec<Variant>, Failure> {
             let message = format!("{name} belongs to methods: name them with --methods");
             return Err(Failure::Argument(message));
         }
+    }
+    let adaptive = |name: &String| name == Stepping::DormandPrince.name();
+    let idle = [
+        (
+            "--steps",
+            &steps,
+            "a method with fixed steps",
+            arguments.methods.iter().all(adaptive),
+        ),
+        (
+            "--tolerances",
+            &tolerances,
+            "dormand-prince",
+            !arguments.methods.iter().any(adaptive),
+        ),
+    ];
+    if let Some((name, _, of, _)) = idle
+        .iter()
+        .find(|(_, values, _, idle)| *idle && !values.is_empty())
+    {
+        let message = format!("{name} is for {of}, and there is none among --methods");
+        return Err(Failure::Argument(message));
     }
     let methods = arguments
         .methods
@@ -125,17 +197,13 @@ fn variants(arguments: &Arguments) -> Result<Vec<Variant>, Failure> {
             stepping,
             step: value.filter(|_| !adaptive),
             tolerance: value.filter(|_| adaptive),
-            onset_depth: arguments.onset_depth,
+            onset_depth,
         };
-        let values = if adaptive {
-            &arguments.tolerances
-        } else {
-            &arguments.steps
-        };
+        let values = if adaptive { &tolerances } else { &steps };
         if values.is_empty() {
             list.push(of(None));
         }
-        list.extend(values.iter().map(|value| of(Some(*value))));
+        list.extend(values.iter().map(|value| of(*value)));
     }
     Ok(list)
 }

@@ -98,14 +98,15 @@ pub(crate) struct Run {
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
     pub(crate) tolerance: Option<Ratio>,
     /// Deepest penetration at which a contact may begin [m]: deeper steps are shortened; absent:
-    /// contacts begin wherever the step lands.
+    /// contacts begin wherever the step lands, but with implicit damping no deeper than an approach at 1 m/s takes them
+    /// in a step.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) onset_depth: Option<Length>,
     /// Relative error of the tension that method, step and onset depth are chosen for, 0 to 1; it takes the
     /// place of what is said about them. Absent: 0.01, unless one of them or a tolerance is given.
     #[serde(default)]
-    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
+    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
     pub(crate) accuracy: Option<Ratio>,
     /// Channels to record.
     #[serde(default)]
