@@ -1,6 +1,6 @@
 //! Velocity Verlet with velocities predicted for the force evaluation.
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Arch, Scalar128b, Simd, WithSimd};
 
 use crate::finite::Watch;
 use crate::state::{Snapshot, State};
@@ -52,30 +52,45 @@ impl Verlet {
     ) -> bool {
         to.t = from.t + h;
         // Infinity and NaN get into the velocities from wherever they arise: watching those is enough.
-        self.arch.dispatch(Drift {
-            h,
-            from,
-            q: &mut to.q,
-            predicted: &mut self.predicted,
-        });
+        dispatch(
+            self.arch,
+            Drift {
+                h,
+                from,
+                q: &mut to.q,
+                predicted: &mut self.predicted,
+            },
+        );
         let end = Moment {
             t: to.t,
             q: &to.q,
             v: &self.predicted,
         };
         system.evaluate(end, &mut to.a, &mut to.rates, record);
-        let mut watch = self.arch.dispatch(Kick {
-            h,
-            from,
-            a: &to.a,
-            v: &mut to.v,
-        });
+        let mut watch = dispatch(
+            self.arch,
+            Kick {
+                h,
+                from,
+                a: &to.a,
+                v: &mut to.v,
+            },
+        );
         // The trapezoidal rule: y⁺ = y + ½ h (r + r⁺)
         for (i, y) in to.quadratures.iter_mut().enumerate() {
             *y = from.quadratures[i] + 0.5 * h * (from.rates[i] + to.rates[i]);
             watch.see(*y);
         }
         watch.all_finite()
+    }
+}
+
+/// Runs a loop on the widest registers; SSE2, which every x86-64 has and the library does not name, has two lanes.
+#[inline]
+fn dispatch<Op: WithSimd>(arch: Arch, op: Op) -> Op::Output {
+    match arch {
+        Arch::Scalar => op.with_simd(Scalar128b),
+        wide => wide.dispatch(op),
     }
 }
 

@@ -85,11 +85,7 @@ impl<S: Simd> Wide<S> {
 
     /// The same for writing.
     #[inline(always)]
-    #[expect(
-        clippy::unused_self,
-        reason = "made like the others, from the vector unit"
-    )]
-    pub(crate) fn lanes_mut(self, slice: &mut [f64]) -> LanesMut<'_, S> {
+    pub(crate) fn lanes_mut(slice: &mut [f64]) -> LanesMut<'_, S> {
         let (whole, _) = S::as_mut_simd_f64s(slice);
         LanesMut { whole }
     }

@@ -65,8 +65,8 @@ impl Links {
         let courses = [rollers.x, rollers.y, rollers.vx, rollers.vy];
         let [x, y, vx, vy] = courses.map(|values| w.lanes(&values[..n]));
         let [x_next, y_next, vx_next, vy_next] = courses.map(|values| w.lanes(&values[1..=n]));
-        let mut ax = w.lanes_mut(&mut rollers.ax[..n]);
-        let mut ay = w.lanes_mut(&mut rollers.ay[..n]);
+        let mut ax = Wide::<S>::lanes_mut(&mut rollers.ax[..n]);
+        let mut ay = Wide::<S>::lanes_mut(&mut rollers.ay[..n]);
         let [gx, gy] = gravity.map(|g| w.splat(g));
         let zero = w.splat(0.0);
         let (mut loss, mut before) = (zero, [zero; 2]);

@@ -35,6 +35,23 @@ fn rub_one_by_one(
     }
 }
 
+/// Friction of any law: force along the tangent, and damping.
+#[inline(always)]
+fn rub<S: Simd>(
+    w: Wide<S>,
+    friction: &Friction,
+    dt: f64,
+    force: Lane<S>,
+    slip: Lane<S>,
+    (before, stick): (&[f64], &mut [f64]),
+) -> [Lane<S>; 2] {
+    let [mut rubs, mut drags] = [[0.0; LANES]; 2];
+    force.store(&mut rubs, 0);
+    slip.store(&mut drags, 0);
+    rub_one_by_one(friction, dt, before, &mut rubs, &mut drags, stick);
+    [w.load(&rubs, 0), w.load(&drags, 0)]
+}
+
 impl Contacts {
     /// Adds the contact accelerations to `rollers` and returns what the body receives.
     ///
@@ -277,7 +294,7 @@ impl Contacts {
         if let Some(friction) = numbers.general {
             let radius = w.splat(self.radius);
             let slip = tx * motion.ux + ty * motion.uy + motion.spin * radius;
-            let (rub, drag) = rub(w, &friction, dt, force, slip, lane, slots);
+            let [rub, drag] = rub(w, &friction, dt, force, slip, slots.stick(lane));
             fx += rub * tx;
             fy += rub * ty;
             moment = motion.dy * fx - motion.dx * fy + rub * radius;
@@ -315,25 +332,6 @@ impl Contacts {
         }
         None
     }
-}
-
-/// Friction of any law: force along the tangent, and damping.
-#[inline(always)]
-fn rub<S: Simd>(
-    w: Wide<S>,
-    friction: &Friction,
-    dt: f64,
-    force: Lane<S>,
-    slip: Lane<S>,
-    lane: usize,
-    slots: &mut Slots<'_, S>,
-) -> (Lane<S>, Lane<S>) {
-    let [mut rubs, mut drags] = [[0.0; LANES]; 2];
-    force.store(&mut rubs, 0);
-    slip.store(&mut drags, 0);
-    let (before, stick) = slots.stick(lane);
-    rub_one_by_one(friction, dt, before, &mut rubs, &mut drags, stick);
-    (w.load(&rubs, 0), w.load(&drags, 0))
 }
 
 /// Where a lane of slots stands.

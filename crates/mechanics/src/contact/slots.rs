@@ -54,11 +54,11 @@ impl<'a, S: Simd> Slots<'a, S> {
             touch.faces.resize(n);
             let faces = &mut touch.faces;
             Some(FacesNow {
-                normal_x: w.lanes_mut(&mut faces.normal_x),
-                normal_y: w.lanes_mut(&mut faces.normal_y),
-                bend: w.lanes_mut(&mut faces.bend),
-                stiffness: w.lanes_mut(&mut faces.stiffness),
-                damping: w.lanes_mut(&mut faces.damping),
+                normal_x: Wide::lanes_mut(&mut faces.normal_x),
+                normal_y: Wide::lanes_mut(&mut faces.normal_y),
+                bend: Wide::lanes_mut(&mut faces.bend),
+                stiffness: Wide::lanes_mut(&mut faces.stiffness),
+                damping: Wide::lanes_mut(&mut faces.damping),
             })
         } else {
             None
@@ -71,11 +71,11 @@ impl<'a, S: Simd> Slots<'a, S> {
                 closing: w.lanes(&memory.closing[..n]),
             },
             now: Now {
-                inverse_onset: w.lanes_mut(&mut touch.inverse_onset[..n]),
-                gap: w.lanes_mut(&mut touch.gap[..n]),
-                closing: w.lanes_mut(&mut touch.closing[..n]),
-                force: w.lanes_mut(&mut touch.force[..n]),
-                share: w.lanes_mut(&mut touch.share[..n]),
+                inverse_onset: Wide::<S>::lanes_mut(&mut touch.inverse_onset[..n]),
+                gap: Wide::<S>::lanes_mut(&mut touch.gap[..n]),
+                closing: Wide::<S>::lanes_mut(&mut touch.closing[..n]),
+                force: Wide::<S>::lanes_mut(&mut touch.force[..n]),
+                share: Wide::<S>::lanes_mut(&mut touch.share[..n]),
             },
             axis: [&contacts.axis_x, &contacts.axis_y].map(|axis| w.lanes(&axis[..slots])),
             wake: &memory.wake[..n],
