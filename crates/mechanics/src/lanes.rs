@@ -390,6 +390,17 @@ mod tests {
             assert!((out(lane.root())[i] / x[i].sqrt() - 1.0).abs() < 1e-15);
         }
         assert_eq!(out(w.splat(0.0).root()), vec![0.0; n]);
+        // The root is the nearest number, but for ties that nearly are.
+        let many: Vec<f64> = (0..8192).map(|i| 1e-3 * 1.003_f64.powi(i)).collect();
+        let rows = w.lanes(&many);
+        let nearest = (0..many.len() / n).flat_map(|i| out(rows.get(i).roots()[0]));
+        let off = nearest.zip(&many).filter(|(root, x)| *root != x.sqrt());
+        assert!(off.count() < 8);
+        // Shifted by one.
+        let mut shifted = vec![0.0; n];
+        Wide::<S>::lanes_mut(&mut shifted).set(0, lane.after(-lane));
+        let before = [&[-x[n - 1]], &x[..n - 1]].concat();
+        assert_eq!(shifted, before);
     }
 
     struct Check;

@@ -192,3 +192,59 @@ impl Frame {
         chaindrive_geometry::Vector::new(c * v.x - s * v.y, s * v.x + c * v.y)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use chaindrive_contact::dissipation::Dissipation;
+    use chaindrive_contact::elastic::Power;
+    use chaindrive_contact::{Elastic, Friction, Law};
+    use chaindrive_geometry::{Piece, Segment};
+
+    use super::*;
+    use crate::drive::Surface;
+    use crate::profile::Profile;
+
+    /// Runs hold every roller once, in lanes of eight, and those that are likely to touch in as few lanes as can be.
+    #[test]
+    fn runs_are_cut_where_few_lanes_touch() {
+        let ends = [[1.0, 0.0], [0.0, 0.0]].map(|[x, y]| Point::new(x, y));
+        let face = [Piece::Segment(Segment::new(ends[0], ends[1]))];
+        let shape = Shape::Rail {
+            profile: Profile::new(&face, true, true),
+            reference: Point::origin(),
+            bounds: [ends[1], ends[0]],
+        };
+        let surface = Surface {
+            law: Law {
+                elastic: Elastic::Power(Power::linear(1e6)),
+                dissipation: Dissipation::None,
+                onset_floor: 0.01,
+            },
+            friction: Friction::None,
+        };
+        let mut contacts = Contacts::new(shape, surface, None, 0.01);
+        let whole = Run {
+            start: 36,
+            count: 27,
+        };
+        contacts.runs = contacts.cut(whole).collect();
+        assert_eq!(contacts.runs.len(), 4);
+        contacts.slots = 4 * LANES;
+        for first in 0..whole.count {
+            for last in first..whole.count {
+                contacts.memory.open(contacts.slots);
+                contacts.memory.gap[first..=last].fill(-1e-6);
+                let cut: Vec<Run> = contacts.cut(whole).collect();
+                let rollers = cut.iter().flat_map(|run| run.start..run.start + run.count);
+                assert!(rollers.eq(36..36 + 27), "{cut:?}");
+                assert!(cut.iter().all(|run| (1..=LANES).contains(&run.count)));
+                let likely = 36 + first..=36 + last;
+                let touched = cut.iter().filter(|run| {
+                    (run.start..run.start + run.count).any(|roller| likely.contains(&roller))
+                });
+                let least = (last - first + 1).div_ceil(LANES);
+                assert_eq!(touched.count(), least, "{first} to {last}: {cut:?}");
+            }
+        }
+    }
+}
