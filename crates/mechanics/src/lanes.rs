@@ -9,7 +9,7 @@ mod turn;
 
 use std::ops::{Add, AddAssign, BitAnd, Mul, Neg, Sub};
 
-use pulp::Simd;
+use pulp::{Arch, Scalar128b, Simd, WithSimd};
 
 pub(crate) use power::FixedPower;
 
@@ -22,6 +22,15 @@ const TINY: f64 = 1e-200;
 /// `n` rounded up to whole lanes.
 pub(crate) const fn padded(n: usize) -> usize {
     n.div_ceil(LANES) * LANES
+}
+
+/// Runs a loop on the widest registers; SSE2, which every x86-64 has and the library does not name, has two lanes.
+#[inline]
+pub(crate) fn dispatch<Op: WithSimd>(arch: Arch, op: Op) -> Op::Output {
+    match arch {
+        Arch::Scalar => op.with_simd(Scalar128b),
+        wide => wide.dispatch(op),
+    }
 }
 
 /// The processor's vector unit: makes lanes.
@@ -405,7 +414,7 @@ mod tests {
 
     struct Check;
 
-    impl pulp::WithSimd for Check {
+    impl WithSimd for Check {
         type Output = ();
 
         #[inline(always)]
@@ -417,8 +426,8 @@ mod tests {
     #[test]
     fn lanes_of_any_width_compute_alike() {
         check(pulp::Scalar);
-        check(pulp::Scalar128b);
+        check(Scalar128b);
         check(pulp::Scalar512b);
-        pulp::Arch::new().dispatch(Check);
+        Arch::new().dispatch(Check);
     }
 }

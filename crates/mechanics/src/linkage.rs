@@ -44,6 +44,7 @@ pub(crate) use posture::{Posture, Shapes, free_part};
 
 use crate::End;
 use crate::energy::Flow;
+use crate::lanes::dispatch;
 use crate::system::{HeldEnd, Record, System};
 
 /// A body of the chain: a link, or a free roller.
@@ -143,8 +144,8 @@ pub(crate) struct Play {
     pub(crate) tally: Tally,
     pub(crate) blocks: Blocks,
     pub(crate) loose: Vec<loose::Loose>,
-    /// Work space.
-    pub(crate) unused: [Vec<f64>; 3],
+    /// Accelerations and inverse masses of particles, which the kernel of the teeth asks for and links have no use for.
+    pub(crate) idle: [Vec<f64>; 3],
 }
 
 impl Linkage {
@@ -189,13 +190,16 @@ impl Linkage {
         let Joining::Clearance(bearing) = &self.joining else {
             return Tally::new();
         };
-        let mut tally = self.arch.dispatch(pins::Contacts {
-            linkage: self,
-            bearing,
-            posture: &play.posture,
-            memory: &mut play.memory.joints,
-            pins: &mut play.pins,
-        });
+        let mut tally = dispatch(
+            self.arch,
+            pins::Contacts {
+                linkage: self,
+                bearing,
+                posture: &play.posture,
+                memory: &mut play.memory.joints,
+                pins: &mut play.pins,
+            },
+        );
         if bearing.rubs() {
             let dt = at.t - self.memory.time;
             let (memory, pins) = (&mut play.memory.joints, &mut play.pins);

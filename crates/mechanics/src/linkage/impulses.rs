@@ -20,7 +20,7 @@ use pulp::{Simd, WithSimd};
 
 use super::{Bearing, Joining, Linkage, Play};
 use crate::System;
-use crate::lanes::Wide;
+use crate::lanes::{Wide, dispatch};
 use local::Local;
 use rows::Rows;
 use tridiagonal::{Place, Tridiagonal};
@@ -84,11 +84,14 @@ struct Step<'a> {
 impl Impulses {
     /// With R rows a joint, and room for C columns around a link.
     fn solve<const R: usize, const C: usize>(&mut self, step: Step<'_>, x: &mut [f64]) -> bool {
-        step.linkage.arch.dispatch(Solution::<R, C> {
-            work: self,
-            step,
-            x,
-        })
+        dispatch(
+            step.linkage.arch,
+            Solution::<R, C> {
+                work: self,
+                step,
+                x,
+            },
+        )
     }
 
     #[inline(always)]

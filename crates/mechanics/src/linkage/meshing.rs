@@ -8,7 +8,7 @@ use pulp::{Simd, WithSimd};
 use super::{Element, Linkage, Mount, Part, Partner, Play, Tally, turned};
 use crate::contact::{Contacts, Frame, PlateTouch, Touch, Wrench};
 use crate::energy::Flow;
-use crate::lanes::Wide;
+use crate::lanes::{Wide, dispatch};
 use crate::system::{
     RailContact, RailSupport, Rollers, System, Wheel, WheelRotation, WheelSupport,
 };
@@ -162,26 +162,28 @@ impl Linkage {
         play: &mut Play,
     ) -> Wrench {
         let posture = &play.posture;
-        // What the kernel adds up for particles is not wanted here.
-        let [ax, ay, weightless] = &mut play.unused;
-        for values in [&mut *ax, ay, weightless] {
+        let [ax, ay, inverse_mass] = &mut play.idle;
+        for values in [&mut *ax, ay, inverse_mass] {
             values.resize(posture.x.len(), 0.0);
         }
-        let wrench = self.arch.dispatch(Touching {
-            contacts,
-            frame,
-            t: at.t,
-            rollers: Rollers {
-                x: &posture.x,
-                y: &posture.y,
-                vx: &posture.vx,
-                vy: &posture.vy,
-                ax,
-                ay,
-                inverse_mass: weightless,
+        let wrench = dispatch(
+            self.arch,
+            Touching {
+                contacts,
+                frame,
+                t: at.t,
+                rollers: Rollers {
+                    x: &posture.x,
+                    y: &posture.y,
+                    vx: &posture.vx,
+                    vy: &posture.vy,
+                    ax,
+                    ay,
+                    inverse_mass,
+                },
+                touch,
             },
-            touch,
-        });
+        );
         contacts.for_each_slot(|slot, joint| {
             for side in 0..contacts.sides() {
                 let index = side * contacts.slots + slot;

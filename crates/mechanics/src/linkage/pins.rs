@@ -461,3 +461,95 @@ impl Bearing {
         self.friction != Friction::None
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use chaindrive_integrate::Moment;
+    use pulp::Scalar128b;
+
+    use super::*;
+    use crate::linkage::Joining;
+    use crate::linkage::tests::{kinds, set_off};
+
+    /// Lanes of any width against one joint at a time, as free rollers and their bushes are looked at.
+    #[test]
+    fn all_at_once_is_as_one_by_one() {
+        for (kind, parts) in kinds() {
+            let (system, record, q, v) = set_off(parts);
+            let linkage = system.linkage.as_ref().unwrap();
+            let Joining::Clearance(bearing) = &linkage.joining else {
+                panic!("{kind}");
+            };
+            let at = Moment {
+                t: 0.0,
+                q: &q,
+                v: &v,
+            };
+            let posture = &record.play.posture;
+            let widths: [fn(Contacts<'_>) -> Tally; 3] = [
+                |contacts| contacts.act(Wide(pulp::Scalar)),
+                |contacts| contacts.act(Wide(Scalar128b)),
+                |contacts| pulp::Arch::new().dispatch(contacts),
+            ];
+            for act in widths {
+                let (mut memory, mut pins) = (PinMemory::default(), Pins::default());
+                let mut tally = act(Contacts {
+                    linkage,
+                    bearing,
+                    posture,
+                    memory: &mut memory,
+                    pins: &mut pins,
+                });
+                if bearing.rubs() {
+                    tally.friction_loss =
+                        bearing.rub(linkage, posture, 0.0, &mut memory, &mut pins);
+                }
+                let mut sum = Tally::new();
+                let mut closed = 0;
+                for (joint, mates) in linkage.joints.iter().enumerate() {
+                    let Some(mates) = mates.pair else { continue };
+                    let [hole, pin] = mates.map(|mate| linkage.part(mate, at, posture));
+                    let known = &linkage.memory.joints;
+                    let before = PinTouch {
+                        gap: known.gap[joint],
+                        closing: known.closing[joint],
+                        onset: known.closed(joint).map_or(0.0, |(onset, _)| onset),
+                        ..PinTouch::OPEN
+                    };
+                    let (touch, element) =
+                        bearing.touch(joint, &hole, &pin, &before, 0.0, &mut sum);
+                    let found = pins.element(joint, linkage, bearing, posture);
+                    assert_eq!(element.is_some(), found.is_some(), "{kind}, {joint}");
+                    assert!((touch.gap - memory.gap[joint]).abs() < 1e-17);
+                    let (Some(a), Some(b)) = (element, found) else {
+                        continue;
+                    };
+                    closed += 1;
+                    // Depths are differences of radii and lose four digits.
+                    for (a, b) in [
+                        (a.force, b.force),
+                        (a.rub, b.rub),
+                        (a.stiffness, b.stiffness),
+                        (a.damping, b.damping),
+                        (a.secant, b.secant),
+                        (a.across, b.across),
+                        (a.normal.x, b.normal.x),
+                        (a.normal.y, b.normal.y),
+                        (a.lever_a, b.lever_a),
+                        (a.lever_b, b.lever_b),
+                        (1.0 / touch.onset, memory.inverse_onset[joint]),
+                    ] {
+                        assert!(
+                            (a - b).abs() <= 1e-9 * a.abs() + 1e-15,
+                            "{kind}, {joint}: {a} {b}"
+                        );
+                    }
+                }
+                assert!(closed > 9, "{kind}: {closed}");
+                let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * a.abs().max(1e-9);
+                assert!(near(sum.normal_loss, tally.normal_loss), "{kind}");
+                assert!(near(sum.friction_loss, tally.friction_loss), "{kind}");
+            }
+        }
+    }
+}

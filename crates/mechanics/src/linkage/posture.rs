@@ -7,7 +7,7 @@ use pulp::{Simd, WithSimd};
 use super::bearing::Part;
 use super::{Linkage, Mate};
 use crate::End;
-use crate::lanes::{LANES, Lane, Wide, padded};
+use crate::lanes::{LANES, Lane, Wide, dispatch, padded};
 
 /// One joint end of a link.
 #[derive(Clone, Copy, Debug)]
@@ -181,10 +181,13 @@ impl Linkage {
                 [*a, *b, *c] = *from;
             }
         }
-        self.arch.dispatch(Ends {
-            linkage: self,
-            posture,
-        });
+        dispatch(
+            self.arch,
+            Ends {
+                linkage: self,
+                posture,
+            },
+        );
         self.pose_ends(at, posture);
         self.pose_rollers(at, posture);
     }
@@ -207,10 +210,13 @@ impl Linkage {
 
     fn pose_rollers(&self, at: Moment<'_>, posture: &mut Posture) {
         let joints = self.joints.len();
-        self.arch.dispatch(Circles {
-            on_after: &self.pairs.bush_after,
-            posture,
-        });
+        dispatch(
+            self.arch,
+            Circles {
+                on_after: &self.pairs.bush_after,
+                posture,
+            },
+        );
         if let Some(free) = &self.free_rollers {
             for (joint, body) in free.body.iter().enumerate() {
                 let Some(body) = *body else { continue };
