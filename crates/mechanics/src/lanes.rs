@@ -253,10 +253,10 @@ impl<S: Simd> Lane<S> {
     /// The lanes one further on: first the last of `before`, then all but the last of `self`.
     #[inline(always)]
     pub(crate) fn after(self, before: Self) -> Self {
-        let [here, there] = [self, before].map(|lane| self.simd.rotate_right_f64s(lane.v, 1));
-        Wide(self.simd)
-            .first(1)
-            .select(self.with(there), self.with(here))
+        // Not a closure over both: one that is not inlined is compiled for the oldest processor.
+        let here = self.with(self.simd.rotate_right_f64s(self.v, 1));
+        let there = self.with(self.simd.rotate_right_f64s(before.v, 1));
+        Wide(self.simd).first(1).select(there, here)
     }
 
     /// Applies a function to one lane after the other.
