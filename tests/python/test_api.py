@@ -164,7 +164,10 @@ def test_other_threads_go_on_during_a_run():
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 def test_ctrl_c_stops_a_run():
     code = (
+        "import signal\n"
         "import chaindrive as cd\n"
+        # A process in the background of a shell is born deaf to it.
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "drive = cd.scenes.marine_engine()\n"
         "print('ready', flush=True)\n"
         "cd.simulate(drive, until=1e5, every=1e-3, record='energy_residual')\n"
@@ -175,7 +178,10 @@ def test_ctrl_c_stops_a_run():
         assert process.stdout.readline() == "ready\n"
         time.sleep(1.0)
         process.send_signal(signal.SIGINT)
-        _, complaint = process.communicate(timeout=5.0)
+        try:
+            _, complaint = process.communicate(timeout=5.0)
+        finally:
+            process.kill()
     assert "KeyboardInterrupt" in complaint
 
 
