@@ -1,7 +1,10 @@
 //! Implicit damping: damping taken at the end of the step, stiffness at its beginning.
 
+use pulp::{Arch, Simd, WithSimd};
+
 use crate::finite::Watch;
 use crate::method::Outcome;
+use crate::registers::dispatch;
 use crate::state::{Snapshot, State};
 use crate::{Moment, SecondOrderSystem, Statistics, Weights};
 
@@ -58,13 +61,8 @@ pub(crate) fn attempt<S: SecondOrderSystem>(
     if !system.solve(weights, record, &mut to.v) {
         return Outcome::NoSolution;
     }
-    let n = to.q.len();
-    let (q0, v0) = (&from.q[..n], &from.v[..n]);
-    for i in 0..n {
-        // v⁺ = v + x,   q⁺ = q + h v⁺
-        to.v[i] += v0[i];
-        to.q[i] = q0[i] + h * to.v[i];
-    }
+    let arch = Arch::new();
+    dispatch(arch, Ahead { h, from, to });
     let end = Moment {
         t: to.t,
         q: &to.q,
@@ -73,9 +71,44 @@ pub(crate) fn attempt<S: SecondOrderSystem>(
     system.evaluate(end, &mut to.a, &mut to.rates, record);
     counts.evaluations += 1;
     to.trapezoidal(from, h);
-    let mut watch = Watch::default();
-    for part in [&to.q, &to.v, &to.a, &to.quadratures] {
-        watch.see_all(part);
+    Outcome::of(dispatch(arch, Finite(to)))
+}
+
+/// v⁺ = v + x,   q⁺ = q + h v⁺
+struct Ahead<'a> {
+    h: f64,
+    from: &'a State,
+    to: &'a mut Snapshot,
+}
+
+impl WithSimd for Ahead<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let before = self.from.q.iter().zip(&self.from.v);
+        let after = self.to.q.iter_mut().zip(&mut self.to.v);
+        for ((q, v), (q0, v0)) in after.zip(before) {
+            *v += v0;
+            *q = q0 + self.h * *v;
+        }
     }
-    Outcome::of(watch.all_finite())
+}
+
+/// Whether a candidate is finite.
+struct Finite<'a>(&'a Snapshot);
+
+impl WithSimd for Finite<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> bool {
+        let mut watch = Watch::default();
+        for part in [&self.0.q, &self.0.v, &self.0.a, &self.0.quadratures] {
+            for value in part {
+                watch.see(*value);
+            }
+        }
+        watch.all_finite()
+    }
 }

@@ -62,6 +62,7 @@ mod finite;
 mod generalized_alpha;
 mod implicit_damping;
 mod method;
+mod registers;
 mod runge_kutta;
 mod state;
 mod statistics;

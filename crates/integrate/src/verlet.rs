@@ -1,8 +1,9 @@
 //! Velocity Verlet with velocities predicted for the force evaluation.
 
-use pulp::{Arch, Scalar128b, Simd, WithSimd};
+use pulp::{Arch, Simd, WithSimd};
 
 use crate::finite::Watch;
+use crate::registers::dispatch;
 use crate::state::{Snapshot, State};
 use crate::{Moment, SecondOrderSystem};
 
@@ -82,15 +83,6 @@ impl Verlet {
             watch.see(*y);
         }
         watch.all_finite()
-    }
-}
-
-/// Runs a loop on the widest registers; SSE2, which every x86-64 has and the library does not name, has two lanes.
-#[inline]
-fn dispatch<Op: WithSimd>(arch: Arch, op: Op) -> Op::Output {
-    match arch {
-        Arch::Scalar => op.with_simd(Scalar128b),
-        wide => wide.dispatch(op),
     }
 }
 
