@@ -4,6 +4,11 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// Blocks that begin where a cache line does: whole registers of states and contacts are then read at once, where the system's
+/// allocator leaves it to chance (up to a tenth of a step).
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 fn main() -> ExitCode {
     let asked = Arc::new(AtomicBool::new(false));
     let heard = Arc::clone(&asked);

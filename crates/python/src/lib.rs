@@ -18,6 +18,11 @@ mod precision;
 mod run;
 mod sweep;
 
+/// Blocks that begin where a cache line does: whole registers of states and contacts are then read at once, where the system's
+/// allocator leaves it to chance (up to a tenth of a step).
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 /// The compiled core of the package; use `chaindrive` instead.
 #[pyo3::pymodule(name = "_core")]
 mod core {
