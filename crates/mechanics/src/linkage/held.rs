@@ -50,7 +50,7 @@ impl Sum<'_> {
         for (index, joint) in linkage.joints.iter().enumerate() {
             let Some(mates) = joint.pair else { continue };
             let sides = mates.map(|mate| match mate {
-                Mate::Link { link, end } => Some((link, play.posture.tip(link, end).arm)),
+                Mate::Link { link, end } => Some((link, play.posture.arm(link, end))),
                 Mate::Ground(_) => None,
             });
             for direction in [Vector::x(), Vector::y()] {
@@ -89,7 +89,7 @@ impl Sum<'_> {
             let Some(mates) = joint.pair else { continue };
             for (mate, force) in mates.into_iter().zip([-force, *force]) {
                 if let Mate::Link { link, end } = mate {
-                    let arm = play.posture.tip(link, end).arm;
+                    let arm = play.posture.arm(link, end);
                     self.add_turn(link, weight * force.dot(&arm).max(0.0));
                 }
             }

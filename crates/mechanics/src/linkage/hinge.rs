@@ -122,11 +122,12 @@ fn ground_acceleration(linkage: &Linkage, mate: Mate, at: Moment<'_>) -> Vector 
 }
 
 /// Hole and pin of a joint, with the sign of the joint force on them.
+#[inline(always)]
 fn limbs(mates: &[Mate; 2], play: &Play) -> [Limb; 2] {
     [(mates[0], -1.0), (mates[1], 1.0)].map(|(mate, sign)| match mate {
         Mate::Link { link, end } => Limb {
             body: Some(link),
-            arm: play.posture.tip(link, end).arm,
+            arm: play.posture.arm(link, end),
             sign,
         },
         Mate::Ground(_) => Limb {

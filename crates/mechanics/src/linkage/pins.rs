@@ -244,7 +244,7 @@ impl Pins {
             return None;
         }
         let side = |mate| match mate {
-            Mate::Link { link, end } => (Some(link), posture.tip(link, end).arm),
+            Mate::Link { link, end } => (Some(link), posture.arm(link, end)),
             Mate::Ground(_) => (None, Vector::zeros()),
         };
         let ((a, arm_a), (b, arm_b)) = (side(pin), side(hole));

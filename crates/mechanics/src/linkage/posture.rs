@@ -122,6 +122,7 @@ impl Sides {
         ]
     }
 
+    #[inline(always)]
     fn tip(&self, joint: usize) -> Tip {
         Tip {
             place: Point::new(self.x[joint], self.y[joint]),
@@ -150,6 +151,17 @@ impl Posture {
         } else {
             self.before.tip(link + 1)
         }
+    }
+
+    /// The same end from the centre of mass \[m\].
+    #[inline(always)]
+    pub(crate) fn arm(&self, link: usize, end: usize) -> Vector {
+        let (side, joint) = if end == 0 {
+            (&self.after, link)
+        } else {
+            (&self.before, link + 1)
+        };
+        Vector::new(side.arm_x[joint], side.arm_y[joint])
     }
 
     fn resize(&mut self, linkage: &Linkage) {
@@ -263,7 +275,7 @@ impl Linkage {
             return (Some(body), Vector::zeros());
         }
         match self.joints[joint].carrier {
-            Mate::Link { link, end } => (Some(link), posture.tip(link, end).arm),
+            Mate::Link { link, end } => (Some(link), posture.arm(link, end)),
             Mate::Ground(_) => (None, Vector::zeros()),
         }
     }

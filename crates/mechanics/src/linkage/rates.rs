@@ -233,7 +233,7 @@ impl PlatePins for LinkPins<'_> {
     }
 
     fn push(&mut self, link: usize, end: usize, force: Vector) {
-        let arm = self.0.posture.tip(link, end).arm;
+        let arm = self.0.posture.arm(link, end);
         self.0.forces[link] += Vector3::new(force.x, force.y, cross(arm, force));
     }
 }
