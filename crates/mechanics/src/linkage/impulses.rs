@@ -274,7 +274,7 @@ impl<const R: usize, const C: usize> WithSimd for Solution<'_, R, C> {
 mod tests {
     use chaindrive_integrate::Weights;
 
-    use super::Impulses;
+    use super::{Impulses, Joining, Step};
     use crate::linkage::held::Asked;
     use crate::linkage::tests::{kinds, started};
 
@@ -288,6 +288,19 @@ mod tests {
             let mut impulses = b.clone();
             let mut work = Impulses::default();
             assert!(linkage.damp(&system, c, &record.play, &mut work, &mut impulses));
+            // With room for more rows and wheels than there are.
+            let Joining::Clearance(bearing) = &linkage.joining else {
+                panic!("{kind}");
+            };
+            let step = Step {
+                linkage,
+                bearing,
+                system: &system,
+                c,
+                play: &record.play,
+            };
+            let mut roomy = b.clone();
+            assert!(work.solve::<2, 24>(step, &mut roomy));
             let mut blocks = b.clone();
             let weights = Weights {
                 damping: c,
@@ -301,9 +314,11 @@ mod tests {
                 Asked::Kept
             ));
             let size = b.iter().fold(0.0_f64, |m, b| m.max(b.abs()));
-            for (i, (found, exact)) in impulses.iter().zip(&blocks).enumerate() {
-                let error = (found - exact).abs() / size;
-                assert!(error < 1e-12, "{kind}, {i}: {found} {exact}");
+            for found in [&impulses, &roomy] {
+                for (i, (found, exact)) in found.iter().zip(&blocks).enumerate() {
+                    let error = (found - exact).abs() / size;
+                    assert!(error < 1e-12, "{kind}, {i}: {found} {exact}");
+                }
             }
             // And it is not the undamped answer.
             let change = impulses.iter().zip(&b).map(|(x, b)| (x - b).abs());
