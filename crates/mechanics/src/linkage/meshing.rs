@@ -429,7 +429,7 @@ mod tests {
                 assert!(elements.len() > 4, "{kind}, {i}");
                 assert_eq!(elements.len(), others.len(), "{kind}, {i}");
                 let size = elements.iter().fold(0.0_f64, |m, e| m.max(e.force));
-                let near = |a: f64, b: f64, size: f64| (a - b).abs() <= 1e-9 * size.max(b.abs());
+                let near = |a: f64, b: f64, size: f64| (a - b).abs() <= 1e-11 * size.max(b.abs());
                 assert!(
                     near(wrench.moment, other.moment, 1e-2 * size),
                     "{kind}, {i}"
