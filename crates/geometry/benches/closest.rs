@@ -1,6 +1,6 @@
 //! One roller against a tooth outline, a rail and a spline of 200 pieces.
 
-#[path = "../tests/shapes/mod.rs"]
+#[path = "../tests/it/shapes/mod.rs"]
 mod shapes;
 
 use std::hint::black_box;

@@ -1,0 +1,33 @@
+//! Integration tests in one binary: linking dozens of them takes longer than running them.
+
+mod architecture;
+mod choice;
+mod choice_statistics;
+mod describe;
+mod dynamics;
+mod energy;
+mod linkage;
+mod linkages;
+mod links;
+mod precision;
+mod reference;
+mod reproducible;
+mod scenes;
+mod sweep;
+mod validation_contact;
+mod validation_dynamics_free_chain;
+mod validation_dynamics_impacts;
+mod validation_dynamics_inertia;
+mod validation_dynamics_kinematics;
+mod validation_dynamics_resonance;
+mod validation_dynamics_spans;
+mod validation_efficiency;
+mod validation_joints;
+mod validation_linkage_ideal;
+mod validation_linkage_joints;
+mod validation_modes;
+mod validation_statics;
+mod work;
+mod wrong_links;
+mod wrong_scenes;
+mod zarr;

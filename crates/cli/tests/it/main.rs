@@ -1,0 +1,6 @@
+//! Integration tests in one binary: linking dozens of them takes longer than running them.
+
+mod bench;
+mod command;
+mod interrupt;
+mod sweep;

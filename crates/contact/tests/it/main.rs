@@ -1,0 +1,8 @@
+//! Integration tests in one binary: linking dozens of them takes longer than running them.
+
+mod family;
+mod friction;
+mod johnson;
+mod reference;
+mod restitution;
+mod validation_impact;

@@ -1,0 +1,13 @@
+//! Integration tests in one binary: linking dozens of them takes longer than running them.
+
+mod closing;
+mod drives;
+mod fitting;
+mod nearest_is_nearest;
+mod parry;
+mod polygon_action;
+mod polygon_hull;
+mod route;
+mod shapes;
+mod taut_polygon;
+mod tooth_forms;

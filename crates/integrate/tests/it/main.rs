@@ -1,0 +1,9 @@
+//! Integration tests in one binary: linking dozens of them takes longer than running them.
+
+mod energy_drift;
+mod first_contact;
+mod guards;
+mod implicit;
+mod order;
+mod problems;
+mod validation_bounce;

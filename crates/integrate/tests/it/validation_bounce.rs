@@ -1,0 +1,160 @@
+//! A lossless bouncing mass keeps its height (validation case E07).
+#![allow(clippy::print_stdout, reason = "measured errors are worth a look")]
+
+use crate::problems;
+
+use chaindrive_integrate::{Method, State, Stepper};
+use problems::bounce::Bounce;
+use serde_json::Value;
+
+/// One row of the reference: inputs and expectations.
+struct Row {
+    stiffness: f64,
+    exponent: f64,
+    mass: f64,
+    height: f64,
+    impact_speed: f64,
+    first_contact: f64,
+    contact_time: f64,
+    penetration: f64,
+    second_contact: f64,
+}
+
+fn reference() -> Vec<Row> {
+    let text = include_str!("../../../../tests/validation/E07/reference.json");
+    let case: Value = serde_json::from_str(text).expect("the reference is JSON");
+    let table = |part: &str| -> Vec<Vec<f64>> {
+        serde_json::from_value(case[part]["rows"].clone()).expect("a table of numbers")
+    };
+    let (inputs, expected) = (table("inputs"), table("expected"));
+    let rows = inputs.iter().zip(&expected);
+    rows.map(|(i, e)| Row {
+        stiffness: i[0],
+        exponent: i[1],
+        mass: i[2],
+        height: i[3],
+        impact_speed: e[0],
+        first_contact: e[1],
+        contact_time: e[2],
+        penetration: e[3],
+        second_contact: e[4],
+    })
+    .collect()
+}
+
+/// What a run of many bounces found.
+struct Found {
+    /// Times \[s\] the surface was passed, downwards and upwards in turn.
+    passages: Vec<f64>,
+    deepest: f64,
+    apex_error: f64,
+    evaluations: u64,
+    onset_error: f64,
+}
+
+/// Time \[s\] of zero gap within the last step, by bisection of the interpolated motion.
+fn passage(state: &State) -> f64 {
+    let (mut from, mut to) = state.interval();
+    let (mut q, mut v) = ([0.0], [0.0]);
+    state.at(from, &mut q, &mut v);
+    let sign = q[0].signum();
+    for _ in 0..60 {
+        let middle = 0.5 * (from + to);
+        state.at(middle, &mut q, &mut v);
+        if q[0] * sign > 0.0 {
+            from = middle;
+        } else {
+            to = middle;
+        }
+    }
+    0.5 * (from + to)
+}
+
+fn bounce(row: &Row, method: Method, tolerance: f64, bounces: usize) -> Found {
+    let mut system = Bounce::new(row.stiffness, row.exponent, row.mass);
+    system.tolerance = tolerance;
+    let mut state = State::new(0.0, vec![row.height], vec![0.0]);
+    let mut stepper: Stepper<Bounce> = method.start(&mut system, &mut state).expect("starts");
+    let (mut passages, mut deepest) = (Vec::new(), 0.0_f64);
+    let mut inside = false;
+    // To the apex after the last bounce.
+    while passages.len() < 2 * bounces || state.v[0] > 0.0 {
+        stepper.advance(&mut system, &mut state).expect("advances");
+        if (state.q[0] < 0.0) != inside {
+            inside = !inside;
+            passages.push(passage(&state));
+        }
+        if inside {
+            deepest = deepest.max(-state.q[0]);
+        }
+    }
+    Found {
+        passages,
+        deepest,
+        apex_error: system.apex(state.q[0], state.v[0]) / row.height - 1.0,
+        evaluations: stepper.statistics().evaluations,
+        onset_error: system.onsets[0] / row.impact_speed - 1.0,
+    }
+}
+
+fn assert_times(row: &Row, found: &Found, tolerance: f64) {
+    let p = &found.passages;
+    for (name, got, expected) in [
+        ("first contact", p[0], row.first_contact),
+        ("contact time", p[1] - p[0], row.contact_time),
+        ("second contact", p[2], row.second_contact),
+    ] {
+        let error = got / expected - 1.0;
+        println!("  {name}: {error:.1e}");
+        assert!(
+            error.abs() < tolerance,
+            "{name}: {got} for {expected}, {error:e}"
+        );
+    }
+}
+
+fn report(name: &str, row: &Row, found: &Found) {
+    println!(
+        "{name}, n = {}: apex {:.1e}, onset {:.1e}, {} evaluations",
+        row.exponent, found.apex_error, found.onset_error, found.evaluations
+    );
+}
+
+/// Fixed steps of a 270th of the contact, no rejection.
+#[test]
+fn height_after_a_hundred_bounces_with_fixed_steps() {
+    let row = &reference()[0];
+    let method = Method::Rk4 { step: 1e-6 };
+    let found = bounce(row, method, f64::INFINITY, 100);
+    report("Runge-Kutta 4", row, &found);
+    assert!(found.apex_error.abs() < 1e-6);
+    assert!(found.onset_error.abs() < 1e-7);
+    assert!((found.deepest / row.penetration - 1.0).abs() < 1e-5);
+    assert_times(row, &found, 1e-7);
+}
+
+/// Error control and rejected first penetrations: the same for all rows at a fraction of the cost.
+#[test]
+fn height_after_a_hundred_bounces_with_error_control() {
+    for row in reference() {
+        let method = Method::DormandPrince {
+            relative: 0.0,
+            absolute: 1e-9 * row.penetration,
+            absolute_rate: 1e-11 * row.impact_speed,
+            max_step: 1e-3,
+        };
+        let found = bounce(&row, method, 1e-3 * row.penetration, 100);
+        report("Dormand-Prince", &row, &found);
+        assert!(found.apex_error.abs() < 1e-6);
+        assert_times(&row, &found, 1e-7);
+    }
+}
+
+/// Verlet loses nothing either: it conserves a neighbouring energy.
+#[test]
+fn height_after_a_hundred_bounces_with_verlet() {
+    let row = &reference()[0];
+    let found = bounce(row, Method::Verlet { step: 2e-6 }, f64::INFINITY, 100);
+    report("Verlet", row, &found);
+    assert!(found.apex_error.abs() < 1e-3);
+}

@@ -1,0 +1,4 @@
+//! Integration tests in one binary: linking dozens of them takes longer than running them.
+
+mod marine;
+mod marine_statics;
