@@ -22,11 +22,6 @@ impl Tree {
         Self(Bvh::from_leaves(BvhBuildStrategy::Binned, &leaves))
     }
 
-    /// Box around everything.
-    pub(super) fn root(&self) -> Aabb {
-        self.0.root_aabb()
-    }
-
     /// The piece with the smallest distance that `ask` reports, looking no farther than about
     /// `reach` \[m\].
     pub(crate) fn best(
@@ -58,22 +53,6 @@ impl Tree {
         for i in self.0.leaves(|node| distance_squared(node, p) <= limit) {
             visit(i as usize);
         }
-    }
-
-    /// The smallest value that `ask` reports for the pieces whose box a ray meets.
-    pub(super) fn first_along<T>(
-        &self,
-        ray: &parry2d_f64::query::Ray,
-        limit: f64,
-        ask: impl Fn(usize) -> Option<(f64, T)>,
-    ) -> Option<(usize, (f64, T))> {
-        self.0
-            .find_best(
-                limit.next_up(),
-                |node, limit| node.cast_ray(ray, limit),
-                |i, _| ask(i as usize),
-            )
-            .map(|(i, found)| (i as usize, found))
     }
 }
 

@@ -1,5 +1,6 @@
 //! Integration tests in one binary: linking dozens of them takes longer than running them.
 
+mod clearance;
 mod closing;
 mod drives;
 mod fitting;
