@@ -114,16 +114,8 @@ class Sweep:
 
 def simulate(
     drive: Drive,
-    channels: Sequence[str],
+    settings: Sequence[tuple[str, str | float | Sequence[str]]],
     *,
-    until: float,
-    every: float,
-    method: str,
-    step: float | None,
-    tolerance: float,
-    onset_depth: float | None,
-    accuracy: float | None,
-    events: Sequence[str],
     output: str | PathLike[str] | None,
     overwrite: bool,
     error: bool,

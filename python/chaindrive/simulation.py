@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+import json
 import sys
 import time
 from collections.abc import Callable, Iterable
@@ -14,8 +14,7 @@ import xarray as xr
 
 from chaindrive import _core
 from chaindrive.channels import channels
-from chaindrive.drive import Drive, _needed, _number
-from chaindrive.errors import ParameterError
+from chaindrive.drive import Drive, _needed
 
 __all__ = ["simulate"]
 
@@ -128,6 +127,9 @@ def simulate(
         The step is unstable, or the motion ceases to be finite.
     WriteError
         The output exists or cannot be written.
+    KeyboardInterrupt
+        Ctrl-C. If the run had begun, its attribute `result` is the dataset as it would have been
+        returned, with the samples so far and ``status`` ``"interrupted"``.
 
     Examples
     --------
@@ -137,48 +139,25 @@ def simulate(
     (3, 20)
     """
     _needed(drive)
-    defaults = drive.run_defaults
-    given = {"method": method, "step": step, "tolerance": tolerance, "onset_depth": onset_depth}
-    named = [name for name, value in given.items() if value is not None]
-    if accuracy is not None and named:
-        raise ParameterError(
-            f"`accuracy` chooses the method and its step, and `{named[0]}` is given as well",
-            "accuracy",
-            f"leave out `accuracy` or `{named[0]}`",
-        )
-    if accuracy is None and not named:
-        accuracy = defaults["accuracy"]
     if output is not None:
         _require_zarr()
-    names = _listed(defaults["record"] if record is None else record)
-    quantities = {
+    given: dict[str, Any] = {
         "until": until,
         "every": every,
+        "method": method,
         "step": step,
         "tolerance": tolerance,
         "onset_depth": onset_depth,
         "accuracy": accuracy,
+        "record": None if record is None else _listed(record),
+        "events": None if events is None else _listed(events),
     }
-    read = {name: _number(drive, name, value) for name, value in quantities.items()}
-    settings: dict[str, Any] = {
-        "until": defaults["until"] if until is None else read["until"],
-        "every": defaults["every"] if every is None else read["every"],
-        "method": defaults["method"] if method is None else method,
-        # The step of the scene goes with the method of the scene.
-        "step": defaults["step"] if step is None and method is None else read["step"],
-        "tolerance": defaults["tolerance"] if tolerance is None else read["tolerance"],
-        "onset_depth": defaults["onset_depth"] if onset_depth is None else read["onset_depth"],
-        "accuracy": read["accuracy"],
-        "events": _listed(defaults["events"] if events is None else events),
-    }
-    start = time.perf_counter()
     line = _Line()
     tell = progress if callable(progress) else line if progress else None
     try:
         result = _core.simulate(
             drive._inner,
-            names,
-            **settings,
+            [(key, value) for key, value in given.items() if value is not None],
             output=None if output is None else fspath(output),
             overwrite=overwrite,
             error=error,
@@ -186,21 +165,19 @@ def simulate(
         )
     finally:
         line.close()
-    attributes = {
-        "title": drive.title,
-        "format": "chaindrive",
-        "chaindrive_version": _core.__version__,
-        "scene_name": drive.name,
-        "scene": drive.text,
-        "until": settings["until"],
-        "every": settings["every"],
-        **result["attributes"],
-        "wall_time": time.perf_counter() - start,
-    }
-    if output is not None:
-        stored: xr.Dataset = xr.open_zarr(fspath(output), chunks=None)
-        return stored.assign_attrs(stored.attrs | attributes)
-    return _dataset(result, attributes)
+    if output is None:
+        dataset = _dataset(result, json.loads(result["attributes"]))
+    else:
+        dataset = xr.open_zarr(fspath(output), chunks=None)
+    stop: Any = result["stop"]
+    if isinstance(stop, KeyboardInterrupt):
+        # The very exception, for a class of its own would change the exit code of a script.
+        stop.result = dataset
+        reached = f"the run got to {dataset.attrs['time_reached']:.6g} s"
+        stop.add_note(f"{reached}: `except KeyboardInterrupt as stop` finds it in `stop.result`")
+    if stop is not None:
+        raise stop
+    return dataset
 
 
 def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:
@@ -223,13 +200,7 @@ def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:
         for dim, labels in result["labels"].items()
     }
     coordinates["time"] = ("time", result["time"], {"units": "s", "long_name": "time"})
-    # Infinity has no place in files; it stands for the least of no steps.
-    finite = {
-        name: value
-        for name, value in attributes.items()
-        if not isinstance(value, float) or math.isfinite(value)
-    }
-    return xr.Dataset(variables, coords=coordinates, attrs=finite)
+    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 
 
 def _listed(names: str | Iterable[str]) -> list[str]:

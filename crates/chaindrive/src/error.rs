@@ -48,6 +48,29 @@ pub enum SimulationError {
     )]
     Implicit { method: &'static str, works: String },
 
+    /// A method, an event or the like that does not exist.
+    #[error("{} named `{name}`; there are {known}", nothing(setting))]
+    UnknownName {
+        setting: &'static str,
+        name: String,
+        known: String,
+    },
+
+    /// An accuracy and what it would choose.
+    #[error("`accuracy` chooses the method and its step, and `{given}` is given as well")]
+    Conflict { given: &'static str },
+
+    /// The system refuses a thread.
+    #[error("the drive cannot be assembled: no thread can be started: {reason}")]
+    Thread { reason: String },
+
+    /// A chain faster than strain can travel in it.
+    #[error(
+        "the chain starts at {speed:.3e} m/s, must be at most {fastest} m/s, the speed of sound in steel; \
+         look at the unit of its speed, or of the speed of a sprocket"
+    )]
+    TooFast { speed: f64, fastest: f64 },
+
     /// Somebody asked the calculation to stop.
     #[error("interrupted")]
     Interrupted,
@@ -94,6 +117,14 @@ impl SimulationError {
             },
             other => Self::Integration(other),
         }
+    }
+}
+
+/// What there is none of.
+fn nothing(setting: &str) -> &'static str {
+    match setting {
+        "events" => "no contacts are",
+        _ => "no method is",
     }
 }
 

@@ -37,7 +37,10 @@ pub use chaindrive_mechanics::{
 pub use describe::Description;
 pub use error::SimulationError;
 pub use precision::{Choice, Estimate, Judgement};
-pub use record::{Axis, Channel, EventTable, Recording, Summary};
-pub use run::{Run, Stepping};
+pub use record::{Axis, Channel, EventTable, Memory, Recording, Summary};
+pub use run::{
+    End, Given, Onlooker, Report, Request, RequestError, Run, RunError, Settings, Sink, Stepping,
+    Stop, execute,
+};
 pub use scene::Scene;
 pub use simulate::Simulation;

@@ -1,16 +1,22 @@
 //! Recordings: labelled columns with units, and the story of how they came about.
 
+mod attributes;
 mod channel;
 mod event;
+mod in_store;
+mod memory;
 mod summary;
 mod zarr;
 
 use chaindrive_mechanics::{Energy, Flow, Observation, Store, System};
 
+pub use attributes::{Ending, Provenance, account, attributes};
 pub use channel::{Axis, Channel};
 pub use event::{EventColumn, EventTable};
+pub use in_store::InStore;
+pub use memory::Memory;
 pub use summary::{ContactStatistics, ForceStatistics, SpanStatistics, Summary};
-pub use zarr::{Ending, Existing, Provenance, SweepWriter, WriteError, ZarrWriter};
+pub use zarr::{Existing, SweepWriter, WriteError, ZarrWriter};
 
 /// One channel of a recording.
 #[derive(Clone, Debug)]
@@ -24,7 +30,7 @@ pub struct Column {
 }
 
 /// Samples of a run in memory.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Recording {
     /// Sample times \[s\], (time,).
     pub time: Vec<f64>,

@@ -44,6 +44,28 @@ pub struct Simulation {
     stepping_time: f64,
 }
 
+/// Fastest that a chain may run at the start \[m/s\]: the speed of sound in steel.
+///
+/// Strain travels no faster. A chain beyond it would not know that it is pulled, and no step would ever end the run.
+const FASTEST: f64 = 5000.0;
+
+/// Refuses a chain faster than any force in it.
+fn slow_enough(system: &System, state: &State) -> Result<(), SimulationError> {
+    let fastest = system.fastest_roller(Moment {
+        t: state.t,
+        q: &state.q,
+        v: &state.v,
+    });
+    if fastest <= FASTEST {
+        Ok(())
+    } else {
+        Err(SimulationError::TooFast {
+            speed: fastest,
+            fastest: FASTEST,
+        })
+    }
+}
+
 /// Steps between two looks at the clock.
 const STEPS_PER_LOOK: usize = 64;
 
@@ -66,6 +88,7 @@ impl Simulation {
         run.check()?;
         let mut system = assembled.system.clone();
         let mut state = State::new(0.0, assembled.q.clone(), assembled.v.clone());
+        slow_enough(&system, &state)?;
         let method = run.method(&system);
         system.set_onset_depth(run.onset_depth_with(&method));
         system.log_events(run.events);

@@ -1,16 +1,11 @@
-//! What to run: a scene, changes to it, and settings that are changes as well.
-//!
-//! Settings such as `--until` are written into the `[run]` table of the scene, where they are
-//! checked with their units like everything else; the text that a result carries then reproduces
-//! the run.
+//! What to run: a scene, changes to it, and the settings of the command line.
 
 use std::io::Read;
 use std::path::Path;
 
 use chaindrive::scene::presets;
-use chaindrive::{Channel, Run, Scene, Stepping};
+use chaindrive::{Given, Request, RequestError, Scene, Settings, Stepping};
 use clap::Args;
-use serde_json::Value;
 
 use crate::failure::Failure;
 
@@ -65,19 +60,6 @@ pub(crate) struct RunArguments {
     /// Contacts to log, separated by commas: teeth, guides, joints; they go into Zarr results and the summary
     #[arg(long, value_name = "KINDS", value_delimiter = ',')]
     events: Vec<String>,
-}
-
-/// What was asked for.
-#[derive(Debug)]
-pub(crate) struct Request {
-    /// The scene, settings included.
-    pub(crate) scene: Scene,
-    /// Settings of the run.
-    pub(crate) run: Run,
-    /// Names of the channels to record.
-    pub(crate) record: Vec<String>,
-    /// Accuracy \[–\] that method and step are to be chosen for.
-    pub(crate) accuracy: Option<f64>,
 }
 
 /// Reads a scene file, stdin or an embedded scene.
@@ -164,42 +146,35 @@ impl RunArguments {
         ]
     }
 
-    /// Writes the settings into the scene and reads all of them from there.
+    /// The run of a scene with these settings.
     ///
     /// The channels are names: which of them a chain has is known when it is assembled.
-    pub(crate) fn apply(&self, mut scene: Scene) -> Result<Request, Failure> {
-        // What the command line says about the method goes before the accuracy of the scene.
-        let method = [&self.method, &self.step, &self.tolerance, &self.onset_depth];
-        if method.iter().any(|setting| setting.is_some()) {
-            scene = scene.without("run.accuracy")?;
-        }
+    pub(crate) fn apply(&self, scene: &Scene) -> Result<Request, Failure> {
+        let mut settings = Settings::default();
         for (path, _, value) in self.settings() {
             if let Some(value) = value {
-                scene = scene.replace(path, value)?;
+                settings = settings.with(key(path), Given::Text(value.clone()));
             }
         }
         for (path, names) in [("run.record", &self.record), ("run.events", &self.events)] {
-            let names = names.iter().map(|name| name.trim());
-            let names = names.filter(|name| !name.is_empty());
-            let names: Vec<Value> = names.map(Value::from).collect();
+            let names = names.iter().map(|name| name.trim().to_owned());
+            let names: Vec<_> = names.filter(|name| !name.is_empty()).collect();
             if !names.is_empty() {
-                scene = scene.replace_json(path, &Value::Array(names))?;
+                settings = settings.with(key(path), Given::Names(names));
             }
         }
-        let wanted = scene.run_defaults();
-        let run = Run::suggested(&wanted);
-        let wrong = |error| Failure::Start {
-            scene: scene.name().to_owned(),
-            source: error,
-        };
-        run.check().map_err(wrong)?;
-        Channel::check(&wanted.record).map_err(wrong)?;
-        let accuracy = wanted.chosen_accuracy();
-        Ok(Request {
-            scene,
-            run,
-            record: wanted.record,
-            accuracy,
+        Request::new(scene, &settings).map_err(|error| match error {
+            RequestError::Setting(source) => Failure::Start {
+                scene: scene.name().to_owned(),
+                source,
+            },
+            RequestError::Scene(error) => error.into(),
+            error => Failure::Argument(error.to_string()),
         })
     }
+}
+
+/// The key of a path in `[run]`.
+fn key(path: &str) -> &str {
+    path.trim_start_matches("run.")
 }

@@ -346,6 +346,21 @@ impl System {
         self.commit(t, q, v, &mut record);
     }
 
+    /// Speed of the fastest roller \[m/s\].
+    pub fn fastest_roller(&self, at: Moment<'_>) -> f64 {
+        let mut posture = Posture::default();
+        let n = self.stride;
+        let [vx, vy] = match &self.linkage {
+            Some(linkage) => {
+                linkage.pose(at, &mut posture);
+                [&posture.vx[..], &posture.vy[..]]
+            }
+            None => [&at.v[..n], &at.v[n..2 * n]],
+        };
+        let speeds = vx[..self.rollers].iter().zip(vy).map(|(x, y)| x.hypot(*y));
+        speeds.fold(0.0, f64::max)
+    }
+
     fn renew_windows(&mut self, at: Moment<'_>, posture: &mut Posture) {
         let n = self.stride;
         let [x, y, vx, vy] = if let Some(linkage) = &self.linkage {

@@ -1,9 +1,11 @@
 //! Errors of the library as exceptions of `chaindrive.errors`.
 
-use chaindrive::SimulationError;
+use std::convert::Infallible;
+
 use chaindrive::record::WriteError;
 use chaindrive::scene::SceneError;
 use chaindrive::sweep::SweepError;
+use chaindrive::{RequestError, RunError, SimulationError};
 use chaindrive_contact::ParameterError;
 use chaindrive_geometry::GeometryError;
 use chaindrive_integrate::IntegrationError;
@@ -108,6 +110,14 @@ impl IntoException for SimulationError {
             Self::Implicit { works, .. } => {
                 parameter(message, "method", &format!("one of {works}"))
             }
+            Self::UnknownName { setting, known, .. } => {
+                parameter(message, setting, &format!("one of {known}"))
+            }
+            Self::Conflict { given } => python::ParameterError::new_err((
+                message,
+                "accuracy",
+                format!("leave out `accuracy` or `{given}`"),
+            )),
             Self::AbsentChannel { .. } => python::ParameterError::new_err((
                 message,
                 "record",
@@ -119,6 +129,33 @@ impl IntoException for SimulationError {
                 suggestion.map(|name| format!("did you mean `{name}`?")),
             )),
             _ => python::SimulationError::new_err((message,)),
+        }
+    }
+}
+
+impl IntoException for RequestError {
+    fn exception(self) -> PyErr {
+        match self {
+            Self::Scene(error) => error.exception(),
+            Self::Setting(error) => error.exception(),
+            other => python::ParameterError::new_err((other.to_string(),)),
+        }
+    }
+}
+
+impl IntoException for Infallible {
+    fn exception(self) -> PyErr {
+        match self {}
+    }
+}
+
+impl<E: IntoException + std::error::Error> IntoException for RunError<E> {
+    fn exception(self) -> PyErr {
+        match self {
+            Self::Scene(error) => error.exception(),
+            Self::Start(error) => error.exception(),
+            Self::Sink(error) => error.exception(),
+            Self::Interrupted => SimulationError::Interrupted.exception(),
         }
     }
 }

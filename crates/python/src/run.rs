@@ -1,87 +1,109 @@
 //! Runs: without the interpreter's lock, stopped by Ctrl-C, results handed over without a copy.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use chaindrive::precision::{Attribute, choose};
-use chaindrive::record::{
-    self, Ending, EventColumn, EventTable, Existing, Provenance, Recording, ZarrWriter,
-};
+use chaindrive::record::{self, EventColumn, EventTable, Existing, InStore};
 use chaindrive::{
-    Axis, Channel, Choice, EventKinds, Judgement, Method, Run, Simulation, Stepping, Summary,
+    Axis, Channel, EventKinds, Given, Memory, Onlooker, Report, Request, Settings, Simulation,
+    Stepping, Stop, execute,
 };
 use numpy::{PyArray1, PyArrayMethods};
-use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::drive::Drive;
-use crate::errors::{OrRaise, parameter};
+use crate::errors::{IntoException, OrRaise, parameter};
 
 /// Between two looks at signals.
 pub(crate) const PATIENCE: Duration = Duration::from_millis(50);
 
 /// Runs a drive and returns its recording: time, columns, labels and attributes.
+///
+/// Ctrl-C under way is not raised: it is the entry `stop` of the answer, beside what there is.
 #[pyfunction]
-#[pyo3(signature = (drive, channels, *, until, every, method, step, tolerance, onset_depth, accuracy, events, output, overwrite, error, progress))]
-#[expect(clippy::too_many_arguments, reason = "keywords in Python")]
+#[pyo3(signature = (drive, settings, *, output, overwrite, error, progress))]
 pub(crate) fn simulate<'py>(
     py: Python<'py>,
     drive: &Drive,
-    channels: Vec<String>,
-    until: f64,
-    every: f64,
-    method: &str,
-    step: Option<f64>,
-    tolerance: f64,
-    onset_depth: Option<f64>,
-    accuracy: Option<f64>,
-    events: Vec<String>,
+    settings: Vec<(String, Setting)>,
     output: Option<PathBuf>,
     overwrite: bool,
     error: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    Channel::check(&channels).or_raise()?;
-    let run = Run {
-        until,
-        every,
-        stepping: stepping(method)?,
-        step,
-        tolerance,
-        onset_depth,
-        events: event_kinds(&events)?,
-    };
-    let logged = run.events != EventKinds::default();
-    let output = output.map(|path| {
-        let existing = if overwrite {
-            Existing::Replace
-        } else {
-            Existing::Keep
+    let mut request = Request::new(&drive.scene, &merged(settings)).or_raise()?;
+    if !error {
+        request = request.without_estimate();
+    }
+    let mut memory = Memory::default();
+    let (report, raised) = py.detach(|| {
+        let interpreter = Interpreter::new(progress.as_ref());
+        let report = match output {
+            None => execute(&request, &mut memory, &interpreter).map_err(IntoException::exception),
+            Some(path) => {
+                let existing = if overwrite {
+                    Existing::Replace
+                } else {
+                    Existing::Keep
+                };
+                let mut store = InStore::new(path, existing);
+                execute(&request, &mut store, &interpreter).map_err(IntoException::exception)
+            }
         };
-        (path, existing)
+        (report, interpreter.raised.into_inner())
     });
-    let Outcome {
-        simulation,
-        recording,
-        contacts,
-        summary,
-        judgement,
-        choice,
-    } = py.detach(|| {
-        let precision = Precision { accuracy, error };
-        carry_out(drive, run, &channels, output, precision, progress.as_ref())
-    })?;
+    // Stopped before it began.
+    let report = match (report, &raised) {
+        (Err(_), Some(raised)) => return Err(raised.clone_ref(py)),
+        (report, _) => report?,
+    };
+    if let Stop::Failed(error) = report.stop {
+        return Err(error.exception());
+    }
+    let answer = told(py, &request, &report, memory)?;
+    answer.set_item("stop", raised)?;
+    Ok(answer)
+}
+
+/// A setting as Python gives it: a text with a unit, a number in SI units, or names.
+#[derive(FromPyObject)]
+pub(crate) enum Setting {
+    Text(String),
+    Number(f64),
+    Names(Vec<String>),
+}
+
+fn merged(settings: Vec<(String, Setting)>) -> Settings {
+    let settings = settings.into_iter();
+    settings.fold(Settings::default(), |all, (key, value)| {
+        let value = match value {
+            Setting::Text(text) => Given::Text(text),
+            Setting::Number(number) => Given::Number(number),
+            Setting::Names(names) => Given::Names(names),
+        };
+        all.with(&key, value)
+    })
+}
+
+/// What a run leaves, as Python takes it.
+fn told<'py>(
+    py: Python<'py>,
+    request: &Request,
+    report: &Report,
+    memory: Memory,
+) -> PyResult<Bound<'py, PyDict>> {
     let answer = PyDict::new(py);
+    let recording = memory.recording;
     let recorded = recording.columns.iter().map(|column| column.channel);
     let recorded: Vec<Channel> = recorded.collect();
-    answer.set_item("labels", labels(py, &recorded, &simulation)?)?;
-    answer.set_item(
-        "attributes",
-        attributes(py, &simulation, &summary, &judgement, choice.as_ref())?,
-    )?;
-    answer.set_item("waveform_horizon", judgement.waveform_horizon())?;
+    answer.set_item("labels", labels(py, &recorded, &report.simulation)?)?;
+    let attributes = serde_json::Value::Object(report.attributes.clone());
+    answer.set_item("attributes", attributes.to_string())?;
+    let judgement = report.judgement.as_ref();
+    let horizon = judgement.and_then(|judgement| judgement.waveform_horizon());
+    answer.set_item("waveform_horizon", horizon)?;
     let samples = recording.len();
     answer.set_item("time", PyArray1::from_vec(py, recording.time))?;
     let columns = PyDict::new(py);
@@ -94,8 +116,8 @@ pub(crate) fn simulate<'py>(
         columns.set_item(column.channel.name(), values)?;
     }
     answer.set_item("columns", columns)?;
-    if logged {
-        answer.set_item("events", event_columns(py, contacts)?)?;
+    if request.run.events != EventKinds::default() {
+        answer.set_item("events", event_columns(py, memory.events)?)?;
     }
     Ok(answer)
 }
@@ -115,23 +137,6 @@ fn event_columns(py: Python<'_>, contacts: EventTable) -> PyResult<Bound<'_, PyL
     Ok(columns)
 }
 
-fn event_kinds(names: &[String]) -> PyResult<EventKinds> {
-    let mut kinds = EventKinds::default();
-    for name in names {
-        match name.as_str() {
-            "teeth" => kinds.teeth = true,
-            "guides" => kinds.guides = true,
-            "joints" => kinds.joints = true,
-            _ => {
-                let known = "teeth, guides, joints";
-                let message = format!("no contacts are named `{name}`; there are {known}");
-                return Err(parameter(message, "events", &format!("of {known}")));
-            }
-        }
-    }
-    Ok(kinds)
-}
-
 /// The method of a name.
 pub(crate) fn stepping(name: &str) -> PyResult<Stepping> {
     Stepping::from_name(name).ok_or_else(|| {
@@ -141,159 +146,57 @@ pub(crate) fn stepping(name: &str) -> PyResult<Stepping> {
     })
 }
 
-/// What a run leaves.
-struct Outcome {
-    simulation: Simulation,
-    recording: Recording,
-    contacts: EventTable,
-    summary: Summary,
-    judgement: Judgement,
-    choice: Option<Choice>,
+/// Python as an onlooker: its signals, and the function that it wants to be told by.
+struct Interpreter<'a> {
+    progress: Option<&'a Py<PyAny>>,
+    /// How far the run is.
+    share: Cell<f64>,
+    looked: Cell<Instant>,
+    /// What a signal or the function raised.
+    raised: RefCell<Option<PyErr>>,
 }
 
-/// What is wanted besides the run.
-#[derive(Clone, Copy)]
-struct Precision {
-    /// Accuracy that method and step are to be chosen for.
-    accuracy: Option<f64>,
-    /// Whether the run ends with an estimate of its error.
-    error: bool,
+impl<'a> Interpreter<'a> {
+    fn new(progress: Option<&'a Py<PyAny>>) -> Self {
+        Self {
+            progress,
+            share: Cell::new(0.0),
+            looked: Cell::new(Instant::now()),
+            raised: RefCell::new(None),
+        }
+    }
+
+    fn look(&self, progress: Option<&Py<PyAny>>) {
+        self.looked.set(Instant::now());
+        if let Err(error) = look(progress, self.share.get()) {
+            self.raised.borrow_mut().get_or_insert(error);
+        }
+    }
+}
+
+impl Onlooker for Interpreter<'_> {
+    fn stop(&self) -> bool {
+        if self.looked.get().elapsed() >= PATIENCE {
+            // Before the first step and after the last there is nothing to tell.
+            let under_way = (f64::MIN_POSITIVE..1.0).contains(&self.share.get());
+            self.look(self.progress.filter(|_| under_way));
+        }
+        self.raised.borrow().is_some()
+    }
+
+    fn see(&self, simulation: &Simulation) {
+        let before = self.share.replace(simulation.progress());
+        if before < 1.0 && self.share.get() >= 1.0 {
+            self.look(self.progress);
+        }
+    }
 }
 
 /// Lets `work` look at Python's signals, and raises what it found there.
 pub(crate) fn watched<T>(work: impl FnOnce(&dyn Fn() -> bool) -> T) -> (T, PyResult<()>) {
-    let raised = RefCell::new(None);
-    let watch = || {
-        Python::attach(|py| match py.check_signals() {
-            Ok(()) => false,
-            Err(error) => {
-                raised.replace(Some(error));
-                true
-            }
-        })
-    };
-    let answer = work(&watch);
-    (answer, raised.into_inner().map_or(Ok(()), Err))
-}
-
-/// How exact a run is; raises what Python wants raised meanwhile.
-fn judge(simulation: &Simulation, run: &Run, wanted: bool) -> (Judgement, PyResult<()>) {
-    if !wanted {
-        return (Judgement::SwitchedOff, Ok(()));
-    }
-    watched(|watch| Judgement::of(simulation, run, watch))
-}
-
-fn carry_out(
-    drive: &Drive,
-    run: Run,
-    names: &[String],
-    output: Option<(PathBuf, Existing)>,
-    precision: Precision,
-    progress: Option<&Py<PyAny>>,
-) -> PyResult<Outcome> {
-    let start = drive.drive.assemble().or_raise()?;
-    let choice = match precision.accuracy {
-        None => None,
-        Some(accuracy) => {
-            let (choice, raised) = watched(|watch| choose(&start, &run, accuracy, watch));
-            raised?;
-            Some(choice.or_raise()?)
-        }
-    };
-    let run = choice.as_ref().map_or(run, |choice| choice.run.clone());
-    let mut simulation = Simulation::from_assembled(start, &run).or_raise()?;
-    let channels = Channel::chosen(names, simulation.system()).or_raise()?;
-    let channels = channels.as_slice();
-    let mut summary = Summary::new(&simulation);
-    let mut contacts = EventTable::new(simulation.system());
-    let Some((path, existing)) = output else {
-        let mut recording = Recording::new(channels, simulation.system());
-        advance(&mut simulation, &mut summary, progress, |simulation| {
-            recording.push(simulation.observation());
-            for event in simulation.events() {
-                contacts.push(event);
-            }
-            Ok(())
-        })?;
-        for event in simulation.outstanding_events() {
-            contacts.push(&event);
-        }
-        let (judgement, raised) = judge(&simulation, &run, precision.error);
-        raised?;
-        return Ok(Outcome {
-            simulation,
-            recording,
-            contacts,
-            summary,
-            judgement,
-            choice,
-        });
-    };
-    // On disk; nothing is kept in memory.
-    let recording = Recording::new(&[], simulation.system());
-    let provenance = Provenance {
-        choice: choice.clone(),
-        ..Provenance::of(&drive.scene, &run)
-    };
-    let mut writer =
-        ZarrWriter::create(&path, &simulation, channels, provenance, existing).or_raise()?;
-    let outcome = advance(&mut simulation, &mut summary, progress, |simulation| {
-        writer.push(simulation).or_raise()
-    });
-    let (judgement, raised) = match &outcome {
-        Ok(()) => judge(&simulation, &run, precision.error),
-        Err(_) => (Judgement::Interrupted, Ok(())),
-    };
-    let ending = match &outcome {
-        Ok(()) => Ending::Complete,
-        Err(error) => Python::attach(|py| {
-            if error.is_instance_of::<PyKeyboardInterrupt>(py) {
-                Ending::Interrupted
-            } else {
-                Ending::Failed(error.value(py).to_string())
-            }
-        }),
-    };
-    if !matches!(ending, Ending::Failed(_)) {
-        writer.judge(&judgement);
-    }
-    let finished = writer.finish(&simulation, &ending).or_raise();
-    outcome.and(finished).and(raised)?;
-    Ok(Outcome {
-        simulation,
-        recording,
-        contacts,
-        summary,
-        judgement,
-        choice,
-    })
-}
-
-/// Takes sample after sample to the end of the run.
-fn advance(
-    simulation: &mut Simulation,
-    summary: &mut Summary,
-    progress: Option<&Py<PyAny>>,
-    mut keep: impl FnMut(&Simulation) -> PyResult<()>,
-) -> PyResult<()> {
-    let mut looked = Instant::now();
-    loop {
-        while !simulation.advance(PATIENCE).or_raise()? {
-            look(progress, simulation.progress())?;
-        }
-        if simulation.next_sample().or_raise()?.is_none() {
-            break;
-        }
-        summary.push(simulation.observation());
-        summary.count(simulation.events());
-        keep(simulation)?;
-        if looked.elapsed() > PATIENCE {
-            look(progress, simulation.progress())?;
-            looked = Instant::now();
-        }
-    }
-    look(progress, simulation.progress())
+    let interpreter = Interpreter::new(None);
+    let answer = work(&|| interpreter.stop());
+    (answer, interpreter.raised.into_inner().map_or(Ok(()), Err))
 }
 
 /// Lets Python handle signals and tells it how far the run is.
@@ -319,79 +222,6 @@ fn labels<'py>(
             } else {
                 answer.set_item(name, labels)?;
             }
-        }
-    }
-    Ok(answer)
-}
-
-/// How the run came about and what it cost.
-fn attributes<'py>(
-    py: Python<'py>,
-    simulation: &Simulation,
-    summary: &Summary,
-    judgement: &Judgement,
-    choice: Option<&Choice>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let answer = PyDict::new(py);
-    let statistics = simulation.statistics();
-    let (time, wall) = (simulation.time(), simulation.stepping_time());
-    let link_steps = statistics.steps.max(1) as f64 * simulation.system().links() as f64;
-    let method = simulation.method();
-    answer.set_item("method", Stepping::from(method).name())?;
-    match method {
-        Method::Verlet { step } | Method::Rk4 { step } | Method::ImplicitDamping { step } => {
-            answer.set_item("step", step)?;
-        }
-        Method::GeneralizedAlpha {
-            step,
-            spectral_radius,
-        } => {
-            answer.set_item("step", step)?;
-            answer.set_item("spectral_radius", spectral_radius)?;
-        }
-        Method::DormandPrince {
-            relative, max_step, ..
-        } => {
-            answer.set_item("relative_tolerance", relative)?;
-            answer.set_item("max_step", max_step)?;
-        }
-    }
-    if let Some(depth) = simulation.system().onset_depth() {
-        answer.set_item("onset_depth", depth)?;
-    }
-    answer.set_item("steps", statistics.steps)?;
-    answer.set_item("rejections", statistics.rejections)?;
-    answer.set_item("error_rejections", statistics.error_rejections)?;
-    answer.set_item("reductions", statistics.reductions)?;
-    answer.set_item("evaluations", statistics.evaluations)?;
-    answer.set_item("solves", statistics.solves)?;
-    answer.set_item("newton_failures", statistics.newton_failures)?;
-    answer.set_item("jumps", statistics.jumps)?;
-    answer.set_item("smallest_step", statistics.smallest_step)?;
-    answer.set_item("largest_step", statistics.largest_step)?;
-    answer.set_item("samples", summary.samples)?;
-    answer.set_item("time_reached", time)?;
-    answer.set_item("energy_supplied", summary.energy_supplied())?;
-    answer.set_item("energy_dissipated", summary.energy_dissipated())?;
-    answer.set_item("energy_moved", summary.energy_moved())?;
-    answer.set_item("energy_residual_largest", summary.residual)?;
-    answer.set_item("contact_force_largest", summary.forces().max)?;
-    answer.set_item("stepping_time", wall)?;
-    answer.set_item("real_time_factor", time / wall)?;
-    answer.set_item("ns_per_link_step", wall * 1e9 / link_steps)?;
-    let mut text = summary.report(simulation).to_string();
-    if let Some(choice) = choice {
-        text = format!("{text}\n{choice}");
-    }
-    if *judgement != Judgement::SwitchedOff {
-        text = format!("{text}\n{judgement}");
-    }
-    answer.set_item("summary", text)?;
-    let chosen = choice.map(Choice::attributes).unwrap_or_default();
-    for (name, value) in chosen.into_iter().chain(judgement.attributes()) {
-        match value {
-            Attribute::Text(text) => answer.set_item(name, text)?,
-            Attribute::Number(number) => answer.set_item(name, number)?,
         }
     }
     Ok(answer)

@@ -54,7 +54,6 @@ pub(super) fn measure(assembled: &Assembled, run: &Run) -> Result<Cost, Simulati
     let trial = |until: f64| Run {
         until,
         every: until,
-        step: Some(run.step.unwrap_or(if adaptive { run.every } else { step })),
         ..run.clone()
     };
     let mut warming = Simulation::from_assembled(assembled.clone(), &trial(warm_up))?;

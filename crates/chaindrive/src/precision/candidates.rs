@@ -37,7 +37,7 @@ const IMPLICIT_DAMPING: [f64; 5] = [1.4, 0.7, 0.35, 0.175, 0.0875];
 ///
 /// Particles: Verlet, then Runge–Kutta with rejection. Rigid links: implicit damping, whose error
 /// falls to 0.01 % before explicit methods, which have to follow the damping, become cheaper.
-pub(super) fn entries(start: &Assembled, run: &Run) -> Vec<Entry> {
+pub(super) fn entries(start: &Assembled) -> Vec<Entry> {
     let system = &start.system;
     let of = |stepping: Stepping, factor: f64, onset_depth: Option<f64>| {
         let scale = if stepping.is_implicit() {
@@ -47,7 +47,7 @@ pub(super) fn entries(start: &Assembled, run: &Run) -> Vec<Entry> {
         };
         Candidate {
             stepping,
-            step: (factor * scale).min(run.every),
+            step: factor * scale,
             onset_depth,
         }
     };

@@ -162,7 +162,7 @@ pub fn choose(
         ..run.clone()
     };
     let window = Window::of(start, &pinned(start, &automatic)).first_half();
-    let entries = entries(start, run);
+    let entries = entries(start);
     let mut trials = Trials {
         start,
         run,

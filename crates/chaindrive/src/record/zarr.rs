@@ -26,7 +26,6 @@
 
 mod error;
 mod events;
-mod story;
 mod sweep;
 mod target;
 mod track;
@@ -41,9 +40,9 @@ use zarrs::group::Group;
 use zarrs::metadata::v3::{AdditionalFieldV3, GroupMetadataV3};
 
 pub use error::WriteError;
-pub use story::{Ending, Provenance};
 pub use sweep::SweepWriter;
 
+use super::attributes::{Ending, Provenance, attributes};
 use super::{Axis, Channel, labels};
 use crate::Simulation;
 use crate::precision::Judgement;
@@ -51,9 +50,6 @@ use error::Fault;
 use events::EventTracks;
 use target::{Storage, Target};
 use track::{Track, store_labels};
-
-/// Tells a result of this program from any other group.
-const FORMAT: &str = "chaindrive";
 
 /// Wall time between two commits.
 const COMMIT_EVERY: Duration = Duration::from_secs(1);
@@ -102,6 +98,8 @@ pub struct ZarrWriter {
     fixed: Vec<(&'static str, Value)>,
     start: Option<Energy>,
     judgement: Option<Judgement>,
+    /// What the result says about itself in the end.
+    told: Option<Map<String, Value>>,
     samples: u64,
     committed: Instant,
 }
@@ -178,6 +176,7 @@ impl ZarrWriter {
             fixed,
             start: None,
             judgement: None,
+            told: None,
             samples: 0,
             committed: Instant::now(),
         };
@@ -234,6 +233,11 @@ impl ZarrWriter {
         self.judgement = Some(judgement.clone());
     }
 
+    /// Takes in what the result is to say about itself in the end, in place of what the writer would say.
+    pub fn tell(&mut self, attributes: &Map<String, Value>) {
+        self.told = Some(attributes.clone());
+    }
+
     /// Commits for the last time and says how the run ended.
     ///
     /// # Errors
@@ -276,13 +280,11 @@ impl ZarrWriter {
             AdditionalFieldV3::new(consolidated, false),
         )];
         let metadata = GroupMetadataV3::new()
-            .with_attributes(story::attributes(
-                &self.provenance,
-                simulation,
-                self.samples,
-                ending,
-                self.judgement.as_ref(),
-            ))
+            .with_attributes(self.told.clone().unwrap_or_else(|| {
+                let judgement = self.judgement.as_ref();
+                let (provenance, samples) = (&self.provenance, self.samples);
+                attributes(provenance, simulation, None, samples, ending, judgement)
+            }))
             .with_additional_fields(fields.into_iter().collect());
         Group::new_with_metadata(self.storage.clone(), "/", metadata.into())?.store_metadata()?;
         for track in growing(&mut self.time, &mut self.tracks) {

@@ -1,15 +1,18 @@
 //! What is kept of one variant: statistics, and channels where they are asked for.
 
+use std::convert::Infallible;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
 
 use chaindrive_mechanics::EventKinds;
 
 use super::Outcome;
-use crate::precision::{Choice, Promise, choose};
-use crate::record::{ContactStatistics, EventTable, SpanStatistics, labels};
-use crate::{Channel, Recording, Run, Scene, Simulation, SimulationError, Stepping, Summary};
+use crate::precision::{Choice, Promise};
+use crate::record::{ContactStatistics, EventTable, Provenance, SpanStatistics, labels};
+use crate::{
+    Channel, End, Recording, Report, Request, RunError, Scene, Settings, Simulation, Sink,
+    Stepping, Stop, Summary, execute,
+};
 
 macro_rules! statistics {
     ($($variant:ident, $name:literal, $unit:literal, $along:expr, $text:literal;)*) => {
@@ -209,8 +212,38 @@ pub struct Account {
     pub values: Vec<(Quantity, Vec<f64>)>,
 }
 
-/// Wall time between two looks at whether to stop.
-const LOOK: Duration = Duration::from_millis(50);
+/// The channels that are kept beside the statistics, if any.
+#[derive(Default)]
+struct Kept {
+    wanted: bool,
+    recording: Recording,
+}
+
+impl Sink for Kept {
+    type Error = Infallible;
+
+    fn begin(
+        &mut self,
+        simulation: &Simulation,
+        channels: &[Channel],
+        _: &Provenance,
+    ) -> Result<(), Infallible> {
+        let channels = if self.wanted { channels } else { &[] };
+        self.recording = Recording::new(channels, simulation.system());
+        Ok(())
+    }
+
+    fn push(&mut self, simulation: &Simulation) -> Result<(), Infallible> {
+        if self.wanted {
+            self.recording.push(simulation.observation());
+        }
+        Ok(())
+    }
+
+    fn end(&mut self, _: &End<'_>) -> Result<(), Infallible> {
+        Ok(())
+    }
+}
 
 /// Whatever goes wrong is the outcome, a panic included: the other variants are not its fault.
 pub(super) fn outcome(attempt: impl FnOnce() -> Result<Option<Account>, String>) -> Outcome {
@@ -237,63 +270,34 @@ impl Account {
         record: &[String],
         stop: &AtomicBool,
     ) -> Result<Option<Self>, String> {
-        let drive = scene.drive().map_err(|error| error.to_string())?;
-        let failed = |error: SimulationError| error.to_string();
-        let wanted = scene.run_defaults();
-        let mut run = Run::suggested(&wanted);
-        run.check().map_err(failed)?;
-        let assembled = drive.assemble().map_err(|error| error.to_string())?;
-        // Only what is asked for: trials in every variant would double the cost of short ones.
-        let mut chosen = None;
-        if let Some(accuracy) = wanted.accuracy {
-            let stopped = || stop.load(Ordering::Relaxed);
-            match choose(&assembled, &run, accuracy, &stopped) {
-                Ok(choice) => {
-                    run = choice.run.clone();
-                    chosen = Some(choice);
-                }
-                Err(SimulationError::Interrupted) => return Ok(None),
-                Err(error) => return Err(failed(error)),
-            }
-        }
-        let mut simulation = Simulation::from_assembled(assembled, &run).map_err(failed)?;
-        let channels = if record.is_empty() {
-            Vec::new()
-        } else {
-            Channel::chosen(record, simulation.system()).map_err(failed)?
+        // Trials only where they are asked for: in every variant they would double the cost of short ones.
+        let request = Request::new(scene, &Settings::default())
+            .map_err(|error| error.to_string())?
+            .with_default_step()
+            .without_estimate();
+        let request = Request {
+            record: record.to_vec(),
+            ..request
         };
-        let mut summary = Summary::new(&simulation);
-        let mut recording = Recording::new(&channels, simulation.system());
-        loop {
-            while !simulation.advance(LOOK).map_err(failed)? {
-                if stop.load(Ordering::Relaxed) {
-                    return Ok(None);
-                }
-            }
-            let Some(sample) = simulation.next_sample().map_err(failed)? else {
-                break;
-            };
-            summary.push(sample);
-            if !channels.is_empty() {
-                recording.push(sample);
-            }
-            summary.count(simulation.events());
-            if stop.load(Ordering::Relaxed) {
-                return Ok(None);
-            }
+        let mut memory = Kept {
+            wanted: !record.is_empty(),
+            ..Kept::default()
+        };
+        let stopped = || stop.load(Ordering::Relaxed);
+        match execute(&request, &mut memory, &stopped) {
+            Ok(report) => match &report.stop {
+                Stop::End => Ok(Some(Self::close(&report, memory.recording))),
+                Stop::Interrupted => Ok(None),
+                Stop::Failed(error) => Err(error.to_string()),
+            },
+            Err(RunError::Interrupted) => Ok(None),
+            Err(error) => Err(error.to_string()),
         }
-        let choice = chosen.as_ref();
-        let account = Self::close(&simulation, &summary, recording, &run, choice);
-        Ok(Some(account))
     }
 
-    fn close(
-        simulation: &Simulation,
-        summary: &Summary,
-        recording: Recording,
-        run: &Run,
-        choice: Option<&Choice>,
-    ) -> Self {
+    fn close(report: &Report, recording: Recording) -> Self {
+        let (simulation, summary) = (&report.simulation, &report.summary);
+        let (run, choice) = (&report.run, report.choice.as_ref());
         let names = summary.spans.iter().map(|span| span.name.clone());
         let mut account = Self {
             method: Stepping::from(simulation.method()).name().to_owned(),

@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 
 use chaindrive::precision::{Study, Table, Variant, work_precision};
 use chaindrive::scene::RunDefaults;
-use chaindrive::{Scene, SimulationError, Stepping};
+use chaindrive::{Request, Scene, SimulationError, Stepping};
 use clap::Args;
 
 use crate::failure::Failure;
-use crate::request::{Request, RunArguments, SceneArguments};
+use crate::request::{RunArguments, SceneArguments};
 use crate::stdout::print;
 
 /// Measures work and precision of methods and steps on a scene; prints a table, saves it and a diagram.
@@ -59,7 +59,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn bench(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
     let settings = RunArguments::until(arguments.until.as_deref());
-    let Request { scene, run, .. } = settings.apply(arguments.scene.load()?)?;
+    let Request { scene, run, .. } = settings.apply(&arguments.scene.load()?)?;
     let failed = |source| match source {
         SimulationError::Interrupted => Failure::Interrupted,
         source => Failure::Start {

@@ -1,11 +1,11 @@
 //! `chaindrive describe`: what would be simulated?
 
 use chaindrive::precision::choose;
-use chaindrive::{Description, SimulationError};
+use chaindrive::{Description, Request, SimulationError};
 use clap::Args;
 
 use crate::failure::Failure;
-use crate::request::{Request, RunArguments, SceneArguments};
+use crate::request::{RunArguments, SceneArguments};
 use crate::stdout::print;
 
 /// Describes what a run would simulate: route, statics, model, time scales, cost.
@@ -31,7 +31,7 @@ pub(crate) fn describe(
         run,
         accuracy,
         ..
-    } = arguments.run.apply(arguments.scene.load()?)?;
+    } = arguments.run.apply(&arguments.scene.load()?)?;
     let failed = |source| match source {
         SimulationError::Interrupted => Failure::Interrupted,
         source => Failure::Start {

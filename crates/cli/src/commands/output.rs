@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use chaindrive::record::{Ending, Existing, Provenance, ZarrWriter};
 use chaindrive::{Channel, Judgement, Simulation};
+use serde_json::{Map, Value};
 
 use crate::csv::CsvWriter;
 use crate::failure::Failure;
@@ -75,6 +76,13 @@ impl Output {
     pub(crate) fn judge(&mut self, judgement: &Judgement) {
         if let Self::Zarr(writer) = self {
             writer.judge(judgement);
+        }
+    }
+
+    /// Tells the result what it is to say about itself.
+    pub(crate) fn tell(&mut self, attributes: &Map<String, Value>) {
+        if let Self::Zarr(writer) = self {
+            writer.tell(attributes);
         }
     }
 

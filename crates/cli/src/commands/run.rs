@@ -1,18 +1,17 @@
 //! `chaindrive run`: simulate a scene, write the samples, end with a summary.
 
+use std::cell::RefCell;
 use std::path::PathBuf;
-use std::time::Duration;
 
 use chaindrive::describe::spans_at_rest;
-use chaindrive::precision::choose;
-use chaindrive::record::{Ending, Existing, Provenance};
-use chaindrive::{Channel, Drive, Judgement, Run, Simulation, SimulationError, Summary};
+use chaindrive::record::{Existing, Provenance, account};
+use chaindrive::{Channel, End, Onlooker, Report, RunError, Simulation, Sink, Stop, execute};
 use clap::Args;
 
 use super::output::{Output, Target};
 use crate::failure::Failure;
 use crate::progress::Progress;
-use crate::request::{Request, RunArguments, SceneArguments};
+use crate::request::{RunArguments, SceneArguments};
 use crate::stdout::print;
 
 /// Simulates a scene and ends with a summary.
@@ -44,158 +43,115 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
     let target = Target::of(arguments.output.as_deref())?;
-    let Request {
-        scene,
-        run,
-        record,
-        accuracy,
-    } = arguments.run.apply(arguments.scene.load()?)?;
-    let drive = scene.drive()?;
-    let failed = |source| Failure::Start {
-        scene: scene.name().to_owned(),
-        source,
-    };
-    let start = drive.assemble().map_err(|error| failed(error.into()))?;
-    let choice = match accuracy.map(|accuracy| choose(&start, &run, accuracy, interrupted)) {
-        None => None,
-        Some(Ok(choice)) => Some(choice),
-        Some(Err(SimulationError::Interrupted)) => return Err(Failure::Interrupted),
-        Some(Err(error)) => return Err(failed(error)),
-    };
-    let run = choice.as_ref().map_or(run, |choice| choice.run.clone());
-    let mut simulation = Simulation::from_assembled(start, &run).map_err(failed)?;
-    let channels = Channel::chosen(&record, simulation.system()).map_err(failed)?;
+    let mut request = arguments.run.apply(&arguments.scene.load()?)?;
+    if arguments.no_error {
+        request = request.without_estimate();
+    }
     let existing = if arguments.overwrite {
         Existing::Replace
     } else {
         Existing::Keep
     };
-    let output = target.begin(
-        &simulation,
-        &channels,
-        Provenance {
-            choice: choice.clone(),
-            ..Provenance::of(&scene, &run)
-        },
-        existing,
-    )?;
-
-    let mut summary = Summary::new(&simulation);
-    let mut output = output;
-    let mut ending = drive_to_the_end(
-        &mut simulation,
-        &mut output,
-        &mut summary,
-        arguments.quiet,
+    let mut result = Written::Asked(target, existing);
+    let terminal = Terminal {
+        progress: RefCell::new(Progress::new(arguments.quiet)),
         interrupted,
-    )?;
-    let judgement = judge(&simulation, &run, &ending, arguments.no_error, interrupted);
-    if let Some(judgement) = &judgement {
-        output.judge(judgement);
+    };
+    let scene = || request.scene.name().to_owned();
+    let report = execute(&request, &mut result, &terminal).map_err(|error| match error {
+        RunError::Scene(error) => error.into(),
+        RunError::Interrupted => Failure::Interrupted,
+        RunError::Sink(failure) => failure,
+        RunError::Start(source) => Failure::Start {
+            scene: scene(),
+            source,
+        },
+    })?;
+    drop(terminal);
+    if !arguments.quiet && report.summary.samples > 0 {
+        print(at_rest(&report) + &told(&report))?;
     }
-    output.finish(&simulation, &ending.of_the_result())?;
-    if !arguments.quiet && summary.samples > 0 {
-        let said = judgement
-            .iter()
-            .filter(|judgement| **judgement != Judgement::SwitchedOff)
-            .map(|judgement| format!("\n{judgement}"));
-        let chosen = choice.map_or_else(String::new, |choice| format!("\n{choice}"));
-        let report = summary.report(&simulation).to_string();
-        print(at_rest(&drive, &simulation) + &report + &chosen + &said.collect::<String>())?;
-    }
-    if judgement == Some(Judgement::Interrupted) {
-        ending = Stop::Interrupted;
-    }
-    match ending {
+    match report.stop {
         Stop::End => Ok(()),
         Stop::Interrupted => Err(Failure::Interrupted),
         Stop::Failed(source) => Err(Failure::Simulation {
-            scene: scene.name().to_owned(),
+            scene: scene(),
             source,
         }),
     }
 }
 
-/// Why the loop stopped.
-enum Stop {
-    End,
-    Interrupted,
-    Failed(SimulationError),
+/// Somebody at a terminal: sees the bar, may press Ctrl-C.
+struct Terminal<'a> {
+    progress: RefCell<Progress>,
+    interrupted: &'a dyn Fn() -> bool,
 }
 
-impl Stop {
-    /// What the result says of it.
-    fn of_the_result(&self) -> Ending {
+impl Onlooker for Terminal<'_> {
+    fn stop(&self) -> bool {
+        (self.interrupted)()
+    }
+
+    fn see(&self, simulation: &Simulation) {
+        self.progress.borrow_mut().show(simulation);
+    }
+}
+
+/// The result: a place, and once the run has begun what is written there.
+enum Written {
+    Asked(Target, Existing),
+    Begun(Output),
+    Closed,
+}
+
+impl Sink for Written {
+    type Error = Failure;
+
+    fn begin(
+        &mut self,
+        simulation: &Simulation,
+        channels: &[Channel],
+        provenance: &Provenance,
+    ) -> Result<(), Failure> {
+        if let Self::Asked(target, existing) = std::mem::replace(self, Self::Closed) {
+            let output = target.begin(simulation, channels, provenance.clone(), existing)?;
+            *self = Self::Begun(output);
+        }
+        Ok(())
+    }
+
+    fn push(&mut self, simulation: &Simulation) -> Result<(), Failure> {
         match self {
-            Self::End => Ending::Complete,
-            Self::Interrupted => Ending::Interrupted,
-            Self::Failed(error) => Ending::Failed(error.to_string()),
+            Self::Begun(output) => output.push(simulation),
+            Self::Asked(..) | Self::Closed => Ok(()),
         }
+    }
+
+    fn end(&mut self, end: &End<'_>) -> Result<(), Failure> {
+        let Self::Begun(mut output) = std::mem::replace(self, Self::Closed) else {
+            return Ok(());
+        };
+        if let Some(judgement) = end.judgement {
+            output.judge(judgement);
+        }
+        output.tell(end.attributes);
+        output.finish(end.simulation, end.ending)
     }
 }
 
-/// How exact the run is; nothing is said of one that failed.
-fn judge(
-    simulation: &Simulation,
-    run: &Run,
-    ending: &Stop,
-    switched_off: bool,
-    interrupted: &dyn Fn() -> bool,
-) -> Option<Judgement> {
-    match ending {
-        Stop::Failed(_) => None,
-        _ if switched_off => Some(Judgement::SwitchedOff),
-        Stop::Interrupted => Some(Judgement::Interrupted),
-        Stop::End => Some(Judgement::of(simulation, run, interrupted)),
-    }
-}
-
-/// Wall time between two looks at progress and interrupts while no sample is due.
-const LOOK: Duration = Duration::from_millis(100);
-
-/// Samples until the end.
-fn drive_to_the_end(
-    simulation: &mut Simulation,
-    output: &mut Output,
-    summary: &mut Summary,
-    quiet: bool,
-    interrupted: &dyn Fn() -> bool,
-) -> Result<Stop, Failure> {
-    let mut progress = Progress::new(quiet);
-    let stop = loop {
-        match simulation.advance(LOOK) {
-            Ok(true) => {}
-            Ok(false) => {
-                progress.show(simulation);
-                if interrupted() {
-                    break Stop::Interrupted;
-                }
-                continue;
-            }
-            Err(error) => break Stop::Failed(error),
-        }
-        match simulation.next_sample() {
-            Ok(Some(sample)) => summary.push(sample),
-            Ok(None) => break Stop::End,
-            Err(error) => break Stop::Failed(error),
-        }
-        summary.count(simulation.events());
-        output.push(simulation)?;
-        progress.show(simulation);
-        if interrupted() {
-            break Stop::Interrupted;
-        }
-    };
-    Ok(stop)
+/// The account that ends the run.
+fn told(report: &Report) -> String {
+    let (choice, judgement) = (report.choice.as_ref(), report.judgement.as_ref());
+    account(&report.summary, &report.simulation, choice, judgement)
 }
 
 /// The span tensions before the start, as the first lines of the summary.
-fn at_rest(drive: &Drive, simulation: &Simulation) -> String {
-    let assembled = simulation.assembled();
+fn at_rest(report: &Report) -> String {
+    let assembled = report.simulation.assembled();
     if assembled.statics.is_empty() {
         return String::new();
     }
-    let spans = spans_at_rest(drive, assembled);
+    let spans = spans_at_rest(&report.drive, assembled);
     let line = |(name, tension): (String, f64)| format!("  {name:22} {tension:>9.1}\n");
     let lines = spans
         .into_iter()

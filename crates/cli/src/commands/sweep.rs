@@ -7,13 +7,14 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use chaindrive::record::{Ending, Existing};
+use chaindrive::Request;
 use chaindrive::sweep::{Go, Outcome, Sweep};
 use clap::Args;
 
 use super::output::Target;
 use crate::failure::Failure;
 use crate::progress::Progress;
-use crate::request::{Request, RunArguments, SceneArguments};
+use crate::request::{RunArguments, SceneArguments};
 use crate::stdout::print;
 use output::Output;
 
@@ -80,7 +81,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
     let target = Target::of(arguments.output.as_deref())?;
-    let Request { scene, record, .. } = arguments.run.apply(arguments.scene.load()?)?;
+    let Request { scene, record, .. } = arguments.run.apply(&arguments.scene.load()?)?;
     // A scene suggests channels for a run; times the number of variants they are only kept on demand.
     let asked = arguments.run.asks_for_channels();
     let record = if asked { record } else { Vec::new() };

@@ -16,10 +16,10 @@ use zarrs::group::Group;
 use zarrs::metadata::v3::{AdditionalFieldV3, GroupMetadataV3};
 
 use super::error::{Fault, WriteError};
-use super::story::Story;
 use super::target::{Storage, Target};
 use super::track::{StoredArray, ZSTD_LEVEL, metadata, store_metadata};
-use super::{Ending, Existing, FORMAT, about, at};
+use super::{Ending, Existing, about, at};
+use crate::record::attributes::{FORMAT, Story};
 use crate::sweep::{Coordinate, Outcome, Stacked, Sweep};
 
 /// Numbers in a chunk, about 1 MiB: beyond that a chunk is a stretch of a single variant.

@@ -14,7 +14,8 @@ use zarrs::storage::storage_adapter::async_to_sync::{
 use zarrs_object_store::AsyncObjectStore;
 
 use super::error::WriteError;
-use super::{Existing, FORMAT};
+use super::Existing;
+use crate::record::attributes::FORMAT;
 
 /// A store whose files appear whole or not at all.
 pub(super) type Storage = Arc<dyn ReadableWritableListableStorageTraits>;

@@ -1,14 +1,19 @@
-//! What a result says about itself: the attributes of the group.
+//! What a result says about itself: one list of attributes, in memory and in a store.
 //!
 //! All are texts, numbers, or lists of these, so that they survive a conversion to netCDF, which
 //! knows neither truth values nor tables.
 
 use chaindrive_integrate::Method;
+use std::time::Instant;
+
 use serde_json::{Map, Value};
 
-use super::FORMAT;
+use super::Summary;
 use crate::precision::{Attribute, Choice, Judgement};
 use crate::{Run, Scene, Simulation, Stepping};
+
+/// Tells a result of this program from any other group.
+pub(super) const FORMAT: &str = "chaindrive";
 
 /// Where a run came from.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +28,8 @@ pub struct Provenance {
     pub run: Run,
     /// How method and step were chosen, if they were.
     pub choice: Option<Choice>,
+    /// When somebody asked for it.
+    pub began: Instant,
 }
 
 impl Provenance {
@@ -34,6 +41,7 @@ impl Provenance {
             scene_name: scene.name().to_owned(),
             run: run.clone(),
             choice: None,
+            began: Instant::now(),
         }
     }
 }
@@ -53,7 +61,8 @@ pub enum Ending {
 }
 
 impl Ending {
-    pub(super) fn status(&self) -> &'static str {
+    /// Its word in results.
+    pub fn status(&self) -> &'static str {
         match self {
             Self::None => "running",
             Self::Complete => "complete",
@@ -63,10 +72,14 @@ impl Ending {
     }
 }
 
-/// The attributes at a commit.
-pub(super) fn attributes(
+/// Everything that a result says about itself; what sums it up only where there is a summary, at the end.
+///
+/// Wall times are the only attributes that two runs of one request do not share: `stepping_time`, `real_time_factor`,
+/// `ns_per_link_step`, `wall_time`, and the last line of the account in `summary`.
+pub fn attributes(
     provenance: &Provenance,
     simulation: &Simulation,
+    summary: Option<&Summary>,
     samples: u64,
     ending: &Ending,
     judgement: Option<&Judgement>,
@@ -102,9 +115,21 @@ pub(super) fn attributes(
     story.count("jumps", statistics.jumps);
     story.number("smallest_step", statistics.smallest_step);
     story.number("largest_step", statistics.largest_step);
-    story.number("stepping_time", simulation.stepping_time());
     story.number("energy_residual_last", simulation.energy_residual());
+    if let Some(summary) = summary {
+        story.number("energy_supplied", summary.energy_supplied());
+        story.number("energy_dissipated", summary.energy_dissipated());
+        story.number("energy_moved", summary.energy_moved());
+        story.number("energy_residual_largest", summary.residual);
+        story.number("contact_force_largest", summary.forces().max);
+    }
     assembly(&mut story, simulation);
+    speed(&mut story, simulation, provenance.began);
+    if let Some(summary) = summary {
+        let choice = provenance.choice.as_ref();
+        let text = account(summary, simulation, choice, judgement);
+        story.text("summary", &text);
+    }
     let choice = provenance.choice.as_ref().map(Choice::attributes);
     let judgement = judgement.map(Judgement::attributes);
     for (name, value) in [choice, judgement].into_iter().flatten().flatten() {
@@ -114,6 +139,34 @@ pub(super) fn attributes(
         }
     }
     story.0
+}
+
+/// The account that ends a run, as text.
+pub fn account(
+    summary: &Summary,
+    simulation: &Simulation,
+    choice: Option<&Choice>,
+    judgement: Option<&Judgement>,
+) -> String {
+    let mut text = summary.report(simulation).to_string();
+    if let Some(choice) = choice {
+        text = format!("{text}\n{choice}");
+    }
+    match judgement {
+        None | Some(Judgement::SwitchedOff) => text,
+        Some(judgement) => format!("{text}\n{judgement}"),
+    }
+}
+
+/// What the run cost.
+fn speed(story: &mut Story, simulation: &Simulation, began: Instant) {
+    let wall = simulation.stepping_time();
+    let steps = simulation.statistics().steps.max(1) as f64;
+    let link_steps = steps * simulation.system().links() as f64;
+    story.number("stepping_time", wall);
+    story.number("real_time_factor", simulation.time() / wall);
+    story.number("ns_per_link_step", wall * 1e9 / link_steps);
+    story.number("wall_time", began.elapsed().as_secs_f64());
 }
 
 fn method(story: &mut Story, method: Method) {

@@ -1,0 +1,298 @@
+//! One run, whoever asks for it: assemble, choose, step, sample, judge.
+
+use std::time::Duration;
+
+use chaindrive_mechanics::{Assembled, Drive};
+use serde_json::{Map, Value};
+
+use super::Request;
+use crate::precision::{Choice, Judgement, choose};
+use crate::record::{Ending, Provenance, Summary, attributes};
+use crate::scene::SceneError;
+use crate::{Channel, Run, Simulation, SimulationError};
+
+/// Where samples go: memory, a store, a table.
+pub trait Sink {
+    /// Why it refuses.
+    type Error: std::error::Error;
+
+    /// Takes note of a run that is about to begin.
+    ///
+    /// # Errors
+    /// The place is taken, or cannot be written.
+    fn begin(
+        &mut self,
+        simulation: &Simulation,
+        channels: &[Channel],
+        provenance: &Provenance,
+    ) -> Result<(), Self::Error>;
+
+    /// Takes the last sample of the simulation.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    fn push(&mut self, simulation: &Simulation) -> Result<(), Self::Error>;
+
+    /// Closes the result, however the run ended.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    fn end(&mut self, end: &End<'_>) -> Result<(), Self::Error>;
+}
+
+/// What is known when a run has ended.
+#[derive(Debug)]
+pub struct End<'a> {
+    /// The simulation at its last state.
+    pub simulation: &'a Simulation,
+    /// The account of its samples.
+    pub summary: &'a Summary,
+    /// How exact it is; nothing is said of a run that failed.
+    pub judgement: Option<&'a Judgement>,
+    /// How it ended.
+    pub ending: &'a Ending,
+    /// What the result says about itself.
+    pub attributes: &'a Map<String, Value>,
+}
+
+/// Looks on while a run is carried out, and may have it stopped.
+pub trait Onlooker {
+    /// Whether the user wants it to stop; asked after every sample, and every 50 ms where there is none.
+    fn stop(&self) -> bool;
+
+    /// Is told how far the run is, as often as [`stop`](Self::stop) is asked.
+    fn see(&self, simulation: &Simulation) {
+        let _ = simulation;
+    }
+}
+
+impl<F: Fn() -> bool> Onlooker for F {
+    fn stop(&self) -> bool {
+        self()
+    }
+}
+
+/// Why there is no result at all, or no whole one.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError<E: std::error::Error> {
+    /// The scene is not a drive.
+    #[error(transparent)]
+    Scene(SceneError),
+
+    /// The run could not begin.
+    #[error(transparent)]
+    Start(SimulationError),
+
+    /// The user stopped it before it began.
+    #[error("interrupted")]
+    Interrupted,
+
+    /// The result could not be written.
+    #[error(transparent)]
+    Sink(E),
+}
+
+/// What a run leaves, beside its samples.
+#[derive(Debug)]
+pub struct Report {
+    /// The simulation at its last state.
+    pub simulation: Simulation,
+    /// The drive.
+    pub drive: Drive,
+    /// The run as it was carried out, with the method and step chosen.
+    pub run: Run,
+    /// How method and step were chosen, if they were.
+    pub choice: Option<Choice>,
+    /// The account of its samples.
+    pub summary: Summary,
+    /// How exact it is; nothing is said of a run that failed.
+    pub judgement: Option<Judgement>,
+    /// How it ended.
+    pub stop: Stop,
+    /// What the result says about itself: the same in memory and in a store.
+    pub attributes: Map<String, Value>,
+}
+
+/// Why a run stopped.
+#[derive(Debug)]
+pub enum Stop {
+    /// It reached its end.
+    End,
+    /// The user stopped it.
+    Interrupted,
+    /// It could not go on.
+    Failed(SimulationError),
+}
+
+impl Stop {
+    /// The same, as a result tells it.
+    pub fn ending(&self) -> Ending {
+        match self {
+            Self::End => Ending::Complete,
+            Self::Interrupted => Ending::Interrupted,
+            Self::Failed(error) => Ending::Failed(error.to_string()),
+        }
+    }
+}
+
+/// Wall time between two looks at the onlooker while no sample is due.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// Carries out a request: assembles the drive, chooses method and step where an accuracy is asked for, hands every
+/// sample to the sink, and judges the result.
+///
+/// The same request gives the same bits and the same attributes, whoever asks and wherever the samples go, but for the
+/// wall times. A run that fails or is stopped under way is a report too: what there is of it is kept.
+///
+/// # Errors
+/// [`RunError`] when the run cannot begin, or the sink refuses.
+///
+/// # Example
+///
+/// ```
+/// use chaindrive::{Given, Memory, Request, Scene, Settings, execute};
+///
+/// let settings = Settings::default().with("until", Given::Number(2e-3));
+/// let request = Request::new(&Scene::preset("spinning_ring")?, &settings)?;
+/// let mut memory = Memory::default();
+/// let report = execute(&request, &mut memory, &|| false)?;
+/// assert_eq!(report.attributes["status"], "complete");
+/// assert_eq!(report.attributes["samples"], memory.recording.len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn execute<S: Sink>(
+    request: &Request,
+    sink: &mut S,
+    onlooker: &dyn Onlooker,
+) -> Result<Report, RunError<S::Error>> {
+    let watch = || onlooker.stop();
+    let begun = |error| match error {
+        SimulationError::Interrupted => RunError::Interrupted,
+        error => RunError::Start(error),
+    };
+    let mut provenance = Provenance::of(&request.scene, &request.run);
+    let drive = request.scene.drive().map_err(RunError::Scene)?;
+    let start = assemble(&drive, &watch).map_err(begun)?;
+    if let Some(accuracy) = request.accuracy {
+        let choice = choose(&start, &request.run, accuracy, &watch).map_err(begun)?;
+        provenance.run = choice.run.clone();
+        provenance.choice = Some(choice);
+    }
+    let run = provenance.run.clone();
+    let mut simulation = Simulation::from_assembled(start, &run).map_err(begun)?;
+    let channels = Channel::chosen(&request.record, simulation.system()).map_err(begun)?;
+    sink.begin(&simulation, &channels, &provenance)
+        .map_err(RunError::Sink)?;
+
+    let mut summary = Summary::new(&simulation);
+    let carried = carry_out(&mut simulation, onlooker, |simulation| {
+        summary.push(simulation.observation());
+        summary.count(simulation.events());
+        sink.push(simulation)
+    });
+    let mut stop = match carried {
+        Ok(stop) => stop,
+        Err(refused) => {
+            // The result is to say that it is not whole, if it still can.
+            let ending = Ending::Failed(refused.to_string());
+            let samples = summary.samples;
+            let told = attributes(&provenance, &simulation, Some(&summary), samples, &ending, None);
+            let end = End {
+                simulation: &simulation,
+                summary: &summary,
+                judgement: None,
+                ending: &ending,
+                attributes: &told,
+            };
+            sink.end(&end).ok();
+            return Err(RunError::Sink(refused));
+        }
+    };
+    let judgement = match &stop {
+        Stop::Failed(_) => None,
+        _ if !request.estimate => Some(Judgement::SwitchedOff),
+        Stop::Interrupted => Some(Judgement::Interrupted),
+        Stop::End => Some(Judgement::of(&simulation, &run, &watch)),
+    };
+    let ending = stop.ending();
+    let judged = judgement.as_ref();
+    let samples = summary.samples;
+    let told = attributes(&provenance, &simulation, Some(&summary), samples, &ending, judged);
+    sink.end(&End {
+        simulation: &simulation,
+        summary: &summary,
+        judgement: judged,
+        ending: &ending,
+        attributes: &told,
+    })
+    .map_err(RunError::Sink)?;
+    if judgement == Some(Judgement::Interrupted) {
+        // The samples are complete, but the user wants to get away.
+        stop = Stop::Interrupted;
+    }
+    Ok(Report {
+        simulation,
+        drive,
+        run,
+        choice: provenance.choice,
+        summary,
+        judgement,
+        stop,
+        attributes: told,
+    })
+}
+
+/// Takes sample after sample to the end of the run, or until somebody stops it.
+pub(crate) fn carry_out<E>(
+    simulation: &mut Simulation,
+    onlooker: &dyn Onlooker,
+    mut keep: impl FnMut(&Simulation) -> Result<(), E>,
+) -> Result<Stop, E> {
+    loop {
+        match simulation.advance(LOOK) {
+            Ok(true) => match simulation.next_sample() {
+                Ok(Some(_)) => keep(simulation)?,
+                Ok(None) => {
+                    onlooker.see(simulation);
+                    return Ok(Stop::End);
+                }
+                Err(error) => return Ok(Stop::Failed(error)),
+            },
+            Ok(false) => {}
+            Err(error) => return Ok(Stop::Failed(error)),
+        }
+        onlooker.see(simulation);
+        if onlooker.stop() {
+            return Ok(Stop::Interrupted);
+        }
+    }
+}
+
+/// Assembles a drive on a thread of its own, so that the user need not wait for a chain that settles.
+pub(crate) fn assemble(
+    drive: &Drive,
+    stop: &dyn Fn() -> bool,
+) -> Result<Assembled, SimulationError> {
+    let (sender, receiver) = std::sync::mpsc::channel();
+    let drive = drive.clone();
+    let thread = std::thread::Builder::new().spawn(move || {
+        // Nobody listens any more after an interrupt.
+        sender.send(drive.assemble()).ok();
+    });
+    let thread = thread.map_err(|error| SimulationError::Thread {
+        reason: error.to_string(),
+    })?;
+    loop {
+        match receiver.recv_timeout(LOOK) {
+            Ok(assembled) => return Ok(assembled?),
+            Err(std::sync::mpsc::RecvTimeoutError::Timeout) if stop() => {
+                return Err(SimulationError::Interrupted);
+            }
+            Err(std::sync::mpsc::RecvTimeoutError::Timeout) => {}
+            Err(std::sync::mpsc::RecvTimeoutError::Disconnected) => match thread.join() {
+                Err(panic) => std::panic::resume_unwind(panic),
+                Ok(()) => return Err(SimulationError::Interrupted),
+            },
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! What somebody wants to have run.
+
+use super::{Run, Settings};
+use crate::scene::SceneError;
+use crate::{Channel, Scene, SimulationError};
+
+/// A scene with its settings merged, ready to be carried out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Request {
+    /// The scene, settings included: its text reproduces the run.
+    pub scene: Scene,
+    /// Settings of the run, before method and step are chosen for an accuracy.
+    pub run: Run,
+    /// Names of the channels to record; empty for the default ones.
+    pub record: Vec<String>,
+    /// Accuracy \[–\] that method, step and onset depth are to be chosen for.
+    pub accuracy: Option<f64>,
+    /// Whether the run ends with an estimate of its numerical error.
+    pub estimate: bool,
+}
+
+/// Why there is nothing that could be run.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RequestError {
+    /// The scene, or a text given for one of its settings, is wrong.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+
+    /// A setting is out of range.
+    #[error(transparent)]
+    Setting(#[from] SimulationError),
+}
+
+impl Request {
+    /// Merges settings into a scene; see [`Settings`] for what goes before what.
+    ///
+    /// Where neither names method, step, tolerance, onset depth or accuracy, they are chosen for
+    /// [`ACCURACY`](crate::precision::ACCURACY).
+    ///
+    /// # Errors
+    /// [`RequestError`]: a setting out of range, a channel that does not exist.
+    pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, RequestError> {
+        let scene = settings.put(scene)?;
+        let wanted = scene.run_defaults();
+        let run = Run::suggested(&wanted);
+        run.check()?;
+        Channel::check(&wanted.record)?;
+        let accuracy = wanted.chosen_accuracy();
+        Ok(Self {
+            scene,
+            run,
+            record: wanted.record,
+            accuracy,
+            estimate: true,
+        })
+    }
+
+    /// The request without trials that nobody asked for: method and step are chosen only where the scene or a setting
+    /// names an accuracy.
+    #[must_use]
+    pub fn with_default_step(self) -> Self {
+        Self {
+            accuracy: self.scene.run_defaults().accuracy,
+            ..self
+        }
+    }
+
+    /// The request without the estimate of the numerical error at its end.
+    #[must_use]
+    pub fn without_estimate(self) -> Self {
+        Self {
+            estimate: false,
+            ..self
+        }
+    }
+}
