@@ -202,3 +202,74 @@ def test_an_accuracy_and_a_method_do_not_go_together() -> None:
     assert caught.value.path == "accuracy"
     with pytest.raises(cd.ParameterError, match="between 0 and 1"):
         cd.simulate(drive, until=0.02, accuracy=2.0)
+
+
+WALL = {"wall_time", "stepping_time", "real_time_factor", "ns_per_link_step"}
+
+
+def timeless(attributes):
+    """Attributes without what a clock had a say in."""
+    lines = attributes["summary"].splitlines()
+    summary = "\n".join(line for line in lines if not line.startswith("speed"))
+    return {k: v for k, v in attributes.items() if k not in WALL} | {"summary": summary}
+
+
+def same_run(tmp_path, preset, settings):
+    """Hold memory against a store, and the store against that of the command."""
+    pytest.importorskip("zarr")
+    drive = getattr(cd.scenes, preset)()
+    settings = {"until": "400 us", "every": "100 us"} | settings
+    memory = cd.simulate(drive, **settings)
+    disk = cd.simulate(drive, **settings, output=tmp_path / "python.zarr")
+    arguments = ["chaindrive", "run", preset, "-q", "-o", str(tmp_path / "command.zarr")]
+    for name, value in settings.items():
+        text = value if isinstance(value, str) else ",".join(value)
+        arguments += [f"--{name.replace('_', '-')}", text]
+    assert cd._core._cli(arguments) == 0
+    command = xr.open_zarr(tmp_path / "command.zarr", chunks=None)
+    for other in (disk, command):
+        xr.testing.assert_equal(other.load(), memory)
+        assert timeless(other.attrs) == timeless(memory.attrs)
+        for name in memory.variables:
+            assert other[name].attrs == memory[name].attrs, name
+
+
+CASES = {
+    "default": {},
+    "method": {"method": "rk4"},
+    "step": {"step": "40 ns"},
+    "accuracy": {"accuracy": "5%"},
+    "events": {"events": ["teeth", "joints"]},
+    "record all": {"record": ["all"]},
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_python_and_the_command_do_the_same(tmp_path, case):
+    same_run(tmp_path, "spinning_ring", CASES[case])
+
+
+def test_python_and_the_command_do_the_same_with_joints(tmp_path):
+    same_run(tmp_path, "bicycle", CASES["events"])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("preset", [name for name, _ in cd._core.presets()])
+def test_python_and_the_command_do_the_same_with_every_preset(tmp_path, preset, case):
+    same_run(tmp_path, preset, CASES[case])
+
+
+def test_an_interrupted_run_keeps_what_there_is():
+    def stop(_: float) -> None:
+        raise KeyboardInterrupt
+
+    ring = cd.scenes.spinning_ring()
+    with pytest.raises(KeyboardInterrupt) as caught:
+        cd.simulate(ring, until=1e4, every=1e-3, method="verlet", progress=stop)
+    kept = caught.value.result
+    assert kept.attrs["status"] == "interrupted"
+    assert kept.attrs["error_estimate"] == "interrupted"
+    assert 0 < kept.sizes["time"] < 1e7
+    assert kept.sizes["time"] == kept.attrs["samples"]
+    assert "stop.result" in caught.value.__notes__[0]

@@ -35,8 +35,7 @@ impl Sink for InStore {
         provenance: &Provenance,
     ) -> Result<(), WriteError> {
         let provenance = provenance.clone();
-        let made =
-            ZarrWriter::create(&self.path, simulation, channels, provenance, self.existing)?;
+        let made = ZarrWriter::create(&self.path, simulation, channels, provenance, self.existing)?;
         self.writer = Some(made);
         Ok(())
     }

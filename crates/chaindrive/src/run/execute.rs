@@ -196,7 +196,14 @@ pub fn execute<S: Sink>(
             // The result is to say that it is not whole, if it still can.
             let ending = Ending::Failed(refused.to_string());
             let samples = summary.samples;
-            let told = attributes(&provenance, &simulation, Some(&summary), samples, &ending, None);
+            let told = attributes(
+                &provenance,
+                &simulation,
+                Some(&summary),
+                samples,
+                &ending,
+                None,
+            );
             let end = End {
                 simulation: &simulation,
                 summary: &summary,
@@ -217,7 +224,14 @@ pub fn execute<S: Sink>(
     let ending = stop.ending();
     let judged = judgement.as_ref();
     let samples = summary.samples;
-    let told = attributes(&provenance, &simulation, Some(&summary), samples, &ending, judged);
+    let told = attributes(
+        &provenance,
+        &simulation,
+        Some(&summary),
+        samples,
+        &ending,
+        judged,
+    );
     sink.end(&End {
         simulation: &simulation,
         summary: &summary,

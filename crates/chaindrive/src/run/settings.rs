@@ -126,7 +126,11 @@ impl Settings {
         if let Some(Given::Text(method)) = self.get("method")
             && Stepping::from_name(method).is_none()
         {
-            return Err(unknown("method", method, &Stepping::ALL.map(Stepping::name)));
+            return Err(unknown(
+                "method",
+                method,
+                &Stepping::ALL.map(Stepping::name),
+            ));
         }
         if let Some(Given::Names(kinds)) = self.get("events") {
             let known = ["teeth", "guides", "joints"];
@@ -134,7 +138,9 @@ impl Settings {
                 return Err(unknown("events", kind, &known));
             }
         }
-        let stepping = STEPPING_KEYS.into_iter().find(|key| self.get(key).is_some());
+        let stepping = STEPPING_KEYS
+            .into_iter()
+            .find(|key| self.get(key).is_some());
         match (self.get("accuracy"), stepping) {
             (Some(_), Some(given)) => Err(SimulationError::Conflict { given }),
             _ => Ok(()),

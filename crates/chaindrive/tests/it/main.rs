@@ -12,6 +12,7 @@ mod links;
 mod precision;
 mod reference;
 mod reproducible;
+mod requests;
 mod scenes;
 mod sweep;
 mod validation_contact;

@@ -6,8 +6,8 @@ mod vary;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use chaindrive::record::{Ending, Existing};
 use chaindrive::Request;
+use chaindrive::record::{Ending, Existing};
 use chaindrive::sweep::{Go, Outcome, Sweep};
 use clap::Args;
 

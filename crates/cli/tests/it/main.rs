@@ -3,4 +3,5 @@
 mod bench;
 mod command;
 mod interrupt;
+mod same_run;
 mod sweep;

@@ -13,8 +13,8 @@ use zarrs::storage::storage_adapter::async_to_sync::{
 };
 use zarrs_object_store::AsyncObjectStore;
 
-use super::error::WriteError;
 use super::Existing;
+use super::error::WriteError;
 use crate::record::attributes::FORMAT;
 
 /// A store whose files appear whole or not at all.
