@@ -2,7 +2,6 @@
 
 mod lay;
 mod relax;
-mod rigid;
 mod setting_off;
 mod slack;
 
@@ -55,7 +54,7 @@ impl Drive {
         }
     }
 
-    fn assemble_as_is(&self) -> Result<Assembled, AssemblyError> {
+    pub(crate) fn assemble_as_is(&self) -> Result<Assembled, AssemblyError> {
         let (laid, fitting) = lay::lay(self)?;
         let (mut system, mut q) = System::build(&laid)?;
         let mut statics = Vec::new();

@@ -3,9 +3,9 @@
 use chaindrive_geometry::Point;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 
+use crate::chains::links::rates::LinkPlaces;
 use crate::contact::{Frame, PlateContact};
 use crate::energy::{Energy, Flow, Store};
-use crate::linkage::rates::LinkPlaces;
 use crate::system::{Pins, RailContact, Record, Wheel, WheelRotation, WheelSupport};
 use crate::{Carrier, System};
 

@@ -22,12 +22,12 @@ pub(crate) use bodies::{
 };
 pub(crate) use build::Laid;
 
+use crate::chains::links::{Felt, Impulses, Linkage, Play, Posture};
+use crate::chains::particles::springs::Links;
 use crate::contact::{Frame, Places, PlatePins, PlatePlaces, PlateTouch, Touch, Wrench};
 use crate::energy::Flow;
 use crate::events::EventLog;
 use crate::lanes::Wide;
-use crate::linkage::{Felt, Impulses, Linkage, Play, Posture};
-use crate::links::Links;
 use crate::motion::Course;
 use crate::{End, Motion};
 

@@ -7,9 +7,9 @@ use super::bodies::{
     Anchor, Rail, RailContact, RailSupport, Slide, Wheel, WheelRotation, WheelSupport,
 };
 use super::{HeldEnd, System};
+use crate::chains::particles::springs::Links;
 use crate::contact::{Contacts, PlateContact, PlateTouch, Shape, Teeth};
 use crate::drive::{Guide, GuideSupport, Parts, Rotation, Sprocket, Support, Touches};
-use crate::links::Links;
 use crate::profile::{GapHalves, Profile};
 use crate::{AssemblyError, Carrier, Chain, End, Ends, Push};
 

@@ -468,8 +468,8 @@ mod tests {
     use pulp::Scalar128b;
 
     use super::*;
-    use crate::linkage::Joining;
-    use crate::linkage::tests::{kinds, set_off};
+    use crate::chains::links::Joining;
+    use crate::chains::links::tests::{kinds, set_off};
 
     /// Lanes of any width against one joint at a time, as free rollers and their bushes are looked at.
     #[test]

@@ -13,8 +13,8 @@ use nalgebra::Vector3;
 use super::rows::Rows;
 use super::tridiagonal::Tridiagonal;
 use super::{Linkage, Play};
-use crate::linkage::implicit::{Row, partner_row};
-use crate::linkage::{Element, Partner, cross};
+use crate::chains::links::implicit::{Row, partner_row};
+use crate::chains::links::{Element, Partner, cross};
 
 /// One row of J over the chain's bodies, with the partner's sign in it.
 #[derive(Clone, Copy, Debug)]

@@ -1,8 +1,8 @@
 //! Rigid links: laid and settled as particles, then put in their places.
 
-use super::Assembled;
+use super::{build, settle};
 use crate::drive::{Layout, Parts};
-use crate::{AssemblyError, Drive, Joint, RigidLinks, System, linkage};
+use crate::{Assembled, AssemblyError, Drive, Joint, RigidLinks, System};
 
 /// Depth at which the teeth are asked for their stiffness \[m\].
 const PRESSED: f64 = 1e-6;
@@ -19,7 +19,7 @@ impl Drive {
     ///
     /// Such a chain owes its tension to the teeth alone. What the links are shortened by is found by the secant
     /// method, until the chain without gravity and load carries the pretension.
-    pub(super) fn assemble_rigid(&self) -> Result<Assembled, AssemblyError> {
+    pub(crate) fn assemble_rigid(&self) -> Result<Assembled, AssemblyError> {
         let teeth = self
             .sprockets
             .iter()
@@ -72,7 +72,7 @@ impl Drive {
     }
 
     /// Puts rigid links where the particles are, and settles the joints.
-    pub(super) fn with_links(
+    pub(crate) fn with_links(
         &self,
         system: System,
         parts: &Parts,
@@ -80,7 +80,7 @@ impl Drive {
         q: &[f64],
         v: &[f64],
     ) -> Result<(System, Vec<f64>, Vec<f64>), AssemblyError> {
-        let mut converted = linkage::build::convert(system, parts, links, q, v);
+        let mut converted = build::convert(system, parts, links, q, v);
         let (system, q) = (&mut converted.system, &mut converted.q);
         let still = vec![0.0; q.len()];
         system.start(0.0, q, &mut still.clone());
@@ -90,7 +90,7 @@ impl Drive {
                 Layout::Points { .. } => 0.0,
             };
             let stiffness = parts.chain.stiffness[0];
-            linkage::settle::settle(system, q, pretension, stiffness)?;
+            settle::settle(system, q, pretension, stiffness)?;
         }
         if links.joint == Joint::Ideal {
             converted.close_in_motion();

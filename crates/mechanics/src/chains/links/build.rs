@@ -11,8 +11,8 @@ use super::{
 use crate::End;
 use crate::chain::Chain;
 use crate::drive::{Layout, Parts};
-use crate::rigid::{Joint, RigidLinks, RollerModel};
 use crate::system::{RailContact, System, WheelRotation, WheelSupport};
+use crate::{Joint, RigidLinks, RollerModel};
 
 /// Coordinates and velocities of a converted system.
 pub(crate) struct Converted {

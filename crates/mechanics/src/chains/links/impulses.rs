@@ -275,8 +275,8 @@ mod tests {
     use chaindrive_integrate::Weights;
 
     use super::{Impulses, Joining, Step};
-    use crate::linkage::held::Asked;
-    use crate::linkage::tests::{kinds, started};
+    use crate::chains::links::held::Asked;
+    use crate::chains::links::tests::{kinds, started};
 
     /// The bodies' own equations, block by block, give the same answer: two independent eliminations.
     #[test]

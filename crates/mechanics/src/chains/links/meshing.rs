@@ -393,7 +393,7 @@ fn pivot(d: Vector, normal: Vector, bend: f64) -> Vector {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linkage::tests::{kinds, set_off};
+    use crate::chains::links::tests::{kinds, set_off};
 
     /// Without friction both ways must find the same contacts.
     #[test]
