@@ -38,9 +38,8 @@ mod torque;
 
 pub use assembly::{Assembled, Statics};
 pub use chain::{Chain, End, Ends};
-pub use chains::links::model::{
-    ChainModel, Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel,
-};
+pub use chains::ChainModel;
+pub use chains::links::model::{Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel};
 pub use drive::{
     Adjust, Drive, Fit, Flank, Guide, GuideSupport, Layout, Parts, Rotation, Sprocket, Stop,
     Support, Surface, Tighten, Touches,

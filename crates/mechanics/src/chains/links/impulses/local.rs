@@ -85,7 +85,7 @@ impl Local {
         joints: &mut Tridiagonal,
         b: &[f64],
     ) -> bool {
-        let columns = 2 * R + b.len() - linkage.dofs();
+        let columns = 2 * R + b.len() - linkage.coordinates();
         let known = columns;
         self.factors.clear();
         self.around.clear();
@@ -151,7 +151,7 @@ impl Local {
         joints: &Tridiagonal,
         x: &mut [f64],
     ) {
-        let columns = 2 * R + x.len() - linkage.dofs();
+        let columns = 2 * R + x.len() - linkage.coordinates();
         let mut factors = &self.factors[..];
         let mut around = self.around.as_chunks_mut::<C>().0;
         for link in 0..linkage.links {
