@@ -1,15 +1,18 @@
 //! From a valid drive to one that is ready to move: lay the chain, settle it, set it going.
 
+mod hard;
 mod lay;
 mod relax;
-mod rigid;
 mod setting_off;
+mod settle;
 mod slack;
 
 use chaindrive_geometry::Point;
 
-use crate::drive::Layout;
-use crate::{AssemblyError, ChainModel, Drive, Joint, System};
+use crate::chains::LaidAs;
+use crate::drive::{Layout, Parts};
+use crate::{AssemblyError, Drive, System};
+use settle::Tightening;
 
 pub use relax::Statics;
 pub(crate) use relax::{Curvature, curvature};
@@ -49,9 +52,10 @@ impl Drive {
     /// # Errors
     /// [`AssemblyError`] when the chain does not close or no equilibrium is found.
     pub fn assemble(&self) -> Result<Assembled, AssemblyError> {
-        match &self.chain.model {
-            ChainModel::Rigid(links) if links.joint == Joint::Ideal => self.assemble_rigid(),
-            ChainModel::Rigid(_) | ChainModel::Particles => self.assemble_as_is(),
+        if self.chain.model.stretches() {
+            self.assemble_as_is()
+        } else {
+            self.assemble_hard()
         }
     }
 
@@ -63,19 +67,10 @@ impl Drive {
             statics = relax::settle(&mut system, &mut q)?;
         }
         let mut v = vec![0.0; q.len()];
-        match &self.layout {
-            Layout::Route { stops, .. } => setting_off::along_route(&system, stops, &q, &mut v),
-            Layout::Points { velocities, .. } => {
-                for (i, velocity) in velocities.iter().enumerate() {
-                    v[i] = velocity.x;
-                    v[system.stride + i] = velocity.y;
-                }
-            }
+        for (index, layout) in [&self.layout].into_iter().enumerate() {
+            setting_off::set_off(&system, index, layout, &q, &mut v);
         }
-        setting_off::ghosts(&system, &mut v);
-        if let ChainModel::Rigid(links) = &laid.parts.chain.model {
-            (system, q, v) = self.with_links(system, &laid.parts, links, &q, &v)?;
-        }
+        self.put_in_place(&mut system, &laid.parts, &mut q, &mut v)?;
         system.start(0.0, &mut q, &mut v);
         Ok(Assembled {
             system,
@@ -86,11 +81,53 @@ impl Drive {
         })
     }
 
+    /// Puts what the chains are made of where the laid particles are, and settles the joints.
+    fn put_in_place(
+        &self,
+        system: &mut System,
+        parts: &Parts,
+        q: &mut Vec<f64>,
+        v: &mut Vec<f64>,
+    ) -> Result<(), AssemblyError> {
+        let mut replaced = false;
+        for (index, (chain, layout)) in [(&parts.chain, &parts.layout)].into_iter().enumerate() {
+            let laid = LaidAs {
+                chain,
+                pretension: layout.pretension(),
+                on_route: matches!(layout, Layout::Route { .. }),
+                gravity: parts.gravity,
+            };
+            replaced |= system.put_in_place(index, &laid, [&mut *q, &mut *v]);
+        }
+        if !replaced {
+            return Ok(());
+        }
+        let mut still = vec![0.0; q.len()];
+        system.start(0.0, q, &mut still);
+        let loose = |index: &usize| system.chains[*index].chain.has_play();
+        let tightenings: Vec<Tightening> = [(&parts.chain, &parts.layout)]
+            .into_iter()
+            .enumerate()
+            .filter(|(index, _)| loose(index))
+            .map(|(index, (chain, layout))| Tightening {
+                chain: index,
+                pretension: layout.pretension(),
+                stiffness: chain.stiffness[0],
+            })
+            .collect();
+        if self.settle && !tightenings.is_empty() {
+            settle::settle(system, q, &tightenings)?;
+        }
+        system.close_in_motion(q, v);
+        Ok(())
+    }
+
     /// Lays the chain only, without settling: roller positions \[m\], (rollers,), and the fitting.
     ///
     /// # Errors
     /// [`AssemblyError`] when the chain does not close.
     pub fn layout_positions(&self) -> Result<(Vec<Point>, Option<Fitting>), AssemblyError> {
-        lay::lay(self).map(|(laid, fitting)| (laid.positions, fitting))
+        let (mut laid, fitting) = lay::lay(self)?;
+        Ok((std::mem::take(&mut laid.chains[0].positions), fitting))
     }
 }

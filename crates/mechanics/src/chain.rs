@@ -156,9 +156,7 @@ impl Chain {
                 need(false, format!("chain.{name}[{i}]"), values[i], allowed);
             }
         }
-        if let ChainModel::Rigid(links) = &self.model {
-            problems.extend(links.problems());
-        }
+        problems.extend(self.model.problems());
         problems
     }
 }

@@ -8,25 +8,17 @@ use chaindrive_geometry::{Point, Vector};
 use crate::drive::{
     Adjust, Fit, GuideSupport, Layout, Parts, Rotation, Sprocket, Stop, Support, Surface,
 };
-use crate::{ChainModel, DriveError, Ends, Joint, RollerModel};
+use crate::{DriveError, Ends};
 
 /// Every reason why `parts` is not a drive.
 pub(crate) fn problems(parts: &Parts) -> Vec<DriveError> {
     let mut found = parts.chain.problems();
-    if let ChainModel::Rigid(links) = &parts.chain.model {
-        if let Joint::Clearance(joint) = &links.joint {
-            found.extend(surface_problems(&joint.surface, "chain.joint"));
-        }
-        if let RollerModel::Free(roller) = &links.rollers {
-            found.extend(surface_problems(&roller.surface, "chain.roller"));
-        }
-    }
     for sprocket in &parts.sprockets {
         found.extend(sprocket_problems(sprocket, parts.tensioners.len()));
     }
     for guide in &parts.guides {
         let place = format!("guides.{}", guide.name);
-        found.extend(surface_problems(&guide.surface, &place));
+        found.extend(guide.surface.problems(&place));
         match &guide.support {
             GuideSupport::Fixed => {}
             GuideSupport::Prescribed { x, y } => {
@@ -55,7 +47,7 @@ pub(crate) fn problems(parts: &Parts) -> Vec<DriveError> {
 
 fn sprocket_problems(sprocket: &Sprocket, tensioners: usize) -> Vec<DriveError> {
     let place = format!("sprockets.{}", sprocket.name);
-    let mut found = surface_problems(&sprocket.surface, &place);
+    let mut found = sprocket.surface.problems(&place);
     if let Some(flank) = &sprocket.flank {
         let law = |source| DriveError::Law {
             path: format!("{place}.contact.flank"),
@@ -139,15 +131,18 @@ fn sprocket_problems(sprocket: &Sprocket, tensioners: usize) -> Vec<DriveError> 
     found
 }
 
-fn surface_problems(surface: &Surface, place: &str) -> Vec<DriveError> {
-    let law = |source| DriveError::Law {
-        path: format!("{place}.contact"),
-        source,
-    };
-    let mut found = Vec::new();
-    found.extend(surface.law.check().map_err(law).err());
-    found.extend(surface.friction.check().map_err(law).err());
-    found
+impl Surface {
+    /// Names every parameter of its laws that is out of range.
+    pub(crate) fn problems(&self, place: &str) -> Vec<DriveError> {
+        let law = |source| DriveError::Law {
+            path: format!("{place}.contact"),
+            source,
+        };
+        let mut found = Vec::new();
+        found.extend(self.law.check().map_err(law).err());
+        found.extend(self.friction.check().map_err(law).err());
+        found
+    }
 }
 
 fn finite(v: Vector, path: &str) -> Option<DriveError> {

@@ -168,6 +168,16 @@ pub enum Layout {
     },
 }
 
+impl Layout {
+    /// Tension that the chain is laid with \[N\].
+    pub(crate) fn pretension(&self) -> f64 {
+        match self {
+            Self::Route { fit, .. } => fit.pretension,
+            Self::Points { .. } => 0.0,
+        }
+    }
+}
+
 /// How a closed chain is fitted to its sprockets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {

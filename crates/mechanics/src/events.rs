@@ -105,7 +105,7 @@ impl EventLog {
 impl System {
     /// Chooses which contacts are logged; forgets what was logged before.
     pub fn log_events(&mut self, kinds: EventKinds) {
-        let places = (self.wheels.len() + self.rails.len() + 2) * self.rollers;
+        let places = (self.bodies.wheels.len() + self.bodies.rails.len() + 2) * self.rollers();
         let any = kinds != EventKinds::default();
         self.events = any.then(|| EventLog {
             kinds,
@@ -133,47 +133,57 @@ impl System {
             return;
         };
         let kinds = log.kinds;
-        let rollers = self.rollers;
-        for (index, wheel) in self.wheels.iter().enumerate().filter(|_| kinds.teeth) {
-            wheel.contacts.each_candidate(|roller, seen| {
-                let pair = ContactPair::Tooth {
-                    sprocket: index,
-                    roller,
+        let rollers = self.rollers();
+        let (mut first, mut first_joint) = (0, 0);
+        for member in &self.chains {
+            for on in member.contacts.teeth.iter().filter(|_| kinds.teeth) {
+                on.contacts.each_candidate(|roller, seen| {
+                    let roller = first + roller;
+                    let pair = ContactPair::Tooth {
+                        sprocket: on.wheel,
+                        roller,
+                    };
+                    log.see(on.wheel * rollers + roller, pair, t, seen);
+                });
+            }
+            let base = self.bodies.wheels.len();
+            for on in member.contacts.rails.iter().filter(|_| kinds.guides) {
+                let mut see = |roller: usize, seen| {
+                    let roller = first + roller;
+                    let pair = ContactPair::Guide {
+                        guide: on.rail,
+                        roller,
+                    };
+                    log.see((base + on.rail) * rollers + roller, pair, t, seen);
                 };
-                log.see(index * rollers + roller, pair, t, seen);
-            });
-        }
-        let base = self.wheels.len();
-        for (index, rail) in self.rails.iter().enumerate().filter(|_| kinds.guides) {
-            let mut see = |roller: usize, seen| {
-                let pair = ContactPair::Guide {
-                    guide: index,
-                    roller,
-                };
-                log.see((base + index) * rollers + roller, pair, t, seen);
-            };
-            match &rail.contact {
-                RailContact::Circles(contacts) => contacts.each_candidate(see),
-                RailContact::Plates(plates) => {
-                    for (link, touch) in plates.memory.iter().enumerate() {
-                        see(
-                            link,
-                            (touch.onset > 0.0).then_some((touch.onset, touch.force)),
-                        );
+                match &on.contact {
+                    RailContact::Circles(contacts) => contacts.each_candidate(see),
+                    RailContact::Plates(plates) => {
+                        for (link, touch) in plates.memory.iter().enumerate() {
+                            see(
+                                link,
+                                (touch.onset > 0.0).then_some((touch.onset, touch.force)),
+                            );
+                        }
                     }
                 }
             }
-        }
-        let base = base + self.rails.len();
-        if let Some(linkage) = self.linkage.as_ref().filter(|_| kinds.joints) {
-            for joint in 0..linkage.joints.len() {
+            let base = base + self.bodies.rails.len();
+            let joints = if kinds.joints {
+                member.chain.joints()
+            } else {
+                0
+            };
+            for index in 0..joints {
+                let joint = first_joint + index;
                 let pairs = [ContactPair::Joint { joint }, ContactPair::Roller { joint }];
-                for (kind, (pair, seen)) in
-                    pairs.into_iter().zip(linkage.touching(joint)).enumerate()
-                {
+                let touching = member.chain.touching(index);
+                for (kind, (pair, seen)) in pairs.into_iter().zip(touching).enumerate() {
                     log.see((base + kind) * rollers + joint, pair, t, seen);
                 }
             }
+            first += member.chain.rollers();
+            first_joint += member.chain.joints();
         }
         log.time = t;
         self.events = Some(log);

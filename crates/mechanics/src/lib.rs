@@ -19,6 +19,7 @@
 
 mod assembly;
 mod chain;
+mod chains;
 mod check;
 mod contact;
 mod drive;
@@ -26,20 +27,19 @@ mod energy;
 mod error;
 mod events;
 mod lanes;
-mod linkage;
-mod links;
 mod modes;
 mod motion;
 mod nudge;
 mod observe;
 mod profile;
-mod rigid;
 mod system;
 mod tensioner;
 mod torque;
 
 pub use assembly::{Assembled, Statics};
 pub use chain::{Chain, End, Ends};
+pub use chains::ChainModel;
+pub use chains::links::model::{Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel};
 pub use drive::{
     Adjust, Drive, Fit, Flank, Guide, GuideSupport, Layout, Parts, Rotation, Sprocket, Stop,
     Support, Surface, Tighten, Touches,
@@ -50,7 +50,6 @@ pub use events::{ContactEvent, ContactPair, EventKinds};
 pub use modes::{Mode, Modes};
 pub use motion::{Course, Harmonic, Motion, Table};
 pub use observe::Observation;
-pub use rigid::{ChainModel, Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel};
 pub use system::{Record, System};
 pub use tensioner::{Carrier, Hydraulic, Plunger, Push, PushForce, Spring, Tensioner};
 pub use torque::{Argument, Torque};

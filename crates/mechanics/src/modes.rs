@@ -2,10 +2,11 @@
 
 use std::f64::consts::TAU;
 
+use chaindrive_geometry::Vector;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use crate::system::{WheelRotation, WheelSupport};
-use crate::{Assembled, AssemblyError, System, assembly};
+use crate::system::{Wheel, WheelRotation, WheelSupport};
+use crate::{Assembled, AssemblyError, assembly};
 
 /// Small free vibrations of a drive about its static state, in ascending order.
 ///
@@ -74,6 +75,7 @@ impl Assembled {
         let assembly::Curvature {
             entries,
             hessian,
+            conditions,
             residual,
         } = assembly::curvature(system, &self.q);
         if residual >= STATIC || residual.is_nan() {
@@ -88,25 +90,91 @@ impl Assembled {
             // The two halves differ by rounding.
             0.5 * (hessian[(i, j)] + hessian[(j, i)]) / (root[i] * root[j])
         });
+        let kept = DMatrix::from_fn(conditions.nrows(), entries.len(), |i, j| {
+            conditions[(i, j)] / root[j]
+        });
+        let modes = free_modes(scaled, &kept);
+        let shape = |mode: &DVector<f64>| {
+            let mut shape = vec![0.0; system.dofs];
+            for (row, &entry) in entries.iter().enumerate() {
+                shape[entry] = mode[row] / root[row];
+            }
+            shape
+        };
         Ok(Modes {
-            modes: solve(scaled, &root, &entries, system),
+            modes: modes
+                .iter()
+                .map(|(frequency, vector)| self.mode(*frequency, &shape(vector)))
+                .collect(),
         })
+    }
+
+    /// A shape in the order of the state, told by the parts that move.
+    fn mode(&self, frequency: f64, shape: &[f64]) -> Mode {
+        let bodies = &self.system.bodies;
+        let wheels = &bodies.wheels;
+        let centre = |axis: usize| {
+            let part = move |wheel: &Wheel| match wheel.support {
+                WheelSupport::Springs { dof, .. } => shape[dof + axis],
+                _ => 0.0,
+            };
+            wheels.iter().map(part).collect()
+        };
+        let angle = |wheel: &Wheel| match wheel.rotation {
+            WheelRotation::Free { dof, .. } => shape[dof],
+            WheelRotation::Prescribed(_) => 0.0,
+        };
+        let mut rollers = Vec::new();
+        for member in &self.system.chains {
+            let own = member.entries.clone();
+            let (q, shape) = (&self.q[own.clone()], &shape[own]);
+            rollers.extend((0..member.chain.rollers()).map(|roller| {
+                let moving = member.chain.roller_moving(q, roller);
+                let ways = moving.ways().iter();
+                ways.map(|way| way.first * shape[way.entry]).sum::<Vector>()
+            }));
+        }
+        Mode {
+            frequency,
+            roller_x: rollers.iter().map(|shift| shift.x).collect(),
+            roller_y: rollers.iter().map(|shift| shift.y).collect(),
+            sprocket_angle: wheels.iter().map(angle).collect(),
+            sprocket_x: centre(0),
+            sprocket_y: centre(1),
+            tensioner_position: bodies
+                .slides
+                .iter()
+                .map(|slide| slide.dof.map_or(0.0, |dof| shape[dof]))
+                .collect(),
+        }
     }
 }
 
-fn solve(
-    matrix: DMatrix<f64>,
-    root: &DVector<f64>,
-    entries: &[usize],
-    system: &System,
-) -> Vec<Mode> {
-    if entries.is_empty() {
+/// Frequencies \[Hz\] and eigenvectors of a symmetric matrix where the conditions are kept, ascending.
+///
+/// ```text
+/// C y = 0   ⇒   y = N z,   Nᵀ K N z = ω² z,   the columns of N span what C leaves free
+/// ```
+fn free_modes(matrix: DMatrix<f64>, conditions: &DMatrix<f64>) -> Vec<(f64, DVector<f64>)> {
+    if matrix.is_empty() {
+        return Vec::new();
+    }
+    let size = matrix.nrows();
+    let basis = (conditions.nrows() > 0).then(|| free_directions(conditions));
+    let matrix = match &basis {
+        Some(basis) => {
+            let reduced = basis.transpose() * matrix * basis;
+            (&reduced + reduced.transpose()) * 0.5
+        }
+        None => matrix,
+    };
+    if matrix.is_empty() {
         return Vec::new();
     }
     let eigen = SymmetricEigen::new(matrix);
     let values = &eigen.eigenvalues;
-    let rounding = f64::EPSILON * entries.len() as f64 * values.amax();
-    let mut order: Vec<usize> = (0..entries.len()).collect();
+    let rounding = f64::EPSILON * size as f64 * values.amax();
+    let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
     order
         .into_iter()
@@ -117,66 +185,21 @@ fn solve(
             } else {
                 squared.abs().sqrt().copysign(squared) / TAU
             };
-            let mut shape = vec![0.0; system.dofs];
-            for (row, &entry) in entries.iter().enumerate() {
-                shape[entry] = eigen.eigenvectors[(row, index)] / root[row];
-            }
-            mode(frequency, &shape, system)
+            let vector = eigen.eigenvectors.column(index).into_owned();
+            let vector = basis
+                .as_ref()
+                .map_or(vector.clone(), |basis| basis * vector);
+            (frequency, vector)
         })
         .collect()
 }
 
-/// A shape in the order of the state, told by the parts that move.
-fn mode(frequency: f64, shape: &[f64], system: &System) -> Mode {
-    let (n, count) = (system.stride, system.rollers);
-    let wheels = &system.wheels;
-    let centre = |axis: usize| {
-        let part = move |wheel: &crate::system::Wheel| match wheel.support {
-            WheelSupport::Springs { dof, .. } => shape[dof + axis],
-            _ => 0.0,
-        };
-        wheels.iter().map(part).collect()
-    };
-    let angle = |wheel: &crate::system::Wheel| match wheel.rotation {
-        WheelRotation::Free { dof, .. } => shape[dof],
-        WheelRotation::Prescribed(_) => 0.0,
-    };
-    Mode {
-        frequency,
-        roller_x: shape[..count].to_vec(),
-        roller_y: shape[n..n + count].to_vec(),
-        sprocket_angle: wheels.iter().map(angle).collect(),
-        sprocket_x: centre(0),
-        sprocket_y: centre(1),
-        tensioner_position: system
-            .slides
-            .iter()
-            .map(|slide| slide.dof.map_or(0.0, |dof| shape[dof]))
-            .collect(),
-    }
-}
-
-impl System {
-    /// Mass or inertia that goes with every entry of the state \[kg or kg m²\].
-    pub(crate) fn inertias(&self) -> Vec<f64> {
-        let n = self.stride;
-        let mut inertias = vec![0.0; self.dofs];
-        inertias[..n].copy_from_slice(&self.masses);
-        inertias[n..2 * n].copy_from_slice(&self.masses);
-        for wheel in &self.wheels {
-            if let WheelRotation::Free { dof, .. } = wheel.rotation {
-                inertias[dof] = wheel.inertia;
-            }
-            if let WheelSupport::Springs { dof, .. } = wheel.support {
-                inertias[dof] = wheel.mass;
-                inertias[dof + 1] = wheel.mass;
-            }
-        }
-        for slide in &self.slides {
-            if let Some(dof) = slide.dof {
-                inertias[dof] = slide.inertia;
-            }
-        }
-        inertias
-    }
+/// Orthonormal columns that span the null space of the conditions.
+fn free_directions(conditions: &DMatrix<f64>) -> DMatrix<f64> {
+    let eigen = SymmetricEigen::new(conditions.transpose() * conditions);
+    let bound = eigen.eigenvalues.amax() * f64::EPSILON * conditions.ncols() as f64;
+    let free: Vec<usize> = (0..conditions.ncols())
+        .filter(|&i| eigen.eigenvalues[i] <= bound)
+        .collect();
+    eigen.eigenvectors.select_columns(&free)
 }

@@ -30,26 +30,10 @@ impl System {
             count += 1.0;
             by * 2.0 * ((count * GOLDEN).fract() - 0.5)
         };
-        if let Some(linkage) = &self.linkage {
-            for body in q[..linkage.dofs()].chunks_exact_mut(3) {
-                body[0] += shift();
-                body[1] += shift();
-            }
-            return;
-        }
-        let n = self.stride;
-        for i in 0..self.rollers {
-            let (x, y) = (shift(), shift());
-            if self.inverse_masses[i] > 0.0 {
-                q[i] += x;
-                q[n + i] += y;
-            }
-        }
-        if self.links.closed {
-            for i in self.rollers..n {
-                q[i] = q[i % self.rollers];
-                q[n + i] = q[n + i % self.rollers];
-            }
+        for member in &self.chains {
+            member
+                .chain
+                .nudge(&mut q[member.entries.clone()], &mut shift);
         }
     }
 }

@@ -3,10 +3,8 @@
 use chaindrive_geometry::Point;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 
-use crate::contact::{Frame, PlateContact};
 use crate::energy::{Energy, Flow, Store};
-use crate::linkage::rates::LinkPlaces;
-use crate::system::{Pins, RailContact, Record, Wheel, WheelRotation, WheelSupport};
+use crate::system::{Member, OnWheel, RailContact, Record, WheelRotation, WheelSupport};
 use crate::{Carrier, System};
 
 /// Everything that can be read off one state. SI units; arrays in the order of the drive.
@@ -78,73 +76,49 @@ pub struct Observation {
 impl System {
     /// Names of the spans: "from-to" for consecutive sprockets of the route.
     pub fn span_names(&self) -> Vec<String> {
-        let n = self.route.len();
-        (0..n)
-            .map(|i| {
-                let name = |k: usize| &self.wheels[self.route[k % n]].name;
-                format!("{}-{}", name(i), name(i + 1))
+        let routes = self.chains.iter().map(|member| &member.route);
+        routes
+            .flat_map(|route| {
+                let name = |k: usize| &self.bodies.wheels[route[k % route.len()]].name;
+                (0..route.len()).map(move |i| format!("{}-{}", name(i), name(i + 1)))
             })
             .collect()
     }
 
-    /// Number of joints of a chain of rigid links; zero for particles.
-    pub fn joints(&self) -> usize {
-        self.linkage
-            .as_ref()
-            .map_or(0, |linkage| linkage.joints.len())
-    }
-
     /// Names of the sprockets.
     pub fn sprocket_names(&self) -> Vec<String> {
-        self.wheels.iter().map(|wheel| wheel.name.clone()).collect()
+        self.bodies
+            .wheels
+            .iter()
+            .map(|wheel| wheel.name.clone())
+            .collect()
     }
 
     /// Names of the guides.
     pub fn guide_names(&self) -> Vec<String> {
-        self.rails.iter().map(|rail| rail.name.clone()).collect()
+        self.bodies
+            .rails
+            .iter()
+            .map(|rail| rail.name.clone())
+            .collect()
     }
 
     /// Names of the tensioners.
     pub fn tensioner_names(&self) -> Vec<String> {
-        self.slides.iter().map(|slide| slide.name.clone()).collect()
+        self.bodies
+            .slides
+            .iter()
+            .map(|slide| slide.name.clone())
+            .collect()
     }
 
     /// Where in the drive a coordinate of the state belongs, in words.
     pub fn place(&self, dof: usize) -> String {
-        let n = self.stride;
-        if let Some(linkage) = &self.linkage
-            && dof < linkage.dofs()
-        {
-            let body = dof / 3;
-            let axis = ["x", "y", "its angle"][dof % 3];
-            return if body < linkage.links {
-                format!("link {body} along {axis}")
-            } else {
-                format!("free roller {} along {axis}", body - linkage.links)
-            };
+        let chain = self.chains.iter().find(|m| m.entries.contains(&dof));
+        match chain {
+            Some(member) => member.chain.name(dof - member.entries.start),
+            None => self.bodies.name(dof),
         }
-        if self.linkage.is_none() && dof < 2 * n {
-            let axis = if dof < n { "x" } else { "y" };
-            return format!("roller {} along {axis}", dof % n % self.rollers);
-        }
-        let wheel = self
-            .wheels
-            .iter()
-            .find_map(|wheel| match (&wheel.rotation, &wheel.support) {
-                (WheelRotation::Free { dof: angle, .. }, _) if *angle == dof => {
-                    Some(format!("the angle of sprocket `{}`", wheel.name))
-                }
-                (_, WheelSupport::Springs { dof: centre, .. })
-                    if (*centre..centre + 2).contains(&dof) =>
-                {
-                    Some(format!("the centre of sprocket `{}`", wheel.name))
-                }
-                _ => None,
-            });
-        let slide = self.slides.iter().find(|slide| slide.dof == Some(dof));
-        wheel
-            .or_else(|| slide.map(|slide| format!("tensioner `{}`", slide.name)))
-            .unwrap_or_else(|| format!("coordinate {dof}"))
     }
 
     /// Reads everything off a state between or at accepted steps.
@@ -161,10 +135,9 @@ impl System {
         let mut rates = vec![0.0; Flow::ALL.len()];
         self.evaluate(at, &mut a, &mut rates, record);
         out.time = at.t;
-        if let Some(linkage) = &self.linkage {
-            linkage.observe(at, &record.play, out);
-        } else {
-            self.observe_particles(at, out);
+        out.clear_chains();
+        for (member, record) in self.chains.iter().zip(&record.chains) {
+            member.chain.observe(member.own(at), record, out);
         }
         self.observe_sprockets(at, record, out);
         self.observe_spans(out);
@@ -173,27 +146,9 @@ impl System {
         out.energy = self.energy(at, flows, record);
     }
 
-    fn observe_particles(&self, at: Moment<'_>, out: &mut Observation) {
-        let n = self.stride;
-        let count = self.rollers;
-        let copy = |to: &mut Vec<f64>, from: &[f64]| {
-            to.clear();
-            to.extend_from_slice(from);
-        };
-        copy(&mut out.roller_x, &at.q[..count]);
-        copy(&mut out.roller_y, &at.q[n..n + count]);
-        copy(&mut out.roller_vx, &at.v[..count]);
-        copy(&mut out.roller_vy, &at.v[n..n + count]);
-        out.link_tension.clear();
-        out.link_tension.extend((0..self.links.count).map(|link| {
-            self.links
-                .tension(link, [self.pin(at, link), self.pin(at, link + 1)])
-        }));
-    }
-
     fn observe_sprockets(&self, at: Moment<'_>, record: &Record, out: &mut Observation) {
         out.contact_force.clear();
-        out.contact_force.resize(self.rollers, 0.0);
+        out.contact_force.resize(self.rollers(), 0.0);
         for values in [
             &mut out.contact_depth,
             &mut out.contacts,
@@ -207,95 +162,107 @@ impl System {
         ] {
             values.clear();
         }
-        for ((wheel, wrench), touch) in self
-            .wheels
-            .iter()
-            .zip(&record.wheel_wrenches)
-            .zip(&record.teeth)
-        {
-            let (frame, course, _) = self.wheel_frame(wheel, at);
-            let slots = wheel.contacts.slots;
-            let mut closed = 0.0;
-            wheel.contacts.for_each_slot(|slot, roller| {
-                for side in 0..wheel.contacts.sides() {
-                    let force = touch.force[side * slots + slot];
-                    out.contact_force[roller] += force;
-                    if touch.gap[side * slots + slot] < 0.0 {
-                        closed += 1.0;
-                    }
-                }
-            });
-            out.contacts.push(closed);
+        for (wheel, wrench) in self.bodies.wheels.iter().zip(&record.wheel_wrenches) {
+            let course = wheel.course(at.t, at.q, at.v);
+            let (centre, _, _) = wheel.centre_course(at.t, at.q, at.v, &self.bodies.slides);
+            out.contacts.push(0.0);
             out.contact_depth.push(wrench.depth);
             out.sprocket_angle.push(course.position - wheel.angle);
             out.sprocket_speed.push(course.rate);
             out.sprocket_torque.push(wrench.moment);
             out.sprocket_force_x.push(wrench.force[0]);
             out.sprocket_force_y.push(wrench.force[1]);
-            out.sprocket_x.push(frame.origin.x);
-            out.sprocket_y.push(frame.origin.y);
+            out.sprocket_x.push(centre.x);
+            out.sprocket_y.push(centre.y);
+        }
+        let mut first = 0;
+        for (member, record) in self.chains.iter().zip(&record.chains) {
+            for (on, touch) in member.contacts.teeth.iter().zip(&record.loads.teeth) {
+                let slots = on.contacts.slots;
+                on.contacts.for_each_slot(|slot, roller| {
+                    for side in 0..on.contacts.sides() {
+                        let force = touch.force[side * slots + slot];
+                        out.contact_force[first + roller] += force;
+                        if touch.gap[side * slots + slot] < 0.0 {
+                            out.contacts[on.wheel] += 1.0;
+                        }
+                    }
+                });
+            }
+            first += member.chain.rollers();
         }
     }
 
     /// Mean tension from the last roller on one sprocket to the first roller on the next.
     fn observe_spans(&self, out: &mut Observation) {
         out.span_tension.clear();
-        let seats: Vec<Option<(usize, usize)>> = self
-            .route
-            .iter()
-            .map(|&wheel| {
-                let centre = Point::new(out.sprocket_x[wheel], out.sprocket_y[wheel]);
-                self.seated(wheel, centre, out)
-            })
-            .collect();
-        for i in 0..seats.len() {
-            let next = (i + 1) % seats.len();
-            let tension = match (seats[i], seats[next]) {
-                (Some((_, last)), Some((first, _))) => {
-                    let links = (first + self.rollers - last) % self.rollers;
-                    let sum: f64 = (0..links)
-                        .map(|k| out.link_tension[(last + k) % self.links.count])
-                        .sum();
-                    sum / links.max(1) as f64
-                }
-                _ => f64::NAN,
+        let (mut first_roller, mut first_link) = (0, 0);
+        for member in &self.chains {
+            let rollers = member.chain.rollers();
+            let links = member.chain.links();
+            let seats: Vec<Option<(usize, usize)>> = member
+                .contacts
+                .teeth
+                .iter()
+                .map(|on| self.seated(member, on, first_roller, out))
+                .collect();
+            let seat_on = |wheel: usize| {
+                let on = member
+                    .contacts
+                    .teeth
+                    .iter()
+                    .position(|on| on.wheel == wheel);
+                on.and_then(|on| seats[on])
             };
-            out.span_tension.push(tension);
+            for i in 0..member.route.len() {
+                let next = (i + 1) % member.route.len();
+                let tension = match (seat_on(member.route[i]), seat_on(member.route[next])) {
+                    (Some((_, last)), Some((first, _))) => {
+                        let count = (first + rollers - last) % rollers;
+                        let sum: f64 = (0..count)
+                            .map(|k| out.link_tension[first_link + (last + k) % links])
+                            .sum();
+                        sum / count.max(1) as f64
+                    }
+                    _ => f64::NAN,
+                };
+                out.span_tension.push(tension);
+            }
+            first_roller += rollers;
+            first_link += links;
         }
-    }
-
-    /// Radius \[m\] of the circle on which the rollers of a wheel lie: its pitch circle, or that of a worn chain, which
-    /// rides higher by as much as it is longer.
-    pub(crate) fn riding_radius(&self, wheel: &Wheel) -> f64 {
-        let rest: f64 = self.links.rest[..self.links.count].iter().sum();
-        let nominal = self.links.count as f64 * self.pitch;
-        // R ℓ/p
-        wheel.pitch_radius * (rest / nominal).max(1.0)
     }
 
     /// First and last roller, in path order, that lie on a sprocket: on its pitch circle, or as far outside as wear
     /// lifts the chain.
-    fn seated(&self, wheel: usize, centre: Point, out: &Observation) -> Option<(usize, usize)> {
-        let wheel = &self.wheels[wheel];
+    fn seated(
+        &self,
+        member: &Member,
+        on: &OnWheel,
+        first_roller: usize,
+        out: &Observation,
+    ) -> Option<(usize, usize)> {
+        let centre = Point::new(out.sprocket_x[on.wheel], out.sprocket_y[on.wheel]);
+        let rollers = member.chain.rollers();
+        let pitch = member.chain.pitch();
         // Half a pitch along the tangent a roller is p²/8R outside the circle on which it rides.
-        let circle = self.riding_radius(wheel);
-        let reach = circle + self.pitch * self.pitch / (8.0 * circle);
-        let on = |i: &usize| {
-            let d = Point::new(out.roller_x[*i], out.roller_y[*i]) - centre;
+        let circle = member.riding_radius(&self.bodies.wheels[on.wheel]);
+        let reach = circle + pitch * pitch / (8.0 * circle);
+        let on_circle = |i: &usize| {
+            let i = first_roller + i;
+            let d = Point::new(out.roller_x[i], out.roller_y[i]) - centre;
             d.norm_squared() < reach * reach
         };
         let mut seated = Vec::new();
-        wheel
-            .contacts
-            .for_each_slot(|_, roller| seated.push(roller));
+        on.contacts.for_each_slot(|_, roller| seated.push(roller));
         seated.sort_unstable();
-        seated.retain(on);
+        seated.retain(on_circle);
         // The wrap begins behind the widest stretch of rollers that are elsewhere.
         let count = seated.len();
         (0..count)
             .map(|k| {
                 let before = seated[(k + count - 1) % count];
-                let stretch = (seated[k] + self.rollers - before - 1) % self.rollers;
+                let stretch = (seated[k] + rollers - before - 1) % rollers;
                 (stretch, k)
             })
             .max()
@@ -314,7 +281,7 @@ impl System {
     fn observe_tensioners(&self, at: Moment<'_>, out: &mut Observation) {
         out.tensioner_position.clear();
         out.tensioner_force.clear();
-        for slide in &self.slides {
+        for slide in &self.bodies.slides {
             let pose = slide.pose(at.q, at.v);
             let (extension, lever) = slide.carrier.extension(pose.coordinate);
             let push = slide.push.force(extension, lever * pose.rate);
@@ -327,13 +294,17 @@ impl System {
     fn energy(&self, at: Moment<'_>, flows: &[f64], record: &Record) -> Energy {
         let mut energy = Energy::default();
         energy.flows.copy_from_slice(flows);
-        match &self.linkage {
-            Some(linkage) => linkage.energies(at, self.gravity, &record.play, &mut energy),
-            None => self.particle_energies(at, &mut energy),
+        let bodies = &self.bodies;
+        for (member, record) in self.chains.iter().zip(&record.chains) {
+            let own = member.own(at);
+            member
+                .chain
+                .energies(own, bodies.gravity, record, &mut energy);
         }
         let mut add = |store: Store, value: f64| energy.stores[store as usize] += value;
-        for (wheel, touch) in self.wheels.iter().zip(&record.teeth) {
-            let (frame, course, _) = self.wheel_frame(wheel, at);
+        for wheel in &bodies.wheels {
+            let course = wheel.course(at.t, at.q, at.v);
+            let (centre, velocity, _) = wheel.centre_course(at.t, at.q, at.v, &bodies.slides);
             let moves = !matches!(wheel.support, WheelSupport::Fixed);
             let spins = wheel.inertia > 0.0 || matches!(wheel.rotation, WheelRotation::Free { .. });
             if spins {
@@ -344,34 +315,36 @@ impl System {
             }
             // What a tensioner carries is in the tensioner's inertia and weights.
             if moves && !matches!(wheel.support, WheelSupport::Carried(_)) {
-                add(
-                    Store::Sprockets,
-                    0.5 * wheel.mass * frame.velocity.norm_squared(),
-                );
+                add(Store::Sprockets, 0.5 * wheel.mass * velocity.norm_squared());
                 add(
                     Store::Gravity,
-                    -wheel.mass * self.gravity.dot(&frame.origin.coords),
+                    -wheel.mass * bodies.gravity.dot(&centre.coords),
                 );
             }
             if let WheelSupport::Springs { stiffness, .. } = &wheel.support {
                 for axis in 0..2 {
-                    let away = frame.origin[axis] - wheel.centre[axis];
+                    let away = centre[axis] - wheel.centre[axis];
                     add(Store::Supports, 0.5 * stiffness[axis] * away * away);
                 }
             }
-            add(Store::Teeth, wheel.contacts.stored(touch));
         }
-        for (i, rail) in self.rails.iter().enumerate() {
-            let stored = match &rail.contact {
-                RailContact::Circles(contacts) => contacts.stored(&record.circles[i]),
-                RailContact::Plates(plates) => {
-                    let frame = rail.frame(at.t, at.q, at.v, &self.slides);
-                    self.plate_energy(at, plates, &frame, record)
-                }
-            };
-            add(Store::Guides, stored);
+        for (member, record) in self.chains.iter().zip(&record.chains) {
+            for (on, touch) in member.contacts.teeth.iter().zip(&record.loads.teeth) {
+                add(Store::Teeth, on.contacts.stored(touch));
+            }
+            for (i, on) in member.contacts.rails.iter().enumerate() {
+                let stored = match &on.contact {
+                    RailContact::Circles(contacts) => contacts.stored(&record.loads.circles[i]),
+                    RailContact::Plates(plates) => {
+                        let frame = bodies.rail_frame(on.rail, at);
+                        let own = member.own(at);
+                        member.chain.plate_energy(own, plates, &frame, record)
+                    }
+                };
+                add(Store::Guides, stored);
+            }
         }
-        for slide in &self.slides {
+        for slide in &bodies.slides {
             let pose = slide.pose(at.q, at.v);
             add(Store::Carriers, 0.5 * slide.inertia * pose.rate * pose.rate);
             let (extension, _) = slide.carrier.extension(pose.coordinate);
@@ -380,47 +353,33 @@ impl System {
                 let (place, _) = slide.carry(pose, *place);
                 let fixed = slide.dof.is_none() && matches!(slide.carrier, Carrier::Arm { .. });
                 if !fixed {
-                    add(Store::Gravity, -mass * self.gravity.dot(&place.coords));
+                    add(Store::Gravity, -mass * bodies.gravity.dot(&place.coords));
                 }
             }
         }
         energy
     }
+}
 
-    fn particle_energies(&self, at: Moment<'_>, energy: &mut Energy) {
-        let mut none = vec![0.0; self.dofs];
-        let rollers = self.view(at.q, at.v, &mut none);
-        let mut add = |store: Store, value: f64| energy.stores[store as usize] += value;
-        for i in 0..self.rollers {
-            let mass = self.masses[i];
-            add(
-                Store::Chain,
-                0.5 * mass * rollers.velocity(i).norm_squared(),
-            );
-            add(
-                Store::Gravity,
-                -mass * self.gravity.dot(&rollers.place(i).coords),
-            );
+impl Observation {
+    /// Makes room for what every chain appends.
+    fn clear_chains(&mut self) {
+        for values in [
+            &mut self.roller_x,
+            &mut self.roller_y,
+            &mut self.roller_vx,
+            &mut self.roller_vy,
+            &mut self.link_tension,
+            &mut self.link_angle,
+            &mut self.joint_offset_x,
+            &mut self.joint_offset_y,
+            &mut self.joint_force_x,
+            &mut self.joint_force_y,
+            &mut self.joint_force,
+            &mut self.joint_angle,
+            &mut self.joint_depth,
+        ] {
+            values.clear();
         }
-        add(Store::Links, self.links.stored(&rollers));
-    }
-
-    fn plate_energy(
-        &self,
-        at: Moment<'_>,
-        plates: &PlateContact,
-        frame: &Frame,
-        record: &Record,
-    ) -> f64 {
-        if self.linkage.is_some() {
-            return plates.stored(&LinkPlaces(&record.play), frame, self.links.count);
-        }
-        let mut none = vec![0.0; self.dofs];
-        let mut rollers = self.view(at.q, at.v, &mut none);
-        let pins = Pins {
-            rollers: &mut rollers,
-            count: self.rollers,
-        };
-        plates.stored(&pins, frame, self.links.count)
     }
 }

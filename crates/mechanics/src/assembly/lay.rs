@@ -9,7 +9,7 @@ use super::{Fitting, slack};
 use crate::drive::{
     Adjust, Fit, Guide, GuideSupport, Layout, Parts, Stop, Support, Tighten, Touches,
 };
-use crate::system::Laid;
+use crate::system::{Laid, LaidChain};
 use crate::{AssemblyError, Carrier, Chain, Drive};
 
 /// Strain of a chain laid straight below which it is taken as slack rather than compressed.
@@ -22,8 +22,10 @@ pub(super) fn lay(drive: &Drive) -> Result<(Laid, Option<Fitting>), AssemblyErro
             let parts = drive.parts().clone();
             let laid = Laid {
                 gap_angles: parts.sprockets.iter().map(|s| s.gap_angle).collect(),
-                route: Vec::new(),
-                positions: positions.clone(),
+                chains: vec![LaidChain {
+                    route: Vec::new(),
+                    positions: positions.clone(),
+                }],
                 parts,
             };
             Ok((laid, None))
@@ -116,9 +118,8 @@ fn around(
     };
     let laid = Laid {
         parts: moved,
-        positions,
+        chains: vec![LaidChain { positions, route }],
         gap_angles,
-        route,
     };
     Ok((laid, Some(fitting)))
 }

@@ -9,16 +9,20 @@
 //! rollers is folded (0, N−1, 1, N−2, …) so that it becomes a band, with everything else as a border.
 
 mod contact;
+mod curvature;
 mod descend;
 
-use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::Moment;
-use nalgebra::{DMatrix, DVector};
+use chaindrive_geometry::Vector;
+use chaindrive_integrate::{Moment, SecondOrderSystem};
+use nalgebra::DVector;
 use nalgebra_sparse::factorization::CscCholesky;
 use nalgebra_sparse::{CooMatrix, CscMatrix};
 
-use crate::system::{Slide, WheelRotation, WheelSupport};
-use crate::{AssemblyError, End, System};
+use crate::chains::{Balance, Load, Sum};
+use crate::system::{Member, Slide, WheelRotation, WheelSupport};
+use crate::{AssemblyError, System};
+
+pub(crate) use curvature::{Curvature, curvature};
 
 /// A static state on the way to the start.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,13 +37,6 @@ pub struct Statics {
     pub tensions: Vec<f64>,
     /// Contacts closed on every sprocket.
     pub contacts: Vec<usize>,
-}
-
-/// How much of the outer loads acts.
-#[derive(Clone, Copy, Debug)]
-struct Load {
-    gravity: f64,
-    torque: f64,
 }
 
 /// Residual at which an iteration ends, relative to the largest link tension.
@@ -57,12 +54,7 @@ pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Static
         return Ok(Vec::new());
     }
     let mut statics = Vec::new();
-    let taut = {
-        let tensions = tensions(system, q);
-        let links = tensions.len();
-        let slack = (1e-6 * weight(system)).max(1e3 * links as f64 * rounding(system, q));
-        tensions.iter().sum::<f64>() > slack
-    };
+    let taut = is_taut(system, q);
     let mut at = Load {
         gravity: 0.0,
         torque: 0.0,
@@ -79,7 +71,7 @@ pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Static
         *q = Newton::accept(found, "pretension", &mut statics)?;
     }
     let stages: [(&'static str, bool); 2] = [
-        ("gravity", system.gravity != Vector::zeros()),
+        ("gravity", system.bodies.gravity != Vector::zeros()),
         ("load", has_load(system)),
     ];
     for (stage, present) in stages {
@@ -123,93 +115,43 @@ pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Static
             _ => at.torque = 1.0,
         }
     }
-    if system.links.closed {
-        let n = system.stride;
-        for ghost in system.rollers..n {
-            q[ghost] = q[ghost % system.rollers];
-            q[n + ghost] = q[n + ghost % system.rollers];
-        }
+    for member in &system.chains {
+        member.chain.copy_ghosts(&mut q[member.entries.clone()]);
     }
     Ok(statics)
 }
 
-/// Second derivatives of the energy at a state under full gravity and load.
-#[derive(Clone, Debug)]
-pub(crate) struct Curvature {
-    /// State entry of every row.
-    pub(crate) entries: Vec<usize>,
-    /// ∂²E/∂q², rows and columns as in `entries`.
-    pub(crate) hessian: DMatrix<f64>,
-    /// Largest force out of balance, relative to the largest link tension.
-    pub(crate) residual: f64,
-}
-
-/// The Hessian with which [`settle`] iterates, dense.
-pub(crate) fn curvature(system: &System, q: &[f64]) -> Curvature {
-    let unknowns = Unknowns::new(system);
-    let newton = Newton {
-        system,
-        unknowns: &unknowns,
-    };
-    let full = Load {
-        gravity: 1.0,
-        torque: 1.0,
-    };
-    let balance = newton.balance(q, full);
-    let mut hessian = DMatrix::zeros(unknowns.count, unknowns.count);
-    for &(i, j, value) in &balance.entries {
-        hessian[(i, j)] += value;
-    }
-    let mut entries = vec![0; unknowns.count];
-    for (entry, row) in unknowns.row.iter().enumerate() {
-        if let Some(row) = row {
-            entries[*row] = entry;
-        }
-    }
-    Curvature {
-        entries,
-        hessian,
-        residual: newton.residual(q, &balance),
-    }
-}
-
-fn weight(system: &System) -> f64 {
-    let mass: f64 = system.masses[..system.rollers].iter().sum();
-    (mass * system.gravity.norm()).max(1e-9)
+/// Whether a chain pulls as it was laid.
+fn is_taut(system: &System, q: &[f64]) -> bool {
+    let still = vec![0.0; q.len()];
+    let at = at_rest(q, &still);
+    let mut record = system.new_record();
+    let mut rates = vec![0.0; system.quadratures()];
+    system.evaluate(at, &mut still.clone(), &mut rates, &mut record);
+    let mut chains = system.chains.iter().zip(&record.chains);
+    chains.any(|(member, record)| {
+        let chain = &member.chain;
+        let tensions = chain.tensions(member.own(at), record);
+        let weight = (chain.weights()[0] * system.bodies.gravity.norm()).max(1e-9);
+        let slack = (1e-6 * weight).max(1e3 * tensions.len() as f64 * rounding(member, q));
+        tensions.iter().sum::<f64>() > slack
+    })
 }
 
 /// Force \[N\] that the rounding of coordinates alone may leave in a link.
-fn rounding(system: &System, q: &[f64]) -> f64 {
-    let farthest = q[..2 * system.stride]
+fn rounding(member: &Member, q: &[f64]) -> f64 {
+    let farthest = q[member.entries.clone()]
         .iter()
         .fold(0.0_f64, |m, x| m.max(x.abs()));
-    let stiffest = system.links.stiffness.iter().copied().fold(0.0, f64::max);
-    4.0 * f64::EPSILON * farthest * stiffest
+    4.0 * f64::EPSILON * farthest * member.chain.stiffest_spring()
 }
 
 fn has_load(system: &System) -> bool {
-    let torque = system.wheels.iter().any(|wheel| {
+    let torque = system.bodies.wheels.iter().any(|wheel| {
         matches!(&wheel.rotation, WheelRotation::Free { drive, load, .. }
             if !drive.is_empty() || !load.is_empty())
     });
-    torque
-        || system
-            .ends
-            .iter()
-            .any(|held| matches!(held.end, End::Pulled { .. }))
-}
-
-fn tensions(system: &System, q: &[f64]) -> Vec<f64> {
-    let still = vec![0.0; q.len()];
-    let mut none = vec![0.0; q.len()];
-    let rollers = system.view(q, &still, &mut none);
-    (0..system.links.count)
-        .map(|link| {
-            let next = (link + 1) % system.rollers;
-            let length = (rollers.place(next) - rollers.place(link)).norm();
-            system.links.stiffness[link] * (length - system.links.rest[link])
-        })
-        .collect()
+    torque || system.chains.iter().any(|member| member.chain.is_pulled())
 }
 
 /// Which entries of the state are unknown, and where they stand in the linear system.
@@ -225,21 +167,22 @@ impl Unknowns {
     fn new(system: &System) -> Self {
         let mut row = vec![None; system.dofs];
         let mut scale = Vec::new();
-        let n = system.rollers;
-        let folded = (0..n.div_ceil(2)).flat_map(|i| [i, n - 1 - i]);
         let mut add = |entry: usize, lever: f64, scale: &mut Vec<f64>| {
             if row[entry].is_none() {
                 row[entry] = Some(scale.len());
                 scale.push(lever);
             }
         };
-        for roller in folded {
-            if system.inverse_masses[roller] > 0.0 {
-                add(roller, 1.0, &mut scale);
-                add(system.stride + roller, 1.0, &mut scale);
+        for member in &system.chains {
+            for unknown in member.chain.unknowns() {
+                add(
+                    member.entries.start + unknown.entry,
+                    unknown.lever,
+                    &mut scale,
+                );
             }
         }
-        for wheel in &system.wheels {
+        for wheel in &system.bodies.wheels {
             if let WheelRotation::Free { dof, .. } = wheel.rotation {
                 add(dof, wheel.pitch_radius * wheel.pitch_radius, &mut scale);
             }
@@ -248,7 +191,7 @@ impl Unknowns {
                 add(dof + 1, 1.0, &mut scale);
             }
         }
-        for slide in &system.slides {
+        for slide in &system.bodies.slides {
             if let Some(dof) = slide.dof {
                 add(dof, arm_length(slide).powi(2), &mut scale);
             }
@@ -269,14 +212,6 @@ fn arm_length(slide: &Slide) -> f64 {
             plunger.map_or(0.1, |plunger| (plunger.at - pivot).norm().max(1e-3))
         }
     }
-}
-
-/// Gradient and Hessian of the energy.
-struct Balance {
-    gradient: DVector<f64>,
-    entries: Vec<(usize, usize, f64)>,
-    contacts: Vec<usize>,
-    tensions: Vec<f64>,
 }
 
 /// Outcome of an iteration.
@@ -321,13 +256,7 @@ impl Newton<'_> {
     /// Steps need not lower the energy one by one: the seats are strongly curved valleys of
     /// radius r_i − d₁/2, and a step along one first climbs and then falls back.
     fn solve(&self, start: &[f64], load: Load, most: usize) -> Found {
-        let stiffness = self
-            .system
-            .links
-            .stiffness
-            .iter()
-            .copied()
-            .fold(0.0, f64::max);
+        let stiffness = self.stiffest();
         let cap = self.longest();
         let mut q = start.to_vec();
         let mut shift = 1e-7 * stiffness;
@@ -375,8 +304,17 @@ impl Newton<'_> {
 
     /// Longest step of a roller \[m\]: a fifth of the radius that touches the teeth.
     fn longest(&self) -> f64 {
-        let wheel = self.system.wheels.first();
-        0.2 * wheel.map_or(self.system.pitch, |wheel| wheel.contacts.radius)
+        let teeth = self.system.chains.iter().flat_map(|m| &m.contacts.teeth);
+        let smallest = teeth.map(|on| on.contacts.radius).reduce(f64::min);
+        0.2 * smallest.unwrap_or_else(|| self.system.pitch())
+    }
+
+    /// Stiffness of the stiffest link \[N/m\].
+    fn stiffest(&self) -> f64 {
+        let chains = self.system.chains.iter();
+        chains
+            .map(|member| member.chain.stiffest_spring())
+            .fold(0.0, f64::max)
     }
 
     /// How far a step moves anything \[m\].
@@ -398,13 +336,14 @@ impl Newton<'_> {
 
     fn residual(&self, q: &[f64], balance: &Balance) -> f64 {
         let tension = balance.tensions.iter().fold(0.0_f64, |m, t| m.max(t.abs()));
-        let mass = self.system.masses[..self.system.rollers]
-            .iter()
-            .copied()
-            .fold(0.0, f64::max);
+        let gravity = self.system.bodies.gravity.norm();
         // What rounding leaves in an unloaded chain is accepted.
-        let floor = (rounding(self.system, q) / ACCEPTED).max(1e-9);
-        let scale = tension.max(mass * self.system.gravity.norm()).max(floor);
+        let (mut mass, mut floor) = (0.0_f64, 1e-9_f64);
+        for member in &self.system.chains {
+            mass = mass.max(member.chain.weights()[1]);
+            floor = floor.max(rounding(member, q) / ACCEPTED);
+        }
+        let scale = tension.max(mass * gravity).max(floor);
         let scaled = balance.gradient.iter().zip(&self.unknowns.scale);
         scaled
             .map(|(g, lever)| (g / lever.sqrt()).abs())
@@ -433,68 +372,34 @@ impl Newton<'_> {
     }
 
     fn balance(&self, q: &[f64], load: Load) -> Balance {
+        let system = self.system;
         let mut sum = Sum {
             row: &self.unknowns.row,
+            first: 0,
             balance: Balance {
                 gradient: DVector::zeros(self.unknowns.count),
                 entries: Vec::new(),
-                contacts: vec![0; self.system.wheels.len()],
-                tensions: Vec::with_capacity(self.system.links.count),
+                contacts: vec![0; system.bodies.wheels.len()],
+                tensions: Vec::with_capacity(system.links()),
             },
         };
-        self.add_links(q, load, &mut sum);
+        for member in &system.chains {
+            sum.first = member.entries.start;
+            let own = &q[member.entries.clone()];
+            member
+                .chain
+                .add_balance(own, system.bodies.gravity, load, &mut sum);
+        }
+        sum.first = 0;
         self.add_bodies(q, load, &mut sum);
-        contact::add_contacts(self.system, q, &mut sum);
+        contact::add_contacts(system, q, &mut sum);
         sum.balance
     }
 
-    fn add_links(&self, q: &[f64], load: Load, sum: &mut Sum<'_>) {
-        let system = self.system;
-        let n = system.stride;
-        let place = |i: usize| Point::new(q[i], q[n + i]);
-        for link in 0..system.links.count {
-            let (a, b) = (link, (link + 1) % system.rollers);
-            let d = place(b) - place(a);
-            let length = d.norm();
-            let u = d / length;
-            let stiffness = system.links.stiffness[link];
-            let tension = stiffness * (length - system.links.rest[link]);
-            sum.balance.tensions.push(tension);
-            let (ends, signs) = ([[a, n + a], [b, n + b]], [-1.0, 1.0]);
-            for (end, sign) in ends.iter().zip(signs) {
-                for (axis, &entry) in end.iter().enumerate() {
-                    sum.force(entry, sign * tension * u[axis]);
-                }
-            }
-            // K = k u uᵀ + (T/ℓ) (1 − u uᵀ)
-            for i in 0..2 {
-                for j in 0..2 {
-                    let unit = if i == j { 1.0 } else { 0.0 };
-                    let value = stiffness * u[i] * u[j] + tension / length * (unit - u[i] * u[j]);
-                    for (first, s) in ends.iter().zip(signs) {
-                        for (second, t) in ends.iter().zip(signs) {
-                            sum.stiffen(first[i], second[j], s * t * value);
-                        }
-                    }
-                }
-            }
-        }
-        for i in 0..system.rollers {
-            sum.force(i, -load.gravity * system.masses[i] * system.gravity.x);
-            sum.force(n + i, -load.gravity * system.masses[i] * system.gravity.y);
-        }
-        for held in &system.ends {
-            if let End::Pulled { force } = &held.end {
-                sum.force(held.roller, -load.torque * force.x);
-                sum.force(n + held.roller, -load.torque * force.y);
-            }
-        }
-    }
-
     fn add_bodies(&self, q: &[f64], load: Load, sum: &mut Sum<'_>) {
-        let system = self.system;
+        let bodies = &self.system.bodies;
         let still = vec![0.0; q.len()];
-        for wheel in &system.wheels {
+        for wheel in &bodies.wheels {
             if let WheelRotation::Free {
                 dof,
                 drive,
@@ -512,13 +417,13 @@ impl Newton<'_> {
             if let WheelSupport::Springs { dof, stiffness, .. } = &wheel.support {
                 for axis in 0..2 {
                     let away = q[dof + axis] - wheel.centre[axis];
-                    let weight = load.gravity * wheel.mass * system.gravity[axis];
+                    let weight = load.gravity * wheel.mass * bodies.gravity[axis];
                     sum.force(dof + axis, stiffness[axis] * away - weight);
                     sum.stiffen(dof + axis, dof + axis, stiffness[axis]);
                 }
             }
         }
-        for slide in &system.slides {
+        for slide in &bodies.slides {
             let Some(dof) = slide.dof else { continue };
             let s = q[dof];
             let (extension, lever) = slide.carrier.extension(s);
@@ -535,7 +440,7 @@ impl Newton<'_> {
             );
             let pose = slide.pose(q, &still);
             for (mass, at_rest) in &slide.weights {
-                let weight = system.gravity * (*mass * load.gravity);
+                let weight = bodies.gravity * (*mass * load.gravity);
                 let (place, _) = slide.carry(pose, *at_rest);
                 sum.force(dof, -slide.project([weight.x, weight.y], place));
                 if let crate::Carrier::Arm { pivot, .. } = &slide.carrier {
@@ -543,28 +448,6 @@ impl Newton<'_> {
                     sum.stiffen(dof, dof, weight.dot(&(place - pivot)));
                 }
             }
-        }
-    }
-}
-
-/// Collects derivatives by state entry; those of held entries are dropped.
-struct Sum<'a> {
-    row: &'a [Option<usize>],
-    balance: Balance,
-}
-
-impl Sum<'_> {
-    /// Adds to ∂E/∂q.
-    fn force(&mut self, entry: usize, value: f64) {
-        if let Some(row) = self.row[entry] {
-            self.balance.gradient[row] += value;
-        }
-    }
-
-    /// Adds to ∂²E/∂q².
-    fn stiffen(&mut self, first: usize, second: usize, value: f64) {
-        if let (Some(i), Some(j)) = (self.row[first], self.row[second]) {
-            self.balance.entries.push((i, j, value));
         }
     }
 }

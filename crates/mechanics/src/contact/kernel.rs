@@ -11,8 +11,8 @@ use super::slots::Slots;
 use super::window::FAR;
 use super::wrench::{Sums, Wrench};
 use super::{Contacts, Frame, Shape, Touch};
+use crate::chains::Rollers;
 use crate::lanes::{LANES, Lane, Mask, Wide};
-use crate::system::Rollers;
 
 /// Turns normal forces into friction forces and slips into damping; kept out of line like the laws.
 #[inline(never)]

@@ -73,10 +73,10 @@ mod tests {
     use pulp::{Arch, WithSimd};
 
     use super::*;
+    use crate::chains::Rollers;
     use crate::contact::{Contacts, Frame, Places, Shape, Teeth, Touch};
     use crate::drive::Surface;
     use crate::profile::{GapHalves, Profile};
-    use crate::system::Rollers;
 
     struct Look<'a> {
         contacts: &'a Contacts,

@@ -1,16 +1,29 @@
-//! Wheels, rails and carriers, compiled: where they are, how they move, what they feel.
+//! Wheels, rails and carriers, compiled: where they are and how they move.
 
 use chaindrive_geometry::{Point, Vector};
+use chaindrive_integrate::Moment;
 
-use crate::contact::{Contacts, Frame, PlateContact};
+use crate::contact::Frame;
 use crate::motion::Course;
 use crate::{Carrier, Motion, Push, Torque};
+
+/// What chains touch.
+#[derive(Clone, Debug)]
+pub(crate) struct Bodies {
+    pub(crate) wheels: Vec<Wheel>,
+    pub(crate) rails: Vec<Rail>,
+    pub(crate) slides: Vec<Slide>,
+    pub(crate) gravity: Vector,
+    /// Where their coordinates begin in the state, behind those of all chains.
+    pub(crate) first: usize,
+    /// Mass or inertia that goes with each of them \[kg or kg m²\].
+    pub(crate) inertias: Vec<f64>,
+}
 
 /// A sprocket in the system.
 #[derive(Clone, Debug)]
 pub(crate) struct Wheel {
     pub(crate) name: String,
-    pub(crate) contacts: Contacts,
     /// Centre and gap angle at assembly.
     pub(crate) centre: Point,
     pub(crate) angle: f64,
@@ -23,8 +36,6 @@ pub(crate) struct Wheel {
     pub(crate) pitch: f64,
     /// +1 where the chain turns counter-clockwise around the wheel.
     pub(crate) sense: f64,
-    /// Angle with known cosine and sine, renewed with the windows.
-    pub(crate) anchor: Anchor,
 }
 
 /// How a wheel turns.
@@ -59,19 +70,7 @@ pub(crate) enum WheelSupport {
 #[derive(Clone, Debug)]
 pub(crate) struct Rail {
     pub(crate) name: String,
-    pub(crate) contact: RailContact,
     pub(crate) support: RailSupport,
-}
-
-/// What touches a rail.
-#[derive(Clone, Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "a drive has a handful of rails, and a box would cost the kernels a look"
-)]
-pub(crate) enum RailContact {
-    Circles(Contacts),
-    Plates(PlateContact),
 }
 
 /// What holds a rail.
@@ -146,6 +145,146 @@ impl Anchor {
         let sine = d * series(&SINE);
         let [c, si] = self.turn;
         [c * cosine - si * sine, si * cosine + c * sine]
+    }
+}
+
+impl Bodies {
+    /// Frame of a wheel's teeth; the anchor lies near its angle.
+    #[inline(always)]
+    pub(crate) fn wheel_frame(&self, wheel: usize, anchor: &Anchor, at: Moment<'_>) -> Frame {
+        let wheel = &self.wheels[wheel];
+        let course = wheel.course(at.t, at.q, at.v);
+        let (origin, velocity, _) = wheel.centre_course(at.t, at.q, at.v, &self.slides);
+        Frame {
+            origin,
+            turn: anchor.turn(course.position),
+            velocity,
+            spin: course.rate,
+        }
+    }
+
+    /// Frame of a rail's face.
+    pub(crate) fn rail_frame(&self, rail: usize, at: Moment<'_>) -> Frame {
+        self.rails[rail].frame(at.t, at.q, at.v, &self.slides)
+    }
+
+    /// Centre of a wheel.
+    pub(crate) fn wheel_centre(&self, wheel: usize, at: Moment<'_>) -> Point {
+        let (centre, _, _) = self.wheels[wheel].centre_course(at.t, at.q, at.v, &self.slides);
+        centre
+    }
+
+    /// ω² and damping rate of every body by itself, the largest of each.
+    pub(crate) fn own_rates(&self) -> [f64; 2] {
+        let (mut squared, mut damping) = (0.0_f64, 0.0_f64);
+        for wheel in &self.wheels {
+            let [own, drag] = wheel.own_rates();
+            squared = squared.max(own);
+            damping = damping.max(drag);
+        }
+        for slide in &self.slides {
+            let (_, lever) = slide.carrier.extension(0.0);
+            let light = lever * lever / slide.inertia;
+            squared = squared.max(slide.push.stiffness() * light);
+            damping = damping.max(slide.push.damping() * light);
+        }
+        [squared, damping]
+    }
+
+    /// Moves all coordinates to begin at `first`.
+    pub(crate) fn move_to(&mut self, first: usize) {
+        let old = std::mem::replace(&mut self.first, first);
+        let shift = |dof: &mut usize| *dof = *dof - old + first;
+        for wheel in &mut self.wheels {
+            if let WheelRotation::Free { dof, .. } = &mut wheel.rotation {
+                shift(dof);
+            }
+            if let WheelSupport::Springs { dof, .. } = &mut wheel.support {
+                shift(dof);
+            }
+        }
+        for slide in &mut self.slides {
+            if let Some(dof) = &mut slide.dof {
+                shift(dof);
+            }
+        }
+    }
+
+    /// Visits (entry of the state, mass or inertia) of everything that has a coordinate.
+    fn each_inertia(&self, mut visit: impl FnMut(usize, f64)) {
+        for wheel in &self.wheels {
+            if let WheelRotation::Free { dof, .. } = wheel.rotation {
+                visit(dof, wheel.inertia);
+            }
+            if let WheelSupport::Springs { dof, .. } = wheel.support {
+                visit(dof, wheel.mass);
+                visit(dof + 1, wheel.mass);
+            }
+        }
+        for slide in &self.slides {
+            if let Some(dof) = slide.dof {
+                visit(dof, slide.inertia);
+            }
+        }
+    }
+
+    /// Works out the inertias of all coordinates, of which there are `count`.
+    pub(crate) fn weigh(&mut self, count: usize) {
+        let mut inertias = vec![0.0; count];
+        self.each_inertia(|dof, inertia| inertias[dof - self.first] = inertia);
+        self.inertias = inertias;
+    }
+
+    /// Bearings, tensioners and shafts: visits (entry of the state, stiffness, damping) of what they have of their own.
+    pub(crate) fn each_support(&self, mut visit: impl FnMut(usize, f64, f64)) {
+        for wheel in &self.wheels {
+            if let WheelRotation::Free { dof, drive, load } = &wheel.rotation {
+                let drag: f64 = drive.iter().chain(load).map(Torque::drag).sum();
+                visit(*dof, 0.0, drag);
+            }
+            if let WheelSupport::Springs {
+                dof,
+                stiffness,
+                damping,
+            } = &wheel.support
+            {
+                for axis in 0..2 {
+                    visit(dof + axis, stiffness[axis], damping[axis]);
+                }
+            }
+        }
+        for slide in &self.slides {
+            let Some(dof) = slide.dof else { continue };
+            let (_, lever) = slide.carrier.extension(0.0);
+            let squared = lever * lever;
+            visit(
+                dof,
+                slide.push.stiffness() * squared,
+                slide.push.damping() * squared,
+            );
+        }
+    }
+
+    /// What a coordinate is, in words.
+    pub(crate) fn name(&self, dof: usize) -> String {
+        let wheel = self
+            .wheels
+            .iter()
+            .find_map(|wheel| match (&wheel.rotation, &wheel.support) {
+                (WheelRotation::Free { dof: angle, .. }, _) if *angle == dof => {
+                    Some(format!("the angle of sprocket `{}`", wheel.name))
+                }
+                (_, WheelSupport::Springs { dof: centre, .. })
+                    if (*centre..centre + 2).contains(&dof) =>
+                {
+                    Some(format!("the centre of sprocket `{}`", wheel.name))
+                }
+                _ => None,
+            });
+        let slide = self.slides.iter().find(|slide| slide.dof == Some(dof));
+        wheel
+            .or_else(|| slide.map(|slide| format!("tensioner `{}`", slide.name)))
+            .unwrap_or_else(|| format!("coordinate {dof}"))
     }
 }
 

@@ -1,27 +1,31 @@
 //! From the laid drive to flat arrays.
 
-use chaindrive_geometry::{Point, Vector};
-use pulp::Arch;
+use chaindrive_geometry::Point;
 
-use super::bodies::{
-    Anchor, Rail, RailContact, RailSupport, Slide, Wheel, WheelRotation, WheelSupport,
-};
-use super::{HeldEnd, System};
+use super::bodies::{Anchor, Bodies, Rail, RailSupport, Slide, Wheel, WheelRotation, WheelSupport};
+use super::{BodyContacts, Member, OnRail, OnWheel, RailContact, System};
+use crate::chains;
 use crate::contact::{Contacts, PlateContact, PlateTouch, Shape, Teeth};
 use crate::drive::{Guide, GuideSupport, Parts, Rotation, Sprocket, Support, Touches};
-use crate::links::Links;
 use crate::profile::{GapHalves, Profile};
-use crate::{AssemblyError, Carrier, Chain, End, Ends, Push};
+use crate::{AssemblyError, Carrier, Chain, Push};
 
-/// A drive with its chain laid: where everything is at t = 0.
+/// A drive with its chains laid: where everything is at t = 0.
 #[derive(Clone, Debug)]
 pub(crate) struct Laid {
-    /// The parts, moved to where the chain closes.
+    /// The parts, moved to where the chains close.
     pub(crate) parts: Parts,
-    /// Roller positions.
-    pub(crate) positions: Vec<Point>,
+    /// The chains, in the order of the parts.
+    pub(crate) chains: Vec<LaidChain>,
     /// Angle of one gap axis of every sprocket.
     pub(crate) gap_angles: Vec<f64>,
+}
+
+/// Where a chain lies.
+#[derive(Clone, Debug)]
+pub(crate) struct LaidChain {
+    /// Roller positions.
+    pub(crate) positions: Vec<Point>,
     /// Sprockets in path order.
     pub(crate) route: Vec<usize>,
 }
@@ -30,10 +34,16 @@ impl System {
     /// Compiles a laid drive; returns the system and its positions.
     pub(crate) fn build(laid: &Laid) -> Result<(Self, Vec<f64>), AssemblyError> {
         let parts = &laid.parts;
-        let chain = &parts.chain;
-        let links = Links::new(chain);
-        let stride = links.stride();
-        let mut next = 2 * stride;
+        let mut q = Vec::new();
+        let mut chains = Vec::new();
+        for (chain, lies) in [&parts.chain].into_iter().zip(&laid.chains) {
+            let (built, own) = chains::Chain::laid(chain, &lies.positions);
+            let contacts = contacts(laid, chain)?;
+            chains.push(Member::new(built, q.len(), contacts, lies.route.clone()));
+            q.extend(own);
+        }
+        let first = q.len();
+        let mut next = first;
         let mut take = |count: usize| {
             next += count;
             next - count
@@ -43,124 +53,63 @@ impl System {
             .sprockets
             .iter()
             .zip(&laid.gap_angles)
-            .map(|(sprocket, &angle)| wheel(sprocket, angle, chain, &mut take))
+            .map(|(sprocket, &angle)| wheel(sprocket, angle, &mut take))
             .collect();
-        let rails = parts
-            .guides
-            .iter()
-            .map(|guide| rail(guide, parts))
-            .collect::<Result<Vec<_>, _>>()?;
         let dofs = next;
-
-        let rollers = chain.rollers();
-        let ends = held_ends(chain, &laid.positions);
-        let mut masses = chain.masses.clone();
-        let mut inverse_masses: Vec<f64> = masses.iter().map(|m| 1.0 / m).collect();
-        for held in &ends {
-            if matches!(held.end, End::Fixed | End::Driven { .. }) {
-                inverse_masses[held.roller] = 0.0;
+        q.resize(dofs, 0.0);
+        for wheel in &wheels {
+            if let WheelRotation::Free { dof, .. } = wheel.rotation {
+                q[dof] = wheel.angle;
+            }
+            if let WheelSupport::Springs { dof, .. } = wheel.support {
+                q[dof] = wheel.centre.x;
+                q[dof + 1] = wheel.centre.y;
             }
         }
-        let q = positions(laid, stride, dofs, &wheels);
-        pad(&mut masses, stride, chain.is_closed());
-        pad(&mut inverse_masses, stride, chain.is_closed());
-
-        let mut system = Self {
-            lightest: inverse_masses.iter().copied().fold(0.0, f64::max),
-            link_rates: link_rates(&links, &inverse_masses, rollers),
-            links,
-            rollers,
-            stride,
-            dofs,
-            masses,
-            inverse_masses,
-            gravity: parts.gravity,
+        let mut bodies = Bodies {
             wheels,
-            rails,
+            rails: parts.guides.iter().map(rail).collect(),
             slides,
-            ends,
-            pitch: chain.pitch,
-            route: laid.route.clone(),
-            linkage: None,
-            events: None,
-            border_inertias: Vec::new(),
-            time_scale: f64::INFINITY,
-            onset_depth: None,
-            renew: (0.0, 0),
-            arch: Arch::new(),
-            oldest: matches!(Arch::new(), Arch::Scalar),
+            gravity: parts.gravity,
+            first,
+            inertias: Vec::new(),
         };
-        let mut q = q;
+        bodies.weigh(dofs - first);
+        let mut system = Self {
+            chains,
+            bodies,
+            dofs,
+            events: None,
+            time_scales: [f64::INFINITY; 2],
+            onset_depth: None,
+        };
         let mut v = vec![0.0; dofs];
         system.start(0.0, &mut q, &mut v);
         Ok((system, q))
     }
 }
 
-/// Masses behind the last roller: those of the originals, or none.
-fn pad(values: &mut Vec<f64>, stride: usize, closed: bool) {
-    let count = values.len();
-    for i in count..stride {
-        values.push(if closed { values[i % count] } else { 0.0 });
-    }
-}
-
-fn positions(laid: &Laid, stride: usize, dofs: usize, wheels: &[Wheel]) -> Vec<f64> {
-    let chain = &laid.parts.chain;
-    let count = chain.rollers();
-    let mut q = vec![0.0; dofs];
-    for i in 0..stride {
-        let place = if i < count {
-            laid.positions[i]
-        } else if chain.is_closed() {
-            laid.positions[i % count]
-        } else {
-            // Behind a strand stand still points one pitch apart, so that no length is zero.
-            laid.positions[count - 1] + Vector::x() * chain.pitch * (i + 1 - count) as f64
-        };
-        q[i] = place.x;
-        q[stride + i] = place.y;
-    }
-    for wheel in wheels {
-        if let WheelRotation::Free { dof, .. } = wheel.rotation {
-            q[dof] = wheel.angle;
-        }
-        if let WheelSupport::Springs { dof, .. } = wheel.support {
-            q[dof] = wheel.centre.x;
-            q[dof + 1] = wheel.centre.y;
-        }
-    }
-    q
-}
-
-fn held_ends(chain: &Chain, places: &[Point]) -> Vec<HeldEnd> {
-    match &chain.ends {
-        Ends::Closed => Vec::new(),
-        Ends::Open(ends) => [0, chain.rollers() - 1]
-            .into_iter()
-            .zip(ends)
-            .map(|(roller, end)| HeldEnd {
-                roller,
-                end: end.clone(),
-                place: places[roller],
-            })
-            .collect(),
-    }
-}
-
-/// Largest Gershgorin row of M⁻¹K and of M⁻¹D over the rollers.
-fn link_rates(links: &Links, inverse_masses: &[f64], rollers: usize) -> [f64; 2] {
-    let row = |values: &[f64], roller: usize| {
-        let before = match (roller, links.closed) {
-            (0, true) => values[links.count - 1],
-            (0, false) => 0.0,
-            (i, _) => values[i - 1],
-        };
-        // (k₋ + k₊) on the diagonal and as much again beside it
-        2.0 * (before + values[roller]) * inverse_masses[roller]
-    };
-    let largest = |values: &[f64]| (0..rollers).map(|i| row(values, i)).fold(0.0, f64::max);
-    [largest(&links.stiffness), largest(&links.damping)]
+/// Contacts of a chain with everything that it can touch.
+fn contacts(laid: &Laid, chain: &Chain) -> Result<BodyContacts, AssemblyError> {
+    let parts = &laid.parts;
+    let sprockets = parts.sprockets.iter().zip(&laid.gap_angles).enumerate();
+    let teeth = sprockets.map(|(wheel, (sprocket, &angle))| OnWheel {
+        wheel,
+        first: true,
+        contacts: teeth(sprocket, chain),
+        anchor: Anchor::at(angle),
+    });
+    let rails = parts.guides.iter().enumerate().map(|(rail, guide)| {
+        Ok(OnRail {
+            rail,
+            first: true,
+            contact: face(guide, chain, parts)?,
+        })
+    });
+    Ok(BodyContacts {
+        teeth: teeth.collect(),
+        rails: rails.collect::<Result<_, AssemblyError>>()?,
+    })
 }
 
 fn slides(parts: &Parts, take: &mut impl FnMut(usize) -> usize) -> Vec<Slide> {
@@ -196,22 +145,8 @@ fn slides(parts: &Parts, take: &mut impl FnMut(usize) -> usize) -> Vec<Slide> {
         .collect()
 }
 
-fn wheel(
-    sprocket: &Sprocket,
-    angle: f64,
-    chain: &Chain,
-    take: &mut impl FnMut(usize) -> usize,
-) -> Wheel {
+fn wheel(sprocket: &Sprocket, angle: f64, take: &mut impl FnMut(usize) -> usize) -> Wheel {
     let gap = &sprocket.gap;
-    let radius = 0.5 * chain.roller_diameter;
-    let pitch_angle = std::f64::consts::TAU / f64::from(gap.teeth);
-    let teeth = Teeth {
-        halves: GapHalves::new(gap.pieces(), radius),
-        count: gap.teeth,
-        tan_half: (0.5 * pitch_angle).tan(),
-        pitch_turn: [pitch_angle.cos(), pitch_angle.sin()],
-        tip_radius: gap.tip_radius,
-    };
     let rotation = match &sprocket.rotation {
         Rotation::Prescribed(motion) => WheelRotation::Prescribed(motion.clone()),
         Rotation::Free { drive, load } => WheelRotation::Free {
@@ -235,12 +170,6 @@ fn wheel(
     };
     Wheel {
         name: sprocket.name.clone(),
-        contacts: Contacts::new(
-            Shape::Teeth(teeth),
-            sprocket.surface,
-            sprocket.flank,
-            radius,
-        ),
         centre: sprocket.centre,
         angle,
         rotation,
@@ -251,27 +180,52 @@ fn wheel(
         pitch_radius: gap.pitch_radius,
         pitch: gap.pitch,
         sense: sprocket.side.sense(),
-        anchor: Anchor::at(angle),
     }
 }
 
-fn rail(guide: &Guide, parts: &Parts) -> Result<Rail, AssemblyError> {
-    let chain = &parts.chain;
-    let profile = Profile::new(guide.face.pieces(), true, true);
-    let support = match &guide.support {
-        GuideSupport::Fixed => RailSupport::Fixed,
-        GuideSupport::Prescribed { x, y } => RailSupport::Prescribed {
-            x: x.clone(),
-            y: y.clone(),
+fn rail(guide: &Guide) -> Rail {
+    Rail {
+        name: guide.name.clone(),
+        support: match &guide.support {
+            GuideSupport::Fixed => RailSupport::Fixed,
+            GuideSupport::Prescribed { x, y } => RailSupport::Prescribed {
+                x: x.clone(),
+                y: y.clone(),
+            },
+            GuideSupport::Tensioner(index) => RailSupport::Carried(*index),
         },
-        GuideSupport::Tensioner(index) => RailSupport::Carried(*index),
+    }
+}
+
+/// Contacts of a chain with the teeth of a sprocket.
+fn teeth(sprocket: &Sprocket, chain: &Chain) -> Contacts {
+    let gap = &sprocket.gap;
+    let radius = 0.5 * chain.roller_diameter;
+    let pitch_angle = std::f64::consts::TAU / f64::from(gap.teeth);
+    let teeth = Teeth {
+        halves: GapHalves::new(gap.pieces(), radius),
+        count: gap.teeth,
+        tan_half: (0.5 * pitch_angle).tan(),
+        pitch_turn: [pitch_angle.cos(), pitch_angle.sin()],
+        tip_radius: gap.tip_radius,
     };
-    let reference = match &support {
-        RailSupport::Carried(index) => match &parts.tensioners[*index].carrier {
+    Contacts::new(
+        Shape::Teeth(teeth),
+        sprocket.surface,
+        sprocket.flank,
+        radius,
+    )
+}
+
+/// Contacts of a chain with a guide.
+fn face(guide: &Guide, chain: &Chain, parts: &Parts) -> Result<RailContact, AssemblyError> {
+    let profile = Profile::new(guide.face.pieces(), true, true);
+    let reference = match &guide.support {
+        GuideSupport::Tensioner(index) => match &parts.tensioners[*index].carrier {
             Carrier::Slider { .. } => Point::origin(),
             Carrier::Arm { pivot, .. } => *pivot,
         },
-        RailSupport::Fixed | RailSupport::Prescribed { .. } => Point::origin(),
+        GuideSupport::Fixed | GuideSupport::Prescribed { .. } => Point::origin(),
     };
     let bounds = bounds(guide);
     let radius = match guide.touches {
@@ -279,8 +233,8 @@ fn rail(guide: &Guide, parts: &Parts) -> Result<Rail, AssemblyError> {
         Touches::Eyes | Touches::Plates => 0.5 * chain.plate_height,
     };
     confirm(guide, &profile, radius)?;
-    let contact = if guide.touches == Touches::Plates {
-        RailContact::Plates(PlateContact {
+    if guide.touches == Touches::Plates {
+        return Ok(RailContact::Plates(PlateContact {
             profile,
             reference,
             bounds,
@@ -288,20 +242,15 @@ fn rail(guide: &Guide, parts: &Parts) -> Result<Rail, AssemblyError> {
             half_height: radius,
             memory: vec![PlateTouch::FAR; chain.links()],
             accepted: 0.0,
-        })
-    } else {
-        let shape = Shape::Rail {
-            profile,
-            reference,
-            bounds,
-        };
-        RailContact::Circles(Contacts::new(shape, guide.surface, None, radius))
+        }));
+    }
+    let shape = Shape::Rail {
+        profile,
+        reference,
+        bounds,
     };
-    Ok(Rail {
-        name: guide.name.clone(),
-        contact,
-        support,
-    })
+    let contacts = Contacts::new(shape, guide.surface, None, radius);
+    Ok(RailContact::Circles(contacts))
 }
 
 fn bounds(guide: &Guide) -> [Point; 2] {

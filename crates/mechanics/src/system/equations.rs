@@ -1,18 +1,25 @@
-//! The equations of motion of everything but the rollers, and the powers that go with them.
+//! The equations of motion of everything but the chains, and the powers that go with them.
 
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 
-use super::bodies::{RailSupport, WheelRotation, WheelSupport};
-use super::{HeldEnd, Record, System};
-use crate::End;
+use super::bodies::{Bodies, RailSupport, WheelRotation, WheelSupport};
+use crate::contact::Wrench;
 use crate::energy::Flow;
 
-impl System {
-    /// Accelerations of everything but the rollers, and the powers that go with them.
-    pub(super) fn bodies(&self, at: Moment<'_>, a: &mut [f64], rates: &mut [f64], record: &Record) {
-        for (wheel, wrench) in self.wheels.iter().zip(&record.wheel_wrenches) {
-            let (frame, course, acceleration) = self.wheel_frame(wheel, at);
+impl Bodies {
+    /// Accelerations of the bodies under what all chains together do to wheels and rails, and the powers that go with them.
+    pub(super) fn accelerate(
+        &self,
+        at: Moment<'_>,
+        a: &mut [f64],
+        rates: &mut [f64],
+        [wheel_wrenches, rail_wrenches]: [&[Wrench]; 2],
+    ) {
+        for (wheel, wrench) in self.wheels.iter().zip(wheel_wrenches) {
+            let course = wheel.course(at.t, at.q, at.v);
+            let (centre, velocity, acceleration) =
+                wheel.centre_course(at.t, at.q, at.v, &self.slides);
             match &wheel.rotation {
                 WheelRotation::Prescribed(_) => {
                     // P = (J α − M) ω
@@ -37,7 +44,7 @@ impl System {
                     // P = (m a − F − m g)·v
                     let force = Vector::new(wrench.force[0], wrench.force[1]);
                     let needed = (acceleration - self.gravity) * wheel.mass - force;
-                    rates[Flow::Motions as usize] += needed.dot(&frame.velocity);
+                    rates[Flow::Motions as usize] += needed.dot(&velocity);
                 }
                 WheelSupport::Springs {
                     dof,
@@ -45,8 +52,8 @@ impl System {
                     damping,
                 } => {
                     for axis in 0..2 {
-                        let away = frame.origin[axis] - wheel.centre[axis];
-                        let speed = frame.velocity[axis];
+                        let away = centre[axis] - wheel.centre[axis];
+                        let speed = velocity[axis];
                         // m a = F + m g − k x − c ẋ
                         let force =
                             wrench.force[axis] - stiffness[axis] * away - damping[axis] * speed;
@@ -57,12 +64,12 @@ impl System {
                 WheelSupport::Carried(index) => {
                     let slide = &self.slides[*index];
                     if let Some(dof) = slide.dof {
-                        a[dof] += slide.project(wrench.force, frame.origin);
+                        a[dof] += slide.project(wrench.force, centre);
                     }
                 }
             }
         }
-        for (rail, wrench) in self.rails.iter().zip(&record.rail_wrenches) {
+        for (rail, wrench) in self.rails.iter().zip(rail_wrenches) {
             match &rail.support {
                 RailSupport::Fixed => {}
                 RailSupport::Prescribed { .. } => {
@@ -98,47 +105,5 @@ impl System {
             }
             a[dof] = force / slide.inertia;
         }
-    }
-
-    /// Accelerations of the end rollers whose motion or load is given.
-    pub(super) fn hold_ends(&self, at: Moment<'_>, a: &mut [f64], rates: &mut [f64]) {
-        let n = self.stride;
-        for held in &self.ends {
-            let i = held.roller;
-            match &held.end {
-                End::Free => {}
-                End::Fixed => {
-                    a[i] = 0.0;
-                    a[n + i] = 0.0;
-                }
-                End::Driven { x, y } => {
-                    let (x, y) = (x.at(at.t), y.at(at.t));
-                    a[i] = x.acceleration;
-                    a[n + i] = y.acceleration;
-                    let needed =
-                        self.end_force(at, held, Vector::new(x.acceleration, y.acceleration));
-                    rates[Flow::Motions as usize] += needed.x * x.rate + needed.y * y.rate;
-                }
-                End::Pulled { force } => {
-                    a[i] += force.x * self.inverse_masses[i];
-                    a[n + i] += force.y * self.inverse_masses[i];
-                    rates[Flow::DriveTorque as usize] += force.x * at.v[i] + force.y * at.v[n + i];
-                }
-            }
-        }
-    }
-
-    /// Force that a support exerts on a held end roller \[N\].
-    fn end_force(&self, at: Moment<'_>, held: &HeldEnd, acceleration: Vector) -> Vector {
-        let (link, inward) = if held.roller == 0 {
-            (0, 1.0)
-        } else {
-            (held.roller - 1, -1.0)
-        };
-        let pins = [self.pin(at, link), self.pin(at, link + 1)];
-        let along = (pins[1].0 - pins[0].0).normalize() * inward;
-        let pull = along * self.links.tension(link, pins);
-        // F = m (a − g) − T
-        (acceleration - self.gravity) * self.masses[held.roller] - pull
     }
 }

@@ -2,100 +2,120 @@
 
 use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_geometry::{Point, Vector};
+use chaindrive_integrate::Moment;
 use nalgebra::SVector;
 
 use super::{Sum, at_rest};
+use crate::chains::{Moving, Way};
 use crate::contact::{Contacts, Frame, PlateContact, Shape};
 use crate::profile::Probe;
-use crate::system::{RailContact, RailSupport, Slide, WheelRotation, WheelSupport};
+use crate::system::{
+    Bodies, Member, RailContact, RailSupport, Slide, Wheel, WheelRotation, WheelSupport,
+};
 use crate::{Carrier, System};
 
-/// State entries that place a body: its angle, and its centre by (entry, derivative, second
-/// derivative) of the centre with respect to the entry.
+/// State entries that place a body: its angle, and what moves its centre.
 #[derive(Clone, Default)]
 struct Mount {
     angle: Option<usize>,
-    centre: Vec<(usize, Vector, Vector)>,
+    centre: Vec<Way>,
 }
 
 /// Adds the energies of all closed contacts.
 pub(super) fn add_contacts(system: &System, q: &[f64], sum: &mut Sum<'_>) {
     let still = vec![0.0; q.len()];
     let at = at_rest(q, &still);
-    for (index, wheel) in system.wheels.iter().enumerate() {
-        let course = wheel.course(0.0, q, &still);
-        let (origin, _, _) = wheel.centre_course(0.0, q, &still, &system.slides);
-        let frame = Frame {
-            origin,
-            turn: [course.position.cos(), course.position.sin()],
-            velocity: Vector::zeros(),
-            spin: 0.0,
-        };
-        let mut mount = Mount::default();
-        if let WheelRotation::Free { dof, .. } = wheel.rotation {
-            mount.angle = Some(dof);
+    let bodies = &system.bodies;
+    for member in &system.chains {
+        for on in &member.contacts.teeth {
+            let wheel = &bodies.wheels[on.wheel];
+            let (frame, mount) = wheel_mount(bodies, wheel, at);
+            let closed = add_circles(member, &on.contacts, &frame, &mount, q, sum);
+            sum.balance.contacts[on.wheel] += closed;
         }
-        match &wheel.support {
-            WheelSupport::Springs { dof, .. } => {
-                mount.centre = vec![
-                    (*dof, Vector::x(), Vector::zeros()),
-                    (dof + 1, Vector::y(), Vector::zeros()),
-                ];
+        for on in &member.contacts.rails {
+            let frame = bodies.rail_frame(on.rail, at);
+            let mount = rail_mount(bodies, on.rail, &frame);
+            match &on.contact {
+                RailContact::Circles(contacts) => {
+                    add_circles(member, contacts, &frame, &mount, q, sum);
+                }
+                RailContact::Plates(plates) => add_plates(member, plates, &frame, &mount, q, sum),
             }
-            WheelSupport::Carried(slide) => {
-                mount.centre = carried(&system.slides[*slide], origin);
-            }
-            WheelSupport::Fixed | WheelSupport::Prescribed { .. } => {}
-        }
-        sum.balance.contacts[index] = add_circles(system, &wheel.contacts, &frame, &mount, q, sum);
-    }
-    for rail in &system.rails {
-        let frame = rail.frame(at.t, at.q, at.v, &system.slides);
-        let mut mount = Mount::default();
-        if let RailSupport::Carried(index) = &rail.support {
-            let slide = &system.slides[*index];
-            match (&slide.carrier, slide.dof) {
-                (Carrier::Slider { .. }, Some(_)) => mount.centre = carried(slide, frame.origin),
-                (Carrier::Arm { .. }, dof) => mount.angle = dof,
-                _ => {}
-            }
-        }
-        match &rail.contact {
-            RailContact::Circles(contacts) => {
-                add_circles(system, contacts, &frame, &mount, q, sum);
-            }
-            RailContact::Plates(plates) => add_plates(system, plates, &frame, &mount, q, sum),
         }
     }
+}
+
+fn wheel_mount(bodies: &Bodies, wheel: &Wheel, at: Moment<'_>) -> (Frame, Mount) {
+    let course = wheel.course(at.t, at.q, at.v);
+    let (origin, _, _) = wheel.centre_course(at.t, at.q, at.v, &bodies.slides);
+    let frame = Frame {
+        origin,
+        turn: [course.position.cos(), course.position.sin()],
+        velocity: Vector::zeros(),
+        spin: 0.0,
+    };
+    let mut mount = Mount::default();
+    if let WheelRotation::Free { dof, .. } = wheel.rotation {
+        mount.angle = Some(dof);
+    }
+    match &wheel.support {
+        WheelSupport::Springs { dof, .. } => {
+            let ways = Moving::free(origin, [*dof, dof + 1]);
+            mount.centre = ways.ways().to_vec();
+        }
+        WheelSupport::Carried(slide) => mount.centre = carried(&bodies.slides[*slide], origin),
+        WheelSupport::Fixed | WheelSupport::Prescribed { .. } => {}
+    }
+    (frame, mount)
+}
+
+fn rail_mount(bodies: &Bodies, rail: usize, frame: &Frame) -> Mount {
+    let mut mount = Mount::default();
+    if let RailSupport::Carried(index) = &bodies.rails[rail].support {
+        let slide = &bodies.slides[*index];
+        match (&slide.carrier, slide.dof) {
+            (Carrier::Slider { .. }, Some(_)) => mount.centre = carried(slide, frame.origin),
+            (Carrier::Arm { .. }, dof) => mount.angle = dof,
+            _ => {}
+        }
+    }
+    mount
 }
 
 /// How a carried centre moves with its carrier.
-fn carried(slide: &Slide, place: Point) -> Vec<(usize, Vector, Vector)> {
-    let Some(dof) = slide.dof else {
+fn carried(slide: &Slide, place: Point) -> Vec<Way> {
+    let Some(entry) = slide.dof else {
         return Vec::new();
     };
-    match &slide.carrier {
-        Carrier::Slider { direction } => vec![(dof, *direction, Vector::zeros())],
+    let (first, second) = match &slide.carrier {
+        Carrier::Slider { direction } => (*direction, Vector::zeros()),
         Carrier::Arm { pivot, .. } => {
             let arm = place - pivot;
-            vec![(dof, Vector::new(-arm.y, arm.x), -arm)]
+            (Vector::new(-arm.y, arm.x), -arm)
         }
-    }
+    };
+    vec![Way {
+        entry,
+        first,
+        second,
+    }]
 }
 
 fn add_circles(
-    system: &System,
+    member: &Member,
     contacts: &Contacts,
     frame: &Frame,
     mount: &Mount,
     q: &[f64],
     sum: &mut Sum<'_>,
 ) -> usize {
-    let n = system.stride;
+    let own = &q[member.entries.clone()];
     let mut closed = 0;
     contacts.for_each_slot(|_, roller| {
-        let place = Point::new(q[roller], q[n + roller]);
-        for probe in contacts.probes(frame, place) {
+        let moving = member.chain.roller_moving(own, roller);
+        let circle = moving.behind(member.entries.start);
+        for probe in contacts.probes(frame, circle.place) {
             if probe.gap < 0.0 {
                 closed += 1;
                 let law = &contacts.surface.law;
@@ -110,8 +130,14 @@ fn add_circles(
                     push.force = mix(push.force, flank.elastic.force(depth));
                     push.stiffness = mix(push.stiffness, flank.elastic.stiffness(depth));
                 }
-                let pins = [(roller, 1.0)];
-                add_one(&pins, place - frame.origin, &probe, push, mount, n, sum);
+                add_one(
+                    &circle,
+                    circle.place - frame.origin,
+                    &probe,
+                    push,
+                    mount,
+                    sum,
+                );
             }
         }
     });
@@ -119,18 +145,20 @@ fn add_circles(
 }
 
 fn add_plates(
-    system: &System,
+    member: &Member,
     plates: &PlateContact,
     frame: &Frame,
     mount: &Mount,
     q: &[f64],
     sum: &mut Sum<'_>,
 ) {
-    let n = system.stride;
-    let place = |i: usize| Point::new(q[i], q[n + i]);
-    for link in 0..system.links.count {
-        let pins = [link, (link + 1) % system.rollers];
-        let [a, b] = pins.map(|pin| frame.local(place(pin), plates.reference));
+    let own = &q[member.entries.clone()];
+    for link in 0..member.chain.links() {
+        let pins = [0, 1].map(|end| {
+            let pin = member.chain.pin_moving(own, link, end);
+            pin.behind(member.entries.start)
+        });
+        let [a, b] = pins.map(|pin| frame.local(pin.place, plates.reference));
         let mut point = plates.nearest(a, b);
         if point.probe.gap >= 0.0 {
             continue;
@@ -141,20 +169,18 @@ fn add_plates(
             stiffness: point.weight * law.stiffness(-point.probe.gap),
         };
         point.probe.normal = frame.outward(point.probe.normal);
-        let ends = pins.map(place);
-        let d =
-            (ends[0] - frame.origin) * (1.0 - point.share) + (ends[1] - frame.origin) * point.share;
+        let d = (pins[0].place - frame.origin) * (1.0 - point.share)
+            + (pins[1].place - frame.origin) * point.share;
         if point.share > 0.0 && point.share < 1.0 {
             let edge = Edge {
                 pins,
-                ends,
                 share: point.share,
                 d,
             };
-            add_edge(&edge, &point.probe, push, mount, n, sum);
+            add_edge(&edge, &point.probe, push, mount, sum);
         } else {
-            let eye = pins[usize::from(point.share > 0.5)];
-            add_one(&[(eye, 1.0)], d, &point.probe, push, mount, n, sum);
+            let eye = &pins[usize::from(point.share > 0.5)];
+            add_one(eye, d, &point.probe, push, mount, sum);
         }
     }
 }
@@ -170,8 +196,7 @@ struct Move {
 
 /// A plate that touches a rail between its pins.
 struct Edge {
-    pins: [usize; 2],
-    ends: [Point; 2],
+    pins: [Moving; 2],
     share: f64,
     /// Touching point on the pin line, from the frame's origin.
     d: Vector,
@@ -185,35 +210,35 @@ struct Edge {
 /// ```
 ///
 /// A frame that turns by dθ adds 2 dθ (ẑ×n)·dP − dθ² n·d to the second variation.
-fn add_edge(edge: &Edge, probe: &Probe, push: Push, mount: &Mount, n: usize, sum: &mut Sum<'_>) {
+fn add_edge(edge: &Edge, probe: &Probe, push: Push, mount: &Mount, sum: &mut Sum<'_>) {
     let normal = probe.normal;
     let u = Vector::new(normal.y, -normal.x);
     let across = Vector::new(-normal.y, normal.x);
     let distance = 1.0 / probe.bend;
-    let line = edge.ends[1] - edge.ends[0];
+    let line = edge.pins[1].place - edge.pins[0].place;
     let length = line.norm();
     let perpendicular = Vector::new(-line.y, line.x) / (length * length);
     let around = Vector::new(-edge.d.y, edge.d.x);
     let shares = [1.0 - edge.share, edge.share];
 
     let mut moves = Vec::new();
-    for (k, (&pin, share)) in edge.pins.iter().zip(shares).enumerate() {
-        for (axis, unit) in [Vector::x(), Vector::y()].into_iter().enumerate() {
-            let turn = perpendicular.dot(&unit) * if k == 0 { -1.0 } else { 1.0 };
+    for (k, (pin, share)) in edge.pins.iter().zip(shares).enumerate() {
+        for way in pin.ways() {
+            let turn = perpendicular.dot(&way.first) * if k == 0 { -1.0 } else { 1.0 };
             moves.push(Move {
-                entry: pin + axis * n,
-                shift: unit * share,
-                relative: unit * share,
+                entry: way.entry,
+                shift: way.first * share,
+                relative: way.first * share,
                 line_turn: turn,
                 frame_turn: 0.0,
             });
         }
     }
-    for (entry, derivative, _) in &mount.centre {
+    for way in &mount.centre {
         moves.push(Move {
-            entry: *entry,
-            shift: -derivative,
-            relative: -derivative,
+            entry: way.entry,
+            shift: -way.first,
+            relative: -way.first,
             line_turn: 0.0,
             frame_turn: 0.0,
         });
@@ -245,8 +270,14 @@ fn add_edge(edge: &Edge, probe: &Probe, push: Push, mount: &Mount, n: usize, sum
             );
         }
     }
-    for (entry, _, second) in &mount.centre {
-        sum.stiffen(*entry, *entry, push.force * normal.dot(second));
+    for (pin, share) in edge.pins.iter().zip(shares) {
+        for way in pin.ways().iter().filter(|way| way.bends()) {
+            let opening = normal.dot(&way.second) * share;
+            sum.stiffen(way.entry, way.entry, -push.force * opening);
+        }
+    }
+    for way in &mount.centre {
+        sum.stiffen(way.entry, way.entry, push.force * normal.dot(&way.second));
     }
 }
 
@@ -264,12 +295,11 @@ struct Push {
 /// H = k J Jᵀ + F S,   S_xx = κ t tᵀ,   S_xθ = ẑ×m − κ (t·ẑ×d) t,   S_θθ = κ (t·ẑ×d)² − m·d
 /// ```
 fn add_one(
-    pins: &[(usize, f64)],
+    circle: &Moving,
     d: Vector,
     probe: &Probe,
     push: Push,
     mount: &Mount,
-    n: usize,
     sum: &mut Sum<'_>,
 ) {
     let m = -probe.normal;
@@ -280,14 +310,11 @@ fn add_one(
 
     // Entries that move the contact: gradient of δ, and coefficients of (x, θ) for the geometry.
     let mut moves: Vec<(usize, f64, Vector, f64)> = Vec::new();
-    for &(pin, share) in pins {
-        for axis in 0..2 {
-            let unit = if axis == 0 { Vector::x() } else { Vector::y() } * share;
-            moves.push((pin + axis * n, m.dot(&unit), unit, 0.0));
-        }
+    for way in circle.ways() {
+        moves.push((way.entry, m.dot(&way.first), way.first, 0.0));
     }
-    for (entry, derivative, _) in &mount.centre {
-        moves.push((*entry, -m.dot(derivative), -derivative, 0.0));
+    for way in &mount.centre {
+        moves.push((way.entry, -m.dot(&way.first), -way.first, 0.0));
     }
     if let Some(entry) = mount.angle {
         moves.push((entry, -m.dot(&around), Vector::zeros(), 1.0));
@@ -308,8 +335,11 @@ fn add_one(
             );
         }
     }
-    for (entry, _, second) in &mount.centre {
-        sum.stiffen(*entry, *entry, -push.force * m.dot(second));
+    for way in circle.ways().iter().filter(|way| way.bends()) {
+        sum.stiffen(way.entry, way.entry, push.force * m.dot(&way.second));
+    }
+    for way in &mount.centre {
+        sum.stiffen(way.entry, way.entry, -push.force * m.dot(&way.second));
     }
 }
 

@@ -4,7 +4,8 @@
 //! ceases to exist, and rollers slide on until they find another one. Newton's iteration on the path stalls
 //! there. What the drive does then is to move downhill, and so does this.
 
-use super::{CONVERGED, Found, Load, Newton};
+use super::{CONVERGED, Found, Newton};
+use crate::chains::Load;
 
 /// Longest step, as a share of the radius of a roller: well within the curvature of a seat.
 const CAP: f64 = 3e-3;
@@ -29,8 +30,7 @@ impl Newton<'_> {
     /// J. Nocedal and S. J. Wright, *Numerical Optimization*, Springer, 2006, chapter 4 (the shift as the multiplier of a
     /// trust region).
     pub(super) fn descend(&self, start: &[f64], load: Load) -> Found {
-        let links = &self.system.links.stiffness;
-        let stiffness = links.iter().copied().fold(0.0, f64::max);
+        let stiffness = self.stiffest();
         let cap = CAP / 0.2 * self.longest();
         let mut shift = 1e-4 * stiffness;
         let mut q = start.to_vec();

@@ -3,38 +3,25 @@
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
 
+use super::rates::LinkPlaces;
 use super::{Joining, Linkage, Mate, Play};
+use crate::chains::Record;
+use crate::contact::{Frame, PlateContact};
 use crate::energy::{Energy, Store};
 use crate::observe::Observation;
 
 impl Linkage {
-    /// Fills in what belongs to the chain.
-    pub(crate) fn observe(&self, at: Moment<'_>, play: &Play, out: &mut Observation) {
+    /// Appends what belongs to the chain.
+    pub(crate) fn observe(&self, at: Moment<'_>, record: &Record, out: &mut Observation) {
+        let play = &record.play;
         let count = self.joints.len();
-        let copy = |to: &mut Vec<f64>, from: &[f64]| {
-            to.clear();
-            to.extend_from_slice(&from[..count]);
-        };
-        copy(&mut out.roller_x, &play.posture.x);
-        copy(&mut out.roller_y, &play.posture.y);
-        copy(&mut out.roller_vx, &play.posture.vx);
-        copy(&mut out.roller_vy, &play.posture.vy);
-        out.link_tension.clear();
-        out.link_tension.extend(self.tensions(play));
-        out.link_angle.clear();
+        out.roller_x.extend_from_slice(&play.posture.x[..count]);
+        out.roller_y.extend_from_slice(&play.posture.y[..count]);
+        out.roller_vx.extend_from_slice(&play.posture.vx[..count]);
+        out.roller_vy.extend_from_slice(&play.posture.vy[..count]);
+        out.link_tension.extend(self.tensions(at, record));
         out.link_angle
             .extend((0..self.links).map(|link| at.q[3 * link + 2]));
-        for values in [
-            &mut out.joint_offset_x,
-            &mut out.joint_offset_y,
-            &mut out.joint_force_x,
-            &mut out.joint_force_y,
-            &mut out.joint_force,
-            &mut out.joint_angle,
-            &mut out.joint_depth,
-        ] {
-            values.clear();
-        }
         for (index, joint) in self.joints.iter().enumerate() {
             let offset = self.offset(index, at, play);
             let force = self.pin_force(play, index);
@@ -66,7 +53,13 @@ impl Linkage {
     }
 
     /// Energies of the chain.
-    pub(crate) fn energies(&self, at: Moment<'_>, gravity: Vector, play: &Play, out: &mut Energy) {
+    pub(crate) fn energies(
+        &self,
+        at: Moment<'_>,
+        gravity: Vector,
+        record: &Record,
+        out: &mut Energy,
+    ) {
         for (index, body) in self.bodies.iter().enumerate() {
             let [x, y] = [at.q[3 * index], at.q[3 * index + 1]];
             let [vx, vy, spin] = [0, 1, 2].map(|k| at.v[3 * index + k]);
@@ -74,7 +67,18 @@ impl Linkage {
                 0.5 * (body.mass * (vx * vx + vy * vy) + body.inertia * spin * spin);
             out.stores[Store::Gravity as usize] -= body.mass * (gravity.x * x + gravity.y * y);
         }
-        out.stores[Store::Joints as usize] += self.stored(&play.memory);
+        out.stores[Store::Joints as usize] += self.stored(&record.play.memory);
+    }
+
+    /// What the contacts of the plates with a guide store \[J\].
+    pub(crate) fn plate_energy(
+        &self,
+        _at: Moment<'_>,
+        plates: &PlateContact,
+        frame: &Frame,
+        record: &Record,
+    ) -> f64 {
+        plates.stored(&LinkPlaces(&record.play), frame, self.links)
     }
 
     /// Speed at touch \[m/s\] and force \[N\] of a closed joint, and of a closed bush in its roller, for those

@@ -182,7 +182,7 @@ impl Posture {
 
 impl Linkage {
     /// Works out the posture of a state.
-    pub(crate) fn pose(&self, at: Moment<'_>, posture: &mut Posture) {
+    pub(crate) fn pose_links(&self, at: Moment<'_>, posture: &mut Posture) {
         if posture.links[0].len() != padded(self.links) {
             posture.resize(self);
         }

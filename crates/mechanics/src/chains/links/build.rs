@@ -1,65 +1,47 @@
 //! From the settled particle chain to rigid links in the same place.
 
+use std::ops::Range;
+
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 use pulp::Arch;
 
+use super::model::{Joint, RigidLinks, RollerModel};
 use super::{
     Bearing, Body, FreeRollers, Hinges, Joining, JointMates, Linkage, Mate, Memory, Pairs,
     PinMemory, PinTouch, Play, Shapes, turned,
 };
-use crate::End;
-use crate::chain::Chain;
-use crate::drive::{Layout, Parts};
-use crate::rigid::{Joint, RigidLinks, RollerModel};
-use crate::system::{RailContact, System, WheelRotation, WheelSupport};
+use crate::chains::LaidAs;
+use crate::chains::particles::Particles;
+use crate::system::Bodies;
+use crate::{Chain, End};
 
-/// Coordinates and velocities of a converted system.
-pub(crate) struct Converted {
-    pub(crate) system: System,
+/// A chain of rigid links in the place of laid particles, with its coordinates and velocities.
+pub(crate) struct Replacement {
+    pub(crate) linkage: Linkage,
     pub(crate) q: Vec<f64>,
     pub(crate) v: Vec<f64>,
 }
 
-impl Converted {
-    /// Brings the velocities to where no hinge opens: what the stabilisation would otherwise take out of the
-    /// chain in its first milliseconds.
-    pub(crate) fn close_in_motion(&mut self) {
-        let Some(linkage) = &self.system.linkage else {
-            return;
-        };
-        let mut play = Play::default();
-        let at = Moment {
-            t: 0.0,
-            q: &self.q,
-            v: &self.v,
-        };
-        linkage.pose(at, &mut play.posture);
-        play.hinge_forces = vec![Vector::zeros(); linkage.joints.len()];
-        let mut v = self.v.clone();
-        if linkage.project(&self.system, at, &mut play, &mut v) {
-            self.v = v;
-        }
-    }
-}
-
-/// Replaces the particle chain of an assembled system by its rigid links.
-pub(crate) fn convert(
-    mut system: System,
-    parts: &Parts,
+/// Puts rigid links where the particles are; `at` is the whole state, in which the particles stand at `entries`.
+pub(crate) fn replace(
+    particles: &Particles,
+    entries: Range<usize>,
+    bodies: &Bodies,
+    laid: &LaidAs<'_>,
     links: &RigidLinks,
-    q: &[f64],
-    v: &[f64],
-) -> Converted {
-    let n = system.stride;
-    let (inward, shorter) = bush_shifts(&system, links, q);
+    at: Moment<'_>,
+) -> Replacement {
+    let (q, v) = (&at.q[entries.clone()], &at.v[entries]);
+    let n = particles.stride;
+    let (inward, shorter) = bush_shifts(particles, bodies, links, at, q);
     let place = |k: usize| Point::new(q[k], q[n + k]) + inward[k];
     let velocity = |k: usize| Vector::new(v[k], v[n + k]);
-    let count = system.rollers;
-    let mut linkage = compile(&system, parts, links);
+    let count = particles.rollers;
+    let mut linkage = compile(particles, laid, links);
     linkage.lengthen(-shorter / linkage.links as f64);
     let after = |link: usize| (link + 1) % count;
-    if links.joint == Joint::Ideal && matches!(parts.layout, Layout::Route { .. }) {
+    if links.joint == Joint::Ideal && laid.on_route {
         // The chain was settled with links that hardly stretch; what is left of that is theirs.
         for link in 0..linkage.links {
             let length = (place(after(link)) - place(link)).norm();
@@ -67,84 +49,106 @@ pub(crate) fn convert(
         }
         linkage.shapes = Shapes::of(&linkage.bodies, linkage.links, linkage.closed);
     }
-    let mut chain_q = Vec::with_capacity(linkage.dofs());
-    let mut chain_v = Vec::with_capacity(linkage.dofs());
+    let mut chain_q = Vec::with_capacity(linkage.coordinates());
     for (link, body) in linkage.bodies[..linkage.links].iter().enumerate() {
         let ends = [place(link), place(after(link))];
-        let speeds = [velocity(link), velocity(after(link))];
         let line = ends[1] - ends[0];
         let angle = line.y.atan2(line.x);
-        let (s, c) = angle.sin_cos();
-        // The middle of the link lies between its joints, the centre of mass beside it.
-        let to_middle = (body.arms[0] + body.arms[1]) * 0.5;
-        let to_middle = Vector::new(
-            c * to_middle.x - s * to_middle.y,
-            s * to_middle.x + c * to_middle.y,
-        );
-        let middle = nalgebra::center(&ends[0], &ends[1]);
-        let centre = middle - to_middle;
-        // ω = ẑ·(d × u)/d²
-        let spin = turned(line).dot(&(speeds[1] - speeds[0])) / line.norm_squared();
-        let moving = (speeds[0] + speeds[1]) * 0.5 - turned(to_middle) * spin;
+        let centre = nalgebra::center(&ends[0], &ends[1]) - to_middle(body, angle);
         chain_q.extend([centre.x, centre.y, angle]);
-        chain_v.extend([moving.x, moving.y, spin]);
     }
     if let Some(free) = &linkage.free_rollers {
         for (joint, body) in free.body.iter().enumerate() {
             if body.is_some() {
                 chain_q.extend([q[joint], q[n + joint], 0.0]);
-                chain_v.extend([v[joint], v[n + joint], 0.0]);
             }
         }
     }
-    let old = 2 * n;
-    let new = linkage.dofs();
-    let inertias = system.inertias();
-    system.border_inertias = inertias[old..].to_vec();
-    shift_dofs(&mut system, old, new);
-    chain_q.extend_from_slice(&q[old..]);
-    chain_v.extend_from_slice(&v[old..]);
-    system.dofs = chain_q.len();
-    for wheel in &mut system.wheels {
-        wheel.contacts.for_links = true;
-    }
-    for rail in &mut system.rails {
-        if let RailContact::Circles(contacts) = &mut rail.contact {
-            contacts.for_links = true;
-        }
-    }
-    system.linkage = Some(linkage);
-    Converted {
-        system,
+    let mut chain_v = vec![0.0; linkage.coordinates()];
+    let places: Vec<Point> = (0..count).map(place).collect();
+    let velocities: Vec<Vector> = (0..count).map(velocity).collect();
+    linkage.set_off(&places, &velocities, &mut chain_v);
+    Replacement {
+        linkage,
         q: chain_q,
         v: chain_v,
+    }
+}
+
+/// From the centre of mass to the middle between the joints.
+fn to_middle(body: &Body, angle: f64) -> Vector {
+    let (s, c) = angle.sin_cos();
+    let middle = (body.arms[0] + body.arms[1]) * 0.5;
+    Vector::new(c * middle.x - s * middle.y, s * middle.x + c * middle.y)
+}
+
+impl Linkage {
+    /// Gives every link the motion of the rollers at its ends, and free rollers their own.
+    pub(crate) fn set_off(&self, places: &[Point], velocities: &[Vector], v: &mut [f64]) {
+        let after = |link: usize| (link + 1) % places.len();
+        let links = v.as_chunks_mut::<3>().0.iter_mut();
+        for (link, (v, body)) in links.zip(&self.bodies[..self.links]).enumerate() {
+            let speeds = [velocities[link], velocities[after(link)]];
+            let line = places[after(link)] - places[link];
+            // ω = ẑ·(d × u)/d²
+            let spin = turned(line).dot(&(speeds[1] - speeds[0])) / line.norm_squared();
+            let to_middle = to_middle(body, line.y.atan2(line.x));
+            let moving = (speeds[0] + speeds[1]) * 0.5 - turned(to_middle) * spin;
+            *v = [moving.x, moving.y, spin];
+        }
+        if let Some(free) = &self.free_rollers {
+            for (velocity, body) in velocities.iter().zip(&free.body) {
+                if let Some(body) = body {
+                    v[3 * body..3 * body + 3].copy_from_slice(&[velocity.x, velocity.y, 0.0]);
+                }
+            }
+        }
+    }
+
+    /// Velocities of the chain and, behind it, the bodies brought to where no hinge opens: what the stabilisation would otherwise
+    /// take out of the chain in its first milliseconds.
+    pub(crate) fn close_in_motion(&self, bodies: &Bodies, q: &[f64], v: &mut [f64]) {
+        if matches!(self.joining, Joining::Clearance(_)) {
+            return;
+        }
+        let mut play = Play::default();
+        let at = Moment { t: 0.0, q, v };
+        self.pose_links(at, &mut play.posture);
+        play.hinge_forces = vec![Vector::zeros(); self.joints.len()];
+        let mut closed = v.to_vec();
+        if self.project(bodies, at, &mut play, &mut closed) {
+            v.copy_from_slice(&closed);
+        }
     }
 }
 
 /// Where free rollers let the bushes be: on a wheel they lie deeper by the clearance, in a span the rollers
 /// hang. Returns the shift of every bush from the particle, and by how much their way around the
 /// wheels is shorter \[m\].
-fn bush_shifts(system: &System, links: &RigidLinks, q: &[f64]) -> (Vec<Vector>, f64) {
-    let count = system.rollers;
+fn bush_shifts(
+    particles: &Particles,
+    bodies: &Bodies,
+    links: &RigidLinks,
+    at: Moment<'_>,
+    q: &[f64],
+) -> (Vec<Vector>, f64) {
+    let count = particles.rollers;
     let RollerModel::Free(roller) = &links.rollers else {
         return (vec![Vector::zeros(); count], 0.0);
-    };
-    let still = vec![0.0; q.len()];
-    let at = Moment {
-        t: 0.0,
-        q,
-        v: &still,
     };
     let mut shorter = 0.0;
     let seats: Vec<Option<Vector>> = (0..count)
         .map(|joint| {
-            let place = Point::new(q[joint], q[system.stride + joint]);
-            let (wheel, d) = system.wheels.iter().find_map(|wheel| {
-                let (frame, _, _) = system.wheel_frame(wheel, at);
-                let d = place - frame.origin;
-                let seat = wheel.pitch_radius.hypot(0.5 * wheel.pitch);
-                (d.norm() < 0.5 * (wheel.pitch_radius + seat)).then_some((wheel, d))
-            })?;
+            let place = particles.place(q, joint);
+            let (wheel, d) = bodies
+                .wheels
+                .iter()
+                .enumerate()
+                .find_map(|(index, wheel)| {
+                    let d = place - bodies.wheel_centre(index, at);
+                    let seat = wheel.pitch_radius.hypot(0.5 * wheel.pitch);
+                    (d.norm() < 0.5 * (wheel.pitch_radius + seat)).then_some((wheel, d))
+                })?;
             shorter += roller.gap() * std::f64::consts::TAU / f64::from(wheel.teeth);
             Some(-d.normalize() * roller.gap())
         })
@@ -165,34 +169,14 @@ fn bush_shifts(system: &System, links: &RigidLinks, q: &[f64]) -> (Vec<Vector>, 
     (shifts.collect(), shorter)
 }
 
-/// Moves the degrees of freedom of wheels and tensioners behind another chain.
-fn shift_dofs(system: &mut System, old: usize, new: usize) {
-    let shift = |dof: &mut usize| *dof = *dof - old + new;
-    for wheel in &mut system.wheels {
-        if let WheelRotation::Free { dof, .. } = &mut wheel.rotation {
-            shift(dof);
-        }
-        if let WheelSupport::Springs { dof, .. } = &mut wheel.support {
-            shift(dof);
-        }
-    }
-    for slide in &mut system.slides {
-        if let Some(dof) = &mut slide.dof {
-            shift(dof);
-        }
-    }
-}
-
-fn compile(system: &System, parts: &Parts, links: &RigidLinks) -> Linkage {
-    let chain = &parts.chain;
+fn compile(particles: &Particles, laid: &LaidAs<'_>, links: &RigidLinks) -> Linkage {
+    let LaidAs {
+        chain, pretension, ..
+    } = *laid;
     let count = chain.links();
-    let pretension = match &parts.layout {
-        Layout::Route { fit, .. } => fit.pretension,
-        Layout::Points { .. } => 0.0,
-    };
     let joining = match &links.joint {
         Joint::Ideal => Joining::Hinges(Hinges {
-            rate: stabilisation(parts),
+            rate: stabilisation(laid.gravity, chain.pitch),
         }),
         Joint::Clearance(joint) => Joining::Clearance(Box::new(Bearing::new(
             &joint.surface,
@@ -208,7 +192,7 @@ fn compile(system: &System, parts: &Parts, links: &RigidLinks) -> Linkage {
     let mut bodies: Vec<Body> = (0..count)
         .map(|link| {
             // p (1 + ε₀) under T₀
-            let spacing = system.links.rest[link] + pretension / system.links.stiffness[link];
+            let spacing = particles.links.rest[link] + pretension / particles.links.stiffness[link];
             body(links, link, spacing, play)
         })
         .collect();
@@ -246,7 +230,7 @@ fn compile(system: &System, parts: &Parts, links: &RigidLinks) -> Linkage {
     Linkage {
         links: count,
         closed: chain.is_closed(),
-        stride: system.stride,
+        stride: particles.stride,
         pitch: chain.pitch,
         shapes: Shapes::of(&bodies, count, chain.is_closed()),
         bodies,
@@ -260,16 +244,16 @@ fn compile(system: &System, parts: &Parts, links: &RigidLinks) -> Linkage {
         joining,
         free_rollers,
         bush_turns: links.rollers == RollerModel::Bush,
-        ends: system.ends.clone(),
-        time_scales: [f64::INFINITY; 2],
+        ends: particles.ends.clone(),
+        elongation: particles.elongation(),
         arch: Arch::new(),
     }
 }
 
 /// Rate of the stabilisation \[1/s\]: fast against the swinging of links, slow against contacts.
-fn stabilisation(parts: &Parts) -> f64 {
+fn stabilisation(gravity: Vector, pitch: f64) -> f64 {
     // 30 √(g/p) and not less than 1000/s
-    let swinging = (parts.gravity.norm() / parts.chain.pitch).sqrt();
+    let swinging = (gravity.norm() / pitch).sqrt();
     (30.0 * swinging).max(1e3)
 }
 

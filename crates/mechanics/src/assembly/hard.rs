@@ -1,8 +1,7 @@
-//! Rigid links: laid and settled as particles, then put in their places.
+//! Chains whose links do not stretch: laid with links that hardly do.
 
-use super::Assembled;
-use crate::drive::{Layout, Parts};
-use crate::{AssemblyError, Drive, Joint, RigidLinks, System, linkage};
+use crate::drive::Layout;
+use crate::{Assembled, AssemblyError, Drive};
 
 /// Depth at which the teeth are asked for their stiffness \[m\].
 const PRESSED: f64 = 1e-6;
@@ -15,11 +14,11 @@ const HANGING: f64 = 10.0;
 const MET: f64 = 1e-3;
 
 impl Drive {
-    /// For ideal joints: with links so stiff that they hardly stretch while the chain is laid.
+    /// Lays links so stiff that they hardly stretch.
     ///
     /// Such a chain owes its tension to the teeth alone. What the links are shortened by is found by the secant
     /// method, until the chain without gravity and load carries the pretension.
-    pub(super) fn assemble_rigid(&self) -> Result<Assembled, AssemblyError> {
+    pub(super) fn assemble_hard(&self) -> Result<Assembled, AssemblyError> {
         let teeth = self
             .sprockets
             .iter()
@@ -29,10 +28,7 @@ impl Drive {
             return self.assemble_as_is();
         }
         let mut parts = self.parts().clone();
-        let asked = match &parts.layout {
-            Layout::Route { fit, .. } => fit.pretension,
-            Layout::Points { .. } => 0.0,
-        };
+        let asked = parts.layout.pretension();
         let hard = if asked > 0.0 { HARD } else { HANGING };
         parts.chain.stiffness.fill(hard * teeth);
         let (mut given, mut before) = (asked, None);
@@ -69,32 +65,5 @@ impl Drive {
             residual: 1.0,
             iterations: 20,
         })
-    }
-
-    /// Puts rigid links where the particles are, and settles the joints.
-    pub(super) fn with_links(
-        &self,
-        system: System,
-        parts: &Parts,
-        links: &RigidLinks,
-        q: &[f64],
-        v: &[f64],
-    ) -> Result<(System, Vec<f64>, Vec<f64>), AssemblyError> {
-        let mut converted = linkage::build::convert(system, parts, links, q, v);
-        let (system, q) = (&mut converted.system, &mut converted.q);
-        let still = vec![0.0; q.len()];
-        system.start(0.0, q, &mut still.clone());
-        if self.settle && links.joint != Joint::Ideal {
-            let pretension = match &parts.layout {
-                Layout::Route { fit, .. } => fit.pretension,
-                Layout::Points { .. } => 0.0,
-            };
-            let stiffness = parts.chain.stiffness[0];
-            linkage::settle::settle(system, q, pretension, stiffness)?;
-        }
-        if links.joint == Joint::Ideal {
-            converted.close_in_motion();
-        }
-        Ok((converted.system, converted.q, converted.v))
     }
 }

@@ -1,4 +1,4 @@
-//! Static equilibrium of a linkage by pseudo-transient continuation.
+//! Joints find their places: static equilibrium by pseudo-transient continuation.
 //!
 //! ```text
 //! (M + k K) Δq = k f(q),   k grows as the forces come into balance
@@ -13,10 +13,9 @@
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Moment, SecondOrderSystem, Weights};
 
-use super::{Joining, Linkage, Shapes};
 use crate::energy::Flow;
 use crate::system::{RailSupport, Record, System, WheelRotation, WheelSupport};
-use crate::{AssemblyError, End, Motion};
+use crate::{AssemblyError, Motion};
 
 /// Forces out of balance, relative to the largest joint force, at which a state counts as static.
 const CONVERGED: f64 = 1e-7;
@@ -31,19 +30,29 @@ pub(crate) struct Balance {
     pub(crate) residual: f64,
 }
 
+/// What a chain is to carry, and how stiff it was laid.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tightening {
+    /// Which chain.
+    pub(super) chain: usize,
+    /// Its tension \[N\].
+    pub(super) pretension: f64,
+    /// Stiffness of its links while it was laid \[N/m\].
+    pub(super) stiffness: f64,
+}
+
 /// Settles under pretension, gravity and load.
-pub(crate) fn settle(
+pub(super) fn settle(
     system: &mut System,
     q: &mut [f64],
-    pretension: f64,
-    stiffness: f64,
+    tightenings: &[Tightening],
 ) -> Result<Balance, AssemblyError> {
-    if pretension > 0.0 {
-        tighten(system, q, pretension, stiffness)?;
+    for tightening in tightenings.iter().filter(|t| t.pretension > 0.0) {
+        tighten(system, q, *tightening)?;
     }
-    let mut light = system.at_rest();
+    let typical = tightenings.iter().fold(0.0_f64, |m, t| m.max(t.pretension));
     accept(
-        relax(&mut light, q, pretension),
+        relax(&mut system.at_rest(), q, typical),
         "gravity and load on the joints",
     )
 }
@@ -59,16 +68,19 @@ fn accept(balance: Balance, stage: &'static str) -> Result<Balance, AssemblyErro
     })
 }
 
-/// Makes all links longer or shorter until the chain without gravity and load carries T₀.
+/// Makes all links of a chain longer or shorter until it carries T₀ without gravity and load.
 fn tighten(
     system: &mut System,
     q: &mut [f64],
-    pretension: f64,
-    stiffness: f64,
+    Tightening {
+        chain,
+        pretension,
+        stiffness,
+    }: Tightening,
 ) -> Result<(), AssemblyError> {
     let mut bare = system.at_rest();
-    bare.gravity = Vector::zeros();
-    for wheel in &mut bare.wheels {
+    bare.bodies.gravity = Vector::zeros();
+    for wheel in &mut bare.bodies.wheels {
         if let WheelRotation::Free { drive, load, .. } = &mut wheel.rotation {
             drive.clear();
             load.clear();
@@ -80,7 +92,7 @@ fn tighten(
     for _ in 0..60 {
         let balance = relax(&mut bare, q, pretension);
         accept(balance, "pretension on the joints")?;
-        let missing = pretension - mean_tension(&bare, q);
+        let missing = pretension - mean_tension(&bare, chain, q);
         if missing.abs() < 1e-3 * pretension {
             return Ok(());
         }
@@ -101,9 +113,7 @@ fn tighten(
         let change = next - stretch;
         stretch = next;
         for target in [&mut bare, &mut *system] {
-            if let Some(linkage) = &mut target.linkage {
-                linkage.lengthen(change);
-            }
+            target.chains[chain].chain.lengthen(change);
         }
     }
     Err(AssemblyError::NoEquilibrium {
@@ -113,15 +123,18 @@ fn tighten(
     })
 }
 
-fn mean_tension(system: &System, q: &[f64]) -> f64 {
+fn mean_tension(system: &System, chain: usize, q: &[f64]) -> f64 {
     let mut record = system.new_record();
     let still = vec![0.0; q.len()];
     forces(system, q, &still, &mut record);
-    let Some(linkage) = &system.linkage else {
-        return 0.0;
+    let member = &system.chains[chain];
+    let at = Moment {
+        t: 0.0,
+        q,
+        v: &still,
     };
-    let sum: f64 = linkage.tensions(&record.play).iter().sum();
-    sum / linkage.links as f64
+    let tensions = member.chain.tensions(member.own(at), &record.chains[chain]);
+    tensions.iter().sum::<f64>() / tensions.len() as f64
 }
 
 fn forces(system: &System, q: &[f64], still: &[f64], record: &mut Record) -> Vec<f64> {
@@ -139,21 +152,14 @@ fn forces(system: &System, q: &[f64], still: &[f64], record: &mut Record) -> Vec
 /// Follows the forces at rest until they balance.
 fn relax(system: &mut System, q: &mut [f64], typical: f64) -> Balance {
     let still = vec![0.0; q.len()];
-    let inertias = system.all_inertias();
+    let inertias = system.inertias();
     let mut record = system.new_record();
     let mut a = forces(system, q, &still, &mut record);
-    let (mut worst, mut residual) = system.imbalance(&a, &record, typical);
+    let (mut worst, mut residual) = system.imbalance(q, &a, &record, typical);
     let mut best = (worst, residual, q.to_vec());
-    let scale = system
-        .linkage
-        .as_ref()
-        .map_or(1e-6, |linkage| linkage.stiffest(system, &record.play)[1])
-        .min(1e-4);
-    let longest = match system.linkage.as_ref().map(|linkage| &linkage.joining) {
-        // Beyond 1/α the stabilisation of the hinges would overshoot.
-        Some(Joining::Hinges(hinges)) => 1.0 / hinges.rate,
-        _ => 10.0,
-    };
+    let [squared, _] = system.rates(&record);
+    let scale = (1.0 / squared.sqrt()).min(1e-4);
+    let longest = 10.0;
     let mut reach = 10.0 * scale;
     let mut iterations = 0;
     let mut trial = q.to_vec();
@@ -195,7 +201,7 @@ fn relax(system: &mut System, q: &mut [f64], typical: f64) -> Balance {
         } else {
             (reach * 1.6).min(longest)
         };
-        (worst, residual) = system.imbalance(&a, &record, typical);
+        (worst, residual) = system.imbalance(q, &a, &record, typical);
         if worst < best.0 {
             best = (worst, residual, q.to_vec());
         }
@@ -212,102 +218,65 @@ impl System {
     /// that turn as easily as the chain on them: heavy ones would hold up the iteration.
     fn at_rest(&self) -> Self {
         let mut light = self.clone();
-        let Some(linkage) = &mut light.linkage else {
-            return light;
-        };
-        let link = linkage.bodies[..linkage.links]
-            .iter()
-            .fold(0.0_f64, |m, body| m.max(body.mass));
-        for wheel in &mut light.wheels {
+        let heaviest = light.heaviest();
+        for wheel in &mut light.bodies.wheels {
             if let WheelSupport::Prescribed { x, y } = &mut wheel.support {
                 (*x, *y) = (Motion::Held, Motion::Held);
             }
             if let WheelRotation::Prescribed(motion) = &mut wheel.rotation {
                 *motion = Motion::Held;
             }
-            if let WheelRotation::Free { dof, .. } = wheel.rotation {
-                wheel.inertia = link * wheel.pitch_radius * wheel.pitch_radius;
-                light.border_inertias[dof - linkage.dofs()] = wheel.inertia;
+            if let WheelRotation::Free { .. } = wheel.rotation {
+                wheel.inertia = heaviest * wheel.pitch_radius * wheel.pitch_radius;
             }
         }
-        for rail in &mut light.rails {
+        light.bodies.weigh(self.dofs - self.bodies.first);
+        for rail in &mut light.bodies.rails {
             if let RailSupport::Prescribed { x, y } = &mut rail.support {
                 (*x, *y) = (Motion::Held, Motion::Held);
             }
         }
-        for held in &mut linkage.ends {
-            if let End::Driven { x, y } = &mut held.end {
-                (*x, *y) = (Motion::Held, Motion::Held);
-            }
+        for member in &mut light.chains {
+            member.chain.hold_still();
         }
         light
     }
 
-    /// Masses and moments of inertia in the order of the state.
-    fn all_inertias(&self) -> Vec<f64> {
-        let chain = self.linkage.iter().flat_map(|linkage| &linkage.bodies);
-        chain
-            .flat_map(|body| [body.mass, body.mass, body.inertia])
-            .chain(self.border_inertias.iter().copied())
-            .collect()
+    /// Mass of the heaviest body or roller of a chain \[kg\].
+    fn heaviest(&self) -> f64 {
+        let all = self.chains.iter().map(|member| member.chain.weights()[1]);
+        all.fold(0.0, f64::max)
     }
 
     /// Largest force out of balance \[N\], and relative to the largest force in a joint or on a tooth.
-    fn imbalance(&self, a: &[f64], record: &Record, typical: f64) -> (f64, f64) {
-        let Some(linkage) = &self.linkage else {
-            return (0.0, 0.0);
+    fn imbalance(&self, q: &[f64], a: &[f64], record: &Record, typical: f64) -> (f64, f64) {
+        let still = vec![0.0; q.len()];
+        let at = Moment {
+            t: 0.0,
+            q,
+            v: &still,
         };
-        let lever = 0.5 * linkage.pitch;
         let mut worst = 0.0_f64;
-        for (body, a) in linkage.bodies.iter().zip(a.chunks_exact(3)) {
-            worst = worst
-                .max(body.mass * a[0].hypot(a[1]))
-                .max(body.inertia * a[2].abs() / lever);
+        let mut pressed = 0.0_f64;
+        for (member, record) in self.chains.iter().zip(&record.chains) {
+            worst = worst.max(member.chain.imbalance(&a[member.entries.clone()]));
+            pressed = pressed.max(member.chain.pressed(member.own(at), record));
         }
-        for wheel in &self.wheels {
+        for wheel in &self.bodies.wheels {
             if let WheelRotation::Free { dof, .. } = wheel.rotation {
                 worst = worst.max(wheel.inertia * a[dof].abs() / wheel.pitch_radius);
             }
         }
-        let mut pressed = 0.0_f64;
-        linkage.each_element(&record.play, |element| pressed = pressed.max(element.force));
-        let weight = linkage
-            .bodies
-            .iter()
-            .fold(0.0_f64, |m, body| m.max(body.mass * self.gravity.norm()));
+        let weight = self.heaviest() * self.bodies.gravity.norm();
         let scale = pressed.max(weight).max(1e-3 * typical).max(1e-9);
         (worst, worst / scale)
     }
 
-    /// Share of a step that moves nothing farther than a tenth of the roller's radius.
+    /// Share of a step that moves nothing farther than its chain allows.
     fn within_reach(&self, step: &[f64]) -> f64 {
-        let Some(linkage) = &self.linkage else {
-            return 1.0;
-        };
-        let cap = match &linkage.joining {
-            Joining::Clearance(bearing) => bearing.clearance.max(1e-6),
-            Joining::Hinges(_) => 1e-4,
-        };
-        let lever = 0.5 * linkage.pitch;
-        let mut farthest = 0.0_f64;
-        for step in step[..linkage.dofs()].chunks_exact(3) {
-            farthest = farthest
-                .max(step[0].abs())
-                .max(step[1].abs())
-                .max(step[2].abs() * lever);
-        }
-        (cap / farthest).min(1.0)
-    }
-}
-
-impl Linkage {
-    /// Makes every link longer by `change` \[m\], between its joints.
-    pub(crate) fn lengthen(&mut self, change: f64) {
-        for body in &mut self.bodies[..self.links] {
-            let along = (body.arms[1] - body.arms[0]).normalize();
-            body.arms[0] -= along * (0.5 * change);
-            body.arms[1] += along * (0.5 * change);
-        }
-        self.shapes = Shapes::of(&self.bodies, self.links, self.closed);
+        let members = self.chains.iter();
+        members.fold(1.0, |share, member| {
+            share.min(member.chain.reach(&step[member.entries.clone()]))
+        })
     }
 }

@@ -15,9 +15,9 @@ use nalgebra::{Matrix3, Vector3};
 use super::held::Asked;
 use super::impulses::MOST_WHEELS;
 use super::loose::Loose;
-use super::{Blocks, Element, Impulses, Joining, Linkage, Mount, Partner, Play, cross, turned};
-use crate::System;
-use crate::system::{WheelRotation, WheelSupport};
+use super::{Blocks, Element, Joining, Linkage, Mount, Partner, Play, cross, turned};
+use crate::chains::Record;
+use crate::system::Bodies;
 
 /// A row over the unknowns of the partner.
 #[derive(Clone, Copy)]
@@ -38,8 +38,8 @@ enum Place {
 
 impl Linkage {
     /// Place of a further degree of freedom in the border.
-    pub(crate) fn border(&self, dof: usize) -> usize {
-        dof - self.dofs() + if self.closed { 3 } else { 0 }
+    pub(crate) fn border(&self, bodies: &Bodies, dof: usize) -> usize {
+        dof - bodies.first + if self.closed { 3 } else { 0 }
     }
 
     fn place(&self, body: usize) -> Place {
@@ -52,26 +52,26 @@ impl Linkage {
         }
     }
 
-    /// x ← (M + c C + k K)⁻¹ M x at the state that `play` was left by.
+    /// x ← (M + c C + k K)⁻¹ M x of the chain and, behind it, the bodies, at the state that the record was left by.
     pub(crate) fn solve(
         &self,
-        system: &System,
+        bodies: &Bodies,
         weights: Weights,
-        play: &mut Play,
-        impulses: &mut Impulses,
+        record: &mut Record,
         x: &mut [f64],
     ) -> bool {
-        let few = x.len() - self.dofs() <= MOST_WHEELS;
+        let Record { play, impulses, .. } = record;
+        let few = x.len() - self.coordinates() <= MOST_WHEELS;
         if weights.stiffness <= 0.0 && few && matches!(self.joining, Joining::Clearance(_)) {
-            return self.damp(system, weights.damping, play, impulses, x);
+            return self.damp(bodies, weights.damping, play, impulses, x);
         }
-        self.eliminate(system, weights, play, x, Asked::Kept)
+        self.eliminate(bodies, weights, play, x, Asked::Kept)
     }
 
     /// Velocities v nearest to the given ones, in kinetic energy, with which no hinge opens.
     pub(crate) fn project(
         &self,
-        system: &System,
+        bodies: &Bodies,
         at: Moment<'_>,
         play: &mut Play,
         v: &mut [f64],
@@ -91,7 +91,7 @@ impl Linkage {
         let mut change = vec![0.0; v.len()];
         // Every pass leaves 1e-5 of what was missing.
         let solved =
-            (0..3).all(|_| self.eliminate(system, none, play, &mut change, Asked::Given(&opening)));
+            (0..3).all(|_| self.eliminate(bodies, none, play, &mut change, Asked::Given(&opening)));
         for (v, change) in v.iter_mut().zip(&change) {
             *v += change;
         }
@@ -100,13 +100,13 @@ impl Linkage {
 
     pub(super) fn eliminate(
         &self,
-        system: &System,
+        bodies: &Bodies,
         weights: Weights,
         play: &mut Play,
         x: &mut [f64],
         asked: Asked<'_>,
     ) -> bool {
-        let border = x.len() - self.dofs() + if self.closed { 3 } else { 0 };
+        let border = x.len() - self.coordinates() + if self.closed { 3 } else { 0 };
         let row = self.links - usize::from(self.closed);
         let rollers = self.bodies.len() - self.links;
         let mut blocks = std::mem::take(&mut play.blocks);
@@ -116,9 +116,9 @@ impl Linkage {
         for roller in &mut loose {
             roller.clear();
         }
-        self.add_masses(system, &mut blocks, &mut loose, x);
-        system.each_support(|dof, stiffness, damping| {
-            let j = self.border(dof);
+        self.add_masses(bodies, &mut blocks, &mut loose, x);
+        bodies.each_support(|dof, stiffness, damping| {
+            let j = self.border(bodies, dof);
             blocks.corner[(j, j)] += weights.stiffness * stiffness + weights.damping * damping;
         });
         let mut sum = Sum {
@@ -148,7 +148,7 @@ impl Linkage {
         solved
     }
 
-    fn add_masses(&self, system: &System, blocks: &mut Blocks, loose: &mut [Loose], x: &[f64]) {
+    fn add_masses(&self, bodies: &Bodies, blocks: &mut Blocks, loose: &mut [Loose], x: &[f64]) {
         for (index, body) in self.bodies.iter().enumerate() {
             let mass = Vector3::new(body.mass, body.mass, body.inertia);
             let b = Vector3::new(x[3 * index], x[3 * index + 1], x[3 * index + 2]);
@@ -170,11 +170,14 @@ impl Linkage {
                 }
             }
         }
-        for dof in self.dofs()..x.len() {
-            let inertia = system.border_inertias[dof - self.dofs()];
-            let j = self.border(dof);
-            blocks.corner[(j, j)] = inertia;
-            blocks.right_border[j] = inertia * x[dof];
+        let first = if self.closed { 3 } else { 0 };
+        for (j, (x, &inertia)) in x[self.coordinates()..]
+            .iter()
+            .zip(&bodies.inertias)
+            .enumerate()
+        {
+            blocks.corner[(first + j, first + j)] = inertia;
+            blocks.right_border[first + j] = inertia * x;
         }
     }
 
@@ -198,7 +201,7 @@ impl Linkage {
         }
         let first = if self.closed { 3 } else { 0 };
         for j in first..border {
-            x[self.dofs() + j - first] = blocks.right_border[j];
+            x[self.coordinates() + j - first] = blocks.right_border[j];
         }
     }
 
@@ -206,38 +209,6 @@ impl Linkage {
         match self.place(link) {
             Place::Link(i) => blocks.right[i],
             Place::Corner | Place::Roller(_) => Vector3::from_fn(|k, _| blocks.right_border[k]),
-        }
-    }
-}
-
-impl System {
-    /// Bearings, tensioners and shafts: visits (degree of freedom, stiffness, damping) of what they have of their own.
-    pub(super) fn each_support(&self, mut visit: impl FnMut(usize, f64, f64)) {
-        for wheel in &self.wheels {
-            if let WheelRotation::Free { dof, drive, load } = &wheel.rotation {
-                let drag: f64 = drive.iter().chain(load).map(crate::Torque::drag).sum();
-                visit(*dof, 0.0, drag);
-            }
-            if let WheelSupport::Springs {
-                dof,
-                stiffness,
-                damping,
-            } = &wheel.support
-            {
-                for axis in 0..2 {
-                    visit(dof + axis, stiffness[axis], damping[axis]);
-                }
-            }
-        }
-        for slide in &self.slides {
-            let Some(dof) = slide.dof else { continue };
-            let (_, lever) = slide.carrier.extension(0.0);
-            let squared = lever * lever;
-            visit(
-                dof,
-                slide.push.stiffness() * squared,
-                slide.push.damping() * squared,
-            );
         }
     }
 }

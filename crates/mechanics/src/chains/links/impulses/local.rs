@@ -13,8 +13,8 @@ use nalgebra::Vector3;
 use super::rows::Rows;
 use super::tridiagonal::Tridiagonal;
 use super::{Linkage, Play};
-use crate::linkage::implicit::{Row, partner_row};
-use crate::linkage::{Element, Partner, cross};
+use crate::chains::links::implicit::{Row, partner_row};
+use crate::chains::links::{Element, Partner, cross};
 
 /// One row of J over the chain's bodies, with the partner's sign in it.
 #[derive(Clone, Copy, Debug)]
@@ -85,7 +85,7 @@ impl Local {
         joints: &mut Tridiagonal,
         b: &[f64],
     ) -> bool {
-        let columns = 2 * R + b.len() - linkage.dofs();
+        let columns = 2 * R + b.len() - linkage.coordinates();
         let known = columns;
         self.factors.clear();
         self.around.clear();
@@ -151,7 +151,7 @@ impl Local {
         joints: &Tridiagonal,
         x: &mut [f64],
     ) {
-        let columns = 2 * R + x.len() - linkage.dofs();
+        let columns = 2 * R + x.len() - linkage.coordinates();
         let mut factors = &self.factors[..];
         let mut around = self.around.as_chunks_mut::<C>().0;
         for link in 0..linkage.links {

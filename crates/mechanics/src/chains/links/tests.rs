@@ -7,9 +7,11 @@ use chaindrive_contact::{Dissipation, Elastic, Friction, Law};
 use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 
+use super::Linkage;
+use crate::chains::Chain;
 use crate::energy::Flow;
 use crate::{
-    Adjust, Chain, ChainModel, Clearance, Drive, End, Ends, Fit, Flank, FreeRoller, Joint, Layout,
+    Adjust, ChainModel, Clearance, Drive, End, Ends, Fit, Flank, FreeRoller, Joint, Layout,
     LinkBody, Motion, Parts, Record, RigidLinks, RollerModel, Rotation, Sprocket, Stop, Support,
     Surface, System, Tighten, Torque,
 };
@@ -57,7 +59,7 @@ pub(super) fn bicycle(model: ChainModel) -> Parts {
     };
     let driver = Rotation::Prescribed(Motion::Constant { rate: -9.42 });
     Parts {
-        chain: Chain {
+        chain: crate::Chain {
             pitch,
             lengths: vec![pitch; links],
             stiffness: vec![47.7e6; links],
@@ -182,6 +184,14 @@ fn strand(mut parts: Parts) -> Parts {
     parts
 }
 
+/// The rigid links of a drive that has one chain of them.
+pub(super) fn of(system: &System) -> &Linkage {
+    let Chain::Links(linkage) = &system.chains[0].chain else {
+        panic!("the chain is made of rigid links");
+    };
+    linkage
+}
+
 /// A drive at its start: coordinates and velocities.
 pub(super) fn set_off(parts: Parts) -> (System, Record, Vec<f64>, Vec<f64>) {
     let assembled = Drive::new(parts).unwrap().assemble().unwrap();
@@ -243,8 +253,8 @@ fn pretension_is_met() {
             v: &still,
         };
         system.evaluate(at, &mut a, &mut rates, &mut record);
-        let linkage = system.linkage.as_ref().unwrap();
-        let sum: f64 = linkage.tensions(&record.play).iter().sum();
+        let linkage = of(&system);
+        let sum: f64 = linkage.tensions(at, &record.chains[0]).iter().sum();
         let mean = sum / linkage.links as f64;
         assert!(
             (mean / 60.0 - 1.0).abs() < 2e-3,
@@ -271,7 +281,7 @@ fn lanes_and_scalar_contacts_agree() {
     // Shaking the rollers brings them onto the flanks.
     for shake in 0..40_u32 {
         let mut q = assembled.q.clone();
-        for (i, x) in q[..2 * system.stride].iter_mut().enumerate() {
+        for (i, x) in q[..system.bodies.first].iter_mut().enumerate() {
             *x += 2e-5 * f64::from(shake) * (f64::from(shake) + i as f64 % 104.0).sin();
         }
         let mut record = system.new_record();
@@ -283,12 +293,19 @@ fn lanes_and_scalar_contacts_agree() {
             v: &still,
         };
         system.evaluate(at, &mut a, &mut rates, &mut record);
-        for (wheel, touch) in system.wheels.iter().zip(&record.teeth) {
-            let (frame, _, _) = system.wheel_frame(wheel, at);
-            let (law, flank) = (&wheel.contacts.surface.law, wheel.contacts.flank.unwrap());
-            wheel.contacts.for_each_slot(|slot, roller| {
-                let place = Point::new(q[roller], q[system.stride + roller]);
-                let [Some(probe), _] = wheel.contacts.faces(&frame, slot, place) else {
+        let member = &system.chains[0];
+        for (on, touch) in member
+            .contacts
+            .teeth
+            .iter()
+            .zip(&record.chains[0].loads.teeth)
+        {
+            let frame = system.bodies.wheel_frame(on.wheel, &on.anchor, at);
+            let contacts = &on.contacts;
+            let (law, flank) = (&contacts.surface.law, contacts.flank.unwrap());
+            contacts.for_each_slot(|slot, roller| {
+                let place = member.chain.roller_moving(&q, roller).place;
+                let [Some(probe), _] = contacts.faces(&frame, slot, place) else {
                     return;
                 };
                 // The wheel turns under rollers at rest: only the elastic part is compared.
@@ -334,10 +351,10 @@ fn lanes_of_any_width_agree() {
     for shake in 0..40_u32 {
         let mut q = assembled.q.clone();
         let mut v = assembled.v.clone();
-        for (i, x) in q[..2 * system.stride].iter_mut().enumerate() {
+        for (i, x) in q[..system.bodies.first].iter_mut().enumerate() {
             *x += 2e-5 * f64::from(shake) * (f64::from(shake) + i as f64 % 104.0).sin();
         }
-        for (i, v) in v[..2 * system.stride].iter_mut().enumerate() {
+        for (i, v) in v[..system.bodies.first].iter_mut().enumerate() {
             *v += 0.1 * (f64::from(3 * shake) + i as f64 % 104.0).cos();
         }
         let at = Moment {

@@ -4,7 +4,7 @@ use chaindrive_geometry::{Point, Vector};
 use nalgebra::Vector3;
 
 use super::{Joining, Linkage, Partner, Play, cross, turned};
-use crate::System;
+use crate::chains::{Record, Surroundings};
 use crate::contact::{PlatePins, PlatePlaces};
 
 /// Shares of a contact between chain and wheel: 1 + ε and 1 + 1/ε with ε = 0.1.
@@ -14,16 +14,17 @@ const RIM_SHARE: f64 = 11.0;
 const SHALLOW: f64 = 1e-7;
 
 impl Linkage {
-    /// 1/ω of the stiffest mode \[s\], with its damping and without.
+    /// ω² and damping rate D of the stiffest mode.
     ///
     /// ```text
     /// k (a − b)² ≤ 2 k (a² + b²)   ⇒   ω² ≤ max over bodies of λ(S),   S = M^(−½) Σ 2 (k Jₙᵀ Jₙ + F/|e| J_tᵀ J_t) M^(−½)
-    /// D alike with the damping,    1/ω = 1/(D + √(D² + ω²))
+    /// D alike with the damping
     /// ```
     ///
     /// λ is the largest eigenvalue of a three-by-three matrix. Against a wheel the contact is shared unevenly:
     /// 1.1 for the chain, 11 for the wheel, and 1 where the wheel does not answer. Friction counts as damping.
-    pub(crate) fn stiffest(&self, system: &System, play: &Play) -> [f64; 2] {
+    pub(crate) fn rates(&self, around: Surroundings<'_>, record: &Record) -> [f64; 2] {
+        let play = &record.play;
         let mut sums = vec![[Packed::default(); 2]; self.bodies.len()];
         self.add_joints(play, &mut sums);
         for element in &play.elements {
@@ -59,31 +60,25 @@ impl Linkage {
             [k.max(largest(&sum[0])), d.max(largest(&sum[1]))]
         });
         squared = squared.max(self.resting());
-        for (wheel, wrench) in system.wheels.iter().zip(&play.wheel_rates(system)) {
-            squared = squared.max(RIM_SHARE * wrench[0]);
-            damping = damping.max(RIM_SHARE * wrench[1]);
-            let [own, drag] = wheel.own_rates();
-            squared = squared.max(own);
-            damping = damping.max(drag);
+        for [rim, drag] in play.wheel_rates(around) {
+            squared = squared.max(RIM_SHARE * rim);
+            damping = damping.max(RIM_SHARE * drag);
         }
-        for slide in &system.slides {
-            let (_, lever) = slide.carrier.extension(0.0);
-            let light = lever * lever / slide.inertia;
-            squared = squared.max(slide.push.stiffness() * light);
-            damping = damping.max(slide.push.damping() * light);
-        }
-        let mut frequency = 0.0;
         if let Joining::Hinges(hinges) = &self.joining {
             damping = damping.max(hinges.rate);
             squared = squared.max(self.pulled(play));
-            // The stabilisation is a damper and a spring of rate α, explicit in every method:
-            // symplectic Euler takes steps up to 0.83/α with it, and this is 0.41/α.
-            frequency = (1.0 + std::f64::consts::SQRT_2) * hinges.rate;
         }
-        [
-            1.0 / (damping + (damping * damping + squared).sqrt()),
-            1.0 / squared.sqrt().max(frequency),
-        ]
+        [squared, damping]
+    }
+
+    /// Frequency \[1/s\] of the stabilisation of ideal joints, which every method takes explicitly.
+    ///
+    /// It is a damper and a spring of rate α: symplectic Euler takes steps up to 0.83/α with it, and this is 0.41/α.
+    pub(crate) fn stabilisation(&self) -> f64 {
+        match &self.joining {
+            Joining::Hinges(hinges) => (1.0 + std::f64::consts::SQRT_2) * hinges.rate,
+            Joining::Clearance(_) => 0.0,
+        }
     }
 
     /// ω² of links that swing to and fro between ideal joints under tension: what limits the step of a strand that
@@ -95,7 +90,7 @@ impl Linkage {
     fn pulled(&self, play: &Play) -> f64 {
         let force = |joint: usize| {
             let force = play.hinge_forces.get(joint % self.joints.len());
-            force.map_or(0.0, |force| force.norm())
+            force.map_or(0.0, Vector::norm)
         };
         let links = self.bodies[..self.links].iter().enumerate();
         links
@@ -215,18 +210,19 @@ fn largest(matrix: &Packed) -> f64 {
 
 impl Play {
     /// Sums of stiffness and damping at the rims, times the mobility of the wheels.
-    fn wheel_rates(&self, system: &System) -> Vec<[f64; 2]> {
-        let mut sums = vec![[0.0; 2]; system.wheels.len()];
+    fn wheel_rates(&self, around: Surroundings<'_>) -> Vec<[f64; 2]> {
+        let Surroundings { bodies, contacts } = around;
+        let mut sums = vec![[0.0; 2]; contacts.teeth.len()];
         for element in &self.elements {
             if let Partner::Mount(mount) = element.b
-                && mount < system.wheels.len()
+                && mount < sums.len()
             {
                 sums[mount][0] += element.stiffness;
                 sums[mount][1] += element.damping + element.drag;
             }
         }
-        for (sum, wheel) in sums.iter_mut().zip(&system.wheels) {
-            let mobility = wheel.mobility(&system.slides);
+        for (sum, on) in sums.iter_mut().zip(&contacts.teeth) {
+            let mobility = bodies.wheels[on.wheel].mobility(&bodies.slides);
             sum[0] *= mobility;
             sum[1] *= mobility;
         }

@@ -4,8 +4,8 @@ use chaindrive_geometry::{Point, Vector};
 use pulp::Simd;
 
 use crate::Chain;
+use crate::chains::Rollers;
 use crate::lanes::{LANES, Wide, padded};
-use crate::system::Rollers;
 
 /// The links in flat arrays, padded to whole lanes with links of no stiffness.
 #[derive(Clone, Debug)]

@@ -5,19 +5,6 @@ use chaindrive_geometry::Vector;
 use crate::DriveError;
 use crate::drive::Surface;
 
-/// What the chain is made of: model only what a scene needs.
-#[derive(Clone, Debug, PartialEq)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "a drive holds one, and a box would show in every scene"
-)]
-pub enum ChainModel {
-    /// Point masses at the rollers, joined by spring-damper links: two coordinates a link.
-    Particles,
-    /// Rigid links with joints: three coordinates a link, three more for every free roller.
-    Rigid(RigidLinks),
-}
-
 /// Rigid inner and outer links in turn.
 ///
 /// Inner links carry the bushes, outer links the pins. The roller distance over an inner link is
@@ -199,6 +186,12 @@ impl RigidLinks {
                 roller.inertia,
                 "positive [kg m²]",
             );
+        }
+        if let Joint::Clearance(joint) = &self.joint {
+            problems.extend(joint.surface.problems("chain.joint"));
+        }
+        if let RollerModel::Free(roller) = &self.rollers {
+            problems.extend(roller.surface.problems("chain.roller"));
         }
         problems
     }

@@ -6,66 +6,58 @@ use chaindrive_integrate::Moment;
 use pulp::{Simd, WithSimd};
 
 use super::{Element, Linkage, Mount, Part, Partner, Play, Tally, turned};
-use crate::contact::{Contacts, Frame, PlateTouch, Touch, Wrench};
+use crate::chains::{Loads, Rollers, Surroundings};
+use crate::contact::{Contacts, Frame, Touch, Wrench};
 use crate::energy::Flow;
 use crate::lanes::{Wide, dispatch};
-use crate::system::{
-    RailContact, RailSupport, Rollers, System, Wheel, WheelRotation, WheelSupport,
-};
+use crate::system::{Bodies, RailContact, RailSupport, Wheel, WheelRotation, WheelSupport};
 use crate::{Carrier, Flank};
 
-/// What wheels and rails feel, and how they are touched.
-pub(crate) struct Felt<'a> {
-    pub(crate) teeth: &'a mut [Box<Touch>],
-    pub(crate) circles: &'a mut [Box<Touch>],
-    pub(crate) plates: &'a mut [Vec<PlateTouch>],
-    pub(crate) wheel_wrenches: &'a mut [Wrench],
-    pub(crate) rail_wrenches: &'a mut [Wrench],
-}
-
-impl System {
-    /// Contacts of a linkage with wheels and rails.
-    pub(crate) fn mesh(
+impl Linkage {
+    /// Contacts with wheels and rails.
+    pub(super) fn mesh(
         &self,
-        linkage: &Linkage,
+        around: Surroundings<'_>,
         at: Moment<'_>,
         rates: &mut [f64],
-        felt: &mut Felt<'_>,
+        loads: &mut Loads,
         play: &mut Play,
     ) {
+        let Surroundings { bodies, contacts } = around;
         play.mounts.clear();
-        for (i, wheel) in self.wheels.iter().enumerate() {
-            let (frame, _, _) = self.wheel_frame(wheel, at);
-            play.mounts.push(self.wheel_mount(linkage, wheel, &frame));
-            let touch = &mut felt.teeth[i];
-            let wrench = linkage.roll(&wheel.contacts, &frame, i, at, touch, play);
+        for (i, on) in contacts.teeth.iter().enumerate() {
+            let frame = loads.frames[i];
+            let mount = self.wheel_mount(bodies, &bodies.wheels[on.wheel], &frame);
+            play.mounts.push(mount);
+            let touch = &mut loads.teeth[i];
+            let wrench = self.roll(&on.contacts, &frame, i, at, touch, play);
             rates[Flow::ToothLoss as usize] += wrench.normal_loss;
             rates[Flow::FrictionLoss as usize] += wrench.friction_loss;
-            felt.wheel_wrenches[i] = wrench;
+            loads.wheel_wrenches[i] = wrench;
         }
-        for (i, rail) in self.rails.iter().enumerate() {
-            let frame = rail.frame(at.t, at.q, at.v, &self.slides);
-            let mount = self.rail_mount(linkage, &rail.support);
+        for (i, on) in contacts.rails.iter().enumerate() {
+            let number = contacts.teeth.len() + i;
+            let frame = loads.frames[number];
+            let mount = self.rail_mount(bodies, &bodies.rails[on.rail].support);
             play.mounts.push(mount);
-            let number = self.wheels.len() + i;
-            let wrench = match &rail.contact {
+            let wrench = match &on.contact {
                 RailContact::Circles(contacts) => {
-                    let touch = &mut felt.circles[i];
-                    linkage.roll(contacts, &frame, number, at, touch, play)
+                    let touch = &mut loads.circles[i];
+                    self.roll(contacts, &frame, number, at, touch, play)
                 }
                 RailContact::Plates(plates) => {
                     let mut pins = super::rates::LinkPins(play);
-                    plates.act(at.t, &frame, &mut pins, linkage.links, &mut felt.plates[i])
+                    plates.act(at.t, &frame, &mut pins, self.links, &mut loads.plates[i])
                 }
             };
             rates[Flow::GuideLoss as usize] += wrench.normal_loss;
             rates[Flow::FrictionLoss as usize] += wrench.friction_loss;
-            felt.rail_wrenches[i] = wrench;
+            loads.rail_wrenches[i] = wrench;
         }
     }
 
-    fn wheel_mount(&self, linkage: &Linkage, wheel: &Wheel, frame: &Frame) -> Mount {
-        let border = |dof: usize| linkage.border(dof);
+    fn wheel_mount(&self, bodies: &Bodies, wheel: &Wheel, frame: &Frame) -> Mount {
+        let border = |dof: usize| self.border(bodies, dof);
         let turn = match wheel.rotation {
             WheelRotation::Free { dof, .. } => Some(border(dof)),
             WheelRotation::Prescribed(_) => None,
@@ -77,7 +69,7 @@ impl System {
                 Some((border(dof + 1), Vector::y())),
             ],
             WheelSupport::Carried(index) => {
-                let slide = &self.slides[*index];
+                let slide = &bodies.slides[*index];
                 let shift = match &slide.carrier {
                     Carrier::Slider { direction } => *direction,
                     Carrier::Arm { pivot, .. } => turned(frame.origin - pivot),
@@ -88,20 +80,20 @@ impl System {
         Mount { shifts, turn }
     }
 
-    fn rail_mount(&self, linkage: &Linkage, support: &RailSupport) -> Mount {
+    fn rail_mount(&self, bodies: &Bodies, support: &RailSupport) -> Mount {
         let mut mount = Mount {
             shifts: [None; 2],
             turn: None,
         };
         if let RailSupport::Carried(index) = support {
-            let slide = &self.slides[*index];
+            let slide = &bodies.slides[*index];
             if let Some(dof) = slide.dof {
                 match &slide.carrier {
                     Carrier::Slider { direction } => {
-                        mount.shifts[0] = Some((linkage.border(dof), *direction));
+                        mount.shifts[0] = Some((self.border(bodies, dof), *direction));
                     }
                     // The frame of a rail on an arm has the pivot as its origin.
-                    Carrier::Arm { .. } => mount.turn = Some(linkage.border(dof)),
+                    Carrier::Arm { .. } => mount.turn = Some(self.border(bodies, dof)),
                 }
             }
         }
@@ -393,7 +385,7 @@ fn pivot(d: Vector, normal: Vector, bend: f64) -> Vector {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linkage::tests::{kinds, set_off};
+    use crate::chains::links::tests::{kinds, of, set_off};
 
     /// Without friction both ways must find the same contacts.
     #[test]
@@ -403,19 +395,19 @@ mod tests {
             .filter(|(kind, _)| kind.ends_with("rollers, smooth"))
         {
             let (system, mut record, q, v) = set_off(parts);
-            let linkage = system.linkage.as_ref().unwrap();
+            let linkage = of(&system);
             let at = Moment {
                 t: 0.0,
                 q: &q,
                 v: &v,
             };
-            let mut play = record.play.clone();
-            for (i, wheel) in system.wheels.iter().enumerate() {
-                let (frame, _, _) = system.wheel_frame(wheel, at);
+            let mut play = record.chains[0].play.clone();
+            for (i, on) in system.chains[0].contacts.teeth.iter().enumerate() {
+                let frame = system.bodies.wheel_frame(on.wheel, &on.anchor, at);
                 let mut found = |freely: bool| {
                     play.elements.clear();
-                    let touch = &mut record.teeth[i];
-                    let contacts = &wheel.contacts;
+                    let touch = &mut record.chains[0].loads.teeth[i];
+                    let contacts = &on.contacts;
                     let wrench = if freely {
                         linkage.roll_freely(contacts, &frame, i, at, touch, &mut play)
                     } else {

@@ -19,8 +19,8 @@ mod tridiagonal;
 use pulp::{Simd, WithSimd};
 
 use super::{Bearing, Joining, Linkage, Play};
-use crate::System;
 use crate::lanes::{Wide, dispatch};
+use crate::system::Bodies;
 use local::Local;
 use rows::Rows;
 use tridiagonal::{Place, Tridiagonal};
@@ -43,7 +43,7 @@ impl Linkage {
     /// x ← (M + c C)⁻¹ M x; false if a pivot vanishes.
     pub(crate) fn damp(
         &self,
-        system: &System,
+        bodies: &Bodies,
         c: f64,
         play: &Play,
         work: &mut Impulses,
@@ -52,11 +52,11 @@ impl Linkage {
         let Joining::Clearance(bearing) = &self.joining else {
             return false;
         };
-        let wheels = x.len() - self.dofs();
+        let wheels = x.len() - self.coordinates();
         let step = Step {
             linkage: self,
             bearing,
-            system,
+            bodies,
             c,
             play,
         };
@@ -76,7 +76,7 @@ impl Linkage {
 struct Step<'a> {
     linkage: &'a Linkage,
     bearing: &'a Bearing,
-    system: &'a System,
+    bodies: &'a Bodies,
     c: f64,
     play: &'a Play,
 }
@@ -104,11 +104,11 @@ impl Impulses {
         let Step {
             linkage,
             bearing,
-            system,
+            bodies,
             c,
             play,
         } = step;
-        let wheels = x.len() - linkage.dofs();
+        let wheels = x.len() - linkage.coordinates();
         self.rows[0].set_normals(w, play, c);
         if R == 2 {
             self.rows[1].set_tangents(linkage, bearing, play, c);
@@ -116,7 +116,7 @@ impl Impulses {
         self.joints.clear::<R, C>(linkage, wheels);
         self.know(linkage, x);
         self.fill::<S, R, C>(w, linkage);
-        self.fill_wheels::<R, C>(linkage, system, c, x);
+        self.fill_wheels::<R, C>(linkage, bodies, c, x);
         self.local.gather(linkage, c, play);
         let condensed = self
             .local
@@ -127,7 +127,7 @@ impl Impulses {
         self.joints.substitute::<R, C>(linkage);
         self.apply::<S, R>(w, linkage, x);
         self.local.apply::<R, C>(linkage, &self.joints, x);
-        x[linkage.dofs()..].copy_from_slice(self.joints.wheels(wheels));
+        x[linkage.coordinates()..].copy_from_slice(self.joints.wheels(wheels));
         true
     }
 
@@ -201,19 +201,19 @@ impl Impulses {
     fn fill_wheels<const R: usize, const C: usize>(
         &mut self,
         linkage: &Linkage,
-        system: &System,
+        bodies: &Bodies,
         c: f64,
         b: &[f64],
     ) {
         let first = if linkage.closed { R } else { 0 };
-        for (j, &inertia) in system.border_inertias.iter().enumerate() {
+        for (j, &inertia) in bodies.inertias.iter().enumerate() {
             let place = Place::Border(first + j);
             self.joints.add::<R, C>(place, place, -inertia);
             self.joints
-                .add_right::<R, C>(place, -inertia * b[linkage.dofs() + j]);
+                .add_right::<R, C>(place, -inertia * b[linkage.coordinates() + j]);
         }
-        system.each_support(|dof, _, damping| {
-            let place = Place::Border(first + dof - linkage.dofs());
+        bodies.each_support(|dof, _, damping| {
+            let place = Place::Border(first + dof - bodies.first);
             self.joints.add::<R, C>(place, place, -c * damping);
         });
     }
@@ -275,19 +275,25 @@ mod tests {
     use chaindrive_integrate::Weights;
 
     use super::{Impulses, Joining, Step};
-    use crate::linkage::held::Asked;
-    use crate::linkage::tests::{kinds, started};
+    use crate::chains::links::held::Asked;
+    use crate::chains::links::tests::{kinds, of, started};
 
     /// The bodies' own equations, block by block, give the same answer: two independent eliminations.
     #[test]
     fn agrees_with_the_equations_of_the_bodies() {
         for (kind, parts) in kinds() {
             let (system, mut record, b) = started(parts);
-            let linkage = system.linkage.as_ref().unwrap();
+            let linkage = of(&system);
             let c = 2e-6;
             let mut impulses = b.clone();
             let mut work = Impulses::default();
-            assert!(linkage.damp(&system, c, &record.play, &mut work, &mut impulses));
+            assert!(linkage.damp(
+                &system.bodies,
+                c,
+                &record.chains[0].play,
+                &mut work,
+                &mut impulses
+            ));
             // With room for more rows and wheels than there are.
             let Joining::Clearance(bearing) = &linkage.joining else {
                 panic!("{kind}");
@@ -295,9 +301,9 @@ mod tests {
             let step = Step {
                 linkage,
                 bearing,
-                system: &system,
+                bodies: &system.bodies,
                 c,
-                play: &record.play,
+                play: &record.chains[0].play,
             };
             let mut roomy = b.clone();
             assert!(work.solve::<2, 24>(step, &mut roomy));
@@ -307,9 +313,9 @@ mod tests {
                 stiffness: 0.0,
             };
             assert!(linkage.eliminate(
-                &system,
+                &system.bodies,
                 weights,
-                &mut record.play,
+                &mut record.chains[0].play,
                 &mut blocks,
                 Asked::Kept
             ));

@@ -4,9 +4,9 @@
 
 use pulp::Simd;
 
+use crate::chains::links::element::turned;
+use crate::chains::links::{Bearing, Linkage, Play};
 use crate::lanes::{Lane, Wide};
-use crate::linkage::element::turned;
-use crate::linkage::{Bearing, Linkage, Play};
 
 /// One row a joint, whole lanes; all zero where there is no contact.
 ///

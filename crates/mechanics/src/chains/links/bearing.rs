@@ -200,7 +200,8 @@ impl Bearing {
 }
 
 impl Bearing {
-    fn at_rest(&self, depth: f64) -> Response {
+    /// Answer of a contact that neither closes nor opens.
+    pub(super) fn at_rest(&self, depth: f64) -> Response {
         self.law.respond(Approach {
             penetration: depth,
             rate: 0.0,

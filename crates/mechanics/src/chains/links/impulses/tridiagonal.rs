@@ -2,8 +2,8 @@
 
 use std::cmp::Ordering;
 
+use crate::chains::links::Linkage;
 use crate::lanes::{LANES, padded};
-use crate::linkage::Linkage;
 
 /// Where an unknown stands.
 #[derive(Clone, Copy, Debug)]

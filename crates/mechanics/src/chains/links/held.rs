@@ -105,7 +105,7 @@ impl Sum<'_> {
             if j < first {
                 b[3 * (links - 1) + j]
             } else {
-                b[self.linkage.dofs() + j - first]
+                b[self.linkage.coordinates() + j - first]
             }
         });
         for index in 0..self.loose.len() {

@@ -47,9 +47,9 @@ struct Work {
 
 fn read(id: &str) -> Value {
     let text = match id {
-        "S01" => include_str!("../../../../tests/validation/S01/reference.json"),
-        "S02" => include_str!("../../../../tests/validation/S02/reference.json"),
-        "S05" => include_str!("../../../../tests/validation/S05/reference.json"),
+        "S01" => include_str!("../../../../../tests/validation/S01/reference.json"),
+        "S02" => include_str!("../../../../../tests/validation/S02/reference.json"),
+        "S05" => include_str!("../../../../../tests/validation/S05/reference.json"),
         other => panic!("no case {other}"),
     };
     serde_json::from_str(text).unwrap()

@@ -468,15 +468,15 @@ mod tests {
     use pulp::Scalar128b;
 
     use super::*;
-    use crate::linkage::Joining;
-    use crate::linkage::tests::{kinds, set_off};
+    use crate::chains::links::Joining;
+    use crate::chains::links::tests::{kinds, of, set_off};
 
     /// Lanes of any width against one joint at a time, as free rollers and their bushes are looked at.
     #[test]
     fn all_at_once_is_as_one_by_one() {
         for (kind, parts) in kinds() {
             let (system, record, q, v) = set_off(parts);
-            let linkage = system.linkage.as_ref().unwrap();
+            let linkage = of(&system);
             let Joining::Clearance(bearing) = &linkage.joining else {
                 panic!("{kind}");
             };
@@ -485,7 +485,7 @@ mod tests {
                 q: &q,
                 v: &v,
             };
-            let posture = &record.play.posture;
+            let posture = &record.chains[0].play.posture;
             let widths: [fn(Contacts<'_>) -> Tally; 3] = [
                 |contacts| contacts.act(Wide(pulp::Scalar)),
                 |contacts| contacts.act(Wide(Scalar128b)),

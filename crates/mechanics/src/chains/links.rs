@@ -8,6 +8,8 @@
 //! hole; ideal joints are held by the forces that keep their ends together. What wheels and guides
 //! touch is the circle that runs on the teeth, as for the particle chain.
 
+mod answers;
+mod balance;
 mod bearing;
 mod blocks;
 pub(crate) mod build;
@@ -18,11 +20,11 @@ mod implicit;
 mod impulses;
 mod loose;
 mod meshing;
+pub(crate) mod model;
 mod observe;
 mod pins;
 mod posture;
 pub(crate) mod rates;
-pub(crate) mod settle;
 #[cfg(test)]
 mod slider_crank;
 #[cfg(test)]
@@ -38,14 +40,14 @@ pub(crate) use blocks::Blocks;
 pub(crate) use element::{Element, Mount, Partner, cross, turned};
 pub(crate) use hinge::Hinges;
 pub(crate) use impulses::Impulses;
-pub(crate) use meshing::Felt;
 pub(crate) use pins::{Pairs, PinMemory, Pins};
 pub(crate) use posture::{Posture, Shapes, free_part};
 
+use super::{Record, Surroundings};
 use crate::End;
 use crate::energy::Flow;
 use crate::lanes::dispatch;
-use crate::system::{HeldEnd, Record, System};
+use crate::system::HeldEnd;
 
 /// A body of the chain: a link, or a free roller.
 #[derive(Clone, Copy, Debug)]
@@ -111,10 +113,10 @@ pub(crate) struct Linkage {
     /// Whether what runs on the teeth turns with its link: a bush.
     pub(crate) bush_turns: bool,
     pub(crate) ends: Vec<HeldEnd>,
+    /// Length without load, in nominal pitches a link.
+    pub(crate) elongation: f64,
     /// What the joints remember of the last accepted state.
     pub(crate) memory: Memory,
-    /// 1/ω of the stiffest mode, damping included and left out \[s\].
-    pub(crate) time_scales: [f64; 2],
     pub(crate) arch: Arch,
 }
 
@@ -149,31 +151,24 @@ pub(crate) struct Play {
 }
 
 impl Linkage {
-    /// Coordinates of the chain.
-    pub(crate) fn dofs(&self) -> usize {
-        3 * self.bodies.len()
-    }
-
     /// Accelerations of the chain's bodies, and what wheels and rails feel.
     pub(crate) fn evaluate(
         &self,
-        system: &System,
+        around: Surroundings<'_>,
         at: Moment<'_>,
         a: &mut [f64],
         rates: &mut [f64],
         record: &mut Record,
     ) {
-        rates.fill(0.0);
-        a[self.dofs()..].fill(0.0);
-        let (play, mut felt) = record.split();
-        self.pose(at, &mut play.posture);
+        let Record { play, loads, .. } = record;
+        self.pose_links(at, &mut play.posture);
         play.elements.clear();
         play.memory.time = at.t;
         play.tally = self.joint_forces(at, rates, play);
-        self.body_forces(system.gravity, play);
+        self.body_forces(around.bodies.gravity, play);
         self.roller_forces(at, rates, play);
         self.end_loads(rates, play);
-        system.mesh(self, at, rates, &mut felt, play);
+        self.mesh(around, at, rates, loads, play);
         if let Joining::Hinges(hinges) = &self.joining {
             hinges.hold(self, at, rates, play);
         }
@@ -328,7 +323,8 @@ impl Linkage {
     }
 
     /// Tension of all links \[N\]: half of what stretches them from both ends, joints, teeth and given loads together.
-    pub(crate) fn tensions(&self, play: &Play) -> Vec<f64> {
+    pub(crate) fn tensions(&self, _at: Moment<'_>, record: &Record) -> Vec<f64> {
+        let play = &record.play;
         let mut stretch = vec![[Vector::zeros(); 2]; self.links];
         let mut load = |body: Option<usize>, joint: usize, force: Vector| {
             // Rollers have no ends.

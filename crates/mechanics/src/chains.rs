@@ -1,0 +1,399 @@
+//! Chains as a family: this table of contents, and one folder a member.
+//!
+//! A chain owns its part of the state and answers every question about it: how many coordinates there are and what they are
+//! called, where its rollers and plates are, what a force on a roller does, what it stores and loses, how stiff it is, how it is
+//! laid. Coordinates are counted from the chain's own first one, and states come as the chain's own part. A chain may look at the
+//! bodies that it touches, never at the system. Nobody outside this folder asks which member it is.
+
+mod balance;
+pub(crate) mod links;
+mod model;
+pub(crate) mod particles;
+mod record;
+mod rollers;
+
+use std::ops::Range;
+
+use chaindrive_geometry::{Point, Vector};
+use chaindrive_integrate::{Moment, Weights};
+
+pub(crate) use balance::{Balance, Load, Moving, Sum, Unknown, Way};
+use links::Linkage;
+pub use model::ChainModel;
+use particles::Particles;
+pub(crate) use record::{Loads, Record};
+pub(crate) use rollers::Rollers;
+
+use crate::contact::{Frame, PlateContact};
+use crate::energy::Energy;
+use crate::observe::Observation;
+use crate::system::{Bodies, BodyContacts, HeldEnd};
+use crate::{End, Ends};
+
+/// A chain ready to move.
+#[derive(Clone, Debug)]
+pub(crate) enum Chain {
+    /// Point masses at the rollers.
+    Particles(Box<Particles>),
+    /// Rigid links.
+    Links(Box<Linkage>),
+}
+
+/// What a chain is evaluated among.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Surroundings<'a> {
+    /// All bodies of the drive.
+    pub(crate) bodies: &'a Bodies,
+    /// The chain's contacts with them.
+    pub(crate) contacts: &'a BodyContacts,
+}
+
+/// How a chain was laid.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LaidAs<'a> {
+    pub(crate) chain: &'a crate::Chain,
+    /// Tension that it was laid with \[N\].
+    pub(crate) pretension: f64,
+    /// Whether it runs around sprockets.
+    pub(crate) on_route: bool,
+    pub(crate) gravity: Vector,
+}
+
+/// Where the rollers are and how they move, ghosts behind the last one included.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pose<'a> {
+    pub(crate) x: &'a [f64],
+    pub(crate) y: &'a [f64],
+    pub(crate) vx: &'a [f64],
+    pub(crate) vy: &'a [f64],
+}
+
+/// Asks the member, whichever it is.
+macro_rules! ask {
+    ($chain:expr, $member:ident => $answer:expr) => {
+        match $chain {
+            Chain::Particles($member) => $answer,
+            Chain::Links($member) => $answer,
+        }
+    };
+}
+
+/// How it comes to be.
+impl Chain {
+    /// Every chain is laid and settled as particles first; returns its coordinates too.
+    pub(crate) fn laid(chain: &crate::Chain, places: &[Point]) -> (Self, Vec<f64>) {
+        let (particles, q) = Particles::lay(chain, places);
+        (Self::Particles(Box::new(particles)), q)
+    }
+
+    /// What a chain is made of, in the place of the particles that it was laid as; `at` is the whole state, with the particles at
+    /// `entries`. None where it is made of particles.
+    pub(crate) fn put_in_place(
+        &self,
+        entries: Range<usize>,
+        bodies: &Bodies,
+        laid: &LaidAs<'_>,
+        at: Moment<'_>,
+    ) -> Option<(Self, [Vec<f64>; 2])> {
+        let (Self::Particles(particles), ChainModel::Rigid(links)) = (self, &laid.chain.model)
+        else {
+            return None;
+        };
+        let replacement = links::build::replace(particles, entries, bodies, laid, links, at);
+        let chain = Self::Links(Box::new(replacement.linkage));
+        Some((chain, [replacement.q, replacement.v]))
+    }
+
+    /// Brings velocities of the chain and, behind it, the bodies to where no joint opens.
+    pub(crate) fn close_in_motion(&self, bodies: &Bodies, q: &[f64], v: &mut [f64]) {
+        match self {
+            Self::Particles(_) => {}
+            Self::Links(chain) => chain.close_in_motion(bodies, q, v),
+        }
+    }
+
+    /// Gives rollers at these places these velocities.
+    pub(crate) fn set_off(&self, places: &[Point], velocities: &[Vector], v: &mut [f64]) {
+        ask!(self, chain => chain.set_off(places, velocities, v));
+    }
+}
+
+/// What it is made of.
+impl Chain {
+    /// Number of coordinates.
+    pub(crate) fn coordinates(&self) -> usize {
+        ask!(self, chain => chain.coordinates())
+    }
+
+    /// Number of coordinates that can move.
+    pub(crate) fn free_coordinates(&self) -> usize {
+        ask!(self, chain => chain.free_coordinates())
+    }
+
+    /// What a coordinate is, in words.
+    pub(crate) fn name(&self, coordinate: usize) -> String {
+        ask!(self, chain => chain.name(coordinate))
+    }
+
+    /// Mass or inertia that goes with every coordinate \[kg or kg m²\].
+    pub(crate) fn inertias(&self) -> Vec<f64> {
+        ask!(self, chain => chain.inertias())
+    }
+
+    pub(crate) fn rollers(&self) -> usize {
+        ask!(self, chain => chain.rollers())
+    }
+
+    pub(crate) fn links(&self) -> usize {
+        ask!(self, chain => chain.links())
+    }
+
+    /// Joints that have a state of their own: none where links are springs.
+    pub(crate) fn joints(&self) -> usize {
+        match self {
+            Self::Particles(_) => 0,
+            Self::Links(chain) => chain.joints(),
+        }
+    }
+
+    /// Nominal pitch \[m\].
+    pub(crate) fn pitch(&self) -> f64 {
+        ask!(self, chain => chain.pitch())
+    }
+
+    /// Length of the chain without load, in nominal pitches a link.
+    pub(crate) fn elongation(&self) -> f64 {
+        ask!(self, chain => chain.elongation())
+    }
+}
+
+/// How it moves.
+impl Chain {
+    /// Where the rollers are.
+    pub(crate) fn pose<'a>(&self, at: Moment<'a>, record: &'a mut Record) -> Pose<'a> {
+        ask!(self, chain => chain.pose(at, record))
+    }
+
+    /// Accelerations of the chain, its powers, and what the bodies feel of it.
+    ///
+    /// The frames of the contacts stand in the record; powers are added to those of others.
+    pub(crate) fn evaluate(
+        &self,
+        around: Surroundings<'_>,
+        at: Moment<'_>,
+        a: &mut [f64],
+        rates: &mut [f64],
+        record: &mut Record,
+    ) {
+        ask!(self, chain => chain.evaluate(around, at, a, rates, record));
+    }
+
+    /// Takes an accepted state: memory, and places that are given in time.
+    pub(crate) fn commit(&mut self, t: f64, q: &mut [f64], v: &mut [f64], record: &mut Record) {
+        ask!(self, chain => chain.commit(t, q, v, record));
+    }
+
+    /// ω² and damping rate D of the stiffest mode, bodies by themselves left out.
+    pub(crate) fn rates(&self, around: Surroundings<'_>, record: &Record) -> [f64; 2] {
+        ask!(self, chain => chain.rates(around, record))
+    }
+
+    /// Frequency \[1/s\] of what every method takes explicitly, beside the mode above.
+    pub(crate) fn stabilisation(&self) -> f64 {
+        match self {
+            Self::Particles(_) => 0.0,
+            Self::Links(chain) => chain.stabilisation(),
+        }
+    }
+
+    /// Whether contacts are to write down the faces that rollers press on.
+    pub(crate) fn wants_faces(&self) -> bool {
+        self.can_solve()
+    }
+
+    /// Whether [`solve`](Self::solve) is there.
+    pub(crate) fn can_solve(&self) -> bool {
+        match self {
+            Self::Particles(_) => false,
+            Self::Links(_) => true,
+        }
+    }
+
+    /// x ← (M + c C + k K)⁻¹ M x over the chain and, behind it, the bodies.
+    pub(crate) fn solve(
+        &self,
+        bodies: &Bodies,
+        weights: Weights,
+        record: &mut Record,
+        x: &mut [f64],
+    ) -> bool {
+        match self {
+            Self::Particles(_) => false,
+            Self::Links(chain) => chain.solve(bodies, weights, record, x),
+        }
+    }
+
+    /// Computes as on a processor without AVX2.
+    pub(crate) fn compute_by_twos(&mut self) {
+        match self {
+            Self::Particles(chain) => chain.compute_by_twos(),
+            Self::Links(_) => {}
+        }
+    }
+
+    /// Moves every roller or body along x and y by what `shift` says.
+    pub(crate) fn nudge(&self, q: &mut [f64], shift: impl FnMut() -> f64) {
+        ask!(self, chain => chain.nudge(q, shift));
+    }
+}
+
+/// What can be read off it.
+impl Chain {
+    /// Appends what belongs to the chain.
+    pub(crate) fn observe(&self, at: Moment<'_>, record: &Record, out: &mut Observation) {
+        ask!(self, chain => chain.observe(at, record, out));
+    }
+
+    /// Adds kinetic energy, weight, and what links or joints store.
+    pub(crate) fn energies(
+        &self,
+        at: Moment<'_>,
+        gravity: Vector,
+        record: &Record,
+        out: &mut Energy,
+    ) {
+        ask!(self, chain => chain.energies(at, gravity, record, out));
+    }
+
+    /// What the contacts of link plates with a guide store \[J\].
+    pub(crate) fn plate_energy(
+        &self,
+        at: Moment<'_>,
+        plates: &PlateContact,
+        frame: &Frame,
+        record: &Record,
+    ) -> f64 {
+        ask!(self, chain => chain.plate_energy(at, plates, frame, record))
+    }
+
+    /// Speed at touch \[m/s\] and force \[N\] of a closed joint, and of a closed bush in its roller.
+    pub(crate) fn touching(&self, joint: usize) -> [Option<(f64, f64)>; 2] {
+        match self {
+            Self::Particles(_) => [None; 2],
+            Self::Links(chain) => chain.touching(joint),
+        }
+    }
+}
+
+/// How joints find their places after the chain was laid.
+impl Chain {
+    /// Whether they must: those with play lie somewhere in their bushes.
+    pub(crate) fn has_play(&self) -> bool {
+        match self {
+            Self::Particles(_) => false,
+            Self::Links(chain) => chain.has_play(),
+        }
+    }
+
+    /// Makes every link longer by `change` \[m\].
+    pub(crate) fn lengthen(&mut self, change: f64) {
+        ask!(self, chain => chain.lengthen(change));
+    }
+
+    /// Lets driven ends stand still.
+    pub(crate) fn hold_still(&mut self) {
+        ask!(self, chain => chain.hold_still());
+    }
+
+    /// Tension of every link \[N\].
+    pub(crate) fn tensions(&self, at: Moment<'_>, record: &Record) -> Vec<f64> {
+        ask!(self, chain => chain.tensions(at, record))
+    }
+
+    /// Largest force out of balance that accelerates a roller or body \[N\].
+    pub(crate) fn imbalance(&self, a: &[f64]) -> f64 {
+        ask!(self, chain => chain.imbalance(a))
+    }
+
+    /// Largest force in a link or contact \[N\].
+    pub(crate) fn pressed(&self, at: Moment<'_>, record: &Record) -> f64 {
+        ask!(self, chain => chain.pressed(at, record))
+    }
+
+    /// Share of a step that moves nothing too far.
+    pub(crate) fn reach(&self, step: &[f64]) -> f64 {
+        ask!(self, chain => chain.reach(step))
+    }
+}
+
+/// Equilibrium: forces and their derivatives.
+impl Chain {
+    /// Coordinates that are unknown in equilibrium, in an order that keeps neighbours together.
+    pub(crate) fn unknowns(&self) -> Vec<Unknown> {
+        ask!(self, chain => chain.unknowns())
+    }
+
+    /// How the circle that runs on the teeth moves with the coordinates.
+    pub(crate) fn roller_moving(&self, q: &[f64], roller: usize) -> Moving {
+        ask!(self, chain => chain.roller_moving(q, roller))
+    }
+
+    /// How the first (0) or second (1) pin of a link moves with the coordinates.
+    pub(crate) fn pin_moving(&self, q: &[f64], link: usize, end: usize) -> Moving {
+        ask!(self, chain => chain.pin_moving(q, link, end))
+    }
+
+    /// Stiffness of the stiffest link or joint \[N/m\].
+    pub(crate) fn stiffest_spring(&self) -> f64 {
+        ask!(self, chain => chain.stiffest_spring())
+    }
+
+    /// Mass of the chain, and of its heaviest roller or body \[kg\].
+    pub(crate) fn weights(&self) -> [f64; 2] {
+        ask!(self, chain => chain.weights())
+    }
+
+    /// Whether something pulls at an end.
+    pub(crate) fn is_pulled(&self) -> bool {
+        let ends = ask!(self, chain => &chain.ends);
+        ends.iter()
+            .any(|held| matches!(held.end, End::Pulled { .. }))
+    }
+
+    /// Gives copies of coordinates the values of their originals.
+    pub(crate) fn copy_ghosts(&self, values: &mut [f64]) {
+        match self {
+            Self::Particles(chain) => chain.copy_ghosts(values),
+            Self::Links(_) => {}
+        }
+    }
+
+    /// Adds the energy of links or joints, weight, and forces at the ends.
+    pub(crate) fn add_balance(&self, q: &[f64], gravity: Vector, load: Load, sum: &mut Sum<'_>) {
+        ask!(self, chain => chain.add_balance(q, gravity, load, sum));
+    }
+
+    /// Visits the joints that no energy but a condition holds together: the pin and its hole, where they move.
+    pub(crate) fn each_hinge(&self, q: &[f64], visit: impl FnMut([Moving; 2])) {
+        match self {
+            Self::Particles(_) => {}
+            Self::Links(chain) => chain.each_hinge(q, visit),
+        }
+    }
+}
+
+/// The ends of a strand, and where they were laid.
+fn held_ends(chain: &crate::Chain, places: &[Point]) -> Vec<HeldEnd> {
+    match &chain.ends {
+        Ends::Closed => Vec::new(),
+        Ends::Open(ends) => [0, chain.rollers() - 1]
+            .into_iter()
+            .zip(ends)
+            .map(|(roller, end)| HeldEnd {
+                roller,
+                end: end.clone(),
+                place: places[roller],
+            })
+            .collect(),
+    }
+}

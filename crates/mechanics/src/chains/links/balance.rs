@@ -1,0 +1,144 @@
+//! Rigid links in equilibrium: the energy of their joints, and its derivatives.
+
+use chaindrive_geometry::{Point, Vector};
+use nalgebra::Matrix2;
+
+use super::bearing::CENTRED;
+use super::{Bearing, Joining, Linkage, Mate, turned};
+use crate::End;
+use crate::chains::{Load, Moving, Sum, Unknown};
+
+/// Depth at which joints are asked for their stiffness \[m\].
+const PRESSED: f64 = 1e-6;
+
+impl Linkage {
+    /// All bodies; the ring of links is folded (0, N−1, 1, N−2, …) so that the Hessian becomes a band.
+    pub(crate) fn unknowns(&self) -> Vec<Unknown> {
+        let lever = 0.25 * self.pitch * self.pitch;
+        let n = self.links;
+        let folded = (0..n).map(|i| {
+            if i.is_multiple_of(2) {
+                i / 2
+            } else {
+                n - 1 - i / 2
+            }
+        });
+        folded
+            .chain(n..self.bodies.len())
+            .flat_map(|body| {
+                [(0, 1.0), (1, 1.0), (2, lever)].map(|(k, lever)| (3 * body + k, lever))
+            })
+            .map(|(entry, lever)| Unknown { entry, lever })
+            .collect()
+    }
+
+    /// The circle that runs on the teeth: a free roller, or the end of the link that carries it.
+    pub(crate) fn roller_moving(&self, q: &[f64], roller: usize) -> Moving {
+        let joint = roller % self.joints.len();
+        let free = self.free_rollers.as_ref();
+        match free.and_then(|free| free.body[joint]) {
+            Some(body) => on_body(q, body, Vector::zeros()),
+            None => self.side_moving(q, self.joints[joint].carrier),
+        }
+    }
+
+    /// An end of a link.
+    pub(crate) fn pin_moving(&self, q: &[f64], link: usize, end: usize) -> Moving {
+        on_body(q, link, self.bodies[link].arms[end])
+    }
+
+    /// One side of a joint; supports stand where they are at the start.
+    fn side_moving(&self, q: &[f64], mate: Mate) -> Moving {
+        match mate {
+            Mate::Link { link, end } => self.pin_moving(q, link, end),
+            Mate::Ground(end) => Moving::held(self.ends[end].place + self.driven_by(end)),
+        }
+    }
+
+    /// How far a support has moved at t = 0.
+    fn driven_by(&self, end: usize) -> Vector {
+        match &self.ends[end].end {
+            End::Driven { x, y } => Vector::new(x.at(0.0).position, y.at(0.0).position),
+            End::Free | End::Fixed | End::Pulled { .. } => Vector::zeros(),
+        }
+    }
+
+    /// Stiffness of the stiffest joint under a little load \[N/m\]; none where joints are ideal.
+    pub(crate) fn stiffest_spring(&self) -> f64 {
+        let joint = match &self.joining {
+            Joining::Clearance(bearing) => bearing.stiffness(PRESSED),
+            Joining::Hinges(_) => 0.0,
+        };
+        let free = self.free_rollers.as_ref();
+        free.map_or(joint, |free| joint.max(free.bearing.stiffness(PRESSED)))
+    }
+
+    /// Adds E = Σ U(δ) − Σ m g·x − Σ F·x.
+    pub(crate) fn add_balance(&self, q: &[f64], gravity: Vector, load: Load, sum: &mut Sum<'_>) {
+        if let Joining::Clearance(bearing) = &self.joining {
+            for joint in &self.joints {
+                if let Some(sides) = joint.pair {
+                    add_joint(bearing, sides.map(|side| self.side_moving(q, side)), sum);
+                }
+            }
+        }
+        if let Some(free) = &self.free_rollers {
+            for (index, joint) in self.joints.iter().enumerate() {
+                if free.body[index].is_some() {
+                    let bush = self.side_moving(q, joint.carrier);
+                    add_joint(&free.bearing, [self.roller_moving(q, index), bush], sum);
+                }
+            }
+        }
+        for (index, body) in self.bodies.iter().enumerate() {
+            for axis in 0..2 {
+                sum.force(3 * index + axis, -load.gravity * body.mass * gravity[axis]);
+            }
+        }
+        for (index, held) in self.ends.iter().enumerate() {
+            if let End::Pulled { force } = &held.end {
+                let link = if index == 0 { 0 } else { self.links - 1 };
+                let tip = self.pin_moving(q, link, index);
+                sum.pull(&tip, force * -load.torque);
+            }
+        }
+    }
+
+    /// Ideal joints: hole and pin.
+    pub(crate) fn each_hinge(&self, q: &[f64], mut visit: impl FnMut([Moving; 2])) {
+        if matches!(self.joining, Joining::Clearance(_)) {
+            return;
+        }
+        for sides in self.joints.iter().filter_map(|joint| joint.pair) {
+            visit(sides.map(|side| self.side_moving(q, side)));
+        }
+    }
+}
+
+/// A point of a body, given in its own frame.
+fn on_body(q: &[f64], body: usize, at: Vector) -> Moving {
+    let first = 3 * body;
+    let (s, c) = q[first + 2].sin_cos();
+    let arm = Vector::new(c * at.x - s * at.y, s * at.x + c * at.y);
+    Moving::on_body(Point::new(q[first], q[first + 1]), first, arm)
+}
+
+/// Adds the energy of a pin in a hole.
+///
+/// ```text
+/// ∂U/∂e = F n,   ∂²U/∂e² = k n nᵀ + F/|e| t tᵀ,   e = P_pin − P_hole
+/// ```
+fn add_joint(bearing: &Bearing, [hole, pin]: [Moving; 2], sum: &mut Sum<'_>) {
+    let offset = pin.place - hole.place;
+    let eccentricity = offset.norm();
+    let depth = eccentricity - bearing.clearance;
+    if depth <= 0.0 || eccentricity < CENTRED {
+        return;
+    }
+    let (n, answer) = (offset / eccentricity, bearing.at_rest(depth));
+    let t = turned(n);
+    let stiffness: Matrix2<f64> =
+        n * n.transpose() * answer.stiffness + t * t.transpose() * (answer.elastic / eccentricity);
+    sum.balance.tensions.push(answer.elastic);
+    sum.stretch([&hole, &pin], n * answer.elastic, &stiffness);
+}

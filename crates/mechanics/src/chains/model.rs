@@ -1,0 +1,35 @@
+//! What a chain can be made of, as a drive describes it.
+
+use super::links::model::{Joint, RigidLinks};
+use crate::DriveError;
+
+/// What the chain is made of: model only what a scene needs.
+#[derive(Clone, Debug, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a drive holds one, and a box would show in every scene"
+)]
+pub enum ChainModel {
+    /// Point masses at the rollers, joined by spring-damper links: two coordinates a link.
+    Particles,
+    /// Rigid links with joints: three coordinates a link, three more for every free roller.
+    Rigid(RigidLinks),
+}
+
+impl ChainModel {
+    /// Whether links give when they are pulled, by themselves or at their joints.
+    pub(crate) fn stretches(&self) -> bool {
+        match self {
+            Self::Particles => true,
+            Self::Rigid(links) => links.joint != Joint::Ideal,
+        }
+    }
+
+    /// Names every parameter out of range.
+    pub(crate) fn problems(&self) -> Vec<DriveError> {
+        match self {
+            Self::Particles => Vec::new(),
+            Self::Rigid(links) => links.problems(),
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! The particle chain: point masses at the rollers, joined by spring-damper links.
+//!
+//! ```text
+//! q = [ x of the rollers | y of the rollers ]
+//! ```
+//!
+//! The roller arrays are padded to whole lanes. Behind the last roller of a closed chain stand
+//! copies of the first ones; they are given the accelerations of their originals and so follow
+//! them bit by bit, and the loops never wrap around.
+
+mod build;
+mod ends;
+mod forces;
+mod observe;
+mod set_off;
+mod springs;
+mod statics;
+
+use chaindrive_geometry::{Point, Vector};
+use chaindrive_integrate::Moment;
+use pulp::Arch;
+
+use super::{Pose, Record, Rollers, Surroundings};
+use crate::contact::{PlatePins, PlatePlaces};
+use crate::system::HeldEnd;
+pub(super) use springs::Links;
+
+/// Rollers as point masses, links as spring-dampers.
+#[derive(Clone, Debug)]
+pub(crate) struct Particles {
+    pub(super) links: Links,
+    pub(super) rollers: usize,
+    /// Distance from the x to the y block of the state.
+    pub(super) stride: usize,
+    pub(super) pitch: f64,
+    /// Masses \[kg\] and inverse masses \[1/kg\] of the rollers; held ends have none of the latter.
+    pub(super) masses: Vec<f64>,
+    pub(super) inverse_masses: Vec<f64>,
+    pub(super) ends: Vec<HeldEnd>,
+    /// Inverse mass of the lightest roller \[1/kg\].
+    lightest: f64,
+    /// ω² of the links alone and twice their damping rate.
+    link_rates: [f64; 2],
+    arch: Arch,
+    /// Whether to compute as on a processor without AVX2.
+    oldest: bool,
+}
+
+/// The plates of the particle chain: link i between roller i and the next.
+pub(super) struct Pins<'a, 'b> {
+    pub(super) rollers: &'b mut Rollers<'a>,
+    pub(super) count: usize,
+}
+
+impl PlatePlaces for Pins<'_, '_> {
+    fn place(&self, link: usize, end: usize) -> Point {
+        self.rollers.place(link + end)
+    }
+}
+
+impl PlatePins for Pins<'_, '_> {
+    fn velocity(&self, link: usize, end: usize) -> Vector {
+        self.rollers.velocity(link + end)
+    }
+
+    fn push(&mut self, link: usize, end: usize, force: Vector) {
+        // Behind the last roller of a closed chain its copies are only looked at.
+        let roller = (link + end) % self.count;
+        self.rollers.ax[roller] += force.x * self.rollers.inverse_mass[roller];
+        self.rollers.ay[roller] += force.y * self.rollers.inverse_mass[roller];
+    }
+}
+
+impl Particles {
+    pub(super) fn coordinates(&self) -> usize {
+        2 * self.stride
+    }
+
+    pub(super) fn free_coordinates(&self) -> usize {
+        let free = |i: &usize| self.inverse_masses[*i] > 0.0;
+        2 * (0..self.rollers).filter(free).count()
+    }
+
+    pub(super) fn name(&self, coordinate: usize) -> String {
+        let n = self.stride;
+        let axis = if coordinate < n { "x" } else { "y" };
+        format!("roller {} along {axis}", coordinate % n % self.rollers)
+    }
+
+    pub(super) fn inertias(&self) -> Vec<f64> {
+        [self.masses.as_slice(), &self.masses].concat()
+    }
+
+    pub(super) fn rollers(&self) -> usize {
+        self.rollers
+    }
+
+    pub(super) fn links(&self) -> usize {
+        self.links.count
+    }
+
+    pub(super) fn pitch(&self) -> f64 {
+        self.pitch
+    }
+
+    pub(super) fn elongation(&self) -> f64 {
+        let rest: f64 = self.links.rest[..self.links.count].iter().sum();
+        let nominal = self.links.count as f64 * self.pitch;
+        rest / nominal
+    }
+
+    pub(super) fn compute_by_twos(&mut self) {
+        self.oldest = true;
+    }
+
+    #[inline(always)]
+    pub(super) fn view<'a>(&'a self, q: &'a [f64], v: &'a [f64], a: &'a mut [f64]) -> Rollers<'a> {
+        let n = self.stride;
+        let (ax, rest) = a.split_at_mut(n);
+        Rollers {
+            x: &q[..n],
+            y: &q[n..2 * n],
+            vx: &v[..n],
+            vy: &v[n..2 * n],
+            ax,
+            ay: &mut rest[..n],
+            inverse_mass: &self.inverse_masses[..n],
+        }
+    }
+
+    /// Place of one roller.
+    pub(super) fn place(&self, q: &[f64], roller: usize) -> Point {
+        Point::new(q[roller], q[self.stride + roller])
+    }
+
+    /// Place and velocity of one roller; the index behind the last link of a closed chain means its
+    /// first roller.
+    pub(super) fn pin(&self, at: Moment<'_>, roller: usize) -> (Point, Vector) {
+        let velocity = Vector::new(at.v[roller], at.v[self.stride + roller]);
+        (self.place(at.q, roller), velocity)
+    }
+
+    pub(super) fn pose<'a>(&self, at: Moment<'a>, _record: &'a mut Record) -> Pose<'a> {
+        let n = self.stride;
+        Pose {
+            x: &at.q[..n],
+            y: &at.q[n..2 * n],
+            vx: &at.v[..n],
+            vy: &at.v[n..2 * n],
+        }
+    }
+
+    /// ω² and D as estimated from the links, the deepest contact and the damping.
+    ///
+    /// ```text
+    /// ω_s = D + √(D² + ω²),   ω² = max Σ k/m + max k_c/m,   D = Σ d/m
+    /// ```
+    ///
+    /// The damping rate enters because Verlet's predicted velocity limits h D to 1.
+    pub(super) fn rates(&self, around: Surroundings<'_>, record: &Record) -> [f64; 2] {
+        let Surroundings { bodies, contacts } = around;
+        let [mut squared, mut damping] = self.link_rates;
+        let (mut contact, mut drag) = (0.0_f64, 0.0_f64);
+        for (on, wrench) in contacts.teeth.iter().zip(&record.loads.wheel_wrenches) {
+            let stiffness = on.contacts.surface.stiffness(wrench.depth);
+            let seated: usize = on.contacts.runs.iter().map(|run| run.count).sum();
+            let mobility = bodies.wheels[on.wheel].mobility(&bodies.slides);
+            let shared = mobility * seated as f64;
+            contact = contact.max(stiffness * (self.lightest + shared));
+            drag = drag.max(wrench.damping * (self.lightest + shared));
+        }
+        for (on, wrench) in contacts.rails.iter().zip(&record.loads.rail_wrenches) {
+            let stiffness = on.contact.surface().stiffness(wrench.depth);
+            contact = contact.max(stiffness * self.lightest);
+            drag = drag.max(wrench.damping * self.lightest);
+        }
+        squared += contact;
+        damping += drag;
+        [squared, damping]
+    }
+
+    /// Moves every roller that is not held; copies behind the last one follow.
+    pub(super) fn nudge(&self, q: &mut [f64], mut shift: impl FnMut() -> f64) {
+        let n = self.stride;
+        for i in 0..self.rollers {
+            let (x, y) = (shift(), shift());
+            if self.inverse_masses[i] > 0.0 {
+                q[i] += x;
+                q[n + i] += y;
+            }
+        }
+        self.copy_ghosts(q);
+    }
+
+    /// Gives the copies behind the last roller of a closed chain the values of their originals.
+    pub(super) fn copy_ghosts(&self, values: &mut [f64]) {
+        if self.links.closed {
+            let n = self.stride;
+            for ghost in self.rollers..n {
+                values[ghost] = values[ghost % self.rollers];
+                values[n + ghost] = values[n + ghost % self.rollers];
+            }
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! The ends of a strand of particles: held, driven or pulled.
+
+use chaindrive_geometry::Vector;
+use chaindrive_integrate::Moment;
+
+use super::Particles;
+use crate::chains::Record;
+use crate::energy::Flow;
+use crate::motion::Course;
+use crate::system::HeldEnd;
+use crate::{End, Motion};
+
+impl Particles {
+    /// Puts driven ends where they are given.
+    pub(crate) fn commit(&mut self, t: f64, q: &mut [f64], v: &mut [f64], _record: &mut Record) {
+        let n = self.stride;
+        for held in &self.ends {
+            if let End::Driven { x, y } = &held.end {
+                let (x, y): (Course, Course) = (Motion::at(x, t), y.at(t));
+                q[held.roller] = held.place.x + x.position;
+                q[n + held.roller] = held.place.y + y.position;
+                v[held.roller] = x.rate;
+                v[n + held.roller] = y.rate;
+            }
+        }
+    }
+
+    /// Accelerations of the end rollers whose motion or load is given.
+    pub(super) fn hold_ends(
+        &self,
+        gravity: Vector,
+        at: Moment<'_>,
+        a: &mut [f64],
+        rates: &mut [f64],
+    ) {
+        let n = self.stride;
+        for held in &self.ends {
+            let i = held.roller;
+            match &held.end {
+                End::Free => {}
+                End::Fixed => {
+                    a[i] = 0.0;
+                    a[n + i] = 0.0;
+                }
+                End::Driven { x, y } => {
+                    let (x, y) = (x.at(at.t), y.at(at.t));
+                    a[i] = x.acceleration;
+                    a[n + i] = y.acceleration;
+                    // F = m (a − g) − T
+                    let over = Vector::new(x.acceleration, y.acceleration) - gravity;
+                    let needed = self.end_force(at, held, over);
+                    rates[Flow::Motions as usize] += needed.x * x.rate + needed.y * y.rate;
+                }
+                End::Pulled { force } => {
+                    a[i] += force.x * self.inverse_masses[i];
+                    a[n + i] += force.y * self.inverse_masses[i];
+                    rates[Flow::DriveTorque as usize] += force.x * at.v[i] + force.y * at.v[n + i];
+                }
+            }
+        }
+    }
+
+    /// Force that a support exerts on an end roller which is accelerated by `over` more than its weight does \[N\].
+    fn end_force(&self, at: Moment<'_>, held: &HeldEnd, over: Vector) -> Vector {
+        let (link, inward) = if held.roller == 0 {
+            (0, 1.0)
+        } else {
+            (held.roller - 1, -1.0)
+        };
+        let pins = [self.pin(at, link), self.pin(at, link + 1)];
+        let along = (pins[1].0 - pins[0].0).normalize() * inward;
+        let pull = along * self.links.tension(link, pins);
+        over * self.masses[held.roller] - pull
+    }
+}

@@ -1,0 +1,144 @@
+//! One evaluation of the particle chain: links, teeth, guides, ends.
+
+use chaindrive_integrate::Moment;
+use pulp::{Scalar128b, Simd, WithSimd};
+
+use super::{Particles, Pins};
+use crate::chains::{Loads, Record, Surroundings};
+use crate::energy::Flow;
+use crate::lanes::Wide;
+use crate::system::RailContact;
+
+impl Particles {
+    pub(crate) fn evaluate(
+        &self,
+        around: Surroundings<'_>,
+        at: Moment<'_>,
+        a: &mut [f64],
+        rates: &mut [f64],
+        record: &mut Record,
+    ) {
+        let loads = &mut record.loads;
+        if self.oldest {
+            self.forces(Wide(Scalar128b), around, at, a, rates, loads);
+        } else {
+            self.arch.dispatch(Forces {
+                chain: self,
+                around,
+                at,
+                a: &mut *a,
+                rates: &mut *rates,
+                loads: &mut *loads,
+            });
+        }
+        self.plate_forces(around, at, a, rates, loads);
+        let n = self.stride;
+        if self.links.closed {
+            // A ghost behind the first turn copies one of the turn before.
+            for ghost in self.rollers..n {
+                a[ghost] = a[ghost - self.rollers];
+                a[n + ghost] = a[n + ghost - self.rollers];
+            }
+        } else {
+            self.hold_ends(around.bodies.gravity, at, a, rates);
+            a[self.rollers..n].fill(0.0);
+            a[n + self.rollers..2 * n].fill(0.0);
+        }
+    }
+
+    #[inline(always)]
+    fn forces<S: Simd>(
+        &self,
+        w: Wide<S>,
+        around: Surroundings<'_>,
+        at: Moment<'_>,
+        a: &mut [f64],
+        rates: &mut [f64],
+        loads: &mut Loads,
+    ) {
+        let contacts = around.contacts;
+        let mut rollers = self.view(at.q, at.v, a);
+        let gravity = [around.bodies.gravity.x, around.bodies.gravity.y];
+        rates[Flow::LinkLoss as usize] += self.links.act(w, &mut rollers, gravity);
+        // One call of the kernel serves wheels and rails: it is inlined, and long.
+        let wheels = contacts.teeth.len();
+        for i in 0..wheels + contacts.rails.len() {
+            let (contacts, touch) = if i < wheels {
+                (&contacts.teeth[i].contacts, &mut loads.teeth[i])
+            } else {
+                let RailContact::Circles(contacts) = &contacts.rails[i - wheels].contact else {
+                    continue;
+                };
+                (contacts, &mut loads.circles[i - wheels])
+            };
+            let wrench = contacts.act(w, at.t, &loads.frames[i], &mut rollers, touch);
+            let loss = if i < wheels {
+                Flow::ToothLoss
+            } else {
+                Flow::GuideLoss
+            };
+            rates[loss as usize] += wrench.normal_loss;
+            rates[Flow::FrictionLoss as usize] += wrench.friction_loss;
+            if i < wheels {
+                loads.wheel_wrenches[i] = wrench;
+            } else {
+                loads.rail_wrenches[i - wheels] = wrench;
+            }
+        }
+    }
+
+    /// Contacts of link plates with guides.
+    fn plate_forces(
+        &self,
+        around: Surroundings<'_>,
+        at: Moment<'_>,
+        a: &mut [f64],
+        rates: &mut [f64],
+        loads: &mut Loads,
+    ) {
+        let mut rollers = self.view(at.q, at.v, a);
+        let frames = &loads.frames[around.contacts.teeth.len()..];
+        for (i, (on, frame)) in around.contacts.rails.iter().zip(frames).enumerate() {
+            let RailContact::Plates(plates) = &on.contact else {
+                continue;
+            };
+            let mut pins = Pins {
+                rollers: &mut rollers,
+                count: self.rollers,
+            };
+            let touch = &mut loads.plates[i];
+            let wrench = plates.act(at.t, frame, &mut pins, self.links.count, touch);
+            rates[Flow::GuideLoss as usize] += wrench.normal_loss;
+            rates[Flow::FrictionLoss as usize] += wrench.friction_loss;
+            loads.rail_wrenches[i] = wrench;
+        }
+    }
+}
+
+/// The kernels as one call, compiled for every kind of processor.
+struct Forces<'a> {
+    chain: &'a Particles,
+    around: Surroundings<'a>,
+    at: Moment<'a>,
+    a: &'a mut [f64],
+    rates: &'a mut [f64],
+    loads: &'a mut Loads,
+}
+
+impl WithSimd for Forces<'_> {
+    type Output = ();
+
+    // A call that is not inlined would be compiled for the oldest processor only.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self {
+            chain,
+            around,
+            at,
+            a,
+            rates,
+            loads,
+        } = self;
+        chain.forces(Wide(simd), around, at, a, rates, loads);
+    }
+}

@@ -1,0 +1,63 @@
+//! What one evaluation of a chain leaves behind.
+
+use super::links::{Impulses, Play};
+use crate::contact::{Frame, PlateTouch, Touch, Wrench};
+use crate::system::BodyContacts;
+
+/// What the bodies that a chain touches feel of it, by contact.
+#[derive(Clone, Debug, Default)]
+#[expect(
+    clippy::vec_box,
+    reason = "what changes hands at every step is a pointer, not seven vectors"
+)]
+pub(crate) struct Loads {
+    pub(crate) teeth: Vec<Box<Touch>>,
+    pub(crate) circles: Vec<Box<Touch>>,
+    pub(crate) plates: Vec<Vec<PlateTouch>>,
+    pub(crate) wheel_wrenches: Vec<Wrench>,
+    pub(crate) rail_wrenches: Vec<Wrench>,
+    /// Frames of the wheels, then of the rails.
+    pub(crate) frames: Vec<Frame>,
+}
+
+/// Contact states, and the work space of the member.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Record {
+    pub(crate) loads: Loads,
+    /// What joints leave behind; empty where links are springs.
+    pub(super) play: Play,
+    pub(super) impulses: Impulses,
+}
+
+impl Record {
+    /// Room for every evaluation of a chain with these contacts.
+    pub(crate) fn new(contacts: &BodyContacts) -> Self {
+        let (wheels, rails) = (contacts.teeth.len(), contacts.rails.len());
+        let touches = |count: usize| vec![Box::<Touch>::default(); count];
+        Self {
+            loads: Loads {
+                teeth: touches(wheels),
+                circles: touches(rails),
+                plates: vec![Vec::new(); rails],
+                wheel_wrenches: vec![Wrench::default(); wheels],
+                rail_wrenches: vec![Wrench::default(); rails],
+                frames: vec![Frame::fixed(); wheels + rails],
+            },
+            ..Self::default()
+        }
+    }
+
+    /// How contacts began: depth \[m\], and the share of the step after which they did.
+    pub(crate) fn onsets(&self) -> impl Iterator<Item = (f64, f64)> {
+        let Loads {
+            wheel_wrenches,
+            rail_wrenches,
+            ..
+        } = &self.loads;
+        let joints = &self.play.tally;
+        let wrenches = wheel_wrenches.iter().chain(rail_wrenches);
+        wrenches
+            .map(|wrench| (wrench.first_depth, wrench.first_share))
+            .chain([(joints.first_depth, joints.first_share)])
+    }
+}

@@ -1,0 +1,27 @@
+//! Rollers as contacts see them, whatever they belong to.
+
+use chaindrive_geometry::{Point, Vector};
+
+/// The rollers' part of a state, and of its accelerations.
+#[derive(Debug)]
+pub(crate) struct Rollers<'a> {
+    pub(crate) x: &'a [f64],
+    pub(crate) y: &'a [f64],
+    pub(crate) vx: &'a [f64],
+    pub(crate) vy: &'a [f64],
+    pub(crate) ax: &'a mut [f64],
+    pub(crate) ay: &'a mut [f64],
+    pub(crate) inverse_mass: &'a [f64],
+}
+
+impl Rollers<'_> {
+    #[inline(always)]
+    pub(crate) fn place(&self, roller: usize) -> Point {
+        Point::new(self.x[roller], self.y[roller])
+    }
+
+    #[inline(always)]
+    pub(crate) fn velocity(&self, roller: usize) -> Vector {
+        Vector::new(self.vx[roller], self.vy[roller])
+    }
+}

@@ -1,0 +1,159 @@
+//! The contacts of one chain with the bodies that it can touch.
+
+use chaindrive_integrate::Moment;
+
+use super::Bodies;
+use super::bodies::Anchor;
+use crate::chains::{Loads, Pose};
+use crate::contact::{Contacts, Frame, Places, PlateContact};
+use crate::drive::Surface;
+
+/// Contacts with sprockets, then with guides.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct BodyContacts {
+    pub(crate) teeth: Vec<OnWheel>,
+    pub(crate) rails: Vec<OnRail>,
+}
+
+/// Contacts with the teeth of one sprocket.
+#[derive(Clone, Debug)]
+pub(crate) struct OnWheel {
+    /// Which one.
+    pub(crate) wheel: usize,
+    /// Whether no chain before this one touches it.
+    pub(crate) first: bool,
+    pub(crate) contacts: Contacts,
+    /// An angle of the sprocket with known cosine and sine, renewed with the windows.
+    pub(crate) anchor: Anchor,
+}
+
+/// Contacts with one guide.
+#[derive(Clone, Debug)]
+pub(crate) struct OnRail {
+    /// Which one.
+    pub(crate) rail: usize,
+    /// Whether no chain before this one touches it.
+    pub(crate) first: bool,
+    pub(crate) contact: RailContact,
+}
+
+/// What of the chain touches a guide.
+#[derive(Clone, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a drive has a handful of rails, and a box would cost the kernels a look"
+)]
+pub(crate) enum RailContact {
+    Circles(Contacts),
+    Plates(PlateContact),
+}
+
+impl RailContact {
+    pub(crate) fn surface(&self) -> &Surface {
+        match self {
+            Self::Circles(contacts) => &contacts.surface,
+            Self::Plates(plates) => &plates.surface,
+        }
+    }
+}
+
+impl BodyContacts {
+    /// Where the bodies are and how they move, sprockets first; `at` is the whole state.
+    pub(crate) fn frames(&self, bodies: &Bodies, at: Moment<'_>, frames: &mut [Frame]) {
+        let (wheels, rails) = frames.split_at_mut(self.teeth.len());
+        for (frame, on) in wheels.iter_mut().zip(&self.teeth) {
+            *frame = bodies.wheel_frame(on.wheel, &on.anchor, at);
+        }
+        for (frame, on) in rails.iter_mut().zip(&self.rails) {
+            *frame = bodies.rail_frame(on.rail, at);
+        }
+    }
+
+    /// Turns the anchors to where the sprockets are.
+    pub(crate) fn anchor(&mut self, bodies: &Bodies, at: Moment<'_>) {
+        for on in &mut self.teeth {
+            let course = bodies.wheels[on.wheel].course(at.t, at.q, at.v);
+            on.anchor = Anchor::at(course.position);
+        }
+    }
+
+    /// Lays new windows; returns the greatest speed of a roller against a rim \[m/s\].
+    pub(crate) fn renew(
+        &mut self,
+        bodies: &Bodies,
+        at: Moment<'_>,
+        pose: Pose<'_>,
+        rollers: usize,
+        margin: f64,
+    ) -> f64 {
+        let fastest = pose.vx[..rollers]
+            .iter()
+            .zip(pose.vy)
+            .map(|(x, y)| x * x + y * y)
+            .fold(0.0, f64::max)
+            .sqrt();
+        let mut speed = fastest;
+        let places = Places {
+            x: pose.x,
+            y: pose.y,
+            count: rollers,
+        };
+        self.anchor(bodies, at);
+        for on in &mut self.teeth {
+            let wheel = &bodies.wheels[on.wheel];
+            let rate = wheel.course(at.t, at.q, at.v).rate;
+            let frame = bodies.wheel_frame(on.wheel, &on.anchor, at);
+            let rim = rate.abs() * wheel.pitch_radius + frame.velocity.norm();
+            speed = speed.max(fastest + rim);
+            on.contacts.renew(&frame, places, margin);
+        }
+        for on in &mut self.rails {
+            let frame = bodies.rail_frame(on.rail, at);
+            if let RailContact::Circles(contacts) = &mut on.contact {
+                contacts.renew(&frame, places, margin);
+            }
+        }
+        speed
+    }
+
+    /// Takes over what was found at an accepted state.
+    pub(crate) fn commit(&mut self, t: f64, loads: &mut Loads) {
+        for (on, touch) in self.teeth.iter_mut().zip(&mut loads.teeth) {
+            std::mem::swap(&mut on.contacts.memory, touch);
+            on.contacts.accepted = t;
+        }
+        for (i, on) in self.rails.iter_mut().enumerate() {
+            match &mut on.contact {
+                RailContact::Circles(contacts) => {
+                    std::mem::swap(&mut contacts.memory, &mut loads.circles[i]);
+                    contacts.accepted = t;
+                }
+                RailContact::Plates(plates) => {
+                    std::mem::swap(&mut plates.memory, &mut loads.plates[i]);
+                    plates.accepted = t;
+                }
+            }
+        }
+    }
+
+    /// Contacts of circles, with sprockets and with guides.
+    pub(crate) fn circles(&self) -> impl Iterator<Item = &Contacts> {
+        let rails = self.rails.iter().filter_map(|on| match &on.contact {
+            RailContact::Circles(contacts) => Some(contacts),
+            RailContact::Plates(_) => None,
+        });
+        self.teeth.iter().map(|on| &on.contacts).chain(rails)
+    }
+
+    /// Says whether the faces that rollers press on are to be written down.
+    pub(crate) fn write_faces(&mut self, wanted: bool) {
+        for on in &mut self.teeth {
+            on.contacts.for_links = wanted;
+        }
+        for on in &mut self.rails {
+            if let RailContact::Circles(contacts) = &mut on.contact {
+                contacts.for_links = wanted;
+            }
+        }
+    }
+}

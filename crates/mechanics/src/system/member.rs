@@ -1,0 +1,123 @@
+//! A chain in its drive: its part of the state, its contacts, its windows.
+
+use std::ops::Range;
+
+use chaindrive_integrate::Moment;
+
+use super::{Bodies, BodyContacts, Wheel};
+use crate::chains::{Chain, Record, Surroundings};
+
+/// One chain and what it touches.
+#[derive(Clone, Debug)]
+pub(crate) struct Member {
+    pub(crate) chain: Chain,
+    /// Its entries of the state.
+    pub(crate) entries: Range<usize>,
+    pub(crate) contacts: BodyContacts,
+    /// Sprockets in path order, for the naming of spans.
+    pub(crate) route: Vec<usize>,
+    /// When the windows are renewed: latest time, and accepted steps to go.
+    renew: (f64, u32),
+    /// ω² and damping rate of the stiffest mode.
+    pub(crate) rates: [f64; 2],
+}
+
+/// Accepted steps after which the windows are renewed at the latest.
+const STEPS_PER_WINDOW: u32 = 256;
+
+/// Accepted steps after which the time scale is worked out again. Rarer, and impacts of pins get steps that are too long.
+const STEPS_PER_SCALE: u32 = 8;
+
+impl Member {
+    pub(crate) fn new(
+        chain: Chain,
+        first: usize,
+        contacts: BodyContacts,
+        route: Vec<usize>,
+    ) -> Self {
+        Self {
+            entries: first..first + chain.coordinates(),
+            chain,
+            contacts,
+            route,
+            renew: (0.0, 0),
+            rates: [0.0; 2],
+        }
+    }
+
+    /// The chain's own part of a moment.
+    #[inline(always)]
+    pub(crate) fn own<'a>(&self, at: Moment<'a>) -> Moment<'a> {
+        Moment {
+            t: at.t,
+            q: &at.q[self.entries.clone()],
+            v: &at.v[self.entries.clone()],
+        }
+    }
+
+    /// Accelerations of the chain; powers are added.
+    #[inline]
+    pub(crate) fn evaluate(
+        &self,
+        bodies: &Bodies,
+        at: Moment<'_>,
+        a: &mut [f64],
+        rates: &mut [f64],
+        record: &mut Record,
+    ) {
+        // Frames are in memory well before the kernel loads them again.
+        self.contacts.frames(bodies, at, &mut record.loads.frames);
+        let around = Surroundings {
+            bodies,
+            contacts: &self.contacts,
+        };
+        let a = &mut a[self.entries.clone()];
+        self.chain.evaluate(around, self.own(at), a, rates, record);
+    }
+
+    /// Takes over what was found at an accepted state.
+    pub(crate) fn commit(&mut self, t: f64, record: &mut Record, bodies: &Bodies) {
+        self.contacts.commit(t, &mut record.loads);
+        // Stiffness changes little from one step to the next, and the bound has a reserve.
+        if self.renew.1.is_multiple_of(STEPS_PER_SCALE) {
+            self.rates = self.rates_at(bodies, record);
+        }
+    }
+
+    /// ω² and damping rate of the stiffest mode at an evaluation.
+    pub(crate) fn rates_at(&self, bodies: &Bodies, record: &Record) -> [f64; 2] {
+        let around = Surroundings {
+            bodies,
+            contacts: &self.contacts,
+        };
+        self.chain.rates(around, record)
+    }
+
+    /// Radius \[m\] of the circle on which the rollers of a wheel lie: its pitch circle, or that of a worn chain, which
+    /// rides higher by as much as it is longer.
+    pub(crate) fn riding_radius(&self, wheel: &Wheel) -> f64 {
+        // R ℓ/p
+        wheel.pitch_radius * self.chain.elongation().max(1.0)
+    }
+
+    /// Counts an accepted step, and renews the windows when it is time.
+    pub(crate) fn look_around(&mut self, bodies: &Bodies, at: Moment<'_>, record: &mut Record) {
+        self.renew.1 = self.renew.1.saturating_sub(1);
+        if at.t >= self.renew.0 || self.renew.1 == 0 {
+            self.renew_windows(bodies, at, record);
+        }
+    }
+
+    pub(crate) fn renew_windows(&mut self, bodies: &Bodies, at: Moment<'_>, record: &mut Record) {
+        let margin = 0.5 * self.chain.pitch();
+        let own = self.own(at);
+        let pose = self.chain.pose(own, record);
+        let rollers = self.chain.rollers();
+        let speed = self.contacts.renew(bodies, at, pose, rollers, margin);
+        // No roller may cross half the margin before the next look.
+        self.renew = (
+            at.t + 0.5 * margin / speed.max(f64::MIN_POSITIVE),
+            STEPS_PER_WINDOW,
+        );
+    }
+}
