@@ -68,6 +68,13 @@ pub(crate) fn replace(
     let places: Vec<Point> = (0..count).map(place).collect();
     let velocities: Vec<Vector> = (0..count).map(velocity).collect();
     linkage.set_off(&places, &velocities, &mut chain_v);
+    if !laid.on_route {
+        // Along a route the links have taken the lengths that they were laid with.
+        let mut whole = [chain_q, vec![0.0; bodies.inertias.len()]].concat();
+        linkage.close_in_place(bodies, &mut whole);
+        whole.truncate(linkage.coordinates());
+        chain_q = whole;
+    }
     Replacement {
         linkage,
         q: chain_q,
@@ -105,6 +112,39 @@ impl Linkage {
         }
     }
 
+    /// Moves ideal joints together that stand a little apart, as when the particles that the chain was laid as had
+    /// stretched; links keep their lengths.
+    pub(crate) fn close_in_place(&self, bodies: &Bodies, q: &mut [f64]) {
+        if matches!(self.joining, Joining::Clearance(_)) {
+            return;
+        }
+        let still = vec![0.0; q.len()];
+        let mut play = Play::default();
+        // Newton's method, from a few thousandths of a pitch at most: three passes leave rounding.
+        for _ in 0..PASSES {
+            let at = Moment {
+                t: 0.0,
+                q,
+                v: &still,
+            };
+            self.pose_links(at, &mut play.posture);
+            play.hinge_forces = vec![Vector::zeros(); self.joints.len()];
+            let apart = self.joints.iter().map(|joint| {
+                joint.pair.map_or_else(Vector::zeros, |mates| {
+                    let [hole, pin] = mates.map(|mate| self.part(mate, at, &play.posture).place);
+                    hole - pin
+                })
+            });
+            let apart: Vec<Vector> = apart.collect();
+            let Some(change) = self.nearest(bodies, &mut play, &apart, q.len()) else {
+                return;
+            };
+            for (q, change) in q.iter_mut().zip(&change) {
+                *q += change;
+            }
+        }
+    }
+
     /// Velocities of the chain and, behind it, the bodies brought to where no hinge opens: what the stabilisation would otherwise
     /// take out of the chain in its first milliseconds.
     pub(crate) fn close_in_motion(&self, bodies: &Bodies, q: &[f64], v: &mut [f64]) {
@@ -115,12 +155,23 @@ impl Linkage {
         let at = Moment { t: 0.0, q, v };
         self.pose_links(at, &mut play.posture);
         play.hinge_forces = vec![Vector::zeros(); self.joints.len()];
-        let mut closed = v.to_vec();
-        if self.project(bodies, at, &mut play, &mut closed) {
-            v.copy_from_slice(&closed);
+        let opening = self.joints.iter().map(|joint| {
+            joint.pair.map_or_else(Vector::zeros, |mates| {
+                let [hole, pin] = mates.map(|mate| self.part(mate, at, &play.posture).velocity);
+                hole - pin
+            })
+        });
+        let opening: Vec<Vector> = opening.collect();
+        if let Some(change) = self.nearest(bodies, &mut play, &opening, v.len()) {
+            for (v, change) in v.iter_mut().zip(&change) {
+                *v += change;
+            }
         }
     }
 }
+
+/// Passes of [`Linkage::close_in_place`].
+const PASSES: usize = 4;
 
 /// Where free rollers let the bushes be: on a wheel they lie deeper by the clearance, in a span the rollers
 /// hang. Returns the shift of every bush from the particle, and by how much their way around the

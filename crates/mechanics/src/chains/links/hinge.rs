@@ -91,9 +91,9 @@ impl Hinges {
             }
         }
         let closed = linkage.closed;
-        let Some(forces) = solve(&diagonal, &below, &right, closed) else {
-            return;
-        };
+        // Where no forces keep the joints together there is no motion either: what is not a number stops the run.
+        let forces = solve(&diagonal, &below, &right, closed)
+            .unwrap_or_else(|| vec![Vector::repeat(f64::NAN); count]);
         for (&joint, force) in held.iter().zip(&forces) {
             let Some(mates) = linkage.joints[joint].pair else {
                 continue;
@@ -156,7 +156,20 @@ fn coupling(linkage: &Linkage, play: &Play, first: usize, second: usize) -> Opti
     sum
 }
 
-/// Solves the tridiagonal system, cyclic where `closed`; block `below[i]` is (i + 1, i).
+/// Share of its stiffest direction below which a block counts as singular: a strand that is straight between two
+/// supports to within 1e-6 of its length.
+const SINGULAR: f64 = 1e-12;
+
+/// Inverse of a symmetric block that was `whole` before others were eliminated; none if nothing is left in some direction.
+fn inverse_of(block: &Matrix2<f64>, whole: &Matrix2<f64>) -> Option<Matrix2<f64>> {
+    // The lesser eigenvalue is det/λ, and λ lies between half the trace and the trace.
+    let enough = SINGULAR * whole.trace() * block.trace();
+    (block.determinant() > enough)
+        .then(|| block.try_inverse())
+        .flatten()
+}
+
+/// Solves the tridiagonal system, cyclic where `closed`; block `below[i]` is (i + 1, i). None if it is singular.
 fn solve(
     diagonal: &[Matrix2<f64>],
     below: &[Matrix2<f64>],
@@ -177,7 +190,7 @@ fn solve(
     }
     let mut inverse = vec![Matrix2::zeros(); row];
     for i in 0..row {
-        inverse[i] = d[i].try_inverse()?;
+        inverse[i] = inverse_of(&d[i], &diagonal[i])?;
         let through = inverse[i] * b[i];
         if i + 1 < row {
             let e = below[i];
@@ -195,7 +208,7 @@ fn solve(
     }
     let mut x = vec![Vector2::zeros(); count];
     if closed {
-        x[count - 1] = corner.try_inverse()? * corner_right;
+        x[count - 1] = inverse_of(&corner, &diagonal[count - 1])? * corner_right;
     }
     for i in (0..row).rev() {
         let mut rest = b[i];

@@ -9,7 +9,7 @@
 //! their bush and a wheel only; they are eliminated first and leave the links' pattern as it is.
 
 use chaindrive_geometry::Vector;
-use chaindrive_integrate::{Moment, Weights};
+use chaindrive_integrate::Weights;
 use nalgebra::{Matrix3, Vector3};
 
 use super::held::Asked;
@@ -68,34 +68,25 @@ impl Linkage {
         self.eliminate(bodies, weights, play, x, Asked::Kept)
     }
 
-    /// Velocities v nearest to the given ones, in kinetic energy, with which no hinge opens.
-    pub(crate) fn project(
+    /// The least change of coordinates or velocities, of which there are `count`, that moves every pin towards its hole by what is
+    /// given; least in kinetic energy.
+    pub(crate) fn nearest(
         &self,
         bodies: &Bodies,
-        at: Moment<'_>,
         play: &mut Play,
-        v: &mut [f64],
-    ) -> bool {
+        towards: &[Vector],
+        count: usize,
+    ) -> Option<Vec<f64>> {
         let none = Weights {
             damping: 0.0,
             stiffness: 0.0,
         };
         // Solved for the change, which is nothing where no hinge opens.
-        let opening = self.joints.iter().map(|joint| {
-            joint.pair.map_or_else(Vector::zeros, |mates| {
-                let [hole, pin] = mates.map(|mate| self.part(mate, at, &play.posture).velocity);
-                hole - pin
-            })
-        });
-        let opening: Vec<Vector> = opening.collect();
-        let mut change = vec![0.0; v.len()];
+        let mut change = vec![0.0; count];
         // Every pass leaves 1e-5 of what was missing.
         let solved =
-            (0..3).all(|_| self.eliminate(bodies, none, play, &mut change, Asked::Given(&opening)));
-        for (v, change) in v.iter_mut().zip(&change) {
-            *v += change;
-        }
-        solved
+            (0..3).all(|_| self.eliminate(bodies, none, play, &mut change, Asked::Given(towards)));
+        solved.then_some(change)
     }
 
     pub(super) fn eliminate(
