@@ -40,7 +40,9 @@ impl Sink for Memory {
 
     fn end(&mut self, end: &End<'_>) -> Result<(), Infallible> {
         let lasting = end.simulation.outstanding_events();
-        lasting.iter().for_each(|event| self.events.push(event));
+        for event in &lasting {
+            self.events.push(event);
+        }
         Ok(())
     }
 }

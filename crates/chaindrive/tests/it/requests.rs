@@ -24,6 +24,7 @@ fn given(settings: &[(&str, &str)]) -> Settings {
 /// An argument goes before the scene, the scene before the defaults; what belongs together goes together.
 #[test]
 fn one_precedence() {
+    use Stepping::{Auto, Rk4, Verlet};
     let merged = |run: &[(&str, &str)], settings: &[(&str, &str)]| {
         let request = Request::new(&scene(run), &given(settings)).unwrap();
         let run = request.run;
@@ -31,7 +32,6 @@ fn one_precedence() {
     };
     let rk4 = [("method", "rk4"), ("step", "10 us")];
     let step = Some(1e-5);
-    use Stepping::{Auto, Rk4, Verlet};
     assert_eq!(merged(&[], &[]), (Auto, None, None, Some(0.01)));
     assert_eq!(merged(&rk4, &[]), (Rk4, step, None, None));
     // The step of the scene goes with the method of the scene.
