@@ -218,9 +218,9 @@ impl System {
             let mut closed = 0.0;
             wheel.contacts.for_each_slot(|slot, roller| {
                 for side in 0..wheel.contacts.sides() {
-                    let force = touch.force[side * slots + slot];
+                    let force = touch.state.force[side * slots + slot];
                     out.contact_force[roller] += force;
-                    if touch.gap[side * slots + slot] < 0.0 {
+                    if touch.state.gap[side * slots + slot] < 0.0 {
                         closed += 1.0;
                     }
                 }

@@ -22,7 +22,7 @@ pub(crate) use bodies::{
 };
 pub(crate) use build::Laid;
 
-use crate::contact::{Frame, Places, PlatePins, PlatePlaces, PlateTouch, Touch, Wrench};
+use crate::contact::{ContactMemory, Frame, Places, PlatePins, PlatePlaces, Touch, Wrench};
 use crate::energy::Flow;
 use crate::events::EventLog;
 use crate::lanes::Wide;
@@ -89,7 +89,7 @@ pub(crate) struct HeldEnd {
 pub struct Record {
     pub(crate) teeth: Vec<Box<Touch>>,
     pub(crate) circles: Vec<Box<Touch>>,
-    pub(crate) plates: Vec<Vec<PlateTouch>>,
+    pub(crate) plates: Vec<ContactMemory>,
     pub(crate) wheel_wrenches: Vec<Wrench>,
     pub(crate) rail_wrenches: Vec<Wrench>,
     /// Frames of the wheels, then of the rails.
@@ -122,6 +122,8 @@ pub(crate) struct Rollers<'a> {
     pub(crate) ax: &'a mut [f64],
     pub(crate) ay: &'a mut [f64],
     pub(crate) inverse_mass: &'a [f64],
+    /// Angular speeds of the circles that touch \[rad/s\]; empty where none of them turns.
+    pub(crate) spin: &'a [f64],
 }
 
 impl Rollers<'_> {
@@ -233,6 +235,7 @@ impl System {
             ax,
             ay: &mut rest[..n],
             inverse_mass: &self.inverse_masses[..n],
+            spin: &[],
         }
     }
 
@@ -418,7 +421,7 @@ impl SecondOrderSystem for System {
         Record {
             teeth: touches(self.wheels.len()),
             circles: touches(self.rails.len()),
-            plates: vec![Vec::new(); self.rails.len()],
+            plates: vec![ContactMemory::default(); self.rails.len()],
             wheel_wrenches: vec![Wrench::default(); self.wheels.len()],
             rail_wrenches: vec![Wrench::default(); self.rails.len()],
             frames: vec![Frame::fixed(); self.wheels.len() + self.rails.len()],

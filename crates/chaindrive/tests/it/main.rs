@@ -14,6 +14,7 @@ mod reference;
 mod reproducible;
 mod scenes;
 mod sweep;
+mod tooth_gaps;
 mod validation_contact;
 mod validation_dynamics_free_chain;
 mod validation_dynamics_impacts;

@@ -5,12 +5,14 @@ use chaindrive_integrate::Moment;
 use pulp::Arch;
 
 use super::{
-    Bearing, Body, FreeRollers, Hinges, Joining, JointMates, Linkage, Mate, Memory, Pairs,
-    PinMemory, PinTouch, Play, Shapes, turned,
+    Bearing, Body, FreeRollers, Hinges, Joining, JointMates, Linkage, Mate, Memory, Pairs, Play,
+    Shapes, turned,
 };
 use crate::End;
 use crate::chain::Chain;
+use crate::contact::ContactMemory;
 use crate::drive::{Layout, Parts};
+use crate::lanes::padded;
 use crate::rigid::{Joint, RigidLinks, RollerModel};
 use crate::system::{RailContact, System, WheelRotation, WheelSupport};
 
@@ -252,8 +254,8 @@ fn compile(system: &System, parts: &Parts, links: &RigidLinks) -> Linkage {
         bodies,
         memory: Memory {
             time: 0.0,
-            joints: PinMemory::open(joints.len()),
-            bushes: vec![PinTouch::OPEN; joints.len()],
+            joints: ContactMemory::open(padded(joints.len())),
+            bushes: ContactMemory::open(joints.len()),
         },
         pairs: Pairs::of(&joints),
         joints,

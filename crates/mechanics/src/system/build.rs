@@ -7,10 +7,10 @@ use super::bodies::{
     Anchor, Rail, RailContact, RailSupport, Slide, Wheel, WheelRotation, WheelSupport,
 };
 use super::{HeldEnd, System};
-use crate::contact::{Contacts, PlateContact, PlateTouch, Shape, Teeth};
+use crate::contact::{Contacts, PlateContact, Shape, Teeth};
 use crate::drive::{Guide, GuideSupport, Parts, Rotation, Sprocket, Support, Touches};
 use crate::links::Links;
-use crate::profile::{GapHalves, Profile};
+use crate::profile::{GapFace, Profile};
 use crate::{AssemblyError, Carrier, Chain, End, Ends, Push};
 
 /// A drive with its chain laid: where everything is at t = 0.
@@ -206,7 +206,7 @@ fn wheel(
     let radius = 0.5 * chain.roller_diameter;
     let pitch_angle = std::f64::consts::TAU / f64::from(gap.teeth);
     let teeth = Teeth {
-        halves: GapHalves::new(gap.pieces(), radius),
+        face: GapFace::new(gap.pieces(), radius),
         count: gap.teeth,
         tan_half: (0.5 * pitch_angle).tan(),
         pitch_turn: [pitch_angle.cos(), pitch_angle.sin()],
@@ -280,15 +280,10 @@ fn rail(guide: &Guide, parts: &Parts) -> Result<Rail, AssemblyError> {
     };
     confirm(guide, &profile, radius)?;
     let contact = if guide.touches == Touches::Plates {
-        RailContact::Plates(PlateContact {
-            profile,
-            reference,
-            bounds,
-            surface: guide.surface,
-            half_height: radius,
-            memory: vec![PlateTouch::FAR; chain.links()],
-            accepted: 0.0,
-        })
+        let (surface, links) = (guide.surface, chain.links());
+        RailContact::Plates(PlateContact::new(
+            profile, reference, bounds, surface, radius, links,
+        ))
     } else {
         let shape = Shape::Rail {
             profile,
