@@ -5,27 +5,29 @@
 //! such slot the contact remembers, since the last accepted state, the gap, the closing speed
 //! and, while closed, the inverse of the speed at touch.
 
-mod answer;
 mod kernel;
+mod law;
 mod look;
+mod memory;
 mod plates;
 mod rest;
-mod scalar;
 mod slots;
+#[cfg(test)]
+mod tests;
 mod window;
 mod wrench;
 
 use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_geometry::{Point, Vector};
 
-use answer::Answer;
-pub(crate) use answer::LawNumbers;
-pub(crate) use plates::{PlateContact, PlatePins, PlatePlaces, PlateTouch};
-pub(crate) use window::{Places, Run};
-pub(crate) use wrench::Wrench;
+pub(crate) use law::SurfaceLaw;
+pub(crate) use memory::{ContactMemory, MemoryLanes};
+pub(crate) use plates::{PlateContact, PlatePins, PlatePlaces};
+pub(crate) use window::{FAR, Places, Run};
+pub(crate) use wrench::{LaneTally, Wrench};
 
 use crate::drive::{Flank, Surface};
-use crate::profile::{GapHalves, Profile};
+use crate::profile::{GapFace, Profile};
 
 /// The position and motion of the frame in which a profile is given.
 #[derive(Clone, Copy, Debug)]
@@ -58,7 +60,7 @@ pub(crate) enum Shape {
 /// The teeth of a wheel.
 #[derive(Clone, Debug)]
 pub(crate) struct Teeth {
-    pub(crate) halves: GapHalves,
+    pub(crate) face: GapFace,
     pub(crate) count: u32,
     /// tan(π/z): where the next gap begins.
     pub(crate) tan_half: f64,
@@ -76,7 +78,7 @@ pub(crate) struct Contacts {
     /// What is different on the flanks.
     pub(crate) flank: Option<Flank>,
     /// The two, ready for lanes.
-    answer: Answer,
+    law: SurfaceLaw,
     /// Radius of the touching circles \[m\].
     pub(crate) radius: f64,
     /// Runs of rollers that can touch.
@@ -86,7 +88,7 @@ pub(crate) struct Contacts {
     /// Gap axis of each slot in the wheel frame (teeth only).
     pub(crate) axis_x: Vec<f64>,
     pub(crate) axis_y: Vec<f64>,
-    /// State of each slot at the last accepted step, for one or two sides.
+    /// State of each slot at the last accepted step, for every side.
     pub(crate) memory: Box<Touch>,
     /// When that was \[s\].
     pub(crate) accepted: f64,
@@ -95,21 +97,11 @@ pub(crate) struct Contacts {
     pub(crate) for_links: bool,
 }
 
-/// Contact state per slot; two-sided profiles hold the left side behind the right one.
+/// Contact state per slot; where a gap has several stretches, each is a side, and the slots of one stand behind those of the
+/// other.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Touch {
-    /// Inverse of the closing speed at touch \[s/m\]; zero while open.
-    pub(crate) inverse_onset: Vec<f64>,
-    /// Gap \[m\].
-    pub(crate) gap: Vec<f64>,
-    /// Closing speed \[m/s\].
-    pub(crate) closing: Vec<f64>,
-    /// Normal force \[N\].
-    pub(crate) force: Vec<f64>,
-    /// State of a friction law that has one.
-    pub(crate) stick: Vec<f64>,
-    /// Share of the flank's law; kept where there is one.
-    pub(crate) share: Vec<f64>,
+    pub(crate) state: ContactMemory,
     /// Until when \[s\] nothing can touch in the lane that begins with this slot.
     pub(crate) wake: Vec<f64>,
     /// What implicit steps want to know; kept for rigid links only, and valid where a contact is closed.
@@ -127,6 +119,10 @@ pub(crate) struct Faces {
     /// ∂F/∂δ \[N/m\] and ∂F/∂δ̇ \[N s/m\].
     pub(crate) stiffness: Vec<f64>,
     pub(crate) damping: Vec<f64>,
+    /// Friction \[N\], its slope and its secant \[N s/m\]; kept where there is friction.
+    pub(crate) rub: Vec<f64>,
+    pub(crate) drag: Vec<f64>,
+    pub(crate) secant: Vec<f64>,
 }
 
 impl Faces {
@@ -141,6 +137,9 @@ impl Faces {
             &mut self.bend,
             &mut self.stiffness,
             &mut self.damping,
+            &mut self.rub,
+            &mut self.drag,
+            &mut self.secant,
         ] {
             values.resize(slots, 0.0);
         }
@@ -150,18 +149,9 @@ impl Faces {
 impl Touch {
     /// As many slots, none of them in contact.
     pub(crate) fn open(&mut self, slots: usize) {
-        self.resize(slots);
-        self.gap.fill(1.0);
-        for values in [
-            &mut self.inverse_onset,
-            &mut self.closing,
-            &mut self.force,
-            &mut self.stick,
-            &mut self.share,
-            &mut self.wake,
-        ] {
-            values.fill(0.0);
-        }
+        self.state.reopen(slots);
+        self.wake.clear();
+        self.wake.resize(slots, 0.0);
     }
 
     #[inline]
@@ -169,17 +159,8 @@ impl Touch {
         if self.wake.len() == slots {
             return;
         }
-        for values in [
-            &mut self.inverse_onset,
-            &mut self.gap,
-            &mut self.closing,
-            &mut self.force,
-            &mut self.stick,
-            &mut self.share,
-            &mut self.wake,
-        ] {
-            values.resize(slots, 0.0);
-        }
+        self.state.resize(slots);
+        self.wake.resize(slots, 0.0);
     }
 }
 
@@ -189,7 +170,7 @@ impl Contacts {
             shape,
             surface,
             flank,
-            answer: Answer::new(&surface, flank),
+            law: SurfaceLaw::new(&surface, flank),
             radius,
             runs: Vec::new(),
             slots: 0,
@@ -201,11 +182,12 @@ impl Contacts {
         }
     }
 
-    /// Number of sides that a slot looks at.
+    /// Number of sides that a slot looks at: stretches with a contact each.
+    #[inline]
     pub(crate) fn sides(&self) -> usize {
         match &self.shape {
-            Shape::Teeth(teeth) if teeth.halves.two_sided => 2,
-            Shape::Teeth(_) | Shape::Rail { .. } => 1,
+            Shape::Teeth(teeth) => teeth.face.stretches.len(),
+            Shape::Rail { .. } => 1,
         }
     }
 
@@ -213,9 +195,10 @@ impl Contacts {
     pub(crate) fn stored(&self, touch: &Touch) -> f64 {
         let law = &self.surface.law;
         let closed = touch
+            .state
             .gap
             .iter()
-            .zip(&touch.share)
+            .zip(&touch.state.share)
             .filter(|(gap, _)| **gap < 0.0);
         closed
             .map(|(&gap, &share)| match &self.flank {

@@ -159,11 +159,8 @@ impl System {
                 match &on.contact {
                     RailContact::Circles(contacts) => contacts.each_candidate(see),
                     RailContact::Plates(plates) => {
-                        for (link, touch) in plates.memory.iter().enumerate() {
-                            see(
-                                link,
-                                (touch.onset > 0.0).then_some((touch.onset, touch.force)),
-                            );
+                        for link in 0..member.chain.links() {
+                            see(link, plates.memory.closed(link));
                         }
                     }
                 }
@@ -201,10 +198,9 @@ impl Contacts {
             let mut seen: Option<(f64, f64)> = None;
             for side in 0..sides {
                 let index = side * self.slots + slot;
-                let inverse = self.memory.inverse_onset[index];
-                if inverse > 0.0 {
+                if let Some((touch, push)) = self.memory.state.closed(index) {
                     let (speed, force) = seen.unwrap_or((0.0, 0.0));
-                    seen = Some((speed.max(1.0 / inverse), force + self.memory.force[index]));
+                    seen = Some((speed.max(touch), force + push));
                 }
             }
             visit(roller, seen);

@@ -181,9 +181,9 @@ impl System {
                 let slots = on.contacts.slots;
                 on.contacts.for_each_slot(|slot, roller| {
                     for side in 0..on.contacts.sides() {
-                        let force = touch.force[side * slots + slot];
+                        let force = touch.state.force[side * slots + slot];
                         out.contact_force[first + roller] += force;
-                        if touch.gap[side * slots + slot] < 0.0 {
+                        if touch.state.gap[side * slots + slot] < 0.0 {
                             out.contacts[on.wheel] += 1.0;
                         }
                     }

@@ -13,7 +13,14 @@
 //! On each feature the gap of a roller is closed form: g = ±(|q − c| − R) − r on an arc or
 //! a corner (R = 0), g = n·(q − p) − r on a straight.
 
+mod gap;
+
 use chaindrive_geometry::{Piece, Point, Vector};
+use pulp::Simd;
+
+pub(crate) use gap::{Extent, GapFace, Stretch};
+
+use crate::lanes::{Lane, Wide};
 
 /// One arc, straight or corner of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,14 +60,27 @@ pub(crate) struct Probe {
     pub(crate) normal: Vector,
     /// Curvature of the level line of the gap through the roller centre \[1/m\], positive around a bulge.
     pub(crate) bend: f64,
-    /// Number of the feature.
-    pub(crate) feature: usize,
     /// Distance beyond the end of the hollow \[m\].
     pub(crate) beyond: f64,
 }
 
+/// The nearest surface as the circles of a lane see it.
+pub(crate) struct Nearest<S: Simd> {
+    /// Distance between the surfaces \[m\], negative in contact.
+    pub(crate) gap: Lane<S>,
+    /// Outward normal of the surface; nothing where a circle is concentric with the arc.
+    pub(crate) nx: Lane<S>,
+    pub(crate) ny: Lane<S>,
+    /// Curvature of the level line of the gap \[1/m\].
+    pub(crate) bend: Lane<S>,
+}
+
 /// Joints that turn by less than this \[rad\] count as tangent.
 const TANGENT: f64 = 1e-7;
+
+/// Largest curvature of a level line \[1/m\] that is reckoned with. Around the centre of a seat as wide as the roller it grows
+/// without bound, while the force that it multiplies vanishes.
+pub(crate) const SHARPEST: f64 = 1e12;
 
 impl Profile {
     /// The row of `pieces`, material on the left of travel, with corners where the pieces turn
@@ -112,14 +132,6 @@ impl Profile {
         }
     }
 
-    /// How far beyond the end of the hollow a place is \[m\], negative in the hollow; infinite without one.
-    pub(crate) fn beyond_hollow(&self, q: Point) -> f64 {
-        self.flank.map_or(f64::INFINITY, |index| {
-            let start = &self.features[index];
-            (q - start.start).dot(&start.along)
-        })
-    }
-
     /// The mirror image x → −x, travelled in the same order.
     pub(crate) fn mirrored(mut self) -> Self {
         for f in &mut self.features {
@@ -131,36 +143,91 @@ impl Profile {
         self
     }
 
-    /// The surface that a roller of radius `radius` at `q` faces.
-    pub(crate) fn probe(&self, q: Point, radius: f64) -> Probe {
-        let mut index = 0;
-        for (i, f) in self.features.iter().enumerate().skip(1) {
-            if (q - f.start).dot(&f.along) <= 0.0 {
+    /// The surface that circles of some radius at (x, y) face.
+    #[inline(always)]
+    pub(crate) fn nearest<S: Simd>(
+        &self,
+        w: Wide<S>,
+        [x, y]: [Lane<S>; 2],
+        radius: f64,
+    ) -> Nearest<S> {
+        let zero = w.splat(0.0);
+        let first = &self.features[0];
+        let mut cx = w.splat(first.centre.x);
+        let mut cy = w.splat(first.centre.y);
+        let mut r = w.splat(first.radius);
+        let mut sign = w.splat(first.sign);
+        let mut mx = w.splat(first.straight.x);
+        let mut my = w.splat(first.straight.y);
+        let mut passed = w.first(Wide::<S>::COUNT);
+        for index in 1..self.features.len() {
+            let f = &self.features[index];
+            passed = passed & self.ahead(w, index, [x, y]).greater(zero);
+            if !passed.any() {
                 break;
             }
-            index = i;
+            cx = passed.select(w.splat(f.centre.x), cx);
+            cy = passed.select(w.splat(f.centre.y), cy);
+            r = passed.select(w.splat(f.radius), r);
+            sign = passed.select(w.splat(f.sign), sign);
+            if self.has_straights {
+                mx = passed.select(w.splat(f.straight.x), mx);
+                my = passed.select(w.splat(f.straight.y), my);
+            }
         }
+        let (ex, ey) = (x - cx, y - cy);
+        let [distance, inverse] = (ex * ex + ey * ey).roots();
+        let scale = sign * inverse;
+        let contact_radius = w.splat(radius);
+        // g = ±(|q − c| − R) − r
+        let mut gap = sign * (distance - r) - contact_radius;
+        let (mut nx, mut ny, mut bend) = (scale * ex, scale * ey, scale);
+        if self.has_straights {
+            // g = n·(q − p) − r
+            let straight = (mx * mx + my * my).greater(zero);
+            gap = straight.select(mx * ex + my * ey - contact_radius, gap);
+            nx = straight.select(mx, nx);
+            ny = straight.select(my, ny);
+            bend = straight.select(zero, bend);
+        }
+        Nearest { gap, nx, ny, bend }
+    }
+
+    /// How far beyond the end of the hollow places are \[m\], negative in the hollow; without one, beyond any measure.
+    #[inline(always)]
+    pub(crate) fn beyond_hollow<S: Simd>(&self, w: Wide<S>, at: [Lane<S>; 2]) -> Lane<S> {
+        match self.flank {
+            Some(index) => self.ahead(w, index, at),
+            None => w.splat(f64::MAX),
+        }
+    }
+
+    /// How far beyond the line where a feature begins \[m\].
+    #[inline(always)]
+    fn ahead<S: Simd>(&self, w: Wide<S>, index: usize, [x, y]: [Lane<S>; 2]) -> Lane<S> {
         let f = &self.features[index];
-        let from = q - f.centre;
-        if f.straight == Vector::zeros() {
-            let distance = from.norm().max(f64::MIN_POSITIVE);
-            Probe {
-                // g = ±(|q − c| − R) − r
-                gap: f.sign * (distance - f.radius) - radius,
-                normal: from * (f.sign / distance),
-                bend: f.sign / distance,
-                feature: index,
-                beyond: self.beyond_hollow(q),
-            }
-        } else {
-            Probe {
-                // g = n·(q − p) − r
-                gap: f.straight.dot(&from) - radius,
-                normal: f.straight,
-                bend: 0.0,
-                feature: index,
-                beyond: self.beyond_hollow(q),
-            }
+        (x - w.splat(f.start.x)) * w.splat(f.along.x)
+            + (y - w.splat(f.start.y)) * w.splat(f.along.y)
+    }
+
+    /// The surface that a circle of radius `radius` at `q` faces: one lane of one.
+    pub(crate) fn probe(&self, q: Point, radius: f64) -> Probe {
+        let w = Wide(pulp::Scalar);
+        let at = [w.splat(q.x), w.splat(q.y)];
+        let Nearest { gap, nx, ny, bend } = self.nearest(w, at, radius);
+        Probe::of([gap, nx, ny, bend, self.beyond_hollow(w, at)])
+    }
+}
+
+impl Probe {
+    /// One lane of one: gap, normal, bend and distance beyond the hollow.
+    pub(crate) fn of(lanes: [Lane<pulp::Scalar>; 5]) -> Self {
+        let [gap, x, y, bend, beyond] = lanes.map(Lane::sum);
+        Self {
+            gap,
+            normal: Vector::new(x, y),
+            bend: bend.clamp(-SHARPEST, SHARPEST),
+            beyond,
         }
     }
 }
@@ -198,165 +265,5 @@ fn feature(piece: &Piece, along: Vector) -> Feature {
             start,
             along,
         },
-    }
-}
-
-/// The tooth gap as the inner loop sees it: the two halves from the bottom outward, in the
-/// frame with the gap axis along +y; both are described for x ≥ 0, the left one mirrored.
-#[derive(Clone, Debug)]
-pub(crate) struct GapHalves {
-    pub(crate) right: Profile,
-    pub(crate) left: Profile,
-    /// One roller may touch both halves at once, or the halves differ: both must be looked at.
-    pub(crate) two_sided: bool,
-}
-
-impl GapHalves {
-    /// Splits a gap, given from the right tip to the left one, at its bottom.
-    pub(crate) fn new(pieces: &[Piece], roller_radius: f64) -> Self {
-        let left_pieces = left_half(pieces);
-        let mirrored: Vec<Piece> = pieces
-            .iter()
-            .rev()
-            .map(|piece| piece.mirrored_x().reversed())
-            .collect();
-        let right_pieces = left_half(&mirrored);
-        let left = Profile::new(&left_pieces, false, false).mirrored();
-        let right = Profile::new(&right_pieces, false, false).mirrored();
-        let differ = !alike(&left, &right);
-        let two_sided = differ || narrow(&right, roller_radius);
-        Self {
-            right,
-            left,
-            two_sided,
-        }
-    }
-}
-
-/// The pieces from the bottom to the left tip; the piece across the axis comes first, whole.
-fn left_half(pieces: &[Piece]) -> Vec<Piece> {
-    let reaches_left = |piece: &Piece| piece.end().x < -1e-12;
-    let first = pieces.iter().position(reaches_left).unwrap_or(0);
-    pieces[first..].to_vec()
-}
-
-fn alike(a: &Profile, b: &Profile) -> bool {
-    let close = |p: Point, q: Point| (p - q).norm() < 1e-9;
-    a.features.len() == b.features.len()
-        && a.features
-            .iter()
-            .zip(&b.features)
-            .enumerate()
-            .all(|(i, (f, g))| {
-                close(f.centre, g.centre)
-                    && (f.radius - g.radius).abs() < 1e-9
-                    && (f.straight - g.straight).norm() < 1e-9
-                    && (i == 0 || close(f.start, g.start))
-            })
-}
-
-/// Whether a roller that comes down the axis meets a flank before it meets a seat that
-/// crosses the axis.
-fn narrow(half: &Profile, roller_radius: f64) -> bool {
-    let Some(seat) = half.features.first() else {
-        return false;
-    };
-    let crosses = seat.straight == Vector::zeros() && seat.centre.x.abs() < 1e-9;
-    !crosses || (seat.sign < 0.0 && seat.radius <= roller_radius)
-}
-
-#[cfg(test)]
-mod tests {
-    use chaindrive_geometry::{ArcSpline, Seat, Segment, Tip, ToothForm, ToothGap};
-
-    use super::*;
-
-    /// Points on a grid over one gap, from the root to above the tips.
-    fn grid(gap: &ToothGap) -> Vec<Point> {
-        let half = std::f64::consts::PI / f64::from(gap.teeth);
-        let mut points = Vec::new();
-        for i in -40..=40 {
-            for k in 0..=60 {
-                let angle = half * f64::from(i) / 40.5;
-                let share = f64::from(k) / 60.0;
-                let low = gap.root_radius + 0.3 * gap.roller_diameter;
-                let high = gap.tip_radius + 0.6 * gap.roller_diameter;
-                let radius = low + (high - low) * share;
-                points.push(Point::new(radius * angle.sin(), radius * angle.cos()));
-            }
-        }
-        points
-    }
-
-    /// Passing from feature to feature finds what an exhaustive search over the exact outline finds,
-    /// wherever a roller is near the surface.
-    #[test]
-    fn features_find_the_nearest_surface() {
-        let chain = (0.0889, 0.05398);
-        let iso = |gap| ToothForm::Iso606 {
-            gap,
-            tip: Tip::Mid,
-            seat: Seat::Bottom,
-        };
-        let forms = [
-            iso(0.0),
-            iso(0.5),
-            iso(1.0),
-            ToothForm::AsaTypeII { tip: Tip::Mid },
-            ToothForm::Circular {
-                seat_radius: 0.02726,
-                tip: Tip::Mid,
-                seat: Seat::Bottom,
-            },
-        ];
-        for form in &forms {
-            for teeth in [9, 24, 48, 120] {
-                let gap = ToothGap::new(teeth, chain.0, chain.1, form).unwrap();
-                let halves = GapHalves::new(gap.pieces(), 0.5 * chain.1);
-                assert!(!halves.two_sided, "{form:?} with {teeth} teeth");
-                let outline = ArcSpline::open(gap.pieces()).unwrap();
-                let mut compared = 0;
-                for q in grid(&gap) {
-                    let foot = outline.nearest(q, 10.0).unwrap();
-                    if foot.distance < 0.3 * chain.1 || foot.distance > 0.7 * chain.1 {
-                        continue;
-                    }
-                    compared += 1;
-                    let probe = halves.right.probe(Point::new(q.x.abs(), q.y), 0.0);
-                    let error = (probe.gap - foot.distance).abs();
-                    assert!(error < 1e-12, "{form:?}, {teeth} teeth, {q:?}: {error}");
-                    // On the axis both halves are equally near.
-                    if q.x.abs() < 1e-9 {
-                        continue;
-                    }
-                    let side = q.x.signum();
-                    let normal = Vector::new(side * probe.normal.x, probe.normal.y);
-                    assert!(
-                        (normal - foot.normal).norm() < 1e-9,
-                        "{form:?}, {teeth}, {q:?}"
-                    );
-                }
-                assert!(
-                    compared > 300,
-                    "{compared} points of {form:?} with {teeth} teeth"
-                );
-            }
-        }
-    }
-
-    /// A roller in a V lies on both flanks: both halves see it, each its own.
-    #[test]
-    fn a_narrow_gap_is_looked_at_twice() {
-        let flank = |x: f64| Point::new(x, 0.6 + x.abs());
-        let pieces = [
-            Piece::Segment(Segment::new(flank(0.04), flank(0.0))),
-            Piece::Segment(Segment::new(flank(0.0), flank(-0.04))),
-        ];
-        let halves = GapHalves::new(&pieces, 0.01);
-        assert!(halves.two_sided);
-        let above = Point::new(0.0, 0.6 + 0.01 * std::f64::consts::SQRT_2);
-        for half in [&halves.right, &halves.left] {
-            assert!(half.probe(above, 0.01).gap.abs() < 1e-15);
-        }
     }
 }

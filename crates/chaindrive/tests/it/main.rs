@@ -15,6 +15,7 @@ mod reproducible;
 mod requests;
 mod scenes;
 mod sweep;
+mod tooth_gaps;
 mod validation_contact;
 mod validation_dynamics_free_chain;
 mod validation_dynamics_impacts;

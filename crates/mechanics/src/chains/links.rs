@@ -35,18 +35,19 @@ use chaindrive_integrate::Moment;
 use nalgebra::Vector3;
 use pulp::Arch;
 
-pub(crate) use bearing::{Bearing, Part, PinTouch, Tally};
+pub(crate) use bearing::{Bearing, Part, Tally};
 pub(crate) use blocks::Blocks;
 pub(crate) use element::{Element, Mount, Partner, cross, turned};
 pub(crate) use hinge::Hinges;
 pub(crate) use impulses::Impulses;
-pub(crate) use pins::{Pairs, PinMemory, Pins};
+pub(crate) use pins::{Pairs, Pins};
 pub(crate) use posture::{Posture, Shapes, free_part};
 
 use super::{Record, Surroundings};
 use crate::End;
+use crate::contact::{ContactMemory, LaneTally, MemoryLanes};
 use crate::energy::Flow;
-use crate::lanes::dispatch;
+use crate::lanes::{Wide, dispatch};
 use crate::system::HeldEnd;
 
 /// A body of the chain: a link, or a free roller.
@@ -124,9 +125,20 @@ pub(crate) struct Linkage {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Memory {
     pub(crate) time: f64,
-    pub(crate) joints: PinMemory,
+    pub(crate) joints: ContactMemory,
     /// Of the free rollers on their bushes, by joint.
-    pub(crate) bushes: Vec<PinTouch>,
+    pub(crate) bushes: ContactMemory,
+}
+
+/// What the kernel of the teeth wants of rollers beside their places and velocities.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Idle {
+    /// Accelerations that it adds to, and inverse masses: of links neither is used.
+    pub(crate) ax: Vec<f64>,
+    pub(crate) ay: Vec<f64>,
+    pub(crate) inverse_mass: Vec<f64>,
+    /// Angular speeds of the circles, where teeth rub \[rad/s\].
+    pub(crate) spin: Vec<f64>,
 }
 
 /// What one evaluation of a linkage leaves behind.
@@ -147,7 +159,7 @@ pub(crate) struct Play {
     pub(crate) blocks: Blocks,
     pub(crate) loose: Vec<loose::Loose>,
     /// Accelerations and inverse masses of particles, which the kernel of the teeth asks for and links have no use for.
-    pub(crate) idle: [Vec<f64>; 3],
+    pub(crate) idle: Idle,
 }
 
 impl Linkage {
@@ -185,7 +197,8 @@ impl Linkage {
         let Joining::Clearance(bearing) = &self.joining else {
             return Tally::new();
         };
-        let mut tally = dispatch(
+        let dt = at.t - self.memory.time;
+        let tally = dispatch(
             self.arch,
             pins::Contacts {
                 linkage: self,
@@ -193,13 +206,9 @@ impl Linkage {
                 posture: &play.posture,
                 memory: &mut play.memory.joints,
                 pins: &mut play.pins,
+                dt,
             },
         );
-        if bearing.rubs() {
-            let dt = at.t - self.memory.time;
-            let (memory, pins) = (&mut play.memory.joints, &mut play.pins);
-            tally.friction_loss = bearing.rub(self, &play.posture, dt, memory, pins);
-        }
         if self.closed {
             play.pins.close(self.links);
         } else {
@@ -244,31 +253,30 @@ impl Linkage {
         let Some(free) = &self.free_rollers else {
             return;
         };
-        play.memory.bushes.resize(self.joints.len(), PinTouch::OPEN);
-        let dt = at.t - self.memory.time;
-        let mut tally = play.tally;
+        let joints = self.joints.len();
+        let (w, dt) = (Wide(pulp::Scalar), at.t - self.memory.time);
+        let mut bushes = std::mem::take(&mut play.memory.bushes);
+        bushes.resize(joints);
+        let mut memory = MemoryLanes::new(w, &self.memory.bushes, &mut bushes, joints);
+        let mut tally = LaneTally::new(w);
         for (index, joint) in self.joints.iter().enumerate() {
             let Some(body) = free.body[index] else {
                 continue;
             };
             let bush = self.part(joint.carrier, at, &play.posture);
             let roller = free_part(body, at);
-            let before = &self.memory.bushes[index];
-            let (touch, element) = free
-                .bearing
-                .touch(index, &roller, &bush, before, dt, &mut tally);
-            play.memory.bushes[index] = touch;
+            let parts = [&roller, &bush];
+            let bearing = &free.bearing;
+            let element = bearing.touch(index, parts, &mut memory, index, dt, &mut tally);
             if let Some(element) = element {
                 play.apply(&element, element.push());
             }
         }
+        play.memory.bushes = bushes;
+        let tally = Tally::of(&tally);
         rates[Flow::JointLoss as usize] += tally.normal_loss;
         rates[Flow::FrictionLoss as usize] += tally.friction_loss;
-        play.tally = Tally {
-            normal_loss: 0.0,
-            friction_loss: 0.0,
-            ..tally
-        };
+        play.tally.began(&tally);
     }
 
     /// Forces that pull at the ends of a strand.
@@ -293,10 +301,8 @@ impl Linkage {
             sum += closed.map(|&gap| bearing.energy(gap)).sum::<f64>();
         }
         if let Some(free) = &self.free_rollers {
-            let closed = memory.bushes.iter().filter(|touch| touch.gap < 0.0);
-            sum += closed
-                .map(|touch| free.bearing.energy(touch.gap))
-                .sum::<f64>();
+            let closed = memory.bushes.gap.iter().filter(|gap| **gap < 0.0);
+            sum += closed.map(|&gap| free.bearing.energy(gap)).sum::<f64>();
         }
         sum
     }
@@ -317,7 +323,7 @@ impl Linkage {
     pub(crate) fn pin_force(&self, play: &Play, joint: usize) -> Vector {
         match &self.joining {
             Joining::Hinges(_) => play.hinge_forces[joint],
-            Joining::Clearance(_) if self.pairs.pin_after[joint] => play.pins.push(joint),
+            Joining::Clearance(_) if self.pairs.pin_after(joint) => play.pins.push(joint),
             Joining::Clearance(_) => -play.pins.push(joint),
         }
     }

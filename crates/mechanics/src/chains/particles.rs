@@ -125,6 +125,7 @@ impl Particles {
             ax,
             ay: &mut rest[..n],
             inverse_mass: &self.inverse_masses[..n],
+            spin: &[],
         }
     }
 

@@ -1,7 +1,7 @@
 //! What one evaluation of a chain leaves behind.
 
 use super::links::{Impulses, Play};
-use crate::contact::{Frame, PlateTouch, Touch, Wrench};
+use crate::contact::{ContactMemory, Frame, Touch, Wrench};
 use crate::system::BodyContacts;
 
 /// What the bodies that a chain touches feel of it, by contact.
@@ -13,7 +13,7 @@ use crate::system::BodyContacts;
 pub(crate) struct Loads {
     pub(crate) teeth: Vec<Box<Touch>>,
     pub(crate) circles: Vec<Box<Touch>>,
-    pub(crate) plates: Vec<Vec<PlateTouch>>,
+    pub(crate) plates: Vec<ContactMemory>,
     pub(crate) wheel_wrenches: Vec<Wrench>,
     pub(crate) rail_wrenches: Vec<Wrench>,
     /// Frames of the wheels, then of the rails.
@@ -38,7 +38,7 @@ impl Record {
             loads: Loads {
                 teeth: touches(wheels),
                 circles: touches(rails),
-                plates: vec![Vec::new(); rails],
+                plates: vec![ContactMemory::default(); rails],
                 wheel_wrenches: vec![Wrench::default(); wheels],
                 rail_wrenches: vec![Wrench::default(); rails],
                 frames: vec![Frame::fixed(); wheels + rails],

@@ -12,6 +12,8 @@ pub(crate) struct Rollers<'a> {
     pub(crate) ax: &'a mut [f64],
     pub(crate) ay: &'a mut [f64],
     pub(crate) inverse_mass: &'a [f64],
+    /// Angular speeds of the circles that touch \[rad/s\]; empty where none of them turns.
+    pub(crate) spin: &'a [f64],
 }
 
 impl Rollers<'_> {

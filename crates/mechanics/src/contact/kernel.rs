@@ -1,11 +1,8 @@
 //! The inner loop: lanes of rollers against one body.
 
-use chaindrive_contact::dissipation::RATIO_LIMIT;
-use chaindrive_contact::{Friction, Rub};
 use pulp::Simd;
 
-use super::answer::{Answer, LaneElastic};
-use super::look::{Half, Hit, Place};
+use super::look::{Hit, Place, View};
 use super::rest::{CLOSE, Clear};
 use super::slots::Slots;
 use super::window::FAR;
@@ -13,44 +10,7 @@ use super::wrench::{Sums, Wrench};
 use super::{Contacts, Frame, Shape, Touch};
 use crate::chains::Rollers;
 use crate::lanes::{LANES, Lane, Mask, Wide};
-
-/// Turns normal forces into friction forces and slips into damping; kept out of line like the laws.
-#[inline(never)]
-fn rub_one_by_one(
-    friction: &Friction,
-    dt: f64,
-    before: &[f64],
-    force: &mut [f64],
-    slip: &mut [f64],
-    stick: &mut [f64],
-) {
-    let lanes = force.iter_mut().zip(slip).zip(before.iter().zip(stick));
-    for ((force, slip), (before, stick)) in lanes {
-        let rub = if *force > 0.0 {
-            friction.rub(*force, *slip, *before, dt)
-        } else {
-            Rub::default()
-        };
-        (*force, *slip, *stick) = (rub.force, rub.damping, rub.state);
-    }
-}
-
-/// Friction of any law: force along the tangent, and damping.
-#[inline(always)]
-fn rub<S: Simd>(
-    w: Wide<S>,
-    friction: &Friction,
-    dt: f64,
-    force: Lane<S>,
-    slip: Lane<S>,
-    (before, stick): (&[f64], &mut [f64]),
-) -> [Lane<S>; 2] {
-    let [mut rubs, mut drags] = [[0.0; LANES]; 2];
-    force.store(&mut rubs, 0);
-    slip.store(&mut drags, 0);
-    rub_one_by_one(friction, dt, before, &mut rubs, &mut drags, stick);
-    [w.load(&rubs, 0), w.load(&drags, 0)]
-}
+use crate::profile::SHARPEST;
 
 impl Contacts {
     /// Adds the contact accelerations to `rollers` and returns what the body receives.
@@ -73,7 +33,7 @@ impl Contacts {
         // A copy: what may change while slots are written is read from memory again for every lane.
         let frame = *frame;
         for side in 0..self.sides() {
-            let half = self.half(side);
+            let view = self.view(side);
             for (eight, run) in self.runs.iter().enumerate() {
                 for offset in (0..LANES).step_by(Wide::<S>::COUNT) {
                     let place = (eight * LANES + offset) / Wide::<S>::COUNT;
@@ -90,22 +50,12 @@ impl Contacts {
                         valid: w.first(run.count - offset),
                     };
                     let (slots, sums) = (&mut slots, &mut sums);
-                    touching |= self.lane(
-                        w,
-                        dt,
-                        &frame,
-                        &half,
-                        &self.answer,
-                        here,
-                        rollers,
-                        slots,
-                        sums,
-                    );
+                    touching |= self.lane(w, dt, &frame, view, here, rollers, slots, sums);
                 }
             }
         }
         if touching {
-            sums.total(self.surface.friction != Friction::None)
+            sums.total(self.law.friction.acts())
         } else {
             Wrench {
                 first_share: 1.0,
@@ -125,8 +75,7 @@ impl Contacts {
         w: Wide<S>,
         dt: f64,
         frame: &Frame,
-        half: &Half<'_>,
-        answer: &Answer,
+        view: View<'_>,
         here: Here<S>,
         rollers: &mut Rollers<'_>,
         slots: &mut Slots<'_, S>,
@@ -166,20 +115,9 @@ impl Contacts {
             }
             Shape::Rail { reference, .. } => Place::at_rail(w, *reference, frame, [dx, dy]),
         };
-        let face = half.face(w, &place);
-        let found = face.look(w, self.radius);
-        // No closure: it would be compiled for the oldest processor.
-        let flank = match &answer.flank {
-            Some(flank) => {
-                let beyond = face.beyond_hollow(w);
-                Some(flank.elastic_and_share(w, beyond))
-            }
-            None => None,
-        };
-        let hit = place.world(&found);
-        let Some(closing) = self.respond(
-            w, dt, answer, flank, &motion, &hit, near, here, rollers, slots, sums,
-        ) else {
+        let hit = view.hit(w, &place, self.radius, self.law.flank.is_some());
+        let Some(closing) = self.respond(w, dt, &motion, &hit, near, here, rollers, slots, sums)
+        else {
             slots.set_wake(here.lane, 0.0);
             return true;
         };
@@ -214,8 +152,6 @@ impl Contacts {
         &self,
         w: Wide<S>,
         dt: f64,
-        answer: &Answer,
-        flank: Option<(&LaneElastic, Lane<S>)>,
         motion: &Motion<S>,
         hit: &Hit<S>,
         near: Mask<S>,
@@ -224,82 +160,41 @@ impl Contacts {
         slots: &mut Slots<'_, S>,
         sums: &mut Sums<S>,
     ) -> Option<Lane<S>> {
-        let Answer {
-            elastic, numbers, ..
-        } = answer;
         let Here { lane, roller, .. } = here;
-        let zero = w.splat(0.0);
+        let law = &self.law;
         let gap = near.select(hit.gap, w.splat(FAR));
         // δ̇ = −n·u
         let closing = -(hit.nx * motion.ux + hit.ny * motion.uy);
-        slots.now.gap.set(lane, gap);
-        slots.now.closing.set(lane, closing);
-        let depth = (-gap).max(zero);
-        let closed = depth.greater(zero);
-        if !closed.any() {
-            slots.now.inverse_onset.set(lane, zero);
-            slots.now.force.set(lane, zero);
+        let share = law.share(w, hit.beyond);
+        let (memory, tally) = (&mut slots.memory, &mut sums.tally);
+        let Some(pressed) = law.press(w, memory, lane, [gap, closing], share, None, tally) else {
             return Some(closing);
-        }
-        let before = slots.before.inverse_onset.get(lane);
-        let mut inverse = closed.select(before, zero);
-        let fresh = closed & w.splat(f64::MIN_POSITIVE).greater(before);
-        if fresh.any() {
-            // v = v_a + s (v_b − v_a),   s = g_a/(g_a − g_b)
-            let gap_before = slots.before.gap.get(lane).max(zero);
-            let closing_before = slots.before.closing.get(lane);
-            let share = gap_before * (gap_before + depth).recip();
-            let onset = closing_before + share * (closing - closing_before);
-            let inverse_onset = onset.max(w.splat(numbers.floor)).recip();
-            inverse = fresh.select(inverse_onset, inverse);
-            sums.fresh = true;
-            let fresh_depth = fresh.select(depth, zero);
-            sums.first_depth = sums.first_depth.max(fresh_depth);
-            sums.first_share = sums.first_share.min(fresh.select(share, w.splat(1.0)));
-        }
-        slots.now.inverse_onset.set(lane, inverse);
-
-        // F = max(0, g + χ g min(δ̇/v, 4) + c δ̇)
-        let on_seat = elastic.force(w, depth);
-        let mut stored = on_seat;
-        if let Some((on_flank, share)) = flank {
-            // g = (1 − s) g_seat + s g_flank
-            stored = stored + share * (on_flank.force(w, depth) - stored);
-            slots.now.share.set(lane, share);
-        }
-        let ratio = (closing * inverse).min(w.splat(RATIO_LIMIT));
-        let factor = w.splat(numbers.factor);
-        let viscous = w.splat(numbers.damping) * closing;
-        let raw = stored * (w.splat(1.0) + factor * ratio) + viscous;
-        let force = closed.select(raw.max(zero), zero);
-        slots.now.force.set(lane, force);
-
+        };
+        let force = pressed.force;
         let (tx, ty) = (-hit.ny, hit.nx);
         let (mut fx, mut fy) = (force * hit.nx, force * hit.ny);
         // M = −d × F
         let mut moment = motion.dy * fx - motion.dx * fy;
-        if numbers.friction > 0.0 {
-            // slip = t·u + ω r,   f = −μ F slip/√(slip² + v_s²)
+        let mut damping = law.steepest(w, &pressed);
+        if law.friction.acts() {
+            // slip = t·u + ω r − ω_a r: the circle turns with its body.
             let radius = w.splat(self.radius);
-            let slip = tx * motion.ux + ty * motion.uy + motion.spin * radius;
-            let reach = slip * slip + w.splat(numbers.slip_speed_squared);
-            let rub = -(w.splat(numbers.friction) * force * slip * reach.inverse_root());
+            let mut slip = tx * motion.ux + ty * motion.uy + motion.spin * radius;
+            if !rollers.spin.is_empty() {
+                slip = slip - w.load(rollers.spin, roller) * radius;
+            }
+            let rubbing = law.rub(w, memory, lane, dt, &pressed, slip, tally);
+            let rub = rubbing.force;
             fx += rub * tx;
             fy += rub * ty;
             // M = −(d − r n) × F
             moment = motion.dy * fx - motion.dx * fy + rub * radius;
-            sums.friction_loss += -(rub * slip);
-        }
-        let mut across = w.splat(numbers.friction_slope) * force;
-        if let Some(friction) = numbers.general {
-            let radius = w.splat(self.radius);
-            let slip = tx * motion.ux + ty * motion.uy + motion.spin * radius;
-            let [rub, drag] = rub(w, &friction, dt, force, slip, slots.stick(lane));
-            fx += rub * tx;
-            fy += rub * ty;
-            moment = motion.dy * fx - motion.dx * fy + rub * radius;
-            sums.friction_loss += -(rub * slip);
-            across = drag;
+            damping = damping + rubbing.steepest;
+            if let Some(faces) = &mut slots.faces {
+                faces.rub.set(lane, rub);
+                faces.drag.set(lane, rubbing.drag);
+                faces.secant.set(lane, rubbing.secant);
+            }
         }
         let inverse_mass = w.load(rollers.inverse_mass, roller);
         (w.load(rollers.ax, roller) + fx * inverse_mass).store(rollers.ax, roller);
@@ -308,27 +203,15 @@ impl Contacts {
         sums.fx += -fx;
         sums.fy += -fy;
         sums.moment += moment;
-        sums.normal_loss += (force - closed.select(stored, zero)) * closing;
-        sums.depth = sums.depth.max(depth);
-        // −∂F/∂ġ = χ g/v + c, and μ F/v_s across
-        let normal = factor * stored * inverse + closed.select(w.splat(numbers.damping), zero);
-        sums.damping = sums.damping.max(normal + across);
+        sums.damping = sums.damping.max(damping);
         if let Some(faces) = &mut slots.faces {
-            // ∂F/∂δ = k (1 + χ min(δ̇/v, 4)); both derivatives are zero where a limit holds the force.
-            let mut slope = elastic.slope(w, depth, on_seat);
-            if let Some((on_flank, share)) = flank {
-                let other = on_flank.slope(w, depth, on_flank.force(w, depth));
-                slope = slope + share * (other - slope);
-            }
-            let pressed = force.greater(zero);
-            let free = w.splat(RATIO_LIMIT).greater(closing * inverse);
-            let damping = free.select(factor * stored * inverse, zero) + w.splat(numbers.damping);
-            let stiffness = slope * (w.splat(1.0) + factor * ratio);
-            faces.stiffness.set(lane, pressed.select(stiffness, zero));
-            faces.damping.set(lane, pressed.select(damping, zero));
+            let [stiffness, damping] = law.slopes(w, &pressed, share);
+            faces.stiffness.set(lane, stiffness);
+            faces.damping.set(lane, damping);
             faces.normal_x.set(lane, hit.nx);
             faces.normal_y.set(lane, hit.ny);
-            faces.bend.set(lane, hit.bend);
+            let sharpest = w.splat(SHARPEST);
+            faces.bend.set(lane, hit.bend.min(sharpest).max(-sharpest));
         }
         None
     }

@@ -1,63 +1,50 @@
 //! Where lanes of rollers are on a profile.
+//!
+//! A roller that is carried over the tip of a tooth leaves one gap and enters the next before the axis that is remembered for it
+//! changes. Its contact with the tip is one stretch of both:
+//!
+//! ```text
+//!   gap to the left │ remembered gap │ gap to the right
+//!    m−1  …   1   0 │ m−1  …   1   0 │ m−1  …   1   0      stretches, from the right tip to the left one
+//!                 ╰──╯            ╰───╯                    the same contact
+//! ```
+//!
+//! The sides of the remembered gap serve its neighbours too: stretch j of the gap to the right is kept as side j + 1, stretch j
+//! of the gap to the left as side j − 1, counted round.
 
 use chaindrive_geometry::Point;
 use pulp::Simd;
 
-use super::window::FAR;
 use super::{Contacts, Frame, Shape, Teeth};
-use crate::lanes::{Lane, Wide};
-use crate::profile::Profile;
+use crate::lanes::{Lane, Mask, Wide};
+use crate::profile::{Extent, Nearest, Probe, Profile, Stretch};
 
 /// Roller centres in gap frames, and the gap axes in the world.
 pub(super) struct Place<S: Simd> {
-    x: Lane<S>,
-    y: Lane<S>,
+    at: [Lane<S>; 2],
     ax: Lane<S>,
     ay: Lane<S>,
+    /// Which rollers have left the gap that is remembered for them, to the right and to the left, if any has.
+    over: Option<[Mask<S>; 2]>,
 }
 
-/// The surface that rollers face, in the frame of the profile.
-pub(super) struct Found<S: Simd> {
-    gap: Lane<S>,
-    nx: Lane<S>,
-    ny: Lane<S>,
-    bend: Lane<S>,
+/// What one side of the slots looks at.
+#[derive(Clone, Copy)]
+pub(super) enum View<'a> {
+    Rail(&'a Profile),
+    /// A stretch of the remembered gap.
+    Gap(&'a [Stretch], usize),
 }
 
-/// The same in the world.
+/// The surface that rollers face, in the world.
 pub(super) struct Hit<S: Simd> {
     pub(super) gap: Lane<S>,
     pub(super) nx: Lane<S>,
     pub(super) ny: Lane<S>,
     /// Curvature of the level line of the gap.
     pub(super) bend: Lane<S>,
-}
-
-/// What a side of the slots looks at: the whole rail, the half of a symmetric gap on the roller's side, or one half of a gap
-/// that must be looked at twice.
-pub(super) struct Half<'a> {
-    profile: &'a Profile,
-    mirror: Mirror,
-    /// Whether the first feature lies across the axis and belongs to the other half where x < 0.
-    seat_across: bool,
-}
-
-/// How places come to the half that a profile describes, at x ≥ 0.
-#[derive(Clone, Copy)]
-enum Mirror {
-    Never,
-    Always,
-    /// Where x < 0.
-    Nearest,
-}
-
-/// The profile that a lane looks at, and from where.
-pub(super) struct Face<'a, S: Simd> {
-    half: &'a Half<'a>,
-    x: Lane<S>,
-    y: Lane<S>,
-    /// −1 where mirrored.
-    sign: Lane<S>,
+    /// How far beyond the hollow the rollers are, where that was asked.
+    pub(super) beyond: Lane<S>,
 }
 
 impl<S: Simd> Place<S> {
@@ -78,20 +65,26 @@ impl<S: Simd> Place<S> {
         let y = dx * ax + dy * ay;
         let beyond = x.abs().greater(y * w.splat(teeth.tan_half));
         if !beyond.any() {
-            return Self { x, y, ax, ay };
+            return Self {
+                at: [x, y],
+                ax,
+                ay,
+                over: None,
+            };
         }
         // Beyond the middle of a tooth the next gap is meant: turn the axis by one pitch.
         let (one, zero) = (w.splat(1.0), w.splat(0.0));
-        let sign = x.greater(zero).select(one, -one);
+        let to_the_right = x.greater(zero);
+        let sign = to_the_right.select(one, -one);
         let cp = beyond.select(w.splat(teeth.pitch_turn[0]), one);
         let sp = beyond.select(sign * w.splat(teeth.pitch_turn[1]), zero);
         let ax2 = cp * ax + sp * ay;
         let ay2 = cp * ay - sp * ax;
         Self {
-            x: dx * ay2 - dy * ax2,
-            y: dx * ax2 + dy * ay2,
+            at: [dx * ay2 - dy * ax2, dx * ax2 + dy * ay2],
             ax: ax2,
             ay: ay2,
+            over: Some([beyond & to_the_right, beyond & zero.greater(x)]),
         }
     }
 
@@ -106,136 +99,169 @@ impl<S: Simd> Place<S> {
         // q' = reference + Rᵀ d; the frame's y axis is (−s, c)
         let (c, s) = (w.splat(frame.turn[0]), w.splat(frame.turn[1]));
         Self {
-            x: c * dx + s * dy + w.splat(reference.x),
-            y: c * dy - s * dx + w.splat(reference.y),
+            at: [
+                c * dx + s * dy + w.splat(reference.x),
+                c * dy - s * dx + w.splat(reference.y),
+            ],
             ax: -s,
             ay: c,
+            over: None,
         }
     }
+}
 
+impl<'a> View<'a> {
+    /// The surfaces that circles of some radius face; how far beyond the hollow they are only if `measured`.
     #[inline(always)]
-    pub(super) fn world(&self, found: &Found<S>) -> Hit<S> {
+    pub(super) fn hit<S: Simd>(
+        self,
+        w: Wide<S>,
+        place: &Place<S>,
+        radius: f64,
+        measured: bool,
+    ) -> Hit<S> {
+        let hit = match self {
+            View::Rail(profile) => {
+                let sign = w.splat(1.0);
+                face(w, profile, place.at, sign, radius, measured)
+            }
+            View::Gap(stretches, side) => {
+                let all = w.first(Wide::<S>::COUNT);
+                let mut hit = stretches[side].face(w, place.at, radius, measured);
+                hit = stretches[side].other_way(w, all, hit, place.at, radius, measured);
+                if let (Some([right, left]), true) = (place.over, stretches.len() > 1) {
+                    let count = stretches.len();
+                    for (over, neighbour) in [(right, count - 1), (left, 1)] {
+                        if over.any() {
+                            let stretch = &stretches[(side + neighbour) % count];
+                            let there = stretch.face(w, place.at, radius, measured);
+                            hit = there.where_of(over, hit);
+                            hit = stretch.other_way(w, over, hit, place.at, radius, measured);
+                        }
+                    }
+                }
+                hit
+            }
+        };
         // The gap's x axis is its y axis turned by −90°.
         Hit {
-            gap: found.gap,
-            nx: found.nx * self.ay + found.ny * self.ax,
-            ny: found.ny * self.ay - found.nx * self.ax,
-            bend: found.bend,
+            nx: hit.nx * place.ay + hit.ny * place.ax,
+            ny: hit.ny * place.ay - hit.nx * place.ax,
+            ..hit
+        }
+    }
+}
+
+impl Stretch {
+    /// What rollers face that pass it to the right, or either way where it is symmetric.
+    #[inline(always)]
+    fn face<S: Simd>(
+        &self,
+        w: Wide<S>,
+        [x, y]: [Lane<S>; 2],
+        radius: f64,
+        measured: bool,
+    ) -> Hit<S> {
+        let one = w.splat(1.0);
+        let (x, sign) = match self.extent {
+            Extent::Folded => (x.abs(), x.greater(w.splat(0.0)).select(one, -one)),
+            Extent::Outward | Extent::Divided(_) => (x, one),
+        };
+        face(w, &self.profile, [x, y], sign, radius, measured)
+    }
+
+    /// The same, for those of some rollers that pass it to the left.
+    #[inline(always)]
+    fn other_way<S: Simd>(
+        &self,
+        w: Wide<S>,
+        some: Mask<S>,
+        hit: Hit<S>,
+        [x, y]: [Lane<S>; 2],
+        radius: f64,
+        measured: bool,
+    ) -> Hit<S> {
+        let Extent::Divided(divide) = &self.extent else {
+            return hit;
+        };
+        let to_the_left = w.splat(divide.at).greater(x) & some;
+        if !to_the_left.any() {
+            return hit;
+        }
+        let left = face(w, &divide.left, [x, y], w.splat(1.0), radius, measured);
+        left.where_of(to_the_left, hit)
+    }
+}
+
+/// What circles at places that `sign` has mirrored face, in the frame of the profile.
+#[inline(always)]
+fn face<S: Simd>(
+    w: Wide<S>,
+    profile: &Profile,
+    at: [Lane<S>; 2],
+    sign: Lane<S>,
+    radius: f64,
+    measured: bool,
+) -> Hit<S> {
+    let Nearest { gap, nx, ny, bend } = profile.nearest(w, at, radius);
+    let beyond = if measured {
+        profile.beyond_hollow(w, at)
+    } else {
+        w.splat(0.0)
+    };
+    Hit {
+        gap,
+        nx: sign * nx,
+        ny,
+        bend,
+        beyond,
+    }
+}
+
+impl<S: Simd> Hit<S> {
+    /// This in some lanes, another in the rest.
+    #[inline(always)]
+    fn where_of(self, some: Mask<S>, other: Self) -> Self {
+        Self {
+            gap: some.select(self.gap, other.gap),
+            nx: some.select(self.nx, other.nx),
+            ny: some.select(self.ny, other.ny),
+            bend: some.select(self.bend, other.bend),
+            beyond: some.select(self.beyond, other.beyond),
         }
     }
 }
 
 impl Contacts {
     #[inline(always)]
-    pub(super) fn half(&self, side: usize) -> Half<'_> {
-        let (profile, mirror) = match &self.shape {
-            Shape::Rail { profile, .. } => (profile, Mirror::Never),
-            Shape::Teeth(Teeth { halves, .. }) => match (halves.two_sided, side) {
-                (false, _) => (&halves.right, Mirror::Nearest),
-                (true, 0) => (&halves.right, Mirror::Never),
-                (true, _) => (&halves.left, Mirror::Always),
-            },
+    pub(super) fn view(&self, side: usize) -> View<'_> {
+        match &self.shape {
+            Shape::Rail { profile, .. } => View::Rail(profile),
+            Shape::Teeth(teeth) => View::Gap(&teeth.face.stretches, side),
+        }
+    }
+
+    /// The surfaces that a circle at `at` faces, one for every side, with normals in the world: one lane of one.
+    pub(crate) fn probes(&self, frame: &Frame, at: Point) -> Vec<Probe> {
+        let w = Wide(pulp::Scalar);
+        let d = at - frame.origin;
+        let lanes = [w.splat(d.x), w.splat(d.y)];
+        let place = match &self.shape {
+            Shape::Rail { reference, .. } => Place::at_rail(w, *reference, frame, lanes),
+            Shape::Teeth(teeth) => {
+                let reach = teeth.tip_radius + self.radius;
+                if d.norm_squared() > reach * reach {
+                    return Vec::new();
+                }
+                let axis = teeth.gap_axis(frame.turn, d, None).map(|e| w.splat(e));
+                Place::in_gap(w, teeth, frame, axis, lanes)
+            }
         };
-        Half {
-            profile,
-            mirror,
-            seat_across: self.sides() > 1 && profile.features[0].sign < 0.0,
-        }
-    }
-}
-
-impl Half<'_> {
-    #[inline(always)]
-    pub(super) fn face<S: Simd>(&self, w: Wide<S>, place: &Place<S>) -> Face<'_, S> {
-        let (one, x) = (w.splat(1.0), place.x);
-        let (x, sign) = match self.mirror {
-            Mirror::Never => (x, one),
-            Mirror::Always => (-x, -one),
-            Mirror::Nearest => (x.abs(), x.greater(w.splat(0.0)).select(one, -one)),
+        let sides = 0..self.sides();
+        let probe = |side| {
+            let hit = self.view(side).hit(w, &place, self.radius, true);
+            Probe::of([hit.gap, hit.nx, hit.ny, hit.bend, hit.beyond])
         };
-        Face {
-            half: self,
-            x,
-            y: place.y,
-            sign,
-        }
-    }
-}
-
-impl<S: Simd> Face<'_, S> {
-    /// Gap, normal and bend.
-    #[inline(always)]
-    pub(super) fn look(&self, w: Wide<S>, radius: f64) -> Found<S> {
-        let (profile, x, y) = (self.half.profile, self.x, self.y);
-        let zero = w.splat(0.0);
-        let first = &profile.features[0];
-        let mut cx = w.splat(first.centre.x);
-        let mut cy = w.splat(first.centre.y);
-        let mut r = w.splat(first.radius);
-        let mut sign = w.splat(first.sign);
-        let mut mx = w.splat(first.straight.x);
-        let mut my = w.splat(first.straight.y);
-        let mut passed = w.first(Wide::<S>::COUNT);
-        for index in 1..profile.features.len() {
-            let f = &profile.features[index];
-            passed = passed & self.ahead(w, index).greater(zero);
-            if !passed.any() {
-                break;
-            }
-            cx = passed.select(w.splat(f.centre.x), cx);
-            cy = passed.select(w.splat(f.centre.y), cy);
-            r = passed.select(w.splat(f.radius), r);
-            sign = passed.select(w.splat(f.sign), sign);
-            if profile.has_straights {
-                mx = passed.select(w.splat(f.straight.x), mx);
-                my = passed.select(w.splat(f.straight.y), my);
-            }
-        }
-        let (ex, ey) = (x - cx, y - cy);
-        let [distance, inverse] = (ex * ex + ey * ey).roots();
-        let scale = sign * inverse;
-        let contact_radius = w.splat(radius);
-        // g = ±(|q − c| − R) − r
-        let mut gap = sign * (distance - r) - contact_radius;
-        let (mut nx, mut ny, mut bend) = (scale * ex, scale * ey, scale);
-        if profile.has_straights {
-            // g = n·(q − p) − r
-            let straight = (mx * mx + my * my).greater(zero);
-            gap = straight.select(mx * ex + my * ey - contact_radius, gap);
-            nx = straight.select(mx, nx);
-            ny = straight.select(my, ny);
-            bend = straight.select(zero, bend);
-        }
-        if self.half.seat_across {
-            // A seat across the axis belongs to the right half alone.
-            let mut wrong = zero.greater(x);
-            if profile.features.len() > 1 {
-                wrong = wrong & zero.greater(self.ahead(w, 1));
-            }
-            gap = wrong.select(w.splat(FAR), gap);
-        }
-        Found {
-            gap,
-            nx: self.sign * nx,
-            ny,
-            bend,
-        }
-    }
-
-    /// How far beyond the hollow the rollers are; infinite where there is none.
-    #[inline(always)]
-    pub(super) fn beyond_hollow(&self, w: Wide<S>) -> Lane<S> {
-        match self.half.profile.flank {
-            Some(index) => self.ahead(w, index),
-            None => w.splat(f64::MAX),
-        }
-    }
-
-    /// How far beyond the line where a feature begins.
-    #[inline(always)]
-    fn ahead(&self, w: Wide<S>, index: usize) -> Lane<S> {
-        let f = &self.half.profile.features[index];
-        (self.x - w.splat(f.start.x)) * w.splat(f.along.x)
-            + (self.y - w.splat(f.start.y)) * w.splat(f.along.y)
+        sides.map(probe).collect()
     }
 }

@@ -4,11 +4,12 @@
 //! the arc; the force is shared between the two pins by the lever rule. At an eye, where two
 //! plates end, each of them carries half of the contact.
 
-use chaindrive_contact::{Approach, interpolated_onset};
 use chaindrive_geometry::{Point, Vector};
 
-use super::{Frame, LawNumbers, Wrench};
+use super::window::FAR;
+use super::{ContactMemory, Frame, LaneTally, MemoryLanes, SurfaceLaw, Wrench};
 use crate::drive::Surface;
+use crate::lanes::Wide;
 use crate::profile::{Probe, Profile};
 
 /// Where the pins of the link plates are, whatever the chain is made of.
@@ -34,37 +35,14 @@ pub(crate) struct PlateContact {
     /// Box around the face (low, high).
     pub(crate) bounds: [Point; 2],
     pub(crate) surface: Surface,
+    /// The same, ready for lanes.
+    law: SurfaceLaw,
     /// Half the plate height \[m\].
     pub(crate) half_height: f64,
     /// State of each link at the last accepted step.
-    pub(crate) memory: Vec<PlateTouch>,
+    pub(crate) memory: ContactMemory,
     /// When that was \[s\].
     pub(crate) accepted: f64,
-}
-
-/// Contact state of one plate.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct PlateTouch {
-    /// Gap \[m\].
-    pub(crate) gap: f64,
-    /// Closing speed \[m/s\].
-    pub(crate) closing: f64,
-    /// Closing speed at touch \[m/s\]; zero while open.
-    pub(crate) onset: f64,
-    /// Normal force \[N\].
-    pub(crate) force: f64,
-    /// State of a friction law that has one.
-    pub(crate) stick: f64,
-}
-
-impl PlateTouch {
-    pub(crate) const FAR: Self = Self {
-        gap: 1.0,
-        closing: 0.0,
-        onset: 0.0,
-        force: 0.0,
-        stick: 0.0,
-    };
 }
 
 /// Where on its edge a plate touches.
@@ -79,6 +57,26 @@ pub(crate) struct PlatePoint {
 }
 
 impl PlateContact {
+    pub(crate) fn new(
+        profile: Profile,
+        reference: Point,
+        bounds: [Point; 2],
+        surface: Surface,
+        half_height: f64,
+        links: usize,
+    ) -> Self {
+        Self {
+            profile,
+            reference,
+            bounds,
+            surface,
+            law: SurfaceLaw::new(&surface, None),
+            half_height,
+            memory: ContactMemory::open(links),
+            accepted: 0.0,
+        }
+    }
+
     /// Where a plate between pins `a` and `b`, in the profile's coordinates, comes nearest.
     pub(crate) fn nearest(&self, a: Point, b: Point) -> PlatePoint {
         let edge = b - a;
@@ -109,25 +107,28 @@ impl PlateContact {
     }
 
     /// Pushes the pins and returns what the rail receives.
+    ///
+    /// The edges are looked at one by one, so that the lanes of the laws are one wide.
     pub(crate) fn act(
         &self,
         t: f64,
         frame: &Frame,
         pins_of: &mut impl PlatePins,
         links: usize,
-        touch: &mut Vec<PlateTouch>,
+        touch: &mut ContactMemory,
     ) -> Wrench {
-        touch.resize(links, PlateTouch::FAR);
-        let numbers = LawNumbers::new(&self.surface);
-        let mut wrench = Wrench {
-            first_share: 1.0,
-            ..Wrench::default()
-        };
+        touch.resize(links);
+        let w = Wide(pulp::Scalar);
+        let dt = t - self.accepted;
+        let mut memory = MemoryLanes::new(w, &self.memory, touch, links);
+        let mut tally = LaneTally::new(w);
+        let mut wrench = Wrench::default();
         for link in 0..links {
             let pins = [0, 1].map(|end| pins_of.place(link, end));
             let [a, b] = pins.map(|pin| frame.local(pin, self.reference));
-            touch[link] = PlateTouch::FAR;
             if self.far(a) && self.far(b) {
+                memory.look(link, w.splat(FAR), w.splat(0.0));
+                memory.open(w, link);
                 continue;
             }
             let point = self.nearest(a, b);
@@ -139,55 +140,31 @@ impl PlateContact {
             let u = speed(0) * shares[0] + speed(1) * shares[1]
                 - frame.velocity
                 - Vector::new(-d.y, d.x) * frame.spin;
-            let closing = -normal.dot(&u);
-            let gap = point.probe.gap;
-            let mut state = PlateTouch {
-                gap,
-                closing,
-                onset: 0.0,
-                force: 0.0,
-                stick: 0.0,
-            };
-            if gap < 0.0 {
-                let before = &self.memory[link];
-                state.onset = before.onset;
-                if before.onset <= 0.0 {
-                    state.onset = interpolated_onset(before.gap, before.closing, gap, closing)
-                        .max(numbers.floor);
-                    let opening = before.gap.max(0.0);
-                    wrench.first_depth = wrench.first_depth.max(-gap);
-                    wrench.first_share = wrench.first_share.min(opening / (opening - gap));
-                }
-                let approach = Approach {
-                    penetration: -gap,
-                    rate: closing,
-                    onset_rate: state.onset,
-                };
-                let law = &self.surface.law;
-                state.force = point.weight * law.force(approach);
-                let tangent = Vector::new(-normal.y, normal.x);
-                let slip = tangent.dot(&u) + frame.spin * self.half_height;
-                let friction = &self.surface.friction;
-                let rub = friction.rub(state.force, slip, before.stick, t - self.accepted);
-                state.stick = rub.state;
-                let push = normal * state.force + tangent * rub.force;
-                for (pin, share) in shares.into_iter().enumerate() {
-                    pins_of.push(link, pin, push * share);
-                }
-                let foot = d - normal * self.half_height;
-                wrench.force[0] -= push.x;
-                wrench.force[1] -= push.y;
-                wrench.moment -= foot.x * push.y - foot.y * push.x;
-                let stored = point.weight * law.elastic_force(-gap);
-                wrench.normal_loss += (state.force - stored) * closing;
-                wrench.friction_loss -= rub.force * slip;
-                wrench.depth = wrench.depth.max(-gap);
-                let across = rub.damping.max(friction.damping(state.force, 0.0));
-                wrench.damping = wrench.damping.max(law.damping(approach) + across);
+            let surfaces = [point.probe.gap, -normal.dot(&u)].map(|number| w.splat(number));
+            let weight = Some(w.splat(point.weight));
+            let pressed = self
+                .law
+                .press(w, &mut memory, link, surfaces, None, weight, &mut tally);
+            let Some(pressed) = pressed else { continue };
+            let tangent = Vector::new(-normal.y, normal.x);
+            let slip = w.splat(tangent.dot(&u) + frame.spin * self.half_height);
+            let rubbing = self
+                .law
+                .rub(w, &mut memory, link, dt, &pressed, slip, &mut tally);
+            let force = pressed.force.sum();
+            let push = normal * force + tangent * rubbing.force.sum();
+            for (pin, share) in shares.into_iter().enumerate() {
+                pins_of.push(link, pin, push * share);
             }
-            touch[link] = state;
+            let foot = d - normal * self.half_height;
+            wrench.force[0] -= push.x;
+            wrench.force[1] -= push.y;
+            wrench.moment -= foot.x * push.y - foot.y * push.x;
+            let across = rubbing.drag.sum().max(self.law.friction.at_rest(force));
+            let damping = self.law.steepest(w, &pressed).sum() + across;
+            wrench.damping = wrench.damping.max(damping);
         }
-        wrench
+        tally.total(self.law.friction.acts(), wrench)
     }
 
     /// Sum of the elastic energies \[J\].

@@ -76,7 +76,7 @@ mod tests {
     use crate::chains::Rollers;
     use crate::contact::{Contacts, Frame, Places, Shape, Teeth, Touch};
     use crate::drive::Surface;
-    use crate::profile::{GapHalves, Profile};
+    use crate::profile::{GapFace, Profile};
 
     struct Look<'a> {
         contacts: &'a Contacts,
@@ -147,6 +147,7 @@ mod tests {
                 ax: &mut ax,
                 ay: &mut ay,
                 inverse_mass: &inverse_mass,
+                spin: &[],
             };
             Arch::new().dispatch(Look {
                 contacts,
@@ -159,9 +160,10 @@ mod tests {
             contacts.accepted = t;
             for i in 0..count {
                 let slot = contacts.slot_of(i);
-                let faces = slot.map(|slot| contacts.faces(&here, slot, Point::new(x[i], y[i])));
-                let inside = faces.into_iter().flatten().flatten().any(|f| f.gap < 0.0);
-                let seen = slot.is_some_and(|slot| contacts.memory.inverse_onset[slot] > 0.0);
+                let faces = contacts.probes(&here, Point::new(x[i], y[i]));
+                let inside = faces.iter().any(|face| face.gap < 0.0);
+                let closed = |slot| contacts.memory.state.closed(slot).is_some();
+                let seen = slot.is_some_and(closed);
                 assert_eq!(inside, seen, "roller {i} at {t}");
                 touched += usize::from(seen);
             }
@@ -211,7 +213,7 @@ mod tests {
         let gap = ToothGap::new(count, pitch, 2.0 * RADIUS, &form).unwrap();
         let step = std::f64::consts::TAU / f64::from(count);
         let mut contacts = contacts(Shape::Teeth(Teeth {
-            halves: GapHalves::new(gap.pieces(), RADIUS),
+            face: GapFace::new(gap.pieces(), RADIUS),
             count,
             tan_half: (0.5 * step).tan(),
             pitch_turn: [step.cos(), step.sin()],

@@ -1,6 +1,6 @@
 //! Which rollers can touch a body before the windows are renewed.
 
-use chaindrive_geometry::Point;
+use chaindrive_geometry::{Point, Vector};
 
 use super::{Contacts, Frame, Shape, Teeth, Touch};
 use crate::lanes::LANES;
@@ -26,8 +26,8 @@ pub(crate) struct Places<'a> {
 /// Share of the roller radius below which a gap may close before the windows are renewed.
 const LIKELY: f64 = 0.1;
 
-/// A slot that no roller held before: open, and far.
-pub(super) const FAR: f64 = 1.0;
+/// Gap \[m\] of what cannot touch.
+pub(crate) const FAR: f64 = 1.0;
 
 impl Contacts {
     /// Looks for the rollers within `margin` \[m\] of touching, and carries the memory over.
@@ -35,30 +35,26 @@ impl Contacts {
         let runs = self.near_runs(frame, places, margin);
         let runs: Vec<Run> = runs.into_iter().flat_map(|run| self.cut(run)).collect();
         let slots = runs.len() * LANES;
+        let sides = self.sides();
         let mut memory = Box::<Touch>::default();
-        memory.resize(slots * self.sides());
-        memory.gap.fill(FAR);
+        memory.open(slots * sides);
         let mut axes = (vec![1.0; slots], vec![0.0; slots]);
         for_each_slot(&runs, |slot, roller| {
             let old = self.slot_of(roller);
-            if let Some(old) = old {
-                for side in 0..self.sides() {
-                    let (to, from) = (side * slots + slot, side * self.slots + old);
-                    memory.inverse_onset[to] = self.memory.inverse_onset[from];
-                    memory.gap[to] = self.memory.gap[from];
-                    memory.closing[to] = self.memory.closing[from];
-                    memory.force[to] = self.memory.force[from];
-                    memory.stick[to] = self.memory.stick[from];
-                    memory.share[to] = self.memory.share[from];
-                }
-            }
+            let axis = old.map(|old| [self.axis_x[old], self.axis_y[old]]);
+            // By how many stretches the gap of the roller has moved on.
+            let mut over = 0;
             if let Shape::Teeth(teeth) = &self.shape {
-                let start = old.map(|old| [self.axis_x[old], self.axis_y[old]]);
-                let d = [
-                    places.x[roller] - frame.origin.x,
-                    places.y[roller] - frame.origin.y,
-                ];
-                [axes.0[slot], axes.1[slot]] = gap_axis(teeth, frame.turn, d, start);
+                let d = Point::new(places.x[roller], places.y[roller]) - frame.origin;
+                let here = teeth.gap_axis(frame.turn, d, axis);
+                over = axis.map_or(0, |axis| sides_over(axis, here, sides));
+                [axes.0[slot], axes.1[slot]] = here;
+            }
+            let Some(old) = old else { return };
+            for side in 0..sides {
+                let from = (side + over) % sides * self.slots + old;
+                let to = side * slots + slot;
+                memory.state.carry(to, &self.memory.state, from);
             }
         });
         self.runs = runs;
@@ -109,7 +105,8 @@ impl Contacts {
         let likely = |k: &usize| {
             let slot = self.slot_of(run.start + k);
             slot.is_some_and(|slot| {
-                let gaps = (0..self.sides()).map(|side| self.memory.gap[side * self.slots + slot]);
+                let gap = &self.memory.state.gap;
+                let gaps = (0..self.sides()).map(|side| gap[side * self.slots + slot]);
                 gaps.fold(FAR, f64::min) < LIKELY * self.radius
             })
         };
@@ -150,19 +147,33 @@ fn for_each_slot(runs: &[Run], mut visit: impl FnMut(usize, usize)) {
     }
 }
 
-/// Axis, in the wheel frame, of the gap nearest to the roller at `d` from the centre.
-fn gap_axis(teeth: &Teeth, turn: [f64; 2], d: [f64; 2], start: Option<[f64; 2]>) -> [f64; 2] {
-    let [c, s] = turn;
-    let w = [c * d[0] + s * d[1], c * d[1] - s * d[0]];
-    if let Some(e) = start {
-        let (x, y) = (w[0] * e[1] - w[1] * e[0], w[0] * e[0] + w[1] * e[1]);
-        if x.abs() <= y * teeth.tan_half {
-            return e;
-        }
+/// The side of the gap at one axis that keeps the first stretch of the gap at another: see `contact/look.rs`.
+fn sides_over(from: [f64; 2], to: [f64; 2], sides: usize) -> usize {
+    let across = to[0] * from[1] - to[1] * from[0];
+    if across.abs() < 1e-9 {
+        0
+    } else if across > 0.0 {
+        1 % sides
+    } else {
+        sides - 1
     }
-    let pitch = std::f64::consts::TAU / f64::from(teeth.count);
-    let angle = (w[1].atan2(w[0]) / pitch).round() * pitch;
-    [angle.cos(), angle.sin()]
+}
+
+impl Teeth {
+    /// Axis, in the wheel frame, of the gap nearest to the roller at `d` from the centre.
+    pub(super) fn gap_axis(&self, turn: [f64; 2], d: Vector, start: Option<[f64; 2]>) -> [f64; 2] {
+        let [c, s] = turn;
+        let w = [c * d.x + s * d.y, c * d.y - s * d.x];
+        if let Some(e) = start {
+            let (x, y) = (w[0] * e[1] - w[1] * e[0], w[0] * e[0] + w[1] * e[1]);
+            if x.abs() <= y * self.tan_half {
+                return e;
+            }
+        }
+        let pitch = std::f64::consts::TAU / f64::from(self.count);
+        let angle = (w[1].atan2(w[0]) / pitch).round() * pitch;
+        [angle.cos(), angle.sin()]
+    }
 }
 
 /// The frame of a body that neither moves nor turns.
@@ -171,7 +182,7 @@ impl Frame {
         Self {
             origin: Point::origin(),
             turn: [1.0, 0.0],
-            velocity: chaindrive_geometry::Vector::zeros(),
+            velocity: Vector::zeros(),
             spin: 0.0,
         }
     }
@@ -187,9 +198,9 @@ impl Frame {
     }
 
     /// Direction in the world of a direction in the frame.
-    pub(crate) fn outward(&self, v: chaindrive_geometry::Vector) -> chaindrive_geometry::Vector {
+    pub(crate) fn outward(&self, v: Vector) -> Vector {
         let [c, s] = self.turn;
-        chaindrive_geometry::Vector::new(c * v.x - s * v.y, s * v.x + c * v.y)
+        Vector::new(c * v.x - s * v.y, s * v.x + c * v.y)
     }
 }
 
@@ -233,7 +244,7 @@ mod tests {
         for first in 0..whole.count {
             for last in first..whole.count {
                 contacts.memory.open(contacts.slots);
-                contacts.memory.gap[first..=last].fill(-1e-6);
+                contacts.memory.state.gap[first..=last].fill(-1e-6);
                 let cut: Vec<Run> = contacts.cut(whole).collect();
                 let rollers = cut.iter().flat_map(|run| run.start..run.start + run.count);
                 assert!(rollers.eq(36..36 + 27), "{cut:?}");

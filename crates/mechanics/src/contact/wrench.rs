@@ -1,8 +1,8 @@
-//! What the rollers do to a body, all together.
+//! What contacts cost, how they began, and what rollers do to a body, all together.
 
 use pulp::Simd;
 
-use crate::lanes::{Lane, Wide};
+use crate::lanes::{Lane, Mask, Wide};
 
 /// What the rollers do to a body, and what the step control wants to know.
 #[derive(Clone, Copy, Debug, Default)]
@@ -19,10 +19,77 @@ pub(crate) struct Wrench {
     pub(crate) depth: f64,
     /// Largest damping of one contact, along the normal and across \[N s/m\].
     pub(crate) damping: f64,
-    /// Deepest penetration of a contact that opened this step \[m\].
+    /// Deepest penetration of a contact that began in this step \[m\].
     pub(crate) first_depth: f64,
     /// Smallest share of the step after which such a contact began.
     pub(crate) first_share: f64,
+}
+
+/// What contacts cost, and how they began, lane by lane.
+pub(crate) struct LaneTally<S: Simd> {
+    /// Power lost along the normals \[W\].
+    pub(crate) normal_loss: Lane<S>,
+    /// Power lost by friction \[W\].
+    pub(crate) friction_loss: Lane<S>,
+    /// Deepest penetration \[m\].
+    pub(super) depth: Lane<S>,
+    /// Whether contacts began; only then the rest counts.
+    fresh: bool,
+    first_depth: Lane<S>,
+    first_share: Lane<S>,
+}
+
+impl<S: Simd> LaneTally<S> {
+    #[inline(always)]
+    pub(crate) fn new(w: Wide<S>) -> Self {
+        let zero = w.splat(0.0);
+        Self {
+            normal_loss: zero,
+            friction_loss: zero,
+            depth: zero,
+            fresh: false,
+            first_depth: zero,
+            first_share: w.splat(1.0),
+        }
+    }
+
+    /// Takes note of contacts that began after some share of the step.
+    #[inline(always)]
+    pub(super) fn began(&mut self, w: Wide<S>, fresh: Mask<S>, depth: Lane<S>, share: Lane<S>) {
+        self.fresh = true;
+        let fresh_depth = fresh.select(depth, w.splat(0.0));
+        self.first_depth = self.first_depth.max(fresh_depth);
+        self.first_share = self.first_share.min(fresh.select(share, w.splat(1.0)));
+    }
+
+    /// Deepest penetration \[m\] of the contacts that began, and the smallest share of the step that had passed then.
+    #[inline(always)]
+    pub(crate) fn first(&self) -> [f64; 2] {
+        if self.fresh {
+            [self.first_depth.largest(), self.first_share.smallest()]
+        } else {
+            [0.0, 1.0]
+        }
+    }
+
+    /// Writes all of it into a wrench.
+    #[inline(always)]
+    pub(super) fn total(&self, rubbing: bool, wrench: Wrench) -> Wrench {
+        let [first_depth, first_share] = self.first();
+        let friction_loss = if rubbing {
+            self.friction_loss.sum()
+        } else {
+            0.0
+        };
+        Wrench {
+            normal_loss: self.normal_loss.sum(),
+            friction_loss,
+            depth: self.depth.largest(),
+            first_depth,
+            first_share,
+            ..wrench
+        }
+    }
 }
 
 /// Sums over all slots of a body, lane by lane.
@@ -30,14 +97,8 @@ pub(super) struct Sums<S: Simd> {
     pub(super) fx: Lane<S>,
     pub(super) fy: Lane<S>,
     pub(super) moment: Lane<S>,
-    pub(super) normal_loss: Lane<S>,
-    pub(super) friction_loss: Lane<S>,
-    pub(super) depth: Lane<S>,
     pub(super) damping: Lane<S>,
-    /// Whether contacts began; only then the rest counts.
-    pub(super) fresh: bool,
-    pub(super) first_depth: Lane<S>,
-    pub(super) first_share: Lane<S>,
+    pub(super) tally: LaneTally<S>,
 }
 
 impl<S: Simd> Sums<S> {
@@ -48,37 +109,19 @@ impl<S: Simd> Sums<S> {
             fx: zero,
             fy: zero,
             moment: zero,
-            normal_loss: zero,
-            friction_loss: zero,
-            depth: zero,
             damping: zero,
-            fresh: false,
-            first_depth: zero,
-            first_share: w.splat(1.0),
+            tally: LaneTally::new(w),
         }
     }
 
     #[inline(always)]
     pub(super) fn total(&self, rubbing: bool) -> Wrench {
-        let (first_depth, first_share) = if self.fresh {
-            (self.first_depth.largest(), self.first_share.smallest())
-        } else {
-            (0.0, 1.0)
-        };
-        let friction_loss = if rubbing {
-            self.friction_loss.sum()
-        } else {
-            0.0
-        };
-        Wrench {
+        let wrench = Wrench {
             force: [self.fx.sum(), self.fy.sum()],
             moment: self.moment.sum(),
-            normal_loss: self.normal_loss.sum(),
-            friction_loss,
-            depth: self.depth.largest(),
             damping: self.damping.largest(),
-            first_depth,
-            first_share,
-        }
+            ..Wrench::default()
+        };
+        self.tally.total(rubbing, wrench)
     }
 }

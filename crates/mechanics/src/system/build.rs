@@ -5,9 +5,9 @@ use chaindrive_geometry::Point;
 use super::bodies::{Anchor, Bodies, Rail, RailSupport, Slide, Wheel, WheelRotation, WheelSupport};
 use super::{BodyContacts, Member, OnRail, OnWheel, RailContact, System};
 use crate::chains;
-use crate::contact::{Contacts, PlateContact, PlateTouch, Shape, Teeth};
+use crate::contact::{Contacts, PlateContact, Shape, Teeth};
 use crate::drive::{Guide, GuideSupport, Parts, Rotation, Sprocket, Support, Touches};
-use crate::profile::{GapHalves, Profile};
+use crate::profile::{GapFace, Profile};
 use crate::{AssemblyError, Carrier, Chain, Push};
 
 /// A drive with its chains laid: where everything is at t = 0.
@@ -203,7 +203,7 @@ fn teeth(sprocket: &Sprocket, chain: &Chain) -> Contacts {
     let radius = 0.5 * chain.roller_diameter;
     let pitch_angle = std::f64::consts::TAU / f64::from(gap.teeth);
     let teeth = Teeth {
-        halves: GapHalves::new(gap.pieces(), radius),
+        face: GapFace::new(gap.pieces(), radius),
         count: gap.teeth,
         tan_half: (0.5 * pitch_angle).tan(),
         pitch_turn: [pitch_angle.cos(), pitch_angle.sin()],
@@ -234,15 +234,10 @@ fn face(guide: &Guide, chain: &Chain, parts: &Parts) -> Result<RailContact, Asse
     };
     confirm(guide, &profile, radius)?;
     if guide.touches == Touches::Plates {
-        return Ok(RailContact::Plates(PlateContact {
-            profile,
-            reference,
-            bounds,
-            surface: guide.surface,
-            half_height: radius,
-            memory: vec![PlateTouch::FAR; chain.links()],
-            accepted: 0.0,
-        }));
+        let (surface, links) = (guide.surface, chain.links());
+        return Ok(RailContact::Plates(PlateContact::new(
+            profile, reference, bounds, surface, radius, links,
+        )));
     }
     let shape = Shape::Rail {
         profile,

@@ -3,11 +3,10 @@
 use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
-use nalgebra::SVector;
 
 use super::{Sum, at_rest};
 use crate::chains::{Moving, Way};
-use crate::contact::{Contacts, Frame, PlateContact, Shape};
+use crate::contact::{Contacts, Frame, PlateContact};
 use crate::profile::Probe;
 use crate::system::{
     Bodies, Member, RailContact, RailSupport, Slide, Wheel, WheelRotation, WheelSupport,
@@ -340,57 +339,5 @@ fn add_one(
     }
     for way in &mount.centre {
         sum.stiffen(way.entry, way.entry, -push.force * m.dot(&way.second));
-    }
-}
-
-impl Contacts {
-    /// The surfaces that a roller at `place` faces: one, or both halves of a narrow gap; normals
-    /// in the world.
-    pub(crate) fn probes(&self, frame: &Frame, place: Point) -> Vec<Probe> {
-        let d = place - frame.origin;
-        let [c, s] = frame.turn;
-        match &self.shape {
-            Shape::Rail {
-                profile, reference, ..
-            } => {
-                let mut probe = profile.probe(frame.local(place, *reference), self.radius);
-                probe.normal = frame.outward(probe.normal);
-                vec![probe]
-            }
-            Shape::Teeth(teeth) => {
-                let reach = teeth.tip_radius + self.radius;
-                if d.norm_squared() > reach * reach {
-                    return Vec::new();
-                }
-                let pitch = std::f64::consts::TAU / f64::from(teeth.count);
-                let w = Vector::new(c * d.x + s * d.y, c * d.y - s * d.x);
-                let axis = (w.y.atan2(w.x) / pitch).round() * pitch;
-                let (es, ec) = axis.sin_cos();
-                let (x, y) = (w.x * es - w.y * ec, w.x * ec + w.y * es);
-                let world = |mut probe: Probe, side: f64| {
-                    let v = SVector::<f64, 2>::new(side * probe.normal.x, probe.normal.y);
-                    // gap x axis = y axis turned by −90°
-                    let in_wheel = Vector::new(v.x * es + v.y * ec, v.y * es - v.x * ec);
-                    probe.normal = frame.outward(in_wheel);
-                    probe
-                };
-                if teeth.halves.two_sided {
-                    let halves = [(1.0, &teeth.halves.right), (-1.0, &teeth.halves.left)];
-                    let found = halves.into_iter().filter_map(|(side, half)| {
-                        let probe = half.probe(Point::new(side * x, y), self.radius);
-                        let seat = probe.feature == 0 && half.features[0].sign < 0.0;
-                        (!seat || side * x >= 0.0).then(|| world(probe, side))
-                    });
-                    found.collect()
-                } else {
-                    let side = if x > 0.0 { 1.0 } else { -1.0 };
-                    let probe = teeth
-                        .halves
-                        .right
-                        .probe(Point::new(x.abs(), y), self.radius);
-                    vec![world(probe, side)]
-                }
-            }
-        }
     }
 }

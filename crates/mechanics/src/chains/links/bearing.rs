@@ -4,54 +4,25 @@
 //! e = P_pin − P_hole,  n = e/|e|,   δ = |e| − c,   c = R_hole − R_pin
 //! ```
 
-use chaindrive_contact::{Approach, Friction, Prepared, Response, interpolated_onset};
+use chaindrive_contact::{Approach, Prepared, Response};
 use chaindrive_geometry::{Point, Vector};
+use pulp::Simd;
 
-use super::element::{Element, Partner, turned};
-use super::pins::PinLaw;
+use super::element::{Element, Partner};
+use crate::contact::{FAR, LaneTally, MemoryLanes, SurfaceLaw};
 use crate::drive::Surface;
+use crate::lanes::{Lane, Mask, Wide};
 
 /// A bore and what turns in it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Bearing {
     pub(crate) law: Prepared,
-    /// The same for lanes.
-    pub(crate) pins: PinLaw,
-    /// Least speed at touch \[m/s\].
-    pub(crate) floor: f64,
-    pub(crate) friction: Friction,
+    /// The same with the friction, for lanes.
+    pub(super) lanes: SurfaceLaw,
     /// Radial clearance c \[m\].
     pub(crate) clearance: f64,
     /// Radius of what turns in the bore \[m\].
     pub(crate) radius: f64,
-}
-
-/// State of one contact at one instant.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct PinTouch {
-    /// Gap −δ \[m\], negative in contact.
-    pub(crate) gap: f64,
-    /// Closing speed δ̇ \[m/s\].
-    pub(crate) closing: f64,
-    /// Closing speed at touch \[m/s\]; zero while open.
-    pub(crate) onset: f64,
-    /// Normal force \[N\].
-    pub(crate) force: f64,
-    /// State of the friction law.
-    pub(crate) stick: f64,
-    /// Eccentricity: the pin seen from the centre of the hole \[m\].
-    pub(crate) offset: Vector,
-}
-
-impl PinTouch {
-    pub(crate) const OPEN: Self = Self {
-        gap: 1.0,
-        closing: 0.0,
-        onset: 0.0,
-        force: 0.0,
-        stick: 0.0,
-        offset: Vector::new(0.0, 0.0),
-    };
 }
 
 /// One of the two sides of a joint.
@@ -90,12 +61,60 @@ impl Tally {
         }
     }
 
-    /// Takes note of a contact that began between two states.
-    pub(crate) fn began(&mut self, gap_before: f64, depth: f64) {
-        let opening = gap_before.max(0.0);
-        self.first_depth = self.first_depth.max(depth);
-        self.first_share = self.first_share.min(opening / (opening + depth));
+    /// The sums of a tally by lanes.
+    #[inline(always)]
+    pub(super) fn of<S: Simd>(lanes: &LaneTally<S>) -> Self {
+        let [first_depth, first_share] = lanes.first();
+        Self {
+            normal_loss: lanes.normal_loss.sum(),
+            friction_loss: lanes.friction_loss.sum(),
+            first_depth,
+            first_share,
+        }
     }
+
+    /// Takes note of how other contacts began.
+    pub(super) fn began(&mut self, other: &Self) {
+        self.first_depth = self.first_depth.max(other.first_depth);
+        self.first_share = self.first_share.min(other.first_share);
+    }
+}
+
+/// How the two sides of the joints of a lane stand to each other: the side after, seen from the side before.
+pub(super) struct Apart<S: Simd> {
+    /// Eccentricity \[m\] and its rate \[m/s\].
+    pub(super) offset: [Lane<S>; 2],
+    pub(super) rate: [Lane<S>; 2],
+    /// Angular speeds of the bodies before and after \[rad/s\]; nothing where nothing rubs.
+    pub(super) spin: [Lane<S>; 2],
+    /// Where there is a pin in a bore at all.
+    pub(super) present: Mask<S>,
+    /// Where the side after has the pin.
+    pub(super) pin_after: Mask<S>,
+}
+
+/// What the side after feels; the side before feels the opposite.
+///
+/// ```text
+/// −F n + R t,   t = ẑ × n,   slip = t·(v_after − v_before) + ℓ_after ω_after − ℓ_before ω_before
+/// ```
+pub(super) struct Grip<S: Simd> {
+    pub(super) gap: Lane<S>,
+    /// n, zero for concentric circles.
+    pub(super) normal: [Lane<S>; 2],
+    /// Normal force F and friction R \[N\].
+    pub(super) force: Lane<S>,
+    pub(super) rub: Lane<S>,
+    /// ∂F/∂δ \[N/m\] and ∂F/∂δ̇ \[N s/m\].
+    pub(super) stiffness: Lane<S>,
+    pub(super) damping: Lane<S>,
+    /// −∂R/∂slip, and the secant |R/slip| \[N s/m\].
+    pub(super) drag: Lane<S>,
+    pub(super) secant: Lane<S>,
+    /// Stiffness across, F/|e| \[N/m\].
+    pub(super) across: Lane<S>,
+    /// From the centres of the sides before and after along n to where they touch \[m\].
+    pub(super) levers: [Lane<S>; 2],
 }
 
 /// Eccentricity below which a pin has no direction \[m\].
@@ -105,57 +124,97 @@ impl Bearing {
     pub(crate) fn new(surface: &Surface, bore: f64, radius: f64) -> Self {
         Self {
             law: surface.law.prepared(),
-            pins: PinLaw::new(surface.law.prepared()),
-            floor: surface.floor(),
-            friction: surface.friction,
+            lanes: SurfaceLaw::new(surface, None),
             clearance: bore - radius,
             radius,
         }
     }
 
-    /// The contact of `pin` in `hole` at a joint, `dt` after the accepted state `before`.
+    /// The contacts of a lane of joints, `dt` after the accepted state.
     #[inline(always)]
+    pub(super) fn grip<S: Simd>(
+        &self,
+        w: Wide<S>,
+        memory: &mut MemoryLanes<'_, S>,
+        lane: usize,
+        apart: &Apart<S>,
+        dt: f64,
+        tally: &mut LaneTally<S>,
+    ) -> Grip<S> {
+        let zero = w.splat(0.0);
+        let [ex, ey] = apart.offset;
+        let [eccentricity, inverse] = (ex * ex + ey * ey).roots();
+        let directed = apart.present & eccentricity.greater(w.splat(CENTRED));
+        // Without a direction there is no contact, whatever the clearance.
+        let clearance = w.splat(self.clearance);
+        let gap = directed.select(clearance - eccentricity, clearance.max(zero));
+        let gap = apart.present.select(gap, w.splat(FAR));
+        let inverse = directed.select(inverse, zero);
+        let [nx, ny] = [ex * inverse, ey * inverse];
+        let [ux, uy] = apart.rate;
+        let closing = nx * ux + ny * uy;
+        let mut grip = Grip {
+            gap,
+            normal: [nx, ny],
+            force: zero,
+            rub: zero,
+            stiffness: zero,
+            damping: zero,
+            drag: zero,
+            secant: zero,
+            across: zero,
+            levers: [zero, zero],
+        };
+        let law = &self.lanes;
+        let Some(pressed) = law.press(w, memory, lane, [gap, closing], None, None, tally) else {
+            return grip;
+        };
+        [grip.stiffness, grip.damping] = law.slopes(w, &pressed, None);
+        grip.force = pressed.force;
+        grip.across = pressed.force * inverse;
+        if law.friction.acts() {
+            // Both surfaces at the middle of the overlap: R_pin − δ/2 and R_hole + δ/2. Seen along n, that lies behind the
+            // pin's centre if the pin is on the side before.
+            let half = w.splat(0.5) * pressed.depth;
+            let pin = w.splat(self.radius) - half;
+            let hole = w.splat(self.radius + self.clearance) + half;
+            let pin_after = apart.pin_after;
+            grip.levers = [pin_after.select(hole, -pin), pin_after.select(pin, -hole)];
+            // The pin's slip along its own tangent is the same from either side.
+            let slip =
+                nx * uy - ny * ux + grip.levers[1] * apart.spin[1] - grip.levers[0] * apart.spin[0];
+            let rubbing = law.rub(w, memory, lane, dt, &pressed, slip, tally);
+            grip.rub = rubbing.force;
+            grip.drag = rubbing.drag;
+            grip.secant = rubbing.secant;
+        }
+        grip
+    }
+
+    /// The contact of `pin` in `hole` at a joint, which the memory has in `lane`: one lane of one.
     pub(crate) fn touch(
         &self,
         joint: usize,
-        hole: &Part,
-        pin: &Part,
-        before: &PinTouch,
+        [hole, pin]: [&Part; 2],
+        memory: &mut MemoryLanes<'_, pulp::Scalar>,
+        lane: usize,
         dt: f64,
-        tally: &mut Tally,
-    ) -> (PinTouch, Option<Element>) {
-        let offset = pin.place - hole.place;
-        let relative = pin.velocity - hole.velocity;
-        let eccentricity = offset.norm();
-        let mut touch = PinTouch {
-            gap: self.clearance - eccentricity,
-            offset,
-            ..PinTouch::OPEN
+        tally: &mut LaneTally<pulp::Scalar>,
+    ) -> Option<Element> {
+        let w = Wide(pulp::Scalar);
+        let lanes = |v: Vector| [w.splat(v.x), w.splat(v.y)];
+        let all = w.first(1);
+        let apart = Apart {
+            offset: lanes(pin.place - hole.place),
+            rate: lanes(pin.velocity - hole.velocity),
+            spin: [w.splat(hole.spin), w.splat(pin.spin)],
+            present: all,
+            pin_after: all,
         };
-        if eccentricity < CENTRED {
-            return (touch, None);
-        }
-        let normal = offset / eccentricity;
-        touch.closing = normal.dot(&relative);
-        if touch.gap >= 0.0 {
-            return (touch, None);
-        }
-        let depth = -touch.gap;
-        touch.onset = before.onset;
-        if before.onset <= 0.0 {
-            touch.onset = interpolated_onset(before.gap, before.closing, touch.gap, touch.closing)
-                .max(self.floor);
-            tally.began(before.gap, depth);
-        }
-        let answer = self.law.respond(Approach {
-            penetration: depth,
-            rate: touch.closing,
-            onset_rate: touch.onset,
-        });
-        touch.force = answer.force;
-        tally.normal_loss += (answer.force - answer.elastic) * touch.closing;
-        let [lever_pin, lever_hole] = self.levers(depth);
-        let mut element = Element {
+        let grip = self.grip(w, memory, lane, &apart, dt, tally);
+        let gap = grip.gap.sum();
+        let [lever_pin, lever_hole] = self.levers(-gap);
+        (gap < 0.0).then(|| Element {
             joint,
             a: pin.body,
             b: hole.body.map_or(Partner::Ground, Partner::Body),
@@ -164,24 +223,19 @@ impl Bearing {
             pivot_b: hole.arm,
             lever_a: lever_pin,
             lever_b: lever_hole,
-            normal,
-            force: answer.force,
-            rub: 0.0,
-            stiffness: answer.stiffness,
-            damping: answer.damping,
-            drag: 0.0,
-            secant: 0.0,
-            across: answer.force / eccentricity,
-        };
-        if self.friction != Friction::None {
-            let slip =
-                turned(normal).dot(&relative) + lever_pin * pin.spin - lever_hole * hole.spin;
-            let rub = self.friction.rub(answer.force, slip, before.stick, dt);
-            touch.stick = rub.state;
-            element.rub(&self.friction, rub, slip);
-            tally.friction_loss -= rub.force * slip;
-        }
-        (touch, Some(element))
+            normal: Vector::new(grip.normal[0].sum(), grip.normal[1].sum()),
+            force: grip.force.sum(),
+            rub: grip.rub.sum(),
+            stiffness: grip.stiffness.sum(),
+            damping: grip.damping.sum(),
+            drag: grip.drag.sum(),
+            secant: grip.secant.sum(),
+            across: grip.across.sum(),
+        })
+    }
+
+    pub(super) fn rubs(&self) -> bool {
+        self.lanes.friction.acts()
     }
 
     /// From the centres of pin and hole to where they touch \[m\].
@@ -191,6 +245,17 @@ impl Bearing {
             self.radius - 0.5 * depth,
             self.radius + self.clearance + 0.5 * depth,
         ]
+    }
+
+    /// From the centres of the sides before and after along n to where they touch \[m\].
+    pub(super) fn side_levers(&self, pin_after: bool, depth: f64) -> [f64; 2] {
+        let [pin, hole] = self.levers(depth);
+        // Seen along n, the touching point lies behind the pin's centre if the pin is on the side before.
+        if pin_after {
+            [hole, pin]
+        } else {
+            [-pin, -hole]
+        }
     }
 
     /// Stored energy \[J\] of a contact with this gap \[m\].

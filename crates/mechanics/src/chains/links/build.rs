@@ -8,11 +8,13 @@ use pulp::Arch;
 
 use super::model::{Joint, RigidLinks, RollerModel};
 use super::{
-    Bearing, Body, FreeRollers, Hinges, Joining, JointMates, Linkage, Mate, Memory, Pairs,
-    PinMemory, PinTouch, Play, Shapes, turned,
+    Bearing, Body, FreeRollers, Hinges, Joining, JointMates, Linkage, Mate, Memory, Pairs, Play,
+    Shapes, turned,
 };
 use crate::chains::LaidAs;
 use crate::chains::particles::Particles;
+use crate::contact::ContactMemory;
+use crate::lanes::padded;
 use crate::system::Bodies;
 use crate::{Chain, End};
 
@@ -287,8 +289,8 @@ fn compile(particles: &Particles, laid: &LaidAs<'_>, links: &RigidLinks) -> Link
         bodies,
         memory: Memory {
             time: 0.0,
-            joints: PinMemory::open(joints.len()),
-            bushes: vec![PinTouch::OPEN; joints.len()],
+            joints: ContactMemory::open(padded(joints.len())),
+            bushes: ContactMemory::open(joints.len()),
         },
         pairs: Pairs::of(&joints),
         joints,

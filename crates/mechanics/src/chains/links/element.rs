@@ -1,6 +1,5 @@
 //! One closed contact, as the forces it exerts and as rows of the implicit system.
 
-use chaindrive_contact::{Friction, Rub};
 use chaindrive_geometry::Vector;
 
 /// The other side of a contact.
@@ -74,13 +73,6 @@ pub(crate) fn turned(v: Vector) -> Vector {
 }
 
 impl Element {
-    /// Takes in the answer of a friction law.
-    pub(crate) fn rub(&mut self, friction: &Friction, rub: Rub, slip: f64) {
-        self.rub = rub.force;
-        self.drag = rub.damping;
-        self.secant = secant(friction, rub, slip);
-    }
-
     pub(crate) fn tangent(&self) -> Vector {
         turned(self.normal)
     }
@@ -98,15 +90,5 @@ impl Element {
     /// Moment on b about its centre of mass, or about the origin of its frame \[N m\].
     pub(crate) fn moment_b(&self, push: Vector) -> f64 {
         -cross(self.arm_b, push) - self.lever_b * self.rub
-    }
-}
-
-/// |R/slip| \[N s/m\], or the tangent where that is steeper.
-pub(super) fn secant(friction: &Friction, rub: Rub, slip: f64) -> f64 {
-    // A law with a state sticks by itself, and its tangent knows how.
-    if friction.has_state() || slip.abs() < f64::MIN_POSITIVE {
-        rub.damping
-    } else {
-        rub.damping.max(-rub.force / slip)
     }
 }

@@ -87,9 +87,7 @@ impl Linkage {
         let pin = matches!(self.joining, Joining::Clearance(_))
             .then(|| self.memory.joints.closed(joint))
             .flatten();
-        let bush = self.memory.bushes.get(joint);
-        let bush = bush.filter(|touch| touch.onset > 0.0);
-        [pin, bush.map(|touch| (touch.onset, touch.force))]
+        [pin, self.memory.bushes.closed(joint)]
     }
 }
 

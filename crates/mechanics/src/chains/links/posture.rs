@@ -260,15 +260,7 @@ impl Linkage {
         }
     }
 
-    /// The circle at a joint that runs on the teeth.
-    pub(crate) fn roller(&self, joint: usize, at: Moment<'_>, posture: &Posture) -> Part {
-        match self.free_rollers.as_ref().and_then(|free| free.body[joint]) {
-            Some(body) => free_part(body, at),
-            None => self.part(self.joints[joint].carrier, at, posture),
-        }
-    }
-
-    /// The body that bears that circle, and the circle's centre from its centre of mass \[m\].
+    /// The body that bears the circle at a joint that runs on the teeth, and the circle's centre from its centre of mass \[m\].
     pub(super) fn bearer(&self, joint: usize, posture: &Posture) -> (Option<usize>, Vector) {
         let joint = joint % self.joints.len();
         if let Some(body) = self.free_rollers.as_ref().and_then(|free| free.body[joint]) {

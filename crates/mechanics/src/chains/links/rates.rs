@@ -132,8 +132,8 @@ impl Linkage {
         let (pins, posture) = (&play.pins, &play.posture);
         for joint in 0..self.joints.len() {
             let stiffness = pins.stiffness[joint];
-            let rubbing = pins.rubs.get(joint).copied().unwrap_or_default();
-            if stiffness <= 0.0 && rubbing.drag <= 0.0 {
+            let drag = pins.drag[joint];
+            if stiffness <= 0.0 && drag <= 0.0 {
                 continue;
             }
             let n = pins.normal(joint);
@@ -149,7 +149,7 @@ impl Linkage {
                 1.0
             };
             let depth = -pins.gap[joint];
-            let levers = bearing.side_levers(self.pairs.pin_after[joint], depth);
+            let levers = bearing.side_levers(self.pairs.pin_after(joint), depth);
             for (body, side, lever) in [
                 (before, &posture.before, levers[0]),
                 (after, &posture.after, levers[1]),
@@ -162,9 +162,9 @@ impl Linkage {
                 add_square(&mut sum[0], along, share * stiffness);
                 add_square(&mut sum[0], pivoting, share * pins.across[joint]);
                 add_square(&mut sum[1], along, share * pins.damping[joint]);
-                if rubbing.drag > 0.0 {
+                if drag > 0.0 {
                     let across = self.scaled_row(body, t, cross(arm, t) + lever);
-                    add_square(&mut sum[1], across, share * rubbing.drag);
+                    add_square(&mut sum[1], across, share * drag);
                 }
             }
         }

@@ -12,9 +12,11 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Continuity, Method, Moment, SecondOrderSystem, State, Verdict};
 use serde_json::Value;
 
-use super::bearing::{Bearing, Part, PinTouch, Tally};
+use super::bearing::{Bearing, Part, Tally};
 use super::element::turned;
 use crate::Surface;
+use crate::contact::{ContactMemory, LaneTally, MemoryLanes};
+use crate::lanes::Wide;
 
 /// One contact of pin and bush.
 #[derive(Clone, Copy, Debug, Default)]
@@ -35,12 +37,12 @@ struct SliderCrank {
     slider_mass: f64,
     bearing: Bearing,
     depth: f64,
-    memory: (f64, PinTouch),
+    memory: (f64, ContactMemory),
     impacts: Vec<Impact>,
 }
 
 struct Work {
-    touch: PinTouch,
+    touch: ContactMemory,
     tally: Tally,
     slider_acceleration: f64,
 }
@@ -84,7 +86,7 @@ impl SliderCrank {
             slider_mass: input("m_slider"),
             bearing: Bearing::new(&surface, bore, bore - clearance),
             depth: 2e-9,
-            memory: (0.0, PinTouch::OPEN),
+            memory: (0.0, ContactMemory::open(1)),
             impacts: Vec::new(),
         }
     }
@@ -121,7 +123,7 @@ impl SecondOrderSystem for SliderCrank {
 
     fn new_record(&self) -> Work {
         Work {
-            touch: PinTouch::OPEN,
+            touch: ContactMemory::open(1),
             tally: Tally::new(),
             slider_acceleration: 0.0,
         }
@@ -133,13 +135,13 @@ impl SecondOrderSystem for SliderCrank {
 
     fn evaluate(&self, at: Moment<'_>, a: &mut [f64], _: &mut [f64], record: &mut Work) {
         let [slider, pin] = self.sides(at);
-        record.tally = Tally::new();
-        let dt = at.t - self.memory.0;
-        let (touch, element) =
-            self.bearing
-                .touch(0, &slider, &pin, &self.memory.1, dt, &mut record.tally);
+        let (w, dt) = (Wide(pulp::Scalar), at.t - self.memory.0);
+        let mut memory = MemoryLanes::new(w, &self.memory.1, &mut record.touch, 1);
+        let mut tally = LaneTally::new(w);
+        let parts = [&slider, &pin];
+        let element = self.bearing.touch(0, parts, &mut memory, 0, dt, &mut tally);
+        record.tally = Tally::of(&tally);
         let push = element.map_or_else(Vector::zeros, |element| element.push());
-        record.touch = touch;
         // J φ̈ = M − m l/2 (n·a_hinge),   m_s ẍ = −F_x
         let turn = self.speed * at.t;
         let hinge = Vector::new(turn.cos(), turn.sin()) * (-self.crank * self.speed * self.speed);
@@ -161,23 +163,24 @@ impl SecondOrderSystem for SliderCrank {
     }
 
     fn commit(&mut self, t: f64, _: &mut [f64], _: &mut [f64], end: &mut Work) -> Continuity {
-        let (before, now) = (self.memory.1.onset > 0.0, end.touch.onset > 0.0);
-        if now && !before {
+        let (before, now) = (self.memory.1.closed(0), end.touch.closed(0));
+        if let (Some((approach, _)), None) = (now, before) {
             self.impacts.push(Impact {
                 start: t,
                 end: f64::INFINITY,
-                approach: end.touch.onset,
+                approach,
                 force: 0.0,
             });
         }
         if let Some(impact) = self.impacts.last_mut() {
-            if now {
-                impact.force = impact.force.max(end.touch.force);
-            } else if before {
+            if let Some((_, force)) = now {
+                impact.force = impact.force.max(force);
+            } else if before.is_some() {
                 impact.end = t;
             }
         }
-        self.memory = (t, end.touch);
+        self.memory.0 = t;
+        std::mem::swap(&mut self.memory.1, &mut end.touch);
         Continuity::Smooth
     }
 }
@@ -241,7 +244,7 @@ fn s05_statistics_of_a_slider_crank() {
             if state.t > skipped * period {
                 first.get_or_insert(mechanism.impacts.len());
                 squares += state.a[1] * state.a[1];
-                touching += f64::from(mechanism.memory.1.onset > 0.0);
+                touching += f64::from(mechanism.memory.1.closed(0).is_some());
                 steps += 1.0;
             }
         }

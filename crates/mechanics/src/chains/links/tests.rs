@@ -305,16 +305,19 @@ fn lanes_and_scalar_contacts_agree() {
             let (law, flank) = (&contacts.surface.law, contacts.flank.unwrap());
             contacts.for_each_slot(|slot, roller| {
                 let place = member.chain.roller_moving(&q, roller).place;
-                let [Some(probe), _] = contacts.faces(&frame, slot, place) else {
+                let Some(probe) = contacts.probes(&frame, place).pop() else {
                     return;
                 };
+                let touch = &touch.state;
+                let depth = -touch.gap[slot];
                 // The wheel turns under rollers at rest: only the elastic part is compared.
-                if probe.gap >= 0.0 || touch.closing[slot].abs() > 0.0 && touch.force[slot] == 0.0 {
+                if depth <= 0.0 || touch.closing[slot].abs() > 0.0 && touch.force[slot] == 0.0 {
                     return;
                 }
+                assert!((probe.gap - touch.gap[slot]).abs() < 1e-16);
                 let share = flank.share(probe.beyond);
-                let elastic = (1.0 - share) * law.elastic_force(-probe.gap)
-                    + share * flank.elastic.force(-probe.gap);
+                let elastic =
+                    (1.0 - share) * law.elastic_force(depth) + share * flank.elastic.force(depth);
                 let factor = touch.force[slot] / elastic;
                 let rate = touch.closing[slot] * touch.inverse_onset[slot];
                 let damped =

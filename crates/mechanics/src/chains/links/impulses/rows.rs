@@ -110,11 +110,12 @@ impl Rows {
         let pins = &play.pins;
         self.resize(pins.normal_x.len());
         self.all().into_iter().for_each(|values| values.fill(0.0));
-        for (joint, rub) in pins.rubs.iter().enumerate() {
-            if rub.secant <= 0.0 {
+        for joint in 0..linkage.joints.len() {
+            let secant = pins.secant[joint];
+            if secant <= 0.0 {
                 continue;
             }
-            let levers = bearing.side_levers(linkage.pairs.pin_after[joint], -pins.gap[joint]);
+            let levers = bearing.side_levers(linkage.pairs.pin_after(joint), -pins.gap[joint]);
             let t = turned(pins.normal(joint));
             let (before, after) = (&play.posture.before, &play.posture.after);
             self.x[joint] = t.x;
@@ -123,7 +124,7 @@ impl Rows {
                 before.arm_x[joint] * t.y - before.arm_y[joint] * t.x + levers[0];
             self.turn_after[joint] =
                 after.arm_x[joint] * t.y - after.arm_y[joint] * t.x + levers[1];
-            self.weight[joint] = c * rub.secant;
+            self.weight[joint] = c * secant;
         }
         if linkage.closed {
             for values in self.all() {

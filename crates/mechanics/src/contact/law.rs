@@ -1,0 +1,456 @@
+//! The laws of two surfaces on lanes: what any contact answers to where its surfaces are and how they move.
+//!
+//! ```text
+//! gap, closing speed ─► onset ─► normal force ─► friction ─► tally
+//!                       [`SurfaceLaw::press`]    [`SurfaceLaw::rub`]
+//! ```
+//!
+//! Rollers on teeth and rails, plates on guides, pins in bushes and bushes in rollers find the gap, the
+//! closing speed and the slip each by its own geometry; from there on they are one. A law that has no form on lanes is
+//! asked for one lane after the other, in the same place.
+
+use chaindrive_contact::dissipation::{Action, RATIO_LIMIT};
+use chaindrive_contact::{Approach, Friction, Law, Prepared, Rub};
+use pulp::Simd;
+
+use super::memory::MemoryLanes;
+use super::wrench::LaneTally;
+use crate::drive::{Flank, Surface};
+use crate::lanes::{FixedPower, LANES, Lane, Mask, Wide};
+
+/// The laws of one pair of surfaces, taken apart once into what lanes need.
+#[derive(Clone, Debug)]
+pub(crate) struct SurfaceLaw {
+    elastic: LaneElastic,
+    /// What is different on flanks.
+    pub(super) flank: Option<LaneFlank>,
+    /// χ of a hysteretic law, otherwise zero.
+    factor: f64,
+    /// Viscous damping, otherwise zero \[N s/m\].
+    damping: f64,
+    /// Floor of the speed at touch \[m/s\], positive.
+    floor: f64,
+    pub(crate) friction: LaneFriction,
+}
+
+/// An elastic law on lanes, chosen once per body; the depth is not negative.
+#[derive(Clone, Debug)]
+pub(super) enum LaneElastic {
+    /// g = K δ
+    Linear(f64),
+    /// g = K δ √δ
+    Hertz(f64),
+    /// g = K δ δⁿ⁻¹: K, n, and the power.
+    Power(f64, f64, Box<FixedPower>),
+    /// Any law, one lane after the other.
+    General(Box<Prepared>),
+}
+
+/// A friction law on lanes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum LaneFriction {
+    None,
+    Coulomb {
+        /// μ \[–\]
+        coefficient: f64,
+        /// Square of the regularising slip speed \[m²/s²\].
+        slip_speed_squared: f64,
+        /// Slope at rest per normal force, μ/v_s \[s/m\].
+        slope: f64,
+    },
+    /// Any other law, one lane after the other.
+    General(Friction),
+}
+
+/// A flank on lanes.
+#[derive(Clone, Debug)]
+pub(super) struct LaneFlank {
+    elastic: LaneElastic,
+    /// 1/(2w) \[1/m\].
+    scale: f64,
+}
+
+/// A lane of contacts of which some are closed.
+pub(crate) struct Pressed<S: Simd> {
+    pub(crate) closed: Mask<S>,
+    pub(crate) depth: Lane<S>,
+    closing: Lane<S>,
+    /// 1/v of the closed ones, zero elsewhere \[s/m\].
+    inverse_onset: Lane<S>,
+    /// min(δ̇/v, 4)
+    ratio: Lane<S>,
+    /// Elastic force of the seat's law, and of both, of whole contacts \[N\].
+    on_seat: Lane<S>,
+    stored: Lane<S>,
+    /// Normal force \[N\], zero where open.
+    pub(crate) force: Lane<S>,
+}
+
+/// What friction answers.
+pub(crate) struct Rubbing<S: Simd> {
+    /// Force along the slip \[N\].
+    pub(crate) force: Lane<S>,
+    /// Its slope −∂R/∂slip, not negative \[N s/m\].
+    pub(crate) drag: Lane<S>,
+    /// |R/slip|, or the slope where that is steeper \[N s/m\]. With it a step cannot carry the slip beyond zero, where the
+    /// slope of a saturated friction would let it chatter.
+    pub(crate) secant: Lane<S>,
+    /// The slope that limits explicit steps \[N s/m\].
+    pub(super) steepest: Lane<S>,
+}
+
+/// A depth \[m\] that no power is taken below; the force there is nothing beside rounding.
+const LEAST_DEPTH: f64 = 1e-30;
+
+impl SurfaceLaw {
+    pub(crate) fn new(surface: &Surface, flank: Option<Flank>) -> Self {
+        let (factor, damping) = match surface.law.dissipation.action() {
+            Action::None => (0.0, 0.0),
+            Action::Hysteretic { factor } => (factor, 0.0),
+            Action::Viscous { damping } => (0.0, damping),
+        };
+        Self {
+            elastic: LaneElastic::new(&surface.law),
+            flank: flank.map(|flank| LaneFlank {
+                elastic: LaneElastic::new(&Law {
+                    elastic: flank.elastic,
+                    ..surface.law
+                }),
+                scale: 0.5 / flank.width,
+            }),
+            factor,
+            damping,
+            floor: surface.floor(),
+            friction: LaneFriction::new(surface.friction),
+        }
+    }
+
+    /// Onset and normal force of a lane of contacts with these gaps and closing speeds; none if all are open.
+    ///
+    /// `share` is that of the flank's law, `weight` the part of a contact that is meant. Of gaps that are
+    /// negative the contacts are closed.
+    #[inline(always)]
+    pub(crate) fn press<S: Simd>(
+        &self,
+        w: Wide<S>,
+        memory: &mut MemoryLanes<'_, S>,
+        lane: usize,
+        [gap, closing]: [Lane<S>; 2],
+        share: Option<Lane<S>>,
+        weight: Option<Lane<S>>,
+        tally: &mut LaneTally<S>,
+    ) -> Option<Pressed<S>> {
+        let zero = w.splat(0.0);
+        memory.look(lane, gap, closing);
+        let depth = (-gap).max(zero);
+        let closed = depth.greater(zero);
+        if !closed.any() {
+            memory.open(w, lane);
+            return None;
+        }
+        let before = memory.inverse_onset(lane);
+        let mut inverse_onset = closed.select(before, zero);
+        let fresh = closed & w.splat(f64::MIN_POSITIVE).greater(before);
+        if fresh.any() {
+            let onset = memory.onset(w, lane, depth, closing);
+            let inverse = onset.speed.max(w.splat(self.floor)).recip();
+            inverse_onset = fresh.select(inverse, inverse_onset);
+            tally.began(w, fresh, depth, onset.share);
+        }
+        memory.keep_onset(lane, inverse_onset);
+
+        // F = max(0, g + χ g min(δ̇/v, 4) + c δ̇)
+        let on_seat = self.elastic.force(w, depth);
+        let mut stored = on_seat;
+        if let (Some(flank), Some(share)) = (&self.flank, share) {
+            // g = (1 − s) g_seat + s g_flank
+            stored = stored + share * (flank.elastic.force(w, depth) - stored);
+            memory.keep_share(lane, share);
+        }
+        let ratio = (closing * inverse_onset).min(w.splat(RATIO_LIMIT));
+        let factor = w.splat(self.factor);
+        let viscous = w.splat(self.damping) * closing;
+        let raw = stored * (w.splat(1.0) + factor * ratio) + viscous;
+        let mut force = closed.select(raw.max(zero), zero);
+        let mut loss = force - closed.select(stored, zero);
+        if let Some(weight) = weight {
+            force = weight * force;
+            loss = weight * loss;
+        }
+        memory.keep_force(lane, force);
+        tally.normal_loss += loss * closing;
+        tally.depth = tally.depth.max(depth);
+        Some(Pressed {
+            closed,
+            depth,
+            closing,
+            inverse_onset,
+            ratio,
+            on_seat,
+            stored,
+            force,
+        })
+    }
+
+    /// Friction of a lane at some slip speeds, `dt` after the accepted state.
+    #[inline(always)]
+    pub(crate) fn rub<S: Simd>(
+        &self,
+        w: Wide<S>,
+        memory: &mut MemoryLanes<'_, S>,
+        lane: usize,
+        dt: f64,
+        pressed: &Pressed<S>,
+        slip: Lane<S>,
+        tally: &mut LaneTally<S>,
+    ) -> Rubbing<S> {
+        let rubbing = match &self.friction {
+            LaneFriction::None => Rubbing::none(w),
+            LaneFriction::Coulomb {
+                coefficient,
+                slip_speed_squared,
+                slope,
+            } => {
+                // f = −μ F v/√(v² + v_s²),   −∂f/∂v = μ F v_s²/√(v² + v_s²)³
+                let regular = w.splat(*slip_speed_squared);
+                let inverse = (slip * slip + regular).inverse_root();
+                let limit = w.splat(*coefficient) * pressed.force;
+                let secant = limit * inverse;
+                Rubbing {
+                    force: -(limit * slip * inverse),
+                    drag: secant * regular * inverse * inverse,
+                    secant,
+                    steepest: w.splat(*slope) * pressed.force,
+                }
+            }
+            LaneFriction::General(friction) => {
+                let before = memory.stick(w, lane);
+                let (rubbing, stick) = one_by_one(w, friction, dt, pressed, slip, before);
+                memory.keep_stick(w, lane, pressed.closed, stick);
+                rubbing
+            }
+        };
+        tally.friction_loss += -(rubbing.force * slip);
+        rubbing
+    }
+
+    /// −∂F/∂ġ without the limits \[N s/m\], for the choice of explicit steps.
+    #[inline(always)]
+    pub(super) fn steepest<S: Simd>(&self, w: Wide<S>, pressed: &Pressed<S>) -> Lane<S> {
+        // χ g/v + c
+        w.splat(self.factor) * pressed.stored * pressed.inverse_onset
+            + pressed.closed.select(w.splat(self.damping), w.splat(0.0))
+    }
+
+    /// ∂F/∂δ \[N/m\] and ∂F/∂δ̇ \[N s/m\]; both are zero where a limit holds the force.
+    #[inline(always)]
+    pub(crate) fn slopes<S: Simd>(
+        &self,
+        w: Wide<S>,
+        pressed: &Pressed<S>,
+        share: Option<Lane<S>>,
+    ) -> [Lane<S>; 2] {
+        let zero = w.splat(0.0);
+        let depth = pressed.depth;
+        let mut slope = self.elastic.slope(w, depth, pressed.on_seat);
+        if let (Some(flank), Some(share)) = (&self.flank, share) {
+            let other = flank.elastic.slope(w, depth, flank.elastic.force(w, depth));
+            slope = slope + share * (other - slope);
+        }
+        // ∂F/∂δ = k (1 + χ min(δ̇/v, 4)),   ∂F/∂δ̇ = χ g/v + c
+        let factor = w.splat(self.factor);
+        let pushes = pressed.force.greater(zero);
+        let free = w
+            .splat(RATIO_LIMIT)
+            .greater(pressed.closing * pressed.inverse_onset);
+        let hysteresis = factor * pressed.stored * pressed.inverse_onset;
+        let damping = free.select(hysteresis, zero) + w.splat(self.damping);
+        let stiffness = slope * (w.splat(1.0) + factor * pressed.ratio);
+        [pushes.select(stiffness, zero), pushes.select(damping, zero)]
+    }
+
+    /// The flank's share where rollers are so far beyond the hollow, as [`Flank::share`](crate::Flank) has it.
+    #[inline(always)]
+    pub(super) fn share<S: Simd>(&self, w: Wide<S>, beyond: Lane<S>) -> Option<Lane<S>> {
+        match &self.flank {
+            Some(flank) => {
+                // s = x² (3 − 2x),   x = (ξ + w)/(2w)
+                let x = beyond * w.splat(flank.scale) + w.splat(0.5);
+                let x = x.max(w.splat(0.0)).min(w.splat(1.0));
+                Some(x * x * (w.splat(3.0) - w.splat(2.0) * x))
+            }
+            None => None,
+        }
+    }
+}
+
+impl LaneElastic {
+    fn new(law: &Law) -> Self {
+        let prepared = law.prepared();
+        match prepared.power() {
+            Some([stiffness, n]) if is(n, 1.0) => Self::Linear(stiffness),
+            Some([stiffness, n]) if is(n, 1.5) => Self::Hertz(stiffness),
+            Some([stiffness, n]) => Self::Power(stiffness, n, Box::new(FixedPower::new(n - 1.0))),
+            None => Self::General(Box::new(prepared)),
+        }
+    }
+
+    #[inline(always)]
+    fn force<S: Simd>(&self, w: Wide<S>, depth: Lane<S>) -> Lane<S> {
+        match self {
+            Self::Linear(stiffness) => w.splat(*stiffness) * depth,
+            Self::Hertz(stiffness) => w.splat(*stiffness) * depth * depth.root(),
+            Self::Power(stiffness, _, lower) => {
+                w.splat(*stiffness) * depth * lower.of(w, depth.max(w.splat(LEAST_DEPTH)))
+            }
+            Self::General(law) => general(w, law, depth, Part::Force),
+        }
+    }
+
+    /// dg/dδ of lanes with a force g.
+    #[inline(always)]
+    fn slope<S: Simd>(&self, w: Wide<S>, depth: Lane<S>, force: Lane<S>) -> Lane<S> {
+        let exponent = match self {
+            Self::Linear(stiffness) => return w.splat(*stiffness),
+            Self::Hertz(_) => 1.5,
+            Self::Power(_, n, _) => *n,
+            Self::General(law) => return general(w, law, depth, Part::Slope),
+        };
+        // k = n g/δ
+        w.splat(exponent) * force * depth.max(w.splat(LEAST_DEPTH)).recip()
+    }
+}
+
+/// What is asked of a general law.
+#[derive(Clone, Copy)]
+enum Part {
+    Force,
+    Slope,
+}
+
+#[inline(always)]
+fn general<S: Simd>(w: Wide<S>, law: &Prepared, depth: Lane<S>, part: Part) -> Lane<S> {
+    let mut numbers = [0.0; LANES];
+    depth.store(&mut numbers, 0);
+    respond_one_by_one(law, part, &mut numbers[..Wide::<S>::COUNT]);
+    w.load(&numbers, 0)
+}
+
+/// Kept out of line: a general law is too long to be copied into every kernel.
+#[inline(never)]
+fn respond_one_by_one(law: &Prepared, part: Part, numbers: &mut [f64]) {
+    for number in numbers {
+        let response = law.respond(Approach {
+            penetration: *number,
+            rate: 0.0,
+            onset_rate: 1.0,
+        });
+        *number = match part {
+            Part::Force => response.elastic,
+            Part::Slope => response.stiffness,
+        };
+    }
+}
+
+impl LaneFriction {
+    fn new(friction: Friction) -> Self {
+        match friction {
+            Friction::None => Self::None,
+            Friction::Coulomb(coulomb) => Self::Coulomb {
+                coefficient: coulomb.coefficient,
+                slip_speed_squared: coulomb.slip_speed * coulomb.slip_speed,
+                slope: coulomb.coefficient / coulomb.slip_speed,
+            },
+            other => Self::General(other),
+        }
+    }
+
+    /// Slope at rest under a normal force \[N s/m\].
+    pub(super) fn at_rest(&self, force: f64) -> f64 {
+        match self {
+            Self::None => 0.0,
+            Self::Coulomb { slope, .. } => slope * force,
+            Self::General(friction) => friction.damping(force, 0.0),
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn acts(&self) -> bool {
+        !matches!(self, Self::None)
+    }
+}
+
+impl<S: Simd> Rubbing<S> {
+    #[inline(always)]
+    fn none(w: Wide<S>) -> Self {
+        let zero = w.splat(0.0);
+        Self {
+            force: zero,
+            drag: zero,
+            secant: zero,
+            steepest: zero,
+        }
+    }
+}
+
+/// Friction of any law, and its state.
+#[inline(always)]
+fn one_by_one<S: Simd>(
+    w: Wide<S>,
+    friction: &Friction,
+    dt: f64,
+    pressed: &Pressed<S>,
+    slip: Lane<S>,
+    before: Lane<S>,
+) -> (Rubbing<S>, Lane<S>) {
+    let [mut rub, mut drag, mut secant, mut stick] = [[0.0; LANES]; 4];
+    pressed.force.store(&mut rub, 0);
+    slip.store(&mut drag, 0);
+    before.store(&mut stick, 0);
+    // In the place of the answer: the depth, which says where there is a contact.
+    pressed.depth.store(&mut secant, 0);
+    rub_one_by_one(
+        friction,
+        dt,
+        [&mut rub, &mut drag, &mut secant, &mut stick].map(|lane| &mut lane[..Wide::<S>::COUNT]),
+    );
+    let drag = w.load(&drag, 0);
+    let rubbing = Rubbing {
+        force: w.load(&rub, 0),
+        drag,
+        secant: w.load(&secant, 0),
+        steepest: drag,
+    };
+    (rubbing, w.load(&stick, 0))
+}
+
+/// Turns normal forces into friction forces and slips into slopes; kept out of line like the laws.
+#[inline(never)]
+fn rub_one_by_one(friction: &Friction, dt: f64, lanes: [&mut [f64]; 4]) {
+    let [force, slip, secant, stick] = lanes;
+    let lanes = force.iter_mut().zip(slip).zip(secant.iter_mut().zip(stick));
+    for ((force, slip), (secant, stick)) in lanes {
+        if *secant <= 0.0 {
+            (*force, *slip, *secant, *stick) = (0.0, 0.0, 0.0, 0.0);
+            continue;
+        }
+        let Rub {
+            force: rub,
+            damping,
+            state,
+        } = friction.rub(*force, *slip, *stick, dt);
+        // A law with a state sticks by itself, and its slope knows how.
+        *secant = if friction.has_state() || slip.abs() < f64::MIN_POSITIVE {
+            damping
+        } else {
+            damping.max(-rub / *slip)
+        };
+        (*force, *slip, *stick) = (rub, damping, state);
+    }
+}
+
+#[inline(always)]
+#[expect(clippy::float_cmp, reason = "an exponent is chosen, not computed")]
+fn is(exponent: f64, value: f64) -> bool {
+    exponent == value
+}
