@@ -8,7 +8,7 @@
 
 A `Drive` is read from a scene file (`load`), from text, from a dict or from `scenes`; `simulate`
 moves it and returns an `xarray.Dataset` with names, units and provenance; `sweep` does so for many
-variants at once. Quantities are in SI
+variants at once, and a `Simulation` is moved by a program of your own. Quantities are in SI
 units throughout; scene files may carry units of their own. Counter-clockwise angles, tensions and
 penetrations are positive.
 """
@@ -29,6 +29,7 @@ from chaindrive.errors import (
 )
 from chaindrive.friction import Friction, friction
 from chaindrive.law import Law, law
+from chaindrive.live import Simulation, Snapshot
 from chaindrive.precision import work_precision
 from chaindrive.simulation import simulate
 from chaindrive.sweeping import sweep
@@ -42,7 +43,9 @@ __all__ = [
     "Law",
     "ParameterError",
     "SceneError",
+    "Simulation",
     "SimulationError",
+    "Snapshot",
     "WriteError",
     "__version__",
     "catalogue",

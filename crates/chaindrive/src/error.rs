@@ -71,6 +71,20 @@ pub enum SimulationError {
     )]
     TooFast { speed: f64, fastest: f64 },
 
+    /// A time that lies behind.
+    #[error(
+        "t = {time} s is past: the simulation was read at {read} s; take a snapshot to go back to"
+    )]
+    Past { time: f64, read: f64 },
+
+    /// What cannot be set while a drive moves.
+    #[error("{what} `{name}` cannot be set: {reason}")]
+    Control {
+        what: &'static str,
+        name: String,
+        reason: String,
+    },
+
     /// Somebody asked the calculation to stop.
     #[error("interrupted")]
     Interrupted,

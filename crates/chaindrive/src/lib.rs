@@ -43,4 +43,4 @@ pub use run::{
     Stop, execute,
 };
 pub use scene::Scene;
-pub use simulate::Simulation;
+pub use simulate::{Control, Simulation, Snapshot};

@@ -1,6 +1,9 @@
-//! The loop: step, sample, stop.
+//! A drive in motion: step, read, set, sample.
 
-use std::time::{Duration, Instant};
+mod live;
+
+use std::sync::Arc;
+use std::time::Duration;
 
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Statistics, Stepper};
 use chaindrive_mechanics::{Assembled, ContactEvent, Drive, Energy, Observation, Record, System};
@@ -11,7 +14,8 @@ use crate::run::Run;
 /// A run in progress: ask it for one sample after the other.
 ///
 /// Steps are chosen by the method alone; samples are interpolated between them, so recording
-/// more or less does not change the motion.
+/// more or less does not change the motion. Whoever wants to look at any time of their own, or to act on the drive
+/// while it moves, takes [`advance_to`](Self::advance_to) and [`set`](Self::set).
 ///
 /// # Example
 ///
@@ -26,12 +30,14 @@ use crate::run::Run;
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Simulation {
-    system: System,
-    state: State,
-    stepper: Stepper<System>,
-    assembled: Assembled,
+    moving: Moving,
+    /// The state before the last step, when that went beyond the time read: a change at that time begins from here.
+    before: Option<Box<Moving>>,
+    /// Time of the last sample or reading \[s\].
+    read: f64,
+    assembled: Arc<Assembled>,
     until: f64,
     every: f64,
     next: u64,
@@ -39,10 +45,29 @@ pub struct Simulation {
     record: Record,
     buffers: [Vec<f64>; 3],
     start_energy: Option<Energy>,
-    /// Contacts that ended before the last sample, and since then.
-    ended: [Vec<ContactEvent>; 2],
     stepping_time: f64,
 }
+
+/// What a step changes.
+#[derive(Clone, Debug)]
+struct Moving {
+    system: System,
+    state: State,
+    stepper: Stepper<System>,
+    /// Contacts that ended before the last sample, and since then.
+    ended: [Vec<ContactEvent>; 2],
+}
+
+impl Moving {
+    fn step(&mut self) -> Result<(), SimulationError> {
+        let step = self.stepper.advance(&mut self.system, &mut self.state);
+        step.map(drop)
+            .map_err(|error| SimulationError::stepping(error, &self.system))
+    }
+}
+
+use live::Changes;
+pub use live::{Control, Snapshot};
 
 /// Fastest that a chain may run at the start \[m/s\]: the speed of sound in steel.
 ///
@@ -103,17 +128,21 @@ impl Simulation {
                 vec![0.0; dofs],
                 vec![0.0; state.quadratures.len()],
             ],
-            system,
-            state,
-            stepper,
-            assembled,
+            moving: Moving {
+                system,
+                state,
+                stepper,
+                ended: [Vec::new(), Vec::new()],
+            },
+            before: None,
+            read: 0.0,
+            assembled: Arc::new(assembled),
             until: run.until,
             every: run.every,
             next: 0,
             observation: Observation::default(),
             record,
             start_energy: None,
-            ended: [Vec::new(), Vec::new()],
             stepping_time: 0.0,
         })
     }
@@ -128,6 +157,13 @@ impl Simulation {
         let time = self.next as f64 * self.every;
         if time > self.until * (1.0 + 1e-12) {
             return Ok(None);
+        }
+        // Whoever has read beyond this sample cannot go back for it.
+        if time < self.moving.state.interval().0 {
+            return Err(SimulationError::Past {
+                time,
+                read: self.read,
+            });
         }
         while !self.advance(Duration::MAX)? {}
         self.sample(time);
@@ -144,45 +180,39 @@ impl Simulation {
     /// As [`Simulation::next_sample`].
     pub fn advance(&mut self, budget: Duration) -> Result<bool, SimulationError> {
         let time = (self.next as f64 * self.every).min(self.until);
-        let begin = Instant::now();
-        while self.state.t < time && begin.elapsed() < budget {
-            for _ in 0..STEPS_PER_LOOK {
-                if self.state.t >= time {
-                    break;
-                }
-                self.stepper
-                    .advance(&mut self.system, &mut self.state)
-                    .map_err(|error| SimulationError::stepping(error, &self.system))?;
-            }
-        }
-        self.stepping_time += begin.elapsed().as_secs_f64();
-        self.ended[1].append(&mut self.system.take_events());
-        Ok(self.state.t >= time)
+        self.step_towards(time, budget, Changes::None)
     }
 
     fn sample(&mut self, time: f64) {
+        self.observe(time);
+        let ended = &mut self.moving.ended;
+        ended.swap(0, 1);
+        ended[1].clear();
+    }
+
+    /// Reads everything off the state at a time \[s\] within the last step.
+    fn observe(&mut self, time: f64) {
         let [q, v, flows] = &mut self.buffers;
-        self.state.at(time, q, v);
-        self.state.quadratures_at(time, flows);
+        let Moving { system, state, .. } = &self.moving;
+        state.at(time, q, v);
+        state.quadratures_at(time, flows);
         let at = Moment { t: time, q, v };
-        self.system
-            .observe(at, flows, &mut self.record, &mut self.observation);
+        system.observe(at, flows, &mut self.record, &mut self.observation);
         self.start_energy.get_or_insert(self.observation.energy);
-        self.ended.swap(0, 1);
-        self.ended[1].clear();
+        self.read = time;
     }
 
     /// Contacts that ended between the sample before the last and the last one, in the order of their
     /// ends; of the kinds that [`Run::events`] asks for.
     pub fn events(&self) -> &[ContactEvent] {
-        &self.ended[0]
+        &self.moving.ended[0]
     }
 
     /// Contacts that [`events`](Self::events) has not handed out: those that ended after the last
     /// sample, and those that last, with an infinite end.
     pub fn outstanding_events(&self) -> Vec<ContactEvent> {
-        let mut events = self.ended[1].clone();
-        events.extend(self.system.lasting_events());
+        let mut events = self.moving.ended[1].clone();
+        events.extend(self.moving.system.lasting_events());
         events
     }
 
@@ -199,17 +229,17 @@ impl Simulation {
 
     /// Share of the run that is done, 0 to 1.
     pub fn progress(&self) -> f64 {
-        (self.state.t / self.until).clamp(0.0, 1.0)
+        (self.moving.state.t / self.until).clamp(0.0, 1.0)
     }
 
     /// Time reached \[s\].
     pub fn time(&self) -> f64 {
-        self.state.t
+        self.moving.state.t
     }
 
     /// The system in its present state.
     pub fn system(&self) -> &System {
-        &self.system
+        &self.moving.system
     }
 
     /// How the drive was assembled.
@@ -219,12 +249,12 @@ impl Simulation {
 
     /// Counts of the time stepping.
     pub fn statistics(&self) -> &Statistics {
-        self.stepper.statistics()
+        self.moving.stepper.statistics()
     }
 
     /// The method with its step or tolerances.
     pub fn method(&self) -> Method {
-        self.stepper.method()
+        self.moving.stepper.method()
     }
 
     /// Wall time spent in stepping, sampling not counted \[s\].

@@ -76,5 +76,5 @@ pub use error::{IntegrationError, Quantity};
 pub use method::Method;
 pub use state::State;
 pub use statistics::Statistics;
-pub use stepper::{Step, Stepper};
+pub use stepper::{Step, Stepper, slack};
 pub use system::{Continuity, Moment, SecondOrderSystem, Verdict, Weights};

@@ -185,6 +185,10 @@ impl State {
 
     /// Keeps the accelerations of the step's end for interpolation and makes room for fresh ones.
     pub(crate) fn jump(&mut self) {
+        if self.jumped {
+            // What led here is kept already.
+            return;
+        }
         swap(&mut self.a, &mut self.before_jump.0);
         swap(&mut self.rates, &mut self.before_jump.1);
         self.jumped = true;

@@ -30,6 +30,19 @@ pub struct Stepper<S: SecondOrderSystem> {
     candidate: Snapshot,
     record: S::Record,
     statistics: Statistics,
+    /// Time of the next event \[s\]: no step goes beyond.
+    event: f64,
+}
+
+impl<S: SecondOrderSystem<Record: Clone>> Clone for Stepper<S> {
+    fn clone(&self) -> Self {
+        Self {
+            kernel: self.kernel.clone(),
+            candidate: self.candidate.clone(),
+            record: self.record.clone(),
+            ..*self
+        }
+    }
 }
 
 impl<S: SecondOrderSystem> fmt::Debug for Stepper<S> {
@@ -68,6 +81,7 @@ impl<S: SecondOrderSystem> Stepper<S> {
             candidate: Snapshot::new(dofs, quadratures),
             record: system.new_record(),
             statistics: Statistics::default(),
+            event: f64::INFINITY,
         };
         stepper.evaluate(system, state)?;
         let State { t, q, v, .. } = state;
@@ -79,6 +93,7 @@ impl<S: SecondOrderSystem> Stepper<S> {
         state.interpolation = method.interpolation();
         stepper.kernel.restart(&state.a);
         stepper.pace = first_pace(method, method.time_scale(system), state)?;
+        stepper.look_ahead(system, state);
         Ok(stepper)
     }
 
@@ -92,20 +107,20 @@ impl<S: SecondOrderSystem> Stepper<S> {
     /// be solved even with a thousandth of the nominal length. State and system stay at the last accepted state; the run cannot go on.
     pub fn advance(&mut self, system: &mut S, state: &mut State) -> Result<Step, IntegrationError> {
         let from = state.t;
-        let nominal = match &self.pace {
-            Pace::Fixed(fixed) => fixed.step(),
-            Pace::Controlled(controller) => controller.proposal,
-        };
+        let nominal = self.next_step();
+        // The clock cannot tell an event that is nearer than its last places.
+        let left = self.event - from;
         let floor = FLOOR * nominal;
         let longest = match &self.pace {
             Pace::Fixed(_) => 0.0,
             Pace::Controlled(controller) => controller.max_step,
         };
         let least = (4.0 * f64::EPSILON * from.abs()).max(LEAST_SHARE * longest);
-        let (mut h, mut rejections, mut retries, mut cut_short) = (nominal, 0, 0, false);
+        let (mut h, mut rejections, mut retries, mut cut_short) =
+            (nominal.min(left), 0, 0, left < nominal);
         let error = loop {
             // Below this the clock would stand still, or the end never come into sight.
-            if h <= least {
+            if h <= least && h < left {
                 return Err(IntegrationError::StepUnderflow { t: from, step: h });
             }
             // The record of the accepted state survives until the first candidate.
@@ -147,6 +162,34 @@ impl<S: SecondOrderSystem> Stepper<S> {
             to: state.t,
             rejections,
         })
+    }
+
+    /// Length \[s\] that the next step has at most.
+    pub fn next_step(&self) -> f64 {
+        match &self.pace {
+            Pace::Fixed(fixed) => fixed.step(),
+            Pace::Controlled(controller) => controller.proposal,
+        }
+    }
+
+    /// Asks the system for its next event, after somebody has planned one.
+    pub fn look_ahead(&mut self, system: &S, state: &State) {
+        self.event = system.next_event(state.t + slack(state.t));
+    }
+
+    /// Takes note that forces jump at the present state: the next step begins with what they are from now on.
+    ///
+    /// # Errors
+    /// [`IntegrationError::NotFinite`].
+    pub fn jump(&mut self, system: &S, state: &mut State) -> Result<(), IntegrationError> {
+        self.statistics.jumps += 1;
+        state.jump();
+        self.evaluate(system, state)?;
+        self.kernel.restart(&state.a);
+        if let Pace::Controlled(controller) = &mut self.pace {
+            controller.jumped();
+        }
+        Ok(())
     }
 
     /// Counts so far.
@@ -212,15 +255,12 @@ impl<S: SecondOrderSystem> Stepper<S> {
         state.accept(&mut self.candidate);
         self.kernel.accept();
         self.statistics.accept(h);
-        let State { t, q, v, .. } = state;
+        let State { t, q, v, .. } = &mut *state;
         if system.commit(*t, q, v, &mut self.record) == Continuity::Jump {
-            self.statistics.jumps += 1;
-            state.jump();
-            self.evaluate(system, state)?;
-            self.kernel.restart(&state.a);
-            if let Pace::Controlled(controller) = &mut self.pace {
-                controller.jumped();
-            }
+            self.jump(system, state)?;
+        }
+        if state.t + slack(state.t) >= self.event {
+            self.look_ahead(system, state);
         }
         if let Pace::Fixed(fixed) = &mut self.pace {
             let limit = stable_step(&self.method, self.method.time_scale(system));
@@ -253,6 +293,11 @@ impl<S: SecondOrderSystem> Stepper<S> {
             Err(first_not_finite(state.t, parts))
         }
     }
+}
+
+/// Times \[s\] that are the same to the clock at t: a few last places.
+pub fn slack(t: f64) -> f64 {
+    8.0 * f64::EPSILON * t.abs()
 }
 
 /// The pace a run begins with.

@@ -97,6 +97,16 @@ pub trait SecondOrderSystem {
         Continuity::Smooth
     }
 
+    /// Time \[s\] of the first event after t: where a given force or motion has a kink or a jump. A step lands there, and
+    /// none goes beyond.
+    ///
+    /// Forces that jump need a [`commit`](Self::commit) there that answers [`Continuity::Jump`]. Asked at the start and
+    /// after every event.
+    fn next_event(&self, t: f64) -> f64 {
+        let _ = t;
+        f64::INFINITY
+    }
+
     /// Time scale τ \[s\] of the fastest mode in the present state; infinity when unknown.
     ///
     /// ```text

@@ -360,6 +360,20 @@ impl Chain {
             .any(|held| matches!(held.end, End::Pulled { .. }))
     }
 
+    /// Time \[s\] of the first knot of an end's motion after t; none without one.
+    pub(crate) fn next_knot(&self, t: f64) -> Option<f64> {
+        let ends = ask!(self, chain => &chain.ends);
+        let knots = ends.iter().filter_map(|held| match &held.end {
+            End::Driven { x, y } => x
+                .next_knot(t)
+                .into_iter()
+                .chain(y.next_knot(t))
+                .reduce(f64::min),
+            End::Free | End::Fixed | End::Pulled { .. } => None,
+        });
+        knots.reduce(f64::min)
+    }
+
     /// Gives copies of coordinates the values of their originals.
     pub(crate) fn copy_ghosts(&self, values: &mut [f64]) {
         match self {

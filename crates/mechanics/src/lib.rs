@@ -50,6 +50,6 @@ pub use events::{ContactEvent, ContactPair, EventKinds};
 pub use modes::{Mode, Modes};
 pub use motion::{Course, Harmonic, Motion, Table};
 pub use observe::Observation;
-pub use system::{Record, System};
+pub use system::{Input, Record, System};
 pub use tensioner::{Carrier, Hydraulic, Plunger, Push, PushForce, Spring, Tensioner};
 pub use torque::{Argument, Torque};

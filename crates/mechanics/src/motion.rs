@@ -55,6 +55,13 @@ pub enum Motion {
     },
     /// Positions at given times, joined by a natural cubic spline.
     Table(Table),
+    /// On from a place and speed at a constant acceleration: x = x₀ + v τ + ½ a τ², τ = t − t₀.
+    Onward {
+        /// Position, rate and acceleration at t₀.
+        from: Course,
+        /// Time t₀ \[s\].
+        since: f64,
+    },
 }
 
 impl Motion {
@@ -92,6 +99,24 @@ impl Motion {
                 },
             ),
             Self::Table(table) => table.at(t),
+            Self::Onward { from, since } => {
+                let after = t - since;
+                // x = x₀ + v τ + ½ a τ²
+                let gained = from.acceleration * after;
+                Course {
+                    position: from.position + (from.rate + 0.5 * gained) * after,
+                    rate: from.rate + gained,
+                    ..*from
+                }
+            }
+        }
+    }
+
+    /// Time \[s\] of the first knot of a table after t; none without one.
+    pub(crate) fn next_knot(&self, t: f64) -> Option<f64> {
+        match self {
+            Self::Table(table) => table.next_knot(t),
+            _ => None,
         }
     }
 
@@ -110,6 +135,12 @@ impl Motion {
         };
         match self {
             Self::Held | Self::Table(_) => Ok(()),
+            Self::Onward { from, since } => {
+                finite("position", from.position)?;
+                finite("rate", from.rate)?;
+                finite("acceleration", from.acceleration)?;
+                finite("since", *since)
+            }
             Self::Constant { rate } => finite("rate", *rate),
             Self::Ramp {
                 from,
@@ -254,6 +285,12 @@ impl Table {
         let share = share.clamp(0.0, 1.0);
         // x = (1 − s) x₀ + s x₁
         (1.0 - share) * self.values[i - 1] + share * self.values[i]
+    }
+
+    /// The first of its times after t.
+    pub(crate) fn next_knot(&self, t: f64) -> Option<f64> {
+        let next = self.times.partition_point(|&knot| knot <= t);
+        self.times.get(next).copied()
     }
 
     fn at(&self, t: f64) -> Course {

@@ -8,6 +8,7 @@ mod bodies;
 mod build;
 mod contacts;
 mod equations;
+mod inputs;
 mod member;
 
 use chaindrive_geometry::Point;
@@ -16,6 +17,7 @@ use chaindrive_integrate::{Continuity, Moment, SecondOrderSystem, Verdict, Weigh
 pub(crate) use bodies::{Bodies, RailSupport, Slide, Wheel, WheelRotation, WheelSupport};
 pub(crate) use build::{Laid, LaidChain};
 pub(crate) use contacts::{BodyContacts, OnRail, OnWheel, RailContact};
+pub use inputs::Input;
 pub(crate) use member::Member;
 
 use crate::End;
@@ -326,7 +328,15 @@ impl SecondOrderSystem for System {
         for (member, record) in self.chains.iter_mut().zip(&mut end.chains) {
             member.look_around(&self.bodies, Moment { t, q, v }, record);
         }
-        Continuity::Smooth
+        if self.take_due(t) {
+            Continuity::Jump
+        } else {
+            Continuity::Smooth
+        }
+    }
+
+    fn next_event(&self, t: f64) -> f64 {
+        self.event_after(t)
     }
 
     fn time_scale(&self) -> f64 {

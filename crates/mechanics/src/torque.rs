@@ -89,6 +89,17 @@ impl Torque {
         }
     }
 
+    /// Time \[s\] of the first kink of a table over time after t; none without one.
+    pub(crate) fn next_knot(&self, t: f64) -> Option<f64> {
+        match self {
+            Self::Table {
+                over: Argument::Time,
+                curve,
+            } => curve.next_knot(t),
+            _ => None,
+        }
+    }
+
     /// Linear resistance −∂M/∂ω at rest \[N m s\].
     pub(crate) fn drag(&self) -> f64 {
         match self {

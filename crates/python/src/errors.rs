@@ -118,6 +118,8 @@ impl IntoException for SimulationError {
                 "accuracy",
                 format!("leave out `accuracy` or `{given}`"),
             )),
+            Self::Past { read, .. } => parameter(message, "time", &format!("{read} s or later")),
+            Self::Control { name, .. } => python::ParameterError::new_err((message, name)),
             Self::AbsentChannel { .. } => python::ParameterError::new_err((
                 message,
                 "record",

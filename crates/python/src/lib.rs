@@ -14,6 +14,7 @@ mod errors;
 mod friction;
 mod kinematics;
 mod law;
+mod live;
 mod precision;
 mod run;
 mod sweep;
@@ -38,6 +39,8 @@ mod core {
     use crate::kinematics::{centre_distance_for, links_for, polygon_action};
     #[pymodule_export]
     use crate::law::Law;
+    #[pymodule_export]
+    use crate::live::{Simulation, Snapshot};
     #[pymodule_export]
     use crate::precision::work_precision;
     #[pymodule_export]

@@ -75,7 +75,8 @@ pub(crate) enum Setting {
     Names(Vec<String>),
 }
 
-fn merged(settings: Vec<(String, Setting)>) -> Settings {
+/// Settings of Python as settings of a run.
+pub(crate) fn merged(settings: Vec<(String, Setting)>) -> Settings {
     let settings = settings.into_iter();
     settings.fold(Settings::default(), |all, (key, value)| {
         let value = match value {
@@ -147,17 +148,17 @@ pub(crate) fn stepping(name: &str) -> PyResult<Stepping> {
 }
 
 /// Python as an onlooker: its signals, and the function that it wants to be told by.
-struct Interpreter<'a> {
+pub(crate) struct Interpreter<'a> {
     progress: Option<&'a Py<PyAny>>,
     /// How far the run is.
     share: Cell<f64>,
     looked: Cell<Instant>,
     /// What a signal or the function raised.
-    raised: RefCell<Option<PyErr>>,
+    pub(crate) raised: RefCell<Option<PyErr>>,
 }
 
 impl<'a> Interpreter<'a> {
-    fn new(progress: Option<&'a Py<PyAny>>) -> Self {
+    pub(crate) fn new(progress: Option<&'a Py<PyAny>>) -> Self {
         Self {
             progress,
             share: Cell::new(0.0),

@@ -1,5 +1,6 @@
 //! One run, whoever asks for it: assemble, choose, step, sample, judge.
 
+use std::convert::Infallible;
 use std::time::Duration;
 
 use chaindrive_mechanics::{Assembled, Drive};
@@ -166,21 +167,14 @@ pub fn execute<S: Sink>(
     onlooker: &dyn Onlooker,
 ) -> Result<Report, RunError<S::Error>> {
     let watch = || onlooker.stop();
-    let begun = |error| match error {
-        SimulationError::Interrupted => RunError::Interrupted,
-        error => RunError::Start(error),
-    };
-    let mut provenance = Provenance::of(&request.scene, &request.run);
-    let drive = request.scene.drive().map_err(RunError::Scene)?;
-    let start = assemble(&drive, &watch).map_err(begun)?;
-    if let Some(accuracy) = request.accuracy {
-        let choice = choose(&start, &request.run, accuracy, &watch).map_err(begun)?;
-        provenance.run = choice.run.clone();
-        provenance.choice = Some(choice);
-    }
+    let Begun {
+        drive,
+        mut simulation,
+        provenance,
+    } = begin(request, &watch)?;
     let run = provenance.run.clone();
-    let mut simulation = Simulation::from_assembled(start, &run).map_err(begun)?;
-    let channels = Channel::chosen(&request.record, simulation.system()).map_err(begun)?;
+    let channels =
+        Channel::chosen(&request.record, simulation.system()).map_err(RunError::Start)?;
     sink.begin(&simulation, &channels, &provenance)
         .map_err(RunError::Sink)?;
 
@@ -254,6 +248,48 @@ pub fn execute<S: Sink>(
         stop,
         attributes: told,
     })
+}
+
+/// A run that is ready to move.
+struct Begun {
+    drive: Drive,
+    simulation: Simulation,
+    provenance: Provenance,
+}
+
+/// Assembles the drive, chooses method and step where an accuracy is asked for, and starts the clock.
+fn begin<E: std::error::Error>(
+    request: &Request,
+    watch: &dyn Fn() -> bool,
+) -> Result<Begun, RunError<E>> {
+    let failed = |error| match error {
+        SimulationError::Interrupted => RunError::Interrupted,
+        error => RunError::Start(error),
+    };
+    let mut provenance = Provenance::of(&request.scene, &request.run);
+    let drive = request.scene.drive().map_err(RunError::Scene)?;
+    let start = assemble(&drive, watch).map_err(failed)?;
+    if let Some(accuracy) = request.accuracy {
+        let choice = choose(&start, &request.run, accuracy, watch).map_err(failed)?;
+        provenance.run = choice.run.clone();
+        provenance.choice = Some(choice);
+    }
+    let simulation = Simulation::from_assembled(start, &provenance.run).map_err(failed)?;
+    Ok(Begun {
+        drive,
+        simulation,
+        provenance,
+    })
+}
+
+impl Simulation {
+    /// Begins what a request asks for, to be moved from outside: see [`advance_to`](Self::advance_to).
+    ///
+    /// # Errors
+    /// [`RunError`] when the run cannot begin.
+    pub fn of(request: &Request, onlooker: &dyn Onlooker) -> Result<Self, RunError<Infallible>> {
+        begin(request, &|| onlooker.stop()).map(|begun| begun.simulation)
+    }
 }
 
 /// Takes sample after sample to the end of the run, or until somebody stops it.

@@ -9,6 +9,7 @@ mod energy;
 mod linkage;
 mod linkages;
 mod links;
+mod live;
 mod precision;
 mod reference;
 mod reproducible;

@@ -3,6 +3,7 @@
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 
+use super::inputs::Inputs;
 use crate::contact::Frame;
 use crate::motion::Course;
 use crate::{Carrier, Motion, Push, Torque};
@@ -18,6 +19,8 @@ pub(crate) struct Bodies {
     pub(crate) first: usize,
     /// Mass or inertia that goes with each of them \[kg or kg m²\].
     pub(crate) inertias: Vec<f64>,
+    /// What somebody sets from outside.
+    pub(crate) inputs: Inputs,
 }
 
 /// A sprocket in the system.

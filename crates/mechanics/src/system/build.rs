@@ -73,6 +73,7 @@ impl System {
             gravity: parts.gravity,
             first,
             inertias: Vec::new(),
+            inputs: super::inputs::Inputs::default(),
         };
         bodies.weigh(dofs - first);
         let mut system = Self {

@@ -16,7 +16,7 @@ impl Bodies {
         rates: &mut [f64],
         [wheel_wrenches, rail_wrenches]: [&[Wrench]; 2],
     ) {
-        for (wheel, wrench) in self.wheels.iter().zip(wheel_wrenches) {
+        for (i, (wheel, wrench)) in self.wheels.iter().zip(wheel_wrenches).enumerate() {
             let course = wheel.course(at.t, at.q, at.v);
             let (centre, velocity, acceleration) =
                 wheel.centre_course(at.t, at.q, at.v, &self.slides);
@@ -31,7 +31,7 @@ impl Bodies {
                         let angle = course.position - wheel.angle;
                         torques.iter().map(|m| m.at(at.t, angle, course.rate)).sum()
                     };
-                    let (driving, loading) = (sum(drive), sum(load));
+                    let (driving, loading) = (sum(drive) + self.inputs.torque(i), sum(load));
                     rates[Flow::DriveTorque as usize] += driving * course.rate;
                     rates[Flow::Load as usize] += loading * course.rate;
                     // J α = M + M_drive + M_load
@@ -91,13 +91,15 @@ impl Bodies {
                 }
             }
         }
-        for slide in &self.slides {
+        for (i, slide) in self.slides.iter().enumerate() {
             let Some(dof) = slide.dof else { continue };
             let pose = slide.pose(at.q, at.v);
             let (extension, lever) = slide.carrier.extension(pose.coordinate);
             let push = slide.push.force(extension, lever * pose.rate);
             rates[Flow::TensionerLoss as usize] -= push.damping * lever * pose.rate;
-            let mut force = a[dof] + (push.elastic + push.damping) * lever;
+            let input = self.inputs.force(i);
+            rates[Flow::DriveTorque as usize] += input * pose.rate;
+            let mut force = a[dof] + (push.elastic + push.damping) * lever + input;
             for (mass, at_rest) in &slide.weights {
                 let (place, _) = slide.carry(pose, *at_rest);
                 let weight = self.gravity * *mass;

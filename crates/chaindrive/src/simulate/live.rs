@@ -1,0 +1,249 @@
+//! Stepping from outside: read at any time, set what acts on the drive, go back to where one was.
+
+use std::time::{Duration, Instant};
+
+use chaindrive_mechanics::{Input, Observation, System};
+
+use super::{Moving, STEPS_PER_LOOK, Simulation};
+use crate::{Channel, SimulationError};
+
+/// What can be set while a drive moves, by the names of the scene.
+///
+/// A value holds until another one is set; at the start nothing acts beside what the scene says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Control {
+    /// Torque on the shaft of a sprocket without a given motion \[N m\], counter-clockwise positive, beside the
+    /// torques of the scene.
+    Torque(String),
+    /// Force on a tensioner \[N, or N m on an arm\] towards positive coordinates, beside its push.
+    Force(String),
+    /// Acceleration of the centre of a sprocket along x \[m/s²\]: the centre goes on from where it is.
+    CentreX(String),
+    /// The same along y.
+    CentreY(String),
+}
+
+/// Whether somebody may set something at the time that is stepped to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Changes {
+    /// They may: the state before the last step is kept.
+    AtTheEnd,
+    /// Samples are taken, and nobody goes back.
+    None,
+}
+
+/// A simulation as it was at a moment, to the last bit: contacts, windows and the time stepping with its memory.
+#[derive(Clone, Debug)]
+pub struct Snapshot(Box<Simulation>);
+
+impl Simulation {
+    /// Moves on to a time \[s\] and reads everything off the drive there.
+    ///
+    /// The method takes its own steps and the state at t is interpolated: a run in a hundred pieces is the run in one,
+    /// bit for bit. After the end of the run it goes on.
+    ///
+    /// # Errors
+    /// [`SimulationError::Past`] for a time before the last reading, and what keeps the motion from going on.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use chaindrive::{Control, Run, Scene, Simulation};
+    ///
+    /// let scene = Scene::preset("marine_two_sprockets")?;
+    /// let mut simulation = Simulation::start(&scene.drive()?, &Run::default())?;
+    /// let before = simulation.advance_to(1e-3)?.sprocket_speed[1];
+    /// simulation.set(&Control::Torque("camshaft".into()), 2e5)?;
+    /// let after = simulation.advance_to(2e-3)?.sprocket_speed[1];
+    /// assert!(after > before + 0.1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn advance_to(&mut self, t: f64) -> Result<&Observation, SimulationError> {
+        while !self.advance_towards(t, Duration::MAX)? {}
+        Ok(&self.observation)
+    }
+
+    /// As [`advance_to`](Self::advance_to), but for at most about `budget` of wall time; tells whether the time is
+    /// reached and read.
+    ///
+    /// # Errors
+    /// As [`advance_to`](Self::advance_to).
+    pub fn advance_towards(&mut self, t: f64, budget: Duration) -> Result<bool, SimulationError> {
+        if !(t >= self.read && t.is_finite()) {
+            return Err(SimulationError::Past {
+                time: t,
+                read: self.read,
+            });
+        }
+        let reached = self.step_towards(t, budget, Changes::AtTheEnd)?;
+        if reached {
+            self.observe(t);
+        }
+        Ok(reached)
+    }
+
+    /// Steps until the state is at a time or beyond it, for at most about `budget` of wall time.
+    pub(super) fn step_towards(
+        &mut self,
+        time: f64,
+        budget: Duration,
+        changes: Changes,
+    ) -> Result<bool, SimulationError> {
+        let begin = Instant::now();
+        let moving = &mut self.moving;
+        while moving.state.t < time && begin.elapsed() < budget {
+            for _ in 0..STEPS_PER_LOOK {
+                if moving.state.t >= time {
+                    break;
+                }
+                if changes == Changes::None {
+                    self.before = None;
+                } else if moving.state.t + moving.stepper.next_step() >= time {
+                    self.before = Some(Box::new(moving.clone()));
+                }
+                moving.step()?;
+            }
+        }
+        self.stepping_time += begin.elapsed().as_secs_f64();
+        let Moving { system, ended, .. } = moving;
+        ended[1].append(&mut system.take_events());
+        Ok(moving.state.t >= time)
+    }
+
+    /// Sets what acts on the drive from the time of the last reading on.
+    ///
+    /// The change is an event: a step lands on its time. If the last step went beyond, it is taken again, shorter.
+    ///
+    /// # Errors
+    /// [`SimulationError::Control`]: nothing has this name, or it cannot be set; a value that is not finite.
+    pub fn set(&mut self, control: &Control, value: f64) -> Result<(), SimulationError> {
+        self.set_at(self.read, control, value)
+    }
+
+    /// Plans a change for a time \[s\] not before the last reading; see [`set`](Self::set).
+    ///
+    /// # Errors
+    /// As [`set`](Self::set), and [`SimulationError::Past`].
+    pub fn set_at(
+        &mut self,
+        time: f64,
+        control: &Control,
+        value: f64,
+    ) -> Result<(), SimulationError> {
+        if !(time >= self.read && time.is_finite()) {
+            return Err(SimulationError::Past {
+                time,
+                read: self.read,
+            });
+        }
+        let input = control.input(&self.moving.system)?;
+        if !value.is_finite() {
+            return Err(SimulationError::Setting {
+                name: "value",
+                value,
+                allowed: "finite",
+            });
+        }
+        if time < self.moving.state.t {
+            match self.before.take() {
+                Some(before) => self.moving = *before,
+                None => {
+                    return Err(SimulationError::Past {
+                        time,
+                        read: self.moving.state.t,
+                    });
+                }
+            }
+        }
+        // Somebody may yet go back behind this plan.
+        if let Some(before) = &mut self.before {
+            before.plan(time, input, value)?;
+        }
+        self.moving.plan(time, input, value)
+    }
+
+    /// A channel as it was at the last reading; empty where the drive has nothing of the kind.
+    pub fn channel(&self, channel: Channel) -> Vec<f64> {
+        let start = self.start_energy.unwrap_or(self.observation.energy);
+        let mut values = Vec::new();
+        channel.read(&self.observation, &start, &mut values);
+        values
+    }
+
+    /// Time of the last reading \[s\].
+    pub fn read_at(&self) -> f64 {
+        self.read
+    }
+
+    /// The simulation as it is now.
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot(Box::new(self.clone()))
+    }
+
+    /// Goes back, or on, to what a snapshot holds; wall time spent is not taken back.
+    pub fn restore(&mut self, snapshot: &Snapshot) {
+        let spent = self.stepping_time;
+        self.clone_from(&snapshot.0);
+        self.stepping_time = spent;
+    }
+}
+
+impl Moving {
+    /// Plans a change, and makes it if it is due.
+    fn plan(&mut self, time: f64, input: Input, value: f64) -> Result<(), SimulationError> {
+        let Self {
+            system,
+            state,
+            stepper,
+            ..
+        } = self;
+        system.plan(time, input, value);
+        if system.take_due(state.t) {
+            stepper
+                .jump(system, state)
+                .map_err(|error| SimulationError::stepping(error, system))?;
+        }
+        stepper.look_ahead(system, state);
+        Ok(())
+    }
+}
+
+impl Control {
+    /// What it is in a drive.
+    fn input(&self, system: &System) -> Result<Input, SimulationError> {
+        let (what, known, name) = match self {
+            Self::Force(name) => ("tensioner", system.tensioner_names(), name),
+            Self::Torque(name) | Self::CentreX(name) | Self::CentreY(name) => {
+                ("sprocket", system.sprocket_names(), name)
+            }
+        };
+        let refuse = |reason: String| SimulationError::Control {
+            what,
+            name: name.clone(),
+            reason,
+        };
+        let Some(index) = known.iter().position(|known| known == name) else {
+            let known = match known.len() {
+                0 => "there is none in this drive".to_owned(),
+                _ => format!("there is none of this name; there are {}", known.join(", ")),
+            };
+            return Err(refuse(known));
+        };
+        let input = match self {
+            Self::Force(_) => Input::Force { tensioner: index },
+            Self::Torque(_) => Input::Torque { sprocket: index },
+            Self::CentreX(_) => Input::Centre {
+                sprocket: index,
+                axis: 0,
+            },
+            Self::CentreY(_) => Input::Centre {
+                sprocket: index,
+                axis: 1,
+            },
+        };
+        match system.refuses(input) {
+            Some(reason) => Err(refuse(reason.to_owned())),
+            None => Ok(input),
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! Stepping from outside: pieces, inputs and snapshots, to the bit.
+#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
+
+use chaindrive::{Control, Flow, Observation, Run, Scene, Simulation, Stepping};
+
+fn start(scene: &Scene, stepping: Stepping) -> Simulation {
+    let run = Run {
+        stepping,
+        ..Run::default()
+    };
+    Simulation::start(&scene.drive().unwrap(), &run).unwrap()
+}
+
+fn preset(name: &str) -> Scene {
+    Scene::preset(name).unwrap()
+}
+
+/// Joints that rub after `LuGre`: the bristles remember.
+fn rubbing() -> Scene {
+    let friction = "{ kind = \"lugre\", static_coefficient = 0.15, coefficient = 0.1, slip_speed = 0.01, stiffness = 1e5 }";
+    let scene = preset("bicycle");
+    scene.replace("contact.joints.friction", friction).unwrap()
+}
+
+/// Everything that moves, bit by bit.
+fn bits(at: &Observation) -> Vec<u64> {
+    let parts = [
+        &at.roller_x,
+        &at.roller_vy,
+        &at.link_tension,
+        &at.contact_force,
+        &at.sprocket_angle,
+        &at.sprocket_speed,
+        &at.joint_force,
+    ];
+    let all = parts.into_iter().flatten().chain(&at.energy.flows);
+    all.map(|value| value.to_bits()).collect()
+}
+
+const METHODS: [Stepping; 3] = [Stepping::Auto, Stepping::Rk4, Stepping::DormandPrince];
+
+#[test]
+fn a_run_in_a_hundred_pieces_is_the_run_in_one() {
+    for scene in [preset("marine_engine"), preset("bicycle"), rubbing()] {
+        for stepping in METHODS {
+            let mut whole = start(&scene, stepping);
+            let end = bits(whole.advance_to(1e-3).unwrap());
+            let mut pieces = start(&scene, stepping);
+            for k in 0..100 {
+                pieces.advance_to(1e-5 * f64::from(k)).unwrap();
+            }
+            assert_eq!(bits(pieces.advance_to(1e-3).unwrap()), end, "{stepping:?}");
+            assert_eq!(pieces.statistics(), whole.statistics(), "{stepping:?}");
+        }
+    }
+}
+
+/// What was set when its time had come, and what was planned beforehand, is the same run.
+#[test]
+fn equal_schedules_are_equal_runs() {
+    let scene = preset("marine_engine");
+    let torque = Control::Torque("camshaft".into());
+    let force = Control::Force("tightener".into());
+    let [centre_x, centre_y] = [Control::CentreX, Control::CentreY].map(|on| on("idler".into()));
+    let schedule = [
+        (0.0, &torque, 3e4),
+        (3.3e-4, &centre_y, 40.0),
+        (3.3e-4, &torque, -2e4),
+        (7.77e-4, &force, 2e3),
+        (7.77e-4, &centre_x, -15.0),
+    ];
+    for stepping in METHODS {
+        let mut planned = start(&scene, stepping);
+        for (time, control, value) in schedule {
+            planned.set_at(time, control, value).unwrap();
+        }
+        let mut live = start(&scene, stepping);
+        for (time, control, value) in schedule {
+            live.advance_to(time).unwrap();
+            live.set(control, value).unwrap();
+        }
+        let free = bits(start(&scene, stepping).advance_to(1.2e-3).unwrap());
+        let [planned, live] = [planned, live].map(|mut run| bits(run.advance_to(1.2e-3).unwrap()));
+        assert_eq!(planned, live, "{stepping:?}");
+        assert_ne!(planned, free, "{stepping:?}");
+    }
+}
+
+#[test]
+fn a_snapshot_brings_back_every_bit() {
+    for scene in [preset("marine_engine"), preset("bicycle"), rubbing()] {
+        for stepping in METHODS {
+            let mut simulation = start(&scene, stepping);
+            simulation.advance_to(4.2e-4).unwrap();
+            let kept = simulation.snapshot();
+            let end = bits(simulation.advance_to(1e-3).unwrap());
+            simulation.restore(&kept);
+            assert_eq!(bits(simulation.advance_to(1e-3).unwrap()), end);
+            // Another simulation of the drive takes it as well.
+            let mut other = start(&scene, stepping);
+            other.restore(&kept);
+            assert_eq!(bits(other.advance_to(1e-3).unwrap()), end);
+        }
+    }
+}
+
+/// A torque M on a free shaft with inertia J that touches nothing: ω = M t/J, and its work is in the ledger.
+#[test]
+fn a_torque_does_its_work() {
+    let scene = preset("marine_two_sprockets");
+    let scene = scene.replace("sprockets.camshaft.load", "[]").unwrap();
+    let control = Control::Torque("camshaft".into());
+    let mut with = start(&scene, Stepping::Verlet);
+    let mut without = with.clone();
+    let (torque, time) = (1e4, 5e-4);
+    with.set(&control, torque).unwrap();
+    let speed = |run: &mut Simulation| run.advance_to(time).unwrap().sprocket_speed[1];
+    let gained = speed(&mut with) - speed(&mut without);
+    // The chain answers before long: of the free shaft's M t/J a good part.
+    let free = torque * time / 200.0;
+    assert!(gained > 0.3 * free && gained < free, "{gained} of {free}");
+    let work = with.observation().energy.flow(Flow::DriveTorque);
+    let turned = with.observation().sprocket_angle[1];
+    let scale = (torque * turned).abs();
+    assert!((work - torque * turned).abs() < 1e-4 * scale, "{work} J");
+    let residual = with.energy_residual().abs();
+    assert!(residual < 1e-3 * scale, "{residual} of {scale}");
+}
+
+/// Steps land on the kinks of a torque table: RK4 keeps its order across them.
+#[test]
+fn steps_land_on_the_knots_of_a_table() {
+    let load = "[{ kind = \"time-table\", times = [0, 1.23e-3, 1.5e-3], torques = [0, 0, 3e4] }]";
+    let scene = preset("marine_two_sprockets");
+    let table = scene.replace("sprockets.camshaft.load", load);
+    let mut simulation = start(&table.unwrap(), Stepping::Rk4);
+    let step = simulation.method();
+    simulation.advance_to(1.229e-3).unwrap();
+    let before = simulation.statistics().smallest_step;
+    simulation.advance_to(1.6e-3).unwrap();
+    let after = simulation.statistics().smallest_step;
+    assert!(after < before, "{step:?}: {after} s, {before} s");
+}

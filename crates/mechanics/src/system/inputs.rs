@@ -1,0 +1,174 @@
+//! What acts on a drive from outside while it moves: torques, forces and motions that somebody sets.
+//!
+//! A value holds from the moment at which it is set until another one is. Every change is an event: a step lands on its
+//! time, and the next one begins with the new forces.
+
+use chaindrive_integrate::slack;
+
+use super::{System, WheelRotation, WheelSupport};
+use crate::Motion;
+use crate::motion::Course;
+
+/// What can be set from outside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Input {
+    /// Torque on the shaft of a free sprocket \[N m\], counter-clockwise positive, beside those of the scene.
+    Torque {
+        /// Index of the sprocket.
+        sprocket: usize,
+    },
+    /// Generalised force on a tensioner that moves \[N, or N m on an arm\], beside its push.
+    Force {
+        /// Index of the tensioner.
+        tensioner: usize,
+    },
+    /// Acceleration of a fixed or moved centre along x (0) or y (1) \[m/s²\]; it goes on from where it is, at the
+    /// speed it has.
+    Centre {
+        /// Index of the sprocket.
+        sprocket: usize,
+        /// Axis.
+        axis: usize,
+    },
+}
+
+/// The values at present, and the changes to come.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Inputs {
+    torques: Vec<f64>,
+    forces: Vec<f64>,
+    /// Changes to come, the earliest first: of equal times in the order of their planning.
+    planned: Vec<(f64, Input, f64)>,
+}
+
+impl Inputs {
+    /// Torque on a sprocket \[N m\].
+    pub(crate) fn torque(&self, sprocket: usize) -> f64 {
+        self.torques.get(sprocket).copied().unwrap_or(0.0)
+    }
+
+    /// Force on a tensioner \[N or N m\].
+    pub(crate) fn force(&self, tensioner: usize) -> f64 {
+        self.forces.get(tensioner).copied().unwrap_or(0.0)
+    }
+
+    /// Time of the first change after t \[s\].
+    pub(crate) fn next_change(&self, t: f64) -> Option<f64> {
+        let mut times = self.planned.iter().map(|(time, ..)| *time);
+        times.find(|time| *time > t)
+    }
+}
+
+fn set(values: &mut Vec<f64>, index: usize, value: f64) {
+    if values.len() <= index {
+        values.resize(index + 1, 0.0);
+    }
+    values[index] = value;
+}
+
+impl System {
+    /// Why an input cannot be set; nothing if it can.
+    pub fn refuses(&self, input: Input) -> Option<&'static str> {
+        match input {
+            Input::Torque { sprocket } => match self.bodies.wheels[sprocket].rotation {
+                WheelRotation::Free { .. } => None,
+                WheelRotation::Prescribed(_) => Some(
+                    "its motion is given, and no torque changes it; give it an inertia and no motion",
+                ),
+            },
+            Input::Force { tensioner } => match self.bodies.slides[tensioner].dof {
+                Some(_) => None,
+                None => Some("it is locked where it was assembled; give it a spring"),
+            },
+            Input::Centre { sprocket, .. } => match self.bodies.wheels[sprocket].support {
+                WheelSupport::Fixed | WheelSupport::Prescribed { .. } => None,
+                WheelSupport::Springs { .. } | WheelSupport::Carried(_) => {
+                    Some("its centre moves by itself, on springs or with a tensioner")
+                }
+            },
+        }
+    }
+
+    /// Plans a change of an input at a time \[s\] not before the present one.
+    pub fn plan(&mut self, t: f64, input: Input, value: f64) {
+        let planned = &mut self.bodies.inputs.planned;
+        let place = planned.partition_point(|(time, ..)| *time <= t);
+        planned.insert(place, (t, input, value));
+    }
+
+    /// Makes the changes that are due; tells whether there were any.
+    pub fn take_due(&mut self, t: f64) -> bool {
+        let due = |(time, ..): &(f64, Input, f64)| *time <= t + slack(t);
+        let count = self
+            .bodies
+            .inputs
+            .planned
+            .iter()
+            .take_while(|it| due(it))
+            .count();
+        let changes: Vec<_> = self.bodies.inputs.planned.drain(..count).collect();
+        for (time, input, value) in changes {
+            match input {
+                Input::Torque { sprocket } => set(&mut self.bodies.inputs.torques, sprocket, value),
+                Input::Force { tensioner } => set(&mut self.bodies.inputs.forces, tensioner, value),
+                Input::Centre { sprocket, axis } => self.accelerate(sprocket, axis, time, value),
+            }
+        }
+        count > 0
+    }
+
+    fn accelerate(&mut self, sprocket: usize, axis: usize, time: f64, acceleration: f64) {
+        let support = &mut self.bodies.wheels[sprocket].support;
+        if let WheelSupport::Fixed = support {
+            *support = WheelSupport::Prescribed {
+                x: Motion::Held,
+                y: Motion::Held,
+            };
+        }
+        if let WheelSupport::Prescribed { x, y } = support {
+            let motion = if axis == 0 { x } else { y };
+            let from = Course {
+                acceleration,
+                ..motion.at(time)
+            };
+            *motion = Motion::Onward { from, since: time };
+        }
+    }
+
+    /// Time \[s\] of the first event after t: a change of an input, or a knot of a table over time.
+    pub(super) fn event_after(&self, t: f64) -> f64 {
+        let earliest = |times: &mut dyn Iterator<Item = Option<f64>>| {
+            times.flatten().fold(f64::INFINITY, f64::min)
+        };
+        let wheels = self.bodies.wheels.iter().map(|wheel| {
+            let turning = match &wheel.rotation {
+                WheelRotation::Prescribed(motion) => motion.next_knot(t),
+                WheelRotation::Free { drive, load, .. } => {
+                    let torques = drive.iter().chain(load);
+                    Some(earliest(&mut torques.map(|torque| torque.next_knot(t))))
+                }
+            };
+            let moving = match &wheel.support {
+                WheelSupport::Prescribed { x, y } => knots(x, y, t),
+                _ => f64::INFINITY,
+            };
+            Some(turning.unwrap_or(f64::INFINITY).min(moving))
+        });
+        let rails = self.bodies.rails.iter().map(|rail| match &rail.support {
+            super::RailSupport::Prescribed { x, y } => Some(knots(x, y, t)),
+            _ => None,
+        });
+        let ends = self.chains.iter().map(|member| member.chain.next_knot(t));
+        let mut all = wheels
+            .chain(rails)
+            .chain(ends)
+            .chain([self.bodies.inputs.next_change(t)]);
+        earliest(&mut all)
+    }
+}
+
+/// The first knot of either motion.
+fn knots(x: &Motion, y: &Motion, t: f64) -> f64 {
+    let [x, y] = [x, y].map(|motion| motion.next_knot(t).unwrap_or(f64::INFINITY));
+    x.min(y)
+}

@@ -1,0 +1,124 @@
+//! Drives that Python moves itself: read at any time, torques and forces set, states kept.
+
+use std::cell::RefCell;
+
+use chaindrive::{Axis, Channel, Control, Onlooker, Request, Settings, SimulationError};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+
+use crate::drive::Drive;
+use crate::errors::{IntoException, OrRaise, parameter};
+use crate::run::{Interpreter, PATIENCE, Setting, merged};
+
+/// A drive in motion.
+#[pyclass(module = "chaindrive._core")]
+#[derive(Debug)]
+pub(crate) struct Simulation(chaindrive::Simulation);
+
+/// A simulation as it was.
+#[pyclass(frozen, module = "chaindrive._core")]
+#[derive(Debug)]
+pub(crate) struct Snapshot(chaindrive::Snapshot);
+
+/// What can be set, by its name in Python.
+fn control(kind: &str, name: String) -> PyResult<Control> {
+    Ok(match kind {
+        "torque" => Control::Torque(name),
+        "force" => Control::Force(name),
+        "centre_x" => Control::CentreX(name),
+        "centre_y" => Control::CentreY(name),
+        _ => {
+            let known = "torque, force, centre_x, centre_y";
+            let message = format!("`{kind}` cannot be set; there are {known}");
+            return Err(parameter(message, "kind", &format!("one of {known}")));
+        }
+    })
+}
+
+#[pymethods]
+impl Simulation {
+    /// Assembles a drive and starts its clock.
+    #[new]
+    fn new(py: Python<'_>, drive: &Drive, settings: Vec<(String, Setting)>) -> PyResult<Self> {
+        let settings: Settings = merged(settings);
+        let request = Request::new(&drive.scene, &settings).or_raise()?;
+        let request = request.with_default_step();
+        let (made, raised) = py.detach(|| {
+            let interpreter = Interpreter::new(None);
+            let made = chaindrive::Simulation::of(&request, &interpreter);
+            (made, interpreter.raised.into_inner())
+        });
+        let mut simulation = match (made, raised) {
+            (Err(_), Some(raised)) => return Err(raised),
+            (made, _) => made.map_err(IntoException::exception)?,
+        };
+        simulation.advance_to(0.0).or_raise()?;
+        Ok(Self(simulation))
+    }
+
+    /// Moves on to a time; Ctrl-C leaves the simulation where it is, and it can go on from there.
+    fn advance_to(&mut self, py: Python<'_>, time: f64) -> PyResult<()> {
+        let simulation = &mut self.0;
+        let raised = RefCell::new(None);
+        py.detach(|| {
+            let interpreter = Interpreter::new(None);
+            loop {
+                match simulation.advance_towards(time, PATIENCE) {
+                    Ok(true) => return Ok(()),
+                    Ok(false) if interpreter.stop() => {
+                        raised.replace(interpreter.raised.into_inner());
+                        return Err(SimulationError::Interrupted);
+                    }
+                    Ok(false) => {}
+                    Err(error) => return Err(error),
+                }
+            }
+        })
+        .map_err(|error| raised.into_inner().unwrap_or_else(|| error.exception()))
+    }
+
+    /// Time of the last reading.
+    #[getter]
+    fn time(&self) -> f64 {
+        self.0.read_at()
+    }
+
+    /// A channel at the last reading.
+    fn channel<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let channels = Channel::chosen(&[name], self.0.system()).or_raise()?;
+        let values = channels.iter().flat_map(|it| self.0.channel(*it)).collect();
+        Ok(PyArray1::from_vec(py, values))
+    }
+
+    /// Labels of the entries of a channel; none where there is one entry only.
+    fn labels(&self, name: &str) -> PyResult<Option<Vec<String>>> {
+        let channels = Channel::chosen(&[name], self.0.system()).or_raise()?;
+        let axis = channels
+            .first()
+            .map_or(Axis::None, |channel| channel.axis());
+        Ok(chaindrive::record::labels(axis, self.0.system()))
+    }
+
+    /// Sets what acts on the drive from a time on, that of the last reading where none is given.
+    #[pyo3(signature = (kind, name, value, at))]
+    fn set(&mut self, kind: &str, name: String, value: f64, at: Option<f64>) -> PyResult<()> {
+        let control = control(kind, name)?;
+        let at = at.unwrap_or_else(|| self.0.read_at());
+        self.0.set_at(at, &control, value).or_raise()
+    }
+
+    /// The simulation as it is.
+    fn snapshot(&self) -> Snapshot {
+        Snapshot(self.0.snapshot())
+    }
+
+    /// Goes back, or on, to a snapshot.
+    fn restore(&mut self, snapshot: &Snapshot) {
+        self.0.restore(&snapshot.0);
+    }
+
+    /// Name of the method, and number of steps taken.
+    fn account(&self) -> (&'static str, u64) {
+        (self.0.method().name(), self.0.statistics().steps)
+    }
+}

@@ -1,0 +1,191 @@
+"""Drives that a program moves itself: read at any time, act on them, go back to where one was."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from chaindrive import _core
+from chaindrive.channels import channels
+from chaindrive.drive import Drive, _needed
+
+__all__ = ["Simulation", "Snapshot"]
+
+Snapshot = _core.Snapshot
+"""A simulation as it was at a moment, to the last bit; see `Simulation.snapshot`."""
+
+
+class Simulation:
+    """A drive in motion, stepped from outside: for controllers, co-simulation and notebooks.
+
+    The method takes its own steps and what is read is interpolated between them: a run in a hundred
+    pieces is the run in one, bit for bit. What is set is an event, on whose time a step lands.
+
+    Parameters
+    ----------
+    drive
+        What moves.
+    method, step, tolerance, onset_depth, accuracy
+        As in `simulate`, but for one thing: method and step are chosen for an accuracy only where
+        one is asked for, here or in the scene.
+
+    Raises
+    ------
+    AssemblyError
+        The drive does not close or settle.
+    ParameterError, SceneError
+        A setting out of range, or a text that is not of its dimension.
+
+    Examples
+    --------
+    >>> import chaindrive as cd
+    >>> simulation = cd.Simulation(cd.scenes.marine_two_sprockets())
+    >>> simulation.advance_to(1e-3)
+    >>> before = float(simulation["sprocket_speed"].sel(sprocket="camshaft"))
+    >>> simulation.set_torque("camshaft", 2e5)
+    >>> simulation.advance_to(2e-3)
+    >>> float(simulation["sprocket_speed"].sel(sprocket="camshaft")) > before
+    True
+    """
+
+    def __init__(
+        self,
+        drive: Drive,
+        *,
+        method: str | None = None,
+        step: float | str | None = None,
+        tolerance: float | str | None = None,
+        onset_depth: float | str | None = None,
+        accuracy: float | str | None = None,
+    ) -> None:
+        _needed(drive)
+        given = {
+            "method": method,
+            "step": step,
+            "tolerance": tolerance,
+            "onset_depth": onset_depth,
+            "accuracy": accuracy,
+        }
+        settings = [(name, value) for name, value in given.items() if value is not None]
+        self._inner = _core.Simulation(drive._inner, settings)
+        self._name = drive.name
+        self._labels: dict[str, Any] = {}
+
+    @property
+    def time(self) -> float:
+        """Time of the last reading [s]."""
+        return self._inner.time
+
+    def advance_to(self, time: float) -> None:
+        """Move on to a time and read everything off the drive there.
+
+        Parameters
+        ----------
+        time
+            Time [s], not before the last reading; it may lie behind the end that the scene names.
+
+        Raises
+        ------
+        ParameterError
+            The time is past.
+        IntegrationError, SimulationError
+            The motion cannot go on.
+        KeyboardInterrupt
+            Ctrl-C. The simulation can go on from where it is.
+        """
+        self._inner.advance_to(time)
+
+    def __getitem__(self, channel: str) -> xr.DataArray:
+        """Return a channel at the last reading: a number, or one a label; see `channels`."""
+        values: Any = self._inner.channel(channel)
+        about = channels()[channel]
+        if channel not in self._labels:
+            self._labels[channel] = self._inner.labels(channel)
+        labels = self._labels[channel]
+        dims = [dim for dim in about.dims if dim != "time"]
+        coordinates: dict[str, Any] = {"time": self.time}
+        if labels is None:
+            values = values[0]
+        elif all(label.isdecimal() for label in labels):
+            coordinates[dims[0]] = np.arange(len(labels))
+        else:
+            coordinates[dims[0]] = labels
+        attributes = {"units": about.unit, "long_name": about.description}
+        return xr.DataArray(values, coords=coordinates, dims=dims, name=channel, attrs=attributes)
+
+    def set_torque(self, sprocket: str, torque: float, *, at: float | None = None) -> None:
+        """Set a torque on the shaft of a sprocket, beside those of the scene.
+
+        Parameters
+        ----------
+        sprocket
+            Its name; one whose motion is given takes no torque.
+        torque
+            Torque [N m], counter-clockwise positive; it acts until another one is set.
+        at
+            From when on [s]; from the last reading on when absent.
+
+        Raises
+        ------
+        ParameterError
+            No sprocket has this name, its motion is given, or the time is past.
+        """
+        self._inner.set("torque", sprocket, torque, at)
+
+    def set_force(self, tensioner: str, force: float, *, at: float | None = None) -> None:
+        """Set a force on a tensioner, beside its push.
+
+        Parameters
+        ----------
+        tensioner
+            Its name; one that is locked takes no force.
+        force
+            Force [N] along the travel of a slider, or moment [N m] on an arm; it acts until another
+            one is set.
+        at
+            From when on [s]; from the last reading on when absent.
+
+        Raises
+        ------
+        ParameterError
+            No tensioner has this name, it is locked, or the time is past.
+        """
+        self._inner.set("force", tensioner, force, at)
+
+    def set_centre_acceleration(
+        self, sprocket: str, acceleration: tuple[float, float], *, at: float | None = None
+    ) -> None:
+        """Set the acceleration of the centre of a sprocket, which goes on from where it is.
+
+        Parameters
+        ----------
+        sprocket
+            Its name; a centre on springs or on a tensioner moves by itself.
+        acceleration
+            Along x and y [m/s²], until another one is set.
+        at
+            From when on [s]; from the last reading on when absent.
+
+        Raises
+        ------
+        ParameterError
+            No sprocket has this name, its centre moves by itself, or the time is past.
+        """
+        x, y = acceleration
+        self._inner.set("centre_x", sprocket, x, at)
+        self._inner.set("centre_y", sprocket, y, at)
+
+    def snapshot(self) -> Snapshot:
+        """Return the simulation as it is now, to the last bit: contacts and time stepping too."""
+        return self._inner.snapshot()
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Go back, or on, to what a snapshot of this drive holds."""
+        self._inner.restore(snapshot)
+
+    def __repr__(self) -> str:
+        method, steps = self._inner.account()
+        at = f"t = {self.time:.6g} s, {steps} steps by {method}"
+        return f"<chaindrive.Simulation {self._name!r}: {at}>"
