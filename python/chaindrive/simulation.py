@@ -185,7 +185,7 @@ def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:
     variables = {}
     for name, values in result["columns"].items():
         about: dict[str, Any] = {
-            "units": known[name].unit,
+            "units": result["units"][name],
             "long_name": known[name].description,
         }
         if result["waveform_horizon"] is not None:

@@ -104,6 +104,12 @@ fn told<'py>(
     let judgement = report.judgement.as_ref();
     let horizon = judgement.and_then(|judgement| judgement.waveform_horizon());
     answer.set_item("waveform_horizon", horizon)?;
+    let units = PyDict::new(py);
+    for &channel in &recorded {
+        let unit = channel.unit_in(report.simulation.system());
+        units.set_item(channel.name(), unit)?;
+    }
+    answer.set_item("units", units)?;
     let samples = recording.len();
     answer.set_item("time", PyArray1::from_vec(py, recording.time))?;
     let columns = PyDict::new(py);

@@ -8,30 +8,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use chaindrive::record::{Ending, Existing, Provenance, WriteError, ZarrWriter};
 use chaindrive::{Channel, EventTable, Recording, Run, Scene, Simulation};
-use object_store::local::LocalFileSystem;
 use zarrs::array::{Array, ArrayMetadata};
 use zarrs::group::Group;
-use zarrs::storage::storage_adapter::async_to_sync::{
-    AsyncToSyncBlockOn, AsyncToSyncStorageAdapter,
-};
 use zarrs::storage::store::MemoryStore;
 use zarrs::storage::{ReadableStorageTraits, WritableStorageTraits};
-use zarrs_object_store::AsyncObjectStore;
-
-struct OnThisThread;
-
-impl AsyncToSyncBlockOn for OnThisThread {
-    fn block_on<F: Future>(&self, future: F) -> F::Output {
-        pollster::block_on(future)
-    }
-}
+use zarrs_filesystem::FilesystemStore;
 
 type Reader = Arc<dyn ReadableStorageTraits>;
 
 fn reader(path: &Path) -> Reader {
-    let files = LocalFileSystem::new_with_prefix(path).unwrap();
-    let store = Arc::new(AsyncObjectStore::new(files));
-    Arc::new(AsyncToSyncStorageAdapter::new(store, OnThisThread))
+    Arc::new(FilesystemStore::new(path).unwrap())
 }
 
 fn numbers(store: &Reader, name: &str) -> (Vec<u64>, Vec<f64>) {
