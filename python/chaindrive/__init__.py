@@ -23,6 +23,7 @@ from chaindrive.errors import (
     ChaindriveError,
     IntegrationError,
     ParameterError,
+    ResultWarning,
     SceneError,
     SimulationError,
     WriteError,
@@ -30,6 +31,7 @@ from chaindrive.errors import (
 from chaindrive.friction import Friction, friction
 from chaindrive.law import Law, law
 from chaindrive.precision import work_precision
+from chaindrive.results import open_result
 from chaindrive.simulation import simulate
 from chaindrive.sweeping import sweep
 
@@ -41,6 +43,7 @@ __all__ = [
     "IntegrationError",
     "Law",
     "ParameterError",
+    "ResultWarning",
     "SceneError",
     "SimulationError",
     "WriteError",
@@ -52,6 +55,7 @@ __all__ = [
     "kinematics",
     "law",
     "load",
+    "open_result",
     "plot",
     "scenes",
     "schema",

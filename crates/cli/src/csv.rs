@@ -180,7 +180,7 @@ impl Table {
     fn commit(&mut self) -> Result<(), Failure> {
         if !self.claimed.claim.holds(&self.file) {
             self.ended = true;
-            let (path, what) = (self.claimed.path.clone(), "it".into());
+            let (path, what) = (self.claimed.path.clone(), "the result".into());
             return Err(WriteError::Vanished { path, what }.into());
         }
         let written = self.write();

@@ -250,6 +250,12 @@ pub(crate) fn channels(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     )
 }
 
+/// Whether a process that lives is writing a result at `path`.
+#[pyfunction]
+pub(crate) fn is_being_written(path: PathBuf) -> PyResult<bool> {
+    record::is_being_written(path).or_raise()
+}
+
 /// Names of the methods of time stepping.
 #[pyfunction]
 pub(crate) fn methods() -> Vec<&'static str> {

@@ -28,7 +28,7 @@ pub enum WriteError {
     Name { path: PathBuf },
 
     /// Somebody took the result away while it was written.
-    #[error("{}: {what} was removed or moved while the result was written, which ends here", .path.display())]
+    #[error("{}: {what} was removed or moved while it was written; nothing more is", .path.display())]
     Vanished { path: PathBuf, what: String },
 
     /// It was said before why nothing more can be written.

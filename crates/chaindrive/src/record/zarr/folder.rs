@@ -55,7 +55,7 @@ impl Folder {
     pub(super) fn missing(&self) -> Option<String> {
         let state = self.state();
         if self.is_elsewhere(&state.root) {
-            return Some("it".into());
+            return Some("the result".into());
         }
         let mut files = state.files.iter();
         let missing = files.find(|key| !state.root.join(key.as_str()).exists());

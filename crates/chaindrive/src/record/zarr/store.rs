@@ -43,15 +43,6 @@ impl Store {
     /// Claims a place and begins a store beside it. What was in the place stays until
     /// [`publish`](Self::publish).
     pub(super) fn begin(path: &Path, existing: Existing) -> Result<Self, WriteError> {
-        Self::begin_with(path, existing, |folder| folder)
-    }
-
-    /// As [`begin`](Self::begin), with something between the arrays and the files.
-    pub(super) fn begin_with(
-        path: &Path,
-        existing: Existing,
-        wrapped: impl FnOnce(Arc<Folder>) -> Storage,
-    ) -> Result<Self, WriteError> {
         let io = |source| WriteError::Io {
             path: path.to_owned(),
             source,
@@ -70,7 +61,7 @@ impl Store {
         Ok(Self {
             path: path.to_owned(),
             claim,
-            storage: wrapped(Arc::clone(&folder)),
+            storage: folder.clone(),
             folder,
             last: Document::default(),
             ended: false,
