@@ -199,11 +199,20 @@ impl Table {
         );
         self.file.seek(SeekFrom::Start(self.length))?;
         let written = self.file.write_all(&self.pending);
+        if written.is_err() {
+            // On a full disk some of the rows are there; whole ones are kept.
+            let end = self.file.metadata()?.len().saturating_sub(self.length);
+            let there = &self.pending[..usize::try_from(end.min(rows)).unwrap_or(0)];
+            self.length += there
+                .iter()
+                .rposition(|&b| b == b'\n')
+                .map_or(0, |at| at as u64 + 1);
+        } else {
+            self.length += rows;
+        }
         self.pending.clear();
-        written?;
-        self.length += rows;
         self.committed = Instant::now();
-        Ok(())
+        written
     }
 
     /// Closes the table, and says in it how the run ended.
