@@ -23,6 +23,7 @@ from chaindrive.errors import (
     ChaindriveError,
     IntegrationError,
     ParameterError,
+    ResultWarning,
     SceneError,
     SimulationError,
     WriteError,
@@ -31,6 +32,7 @@ from chaindrive.friction import Friction, friction
 from chaindrive.law import Law, law
 from chaindrive.live import Simulation, Snapshot
 from chaindrive.precision import work_precision
+from chaindrive.results import open_result
 from chaindrive.simulation import simulate
 from chaindrive.sweeping import sweep
 
@@ -42,6 +44,7 @@ __all__ = [
     "IntegrationError",
     "Law",
     "ParameterError",
+    "ResultWarning",
     "SceneError",
     "Simulation",
     "SimulationError",
@@ -55,6 +58,7 @@ __all__ = [
     "kinematics",
     "law",
     "load",
+    "open_result",
     "plot",
     "scenes",
     "schema",

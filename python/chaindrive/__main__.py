@@ -3,10 +3,12 @@
 import sys
 
 from chaindrive import _core
+from chaindrive.signals import hear
 
 
 def main() -> int:
     """Run the command line and return its exit code."""
+    hear()
     return _core._cli(["chaindrive", *sys.argv[1:]])
 
 

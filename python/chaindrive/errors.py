@@ -15,6 +15,7 @@ __all__ = [
     "IntegrationError",
     "ParameterError",
     "Problem",
+    "ResultWarning",
     "SceneError",
     "SimulationError",
     "WriteError",
@@ -106,3 +107,7 @@ class WriteError(ChaindriveError, OSError):
 
     def __init__(self, message: str, path: object = None, hint: str | None = None) -> None:
         super().__init__(message, None if path is None else str(path), hint)
+
+
+class ResultWarning(UserWarning):
+    """A result is less than it was meant to be."""

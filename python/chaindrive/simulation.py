@@ -6,6 +6,7 @@ import json
 import sys
 import time
 from collections.abc import Callable, Iterable
+from contextlib import nullcontext
 from os import PathLike, fspath
 from typing import Any
 
@@ -15,6 +16,7 @@ import xarray as xr
 from chaindrive import _core
 from chaindrive.channels import channels
 from chaindrive.drive import Drive, _needed
+from chaindrive.signals import heard
 
 __all__ = ["simulate"]
 
@@ -38,7 +40,8 @@ def simulate(
 ) -> xr.Dataset:
     """Simulate a drive and return what was recorded.
 
-    The interpreter is free for other threads meanwhile, and Ctrl-C stops the run.
+    The interpreter is free for other threads meanwhile, and Ctrl-C stops the run. A run with an
+    `output` is stopped by SIGTERM and SIGHUP too: its result says so before they take effect.
 
     Parameters
     ----------
@@ -74,11 +77,11 @@ def simulate(
     events
         Contacts to log from touch to parting: of ``"teeth"``, ``"guides"``, ``"joints"``.
     output
-        Zarr store to stream the recording into, ``"run.zarr"``. It can be opened while the run
-        goes on; memory stays bounded, and the dataset returned reads from the store. Takes the
-        extra ``zarr``.
+        Zarr store to stream the recording into, ``"run.zarr"``; the name ends in ``.zarr``. It can
+        be opened while the run goes on, see `open_result`; memory stays bounded, and the dataset
+        returned reads from the store. Takes the extra ``zarr``.
     overwrite
-        Whether an earlier result at `output` may be replaced.
+        Whether an earlier result at `output` may be replaced; one that is being written may not.
     error
         Whether the run ends with an estimate of its own numerical error. It takes the time of some
         24 000 steps of the default length, whatever the length of the run.
@@ -155,14 +158,16 @@ def simulate(
     line = _Line()
     tell = progress if callable(progress) else line if progress else None
     try:
-        result = _core.simulate(
-            drive._inner,
-            [(key, value) for key, value in given.items() if value is not None],
-            output=None if output is None else fspath(output),
-            overwrite=overwrite,
-            error=error,
-            progress=tell,
-        )
+        # What is in memory only is lost with the program anyway.
+        with nullcontext() if output is None else heard():
+            result = _core.simulate(
+                drive._inner,
+                [(key, value) for key, value in given.items() if value is not None],
+                output=None if output is None else fspath(output),
+                overwrite=overwrite,
+                error=error,
+                progress=tell,
+            )
     finally:
         line.close()
     if output is None:
@@ -185,7 +190,7 @@ def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:
     variables = {}
     for name, values in result["columns"].items():
         about: dict[str, Any] = {
-            "units": known[name].unit,
+            "units": result["units"][name],
             "long_name": known[name].description,
         }
         if result["waveform_horizon"] is not None:

@@ -97,8 +97,9 @@ def sweep(
         - ``error`` (…), a text: why a variant failed, empty when it did not. Its numbers are NaN.
 
         Attributes tell the ``scene`` that is varied, ``chaindrive_version``, ``method``, the number
-        of ``variants`` and of those ``finished`` and ``failed``, ``status`` (``"complete"`` or
-        ``"interrupted"``), ``wall_time`` [s] and a ``summary`` to print.
+        of ``variants`` and of those ``finished`` and ``failed``, ``status`` (``"complete"``,
+        ``"interrupted"``, or ``"failed"`` with the number of failed variants as ``failure``),
+        ``wall_time`` [s] and a ``summary`` to print.
 
     Raises
     ------
@@ -169,7 +170,7 @@ def sweep(
         "variants": len(core),
         "finished": result["finished"],
         "failed": result["failed"],
-        "status": "complete" if stop is None else "interrupted",
+        **_status(stop, result["failed"], len(core)),
         "wall_time": time.perf_counter() - start,
         "summary": result["summary"],
     }
@@ -181,6 +182,19 @@ def sweep(
         stop.add_note(f"{done}: `except KeyboardInterrupt as stop` finds them in `stop.result`")
         raise stop
     return dataset
+
+
+def _status(stop: KeyboardInterrupt | None, failed: int, variants: int) -> dict[str, Any]:
+    """Return how a sweep ended, as a store says it."""
+    if stop is not None:
+        return {"status": "interrupted", "complete": 0}
+    if failed:
+        return {
+            "status": "failed",
+            "complete": 0,
+            "failure": f"{failed} of {variants} variants failed",
+        }
+    return {"status": "complete", "complete": 1}
 
 
 def _values(values: Any, path: str) -> tuple[str, ...]:

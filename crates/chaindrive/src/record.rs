@@ -2,6 +2,8 @@
 
 mod attributes;
 mod channel;
+mod claim;
+mod error;
 mod event;
 mod in_store;
 mod memory;
@@ -12,11 +14,13 @@ use chaindrive_mechanics::{Energy, Flow, Observation, Store, System};
 
 pub use attributes::{Ending, Provenance, account, attributes};
 pub use channel::{Axis, Channel};
+pub use claim::{Claim, is_being_written};
+pub use error::WriteError;
 pub use event::{EventColumn, EventTable};
 pub use in_store::InStore;
 pub use memory::Memory;
 pub use summary::{ContactStatistics, ForceStatistics, SpanStatistics, Summary};
-pub use zarr::{Existing, SweepWriter, WriteError, ZarrWriter};
+pub use zarr::{Existing, SweepWriter, ZarrWriter};
 
 /// One channel of a recording.
 #[derive(Clone, Debug)]

@@ -1,13 +1,16 @@
-//! Results as CSV: time, and a column `channel[label]` for every entry of every channel.
+//! Results as CSV: time, and a column `channel[label] [unit]` for every entry of every channel.
 //!
-//! Rows appear as they come. The table of a sweep is written elsewhere, but known here. A run that did not reach its end closes with a comment line.
+//! Rows appear as they come. Logged contacts go to a second table, `run.events.csv` beside `run.csv`. A table that is not
+//! at its end closes with a comment line that says so, at any time and however the program dies. The table of a sweep is
+//! written elsewhere, but known here.
 
-use std::fs::{File, OpenOptions};
-use std::io::{self, BufWriter, ErrorKind, Read, Write};
+use std::fs::{self, File};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
-use chaindrive::record::{Existing, labels};
-use chaindrive::{Channel, Recording, Simulation};
+use chaindrive::record::{Claim, Ending, EventColumn, Existing, WriteError, labels};
+use chaindrive::{Channel, ContactEvent, EventKinds, EventTable, Recording, Simulation};
 
 use crate::failure::Failure;
 
@@ -17,78 +20,259 @@ const TIME: &str = "time";
 /// The first column of a sweep.
 pub(crate) const VARIANT: &str = "variant";
 
-/// A table in the making.
+/// Rows are written when there are so many bytes of them, or after so long.
+const COMMIT_BYTES: usize = 1 << 20;
+const COMMIT_EVERY: Duration = Duration::from_secs(1);
+
+/// A run as a table, and its contacts as another one.
 #[derive(Debug)]
 pub(crate) struct CsvWriter {
-    path: PathBuf,
-    file: BufWriter<File>,
-    /// The last sample.
+    samples: Table,
+    contacts: Option<Table>,
+    /// The last sample, and the last contact.
     row: Recording,
+    contact: EventTable,
 }
 
 impl CsvWriter {
-    /// Opens the file and writes the heading.
+    /// Opens the files and writes their headings.
     pub(crate) fn create(
         path: &Path,
         simulation: &Simulation,
         channels: &[Channel],
+        events: EventKinds,
         existing: Existing,
     ) -> Result<Self, Failure> {
-        let file = open(path, existing)?;
-        let mut writer = Self {
-            path: path.to_owned(),
-            file: BufWriter::new(file),
-            row: Recording::new(channels, simulation.system()),
+        let beside = path.with_extension("events.csv");
+        let samples = claim(path, existing)?;
+        // Contacts of an earlier run do not stay beside the samples of this one.
+        let contacts = claim(&beside, existing)?;
+        let contacts = if events == EventKinds::default() {
+            contacts.remove()?;
+            None
+        } else {
+            let heading = EventColumn::ALL.map(|it| named(it.name(), it.unit()));
+            Some(Table::begin(contacts, &heading)?)
         };
-        let heading = heading(simulation, channels);
-        writer.write(&heading)?;
-        Ok(writer)
+        let samples = Table::begin(samples, &heading(simulation, channels))?;
+        Ok(Self {
+            samples,
+            contacts,
+            row: Recording::new(channels, simulation.system()),
+            contact: EventTable::new(simulation.system()),
+        })
     }
 
-    /// Writes the last sample of the simulation.
+    /// Writes the last sample of the simulation, and the contacts that have ended.
     pub(crate) fn push(&mut self, simulation: &Simulation) -> Result<(), Failure> {
         self.row.clear();
         self.row.push(simulation.observation());
         let columns = self.row.columns.iter().flat_map(|column| &column.values);
-        // The shortest digits that read back to the same number.
-        let row: Vec<String> = self
-            .row
-            .time
-            .iter()
-            .chain(columns)
-            .map(|v| format!("{v:?}"))
-            .collect();
-        self.write(&row)
+        let row: Vec<String> = self.row.time.iter().chain(columns).map(digits).collect();
+        self.samples.push(&row)?;
+        self.push_contacts(simulation.events())
     }
 
-    /// Closes the file; a reason says that the run did not reach its end.
-    pub(crate) fn finish(mut self, incomplete: Option<&str>) -> Result<(), Failure> {
-        if let Some(reason) = incomplete {
-            self.write(&[format!("# incomplete: {}", reason.replace('\n', "; "))])?;
+    fn push_contacts(&mut self, events: &[ContactEvent]) -> Result<(), Failure> {
+        let Some(table) = &mut self.contacts else {
+            return Ok(());
+        };
+        for event in events {
+            self.contact.clear();
+            self.contact.push(event);
+            let cells = EventColumn::ALL.map(|column| match column {
+                EventColumn::Kind => self.contact.kind.concat(),
+                EventColumn::Body => quoted(&self.contact.body.concat()),
+                EventColumn::Roller => self.contact.roller.iter().map(i64::to_string).collect(),
+                _ => self
+                    .contact
+                    .numbers(column)
+                    .into_iter()
+                    .flatten()
+                    .map(digits)
+                    .collect(),
+            });
+            table.push(&cells)?;
         }
-        self.file
-            .flush()
-            .map_err(|source| failed(&self.path, source))
+        table.keep_up()
     }
 
-    fn write(&mut self, cells: &[String]) -> Result<(), Failure> {
-        let written = writeln!(self.file, "{}", cells.join(","));
-        written.map_err(|source| failed(&self.path, source))
+    /// Closes the files, and says in them how the run ended.
+    pub(crate) fn finish(
+        mut self,
+        simulation: &Simulation,
+        ending: &Ending,
+    ) -> Result<(), Failure> {
+        self.push_contacts(&simulation.outstanding_events())?;
+        if let Some(contacts) = self.contacts {
+            contacts.finish(ending)?;
+        }
+        self.samples.finish(ending)
+    }
+}
+
+/// The shortest digits that read back to the same number.
+fn digits(value: &f64) -> String {
+    format!("{value:?}")
+}
+
+/// What the last line says of a table that is not at its end.
+pub(crate) fn incomplete(ending: &Ending) -> Option<String> {
+    let reason = match ending {
+        Ending::Complete => return None,
+        Ending::None => "running",
+        Ending::Interrupted => "interrupted",
+        Ending::Failed(reason) => reason,
+    };
+    Some(format!("# incomplete: {}\n", reason.replace('\n', "; ")))
+}
+
+/// A table in the making. Behind its last row stands that it is still running.
+#[derive(Debug)]
+struct Table {
+    claimed: Claimed,
+    file: File,
+    /// Length of the heading and the rows in the file.
+    length: u64,
+    /// Rows to be written.
+    pending: Vec<u8>,
+    committed: Instant,
+    ended: bool,
+}
+
+impl Table {
+    fn begin(claimed: Claimed, heading: &[String]) -> Result<Self, Failure> {
+        let made = File::create(claimed.claim.workshop());
+        let mut table = Self {
+            file: made.map_err(|source| failed(&claimed.path, source))?,
+            claimed,
+            length: 0,
+            pending: Vec::new(),
+            committed: Instant::now(),
+            ended: false,
+        };
+        table.add(heading);
+        table
+            .write()
+            .map_err(|source| failed(&table.claimed.path, source))?;
+        table.claimed.claim.put_in_place()?;
+        Ok(table)
+    }
+
+    fn add(&mut self, cells: &[String]) {
+        self.pending
+            .extend_from_slice(format!("{}\n", cells.join(",")).as_bytes());
+    }
+
+    fn push(&mut self, cells: &[String]) -> Result<(), Failure> {
+        self.add(cells);
+        self.keep_up()
+    }
+
+    /// Writes the rows if the last time was a while ago.
+    fn keep_up(&mut self) -> Result<(), Failure> {
+        if self.pending.len() < COMMIT_BYTES && self.committed.elapsed() < COMMIT_EVERY {
+            return Ok(());
+        }
+        self.commit()
+    }
+
+    fn commit(&mut self) -> Result<(), Failure> {
+        if !self.claimed.claim.holds(&self.file) {
+            self.ended = true;
+            let (path, what) = (self.claimed.path.clone(), "the result".into());
+            return Err(WriteError::Vanished { path, what }.into());
+        }
+        let written = self.write();
+        written.map_err(|source| {
+            self.give_up(&format!("the result could not be written: {source}"));
+            failed(&self.claimed.path, source)
+        })
+    }
+
+    fn write(&mut self) -> io::Result<()> {
+        let rows = self.pending.len() as u64;
+        self.pending.extend(
+            incomplete(&Ending::None)
+                .into_iter()
+                .flat_map(String::into_bytes),
+        );
+        self.file.seek(SeekFrom::Start(self.length))?;
+        let written = self.file.write_all(&self.pending);
+        if written.is_err() {
+            // On a full disk some of the rows are there; whole ones are kept.
+            let end = self.file.metadata()?.len().saturating_sub(self.length);
+            let there = &self.pending[..usize::try_from(end.min(rows)).unwrap_or(0)];
+            self.length += there
+                .iter()
+                .rposition(|&b| b == b'\n')
+                .map_or(0, |at| at as u64 + 1);
+        } else {
+            self.length += rows;
+        }
+        self.pending.clear();
+        self.committed = Instant::now();
+        written
+    }
+
+    /// Closes the table, and says in it how the run ended.
+    fn finish(mut self, ending: &Ending) -> Result<(), Failure> {
+        self.commit()?;
+        self.ended = true;
+        let closed = self.close(incomplete(ending));
+        closed.map_err(|source| failed(&self.claimed.path, source))
+    }
+
+    /// Puts a last line in the place of the one that says that the run goes on.
+    fn close(&mut self, last: Option<String>) -> io::Result<()> {
+        let last = last.unwrap_or_default();
+        self.file.seek(SeekFrom::Start(self.length))?;
+        self.file.write_all(last.as_bytes())?;
+        self.file.set_len(self.length + last.len() as u64)
+    }
+
+    /// Keeps the rows that were written whole, and says why there are no more.
+    fn give_up(&mut self, reason: &str) {
+        self.ended = true;
+        // The shorter line has room on a full disk: it is no longer than the one in its place.
+        for reason in [reason, "failed"] {
+            let last = incomplete(&Ending::Failed(reason.to_owned()));
+            if self.file.set_len(self.length).is_ok() && self.close(last).is_ok() {
+                return;
+            }
+        }
+    }
+}
+
+impl Drop for Table {
+    fn drop(&mut self) {
+        if !self.ended {
+            // Whoever drops a table has an error of his own to report.
+            let _ = self.write();
+            self.give_up("the program gave the result up before its end");
+        }
     }
 }
 
 fn heading(simulation: &Simulation, channels: &[Channel]) -> Vec<String> {
-    let mut cells = vec![TIME.to_owned()];
+    let mut cells = vec![named(TIME, Some("s"))];
     for channel in channels {
+        let name = channel.name();
+        let units = channel.units(simulation.system());
         match labels(channel.axis(), simulation.system()) {
-            None => cells.push(channel.name().to_owned()),
+            None => cells.extend(units.into_iter().map(|unit| named(name, Some(unit)))),
             Some(labels) => {
-                let cell = |label: &String| quoted(&format!("{}[{label}]", channel.name()));
-                cells.extend(labels.iter().map(cell));
+                let cell = |(label, unit)| named(&format!("{name}[{label}]"), Some(unit));
+                cells.extend(labels.iter().zip(units).map(cell));
             }
         }
     }
     cells
+}
+
+/// The heading of a column.
+pub(crate) fn named(name: &str, unit: Option<&str>) -> String {
+    quoted(&unit.map_or_else(|| name.to_owned(), |unit| format!("{name} [{unit}]")))
 }
 
 pub(crate) fn quoted(cell: &str) -> String {
@@ -106,18 +290,39 @@ pub(crate) fn failed(path: &Path, source: io::Error) -> Failure {
     }
 }
 
-/// Opens a file for a table, unless something else is there.
-pub(crate) fn open(path: &Path, existing: Existing) -> Result<File, Failure> {
+/// A place for a table, with the right to write there.
+#[derive(Debug)]
+pub(crate) struct Claimed {
+    pub(crate) claim: Claim,
+    pub(crate) path: PathBuf,
+}
+
+impl Claimed {
+    /// Removes an earlier table.
+    fn remove(self) -> Result<(), Failure> {
+        match fs::remove_file(self.claim.place()) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(failed(&self.path, error)),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Claims a place for a table, unless something else is there.
+pub(crate) fn claim(path: &Path, existing: Existing) -> Result<Claimed, Failure> {
     let taken = |found, hint| Failure::Taken {
         path: path.display().to_string(),
         found,
         hint,
     };
-    match OpenOptions::new().write(true).create_new(true).open(path) {
-        Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
-        made => return made.map_err(|source| failed(path, source)),
+    let claimed = Claimed {
+        claim: Claim::take(path)?,
+        path: path.to_owned(),
+    };
+    let place = claimed.claim.place();
+    if !place.exists() {
+        return Ok(claimed);
     }
-    if !path.is_file() || !is_table(path).map_err(|source| failed(path, source))? {
+    if !place.is_file() || !is_table(place).map_err(|source| failed(path, source))? {
         return Err(taken("this is not a table of chaindrive", ""));
     }
     if existing == Existing::Keep {
@@ -126,18 +331,20 @@ pub(crate) fn open(path: &Path, existing: Existing) -> Result<File, Failure> {
             ", or pass --overwrite",
         ));
     }
-    File::create(path).map_err(|source| failed(path, source))
+    Ok(claimed)
 }
 
 /// Whether a file is empty, or begins as our tables do.
 fn is_table(path: &Path) -> io::Result<bool> {
+    let firsts = [TIME, VARIANT, EventColumn::ALL[0].name()];
+    let longest = firsts.iter().map(|first| first.len()).max().unwrap_or(0);
     let mut begin = Vec::new();
     File::open(path)?
-        .take(VARIANT.len() as u64 + 1)
+        .take(longest as u64 + 1)
         .read_to_end(&mut begin)?;
-    let begins_with = |first: &str| {
+    let begins_with = |first: &&str| {
         let rest = begin.strip_prefix(first.as_bytes());
-        rest.is_some_and(|rest| matches!(rest.first(), Some(b',' | b'\n')))
+        rest.is_some_and(|rest| matches!(rest.first(), Some(b',' | b'\n' | b' ')))
     };
-    Ok(begin.is_empty() || begins_with(TIME) || begins_with(VARIANT))
+    Ok(begin.is_empty() || firsts.iter().any(begins_with))
 }

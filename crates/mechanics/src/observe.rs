@@ -112,6 +112,14 @@ impl System {
             .collect()
     }
 
+    /// SI units of the position and of the push of every tensioner.
+    pub fn tensioner_units(&self) -> Vec<(&'static str, &'static str)> {
+        let carriers = self.slides.iter().map(|slide| &slide.carrier);
+        carriers
+            .map(|carrier| (carrier.coordinate_unit(), carrier.push_unit()))
+            .collect()
+    }
+
     /// Where in the drive a coordinate of the state belongs, in words.
     pub fn place(&self, dof: usize) -> String {
         let chain = self.chains.iter().find(|m| m.entries.contains(&dof));

@@ -110,6 +110,25 @@ impl Push {
 }
 
 impl Carrier {
+    /// SI unit of its coordinate.
+    pub fn coordinate_unit(&self) -> &'static str {
+        match self {
+            Self::Slider { .. } => "m",
+            Self::Arm { .. } => "rad",
+        }
+    }
+
+    /// SI unit of the push on it: without a plunger an arm is pushed by a torque.
+    pub fn push_unit(&self) -> &'static str {
+        match self {
+            Self::Slider { .. }
+            | Self::Arm {
+                plunger: Some(_), ..
+            } => "N",
+            Self::Arm { plunger: None, .. } => "N m",
+        }
+    }
+
     /// Extension of the push and its lever ∂x/∂s at coordinate `s`.
     pub fn extension(&self, s: f64) -> (f64, f64) {
         match self {

@@ -196,9 +196,24 @@ impl IntoException for WriteError {
                 path,
                 "give `overwrite=True`, or another name",
             )),
-            Self::Foreign { path, .. } | Self::Io { path, .. } | Self::Store { path, .. } => {
-                python::WriteError::new_err((message, path))
+            Self::Name { path } => {
+                python::WriteError::new_err((message, path, "a name that ends in .zarr"))
             }
+            Self::Busy { path, .. } => python::WriteError::new_err((
+                message,
+                path,
+                "stop that process or wait for its end, or give another name",
+            )),
+            Self::Dangling { path, .. } => python::WriteError::new_err((
+                message,
+                path,
+                "remove the link, or give another name",
+            )),
+            Self::Foreign { path, .. }
+            | Self::Vanished { path, .. }
+            | Self::GivenUp { path }
+            | Self::Io { path, .. }
+            | Self::Store { path, .. } => python::WriteError::new_err((message, path)),
             _ => python::WriteError::new_err((message,)),
         }
     }

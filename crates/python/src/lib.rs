@@ -44,7 +44,7 @@ mod core {
     #[pymodule_export]
     use crate::precision::work_precision;
     #[pymodule_export]
-    use crate::run::{channels, methods, simulate};
+    use crate::run::{channels, is_being_written, methods, simulate};
 
     #[pymodule_export]
     use crate::sweep::Sweep;

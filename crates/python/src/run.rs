@@ -105,6 +105,12 @@ fn told<'py>(
     let judgement = report.judgement.as_ref();
     let horizon = judgement.and_then(|judgement| judgement.waveform_horizon());
     answer.set_item("waveform_horizon", horizon)?;
+    let units = PyDict::new(py);
+    for &channel in &recorded {
+        let unit = channel.unit_in(report.simulation.system());
+        units.set_item(channel.name(), unit)?;
+    }
+    answer.set_item("units", units)?;
     let samples = recording.len();
     answer.set_item("time", PyArray1::from_vec(py, recording.time))?;
     let columns = PyDict::new(py);
@@ -243,6 +249,12 @@ pub(crate) fn channels(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
             )
         }),
     )
+}
+
+/// Whether a process that lives is writing a result at `path`.
+#[pyfunction]
+pub(crate) fn is_being_written(path: PathBuf) -> PyResult<bool> {
+    record::is_being_written(path).or_raise()
 }
 
 /// Names of the methods of time stepping.

@@ -10,6 +10,7 @@ use serde_json::{Map, Value};
 
 use super::Summary;
 use crate::precision::{Attribute, Choice, Judgement};
+use crate::sweep::Outcome;
 use crate::{Run, Scene, Simulation, Stepping};
 
 /// Tells a result of this program from any other group.
@@ -61,6 +62,17 @@ pub enum Ending {
 }
 
 impl Ending {
+    /// How a sweep ended that goes on no more; variants that failed count as a failure of the sweep.
+    pub fn of(outcomes: &[Outcome]) -> Self {
+        let failed = outcomes.iter();
+        let failed = failed.filter(|outcome| matches!(outcome, Outcome::Failed(_)));
+        match failed.count() {
+            _ if outcomes.contains(&Outcome::Open) => Self::Interrupted,
+            0 => Self::Complete,
+            failed => Self::Failed(format!("{failed} of {} variants failed", outcomes.len())),
+        }
+    }
+
     /// Its word in results.
     pub fn status(&self) -> &'static str {
         match self {

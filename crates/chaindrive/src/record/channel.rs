@@ -77,7 +77,7 @@ macro_rules! channels {
                 match self { $(Self::$variant => $name),* }
             }
 
-            /// SI unit.
+            /// SI unit; where it depends on the system, those there are. See [`Self::units`].
             pub fn unit(self) -> &'static str {
                 match self { $(Self::$variant => $unit),* }
             }
@@ -122,8 +122,8 @@ channels! {
     SprocketY, "sprocket_y", "m", Sprocket, "sprocket centre, y";
     GuideForceX, "guide_force_x", "N", Guide, "resultant of the chain on the guide, x";
     GuideForceY, "guide_force_y", "N", Guide, "resultant of the chain on the guide, y";
-    TensionerPosition, "tensioner_position", "1", Tensioner, "travel of a slider in m, or angle of an arm in rad";
-    TensionerForce, "tensioner_force", "N", Tensioner, "push of the tensioner in N, or torque of a bare arm in N m";
+    TensionerPosition, "tensioner_position", "m or rad", Tensioner, "travel of a slider in m, or angle of an arm in rad";
+    TensionerForce, "tensioner_force", "N or N m", Tensioner, "push of the tensioner in N, or torque of a bare arm in N m";
     EnergyKinetic, "energy_kinetic", "J", None, "kinetic energy";
     EnergyStored, "energy_stored", "J", None, "potential energy of springs, contacts and weight";
     EnergyDissipated, "energy_dissipated", "J", None, "energy lost since the start";
@@ -172,6 +172,29 @@ impl Channel {
                     .join(", "),
             }
         })
+    }
+
+    /// SI unit of every entry in a system, one for a scalar: those of tensioners depend on what carries them.
+    pub fn units(self, system: &System) -> Vec<&'static str> {
+        let tensioners = || system.tensioner_units().into_iter();
+        match self {
+            Self::TensionerPosition => tensioners().map(|(position, _)| position).collect(),
+            Self::TensionerForce => tensioners().map(|(_, force)| force).collect(),
+            _ => {
+                let entries = super::labels(self.axis(), system).map_or(1, |labels| labels.len());
+                vec![self.unit(); entries]
+            }
+        }
+    }
+
+    /// The unit of all entries in a system; where they differ, all of them in the order of the labels.
+    pub fn unit_in(self, system: &System) -> String {
+        let units = self.units(system);
+        match units.first() {
+            None => self.unit().to_owned(),
+            Some(first) if units.iter().all(|unit| unit == first) => (*first).to_owned(),
+            Some(_) => units.join(", "),
+        }
     }
 
     /// Whether a system has what the channel records: joints and directions of links belong to rigid

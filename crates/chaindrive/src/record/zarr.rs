@@ -9,47 +9,44 @@
 //!   event_start/, …        (event,) contacts from touch to parting, where they are logged
 //! ```
 //!
-//! `zarrs` makes the arrays and their chunks; `object_store` puts every file in place by renaming
-//! it, whole or not at all. A commit writes in this order:
+//! `zarrs` makes the arrays and their chunks; every file is put in place by renaming it, whole or not at
+//! all, and so is the store: it is begun beside its place (`record/claim.rs`). A commit writes in this order:
 //!
 //! 1. the chunks in work, filled up with NaN; the samples already there do not change,
-//! 2. the group document with the new lengths of **all** arrays as consolidated metadata: one
-//!    rename, after which every reader that opens the group sees the new samples,
-//! 3. the metadata of each array, for readers that do not know consolidated metadata.
+//! 2. the metadata of each array, for readers that do not know consolidated metadata,
+//! 3. the group document with the new lengths of **all** arrays as consolidated metadata: one
+//!    rename, after which every reader that opens the group sees the new samples.
 //!
 //! Whenever the process dies, the group document describes chunks that are there. Files are not
 //! synchronised with the disk one by one: a result outlives the program, not a power cut.
 //!
 //! A reader has to open the file of a chunk once, as `zarr-python` does. One that asks for its size
-//! first, as `zarrs` does through its adapter of asynchronous stores, may then find another file;
-//! once the run has ended this does not matter.
+//! first, as object stores do, may then find another file; once the run has ended this does not matter.
 
+mod content;
 mod error;
 mod events;
+mod folder;
+mod store;
 mod sweep;
 mod target;
 mod track;
 
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
-use chaindrive_mechanics::{Energy, EventKinds};
-use serde_json::{Map, Value, json};
-use zarrs::group::Group;
-use zarrs::metadata::v3::{AdditionalFieldV3, GroupMetadataV3};
+use serde_json::{Map, Value};
 
-pub use error::WriteError;
 pub use sweep::SweepWriter;
 
+use super::Channel;
 use super::attributes::{Ending, Provenance, attributes};
-use super::{Axis, Channel, labels};
+use super::error::WriteError;
 use crate::Simulation;
 use crate::precision::Judgement;
-use error::Fault;
-use events::EventTracks;
-use target::{Storage, Target};
-use track::{Track, store_labels};
+use content::Content;
+use store::Store;
 
 /// Wall time between two commits.
 const COMMIT_EVERY: Duration = Duration::from_secs(1);
@@ -87,27 +84,20 @@ pub enum Existing {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct ZarrWriter {
-    path: PathBuf,
-    storage: Storage,
+    content: Content,
     provenance: Provenance,
-    time: Track,
-    tracks: Vec<(Channel, Track)>,
-    /// Contacts, where they are logged.
-    events: Option<EventTracks>,
-    /// Metadata of the arrays that do not grow.
-    fixed: Vec<(&'static str, Value)>,
-    start: Option<Energy>,
     judgement: Option<Judgement>,
     /// What the result says about itself in the end.
     told: Option<Map<String, Value>>,
     samples: u64,
     committed: Instant,
+    store: Store,
 }
 
 impl fmt::Debug for ZarrWriter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("ZarrWriter")
-            .field("path", &self.path)
+            .field("path", &self.store.path())
             .field("samples", &self.samples)
             .finish_non_exhaustive()
     }
@@ -125,99 +115,52 @@ impl ZarrWriter {
         provenance: Provenance,
         existing: Existing,
     ) -> Result<Self, WriteError> {
-        let path = path.as_ref();
-        let target = Target::prepare(path, existing)?;
-        let made = target.storage().and_then(|storage| {
-            let made = Self::begin(path, &storage, simulation, channels, provenance);
-            made.map_err(|fault| at(path, fault))
-        });
-        if made.is_err() {
-            target.abandon();
-        }
-        made
+        let store = Store::begin(path.as_ref(), existing)?;
+        Self::begin(store, simulation, channels, provenance)
     }
 
     fn begin(
-        path: &Path,
-        storage: &Storage,
+        store: Store,
         simulation: &Simulation,
         channels: &[Channel],
         provenance: Provenance,
-    ) -> Result<Self, Fault> {
-        let system = simulation.system();
-        let mut fixed = Vec::new();
-        let mut tracks: Vec<(Channel, Track)> = Vec::new();
-        for &channel in channels {
-            if tracks.iter().any(|(known, _)| *known == channel) {
-                continue;
-            }
-            let axis = channel.axis();
-            if let (Some(name), Some(labels)) = (axis.name(), labels(axis, system))
-                && !fixed.iter().any(|(known, _)| *known == name)
-            {
-                fixed.push((name, store_labels(storage, name, axis, &labels)?));
-            }
-            let about = about(channel.unit(), channel.description());
-            tracks.push((
-                channel,
-                Track::new(storage, channel.name(), axis, system, about)?,
-            ));
-        }
-        let time = Track::new(storage, "time", Axis::None, system, about("s", "time"))?;
-        let logged = provenance.run.events != EventKinds::default();
-        let events = logged.then(|| EventTracks::new(storage, system));
+    ) -> Result<Self, WriteError> {
+        let content = Content::new(store.storage(), simulation, channels, &provenance);
         let mut writer = Self {
-            path: path.to_owned(),
-            storage: storage.clone(),
+            content: content.map_err(|fault| store.fault(fault))?,
             provenance,
-            time,
-            tracks,
-            events: events.transpose()?,
-            fixed,
-            start: None,
             judgement: None,
             told: None,
             samples: 0,
             committed: Instant::now(),
+            store,
         };
         writer.commit(simulation, &Ending::None)?;
+        writer.store.publish()?;
         Ok(writer)
     }
 
     /// Takes the last sample of the simulation, and commits if the last commit was a while ago.
     ///
     /// # Errors
-    /// [`WriteError`] when the store refuses. What was committed stays readable.
+    /// [`WriteError`] when the store refuses, and in every call after that. What was committed stays readable,
+    /// and the store says that it failed.
     pub fn push(&mut self, simulation: &Simulation) -> Result<(), WriteError> {
-        self.take(simulation)
-            .map_err(|fault| at(&self.path, fault))?;
+        let pushed = self.content.push(simulation);
+        self.or_give_up(|writer| pushed.map_err(|fault| writer.store.fault(fault)))?;
+        self.samples += 1;
         if self.committed.elapsed() >= COMMIT_EVERY {
             self.flush(simulation)?;
         }
         Ok(())
     }
 
-    fn take(&mut self, simulation: &Simulation) -> Result<(), Fault> {
-        let sample = simulation.observation();
-        let start = *self.start.get_or_insert(sample.energy);
-        self.time.push(|to| to.push(sample.time))?;
-        for (channel, track) in &mut self.tracks {
-            track.push(|to| channel.read(sample, &start, to))?;
-        }
-        if let Some(events) = &mut self.events {
-            events.push(simulation.events())?;
-        }
-        self.samples += 1;
-        Ok(())
-    }
-
     /// Commits: all samples so far can be read.
     ///
     /// # Errors
-    /// [`WriteError`] when the store refuses. What was committed before stays readable.
+    /// As [`push`](Self::push).
     pub fn flush(&mut self, simulation: &Simulation) -> Result<(), WriteError> {
-        let committed = self.commit(simulation, &Ending::None);
-        committed.map_err(|fault| at(&self.path, fault))
+        self.or_give_up(|writer| writer.commit(simulation, &Ending::None))
     }
 
     /// Takes in what is said about the error of the run; it is stored with the next commit.
@@ -226,9 +169,7 @@ impl ZarrWriter {
     /// `waveform_horizon` \[s\]: samples behind it are for statistics.
     pub fn judge(&mut self, judgement: &Judgement) {
         if let Some(horizon) = judgement.waveform_horizon() {
-            for (_, track) in &mut self.tracks {
-                track.tell("waveform_horizon", horizon.into());
-            }
+            self.content.tell("waveform_horizon", &horizon.into());
         }
         self.judgement = Some(judgement.clone());
     }
@@ -240,15 +181,16 @@ impl ZarrWriter {
 
     /// Commits for the last time and says how the run ended.
     ///
+    /// A writer that is dropped without this leaves a result that says so.
+    ///
     /// # Errors
-    /// [`WriteError`] when the store refuses. What was committed before stays readable.
+    /// As [`push`](Self::push).
     pub fn finish(mut self, simulation: &Simulation, ending: &Ending) -> Result<(), WriteError> {
-        let lasting = match &mut self.events {
-            Some(events) => events.push(&simulation.outstanding_events()),
-            None => Ok(()),
-        };
-        let committed = lasting.and_then(|()| self.commit(simulation, ending));
-        committed.map_err(|fault| at(&self.path, fault))
+        let pushed = self.content.push_outstanding(simulation);
+        self.or_give_up(|writer| {
+            pushed.map_err(|fault| writer.store.fault(fault))?;
+            writer.commit(simulation, ending)
+        })
     }
 
     /// Samples taken.
@@ -256,53 +198,30 @@ impl ZarrWriter {
         self.samples
     }
 
-    fn commit(&mut self, simulation: &Simulation, ending: &Ending) -> Result<(), Fault> {
-        let mut arrays = Map::new();
-        for track in growing(&mut self.time, &mut self.tracks) {
-            track.store()?;
-            track.set_length(self.samples)?;
-            arrays.insert(track.name.into(), track.metadata()?);
+    /// Does something with the store; an error ends it.
+    fn or_give_up(
+        &mut self,
+        work: impl FnOnce(&mut Self) -> Result<(), WriteError>,
+    ) -> Result<(), WriteError> {
+        let done = work(self);
+        if let Err(error) = &done {
+            self.store.give_up(&error.without_path());
         }
-        if let Some(events) = &mut self.events {
-            events.store()?;
-            events.set_length()?;
-            for (name, metadata) in events.metadata()? {
-                arrays.insert(name.into(), metadata);
-            }
-        }
-        for (name, metadata) in &self.fixed {
-            arrays.insert((*name).into(), metadata.clone());
-        }
-        let consolidated = json!({ "kind": "inline", "metadata": arrays });
-        // `Group::set_consolidated_metadata` would do, but loses the order of the arrays.
-        let fields = [(
-            "consolidated_metadata".to_owned(),
-            AdditionalFieldV3::new(consolidated, false),
-        )];
-        let metadata = GroupMetadataV3::new()
-            .with_attributes(self.told.clone().unwrap_or_else(|| {
-                let judgement = self.judgement.as_ref();
-                let (provenance, samples) = (&self.provenance, self.samples);
-                attributes(provenance, simulation, None, samples, ending, judgement)
-            }))
-            .with_additional_fields(fields.into_iter().collect());
-        Group::new_with_metadata(self.storage.clone(), "/", metadata.into())?.store_metadata()?;
-        for track in growing(&mut self.time, &mut self.tracks) {
-            track.store_metadata()?;
-        }
-        if let Some(events) = &self.events {
-            events.store_metadata()?;
-        }
+        done
+    }
+
+    fn commit(&mut self, simulation: &Simulation, ending: &Ending) -> Result<(), WriteError> {
+        let stored = self.content.store(self.samples);
+        let arrays = stored.map_err(|fault| self.store.fault(fault))?;
+        let attributes = self.told.clone().unwrap_or_else(|| {
+            let judgement = self.judgement.as_ref();
+            let (provenance, samples) = (&self.provenance, self.samples);
+            attributes(provenance, simulation, None, samples, ending, judgement)
+        });
+        self.store.tell(attributes, arrays, ending)?;
         self.committed = Instant::now();
         Ok(())
     }
-}
-
-fn growing<'a>(
-    time: &'a mut Track,
-    tracks: &'a mut [(Channel, Track)],
-) -> impl Iterator<Item = &'a mut Track> {
-    std::iter::once(time).chain(tracks.iter_mut().map(|(_, track)| track))
 }
 
 fn about(unit: &str, text: &str) -> Map<String, Value> {
@@ -311,11 +230,4 @@ fn about(unit: &str, text: &str) -> Map<String, Value> {
         .into_iter()
         .map(|(key, value)| (key.to_owned(), value.into()))
         .collect()
-}
-
-fn at(path: &Path, fault: Fault) -> WriteError {
-    WriteError::Store {
-        path: path.to_owned(),
-        source: Box::new(fault),
-    }
 }

@@ -6,32 +6,20 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use chaindrive::record::{Ending, Existing, Provenance, WriteError, ZarrWriter};
+use chaindrive::record::{
+    Claim, Ending, Existing, Provenance, WriteError, ZarrWriter, is_being_written,
+};
 use chaindrive::{Channel, EventTable, Recording, Run, Scene, Simulation};
-use object_store::local::LocalFileSystem;
 use zarrs::array::{Array, ArrayMetadata};
 use zarrs::group::Group;
-use zarrs::storage::storage_adapter::async_to_sync::{
-    AsyncToSyncBlockOn, AsyncToSyncStorageAdapter,
-};
 use zarrs::storage::store::MemoryStore;
 use zarrs::storage::{ReadableStorageTraits, WritableStorageTraits};
-use zarrs_object_store::AsyncObjectStore;
-
-struct OnThisThread;
-
-impl AsyncToSyncBlockOn for OnThisThread {
-    fn block_on<F: Future>(&self, future: F) -> F::Output {
-        pollster::block_on(future)
-    }
-}
+use zarrs_filesystem::FilesystemStore;
 
 type Reader = Arc<dyn ReadableStorageTraits>;
 
 fn reader(path: &Path) -> Reader {
-    let files = LocalFileSystem::new_with_prefix(path).unwrap();
-    let store = Arc::new(AsyncObjectStore::new(files));
-    Arc::new(AsyncToSyncStorageAdapter::new(store, OnThisThread))
+    Arc::new(FilesystemStore::new(path).unwrap())
 }
 
 fn numbers(store: &Reader, name: &str) -> (Vec<u64>, Vec<f64>) {
@@ -133,13 +121,106 @@ fn the_group_document_holds_all_lengths() {
     writer.flush(&simulation).unwrap();
     assert_eq!(lengths(), [10, 10, 10]);
 
-    // A run that is killed here leaves ten samples and says that it was running.
-    drop(writer);
+    // A run that is killed here leaves ten samples and says that it was running; so does one whose writer
+    // never gets a word in.
+    assert!(is_being_written(&path).unwrap());
+    std::mem::forget(writer);
     let store = reader(&path);
     assert_eq!(attribute(&store, "status"), "running");
     assert_eq!(attribute(&store, "complete"), 0);
     let (_, energy) = numbers(&store, "energy_kinetic");
     assert!(energy.iter().all(|value| value.is_finite()));
+}
+
+/// The program may leave before the end for reasons of its own.
+#[test]
+fn a_writer_that_is_dropped_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("ring.zarr");
+    let (scene, run, mut simulation) = ring(1e-3);
+    let provenance = Provenance::of(&scene, &run);
+    let channels = [Channel::LinkTension];
+    let mut writer =
+        ZarrWriter::create(&path, &simulation, &channels, provenance, Existing::Keep).unwrap();
+    simulation.next_sample().unwrap();
+    writer.push(&simulation).unwrap();
+    writer.flush(&simulation).unwrap();
+    drop(writer);
+    let store = reader(&path);
+    assert_eq!(attribute(&store, "status"), "failed");
+    assert_eq!(attribute(&store, "samples"), 1);
+    assert!(!is_being_written(&path).unwrap());
+    let left: Vec<_> = fs::read_dir(folder.path()).unwrap().collect();
+    assert_eq!(left.len(), 1, "{left:?}");
+}
+
+/// Where two folders cannot exchange their names, the old one is moved aside first.
+#[test]
+fn a_result_moved_aside_is_put_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("ring.zarr");
+    let aside = folder.path().join(".ring.zarr.writing/old");
+    fs::create_dir_all(&aside).unwrap();
+    fs::write(aside.join("zarr.json"), "old").unwrap();
+    fs::write(folder.path().join(".ring.zarr.writing/reserve"), "").unwrap();
+    let claim = Claim::take(&path).unwrap();
+    assert_eq!(fs::read_to_string(path.join("zarr.json")).unwrap(), "old");
+    assert!(matches!(Claim::take(&path), Err(WriteError::Busy { .. })));
+    drop(claim);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+/// What `dask` asks of a dataset: all arrays are cut at the same times.
+#[test]
+fn all_arrays_have_the_same_samples_in_a_chunk() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("ring.zarr");
+    let (scene, run, simulation) = ring(1e-3);
+    let channels = Channel::chosen(&["all"], simulation.system()).unwrap();
+    let provenance = Provenance::of(&scene, &run);
+    ZarrWriter::create(&path, &simulation, &channels, provenance, Existing::Keep).unwrap();
+    let text = fs::read(path.join("zarr.json")).unwrap();
+    let group: serde_json::Value = serde_json::from_slice(&text).unwrap();
+    let arrays = group["consolidated_metadata"]["metadata"]
+        .as_object()
+        .unwrap();
+    let over_time = arrays
+        .values()
+        .filter(|it| it["dimension_names"][0] == "time");
+    let mut cuts: Vec<&serde_json::Value> = over_time
+        .map(|array| &array["chunk_grid"]["configuration"]["chunk_shape"][0])
+        .collect();
+    assert!(cuts.len() > 20);
+    cuts.dedup();
+    assert_eq!(cuts, [6553], "2^17 numbers for 20 links");
+}
+
+/// A travel and an angle have different units, and so have a force and a torque.
+#[test]
+fn units_of_tensioners_are_those_of_their_carriers() {
+    let units = |scene: &Scene| {
+        let drive = scene.drive().unwrap();
+        let system = drive.assemble().unwrap().system;
+        [Channel::TensionerPosition, Channel::TensionerForce].map(|it| it.unit_in(&system))
+    };
+    assert_eq!(units(&Scene::preset("marine_engine").unwrap()), ["m", "N"]);
+    let timing = Scene::preset("timing_drive").unwrap();
+    assert_eq!(units(&timing), ["rad", "N"]);
+    let bare = timing.text().lines().map(|line| {
+        match line.split_once(", plunger = ") {
+            Some((carrier, _)) => format!("{carrier} }}\n"),
+            None if line.starts_with("push = ") => {
+                "push = { kind = 'spring', preload = '-9 N m', stiffness = '100 N m/rad', damping = '1 N m s' }\n".into()
+            }
+            None => format!("{line}\n"),
+        }
+    });
+    let bare = Scene::from_text(
+        &format!("settle = false\n{}", bare.collect::<String>()),
+        "bare arm",
+    )
+    .unwrap();
+    assert_eq!(units(&bare), ["rad", "N m"]);
 }
 
 /// Lengths and values as one document tells them, while another thread commits without a pause.

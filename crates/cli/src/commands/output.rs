@@ -47,9 +47,11 @@ impl Target {
                 let writer = ZarrWriter::create(&path, simulation, channels, provenance, existing)?;
                 Output::Zarr(Box::new(writer))
             }
-            Self::Csv(path) => Output::Csv(Box::new(CsvWriter::create(
-                &path, simulation, channels, existing,
-            )?)),
+            Self::Csv(path) => {
+                let events = provenance.run.events;
+                let writer = CsvWriter::create(&path, simulation, channels, events, existing)?;
+                Output::Csv(Box::new(writer))
+            }
         })
     }
 }
@@ -91,11 +93,7 @@ impl Output {
         match self {
             Self::Nowhere => Ok(()),
             Self::Zarr(writer) => Ok(writer.finish(simulation, ending)?),
-            Self::Csv(writer) => writer.finish(match ending {
-                Ending::Complete => None,
-                Ending::Failed(reason) => Some(reason),
-                Ending::None | Ending::Interrupted => Some("interrupted"),
-            }),
+            Self::Csv(writer) => writer.finish(simulation, ending),
         }
     }
 }

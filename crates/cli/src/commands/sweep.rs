@@ -116,12 +116,7 @@ pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
         return Err(error);
     }
     let open = outcomes.contains(&Outcome::Open);
-    let ending = if open {
-        Ending::Interrupted
-    } else {
-        Ending::Complete
-    };
-    output.write(&sweep, &outcomes, &ending)?;
+    output.write(&sweep, &outcomes, &Ending::of(&outcomes))?;
     if !arguments.quiet {
         print(sweep.report(&outcomes))?;
     }

@@ -86,7 +86,7 @@ fn a_run_writes_a_table() {
     assert_eq!((code, out.as_str(), err.as_str()), (0, "", ""));
     let table = fs::read_to_string(at.join("ring.csv")).unwrap();
     let lines: Vec<&str> = table.lines().collect();
-    assert!(lines[0].starts_with("time,energy_kinetic,link_tension[0],link_tension[1],"));
+    assert!(lines[0].starts_with("time [s],energy_kinetic [J],link_tension[0] [N],"));
     assert_eq!(lines.len(), 4);
     let row: Vec<f64> = lines[3]
         .split(',')

@@ -4,4 +4,5 @@ mod bench;
 mod command;
 mod interrupt;
 mod same_run;
+mod store_faults;
 mod sweep;

@@ -5,21 +5,20 @@
 //! from then on a reader that comes in between, or after the program was killed, finds old or new values
 //! in each array, unless a later variant has more samples or links than all before it.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 use zarrs::array::builder::ArrayBuilderFillValue;
 use zarrs::array::codec::ZstdCodec;
 use zarrs::array::{ArrayBuilder, CodecOptions, DataType, data_type};
-use zarrs::group::Group;
-use zarrs::metadata::v3::{AdditionalFieldV3, GroupMetadataV3};
 
-use super::error::{Fault, WriteError};
-use super::target::{Storage, Target};
+use super::error::Fault;
+use super::store::Store;
 use super::track::{StoredArray, ZSTD_LEVEL, metadata, store_metadata};
-use super::{Ending, Existing, about, at};
+use super::{Ending, Existing, about};
 use crate::record::attributes::{FORMAT, Story};
+use crate::record::error::WriteError;
 use crate::sweep::{Coordinate, Outcome, Stacked, Sweep};
 
 /// Numbers in a chunk, about 1 MiB: beyond that a chunk is a stretch of a single variant.
@@ -27,14 +26,13 @@ const NUMBERS_PER_CHUNK: usize = 1 << 17;
 
 /// A store for a sweep.
 pub struct SweepWriter {
-    path: PathBuf,
-    storage: Storage,
+    store: Store,
 }
 
 impl std::fmt::Debug for SweepWriter {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("SweepWriter")
-            .field("path", &self.path)
+            .field("path", &self.store.path())
             .finish_non_exhaustive()
     }
 }
@@ -49,44 +47,37 @@ impl SweepWriter {
         sweep: &Sweep,
         existing: Existing,
     ) -> Result<Self, WriteError> {
-        let path = path.as_ref();
-        let target = Target::prepare(path, existing)?;
-        let made = target.storage().and_then(|storage| {
-            let writer = Self {
-                path: path.to_owned(),
-                storage,
-            };
-            let open = vec![Outcome::Open; sweep.len()];
-            writer.write(sweep, &open, &Ending::None)?;
-            Ok(writer)
-        });
-        if made.is_err() {
-            target.abandon();
-        }
-        made
+        let mut writer = Self {
+            store: Store::begin(path.as_ref(), existing)?,
+        };
+        let open = vec![Outcome::Open; sweep.len()];
+        writer.write(sweep, &open, &Ending::None)?;
+        writer.store.publish()?;
+        Ok(writer)
     }
 
     /// Writes what is known of all variants, in place of what was written before.
     ///
     /// # Errors
-    /// [`WriteError`] when the store refuses.
+    /// [`WriteError`] when the store refuses, and in every call after that; the store then says that it failed.
     pub fn write(
-        &self,
+        &mut self,
         sweep: &Sweep,
         outcomes: &[Outcome],
         ending: &Ending,
     ) -> Result<(), WriteError> {
-        let written = self.put(sweep, &sweep.stack(outcomes), outcomes, ending);
-        written.map_err(|fault| at(&self.path, fault))
+        let stacked = sweep.stack(outcomes);
+        let arrays = self.put(sweep, &stacked);
+        let written = arrays.map_err(|fault| self.store.fault(fault));
+        let attributes = attributes(sweep, &stacked, outcomes, ending);
+        let told = written.and_then(|arrays| self.store.tell(attributes, arrays, ending));
+        if let Err(error) = &told {
+            self.store.give_up(&error.without_path());
+        }
+        told
     }
 
-    fn put(
-        &self,
-        sweep: &Sweep,
-        stacked: &Stacked,
-        outcomes: &[Outcome],
-        ending: &Ending,
-    ) -> Result<(), Fault> {
+    fn put(&self, sweep: &Sweep, stacked: &Stacked) -> Result<Map<String, Value>, Fault> {
         let mut arrays = Map::new();
         for dimension in sweep.dimensions() {
             let mut about = Map::new();
@@ -127,17 +118,7 @@ impl SweepWriter {
         about.insert("long_name".into(), text.into());
         let errors = self.texts("error", &swept, &stacked.shape, &stacked.errors, about)?;
         arrays.insert("error".into(), errors);
-
-        let consolidated = json!({ "kind": "inline", "metadata": arrays });
-        let fields = [(
-            "consolidated_metadata".to_owned(),
-            AdditionalFieldV3::new(consolidated, false),
-        )];
-        let metadata = GroupMetadataV3::new()
-            .with_attributes(attributes(sweep, stacked, outcomes, ending))
-            .with_additional_fields(fields.into_iter().collect());
-        Group::new_with_metadata(self.storage.clone(), "/", metadata.into())?.store_metadata()?;
-        Ok(())
+        Ok(arrays)
     }
 
     fn coordinate(
@@ -235,7 +216,7 @@ impl SweepWriter {
             .dimension_names(Some(dims.iter().copied()))
             .attributes(about)
             .bytes_to_bytes_codecs(vec![Arc::new(ZstdCodec::new(ZSTD_LEVEL, true))])
-            .build(self.storage.clone(), &format!("/{name}"))?;
+            .build(self.store.storage().clone(), &format!("/{name}"))?;
         Ok(array)
     }
 }
@@ -264,6 +245,9 @@ fn attributes(
     story.text("chaindrive_version", env!("CARGO_PKG_VERSION"));
     story.text("status", ending.status());
     story.count("complete", u64::from(*ending == Ending::Complete));
+    if let Ending::Failed(reason) = ending {
+        story.text("failure", reason);
+    }
     story.text("scene_name", scene.name());
     story.text("scene", scene.text());
     story.text("method", &stacked.methods.join(", "));

@@ -5,14 +5,14 @@ use serde_json::{Map, Value};
 use zarrs::array::CodecOptions;
 use zarrs::array::codec::ZstdCodec;
 use zarrs::array::{Array, ArrayBuilder, ArrayMetadataOptions, data_type};
-use zarrs::storage::ReadableWritableListableStorageTraits;
+use zarrs::storage::ReadableWritableStorageTraits;
 
 use super::error::Fault;
-use super::target::Storage;
+use super::store::Storage;
 use crate::record::{Axis, labels};
 
 /// An array of the store.
-pub(super) type StoredArray = Array<dyn ReadableWritableListableStorageTraits>;
+pub(super) type StoredArray = Array<dyn ReadableWritableStorageTraits>;
 
 /// Numbers in a chunk, 1 MiB of them, and samples at most.
 const NUMBERS_PER_CHUNK: usize = 1 << 17;
@@ -20,6 +20,12 @@ const SAMPLES_PER_CHUNK: usize = 1 << 14;
 
 /// Level of the compression: what is zero or constant shrinks at any level, the rest at none.
 pub(super) const ZSTD_LEVEL: i32 = 3;
+
+/// Samples in a chunk of every array of a run, by the width of the widest: `dask` wants the arrays of a
+/// dataset to be cut at the same times.
+pub(super) fn samples_per_chunk(width: usize) -> usize {
+    (NUMBERS_PER_CHUNK / width.max(1)).clamp(1, SAMPLES_PER_CHUNK)
+}
 
 /// An array that grows with time.
 pub(super) struct Track {
@@ -42,11 +48,11 @@ impl Track {
         name: &'static str,
         axis: Axis,
         system: &System,
+        samples: usize,
         attributes: Map<String, Value>,
     ) -> Result<Self, Fault> {
         let labels = labels(axis, system);
         let width = labels.as_ref().map_or(1, Vec::len);
-        let samples = (NUMBERS_PER_CHUNK / width.max(1)).clamp(1, SAMPLES_PER_CHUNK);
         let mut shape = vec![0];
         let mut chunk = vec![samples as u64];
         if labels.is_some() {

@@ -1,15 +1,14 @@
 //! Where a sweep goes: nowhere, a Zarr store, or a table with a row a variant.
 
-use std::fs::{self, File};
-use std::io::{BufWriter, IntoInnerError, Write};
-use std::path::{Path, PathBuf};
+use std::fs::{File, OpenOptions};
+use std::io::{self, BufWriter, IntoInnerError, Seek, SeekFrom, Write};
 use std::time::{Duration, Instant};
 
 use chaindrive::record::{Ending, Existing, SweepWriter};
 use chaindrive::sweep::{Outcome, Progress, Stacked, Sweep};
 
 use super::super::output::Target;
-use crate::csv::{VARIANT, failed, open, quoted};
+use crate::csv::{Claimed, VARIANT, claim, failed, incomplete, named, quoted};
 use crate::failure::Failure;
 
 /// Wall time between two writes while the sweep goes on.
@@ -33,7 +32,15 @@ pub(super) struct Output {
 enum Place {
     Nowhere,
     Zarr(Box<SweepWriter>),
-    Csv(PathBuf),
+    Csv(Box<Table>),
+}
+
+/// The place of a table that is written anew as a whole.
+#[derive(Debug)]
+struct Table {
+    claimed: Claimed,
+    /// Whether it says there that the sweep goes on.
+    running: bool,
 }
 
 impl Output {
@@ -48,10 +55,10 @@ impl Output {
             Target::Zarr(path) => {
                 Place::Zarr(Box::new(SweepWriter::create(&path, sweep, existing)?))
             }
-            Target::Csv(path) if sweep.record().is_empty() => {
-                open(&path, existing)?;
-                Place::Csv(path)
-            }
+            Target::Csv(path) if sweep.record().is_empty() => Place::Csv(Box::new(Table {
+                claimed: claim(&path, existing)?,
+                running: false,
+            })),
             Target::Csv(path) => {
                 return Err(Failure::Argument(format!(
                     "{}: a table has no place for the channels of --record; take a .zarr store",
@@ -88,39 +95,70 @@ impl Output {
 
     /// Writes what is known of all variants, and how the sweep ended.
     pub(super) fn write(
-        &self,
+        &mut self,
         sweep: &Sweep,
         outcomes: &[Outcome],
         ending: &Ending,
     ) -> Result<(), Failure> {
-        match &self.place {
+        match &mut self.place {
             Place::Nowhere => Ok(()),
             Place::Zarr(writer) => Ok(writer.write(sweep, outcomes, ending)?),
-            Place::Csv(path) => {
-                let written = table(path, sweep, &sweep.stack(outcomes), ending);
-                written.map_err(|source| failed(path, source))
-            }
+            Place::Csv(table) => table.write(sweep, &sweep.stack(outcomes), ending),
         }
     }
 }
 
-/// Writes the table beside its place and moves it there: it is whole at any time.
-fn table(path: &Path, sweep: &Sweep, stacked: &Stacked, ending: &Ending) -> std::io::Result<()> {
-    let part = path.with_extension("csv.part");
-    let mut file = BufWriter::new(File::create(&part)?);
+impl Table {
+    /// Writes the table beside its place and moves it there: it is whole at any time.
+    fn write(&mut self, sweep: &Sweep, stacked: &Stacked, ending: &Ending) -> Result<(), Failure> {
+        let claim = &self.claimed.claim;
+        let made =
+            File::create(claim.workshop()).and_then(|file| fill(file, sweep, stacked, ending));
+        made.map_err(|source| failed(&self.claimed.path, source))?;
+        claim.put_in_place()?;
+        self.running = *ending == Ending::None;
+        Ok(())
+    }
+
+    /// Says in the place of `running` that it does not any more: that takes no space on a full disk.
+    fn give_up(&self) -> io::Result<()> {
+        let running = incomplete(&Ending::None).unwrap_or_default();
+        let failed = incomplete(&Ending::Failed("failed".into())).unwrap_or_default();
+        let mut file = OpenOptions::new()
+            .write(true)
+            .open(self.claimed.claim.place())?;
+        let last = file.metadata()?.len().saturating_sub(running.len() as u64);
+        file.seek(SeekFrom::Start(last))?;
+        file.write_all(failed.as_bytes())?;
+        file.set_len(last + failed.len() as u64)
+    }
+}
+
+impl Drop for Table {
+    fn drop(&mut self) {
+        if self.running {
+            // Whoever drops a table has an error of his own to report.
+            let _ = self.give_up();
+        }
+    }
+}
+
+fn fill(file: File, sweep: &Sweep, stacked: &Stacked, ending: &Ending) -> io::Result<()> {
+    let mut file = BufWriter::new(file);
     let mut heading = vec![VARIANT.to_owned()];
-    heading.extend(sweep.dimensions().iter().map(|it| quoted(&it.name)));
+    let swept = sweep.dimensions().iter();
+    heading.extend(swept.map(|it| named(&it.name, it.unit.as_deref())));
     for it in &stacked.quantities {
-        let name = it.quantity.name();
+        let (name, unit) = (it.quantity.name(), it.quantity.unit());
         let labels = it.quantity.along().and_then(|along| {
             let mut labels = stacked.labels.iter();
             labels.find(|(known, _)| known == along)
         });
         match labels {
-            None => heading.push(name.to_owned()),
+            None => heading.push(named(name, Some(unit))),
             Some((_, labels)) => {
                 let labels = (0..labels.len()).map(|at| labels.text(at));
-                heading.extend(labels.map(|label| quoted(&format!("{name}[{label}]"))));
+                heading.extend(labels.map(|label| named(&format!("{name}[{label}]"), Some(unit))));
             }
         }
     }
@@ -139,17 +177,8 @@ fn table(path: &Path, sweep: &Sweep, stacked: &Stacked, ending: &Ending) -> std:
         row.push(quoted(error));
         writeln!(file, "{}", row.join(","))?;
     }
-    let incomplete = match ending {
-        Ending::Complete => None,
-        Ending::Interrupted => Some("interrupted"),
-        Ending::None => Some("running"),
-        Ending::Failed(reason) => Some(reason.as_str()),
-    };
-    if let Some(reason) = incomplete {
-        writeln!(file, "# incomplete: {reason}")?;
-    }
+    write!(file, "{}", incomplete(ending).unwrap_or_default())?;
     file.into_inner()
         .map_err(IntoInnerError::into_error)?
-        .sync_all()?;
-    fs::rename(&part, path)
+        .sync_all()
 }

@@ -1,0 +1,293 @@
+//! The claim of one writer on a place for a result, and the move that puts a result there.
+//!
+//! ```text
+//! run.zarr            the result
+//! .run.zarr.writing/  exists while somebody writes it
+//!   lock              held by the writer; the system lets it go when the process ends, however it ends
+//!   new               a result in the making, until it takes its place
+//!   old               an earlier result, where the file system cannot exchange two names at once
+//!   reserve           space given back when the disk is full, for a last word about that
+//! ```
+//!
+//! What lies in the folder of a dead process is cleared away by the next writer.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::thread::sleep;
+use std::time::Duration;
+
+use same_file::Handle;
+
+use super::error::WriteError;
+
+/// Times that the lock is tried: readers that ask whether a result is being written hold it for a moment.
+const TRIES: u32 = 10;
+const BETWEEN_TRIES: Duration = Duration::from_millis(20);
+
+/// The right to write a result, for this process alone.
+#[derive(Debug)]
+pub struct Claim {
+    /// As it was asked for, for messages.
+    asked: PathBuf,
+    /// Where the result is, symbolic links followed.
+    place: PathBuf,
+    beside: PathBuf,
+    /// Unlocked when it is closed.
+    _lock: File,
+}
+
+impl Claim {
+    /// Claims a place; the folder that it lies in must exist.
+    ///
+    /// # Errors
+    /// [`WriteError::Busy`] while another process, or another writer of this one, has the claim;
+    /// [`WriteError::Dangling`] for a symbolic link to nowhere; [`WriteError::Io`].
+    pub fn take(path: &Path) -> Result<Self, WriteError> {
+        let io = |source| WriteError::Io {
+            path: path.to_owned(),
+            source,
+        };
+        let place = followed(path)?;
+        let beside = beside(&place).map_err(io)?;
+        let lock = lock(&beside).map_err(|refusal| match refusal {
+            Refusal::Io(source) => io(source),
+            Refusal::Held(holder) => WriteError::Busy {
+                path: path.to_owned(),
+                holder,
+            },
+        })?;
+        let claim = Self {
+            asked: path.to_owned(),
+            place,
+            beside,
+            _lock: lock,
+        };
+        claim.clear_up().map_err(io)?;
+        Ok(claim)
+    }
+
+    /// Where the result is, symbolic links followed.
+    pub fn place(&self) -> &Path {
+        &self.place
+    }
+
+    /// Where a result is made before it takes its place.
+    pub fn workshop(&self) -> PathBuf {
+        self.beside.join("new")
+    }
+
+    /// Puts what was made in the [`workshop`](Self::workshop) in place, and removes what was there.
+    ///
+    /// Whenever the process dies, the place holds the old result or the new one, each whole. Where the
+    /// system cannot exchange two folders, it may hold none: the next writer then puts the old one back.
+    ///
+    /// # Errors
+    /// [`WriteError::Io`]; the old result is still there unless its removal failed.
+    pub fn put_in_place(&self) -> Result<(), WriteError> {
+        self.exchange().map_err(|source| WriteError::Io {
+            path: self.asked.clone(),
+            source,
+        })
+    }
+
+    /// Whether a file that was put in place is still there.
+    pub fn holds(&self, file: &File) -> bool {
+        let named = Handle::from_path(&self.place).ok();
+        let held = file.try_clone().and_then(Handle::from_file).ok();
+        named.is_some() && named == held
+    }
+
+    fn exchange(&self) -> io::Result<()> {
+        let new = self.workshop();
+        if new.is_file() || !self.place.exists() {
+            return fs::rename(&new, &self.place);
+        }
+        let replaced = if exchanged(&new, &self.place)? {
+            new
+        } else {
+            let old = self.beside.join("old");
+            fs::rename(&self.place, &old)?;
+            if let Err(error) = fs::rename(&new, &self.place) {
+                fs::rename(&old, &self.place)?;
+                return Err(error);
+            }
+            old
+        };
+        fs::remove_dir_all(replaced)
+    }
+
+    /// Sets space aside for the last words of a result on a disk that is full.
+    pub(super) fn reserve(&self, bytes: usize) -> io::Result<()> {
+        fs::write(self.beside.join("reserve"), vec![0x5a; bytes])
+    }
+
+    /// Gives the space back.
+    pub(super) fn spend_reserve(&self) {
+        // Nothing was set aside when the store was never begun.
+        let _ = fs::remove_file(self.beside.join("reserve"));
+    }
+
+    /// Removes what a dead process left, and puts back the result that it had moved out of the way.
+    fn clear_up(&self) -> io::Result<()> {
+        let old = self.beside.join("old");
+        if old.exists() && !self.place.exists() {
+            fs::rename(&old, &self.place)?;
+        }
+        for name in ["old", "new", "reserve"] {
+            let left = self.beside.join(name);
+            let removed = if left.is_dir() {
+                fs::remove_dir_all(&left)
+            } else {
+                fs::remove_file(&left)
+            };
+            match removed {
+                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Claim {
+    fn drop(&mut self) {
+        // What cannot be removed now is cleared away by the next writer. The name of the lock goes last:
+        // whoever finds another file under it than the one he has locked begins anew.
+        let _ = self.clear_up();
+        let _ = fs::remove_file(self.beside.join("lock"));
+        let _ = fs::remove_dir(&self.beside);
+    }
+}
+
+/// Whether a process that lives is writing a result here.
+///
+/// A result that says `running`, and that nobody writes, was left by a process that was killed.
+///
+/// # Errors
+/// [`WriteError::Io`] when the lock cannot be looked at.
+pub fn is_being_written(path: impl AsRef<Path>) -> Result<bool, WriteError> {
+    let path = path.as_ref();
+    let io = |source| WriteError::Io {
+        path: path.to_owned(),
+        source,
+    };
+    let place = followed(path)?;
+    let lock = match File::open(beside(&place).map_err(io)?.join("lock")) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(false),
+        opened => opened.map_err(io)?,
+    };
+    match lock.try_lock_shared() {
+        Ok(()) => Ok(false),
+        Err(TryLockError::WouldBlock) => Ok(true),
+        Err(TryLockError::Error(error)) => Err(io(error)),
+    }
+}
+
+/// Where a path leads; what does not exist yet stands in a folder that does.
+fn followed(path: &Path) -> Result<PathBuf, WriteError> {
+    let io = |source| WriteError::Io {
+        path: path.to_owned(),
+        source,
+    };
+    match fs::canonicalize(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+        found => return found.map_err(io),
+    }
+    if let Ok(target) = fs::read_link(path) {
+        return Err(WriteError::Dangling {
+            path: path.to_owned(),
+            target,
+        });
+    }
+    let name = path
+        .file_name()
+        .ok_or_else(|| io(io::ErrorKind::InvalidFilename.into()))?;
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    Ok(fs::canonicalize(folder).map_err(io)?.join(name))
+}
+
+fn beside(place: &Path) -> io::Result<PathBuf> {
+    let name = place.file_name().ok_or(io::ErrorKind::InvalidFilename)?;
+    let mut hidden = std::ffi::OsString::from(".");
+    hidden.push(name);
+    hidden.push(".writing");
+    Ok(place.with_file_name(hidden))
+}
+
+/// Why there is no lock.
+enum Refusal {
+    /// Somebody has it.
+    Held(String),
+    Io(io::Error),
+}
+
+impl From<io::Error> for Refusal {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+fn lock(beside: &Path) -> Result<File, Refusal> {
+    let path = beside.join("lock");
+    let mut held = None;
+    for _ in 0..TRIES {
+        match fs::create_dir(beside) {
+            Err(error) if error.kind() != io::ErrorKind::AlreadyExists => return Err(error.into()),
+            _ => {}
+        }
+        let opened = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .create(true)
+            .truncate(false)
+            .open(&path);
+        let mut file = match opened {
+            // The last writer removed the folder in between.
+            Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
+            opened => opened?,
+        };
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => {
+                held = fs::read_to_string(&path).ok();
+                sleep(BETWEEN_TRIES);
+                continue;
+            }
+            Err(TryLockError::Error(error)) => return Err(error.into()),
+        }
+        // The last writer may have removed the name of what was opened.
+        let Ok(named) = Handle::from_path(&path) else {
+            continue;
+        };
+        if named == Handle::from_file(file.try_clone()?)? {
+            file.set_len(0)?;
+            file.write_all(format!("process {}", std::process::id()).as_bytes())?;
+            return Ok(file);
+        }
+    }
+    let holder = held.filter(|text| !text.is_empty());
+    Err(Refusal::Held(
+        holder.unwrap_or_else(|| "another process".into()),
+    ))
+}
+
+/// Exchanges two names in one move; tells whether the system can.
+#[cfg(any(target_os = "linux", target_vendor = "apple"))]
+fn exchanged(one: &Path, other: &Path) -> io::Result<bool> {
+    use rustix::fs::{CWD, RenameFlags, renameat_with};
+    use rustix::io::Errno;
+    match renameat_with(CWD, one, CWD, other, RenameFlags::EXCHANGE) {
+        Ok(()) => Ok(true),
+        Err(Errno::INVAL | Errno::NOSYS | Errno::NOTSUP) => Ok(false),
+        Err(error) => Err(error.into()),
+    }
+}
+
+#[cfg(not(any(target_os = "linux", target_vendor = "apple")))]
+fn exchanged(_: &Path, _: &Path) -> io::Result<bool> {
+    Ok(false)
+}

@@ -1,0 +1,123 @@
+//! The arrays of a run: those that grow with time, the table of contacts, and the labels.
+
+use chaindrive_mechanics::{Energy, EventKinds};
+use serde_json::{Map, Value};
+
+use super::about;
+use super::error::Fault;
+use super::events::EventTracks;
+use super::store::Storage;
+use super::track::{Track, samples_per_chunk, store_labels};
+use crate::Simulation;
+use crate::record::{Axis, Channel, Provenance, labels};
+
+/// All arrays of a run.
+pub(super) struct Content {
+    time: Track,
+    tracks: Vec<(Channel, Track)>,
+    /// Contacts, where they are logged.
+    events: Option<EventTracks>,
+    /// Metadata of the arrays that do not grow.
+    fixed: Vec<(&'static str, Value)>,
+    start: Option<Energy>,
+}
+
+impl Content {
+    pub(super) fn new(
+        storage: &Storage,
+        simulation: &Simulation,
+        channels: &[Channel],
+        provenance: &Provenance,
+    ) -> Result<Self, Fault> {
+        let system = simulation.system();
+        let width = |channel: &Channel| labels(channel.axis(), system).map_or(1, |it| it.len());
+        let samples = samples_per_chunk(channels.iter().map(width).max().unwrap_or(1));
+        let mut fixed = Vec::new();
+        let mut tracks: Vec<(Channel, Track)> = Vec::new();
+        for &channel in channels {
+            if tracks.iter().any(|(known, _)| *known == channel) {
+                continue;
+            }
+            let axis = channel.axis();
+            if let (Some(name), Some(labels)) = (axis.name(), labels(axis, system))
+                && !fixed.iter().any(|(known, _)| *known == name)
+            {
+                fixed.push((name, store_labels(storage, name, axis, &labels)?));
+            }
+            let about = about(&channel.unit_in(system), channel.description());
+            tracks.push((
+                channel,
+                Track::new(storage, channel.name(), axis, system, samples, about)?,
+            ));
+        }
+        let about = about("s", "time");
+        let time = Track::new(storage, "time", Axis::None, system, samples, about)?;
+        let logged = provenance.run.events != EventKinds::default();
+        let events = logged.then(|| EventTracks::new(storage, system));
+        Ok(Self {
+            time,
+            tracks,
+            events: events.transpose()?,
+            fixed,
+            start: None,
+        })
+    }
+
+    /// Takes the last sample of the simulation, and the contacts that have ended.
+    pub(super) fn push(&mut self, simulation: &Simulation) -> Result<(), Fault> {
+        let sample = simulation.observation();
+        let start = *self.start.get_or_insert(sample.energy);
+        self.time.push(|to| to.push(sample.time))?;
+        for (channel, track) in &mut self.tracks {
+            track.push(|to| channel.read(sample, &start, to))?;
+        }
+        match &mut self.events {
+            Some(events) => events.push(simulation.events()),
+            None => Ok(()),
+        }
+    }
+
+    /// Takes the contacts that last beyond the run.
+    pub(super) fn push_outstanding(&mut self, simulation: &Simulation) -> Result<(), Fault> {
+        match &mut self.events {
+            Some(events) => events.push(&simulation.outstanding_events()),
+            None => Ok(()),
+        }
+    }
+
+    /// Adds an attribute to every channel; takes effect with the next [`store`](Self::store).
+    pub(super) fn tell(&mut self, name: &str, value: &Value) {
+        for (_, track) in &mut self.tracks {
+            track.tell(name, value.clone());
+        }
+    }
+
+    /// Stores the chunks in work and then the metadata of the arrays, which it returns by name.
+    pub(super) fn store(&mut self, samples: u64) -> Result<Map<String, Value>, Fault> {
+        let mut arrays = Map::new();
+        let tracks = self.tracks.iter_mut().map(|(_, track)| track);
+        let mut growing: Vec<&mut Track> = std::iter::once(&mut self.time).chain(tracks).collect();
+        for track in &mut growing {
+            track.store()?;
+            track.set_length(samples)?;
+            arrays.insert(track.name.into(), track.metadata()?);
+        }
+        if let Some(events) = &mut self.events {
+            events.store()?;
+            events.set_length()?;
+            for (name, metadata) in events.metadata()? {
+                arrays.insert(name.into(), metadata);
+            }
+        }
+        for track in growing {
+            track.store_metadata()?;
+        }
+        if let Some(events) = &self.events {
+            events.store_metadata()?;
+        }
+        for (name, metadata) in &self.fixed {
+            arrays.insert((*name).into(), metadata.clone());
+        }
+        Ok(arrays)
+    }
+}

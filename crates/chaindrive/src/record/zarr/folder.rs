@@ -1,0 +1,169 @@
+//! The files of a store: each appears whole or not at all, and none where the store is gone.
+//!
+//! Folders are made once. A folder or file that was there and is not is an error: somebody removes the
+//! store, and to make it anew would leave a torso that looks like a result.
+
+use std::collections::HashSet;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use same_file::Handle;
+use zarrs::storage::byte_range::{ByteRangeIterator, extract_byte_ranges};
+use zarrs::storage::{
+    Bytes, MaybeBytes, MaybeBytesIterator, OffsetBytesIterator, ReadableStorageTraits,
+    StorageError, StoreKey, StorePrefix, WritableStorageTraits, store_set_partial_many,
+};
+
+/// A folder with a store in the making.
+#[derive(Debug)]
+pub(super) struct Folder {
+    /// Keeps the folder recognisable, wherever it is moved.
+    itself: Handle,
+    state: Mutex<State>,
+}
+
+#[derive(Debug)]
+struct State {
+    root: PathBuf,
+    /// Folders and files made, from the root.
+    folders: HashSet<PathBuf>,
+    files: HashSet<StoreKey>,
+}
+
+impl Folder {
+    /// Makes an empty folder.
+    pub(super) fn create(root: PathBuf) -> io::Result<Self> {
+        fs::create_dir(&root)?;
+        Ok(Self {
+            itself: Handle::from_path(&root)?,
+            state: Mutex::new(State {
+                root,
+                folders: HashSet::new(),
+                files: HashSet::new(),
+            }),
+        })
+    }
+
+    /// Takes note that the folder was moved.
+    pub(super) fn moved_to(&self, root: &Path) {
+        self.state().root = root.to_owned();
+    }
+
+    /// What was written and is not there any more, if anything.
+    pub(super) fn missing(&self) -> Option<String> {
+        let state = self.state();
+        if self.is_elsewhere(&state.root) {
+            return Some("the result".into());
+        }
+        let mut files = state.files.iter();
+        let missing = files.find(|key| !state.root.join(key.as_str()).exists());
+        missing.map(|key| format!("`{key}`"))
+    }
+
+    fn is_elsewhere(&self, root: &Path) -> bool {
+        Handle::from_path(root).ok().as_ref() != Some(&self.itself)
+    }
+
+    fn state(&self) -> std::sync::MutexGuard<'_, State> {
+        // A name is noted after its file is there: a panic in between spoils nothing.
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn path(&self, key: &StoreKey) -> PathBuf {
+        self.state().root.join(key.as_str())
+    }
+
+    fn write(&self, key: &StoreKey, value: &[u8]) -> io::Result<()> {
+        let mut state = self.state();
+        if self.is_elsewhere(&state.root) {
+            return Err(io::ErrorKind::NotFound.into());
+        }
+        let within = Path::new(key.as_str()).parent().unwrap_or(Path::new(""));
+        let mut folders: Vec<&Path> = within.ancestors().collect();
+        folders.pop();
+        for folder in folders.into_iter().rev() {
+            if !state.folders.contains(folder) {
+                fs::create_dir(state.root.join(folder))?;
+                state.folders.insert(folder.to_owned());
+            }
+        }
+        let path = state.root.join(key.as_str());
+        // The name of a file on its way; readers of the store know no such key.
+        let staged = state.root.join(format!("{key}#1"));
+        let written = fs::write(&staged, value).and_then(|()| fs::rename(&staged, &path));
+        if written.is_err() {
+            // Of the two errors the first says more.
+            let _ = fs::remove_file(&staged);
+        }
+        written?;
+        state.files.insert(key.clone());
+        Ok(())
+    }
+}
+
+impl WritableStorageTraits for Folder {
+    fn set(&self, key: &StoreKey, value: Bytes) -> Result<(), StorageError> {
+        Ok(self.write(key, &value)?)
+    }
+
+    fn set_partial_many(
+        &self,
+        key: &StoreKey,
+        offset_values: OffsetBytesIterator,
+    ) -> Result<(), StorageError> {
+        store_set_partial_many(self, key, offset_values)
+    }
+
+    fn erase(&self, key: &StoreKey) -> Result<(), StorageError> {
+        if self.state().files.remove(key) {
+            fs::remove_file(self.path(key))?;
+        }
+        Ok(())
+    }
+
+    fn erase_prefix(&self, prefix: &StorePrefix) -> Result<(), StorageError> {
+        let files: Vec<StoreKey> = self.state().files.iter().cloned().collect();
+        files
+            .iter()
+            .filter(|key| key.has_prefix(prefix))
+            .try_for_each(|key| self.erase(key))
+    }
+
+    fn supports_set_partial(&self) -> bool {
+        false
+    }
+}
+
+impl ReadableStorageTraits for Folder {
+    fn get(&self, key: &StoreKey) -> Result<MaybeBytes, StorageError> {
+        match fs::read(self.path(key)) {
+            Ok(bytes) => Ok(Some(bytes.into())),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    fn get_partial_many<'a>(
+        &'a self,
+        key: &StoreKey,
+        byte_ranges: ByteRangeIterator<'a>,
+    ) -> Result<MaybeBytesIterator<'a>, StorageError> {
+        let Some(bytes) = self.get(key)? else {
+            return Ok(None);
+        };
+        let parts = extract_byte_ranges(&bytes, byte_ranges)?;
+        Ok(Some(Box::new(
+            parts.into_iter().map(|part| Ok(part.into())),
+        )))
+    }
+
+    fn size_key(&self, key: &StoreKey) -> Result<Option<u64>, StorageError> {
+        Ok(self.get(key)?.map(|bytes| bytes.len() as u64))
+    }
+
+    fn supports_get_partial(&self) -> bool {
+        false
+    }
+}

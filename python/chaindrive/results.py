@@ -1,0 +1,81 @@
+"""Results on disk: read them, and learn whether they are what they were meant to be."""
+
+from __future__ import annotations
+
+import warnings
+from os import PathLike, fspath
+
+import xarray as xr
+
+from chaindrive import _core
+from chaindrive.errors import ResultWarning
+from chaindrive.simulation import _require_zarr
+
+__all__ = ["open_result"]
+
+
+def open_result(path: str | PathLike[str]) -> xr.Dataset:
+    """Open a result that was written to disk, at its end or while it is being written.
+
+    Parameters
+    ----------
+    path
+        The Zarr store of a run or a sweep.
+
+    Returns
+    -------
+    xarray.Dataset
+        What `simulate` and `sweep` return, read from the store on demand. Its attribute ``status``
+        is ``"complete"``, ``"running"`` while a process writes it, ``"interrupted"``,
+        ``"failed"``, with the reason in ``failure``, or ``"killed"``: the process that wrote it is
+        gone without a word.
+
+    Raises
+    ------
+    ValueError
+        This is not a result of chaindrive.
+    FileNotFoundError
+        Nothing is there.
+    WriteError
+        It cannot be told whether the result is being written.
+
+    Warns
+    -----
+    ResultWarning
+        The result ends early: it was interrupted, it failed, or it was killed.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import chaindrive as cd
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     run = cd.simulate(cd.scenes.spinning_ring(), until=2e-3, output=f"{folder}/ring.zarr")
+    ...     cd.open_result(f"{folder}/ring.zarr").attrs["status"]
+    'complete'
+    """
+    _require_zarr()
+    name = fspath(path)
+    # A writer says how it ended before it gives its claim back: looked at again, a result that
+    # nobody writes has ended, or its writer was killed.
+    stored = _open(name)
+    if stored.attrs["status"] == "running" and not _core.is_being_written(name):
+        stored = _open(name)
+        if stored.attrs["status"] == "running" and not _core.is_being_written(name):
+            stored.attrs["status"] = "killed"
+    status = stored.attrs["status"]
+    if status not in ("complete", "running"):
+        reason = stored.attrs.get("failure", "")
+        held = stored.attrs.get("samples", stored.attrs.get("finished"))
+        kind = "samples" if "samples" in stored.attrs else "variants"
+        ending = f"{status}: {reason}" if reason else status
+        warnings.warn(f"{name}: {ending}; it holds {held} {kind}", ResultWarning, stacklevel=2)
+    return stored
+
+
+def _open(name: str) -> xr.Dataset:
+    stored: xr.Dataset = xr.open_zarr(name, chunks=None)
+    if stored.attrs.get("format") != "chaindrive" or "status" not in stored.attrs:
+        raise ValueError(
+            f"{name}: this is not a result of chaindrive; xarray.open_zarr reads others"
+        )
+    return stored

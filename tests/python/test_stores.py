@@ -1,0 +1,133 @@
+"""Results on disk as Python opens them: while they grow, after they were stopped or killed."""
+
+import signal
+import subprocess
+import sys
+import time
+import warnings
+
+import pandas as pd
+import pytest
+import xarray as xr
+
+import chaindrive as cd
+
+pytest.importorskip("zarr")
+
+LONG = """
+import sys
+import chaindrive as cd
+cd.simulate(cd.scenes.bicycle_slack(), until=100.0, every=1e-4, output=sys.argv[1], error=False,
+            method="implicit-damping", record=["span_tension", "joint_force", "sprocket_speed"])
+"""
+posix = pytest.mark.skipif(sys.platform == "win32", reason="signals")
+
+
+@pytest.fixture
+def growing(tmp_path):
+    """A store with samples, and the process that writes it."""
+    store = tmp_path / "long.zarr"
+    with subprocess.Popen([sys.executable, "-c", LONG, store], stderr=subprocess.PIPE) as writer:
+        limit = time.monotonic() + 60
+        while not (store.exists() and xr.open_zarr(store, chunks=None).sizes["time"]):
+            assert time.monotonic() < limit, "no sample was committed"
+            time.sleep(0.05)
+        yield store, writer
+        writer.kill()
+
+
+def test_chunks_agree_while_a_store_grows_and_when_it_is_stopped(growing):
+    store, writer = growing
+    assert xr.open_zarr(store).chunks["time"]
+    writer.kill()
+    writer.wait()
+    assert xr.open_zarr(store).chunks["time"]
+    # More samples than fit in a chunk of the widest array.
+    stopped = store.with_name("ring.zarr")
+    cd.simulate(
+        cd.scenes.spinning_ring(), until=0.08, every=1e-5, output=stopped, record="all", error=False
+    )
+    assert len(xr.open_zarr(stopped).chunks["time"]) == 2
+
+
+def test_a_result_is_running_or_was_killed(growing):
+    store, writer = growing
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert cd.open_result(store).attrs["status"] == "running"
+    writer.kill()
+    writer.wait()
+    with pytest.warns(cd.ResultWarning, match=r"long\.zarr: killed; it holds \d+ samples"):
+        killed = cd.open_result(store)
+    assert killed.attrs["status"] == "killed"
+    assert killed.sizes["time"] == killed.attrs["samples"] > 0
+    assert bool(killed["span_tension"].notnull().any())
+
+
+@posix
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
+def test_a_signal_takes_effect_when_the_result_says_so(growing, name):
+    store, writer = growing
+    number = signal.Signals[name]
+    writer.send_signal(number)
+    writer.wait(60)
+    assert writer.returncode == -number
+    with pytest.warns(cd.ResultWarning, match="interrupted; it holds"):
+        assert cd.open_result(store).attrs["status"] == "interrupted"
+
+
+@posix
+def test_the_command_hears_signals_too(tmp_path):
+    store = tmp_path / "ring.zarr"
+    command = [sys.executable, "-m", "chaindrive", "run", "spinning_ring", "--until", "1e4"]
+    with subprocess.Popen([*command, "-o", store], stderr=subprocess.PIPE) as writer:
+        while not store.exists():
+            assert writer.poll() is None
+            time.sleep(0.02)
+        writer.send_signal(signal.SIGTERM)
+        assert writer.wait(60) == 130
+    assert xr.open_zarr(store, chunks=None).attrs["status"] == "interrupted"
+
+
+def test_a_writer_keeps_others_out(growing):
+    store, writer = growing
+    with pytest.raises(cd.WriteError, match=f"process {writer.pid} is writing") as caught:
+        cd.simulate(cd.scenes.spinning_ring(), until=1e-3, output=store, overwrite=True)
+    assert "another name" in caught.value.hint
+
+
+@pytest.mark.parametrize("name", ["run.nc", "run", "run.csv"])
+def test_the_name_of_an_output_says_what_it_is(tmp_path, name):
+    with pytest.raises(cd.WriteError, match=r"must end in \.zarr") as caught:
+        cd.simulate(cd.scenes.spinning_ring(), until=1e-3, output=tmp_path / name, error=False)
+    assert ".zarr" in caught.value.hint
+    assert not list(tmp_path.iterdir())
+
+
+def test_tables_are_read_with_their_units(tmp_path):
+    command = [sys.executable, "-m", "chaindrive", "run", "marine_two_sprockets", "--until", "2 ms"]
+    options = ["--every", "1 ms", "--events", "teeth", "-q", "--no-error", "-o", "drive.csv"]
+    subprocess.run([*command, *options], cwd=tmp_path, check=True)
+    table = pd.read_csv(tmp_path / "drive.csv", index_col="time [s]")
+    assert table["span_tension[crank-camshaft] [N]"].dtype == float
+    contacts = pd.read_csv(tmp_path / "drive.events.csv")
+    assert set(contacts["event_kind"]) == {"tooth"}
+    assert (contacts["event_end [s]"] > contacts["event_start [s]"]).all()
+
+
+def test_units_of_tensioners_are_those_of_their_carriers():
+    names = ["tensioner_position", "tensioner_force"]
+    for drive, units in [
+        (cd.scenes.marine_engine(), ["m", "N"]),
+        (cd.scenes.timing_drive(), ["rad", "N"]),
+    ]:
+        run = cd.simulate(drive, until=1e-4, every=1e-4, record=names, error=False, method="verlet")
+        assert [run[name].attrs["units"] for name in names] == units
+
+
+def test_a_sweep_with_failed_variants_is_not_complete():
+    vary = {"chain.start.speed": [300.0, 1e300]}
+    swept = cd.sweep(cd.scenes.spinning_ring(), vary, until=1e-3, every=1e-3)
+    assert swept.attrs["status"] == "failed"
+    assert swept.attrs["complete"] == 0
+    assert swept.attrs["failure"] == "1 of 2 variants failed"
