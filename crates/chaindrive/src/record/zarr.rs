@@ -222,12 +222,13 @@ impl ZarrWriter {
 
     /// Takes in what is said about the error of the run; it is stored with the next commit.
     ///
-    /// Where waveforms cease to mean anything within the run, every channel gets the attribute
-    /// `waveform_horizon` \[s\]: samples behind it are for statistics.
+    /// Channels whose waveforms cease to mean anything within the run get the attribute `waveform_horizon` \[s\]:
+    /// samples behind it are for statistics; and `waveform_horizon_of`, the channel on whose errors it was found.
     pub fn judge(&mut self, judgement: &Judgement) {
-        if let Some(horizon) = judgement.waveform_horizon() {
-            for (_, track) in &mut self.tracks {
-                track.tell("waveform_horizon", horizon.into());
+        for (channel, track) in &mut self.tracks {
+            if let Some(horizon) = judgement.horizon_of(*channel) {
+                track.tell("waveform_horizon", horizon.at.into());
+                track.tell("waveform_horizon_of", horizon.found_on.name().into());
             }
         }
         self.judgement = Some(judgement.clone());
