@@ -21,6 +21,7 @@ from chaindrive.drive import Drive, load, schema
 from chaindrive.errors import (
     AssemblyError,
     ChaindriveError,
+    DistrustedResultWarning,
     IntegrationError,
     ParameterError,
     ResultWarning,
@@ -39,6 +40,7 @@ from chaindrive.sweeping import sweep
 __all__ = [
     "AssemblyError",
     "ChaindriveError",
+    "DistrustedResultWarning",
     "Drive",
     "Friction",
     "IntegrationError",

@@ -1,4 +1,4 @@
-"""What can go wrong, as exceptions under `ChaindriveError`.
+"""What can go wrong, as exceptions under `ChaindriveError`, and a warning.
 
 Every exception carries `path`, the place it speaks of, and `hint`, what to try, where they are
 known; otherwise they are None.
@@ -12,6 +12,7 @@ from typing import NamedTuple
 __all__ = [
     "AssemblyError",
     "ChaindriveError",
+    "DistrustedResultWarning",
     "IntegrationError",
     "ParameterError",
     "Problem",
@@ -111,3 +112,10 @@ class WriteError(ChaindriveError, OSError):
 
 class ResultWarning(UserWarning):
     """A result is less than it was meant to be."""
+
+
+class DistrustedResultWarning(UserWarning):
+    """A result contradicts itself: its attribute ``verdict`` is ``"distrusted"``.
+
+    ``warnings.simplefilter("error", chaindrive.DistrustedResultWarning)`` makes an exception of it.
+    """

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 import time
+import warnings
 from collections.abc import Callable, Iterable
 from contextlib import nullcontext
 from os import PathLike, fspath
@@ -16,6 +17,7 @@ import xarray as xr
 from chaindrive import _core
 from chaindrive.channels import channels
 from chaindrive.drive import Drive, _needed
+from chaindrive.errors import DistrustedResultWarning
 from chaindrive.signals import heard
 
 __all__ = ["simulate"]
@@ -84,7 +86,7 @@ def simulate(
         Whether an earlier result at `output` may be replaced; one that is being written may not.
     error
         Whether the run ends with an estimate of its own numerical error. It takes the time of some
-        24 000 steps of the default length, whatever the length of the run.
+        32 000 steps of the default length, whatever the length of the run.
     progress
         True for a line on stderr, or a function called with the share done, 0 to 1.
 
@@ -106,17 +108,25 @@ def simulate(
         ``accuracy_error`` what error was found [–], and ``accuracy_kept`` whether ``accuracy`` is
         ``"kept"`` or ``"not reached"``.
 
+        ``verdict`` says how far the result can be trusted: ``"trusted"``, ``"caution"`` or
+        ``"distrusted"``; ``reasons`` names what speaks against it, with blanks between the names,
+        and ``verdict_note`` says it in words.
+
         The numerical error is estimated from the beginning of the run, ``error_window`` [s] long,
-        by the difference from a run with half the step: ``error_span_tension`` and
-        ``error_tight_span_tension`` of the waveform, root mean square over the mean tension [–],
-        ``error_span_tension_mean``, ``error_span_tension_rms``, ``error_contact_force_p50``,
-        ``_p90`` and ``_p99`` of the statistics [–]; ``error_contact_force`` is the largest of the
-        last three. ``spread_…`` is the difference of the same statistics between two equal runs
-        that start 1e-12 m apart: an error that is not larger is chance. Such runs differ by 1 % at
-        ``chaos_horizon`` [s], of which ``chaos_note`` says whether it was measured or extrapolated;
-        none found, no attribute. This run differs from the exact one by 1 % at
-        ``waveform_horizon`` [s]. If that is before its end, every variable over time has it as
-        attribute ``waveform_horizon`` too: samples behind it are for statistics only.
+        by the differences from runs with half and with a quarter of the step:
+        ``error_span_tension`` and ``error_tight_span_tension`` of the waveform, root mean square
+        over the mean tension [–]; ``error_span_tension_mean``, ``error_span_tension_rms``,
+        ``error_contact_force_p50``, ``_p90`` and ``_p99`` of the statistics [–];
+        ``error_contact_force`` is the largest of the last three. Where no roller holds a span for
+        some time, its tension is NaN, and link tensions are compared instead:
+        ``error_link_tension`` and so on, and ``error_gap`` says why. ``spread_…`` is the difference
+        of the same statistics between two equal runs that start 1e-12 m apart: an error that is not
+        larger is chance. Such runs differ by 1 % at ``chaos_horizon`` [s]; none found, no
+        attribute, and ``chaos_note`` says it in words. The span tensions of this run differ from
+        the exact ones by 1 % at ``waveform_horizon`` [s], those of the links at
+        ``waveform_horizon_link_tension`` [s]. Where that is before the end of the run, variables
+        over time have an attribute ``waveform_horizon`` too, samples behind it are for statistics
+        only, and ``waveform_horizon_of`` names the variable on whose errors it was found.
 
     Raises
     ------
@@ -133,6 +143,11 @@ def simulate(
     KeyboardInterrupt
         Ctrl-C. If the run had begun, its attribute `result` is the dataset as it would have been
         returned, with the samples so far and ``status`` ``"interrupted"``.
+
+    Warns
+    -----
+    DistrustedResultWarning
+        The result contradicts itself: its attribute ``verdict`` is ``"distrusted"``.
 
     Examples
     --------
@@ -182,6 +197,8 @@ def simulate(
         stop.add_note(f"{reached}: `except KeyboardInterrupt as stop` finds it in `stop.result`")
     if stop is not None:
         raise stop
+    if result["warning"] is not None:
+        warnings.warn(result["warning"], DistrustedResultWarning, stacklevel=2)
     return dataset
 
 
@@ -193,8 +210,9 @@ def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:
             "units": result["units"][name],
             "long_name": known[name].description,
         }
-        if result["waveform_horizon"] is not None:
-            about["waveform_horizon"] = result["waveform_horizon"]
+        if name in result["waveform_horizons"]:
+            at, found_on = result["waveform_horizons"][name]
+            about |= {"waveform_horizon": at, "waveform_horizon_of": found_on}
         variables[name] = (known[name].dims, values, about)
     for name, values, unit, text in result.get("events", []):
         about = {"long_name": text} if unit is None else {"units": unit, "long_name": text}

@@ -138,7 +138,7 @@ def judge(case, settings, drive=None):
     share /= max(moved, 1e-9)
     tension = float(statistics(case, first)[0].max())
     verdict = Verdict("bounded", residual=share, tension=tension, steps=first.attrs["steps"])
-    warned = "do not trust this run" in first.attrs["summary"]
+    warned = first.attrs["verdict"] == "distrusted"
     if not is_finite(first):
         verdict.outcome, verdict.detail = "WRONG", "not finite"
         return verdict

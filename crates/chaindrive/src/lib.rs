@@ -27,6 +27,7 @@ mod run;
 pub mod scene;
 mod simulate;
 pub mod sweep;
+pub mod verdict;
 
 pub use catalogue::CatalogueChain;
 pub use chaindrive_integrate::{Method, Statistics};
@@ -44,3 +45,4 @@ pub use run::{
 };
 pub use scene::Scene;
 pub use simulate::{Control, Simulation, Snapshot};
+pub use verdict::{Reason, Trust, Verdict};

@@ -3,9 +3,8 @@
 //! | question | answer |
 //! |---|---|
 //! | how long can waveforms of two correct runs agree? | [`Horizon`], by a twin that starts 1e-12 m apart |
-//! | how far is a run from the exact solution of its model? | [`estimate`], by a shadow run with half the step |
+//! | how far is a run from the exact solution of its model? | [`estimate`], by shadow runs with half and a quarter of the step |
 //! | which method and step keep an error? | [`choose`], by trying them from the cheapest on |
-//!
 //! | what do methods and steps cost, and how exact are they? | [`work_precision`], against a reference that is checked |
 //!
 //! All of it looks at the beginning of a run, a [`Window`] of a few teeth, so that its cost does not grow
@@ -16,25 +15,29 @@ mod attribute;
 mod candidates;
 mod choice;
 mod compare;
+mod convergence;
 mod errors;
 mod estimate;
 mod growth;
 mod horizon;
 mod judgement;
+mod report;
 mod table;
 mod trace;
 mod variant;
 mod window;
+pub(crate) mod wording;
 mod work;
 
 pub use attribute::Attribute;
 pub use choice::{ACCURACY, Choice, Promise, Trial, choose};
-pub use compare::Compared;
+pub use compare::Comparison;
 pub use errors::Errors;
-pub use estimate::{Estimate, estimate};
-pub use horizon::{Horizon, Reach, horizon};
+pub use estimate::{ChannelHorizon, Estimate, estimate};
+pub use horizon::{Divergence, Horizon, horizon};
 pub use judgement::Judgement;
 pub use table::Number;
+pub use trace::{Gap, Strands};
 pub use variant::Variant;
 pub use window::Window;
 pub use work::{Row, Study, Table, work_precision};

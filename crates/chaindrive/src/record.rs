@@ -12,14 +12,14 @@ mod zarr;
 
 use chaindrive_mechanics::{Energy, Flow, Observation, Store, System};
 
-pub use attributes::{Ending, Provenance, account, attributes};
+pub use attributes::{Ending, Provenance, attributes, figures};
 pub use channel::{Axis, Channel};
 pub use claim::{Claim, is_being_written};
 pub use error::WriteError;
 pub use event::{EventColumn, EventTable};
 pub use in_store::InStore;
 pub use memory::Memory;
-pub use summary::{ContactStatistics, ForceStatistics, SpanStatistics, Summary};
+pub use summary::{ContactStatistics, ForceStatistics, Ledger, SpanStatistics, Summary};
 pub use zarr::{Existing, SweepWriter, ZarrWriter};
 
 /// One channel of a recording.

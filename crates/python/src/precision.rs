@@ -77,11 +77,14 @@ fn attributes<'py>(py: Python<'py>, table: &Table) -> PyResult<Bound<'py, PyDict
     answer.set_item("reference", table.reference.describe())?;
     answer.set_item("check", table.check.describe())?;
     answer.set_item("mean_tension", table.mean_tension)?;
+    if let Some(gap) = &table.gap {
+        answer.set_item("gap", gap.to_string())?;
+    }
     answer.set_item("repeats", table.repeats)?;
     answer.set_item("replicates", table.replicates)?;
     let horizon = &table.horizon;
-    answer.set_item("chaos_note", horizon.all.to_string())?;
-    answer.set_item("chaos_note_tight_span", horizon.tight.to_string())?;
+    answer.set_item("chaos_note", horizon.sentence())?;
+    answer.set_item("chaos_note_tight_span", horizon.tight_sentence())?;
     for (name, reach) in [("", horizon.all), ("_tight_span", horizon.tight)] {
         if let Some(at) = reach.time() {
             answer.set_item(format!("chaos_horizon{name}"), at)?;

@@ -102,15 +102,21 @@ fn told<'py>(
     answer.set_item("labels", labels(py, &recorded, &report.simulation)?)?;
     let attributes = serde_json::Value::Object(report.attributes.clone());
     answer.set_item("attributes", attributes.to_string())?;
-    let judgement = report.judgement.as_ref();
-    let horizon = judgement.and_then(|judgement| judgement.waveform_horizon());
-    answer.set_item("waveform_horizon", horizon)?;
     let units = PyDict::new(py);
     for &channel in &recorded {
         let unit = channel.unit_in(report.simulation.system());
         units.set_item(channel.name(), unit)?;
     }
     answer.set_item("units", units)?;
+    let horizons = PyDict::new(py);
+    for &channel in &recorded {
+        let judgement = report.judgement.as_ref();
+        if let Some(horizon) = judgement.and_then(|judgement| judgement.horizon_of(channel)) {
+            horizons.set_item(channel.name(), (horizon.at, horizon.found_on.name()))?;
+        }
+    }
+    answer.set_item("waveform_horizons", horizons)?;
+    answer.set_item("warning", report.verdict.warning())?;
     let samples = recording.len();
     answer.set_item("time", PyArray1::from_vec(py, recording.time))?;
     let columns = PyDict::new(py);

@@ -1,4 +1,4 @@
-//! What findings become in the attributes of a result.
+//! Values in the attributes of a result.
 
 /// A value in the attributes of a result.
 #[derive(Clone, Debug, PartialEq)]

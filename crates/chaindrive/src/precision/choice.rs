@@ -8,10 +8,11 @@ use super::Watch;
 use super::attribute::Attribute;
 use super::candidates::{Candidate, Entry, entries, work};
 use super::compare::{Account, distances, rms};
-use super::estimate::{percent, pinned};
-use super::horizon::{APART, Horizon, Reach};
-use super::trace::Trace;
+use super::estimate::pinned;
+use super::horizon::{APART, Divergence, Horizon};
+use super::trace::{Gap, Strands, Trace};
 use super::window::Window;
+use super::wording::{duration, percent};
 use crate::{Run, SimulationError, Stepping};
 
 /// Accuracy that a run has unless told otherwise \[–\].
@@ -20,9 +21,10 @@ pub const ACCURACY: f64 = 0.01;
 /// What is kept within the accuracy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Promise {
-    /// The tension of the tight span at every moment of the window, root mean square.
+    /// The tension of the tight span, or of the tightest link where [`Choice::gap`] leaves a span without a
+    /// tension, at every moment of the window, root mean square.
     Waveform,
-    /// Mean and root mean square of the tension of every span, or no more than chance makes of them: the
+    /// Mean and root mean square of the tension of every span or link, or no more than chance makes of them: the
     /// chaos horizon lies within the window.
     Statistics,
     /// Nothing: the chain carries no tension that could be compared.
@@ -55,10 +57,12 @@ pub struct Choice {
     pub error: f64,
     /// Whether it keeps the accuracy; if not, it is the best of the list.
     pub kept: bool,
-    /// What of.
+    /// The quantity whose accuracy is promised.
     pub promise: Promise,
     /// Time over which candidates were compared \[s\].
     pub window: f64,
+    /// Why links were compared and not spans, if a span had no tension for some time.
+    pub gap: Option<Gap>,
     /// All that were tried, in that order.
     pub trials: Vec<Trial>,
 }
@@ -111,7 +115,7 @@ impl Trials<'_> {
             return Ok((Promise::Waveform, 0.0));
         };
         // A tension of nothing has no relative error.
-        if base.mean_tension() <= 0.0 {
+        if base.tensions(Strands::of([base])).mean() <= 0.0 {
             return Ok((Promise::Nothing, 0.0));
         }
         let twin = Trace::take(
@@ -120,8 +124,9 @@ impl Trials<'_> {
             &self.window,
             self.watch,
         )?;
-        let promise = match Horizon::of(base, &twin).tight {
-            Reach::Measured { .. } => Promise::Statistics,
+        let strands = Strands::of([base, &twin]);
+        let promise = match Horizon::of(base, &twin, strands).tight {
+            Divergence::Measured { .. } => Promise::Statistics,
             _ => Promise::Waveform,
         };
         Ok((promise, statistics(&twin, base)))
@@ -178,6 +183,7 @@ pub fn choose(
         kept: false,
         promise,
         window: window.until,
+        gap: None,
         trials: Vec::new(),
     };
     if promise == Promise::Nothing {
@@ -185,13 +191,17 @@ pub fn choose(
     }
     for entry in &entries {
         let found = trials.pair(entry)?.map(|(candidate, judge)| {
-            let apart = match promise {
-                Promise::Statistics => (statistics(candidate, judge) - spread).max(0.0),
-                _ => rms(distances(candidate, judge).iter().map(|d| d.tight)),
+            let apart = if promise == Promise::Statistics {
+                beyond(statistics(candidate, judge), spread)
+            } else {
+                let strands = Strands::of([candidate, judge]);
+                let distances = distances(candidate, judge, strands);
+                rms(distances.iter().map(|distance| distance.tight))
             };
-            (apart * entry.caution(), work(candidate))
+            let gap = candidate.gap.as_ref().or(judge.gap.as_ref());
+            (apart * entry.caution(), work(candidate), gap.cloned())
         });
-        let (error, work) = found.unwrap_or((f64::INFINITY, f64::NAN));
+        let (error, work, gap) = found.unwrap_or((f64::INFINITY, f64::NAN, None));
         let candidate = entry.candidate;
         choice.trials.push(Trial {
             stepping: candidate.stepping,
@@ -204,6 +214,7 @@ pub fn choose(
         if error < choice.error {
             choice.error = error;
             choice.run = candidate.run(run);
+            choice.gap = gap;
         }
         if error <= accuracy {
             choice.kept = true;
@@ -213,9 +224,20 @@ pub fn choose(
     Ok(choice)
 }
 
+/// What a difference exceeds the spread of equal runs by; a spread without bound excuses nothing.
+fn beyond(difference: f64, spread: f64) -> f64 {
+    if difference.is_finite() {
+        (difference - spread).max(0.0)
+    } else {
+        f64::INFINITY
+    }
+}
+
 /// Largest relative difference of means and root mean squares of the tensions.
 fn statistics(of: &Trace, from: &Trace) -> f64 {
-    let (of, from) = (Account::of(of, usize::MAX), Account::of(from, usize::MAX));
+    let strands = Strands::of([of, from]);
+    let account = |trace: &Trace| Account::of(trace, usize::MAX, strands);
+    let (of, from) = (account(of), account(from));
     of.mean_apart(&from).max(of.rms_apart(&from))
 }
 
@@ -241,11 +263,19 @@ impl Choice {
 
     /// What was chosen and why, in a sentence.
     pub fn reason(&self) -> String {
-        let (asked, window) = (percent(self.accuracy), self.window);
-        let what = match self.promise {
-            Promise::Waveform => "the waveform of the tight span",
-            Promise::Statistics => "mean and rms of the tension (the motion is chaotic)",
-            Promise::Nothing => {
+        let (asked, window) = (percent(self.accuracy), duration(self.window));
+        let what = match (self.promise, &self.gap) {
+            (Promise::Waveform, None) => "the waveform of the tight span".to_owned(),
+            (Promise::Waveform, Some(gap)) => {
+                format!("the waveform of the tightest link ({gap})")
+            }
+            (Promise::Statistics, None) => {
+                "mean and rms of the tension (the motion is chaotic)".to_owned()
+            }
+            (Promise::Statistics, Some(gap)) => {
+                format!("mean and rms of the link tensions (the motion is chaotic, {gap})")
+            }
+            (Promise::Nothing, _) => {
                 return "the method's own step, because the chain carries no tension to compare"
                     .to_owned();
             }
@@ -264,12 +294,12 @@ impl Choice {
         let error = percent(self.error);
         if self.kept {
             format!(
-                "{name}, step {step:.2e} s{depth}: the cheapest that keeps {what} within {asked} over {window:.1e} s; found {error}, {} tried",
+                "{name}, step {step:.2e} s{depth}: the cheapest that keeps {what} within {asked} over {window}; found {error}, {} tried",
                 self.trials.len()
             )
         } else {
             format!(
-                "{name}, step {step:.2e} s{depth}: the best of {} tried; {what} errs by {error} over {window:.1e} s, {asked} is not reached",
+                "{name}, step {step:.2e} s{depth}: the best of {} tried; {what} errs by {error} over {window}, {asked} is not reached",
                 self.trials.len()
             )
         }

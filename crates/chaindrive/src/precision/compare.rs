@@ -1,17 +1,17 @@
 //! How far two traces of one drive are apart: sample by sample, and in their statistics.
 
-use super::trace::Trace;
+use super::trace::{Strands, Trace};
 
 /// A statistic of two runs, and of two runs that differ by nothing but chance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Compared {
+pub struct Comparison {
     /// Relative difference between the run and its shadow \[–\]; NaN where there is nothing to compare.
     pub difference: f64,
     /// Relative difference between the run and its twin, which started 1e-12 m apart \[–\].
     pub spread: f64,
 }
 
-impl Compared {
+impl Comparison {
     /// Whether the difference is no larger than what chance makes of equal runs.
     pub fn within_spread(&self) -> bool {
         self.difference <= self.spread
@@ -21,40 +21,53 @@ impl Compared {
 /// Distance of two traces at one sample, over the mean tension.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Distance {
-    /// Root mean square over the strands \[–\].
+    /// Root mean square over the strands \[–\]; infinite where a tension is not a number.
     pub(super) all: f64,
     /// Of the tight strand alone \[–\].
     pub(super) tight: f64,
 }
 
 /// Distances at all samples that both traces have.
-pub(super) fn distances(of: &Trace, from: &Trace) -> Vec<Distance> {
+///
+/// ```text
+/// d = √(Σ (Tₖ − T′ₖ)² / n) / T̄′
+/// ```
+///
+/// A tension that is not a number agrees with nothing, not even with another one: compare traces by [`Strands`]
+/// that all of them have.
+pub(super) fn distances(of: &Trace, from: &Trace, strands: Strands) -> Vec<Distance> {
+    let samples = of.len().min(from.len());
+    let (of, from) = (of.tensions(strands), from.tensions(strands));
     let (n, tight) = (from.strands, from.tight());
-    let scale = from.mean_tension();
-    (0..of.len().min(from.len()))
+    let scale = from.mean();
+    (0..samples)
         .map(|sample| {
-            let (mut sum, mut count) = (0.0, 0.0);
-            for k in sample * n..(sample + 1) * n {
-                let apart = of.tension[k] - from.tension[k];
+            let apart = |strand: usize| {
+                let place = sample * n + strand;
+                let apart = (of.values[place] - from.values[place]).abs();
                 if apart.is_finite() {
-                    sum += apart * apart;
-                    count += 1.0;
-                }
-            }
-            let apart = of.tension[sample * n + tight] - from.tension[sample * n + tight];
-            Distance {
-                all: f64::sqrt(sum / f64::max(count, 1.0)) / scale,
-                tight: if apart.is_finite() {
-                    apart.abs() / scale
+                    apart
                 } else {
-                    0.0
-                },
+                    f64::INFINITY
+                }
+            };
+            Distance {
+                all: rms((0..n).map(apart)) / scale,
+                tight: if n > 0 { apart(tight) / scale } else { 0.0 },
             }
         })
         .collect()
 }
 
-/// Root mean square of distances \[–\].
+/// Root mean square difference of the tensions of two traces over their first samples \[N\].
+pub(super) fn difference(of: &Trace, from: &Trace, strands: Strands, samples: usize) -> f64 {
+    let (of, from) = (of.tensions(strands), from.tensions(strands));
+    let count = samples * from.strands;
+    let pairs = of.values.iter().zip(&from.values).take(count);
+    rms(pairs.map(|(a, b)| a - b))
+}
+
+/// Root mean square of values.
 pub(super) fn rms(values: impl Iterator<Item = f64>) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for value in values {
@@ -80,21 +93,15 @@ pub(super) const PERCENTILES: [f64; 3] = [0.5, 0.9, 0.99];
 
 impl Account {
     /// Of the first samples of a trace.
-    pub(super) fn of(trace: &Trace, samples: usize) -> Self {
-        let n = trace.strands;
+    pub(super) fn of(trace: &Trace, samples: usize, strands: Strands) -> Self {
         let samples = samples.min(trace.len());
+        let tensions = trace.tensions(strands);
         let moment = |power: i32| -> Vec<f64> {
             let of = |strand: usize| {
-                let values = (0..samples).map(|i| trace.tension[i * n + strand]);
-                let values = values.filter(|value| value.is_finite());
-                let (mut sum, mut count) = (0.0, 0.0);
-                for value in values {
-                    sum += value.powi(power);
-                    count += 1.0;
-                }
-                sum / f64::max(count, 1.0)
+                let values = tensions.of(strand).take(samples);
+                values.map(|value| value.powi(power)).sum::<f64>() / samples.max(1) as f64
             };
-            (0..n).map(of).collect()
+            (0..tensions.strands).map(of).collect()
         };
         let rollers = trace.force.len() / trace.len().max(1);
         let mut forces: Vec<f64> = trace.force[..samples * rollers]
@@ -128,12 +135,12 @@ impl Account {
 
 fn apart(of: &[f64], from: &[f64]) -> f64 {
     let scale = from.iter().map(|value| value.abs()).sum::<f64>() / from.len() as f64;
-    let largest = of
-        .iter()
-        .zip(from)
-        .map(|(a, b)| (a - b).abs())
-        .fold(0.0, f64::max);
-    largest / scale
+    let apart = || of.iter().zip(from).map(|(a, b)| (a - b).abs());
+    // `f64::max` forgets what is not a number.
+    if apart().any(f64::is_nan) {
+        return f64::INFINITY;
+    }
+    apart().fold(0.0, f64::max) / scale
 }
 
 /// The value below which a share of sorted values lies; NaN of none.
@@ -151,6 +158,29 @@ pub(super) fn percentile(sorted: &[f64], share: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Defect A3: a span that no roller holds agreed with everything.
+    #[test]
+    fn what_is_not_a_number_agrees_with_nothing() {
+        let trace = |values: [f64; 4]| {
+            let mut trace = Trace {
+                time: vec![0.0, 1.0],
+                ..Trace::default()
+            };
+            trace.spans.values = values.into();
+            trace.spans.strands = 2;
+            trace
+        };
+        let whole = trace([1.0, 2.0, 1.0, 2.0]);
+        let torn = trace([1.0, 2.0, f64::NAN, 2.0]);
+        for (of, from) in [(&whole, &torn), (&torn, &whole), (&torn, &torn)] {
+            let found = distances(of, from, Strands::Spans);
+            assert!(found[0].all < 1e-12 && found[1].all.is_infinite());
+            let account = |trace: &Trace| Account::of(trace, usize::MAX, Strands::Spans);
+            assert!(account(of).mean_apart(&account(from)) > 1e12);
+            assert!(account(of).rms_apart(&account(from)) > 1e12);
+        }
+    }
 
     #[test]
     fn percentiles_of_a_hundred_numbers() {

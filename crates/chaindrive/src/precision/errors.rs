@@ -1,7 +1,7 @@
 //! Errors of a trace against a reference: at every moment up to the horizon, and in the statistics.
 
 use super::compare::{Account, distances, rms};
-use super::trace::Trace;
+use super::trace::{Strands, Trace};
 
 /// Relative errors of a run \[–\]; NaN where there is nothing to compare.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,17 +25,26 @@ pub struct Errors {
 }
 
 impl Errors {
-    /// Of a trace against another, pointwise up to `horizon` \[s\]; `period`: time in which a tooth passes \[s\].
-    pub(super) fn of(trace: &Trace, from: &Trace, horizon: f64, period: Option<f64>) -> Self {
+    /// Of a trace against another, by some strands, pointwise up to `horizon` \[s\]; `period`: time in which a tooth
+    /// passes \[s\].
+    pub(super) fn of(
+        trace: &Trace,
+        from: &Trace,
+        strands: Strands,
+        horizon: f64,
+        period: Option<f64>,
+    ) -> Self {
         let samples = from.time.iter().take_while(|t| **t <= horizon).count();
-        let distances = distances(trace, from);
+        let distances = distances(trace, from, strands);
         let inside = &distances[..samples.min(distances.len())];
         let (own, exact) = (
-            Account::of(trace, usize::MAX),
-            Account::of(from, usize::MAX),
+            Account::of(trace, usize::MAX, strands),
+            Account::of(from, usize::MAX, strands),
         );
-        let amplitude =
-            |of: &Trace| period.map_or(f64::NAN, |period| mesh(of, from.tight(), period));
+        let tight = from.spans.tight();
+        // Without the tension of a span there is no amplitude of it.
+        let period = period.filter(|_| strands == Strands::Spans);
+        let amplitude = |of: &Trace| period.map_or(f64::NAN, |period| mesh(of, tight, period));
         let exact_mesh = amplitude(from);
         Self {
             tension: rms(inside.iter().map(|d| d.all)),
@@ -126,11 +135,8 @@ fn mesh(trace: &Trace, strand: usize, period: f64) -> f64 {
     }
     // Half a sample later, so that both ends of a period do not count twice.
     let begin = end - whole * period + 0.5 * end / trace.len() as f64;
-    let values: Vec<(f64, f64)> = (0..trace.len())
-        .filter(|i| trace.time[*i] >= begin)
-        .map(|i| (trace.time[i], trace.tension[i * trace.strands + strand]))
-        .filter(|(_, tension)| tension.is_finite())
-        .collect();
+    let tensions = trace.time.iter().copied().zip(trace.spans.of(strand));
+    let values: Vec<(f64, f64)> = tensions.filter(|(time, _)| *time >= begin).collect();
     let n = values.len() as f64;
     let mean = values.iter().map(|(_, tension)| tension).sum::<f64>() / n;
     let (mut re, mut im) = (0.0, 0.0);
@@ -150,12 +156,10 @@ mod tests {
     fn the_amplitude_of_a_wave_is_found() {
         let time: Vec<f64> = (0..=256).map(|i| f64::from(i) * 1e-3).collect();
         let wave = |t: &f64| 5.0 + 3.0 * (std::f64::consts::TAU * t / 0.064 + 0.3).sin();
-        let trace = Trace {
-            tension: time.iter().map(wave).collect(),
-            time,
-            strands: 1,
-            ..Trace::default()
-        };
+        let mut trace = Trace::default();
+        trace.spans.values = time.iter().map(wave).collect();
+        trace.spans.strands = 1;
+        trace.time = time;
         assert!((mesh(&trace, 0, 0.064) - 3.0).abs() < 1e-9);
         assert!(mesh(&trace, 0, 0.032) < 1e-9);
         assert!(mesh(&trace, 0, 1.0).is_nan());

@@ -6,7 +6,7 @@ use super::Watch;
 use super::compare::{Distance, distances};
 use super::estimate::pinned;
 use super::growth::{Growth, growth};
-use super::trace::Trace;
+use super::trace::{Strands, Trace};
 use super::window::Window;
 use crate::{Run, SimulationError};
 
@@ -18,17 +18,17 @@ pub(super) const LIMIT: f64 = 0.01;
 /// When the tensions of a run and of its twin differ by 1 % of the mean tension.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Horizon {
-    /// Of all spans, root mean square.
-    pub all: Reach,
-    /// Of the tightest span alone.
-    pub tight: Reach,
+    /// Of all spans, root mean square; of all links where [`Strands::Links`] are compared.
+    pub all: Divergence,
+    /// Of the tightest one alone.
+    pub tight: Divergence,
     /// Time over which the twins were followed \[s\].
     pub window: f64,
 }
 
 /// What became of a difference of 1e-12 m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Reach {
+pub enum Divergence {
     /// It became 1 %.
     Measured {
         /// When \[s\].
@@ -53,7 +53,7 @@ pub enum Reach {
     },
 }
 
-impl Reach {
+impl Divergence {
     /// When the difference reaches 1 % \[s\]; none if it does not.
     pub fn time(&self) -> Option<f64> {
         match *self {
@@ -95,20 +95,20 @@ pub fn horizon(
     let window = Window::of(start, &run).with_end(follow);
     let own = Trace::take(start, &run, &window, watch)?;
     let twin = Trace::take(&start.nudged(APART), &run, &window, watch)?;
-    Ok(Horizon::of(&own, &twin))
+    Ok(Horizon::of(&own, &twin, Strands::of([&own, &twin])))
 }
 
 impl Horizon {
-    /// The horizon of a run by its twin.
-    pub(super) fn of(run: &Trace, twin: &Trace) -> Self {
-        let distances = distances(twin, run);
-        let reach = |part: fn(&Distance) -> f64| {
+    /// The horizon of a run by its twin, found on some strands.
+    pub(super) fn of(run: &Trace, twin: &Trace, strands: Strands) -> Self {
+        let distances = distances(twin, run, strands);
+        let divergence = |part: fn(&Distance) -> f64| {
             let distance: Vec<f64> = distances.iter().map(part).collect();
-            Reach::of(&run.time[..distance.len()], &distance)
+            Divergence::of(&run.time[..distance.len()], &distance)
         };
         Self {
-            all: reach(|distance| distance.all),
-            tight: reach(|distance| distance.tight),
+            all: divergence(|distance| distance.all),
+            tight: divergence(|distance| distance.tight),
             window: run.time.last().copied().unwrap_or(0.0),
         }
     }

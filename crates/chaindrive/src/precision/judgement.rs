@@ -4,8 +4,8 @@ use std::fmt;
 
 use super::Watch;
 use super::attribute::Attribute;
-use super::estimate::{Estimate, estimate};
-use crate::{Run, Simulation, SimulationError};
+use super::estimate::{ChannelHorizon, Estimate, estimate};
+use crate::{Channel, Run, Simulation, SimulationError};
 
 /// What is said about the error of a run at its end.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,9 +38,10 @@ impl Judgement {
         }
     }
 
-    /// When the waveforms of the run cease to mean anything \[s\], if that is within the run.
-    pub fn waveform_horizon(&self) -> Option<f64> {
-        self.estimate().and_then(Estimate::waveform_ends_within)
+    /// When the waveform of a channel ceases to mean anything, if that is within the run.
+    pub fn horizon_of(&self, channel: Channel) -> Option<ChannelHorizon> {
+        self.estimate()
+            .and_then(|estimate| estimate.horizon_of(channel))
     }
 
     /// What a result says about itself: `error_estimate`, and what was found.

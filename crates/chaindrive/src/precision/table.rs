@@ -4,7 +4,7 @@ use std::fmt;
 use std::io::Write;
 
 use super::Errors;
-use super::estimate::percent;
+use super::wording::percent;
 use super::work::{Row, Table};
 
 /// A column of the table.
@@ -225,8 +225,15 @@ impl fmt::Display for Table {
             percent(self.agreement.tension),
             percent(self.agreement.tight_tension)
         )?;
-        writeln!(f, "chaos                    {}", self.horizon.all)?;
-        writeln!(f, "  tight span             {}", self.horizon.tight)?;
+        if let Some(gap) = &self.gap {
+            writeln!(f, "tension                  of the links: {gap}")?;
+        }
+        writeln!(f, "chaos                    {}", self.horizon.sentence())?;
+        writeln!(
+            f,
+            "  tight span             {}",
+            self.horizon.tight_sentence()
+        )?;
         writeln!(
             f,
             "times are medians of {}; spread is that of {} replicates; errors are relative; wave: up to the horizon, statistics: over the window",

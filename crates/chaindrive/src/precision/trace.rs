@@ -1,10 +1,13 @@
 //! A short run, kept as what is compared: tensions, contact forces, angles.
 
+use std::fmt;
+
 use chaindrive_integrate::Statistics;
 use chaindrive_mechanics::Assembled;
 
 use super::Watch;
 use super::window::Window;
+use super::wording::duration;
 use crate::{Run, Simulation, SimulationError};
 
 /// The samples of a short run.
@@ -12,10 +15,12 @@ use crate::{Run, Simulation, SimulationError};
 pub(super) struct Trace {
     /// Sample times \[s\], (samples,).
     pub(super) time: Vec<f64>,
-    /// Tension of the spans, or of the links of a chain without spans \[N\], (samples, strands).
-    pub(super) tension: Vec<f64>,
-    /// Entries of `tension` a sample.
-    pub(super) strands: usize,
+    /// Tension of the spans \[N\]; empty for a chain without spans, NaN where no roller holds a span.
+    pub(super) spans: Tensions,
+    /// Tension of the links \[N\].
+    pub(super) links: Tensions,
+    /// The first span that no roller held for some time.
+    pub(super) gap: Option<Gap>,
     /// Force between rollers and teeth \[N\], (samples, rollers).
     pub(super) force: Vec<f64>,
     /// Rotation of the sprockets since the start \[rad\], (samples, sprockets).
@@ -24,6 +29,44 @@ pub(super) struct Trace {
     pub(super) speed: Vec<f64>,
     /// Counts of the time stepping.
     pub(super) statistics: Statistics,
+}
+
+/// Tensions of parallel strands, sample by sample.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Tensions {
+    /// Values \[N\], (samples, strands).
+    pub(super) values: Vec<f64>,
+    /// Entries a sample.
+    pub(super) strands: usize,
+}
+
+/// The tensions that two runs are compared by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Strands {
+    /// Of the spans.
+    Spans,
+    /// Of the links: the chain has no spans, or no roller holds one of them for some time, and then its tension
+    /// is not defined.
+    Links,
+}
+
+/// A span whose tension is not defined for some time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gap {
+    /// Name of the span.
+    pub span: String,
+    /// First and last sample without a tension \[s\].
+    pub from: f64,
+    /// See `from`.
+    pub until: f64,
+}
+
+impl fmt::Display for Gap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (span, from) = (&self.span, duration(self.from));
+        let until = duration(self.until);
+        write!(f, "no roller holds span {span} from {from} to {until}")
+    }
 }
 
 impl Trace {
@@ -44,13 +87,8 @@ impl Trace {
         let mut trace = Self::default();
         while let Some(sample) = simulation.next_sample()? {
             trace.time.push(sample.time);
-            let tension = if sample.span_tension.is_empty() {
-                &sample.link_tension
-            } else {
-                &sample.span_tension
-            };
-            trace.strands = tension.len();
-            trace.tension.extend_from_slice(tension);
+            trace.spans.push(&sample.span_tension);
+            trace.links.push(&sample.link_tension);
             trace.force.extend_from_slice(&sample.contact_force);
             trace.angle.extend_from_slice(&sample.sprocket_angle);
             trace.speed.extend_from_slice(&sample.sprocket_speed);
@@ -59,6 +97,7 @@ impl Trace {
             }
         }
         trace.statistics = *simulation.statistics();
+        trace.gap = trace.first_gap(&simulation.system().span_names());
         Ok(trace)
     }
 
@@ -67,10 +106,58 @@ impl Trace {
         self.time.len()
     }
 
-    /// Mean magnitude of the tension over samples and strands \[N\]; what relative errors are relative to.
-    pub(super) fn mean_tension(&self) -> f64 {
+    /// The tensions of some strands.
+    pub(super) fn tensions(&self, strands: Strands) -> &Tensions {
+        match strands {
+            Strands::Spans => &self.spans,
+            Strands::Links => &self.links,
+        }
+    }
+
+    /// The first span, in the order of the route, that lacks a tension.
+    fn first_gap(&self, names: &[String]) -> Option<Gap> {
+        names.iter().enumerate().find_map(|(span, name)| {
+            let values = self.spans.of(span).zip(&self.time);
+            let mut missing = values.filter(|(value, _)| !value.is_finite());
+            let (_, from) = missing.next()?;
+            let until = missing.last().map_or(*from, |(_, time)| *time);
+            Some(Gap {
+                span: name.clone(),
+                from: *from,
+                until,
+            })
+        })
+    }
+}
+
+impl Strands {
+    /// What all of some traces can be compared by: the spans if every trace has all their tensions.
+    pub(super) fn of<'a>(traces: impl IntoIterator<Item = &'a Trace>) -> Self {
+        let has_spans = |trace: &Trace| trace.gap.is_none() && trace.spans.strands > 0;
+        if traces.into_iter().all(has_spans) {
+            Self::Spans
+        } else {
+            Self::Links
+        }
+    }
+}
+
+impl Tensions {
+    fn push(&mut self, sample: &[f64]) {
+        self.strands = sample.len();
+        self.values.extend_from_slice(sample);
+    }
+
+    /// Tensions of one strand \[N\].
+    pub(super) fn of(&self, strand: usize) -> impl Iterator<Item = f64> {
+        let values = self.values.iter().skip(strand);
+        values.step_by(self.strands.max(1)).copied()
+    }
+
+    /// Mean magnitude over samples and strands \[N\]; what relative errors are relative to.
+    pub(super) fn mean(&self) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
-        for tension in self.tension.iter().filter(|tension| tension.is_finite()) {
+        for tension in self.values.iter().filter(|tension| tension.is_finite()) {
             sum += tension.abs();
             count += 1.0;
         }
@@ -79,12 +166,34 @@ impl Trace {
 
     /// The strand with the largest mean tension.
     pub(super) fn tight(&self) -> usize {
-        let mean = |strand: usize| -> f64 {
-            let values = self.tension.iter().skip(strand).step_by(self.strands);
-            values.filter(|value| value.is_finite()).sum()
-        };
+        let mean =
+            |strand: usize| -> f64 { self.of(strand).filter(|value| value.is_finite()).sum() };
         (0..self.strands)
             .max_by(|a, b| mean(*a).total_cmp(&mean(*b)))
             .unwrap_or(0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_span_without_a_tension_is_named_with_its_times() {
+        let mut trace = Trace {
+            time: vec![0.0, 1e-3, 2e-3, 3e-3],
+            ..Trace::default()
+        };
+        for sample in [[1.0, 2.0], [1.0, f64::NAN], [1.0, 2.0], [1.0, f64::NAN]] {
+            trace.spans.push(&sample);
+        }
+        let names = ["a-b".to_owned(), "b-a".to_owned()];
+        trace.gap = trace.first_gap(&names);
+        let told = trace.gap.as_ref().map(Gap::to_string);
+        let told = told.as_deref();
+        assert_eq!(told, Some("no roller holds span b-a from 1 ms to 3 ms"));
+        assert_eq!(Strands::of([&trace]), Strands::Links);
+        trace.gap = None;
+        assert_eq!(Strands::of([&trace]), Strands::Spans);
     }
 }

@@ -24,6 +24,8 @@ pub struct Window {
     pub every: f64,
     /// Time in which a tooth passes \[s\]; none without a chain that runs over sprockets.
     pub period: Option<f64>,
+    /// End of the window of a run without an end \[s\].
+    longest: f64,
 }
 
 impl Window {
@@ -45,11 +47,13 @@ impl Window {
         let steps =
             (STEPS * typical_step(start, &default)).min(OWN_STEPS * typical_step(start, run));
         let teeth = period.map_or(f64::INFINITY, |period| TEETH * period);
-        let until = run.until.min(teeth).min(steps);
+        let longest = teeth.min(steps);
+        let until = run.until.min(longest);
         Self {
             until,
             every: until / SAMPLES,
             period,
+            longest,
         }
     }
 
@@ -58,6 +62,15 @@ impl Window {
         Self {
             until,
             every: until / (self.until / self.every).round(),
+            ..*self
+        }
+    }
+
+    /// As much of it as a share of the longest window, with the same samples: a run that is shorter than that is
+    /// looked at to its end.
+    pub(super) fn first(&self, share: f64) -> Self {
+        Self {
+            until: self.until.min(share * self.longest),
             ..*self
         }
     }

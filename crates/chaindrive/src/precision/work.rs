@@ -10,7 +10,7 @@ use super::Watch;
 use super::errors::Errors;
 use super::estimate::pinned;
 use super::horizon::{APART, Horizon};
-use super::trace::Trace;
+use super::trace::{Gap, Strands, Trace};
 use super::variant::{Variant, references, usual};
 use super::window::Window;
 use crate::{Run, SimulationError, Stepping};
@@ -60,7 +60,7 @@ pub struct Row {
     pub failure: Option<String>,
 }
 
-/// What a study finds.
+/// Findings of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     /// One row a variant, in the order of the study.
@@ -77,8 +77,10 @@ pub struct Table {
     pub agreement: Errors,
     /// How far replicates of the reference are apart.
     pub spread: Errors,
-    /// Mean tension of all spans \[N\].
+    /// Mean tension of all spans, or of all links where they are compared \[N\].
     pub mean_tension: f64,
+    /// Why links were compared and not spans, if a span of the reference had no tension for some time.
+    pub gap: Option<Gap>,
     /// Timed runs a row.
     pub repeats: usize,
     /// Replicates of the reference.
@@ -112,17 +114,15 @@ pub fn work_precision(
         |variant: &Variant, from: &Assembled| Trace::take(from, &variant.run(run), &window, watch);
     let [reference, check] = references(start);
     let exact = taken(&reference, start)?;
-    let mut horizon = None;
     let mut twins = Vec::new();
     for k in 1..=study.replicates {
         let from = start.nudged(APART * k as f64);
-        let twin = taken(&reference, &from)?;
-        horizon.get_or_insert_with(|| Horizon::of(&exact, &twin));
-        twins.push(twin);
+        twins.push(taken(&reference, &from)?);
     }
-    let horizon = horizon.unwrap_or_else(|| Horizon::of(&exact, &exact));
+    let strands = Strands::of(twins.iter().chain([&exact]));
+    let horizon = Horizon::of(&exact, twins.first().unwrap_or(&exact), strands);
     let until = horizon.all.time().unwrap_or(f64::INFINITY);
-    let errors = |trace: &Trace| Errors::of(trace, &exact, until, window.period);
+    let errors = |trace: &Trace| Errors::of(trace, &exact, strands, until, window.period);
     let spread = twins
         .iter()
         .map(errors)
@@ -169,7 +169,8 @@ pub fn work_precision(
         check,
         agreement,
         spread,
-        mean_tension: exact.mean_tension(),
+        mean_tension: exact.tensions(strands).mean(),
+        gap: twins.into_iter().chain([exact]).find_map(|trace| trace.gap),
         repeats: study.repeats,
         replicates: study.replicates,
     })

@@ -11,7 +11,7 @@ use serde_json::{Map, Value};
 use super::Summary;
 use crate::precision::{Attribute, Choice, Judgement};
 use crate::sweep::Outcome;
-use crate::{Run, Scene, Simulation, Stepping};
+use crate::{Run, Scene, Simulation, Stepping, Verdict};
 
 /// Tells a result of this program from any other group.
 pub(super) const FORMAT: &str = "chaindrive";
@@ -137,14 +137,16 @@ pub fn attributes(
     }
     assembly(&mut story, simulation);
     speed(&mut story, simulation, provenance.began);
-    if let Some(summary) = summary {
-        let choice = provenance.choice.as_ref();
-        let text = account(summary, simulation, choice, judgement);
-        story.text("summary", &text);
-    }
-    let choice = provenance.choice.as_ref().map(Choice::attributes);
+    let choice = provenance.choice.as_ref();
+    let verdict = summary.map(|summary| {
+        let verdict = Verdict::of(summary, simulation, choice, judgement);
+        let figures = figures(summary, simulation, choice, judgement);
+        story.text("summary", &format!("{verdict}\n{figures}"));
+        verdict.attributes()
+    });
+    let choice = choice.map(Choice::attributes);
     let judgement = judgement.map(Judgement::attributes);
-    for (name, value) in [choice, judgement].into_iter().flatten().flatten() {
+    for (name, value) in [verdict, choice, judgement].into_iter().flatten().flatten() {
         match value {
             Attribute::Text(text) => story.text(&name, &text),
             Attribute::Number(number) => story.number(&name, number),
@@ -153,8 +155,8 @@ pub fn attributes(
     story.0
 }
 
-/// The account that ends a run, as text.
-pub fn account(
+/// The figures that follow the verdict at the end of a run, as text.
+pub fn figures(
     summary: &Summary,
     simulation: &Simulation,
     choice: Option<&Choice>,

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use chaindrive_mechanics::{ContactEvent, Energy, Observation};
+use chaindrive_mechanics::{ContactEvent, Energy, Flow, Observation};
 use hdrhistogram::Histogram;
 
 use super::event::{EventTable, kind};
@@ -19,8 +19,10 @@ pub struct Summary {
     start: Option<Energy>,
     last: Energy,
     turnover: Turnover,
-    /// Largest energy residual in magnitude \[J\].
+    /// Largest energy residual in magnitude \[J\]; NaN if ever one was not a number.
     pub residual: f64,
+    /// Samples with a link tension or contact force that is not a number.
+    pub not_finite: u64,
     /// Samples seen.
     pub samples: u64,
 }
@@ -37,6 +39,8 @@ pub struct SpanStatistics {
     sum: f64,
     sum_of_squares: f64,
     count: f64,
+    /// Samples without a tension, because no roller holds the span.
+    pub missing: u64,
 }
 
 impl SpanStatistics {
@@ -93,6 +97,25 @@ impl ContactStatistics {
     }
 }
 
+/// The energy of a run, and what of it is unaccounted for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ledger {
+    /// Largest residual in magnitude \[J\].
+    pub residual: f64,
+    /// Energy lost \[J\].
+    pub losses: f64,
+    /// Energy that has changed its form or owner \[J\].
+    pub moved: f64,
+    /// Energy that drivers, motions, torques and loads have put in, those that took some out left aside \[J\].
+    pub supplied: f64,
+    /// Energy that they have put in and taken out again, added up without regard to direction \[J\].
+    pub exchanged: f64,
+    /// Largest kinetic energy \[J\].
+    pub kinetic: f64,
+    /// What rounding may leave of a residual \[J\].
+    pub rounding: f64,
+}
+
 /// How much energy a run has moved about.
 ///
 /// Net work is no measure for that: a driver that reverses takes back what it gave, and a chain that
@@ -101,14 +124,18 @@ impl ContactStatistics {
 struct Turnover {
     /// Σ |ΔW| over all flows and samples \[J\].
     flowed: f64,
+    /// The same over flows that are no losses \[J\].
+    exchanged: f64,
     /// Least and greatest kinetic and stored energy \[J\].
     ranges: Option<[[f64; 2]; 2]>,
 }
 
 impl Turnover {
     fn push(&mut self, before: &Energy, now: &Energy) {
-        let flows = now.flows.iter().zip(&before.flows);
-        self.flowed += flows.map(|(now, before)| (now - before).abs()).sum::<f64>();
+        let worked = |flow: &Flow| (now.flow(*flow) - before.flow(*flow)).abs();
+        self.flowed += Flow::ALL.iter().map(worked).sum::<f64>();
+        let outside = Flow::ALL.iter().filter(|flow| !flow.is_loss());
+        self.exchanged += outside.map(worked).sum::<f64>();
         let stores = [now.kinetic(), now.stored()];
         let ranges = self.ranges.get_or_insert(stores.map(|energy| [energy; 2]));
         for (range, energy) in ranges.iter_mut().zip(stores) {
@@ -123,6 +150,12 @@ impl Turnover {
             .iter()
             .map(|[least, greatest]| greatest - least)
             .fold(0.5 * self.flowed, f64::max)
+    }
+
+    /// Largest kinetic energy \[J\].
+    fn kinetic(&self) -> f64 {
+        let [[_, greatest], _] = self.ranges.unwrap_or_default();
+        greatest
     }
 
     /// What rounding may leave \[J\].
@@ -152,6 +185,7 @@ impl Summary {
             sum: 0.0,
             sum_of_squares: 0.0,
             count: 0.0,
+            missing: 0,
         };
         Self {
             spans: simulation
@@ -167,6 +201,7 @@ impl Summary {
             last: Energy::default(),
             turnover: Turnover::default(),
             residual: 0.0,
+            not_finite: 0,
             samples: 0,
         }
     }
@@ -180,7 +215,13 @@ impl Summary {
                 span.sum += tension;
                 span.sum_of_squares += tension * tension;
                 span.count += 1.0;
+            } else {
+                span.missing += 1;
             }
+        }
+        let mut numbers = sample.link_tension.iter().chain(&sample.contact_force);
+        if !numbers.all(|number| number.is_finite()) {
+            self.not_finite += 1;
         }
         for &force in sample.contact_force.iter().filter(|force| **force > 0.0) {
             self.largest_force = self.largest_force.max(force);
@@ -196,7 +237,7 @@ impl Summary {
         let start = *self.start.get_or_insert(sample.energy);
         self.turnover.push(&before, &sample.energy);
         let residual = sample.energy.residual(&start);
-        if residual.abs() > self.residual.abs() {
+        if residual.abs() > self.residual.abs() || residual.is_nan() {
             self.residual = residual;
         }
         self.last = sample.energy;
@@ -238,7 +279,6 @@ impl Summary {
 
     /// Energy put in by drivers, motions and driving torques since the start \[J\].
     pub fn energy_supplied(&self) -> f64 {
-        use chaindrive_mechanics::Flow;
         let start = self.start.unwrap_or_default();
         [Flow::Driver, Flow::Motions, Flow::DriveTorque]
             .iter()
@@ -252,9 +292,20 @@ impl Summary {
         self.turnover.moved()
     }
 
-    /// Whether the ledger is too far from closing for the run to be trusted.
-    pub fn is_ledger_open(&self) -> bool {
-        self.residual.abs() > (OPEN_LEDGER * self.energy_moved()).max(self.turnover.rounding())
+    /// The energy of the run so far.
+    pub fn ledger(&self) -> Ledger {
+        let start = self.start.unwrap_or_default();
+        let flows = Flow::ALL.iter().filter(|flow| !flow.is_loss());
+        let net = flows.map(|&flow| self.last.flow(flow) - start.flow(flow));
+        Ledger {
+            residual: self.residual,
+            losses: self.energy_dissipated(),
+            moved: self.energy_moved(),
+            supplied: net.filter(|work| *work > 0.0).sum(),
+            exchanged: self.turnover.exchanged,
+            kinetic: self.turnover.kinetic(),
+            rounding: self.turnover.rounding(),
+        }
     }
 
     /// Energy lost since the start \[J\].
@@ -292,7 +343,12 @@ impl fmt::Display for Report<'_> {
                 "span tension [N]            mean        std      least   greatest"
             )?;
             for span in &summary.spans {
-                writeln!(
+                let samples = summary.samples;
+                if span.missing == samples {
+                    writeln!(f, "  {:22} no roller holds it in any sample", span.name)?;
+                    continue;
+                }
+                write!(
                     f,
                     "  {:22} {:>9.1}  {:>9.1}  {:>9.1}  {:>9.1}",
                     span.name,
@@ -301,6 +357,11 @@ impl fmt::Display for Report<'_> {
                     span.least,
                     span.greatest
                 )?;
+                if span.missing > 0 {
+                    let missing = span.missing;
+                    write!(f, "  no roller holds it in {missing} of {samples} samples")?;
+                }
+                writeln!(f)?;
             }
         }
         let forces = summary.forces();
@@ -315,8 +376,12 @@ impl fmt::Display for Report<'_> {
         let supplied = summary.energy_supplied();
         let moved = summary.energy_moved();
         let relative = if moved > 0.0 {
-            let share = (summary.residual / moved).abs();
-            format!(", {share:.1e} of the {moved:.4e} moved")
+            let share = |of: f64| (summary.residual / of).abs();
+            let of_losses = match summary.energy_dissipated() {
+                losses if losses > 0.0 => format!(", {:.1e} of the losses", share(losses)),
+                _ => String::new(),
+            };
+            format!("{of_losses}, {:.1e} of the {moved:.4e} moved", share(moved))
         } else {
             String::new()
         };
@@ -326,12 +391,6 @@ impl fmt::Display for Report<'_> {
             summary.energy_dissipated(),
             summary.residual
         )?;
-        if summary.is_ledger_open() {
-            writeln!(
-                f,
-                "                         do not trust this run: the energy does not add up; take a smaller step, or method generalized-alpha for rigid links"
-            )?;
-        }
         let steps = statistics.steps.max(1) as f64;
         writeln!(
             f,
@@ -353,9 +412,6 @@ impl fmt::Display for Report<'_> {
         )
     }
 }
-
-/// Share of the energy moved that may be missing before a run is called into question.
-const OPEN_LEDGER: f64 = 0.1;
 
 /// Share of the energy present below which a residual is taken for rounding.
 const ROUNDING: f64 = 1e-9;

@@ -165,11 +165,10 @@ impl ZarrWriter {
 
     /// Takes in what is said about the error of the run; it is stored with the next commit.
     ///
-    /// Where waveforms cease to mean anything within the run, every channel gets the attribute
-    /// `waveform_horizon` \[s\]: samples behind it are for statistics.
+    /// Channels whose waveforms cease to mean anything within the run get the attribute `waveform_horizon` \[s\]:
+    /// samples behind it are for statistics; and `waveform_horizon_of`, the channel on whose errors it was found.
     pub fn judge(&mut self, judgement: &Judgement) {
-        if let Some(horizon) = judgement.waveform_horizon() {
-            self.content.tell("waveform_horizon", &horizon.into());
+        self.content.judge(judgement);
         }
         self.judgement = Some(judgement.clone());
     }

@@ -10,7 +10,7 @@ use super::Request;
 use crate::precision::{Choice, Judgement, choose};
 use crate::record::{Ending, Provenance, Summary, attributes};
 use crate::scene::SceneError;
-use crate::{Channel, Run, Simulation, SimulationError};
+use crate::{Channel, Run, Simulation, SimulationError, Verdict};
 
 /// Where samples go: memory, a store, a table.
 pub trait Sink {
@@ -108,6 +108,8 @@ pub struct Report {
     pub summary: Summary,
     /// How exact it is; nothing is said of a run that failed.
     pub judgement: Option<Judgement>,
+    /// How far it can be trusted.
+    pub verdict: Verdict,
     /// How it ended.
     pub stop: Stop,
     /// What the result says about itself: the same in memory and in a store.
@@ -238,7 +240,9 @@ pub fn execute<S: Sink>(
         // The samples are complete, but the user wants to get away.
         stop = Stop::Interrupted;
     }
+    let verdict = Verdict::of(&summary, &simulation, provenance.choice.as_ref(), judged);
     Ok(Report {
+        verdict,
         simulation,
         drive,
         run,

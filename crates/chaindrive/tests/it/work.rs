@@ -1,7 +1,7 @@
 //! The work-precision study: what it measures is what theory and other runs say, and twice the same.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
-use chaindrive::precision::{Reach, Row, Study, Table, Variant, work_precision};
+use chaindrive::precision::{Divergence, Row, Study, Table, Variant, work_precision};
 use chaindrive::{Assembled, Run, Scene, SimulationError, Stepping};
 
 fn start(scene: &str) -> Assembled {
@@ -141,7 +141,7 @@ fn beyond_the_horizon_replicates_give_the_spread() {
         8e-3,
         vec![variant(Stepping::ImplicitDamping, 2e-6)],
     );
-    assert!(matches!(table.horizon.all, Reach::Measured { at } if at < 8e-3));
+    assert!(matches!(table.horizon.all, Divergence::Measured { at } if at < 8e-3));
     assert!(table.spread.rms > 1e-6, "{:?}", table.spread);
     let row = &table.rows[0];
     assert!(row.errors.tight_tension > 0.0 && row.errors.tight_tension < 0.05);

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::path::PathBuf;
 
 use chaindrive::describe::spans_at_rest;
-use chaindrive::record::{Existing, Provenance, account};
+use chaindrive::record::{Existing, Provenance, figures};
 use chaindrive::{Channel, End, Onlooker, Report, RunError, Simulation, Sink, Stop, execute};
 use clap::Args;
 
@@ -32,11 +32,11 @@ pub(crate) struct Arguments {
     overwrite: bool,
 
     /// Leaves out the estimate of the numerical error that ends the run; it takes the time of some
-    /// 24 000 steps of the default length, whatever the length of the run
+    /// 32 000 steps of the default length, whatever the length of the run
     #[arg(long)]
     no_error: bool,
 
-    /// Prints errors only
+    /// Prints errors only, and a line if the result is not to be trusted
     #[arg(short, long)]
     quiet: bool,
 }
@@ -68,8 +68,11 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
         },
     })?;
     drop(terminal);
+    if let Some(warning) = report.verdict.warning() {
+        eprintln!("{}: {warning}", scene());
+    }
     if !arguments.quiet && report.summary.samples > 0 {
-        print(at_rest(&report) + &told(&report))?;
+        print(told(&report))?;
     }
     match report.stop {
         Stop::End => Ok(()),
@@ -142,10 +145,11 @@ impl Sink for Written {
 /// The account that ends the run.
 fn told(report: &Report) -> String {
     let (choice, judgement) = (report.choice.as_ref(), report.judgement.as_ref());
-    account(&report.summary, &report.simulation, choice, judgement)
+    let figures = figures(&report.summary, &report.simulation, choice, judgement);
+    format!("{}\n{}{figures}", report.verdict, at_rest(report))
 }
 
-/// The span tensions before the start, as the first lines of the summary.
+/// The span tensions before the start, as the first figures of the summary.
 fn at_rest(report: &Report) -> String {
     let assembled = report.simulation.assembled();
     if assembled.statics.is_empty() {

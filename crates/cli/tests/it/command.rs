@@ -471,15 +471,21 @@ fn a_run_says_how_exact_it_is_unless_told_not_to() {
         "{out}"
     );
     assert!(
-        out.contains("numerical error          against half the step"),
+        out.contains("numerical error          in the first"),
         "{out}"
     );
     let attributes = &group(&at.join("run.zarr"))["attributes"];
     assert_eq!(attributes["error_estimate"], "made");
     assert_eq!(attributes["accuracy"], 0.01);
+    assert!(out.starts_with("verdict                  "), "{out}");
     let horizon = attributes["waveform_horizon"].as_f64().unwrap();
-    let tension = group(&at.join("run.zarr").join("span_tension"));
-    assert_eq!(tension["attributes"]["waveform_horizon"], horizon);
+    let tension = &group(&at.join("run.zarr").join("span_tension"))["attributes"];
+    assert_eq!(tension["waveform_horizon"], horizon);
+    assert_eq!(tension["waveform_horizon_of"], "span_tension");
+    let angle = &group(&at.join("run.zarr").join("sprocket_angle"))["attributes"];
+    assert_eq!(angle["waveform_horizon_of"], "link_tension");
+    let links = &attributes["waveform_horizon_link_tension"];
+    assert_eq!(&angle["waveform_horizon"], links);
 
     let (code, out, err) = run(at, &[&short[..], &["--no-error"]].concat());
     assert_eq!(code, 0, "{err}");
@@ -487,6 +493,39 @@ fn a_run_says_how_exact_it_is_unless_told_not_to() {
     let attributes = &group(&at.join("run.zarr"))["attributes"];
     assert_eq!(attributes["error_estimate"], "switched off");
     assert!(attributes["error_span_tension"].is_null());
+}
+
+/// Defect A4: with `-q` a run with a fifth of its energy missing ended without a word.
+#[test]
+fn a_result_that_contradicts_itself_is_told_of_even_quietly() {
+    let folder = folder();
+    let at = folder.path();
+    let short = [
+        "run", "bicycle", "--until", "3 ms", "--every", "10 us", "-q",
+    ];
+    let method = [
+        "--method",
+        "implicit-damping",
+        "--no-error",
+        "-o",
+        "run.zarr",
+    ];
+    let fast = ["--set", "sprockets.chainring.motion.speed=-5000 rpm"];
+    let (code, out, err) = run(at, &[&short[..], &method, &fast].concat());
+    assert_eq!((code, out.as_str()), (0, ""));
+    assert_eq!(err.lines().count(), 1, "{err}");
+    assert!(err.starts_with("bicycle: do not trust this run: "), "{err}");
+    let attributes = &group(&at.join("run.zarr"))["attributes"];
+    assert_eq!(attributes["verdict"], "distrusted");
+    let reasons = attributes["reasons"].as_str().unwrap();
+    assert!(reasons.contains("energy-missing"), "{reasons}");
+
+    let slow = [&short[..], &method, &["--overwrite"]].concat();
+    let (code, out, err) = run(at, &slow);
+    assert_eq!((code, out.as_str(), err.as_str()), (0, "", ""));
+    let attributes = &group(&at.join("run.zarr"))["attributes"];
+    assert_eq!(attributes["verdict"], "caution");
+    assert_eq!(attributes["reasons"], "not-estimated");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use super::error::Fault;
 use super::events::EventTracks;
 use super::store::Storage;
 use super::track::{Track, samples_per_chunk, store_labels};
-use crate::Simulation;
+use crate::{Judgement, Simulation};
 use crate::record::{Axis, Channel, Provenance, labels};
 
 /// All arrays of a run.
@@ -85,10 +85,13 @@ impl Content {
         }
     }
 
-    /// Adds an attribute to every channel; takes effect with the next [`store`](Self::store).
-    pub(super) fn tell(&mut self, name: &str, value: &Value) {
-        for (_, track) in &mut self.tracks {
-            track.tell(name, value.clone());
+    /// Tells the channels whose waveforms cease to mean anything; takes effect with the next [`store`](Self::store).
+    pub(super) fn judge(&mut self, judgement: &Judgement) {
+        for (channel, track) in &mut self.tracks {
+            if let Some(horizon) = judgement.horizon_of(*channel) {
+                track.tell("waveform_horizon", horizon.at.into());
+                track.tell("waveform_horizon_of", horizon.found_on.name().into());
+            }
         }
     }
 

@@ -1,0 +1,240 @@
+//! Whether a result can be trusted, and the reasons why not.
+//!
+//! | verdict | means |
+//! |---|---|
+//! | trusted | examined to the end of the run, and nothing was found |
+//! | caution | some of the result is uncertain or was not examined; the reasons say what |
+//! | distrusted | the result contradicts itself |
+//!
+//! [`Reason`] is the list of everything that is looked at; [`Verdict::of`] looks.
+
+mod reason;
+
+use std::fmt;
+
+use crate::precision::{Attribute, Choice, Judgement, Promise};
+use crate::record::{Ledger, Summary};
+use crate::{Channel, Simulation};
+
+pub use reason::Reason;
+
+/// How far a result can be trusted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Trust {
+    /// Nothing speaks against it.
+    Trusted,
+    /// Some of it is uncertain, or was not examined.
+    Caution,
+    /// It contradicts itself.
+    Distrusted,
+}
+
+impl Trust {
+    /// Word in results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Trusted => "trusted",
+            Self::Caution => "caution",
+            Self::Distrusted => "distrusted",
+        }
+    }
+}
+
+/// What a result says about itself: how far it can be trusted, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// The worst of the reasons.
+    pub trust: Trust,
+    /// What speaks against the result, the worst first.
+    pub reasons: Vec<Reason>,
+}
+
+/// Share of the energy moved that may be missing before the run is distrusted.
+const OPEN_LEDGER: f64 = 0.1;
+/// Share of the kinetic energy that may be missing of a free motion: a ring that spins in balance moves no energy.
+const OPEN_MOTION: f64 = 0.01;
+/// Share of the losses that may be missing before they, and the efficiency, are called uncertain.
+const UNCERTAIN_LOSSES: f64 = 0.1;
+/// The same before a drive that transmits energy is distrusted: what is missing is of the size of the losses.
+const WRONG_LOSSES: f64 = 0.5;
+/// Share of the energy moved below which losses are not told from none: 0.01 points of efficiency.
+const LEAST_LOSSES: f64 = 1e-4;
+/// Efficiency above which more comes out than goes in, by more than a drive without losses may err.
+const MOST_EFFICIENCY: f64 = 1.0 + WRONG_LOSSES * LEAST_LOSSES;
+/// Share of the energy exchanged with the outside that has to go one way before its ratio is an efficiency: a driver that
+/// swings to and fro has none.
+const ONE_WAY: f64 = 0.25;
+/// Steps below which the error of the first one is all that a ledger shows.
+const LEAST_STEPS: u64 = 32;
+/// Share of the samples without a tension above which the statistics of a span are not those of the run.
+const UNHELD: f64 = 0.5;
+
+impl Verdict {
+    /// The verdict on a run that ended: by its samples, the estimate of its error, and the choice of its method.
+    pub fn of(
+        summary: &Summary,
+        simulation: &Simulation,
+        choice: Option<&Choice>,
+        judgement: Option<&Judgement>,
+    ) -> Self {
+        let mut reasons = Vec::new();
+        reasons.extend(not_finite(summary));
+        reasons.extend(ledger(&summary.ledger(), simulation.statistics().steps));
+        reasons.extend(spans(summary));
+        reasons.extend(choice.and_then(accuracy));
+        reasons.extend(examination(judgement));
+        Self::from_reasons(reasons)
+    }
+
+    /// The verdict that some reasons make.
+    pub fn from_reasons(mut reasons: Vec<Reason>) -> Self {
+        reasons.sort_by_key(|reason| std::cmp::Reverse(reason.trust()));
+        let trust = reasons.first().map_or(Trust::Trusted, Reason::trust);
+        Self { trust, reasons }
+    }
+
+    /// Whether the result contradicts itself.
+    pub fn is_distrusted(&self) -> bool {
+        self.trust == Trust::Distrusted
+    }
+
+    /// Attributes of a result: `verdict`, the names of its `reasons` with blanks between them, and the reasons in
+    /// words.
+    pub fn attributes(&self) -> Vec<(String, Attribute)> {
+        let names: Vec<&str> = self.reasons.iter().map(Reason::name).collect();
+        let text = |name: &str, text: String| (name.to_owned(), Attribute::Text(text));
+        vec![
+            text("verdict", self.trust.name().to_owned()),
+            text("reasons", names.join(" ")),
+            text("verdict_note", self.note()),
+        ]
+    }
+
+    /// The reasons in words, with semicolons between them.
+    pub fn note(&self) -> String {
+        let words: Vec<String> = self.reasons.iter().map(Reason::to_string).collect();
+        words.join("; ")
+    }
+
+    /// One line for whoever asked to hear of errors only; none unless the result is distrusted.
+    pub fn warning(&self) -> Option<String> {
+        let worst = self.reasons.iter().filter(|r| r.trust() == self.trust);
+        let words: Vec<String> = worst.map(Reason::to_string).collect();
+        self.is_distrusted()
+            .then(|| format!("do not trust this run: {}", words.join("; ")))
+    }
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "verdict                  {}", self.trust.name())?;
+        for reason in &self.reasons {
+            write!(f, "\n  {:22} {reason}", reason.trust().name())?;
+        }
+        Ok(())
+    }
+}
+
+fn not_finite(summary: &Summary) -> Option<Reason> {
+    let samples = summary.not_finite;
+    (samples > 0).then_some(Reason::NotFinite { samples })
+}
+
+/// What speaks against the ledger of a run of some steps.
+///
+/// ```text
+/// |R| / max(D, 1e-4 M)    R: residual, D: losses, M: energy moved
+/// η = 1 − (D − R) / E     E: energy supplied
+/// ```
+///
+/// A free motion has no efficiency: its residual is judged by the energy that swings, and by that of its motion.
+fn ledger(ledger: &Ledger, steps: u64) -> Vec<Reason> {
+    let missing = ledger.residual.abs();
+    if missing <= ledger.rounding {
+        return Vec::new();
+    }
+    if steps < LEAST_STEPS {
+        return vec![Reason::TooShort { steps }];
+    }
+    let mut reasons = Vec::new();
+    let transmits = ledger.exchanged > 0.0;
+    if !transmits && missing <= OPEN_MOTION * ledger.kinetic {
+        return reasons;
+    }
+    // What is not a number is as bad as can be.
+    let share = |of: f64| Some(missing / of).filter(|it| !it.is_nan());
+    let of_moved = share(ledger.moved).unwrap_or(f64::INFINITY);
+    let losses = ledger.losses.max(LEAST_LOSSES * ledger.moved);
+    let of_losses = share(losses).unwrap_or(f64::INFINITY);
+    if of_moved > OPEN_LEDGER {
+        reasons.push(Reason::EnergyMissing { of_moved });
+    } else if transmits && of_losses > UNCERTAIN_LOSSES {
+        reasons.push(if of_losses <= WRONG_LOSSES {
+            Reason::LossesUncertain { of_losses }
+        } else {
+            Reason::LossesWrong { of_losses }
+        });
+    }
+    let efficiency = 1.0 - (ledger.losses - ledger.residual) / ledger.supplied;
+    if ledger.supplied > ONE_WAY * ledger.exchanged && efficiency > MOST_EFFICIENCY {
+        reasons.push(Reason::EfficiencyAboveOne { efficiency });
+    }
+    reasons
+}
+
+fn spans(summary: &Summary) -> impl Iterator<Item = Reason> {
+    let samples = summary.samples.max(1) as f64;
+    summary
+        .spans
+        .iter()
+        .filter(|span| span.missing > 0)
+        .map(move |span| {
+            let (span, share) = (span.name.clone(), span.missing as f64 / samples);
+            if share > UNHELD {
+                Reason::SpanRarelyHeld { span, share }
+            } else {
+                Reason::SpanNotHeld { span, share }
+            }
+        })
+}
+
+fn accuracy(choice: &Choice) -> Option<Reason> {
+    let missed = choice.promise != Promise::Nothing && !choice.kept;
+    missed.then_some(Reason::AccuracyMissed {
+        accuracy: choice.accuracy,
+        error: choice.error,
+    })
+}
+
+/// What the estimate of the error says, and what it did not look at.
+fn examination(judgement: Option<&Judgement>) -> Vec<Reason> {
+    let estimate = match judgement {
+        Some(Judgement::Made(estimate)) => estimate,
+        Some(Judgement::SwitchedOff) => return not_estimated("switched off"),
+        Some(Judgement::Interrupted) => return not_estimated("interrupted"),
+        Some(Judgement::Failed(why)) => return not_estimated(why),
+        None => return not_estimated("the run did not end"),
+    };
+    let mut reasons = Vec::new();
+    if let Some(gap) = &estimate.gap {
+        reasons.push(Reason::SpansNotExamined { gap: gap.clone() });
+    }
+    let spans = estimate.horizon_of(Channel::SpanTension);
+    let links = estimate.horizon_of(Channel::LinkTension);
+    if spans.is_some() || links.is_some() {
+        reasons.push(Reason::HorizonWithinRun { spans, links });
+    }
+    if !estimate.examined_throughout() {
+        let (window, until) = (estimate.window, estimate.until);
+        reasons.push(Reason::NotExamined { window, until });
+    }
+    reasons
+}
+
+fn not_estimated(why: &str) -> Vec<Reason> {
+    let why = why.to_owned();
+    vec![Reason::NotEstimated { why }]
+}
+
+#[cfg(test)]
+mod tests;

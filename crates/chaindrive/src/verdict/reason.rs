@@ -1,0 +1,200 @@
+//! The list of reasons not to trust a result without a second look.
+
+use std::fmt;
+
+use super::Trust;
+use crate::precision::wording::{duration, percent};
+use crate::precision::{ChannelHorizon, Gap};
+
+/// What speaks against a result.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reason {
+    /// Tensions or forces are not numbers.
+    NotFinite {
+        /// Samples in which that is so.
+        samples: u64,
+    },
+    /// The energy does not add up.
+    EnergyMissing {
+        /// What is unaccounted for, over the energy moved \[–\].
+        of_moved: f64,
+    },
+    /// The energy unaccounted for is of the size of the losses.
+    LossesWrong {
+        /// What is unaccounted for, over the losses or 1e-4 of the energy moved, whichever is more \[–\].
+        of_losses: f64,
+    },
+    /// The energy unaccounted for is a noticeable share of the losses.
+    LossesUncertain {
+        /// See [`Reason::LossesWrong`].
+        of_losses: f64,
+    },
+    /// More energy comes out than goes in.
+    EfficiencyAboveOne {
+        /// What comes out or is stored, over what goes in \[–\].
+        efficiency: f64,
+    },
+    /// The run has too few steps for its energy to be judged.
+    TooShort {
+        /// Steps taken.
+        steps: u64,
+    },
+    /// A span has no tension in most samples, because no roller holds it.
+    SpanRarelyHeld {
+        /// Name of the span.
+        span: String,
+        /// Share of the samples without a tension \[–\].
+        share: f64,
+    },
+    /// A span has no tension in some samples.
+    SpanNotHeld {
+        /// Name of the span.
+        span: String,
+        /// Share of the samples without a tension \[–\].
+        share: f64,
+    },
+    /// The span tensions could not be compared with those of a sharper run.
+    SpansNotExamined {
+        /// The span without a tension, and when.
+        gap: Gap,
+    },
+    /// The accuracy asked for is not kept.
+    AccuracyMissed {
+        /// Asked for \[–\].
+        accuracy: f64,
+        /// Found \[–\]; infinite if nothing could be compared.
+        error: f64,
+    },
+    /// Waveforms differ from the exact motion before the run ends.
+    HorizonWithinRun {
+        /// When those of the span tensions do.
+        spans: Option<ChannelHorizon>,
+        /// When those of the link tensions do.
+        links: Option<ChannelHorizon>,
+    },
+    /// The error of the end of the run is not known.
+    NotExamined {
+        /// Time over which the run was examined \[s\].
+        window: f64,
+        /// Its end \[s\].
+        until: f64,
+    },
+    /// There is no estimate of the error.
+    NotEstimated {
+        /// The reason.
+        why: String,
+    },
+}
+
+impl Reason {
+    /// How far a result can be trusted that this speaks against.
+    pub fn trust(&self) -> Trust {
+        match self {
+            Self::NotFinite { .. }
+            | Self::EnergyMissing { .. }
+            | Self::LossesWrong { .. }
+            | Self::EfficiencyAboveOne { .. }
+            | Self::SpanRarelyHeld { .. } => Trust::Distrusted,
+            Self::LossesUncertain { .. }
+            | Self::TooShort { .. }
+            | Self::SpanNotHeld { .. }
+            | Self::SpansNotExamined { .. }
+            | Self::AccuracyMissed { .. }
+            | Self::HorizonWithinRun { .. }
+            | Self::NotExamined { .. }
+            | Self::NotEstimated { .. } => Trust::Caution,
+        }
+    }
+
+    /// Name in results.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::NotFinite { .. } => "not-finite",
+            Self::EnergyMissing { .. } => "energy-missing",
+            Self::LossesWrong { .. } => "losses-wrong",
+            Self::LossesUncertain { .. } => "losses-uncertain",
+            Self::EfficiencyAboveOne { .. } => "efficiency-above-one",
+            Self::TooShort { .. } => "too-short",
+            Self::SpanRarelyHeld { .. } => "span-rarely-held",
+            Self::SpanNotHeld { .. } => "span-not-held",
+            Self::SpansNotExamined { .. } => "spans-not-examined",
+            Self::AccuracyMissed { .. } => "accuracy-missed",
+            Self::HorizonWithinRun { .. } => "horizon-within-run",
+            Self::NotExamined { .. } => "not-examined",
+            Self::NotEstimated { .. } => "not-estimated",
+        }
+    }
+}
+
+/// What to do about energy that is missing.
+const SHARPER: &str = "take a smaller step, or method generalized-alpha for rigid links";
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite { samples } => {
+                write!(
+                    f,
+                    "{samples} samples hold tensions or forces that are not numbers"
+                )
+            }
+            Self::EnergyMissing { of_moved } => write!(
+                f,
+                "the energy does not add up, {} of what was moved is unaccounted for: {SHARPER}",
+                percent(*of_moved)
+            ),
+            Self::LossesWrong { of_losses } => write!(
+                f,
+                "losses and efficiency are wrong, the energy unaccounted for is {} of the losses: {SHARPER}",
+                percent(*of_losses)
+            ),
+            Self::LossesUncertain { of_losses } => write!(
+                f,
+                "losses are uncertain by {}, the energy unaccounted for",
+                percent(*of_losses)
+            ),
+            Self::EfficiencyAboveOne { efficiency } => write!(
+                f,
+                "more energy comes out than goes in, an efficiency of {:.2} %: {SHARPER}",
+                100.0 * efficiency
+            ),
+            Self::TooShort { steps } => {
+                write!(f, "{steps} steps are too few to judge the energy by")
+            }
+            Self::SpanRarelyHeld { span, share } | Self::SpanNotHeld { span, share } => write!(
+                f,
+                "span {span} has no tension in {} of the samples, no roller holds it there: its statistics are of the rest",
+                percent(*share)
+            ),
+            Self::SpansNotExamined { gap } => write!(
+                f,
+                "span tensions are not examined, link tensions are instead: {gap}"
+            ),
+            Self::AccuracyMissed { accuracy, error } => write!(
+                f,
+                "an accuracy of {} was asked for, the error found is {}",
+                percent(*accuracy),
+                percent(*error)
+            ),
+            Self::HorizonWithinRun { spans, links } => {
+                let of =
+                    |horizon: &ChannelHorizon, name| format!("{name} to {}", duration(horizon.at));
+                let spans = spans.as_ref().map(|horizon| of(horizon, "span tensions"));
+                let links = links.as_ref().map(|horizon| of(horizon, "link tensions"));
+                let ends: Vec<String> = spans.into_iter().chain(links).collect();
+                write!(
+                    f,
+                    "follow waveforms of {}: beyond, use statistics",
+                    ends.join(", of ")
+                )
+            }
+            Self::NotExamined { window, until } => write!(
+                f,
+                "not examined beyond {} of {}",
+                duration(*window),
+                duration(*until)
+            ),
+            Self::NotEstimated { why } => write!(f, "the error is not estimated: {why}"),
+        }
+    }
+}

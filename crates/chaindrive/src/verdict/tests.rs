@@ -1,0 +1,110 @@
+//! Where the ledger begins to speak against a run.
+
+use super::*;
+
+/// A drive that takes in 100 J and loses 2 J.
+fn ledger_with(residual: f64) -> Ledger {
+    Ledger {
+        residual,
+        losses: 2.0,
+        moved: 100.0,
+        supplied: 100.0,
+        exchanged: 198.0,
+        kinetic: 10.0,
+        rounding: 1e-9,
+    }
+}
+
+fn names(found: &Ledger, steps: u64) -> Vec<&'static str> {
+    ledger(found, steps).iter().map(Reason::name).collect()
+}
+
+/// Defect A5: 1.1 J out of nowhere are 1 % of the energy moved, and more than half of the losses.
+#[test]
+fn what_is_missing_is_judged_by_the_losses() {
+    assert!(names(&ledger_with(0.19), 1000).is_empty());
+    assert_eq!(names(&ledger_with(-0.21), 1000), ["losses-uncertain"]);
+    assert_eq!(names(&ledger_with(0.99), 1000), ["losses-uncertain"]);
+    assert_eq!(names(&ledger_with(-1.01), 1000), ["losses-wrong"]);
+    assert_eq!(names(&ledger_with(-9.9), 1000), ["losses-wrong"]);
+    assert_eq!(names(&ledger_with(-10.1), 1000), ["energy-missing"]);
+}
+
+/// A drive without losses to speak of may err by a ten-thousandth of what it transmits.
+#[test]
+fn losses_too_small_to_matter_are_taken_for_a_ten_thousandth() {
+    let frictionless = |residual| Ledger {
+        losses: 0.0,
+        ..ledger_with(residual)
+    };
+    assert!(names(&frictionless(-0.9e-3), 1000).is_empty());
+    assert_eq!(names(&frictionless(-1.1e-3), 1000), ["losses-uncertain"]);
+    assert_eq!(names(&frictionless(-5.1e-3), 1000), ["losses-wrong"]);
+}
+
+#[test]
+fn more_out_than_in_is_distrusted() {
+    let both = ["losses-wrong", "efficiency-above-one"];
+    assert_eq!(names(&ledger_with(2.1), 1000), both);
+    assert_eq!(names(&ledger_with(1.9), 1000), ["losses-wrong"]);
+    // A driver that swings to and fro supplies next to nothing in the end.
+    let swinging = Ledger {
+        supplied: 10.0,
+        ..ledger_with(2.1)
+    };
+    assert_eq!(names(&swinging, 1000), ["losses-wrong"]);
+}
+
+/// A free motion loses little and transmits nothing: a thousandth of what swings may be missing.
+#[test]
+fn a_free_motion_is_judged_by_what_swings() {
+    let free = |residual| Ledger {
+        losses: 1e-3,
+        supplied: 0.0,
+        exchanged: 0.0,
+        ..ledger_with(residual)
+    };
+    assert!(names(&free(0.1), 1000).is_empty());
+    assert_eq!(names(&free(10.1), 1000), ["energy-missing"]);
+    // A ring that spins in balance: nothing swings but the error.
+    let spinning = |residual| Ledger {
+        moved: 0.4,
+        kinetic: 32.0,
+        ..free(residual)
+    };
+    assert!(names(&spinning(0.3), 1000).is_empty());
+    assert_eq!(names(&spinning(0.33), 1000), ["energy-missing"]);
+}
+
+/// Defect D: a window of nanoseconds was called untrustworthy for the error of its first step.
+#[test]
+fn a_few_steps_are_too_few_to_judge_the_energy_by() {
+    assert_eq!(names(&ledger_with(50.0), 31), ["too-short"]);
+    assert_eq!(names(&ledger_with(50.0), 32)[0], "energy-missing");
+    assert!(names(&ledger_with(1e-10), 5).is_empty(), "rounding");
+}
+
+#[test]
+fn an_energy_that_is_not_a_number_is_missing() {
+    let found = ledger(&ledger_with(f64::NAN), 1000);
+    assert_eq!(found[0].name(), "energy-missing");
+    assert_eq!(found[0].trust(), Trust::Distrusted);
+}
+
+#[test]
+fn the_worst_reason_decides_and_comes_first() {
+    let caution = Reason::TooShort { steps: 3 };
+    let worst = Reason::NotFinite { samples: 1 };
+    let verdict = Verdict::from_reasons(vec![caution.clone(), worst.clone()]);
+    assert_eq!(verdict.trust, Trust::Distrusted);
+    assert_eq!(verdict.reasons, [worst, caution.clone()]);
+    let names = &verdict.attributes()[1];
+    assert_eq!(names.1, Attribute::Text("not-finite too-short".to_owned()));
+    assert!(verdict.warning().is_some_and(|line| !line.contains("few")));
+
+    let cautious = Verdict::from_reasons(vec![caution]);
+    assert_eq!((cautious.trust, cautious.warning()), (Trust::Caution, None));
+    let sound = Verdict::from_reasons(Vec::new());
+    assert_eq!(sound.trust, Trust::Trusted);
+    assert_eq!(sound.to_string(), "verdict                  trusted");
+}

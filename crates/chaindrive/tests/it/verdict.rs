@@ -1,0 +1,242 @@
+//! Every reason of the verdict: a run that brings it about, and one that does not.
+#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
+
+use chaindrive::precision::choose;
+use chaindrive::record::{Existing, InStore};
+use chaindrive::{
+    Choice, Given, Judgement, Memory, Reason, Request, Run, Scene, Settings, Simulation, Summary,
+    Trust, Verdict, execute,
+};
+
+/// A preset with changes, each `path = value`.
+fn scene(preset: &str, changes: &[(&str, &str)]) -> Scene {
+    let scene = Scene::preset(preset).unwrap();
+    changes.iter().fold(scene, |scene, (path, value)| {
+        scene.replace(path, value).unwrap()
+    })
+}
+
+fn run(until: f64, samples: f64) -> Run {
+    Run {
+        until,
+        every: until / samples,
+        ..Run::default()
+    }
+}
+
+/// A run to its end.
+fn finished(scene: &Scene, run: &Run) -> (Simulation, Summary) {
+    let mut simulation = Simulation::start(&scene.drive().unwrap(), run).unwrap();
+    let mut summary = Summary::new(&simulation);
+    while let Some(sample) = simulation.next_sample().unwrap() {
+        summary.push(sample);
+    }
+    (simulation, summary)
+}
+
+/// The verdict on a run whose error nobody estimated.
+fn verdict(scene: &Scene, run: &Run) -> Verdict {
+    let (simulation, summary) = finished(scene, run);
+    Verdict::of(&summary, &simulation, None, Some(&Judgement::SwitchedOff))
+}
+
+/// The verdict on the estimate of a run alone: it is not carried out.
+fn examined(scene: &Scene, run: &Run) -> Verdict {
+    let simulation = Simulation::start(&scene.drive().unwrap(), run).unwrap();
+    let judgement = Judgement::of(&simulation, run, &|| false);
+    let summary = Summary::new(&simulation);
+    Verdict::of(&summary, &simulation, None, Some(&judgement))
+}
+
+fn names(verdict: &Verdict) -> Vec<&'static str> {
+    verdict.reasons.iter().map(Reason::name).collect()
+}
+
+/// The crank of the marine drive, driven at some speed.
+fn marine(speed: &str) -> Scene {
+    let change = [("sprockets.crank.motion.speed", speed)];
+    scene("marine_two_sprockets", &change)
+}
+
+#[test]
+fn a_run_examined_to_its_end_is_trusted() {
+    let ring = scene("spinning_ring", &[]);
+    let run = run(0.02, 20.0);
+    let (simulation, summary) = finished(&ring, &run);
+    let judgement = Judgement::of(&simulation, &run, &|| false);
+    let verdict = Verdict::of(&summary, &simulation, None, Some(&judgement));
+    assert_eq!(verdict.trust, Trust::Trusted, "{verdict}");
+    assert!(verdict.reasons.is_empty());
+}
+
+/// Defect A4: a fifth of the energy is missing, and nothing but a line of the summary said so.
+#[test]
+fn energy_that_does_not_add_up_is_distrusted() {
+    let change = [("sprockets.chainring.motion.speed", "-5000 rpm")];
+    let verdict = verdict(&scene("bicycle", &change), &run(3e-3, 300.0));
+    assert_eq!(verdict.trust, Trust::Distrusted);
+    assert!(names(&verdict).contains(&"energy-missing"), "{verdict}");
+    assert!(verdict.warning().unwrap().contains("does not add up"));
+}
+
+/// Defect A5: of the energy moved 1 % is missing, which is more than all that is lost.
+#[test]
+fn losses_that_are_wrong_are_distrusted() {
+    let rough = verdict(&scene("motorcycle", &[]), &run(1e-4, 10.0));
+    assert_eq!(rough.trust, Trust::Distrusted, "{rough}");
+    let found = names(&rough);
+    assert!(found.contains(&"losses-wrong") && found.contains(&"efficiency-above-one"));
+
+    let fine = verdict(&scene("industrial_16b", &[]), &run(2e-3, 10.0));
+    assert_eq!(names(&fine), ["not-estimated"], "{fine}");
+}
+
+#[test]
+fn losses_that_are_uncertain_are_a_caution() {
+    let coarse = Run {
+        step: Some(2.3e-5),
+        ..run(0.05, 50.0)
+    };
+    let found = verdict(&scene("marine_engine", &[]), &coarse);
+    assert!(names(&found).contains(&"losses-uncertain"), "{found}");
+    assert_eq!(found.trust, Trust::Caution);
+}
+
+/// Defect D: a window of a microsecond was distrusted for the error of its first step.
+#[test]
+fn a_run_of_a_step_is_too_short_to_judge() {
+    let found = verdict(&scene("motorcycle", &[]), &run(1e-6, 1.0));
+    assert_eq!(names(&found), ["too-short", "not-estimated"], "{found}");
+}
+
+/// Defect A3: spans that no roller holds were left out without a word.
+#[test]
+fn a_span_without_a_tension_is_named() {
+    let flying = marine("-10000 rpm");
+    let (simulation, summary) = finished(&flying, &run(0.02, 100.0));
+    let report = summary.report(&simulation).to_string();
+    assert!(report.contains("no roller holds it in"), "{report}");
+    let found = Verdict::of(&summary, &simulation, None, None);
+    assert!(names(&found).contains(&"span-rarely-held"), "{found}");
+    assert!(found.is_distrusted());
+
+    let found = verdict(&marine("-500 rpm"), &run(0.02, 1000.0));
+    assert!(names(&found).contains(&"span-not-held"), "{found}");
+    assert!(!names(&found).contains(&"span-rarely-held"), "{found}");
+
+    let found = verdict(&marine("-127 rpm"), &run(0.02, 100.0));
+    assert!(!found.to_string().contains("span"), "{found}");
+}
+
+#[test]
+fn a_force_that_is_not_a_number_is_distrusted() {
+    let ring = scene("spinning_ring", &[]);
+    let (simulation, mut summary) = finished(&ring, &run(5e-3, 5.0));
+    let mut sample = simulation.observation().clone();
+    sample.link_tension[3] = f64::NAN;
+    summary.push(&sample);
+    let found = Verdict::of(&summary, &simulation, None, None);
+    assert_eq!(names(&found)[0], "not-finite");
+    assert!(found.is_distrusted());
+}
+
+/// Defect A3: at 1000 rpm no roller holds a span for some time; links are compared, which err far more than the spans
+/// were said to.
+#[test]
+fn where_a_span_has_no_tension_links_are_examined() {
+    let (fast, slow) = (marine("-1000 rpm"), marine("-127 rpm"));
+    let found = examined(&fast, &run(0.02, 100.0));
+    assert!(names(&found).contains(&"spans-not-examined"), "{found}");
+    let found = examined(&slow, &run(0.02, 100.0));
+    assert!(!names(&found).contains(&"spans-not-examined"), "{found}");
+}
+
+#[test]
+fn an_accuracy_that_is_missed_is_a_caution() {
+    let ring = scene("spinning_ring", &[]);
+    let start = ring.drive().unwrap().assemble().unwrap();
+    let settings = run(5e-3, 5.0);
+    let (simulation, summary) = finished(&ring, &settings);
+    let of = |accuracy: f64| {
+        let choice: Choice = choose(&start, &settings, accuracy, &|| false).unwrap();
+        Verdict::of(
+            &summary,
+            &simulation,
+            Some(&choice),
+            Some(&Judgement::SwitchedOff),
+        )
+    };
+    assert!(names(&of(1e-15)).contains(&"accuracy-missed"));
+    assert!(!names(&of(1e-2)).contains(&"accuracy-missed"));
+}
+
+#[test]
+fn waveforms_that_end_within_the_run_are_a_caution() {
+    let settings = Run {
+        step: Some(2e-6),
+        ..run(6e-3, 6.0)
+    };
+    let found = examined(&scene("bicycle_slack", &[]), &settings);
+    assert_eq!(found.trust, Trust::Caution);
+    assert!(names(&found).contains(&"horizon-within-run"), "{found}");
+    assert!(found.note().contains("of link tensions to"), "{found}");
+    let found = examined(&scene("spinning_ring", &[]), &run(6e-3, 6.0));
+    assert!(!names(&found).contains(&"horizon-within-run"), "{found}");
+}
+
+/// Defect A8: 1.2 ms of 50 ms were looked at, and the rest was said to be fine.
+#[test]
+fn what_was_not_looked_at_is_said() {
+    let timing = scene("timing_drive", &[]);
+    let found = examined(&timing, &run(0.05, 50.0));
+    assert_eq!(names(&found), ["not-examined"], "{found}");
+    assert_eq!(found.note(), "not examined beyond 1.2 ms of 50 ms");
+    // A run as short as the window is examined throughout.
+    let found = examined(&timing, &run(2e-4, 50.0));
+    assert_eq!(found.trust, Trust::Trusted, "{found}");
+}
+
+#[test]
+fn an_estimate_that_was_not_made_is_a_caution() {
+    let ring = scene("spinning_ring", &[]);
+    let (simulation, summary) = finished(&ring, &run(5e-3, 5.0));
+    for judgement in [
+        None,
+        Some(Judgement::SwitchedOff),
+        Some(Judgement::Interrupted),
+        Some(Judgement::Failed("the twin overflowed".to_owned())),
+    ] {
+        let found = Verdict::of(&summary, &simulation, None, judgement.as_ref());
+        assert_eq!(names(&found), ["not-estimated"], "{found}");
+        assert_eq!(found.trust, Trust::Caution);
+    }
+}
+
+/// Defect A4: the verdict is among the attributes, in a store as in memory.
+#[test]
+fn results_carry_the_verdict() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("rough.zarr");
+    let settings = Settings::default()
+        .with("until", Given::Number(1e-4))
+        .with("every", Given::Number(1e-5))
+        .with("method", Given::Text("implicit-damping".to_owned()));
+    let request = Request::new(&scene("motorcycle", &[]), &settings).unwrap();
+    let mut memory = Memory::default();
+    let told = execute(&request, &mut memory, &|| false).unwrap();
+    let mut store = InStore::new(path.clone(), Existing::Keep);
+    execute(&request, &mut store, &|| false).unwrap();
+    let text = std::fs::read(path.join("zarr.json")).unwrap();
+    let document: serde_json::Value = serde_json::from_slice(&text).unwrap();
+    let verdict = &told.verdict;
+    for attributes in [
+        &told.attributes,
+        document["attributes"].as_object().unwrap(),
+    ] {
+        assert_eq!(attributes["verdict"], "distrusted");
+        assert_eq!(attributes["reasons"], names(verdict).join(" "));
+        assert_eq!(attributes["verdict_note"], verdict.note());
+        let summary = attributes["summary"].as_str().unwrap();
+        assert!(summary.starts_with("verdict                  distrusted\n"));
+    }
+}
