@@ -180,6 +180,8 @@ pub fn execute<S: Sink>(
     }
     let run = provenance.run.clone();
     let mut simulation = Simulation::from_assembled(start, &run).map_err(begun)?;
+    let full = request.scene.resolved_for(&run, simulation.method());
+    provenance.resolved_scene = Some(full.map_err(RunError::Scene)?.text().to_owned());
     let channels = Channel::chosen(&request.record, simulation.system()).map_err(begun)?;
     sink.begin(&simulation, &channels, &provenance)
         .map_err(RunError::Sink)?;
