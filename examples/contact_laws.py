@@ -22,20 +22,20 @@ LAWS = {
     "conformal": "conformal",
     "cylindrical": "cylindrical (enhanced)",
     "radzimovsky": "Radzimovsky",
-    "esdu_78035": "ESDU 78035",
-    "dubowsky_freudenstein": "Dubowsky–Freudenstein",
+    "esdu-78035": "ESDU 78035",
+    "dubowsky-freudenstein": "Dubowsky–Freudenstein",
     "hertz": "Hertz point contact",
 }
 DISSIPATIONS = [
     "exact",
-    "hunt_crossley",
-    "lankarani_nikravesh",
-    "lee_wang",
-    "herbert_mcwhannell",
+    "hunt-crossley",
+    "lankarani-nikravesh",
+    "lee-wang",
+    "herbert-mcwhannell",
     "gonthier",
-    "zhiying_qishao",
+    "zhiying-qishao",
     "flores",
-    "hu_guo",
+    "hu-guo",
 ]
 # Where the laws are compared: radii [mm], least depth [mm], greatest depth [mm] and as a share of
 # the clearance.

@@ -17,7 +17,7 @@ from chaindrive import errors, kinematics, plot, scenes
 from chaindrive._core import __version__
 from chaindrive.catalogue import catalogue
 from chaindrive.channels import channels
-from chaindrive.drive import Drive, load, schema
+from chaindrive.drive import Difference, Drive, diff, load, schema
 from chaindrive.errors import (
     AssemblyError,
     ChaindriveError,
@@ -40,6 +40,7 @@ from chaindrive.sweeping import sweep
 __all__ = [
     "AssemblyError",
     "ChaindriveError",
+    "Difference",
     "DistrustedResultWarning",
     "Drive",
     "Friction",
@@ -55,6 +56,7 @@ __all__ = [
     "__version__",
     "catalogue",
     "channels",
+    "diff",
     "errors",
     "friction",
     "kinematics",

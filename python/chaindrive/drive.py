@@ -6,20 +6,20 @@ import json
 import tomllib
 from collections.abc import Callable, Mapping
 from os import PathLike, fspath
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
 from chaindrive import _core
-from chaindrive.errors import ParameterError
+from chaindrive.errors import ParameterError, SceneError
 from chaindrive.law import Law
 
 if TYPE_CHECKING:
     from typing import Self
 
-__all__ = ["Drive", "load", "schema"]
+__all__ = ["Difference", "Drive", "diff", "load", "schema"]
 
 
 class Drive:
@@ -105,6 +105,22 @@ class Drive:
         pairs = [(path, _json(value, path)) for path, value in changes.items()]
         return Drive._of(self._inner.replace(pairs))
 
+    def resolved(self) -> Drive:
+        """Return the drive with every default of its scene written out.
+
+        Its `text` is TOML in SI units, in which every value that the scene leaves open stands with
+        its source or "assumed" as a comment. It makes the same drive to the last bit, whatever the
+        defaults of later versions are.
+
+        Examples
+        --------
+        >>> import chaindrive as cd
+        >>> full = cd.scenes.spinning_ring().resolved()
+        >>> [line for line in full.text.splitlines() if "damping_ratio" in line][0][:31]
+        'damping_ratio = 0.03 # assumed:'
+        """
+        return Drive._of(self._inner.resolved())
+
     @property
     def text(self) -> str:
         """The text that reproduces the drive, in TOML or JSON as it was written."""
@@ -185,13 +201,11 @@ class Drive:
         AssemblyError
             The drive does not close or settle.
         """
-        stages = self._inner.statics()
-        facts = self.describe()
-        spans = [span["name"] for span in facts["spans"]]
-        span_tensions = [stage["span_tensions"] for stage in facts["statics"]]
+        spans, stages = self._inner.statics()
+        span_tensions = [tensions for _, _, tensions, _ in stages]
         count = len(stages)
         shape = (count, self.links)
-        tensions = np.reshape([tension for _, tension, _ in stages], shape)
+        tensions = np.reshape([tensions for _, tensions, *_ in stages], shape)
         contacts = np.reshape([closed for *_, closed in stages], (count, len(self.sprockets)))
         force = {"units": "N"}
         return xr.Dataset(
@@ -300,13 +314,66 @@ class Description(dict[str, Any]):
     __repr__ = __str__
 
 
+class Difference(NamedTuple):
+    """A value that two drives do not have in common."""
+
+    path: str
+    """Place in the scenes, with entries of lists by name."""
+    first: str | None
+    """What the first drive has there, in SI units; None for nothing."""
+    second: str | None
+    """What the second drive has there."""
+
+
+def diff(
+    first: Drive | xr.Dataset | str | PathLike[str],
+    second: Drive | xr.Dataset | str | PathLike[str],
+) -> list[Difference]:
+    """Return what differs between two drives, defaults included.
+
+    Parameters
+    ----------
+    first, second
+        Drives, results of `simulate`, or paths of scenes or results.
+
+    Returns
+    -------
+    list of Difference
+        Empty when both are the same drive, however their scenes are written.
+
+    Raises
+    ------
+    SceneError
+        A path that cannot be read, or a result that carries no scene.
+
+    Examples
+    --------
+    >>> import chaindrive as cd
+    >>> ring = cd.scenes.spinning_ring()
+    >>> cd.diff(ring, ring.replace({"chain.links": 24}))
+    [Difference(path='chain.links', first='20', second='24')]
+    """
+    return [Difference(*told) for told in _core.diff(_drive(first), _drive(second))]
+
+
+def _drive(of: Drive | xr.Dataset | str | PathLike[str]) -> _core.Drive:
+    if isinstance(of, Drive):
+        return of._inner
+    if isinstance(of, xr.Dataset):
+        text = of.attrs.get("resolved_scene", of.attrs.get("scene"))
+        if text is None:
+            raise SceneError("the dataset carries no scene: it is no result of `simulate`")
+        return _core.Drive.from_text(text, of.attrs.get("scene_name", "result"))
+    return _core.Drive.read(fspath(of))
+
+
 def load(path: str | PathLike[str]) -> Drive:
-    """Read a scene file, TOML or JSON.
+    """Read a scene file, TOML or JSON, or the scene of a result.
 
     Parameters
     ----------
     path
-        The file.
+        The file, or the Zarr folder of a result.
 
     Returns
     -------

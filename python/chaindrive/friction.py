@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from chaindrive import _core
 from chaindrive.arrays import Values, flatten, shaped
-from chaindrive.law import json_of
+from chaindrive.law import json_of, named
 
 __all__ = ["Friction", "Rub", "friction"]
 
@@ -94,9 +94,9 @@ def friction(kind: str, **parameters: float) -> Friction:
         ``"coulomb"`` with ``coefficient`` [–] and ``slip_speed`` [m/s];
         ``"ambrosio"`` with ``coefficient``, ``lower_speed`` and ``upper_speed``;
         ``"threlfall"`` with ``coefficient`` and ``slip_speed``;
-        ``"bengisu_akay"`` with ``static_coefficient``, ``coefficient``, ``slip_speed`` and
+        ``"bengisu-akay"`` with ``static_coefficient``, ``coefficient``, ``slip_speed`` and
         ``decay`` [s/m];
-        ``"brown_mcphee"`` with ``static_coefficient``, ``coefficient``, ``slip_speed``, and if
+        ``"brown-mcphee"`` with ``static_coefficient``, ``coefficient``, ``slip_speed``, and if
         wanted ``viscosity`` [N s/m] and ``transition_force`` [N];
         ``"lugre"`` with ``static_coefficient``, ``coefficient``, ``slip_speed``, ``stiffness``
         [1/m], ``damping`` [s/m] and ``viscosity`` [s/m], per normal force.
@@ -115,9 +115,9 @@ def friction(kind: str, **parameters: float) -> Friction:
     Examples
     --------
     >>> import chaindrive as cd
-    >>> dry = cd.friction("brown_mcphee", static_coefficient=0.15, coefficient=0.1, slip_speed=1e-3)
+    >>> dry = cd.friction("brown-mcphee", static_coefficient=0.15, coefficient=0.1, slip_speed=1e-3)
     >>> dry.force(1000.0, [-1e-3, 0.0, 1.0]).round(1)
     array([ 149.9,   -0. , -100. ])
     """
-    text = json_of({"kind": kind, **parameters}, "friction")
+    text = json_of({"kind": named(kind), **parameters}, "friction")
     return Friction._of(_core.Friction.from_json(text))

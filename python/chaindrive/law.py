@@ -147,7 +147,7 @@ def law(
     ----------
     kind
         With the parameters of the law: ``"power"`` with ``stiffness`` [N/mⁿ] and ``exponent`` [–];
-        ``"johnson"``, ``"radzimovsky"``, ``"esdu_78035"`` and ``"dubowsky_freudenstein"`` with
+        ``"johnson"``, ``"radzimovsky"``, ``"esdu-78035"`` and ``"dubowsky-freudenstein"`` with
         ``length_scale`` [m] and ``modulus_length`` [N/m]; ``"conformal"`` with ``clearance`` [m]
         and ``modulus_length``; ``"cylindrical"`` with ``stiffness`` and ``exponent``.
 
@@ -161,13 +161,13 @@ def law(
         the radii, and outside with more than 300 mm; `Law.parameters` tells.
     restitution
         Coefficient of restitution [–], after Lankarani and Nikravesh unless ``dissipation`` names
-        another: ``"exact"``, ``"hunt_crossley"``, ``"lee_wang"``, ``"herbert_mcwhannell"``,
-        ``"gonthier"``, ``"zhiying_qishao"``, ``"flores"``, ``"hu_guo"``.
+        another: ``"exact"``, ``"hunt-crossley"``, ``"lee-wang"``, ``"herbert-mcwhannell"``,
+        ``"gonthier"``, ``"zhiying-qishao"``, ``"flores"``, ``"hu-guo"``.
     damping
         Viscous damping [N s/m]: a Kelvin–Voigt element.
     dissipation
         The name of a dissipation, or the name with its parameters,
-        ``{"kind": "lankarani_nikravesh", "restitution": 0.8}``. With none of these three the law
+        ``{"kind": "lankarani-nikravesh", "restitution": 0.8}``. With none of these three the law
         is elastic.
     onset_floor
         Least speed at onset a hysteretic dissipation reckons with [m/s].
@@ -197,6 +197,7 @@ def law(
     (263.2, 0.7)
     """
     described = json_of(_dissipation(restitution, damping, dissipation), "dissipation")
+    kind = named(kind)
     if any(name in parameters for name in _GEOMETRY):
         finite = json.loads(json_of(parameters, "law"))
         arrangement, measures, length, modulus = _cylinders(finite)
@@ -214,6 +215,11 @@ def law(
         "law",
     )
     return Law._of(_core.Law.from_json(text))
+
+
+def named(kind: Any) -> Any:
+    """Return the name of a law as scenes spell it; underscores will do for hyphens."""
+    return kind.replace("_", "-") if isinstance(kind, str) else kind
 
 
 def json_of(described: Mapping[str, Any], what: str) -> str:
@@ -241,11 +247,11 @@ def _dissipation(
             f"{' and '.join(names)} are given, must be one of them", names[1], "keep one of them"
         )
     if isinstance(dissipation, Mapping):
-        return dict(dissipation)
+        return {**dissipation, "kind": named(dissipation.get("kind"))}
     if dissipation is None:
-        short = {"restitution": "lankarani_nikravesh", "damping": "viscous"}
+        short = {"restitution": "lankarani-nikravesh", "damping": "viscous"}
         dissipation = short[names[0]] if names else "none"
-    return {"kind": dissipation, **given}
+    return {"kind": named(dissipation), **given}
 
 
 def _cylinders(parameters: Mapping[str, float]) -> tuple[str, list[float], float, float]:

@@ -59,8 +59,8 @@ CYLINDERS = [
     "johnson",
     "conformal",
     "radzimovsky",
-    "esdu_78035",
-    "dubowsky_freudenstein",
+    "esdu-78035",
+    "dubowsky-freudenstein",
     "cylindrical",
     "hertz",
 ]
@@ -72,8 +72,8 @@ CYLINDERS = [
         ("johnson", 263.3, 60.61),
         ("conformal", 262.8, 60.61),
         ("radzimovsky", 249.6, 59.23),
-        ("esdu_78035", 190.7, None),
-        ("dubowsky_freudenstein", 180.6, None),
+        ("esdu-78035", 190.7, None),
+        ("dubowsky-freudenstein", 180.6, None),
         ("cylindrical", 268.1, 55.92),
         ("hertz", 39.14, 8.588),
     ],
@@ -118,14 +118,14 @@ def test_response_is_consistent(kind, pair):
     ("dissipation", "delivered"),
     [
         ("exact", 0.5),
-        ("hunt_crossley", 0.6630),
-        ("lankarani_nikravesh", 0.7252),
-        ("lee_wang", 0.7992),
-        ("herbert_mcwhannell", 0.5936),
+        ("hunt-crossley", 0.6630),
+        ("lankarani-nikravesh", 0.7252),
+        ("lee-wang", 0.7992),
+        ("herbert-mcwhannell", 0.5936),
         ("gonthier", 0.4877),
-        ("zhiying_qishao", 0.4826),
+        ("zhiying-qishao", 0.4826),
         ("flores", 0.4704),
-        ("hu_guo", 0.4877),
+        ("hu-guo", 0.4877),
     ],
 )
 def test_restitution_delivered(dissipation, delivered):
@@ -148,13 +148,13 @@ def test_numbers_give_numbers(steel):
 
 def test_friction():
     """Values of the printed formulas, see crates/contact/tests/friction.rs."""
-    dry = cd.friction("brown_mcphee", static_coefficient=0.15, coefficient=0.1, slip_speed=1e-3)
+    dry = cd.friction("brown-mcphee", static_coefficient=0.15, coefficient=0.1, slip_speed=1e-3)
     force = dry.force(2.0, [-1e-3, 0.0, 2e-3, 0.1])
     np.testing.assert_allclose(force, [0.2998658599, 0.0, -0.2653060774, -0.2000015990], atol=1e-9)
     assert isinstance(dry.force(1.0, 1e-3), float)
     assert dry.damping(1.0, 0.0) == pytest.approx((4 * 0.1 + 16 / 9 * 0.05) / 1e-3)
     assert dry.damping(np.ones((3, 1)), np.ones(2)).shape == (3, 2)
-    assert dry.parameters["kind"] == "brown_mcphee"
+    assert dry.parameters["kind"] == "brown-mcphee"
     assert cd.friction("none").force(1.0, 1.0) == 0.0
     bristles = cd.friction(
         "lugre",
@@ -179,7 +179,7 @@ def test_friction():
 def test_dissipations_have_short_forms():
     power = {"stiffness": 1e8, "exponent": 1.0}
     short = cd.law("power", **power, restitution=0.9)
-    long = cd.law("power", **power, dissipation={"kind": "lankarani_nikravesh", "restitution": 0.9})
+    long = cd.law("power", **power, dissipation={"kind": "lankarani-nikravesh", "restitution": 0.9})
     assert short.parameters == long.parameters
     assert cd.law("power", **power, damping=10.0).damping(1e-3) == 10.0
     named = cd.law("power", **power, dissipation="flores", restitution=0.9)

@@ -138,12 +138,6 @@ impl Description {
         let start = at_start(&assembled);
         let system = &assembled.system;
         let spans = spans_at_rest(drive, &assembled);
-        let stage = |statics: &Statics| StaticStage {
-            stage: statics.stage,
-            iterations: statics.iterations,
-            residual: statics.residual,
-            span_tensions: route::tensions(drive, &assembled, &statics.tensions),
-        };
         let speed = |x: f64, y: f64| x.hypot(y);
         let speeds = start
             .roller_vx
@@ -159,7 +153,7 @@ impl Description {
                 travel: fitting.travel,
             }),
             stops: route::stops(drive, &assembled, &start),
-            statics: assembled.statics.iter().map(stage).collect(),
+            statics: static_stages(drive, &assembled),
             model: model(drive, &assembled),
             time_scales: TimeScales {
                 stiffest: system.time_scale(),
@@ -181,6 +175,17 @@ impl Description {
         self.cost.unless_chosen_for = accuracy;
         self
     }
+}
+
+/// The static states on the way to the start of an assembled drive.
+pub fn static_stages(drive: &Drive, assembled: &Assembled) -> Vec<StaticStage> {
+    let stage = |statics: &Statics| StaticStage {
+        stage: statics.stage,
+        iterations: statics.iterations,
+        residual: statics.residual,
+        span_tensions: route::tensions(drive, assembled, &statics.tensions),
+    };
+    assembled.statics.iter().map(stage).collect()
 }
 
 /// Everything that can be read off the assembled drive.

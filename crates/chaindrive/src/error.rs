@@ -85,6 +85,17 @@ pub enum SimulationError {
         reason: String,
     },
 
+    /// A recording that the memory cannot hold.
+    #[error(
+        "the recording takes {gigabytes:.1} GB, more than the memory holds: {samples} samples of {values} values; \
+         record fewer channels (`record`) or fewer samples (`every`), or stream them into a store (`output`)"
+    )]
+    TooLarge {
+        gigabytes: f64,
+        samples: f64,
+        values: usize,
+    },
+
     /// Somebody asked the calculation to stop.
     #[error("interrupted")]
     Interrupted,

@@ -12,6 +12,8 @@ mod zarr;
 
 use chaindrive_mechanics::{Energy, Flow, Observation, Store, System};
 
+use crate::{Run, SimulationError};
+
 pub use attributes::{Ending, Provenance, attributes, figures};
 pub use channel::{Axis, Channel};
 pub use claim::{Claim, is_being_written};
@@ -62,6 +64,37 @@ impl Recording {
             time: Vec::new(),
             columns: channels.iter().map(column).collect(),
             start: None,
+        }
+    }
+
+    /// An empty recording for the samples of a run, if the memory can hold them all.
+    ///
+    /// # Errors
+    /// [`SimulationError::TooLarge`], with the size.
+    pub fn of_run(
+        channels: &[Channel],
+        system: &System,
+        run: &Run,
+    ) -> Result<Self, SimulationError> {
+        let recording = Self::new(channels, system);
+        let values: usize = recording.columns.iter().map(|column| column.width).sum();
+        let samples = (run.until / run.every).floor() + 1.0;
+        // Time and values, eight bytes each.
+        let bytes = 8.0 * samples * (1 + values) as f64;
+        // All of it at once: the system says whether it can, and has it back.
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "what does not fit becomes the largest number, which is refused"
+        )]
+        let room = Vec::<u8>::new().try_reserve_exact(bytes as usize);
+        match room {
+            Ok(()) => Ok(recording),
+            Err(_) => Err(SimulationError::TooLarge {
+                gigabytes: bytes * 1e-9,
+                samples,
+                values,
+            }),
         }
     }
 

@@ -6,4 +6,5 @@ pub(crate) mod describe;
 pub(crate) mod lists;
 pub(crate) mod output;
 pub(crate) mod run;
+pub(crate) mod scenes;
 pub(crate) mod sweep;

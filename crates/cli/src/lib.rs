@@ -21,7 +21,7 @@ use std::ffi::OsString;
 
 use clap::{Parser, Subcommand};
 
-use commands::{bench, check, describe, lists, run as run_command, sweep};
+use commands::{bench, check, describe, lists, run as run_command, scenes, sweep};
 
 /// Exit code of a run that was stopped by Ctrl-C.
 pub const INTERRUPTED: u8 = 130;
@@ -49,6 +49,8 @@ enum Verb {
     Bench(bench::Arguments),
     Check(check::Arguments),
     Describe(describe::Arguments),
+    Resolve(scenes::Resolve),
+    Diff(scenes::Diff),
     Scenes(lists::Scenes),
     /// Prints the JSON Schema of scene files.
     Schema,
@@ -86,6 +88,8 @@ where
         Verb::Bench(arguments) => bench::bench(arguments, interrupted),
         Verb::Check(arguments) => check::check(arguments),
         Verb::Describe(arguments) => describe::describe(arguments, interrupted),
+        Verb::Resolve(arguments) => scenes::resolve(arguments),
+        Verb::Diff(arguments) => scenes::diff(arguments),
         Verb::Scenes(arguments) => lists::scenes(arguments),
         Verb::Schema => lists::schema(),
         Verb::Channels => lists::channels(),

@@ -1,6 +1,5 @@
 //! What to run: a scene, changes to it, and the settings of the command line.
 
-use std::io::Read;
 use std::path::Path;
 
 use chaindrive::scene::presets;
@@ -65,10 +64,7 @@ pub(crate) struct RunArguments {
 /// Reads a scene file, stdin or an embedded scene.
 pub(crate) fn load(name: &str) -> Result<Scene, Failure> {
     if name == "-" {
-        let mut text = String::new();
-        let read = std::io::stdin().read_to_string(&mut text);
-        read.map_err(|error| Failure::Argument(format!("stdin cannot be read: {error}")))?;
-        return Ok(Scene::from_text(&text, "stdin")?);
+        return Ok(Scene::read_from(std::io::stdin().lock(), "stdin")?);
     }
     let path = Path::new(name);
     let preset = presets().iter().any(|(known, _)| *known == name);

@@ -98,16 +98,14 @@ pub enum GeometryError {
     TooFewWheels { wheels: usize },
 
     /// A wheel of a route has a number that is out of range.
-    #[error("wheel {wheel}: {source}")]
+    #[error("{}", faulty(&number, *.wheel, .source))]
     Wheel {
         wheel: usize,
         source: Box<GeometryError>,
     },
 
     /// Two sprockets in one plane need more room.
-    #[error(
-        "wheels {first} and {second} overlap: their centres are {distance} m apart, must be more than {least} m; move one of them"
-    )]
+    #[error("{}", overlap(&number, [*.first, *.second], *.distance, *.least))]
     WheelsOverlap {
         first: usize,
         second: usize,
@@ -116,9 +114,7 @@ pub enum GeometryError {
     },
 
     /// Two neighbours on the route have no common tangent on the sides asked for.
-    #[error(
-        "no straight span leads from wheel {from} to wheel {to}: their centres are {distance} m apart, must be more than {least} m; move one of them, or put it on the other side of the chain"
-    )]
+    #[error("{}", no_tangent(&number, [*.from, *.to], *.distance, *.least))]
     NoTangent {
         from: usize,
         to: usize,
@@ -127,9 +123,7 @@ pub enum GeometryError {
     },
 
     /// The chain crosses itself, or misses a wheel.
-    #[error(
-        "the taut chain turns {turns:.0} times on its way round, must be once (+1 or -1): at wheel {wheel} it would wrap {wrap:.1} degrees; check the order of the wheels, and whether that wheel touches the chain on the side given"
-    )]
+    #[error("{}", turns_wrongly(&number, *.turns, *.wheel, *.wrap))]
     RouteTurns { turns: f64, wheel: usize, wrap: f64 },
 
     /// Fewer links than a drive needs.
@@ -137,9 +131,7 @@ pub enum GeometryError {
     TooFewLinks { links: f64, least: f64 },
 
     /// No way of laying the chain into the teeth was found.
-    #[error(
-        "no link count reaches from wheel {from} into a seat of wheel {to}; move one of them apart, or compare the pitch with the wheels"
-    )]
+    #[error("{}", no_seat(&number, [*.from, *.to]))]
     NoSeat { from: usize, to: usize },
 
     /// The number of links does not fit the wheels.
@@ -164,6 +156,37 @@ pub enum GeometryError {
 }
 
 impl GeometryError {
+    /// The message with a name instead of the number of a wheel, counted from 0 along the route.
+    ///
+    /// ```
+    /// use chaindrive_geometry::GeometryError;
+    ///
+    /// let error = GeometryError::NoSeat { from: 0, to: 1 };
+    /// assert!(error.to_string().contains("from wheel 0"));
+    /// let named = error.with_names(&|wheel| ["`crank`", "`cam`"][wheel].to_owned());
+    /// assert!(named.contains("from `crank` into a seat of `cam`"));
+    /// ```
+    pub fn with_names(&self, name: &dyn Fn(usize) -> String) -> String {
+        match self {
+            Self::Wheel { wheel, source } => faulty(name, *wheel, source),
+            Self::WheelsOverlap {
+                first,
+                second,
+                distance,
+                least,
+            } => overlap(name, [*first, *second], *distance, *least),
+            Self::NoTangent {
+                from,
+                to,
+                distance,
+                least,
+            } => no_tangent(name, [*from, *to], *distance, *least),
+            Self::RouteTurns { turns, wheel, wrap } => turns_wrongly(name, *turns, *wheel, *wrap),
+            Self::NoSeat { from, to } => no_seat(name, [*from, *to]),
+            other => other.to_string(),
+        }
+    }
+
     /// Refuses a number that is infinite or not a number.
     pub(crate) fn finite(what: &'static str, value: f64) -> Result<(), Self> {
         if value.is_finite() {
@@ -186,4 +209,44 @@ impl GeometryError {
             })
         }
     }
+}
+
+/// What a wheel is called.
+type Name<'n> = &'n dyn Fn(usize) -> String;
+
+/// What a wheel is called where only its place on the route is known.
+fn number(wheel: usize) -> String {
+    format!("wheel {wheel}")
+}
+
+fn faulty(name: Name<'_>, wheel: usize, source: &GeometryError) -> String {
+    format!("{}: {source}", name(wheel))
+}
+
+fn overlap(name: Name<'_>, [first, second]: [usize; 2], distance: f64, least: f64) -> String {
+    let (first, second) = (name(first), name(second));
+    format!(
+        "{first} and {second} overlap: their centres are {distance} m apart, must be more than {least} m; move one of them"
+    )
+}
+
+fn no_tangent(name: Name<'_>, [from, to]: [usize; 2], distance: f64, least: f64) -> String {
+    let (from, to) = (name(from), name(to));
+    format!(
+        "no straight span leads from {from} to {to}: their centres are {distance} m apart, must be more than {least} m; move one of them, or put it on the other side of the chain"
+    )
+}
+
+fn turns_wrongly(name: Name<'_>, turns: f64, wheel: usize, wrap: f64) -> String {
+    let wheel = name(wheel);
+    format!(
+        "the taut chain turns {turns:.0} times on its way round, must be once (+1 or -1): at {wheel} it would wrap {wrap:.1} degrees; check the order of the stops, and on which side of the chain {wheel} lies"
+    )
+}
+
+fn no_seat(name: Name<'_>, [from, to]: [usize; 2]) -> String {
+    let (from, to) = (name(from), name(to));
+    format!(
+        "no link count reaches from {from} into a seat of {to}; move one of them apart, or compare the pitch with the teeth"
+    )
 }

@@ -78,6 +78,13 @@ pub enum AssemblyError {
     #[error(transparent)]
     Geometry(#[from] GeometryError),
 
+    /// The chain does not lie around the stops of its route, by name.
+    #[error("{problem}")]
+    Route {
+        problem: String,
+        source: GeometryError,
+    },
+
     /// Newton's iteration for the static state ended without converging.
     #[error(
         "static equilibrium not found while applying {stage}: residual {residual:.1e} of the chain tension after {iterations} iterations; raise the pretension, or start with `settle = false`"
@@ -101,4 +108,17 @@ pub enum AssemblyError {
     /// The chain does not lie between the parts as described.
     #[error("{problem}")]
     Layout { problem: String },
+}
+
+impl AssemblyError {
+    /// An error of the geometry with the names of the stops.
+    pub(crate) fn with_names(self, name: &dyn Fn(usize) -> String) -> Self {
+        match self {
+            Self::Geometry(source) => Self::Route {
+                problem: source.with_names(name),
+                source,
+            },
+            other => other,
+        }
+    }
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use chaindrive::catalogue::{CatalogueChain, Number};
+use chaindrive::describe::{spans_at_rest, static_stages};
 use chaindrive::scene::{self, Scene};
 use chaindrive::{Channel, Description, Mode, Run};
 use chaindrive_mechanics::{ChainModel, Joint, RollerModel};
@@ -15,8 +16,13 @@ use crate::drawing;
 use crate::errors::{OrRaise, parameter};
 use crate::law::Law;
 
-/// Name, link tensions and closed contacts of a static stage.
-type StaticStage<'py> = (&'static str, Bound<'py, PyArray1<f64>>, Vec<usize>);
+/// Name, link tensions, span tensions and closed contacts of a static stage.
+type StaticStage<'py> = (
+    &'static str,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Vec<usize>,
+);
 
 /// A scene and the drive it describes.
 #[pyclass(frozen, module = "chaindrive._core")]
@@ -73,6 +79,11 @@ impl Drive {
             scene = scene.replace_json(&path, &value).or_raise()?;
         }
         Self::new(scene)
+    }
+
+    /// The drive with every default written out.
+    fn resolved(&self) -> PyResult<Self> {
+        Self::new(self.scene.resolved().or_raise()?)
     }
 
     /// The text that reproduces the drive.
@@ -197,14 +208,24 @@ impl Drive {
         Ok((description.to_string(), json))
     }
 
-    /// Link tensions and closed contacts after every static stage.
-    fn statics<'py>(&self, py: Python<'py>) -> PyResult<Vec<StaticStage<'py>>> {
-        let assembled = py.detach(|| self.drive.assemble()).or_raise()?;
-        let stages = assembled.statics.into_iter().map(|stage| {
+    /// Names of the spans; link tensions, span tensions and closed contacts after every static stage.
+    fn statics<'py>(&self, py: Python<'py>) -> PyResult<(Vec<String>, Vec<StaticStage<'py>>)> {
+        let (spans, told, assembled) = py
+            .detach(|| {
+                let assembled = self.drive.assemble()?;
+                let spans = spans_at_rest(&self.drive, &assembled);
+                let told = static_stages(&self.drive, &assembled);
+                Ok::<_, chaindrive_mechanics::AssemblyError>((spans, told, assembled))
+            })
+            .or_raise()?;
+        let stages = assembled.statics.into_iter().zip(told);
+        let stages = stages.map(|(stage, told)| {
             let tensions = PyArray1::from_vec(py, stage.tensions);
-            (stage.stage, tensions, stage.contacts)
+            let span_tensions = PyArray1::from_vec(py, told.span_tensions);
+            (stage.stage, tensions, span_tensions, stage.contacts)
         });
-        Ok(stages.collect())
+        let names = spans.into_iter().map(|span| span.name);
+        Ok((names.collect(), stages.collect()))
     }
 
     /// Natural frequencies and mode shapes about the static state.
@@ -240,6 +261,19 @@ impl Drive {
     fn drawing<'py>(&self, py: Python<'py>, settled: bool) -> PyResult<Bound<'py, PyDict>> {
         drawing::of(py, &self.drive, settled)
     }
+}
+
+/// Place and values of everything in which two drives differ.
+#[pyfunction]
+pub(crate) fn diff(
+    first: &Drive,
+    second: &Drive,
+) -> PyResult<Vec<(String, Option<String>, Option<String>)>> {
+    let differences = scene::diff(&first.scene, &second.scene).or_raise()?;
+    let told = differences
+        .into_iter()
+        .map(|it| (it.path, it.first, it.second));
+    Ok(told.collect())
 }
 
 /// Name and one-line description of every embedded scene.

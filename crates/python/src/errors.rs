@@ -1,7 +1,5 @@
 //! Errors of the library as exceptions of `chaindrive.errors`.
 
-use std::convert::Infallible;
-
 use chaindrive::record::WriteError;
 use chaindrive::scene::SceneError;
 use chaindrive::sweep::SweepError;
@@ -107,6 +105,11 @@ impl IntoException for SimulationError {
             Self::Assembly(error) => error.exception(),
             Self::Integration(error) => error.exception(),
             Self::Setting { name, allowed, .. } => parameter(message, name, allowed),
+            Self::TooLarge { .. } => python::ParameterError::new_err((
+                message,
+                "every",
+                "record fewer channels, or give `output`",
+            )),
             Self::Implicit { works, .. } => {
                 parameter(message, "method", &format!("one of {works}"))
             }
@@ -142,12 +145,6 @@ impl IntoException for RequestError {
             Self::Setting(error) => error.exception(),
             other => python::ParameterError::new_err((other.to_string(),)),
         }
-    }
-}
-
-impl IntoException for Infallible {
-    fn exception(self) -> PyErr {
-        match self {}
     }
 }
 

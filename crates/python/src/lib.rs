@@ -28,11 +28,12 @@ static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 #[pyo3::pymodule(name = "_core")]
 mod core {
     use std::cell::Cell;
+    use std::ffi::OsString;
 
     use pyo3::prelude::*;
 
     #[pymodule_export]
-    use crate::drive::{Drive, catalogue, presets, schema};
+    use crate::drive::{Drive, catalogue, diff, presets, schema};
     #[pymodule_export]
     use crate::friction::Friction;
     #[pymodule_export]
@@ -55,7 +56,7 @@ mod core {
 
     /// Runs the command line with its arguments, the program's name first; returns the exit code.
     #[pyfunction]
-    fn _cli(py: Python<'_>, arguments: Vec<String>) -> u8 {
+    fn _cli(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
         py.detach(|| {
             let asked = Cell::new(false);
             let interrupted = || {

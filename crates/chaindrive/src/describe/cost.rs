@@ -1,5 +1,7 @@
 //! What a run will cost, by taking its first steps.
 
+use std::time::{Duration, Instant};
+
 use chaindrive_integrate::{Method, SecondOrderSystem};
 use chaindrive_mechanics::Assembled;
 use serde::Serialize;
@@ -33,9 +35,19 @@ pub struct Cost {
     pub unless_chosen_for: Option<f64>,
 }
 
-/// Steps to warm up with, and to measure.
+/// Steps to warm up with, and to measure, at most.
 const WARM_UP: f64 = 100.0;
 const MEASURED: f64 = 400.0;
+
+/// Wall time \[s\] that the same may take: a step of a thousand links with clearance takes a tenth of a second.
+const PATIENCE: [Duration; 2] = [Duration::from_millis(100), Duration::from_millis(400)];
+
+/// Goes on to the end of a run, or until patience ends.
+fn take_steps(simulation: &mut Simulation, patience: Duration) -> Result<(), SimulationError> {
+    let begin = Instant::now();
+    while simulation.next_sample()?.is_some() && begin.elapsed() < patience {}
+    Ok(())
+}
 
 pub(super) fn measure(assembled: &Assembled, run: &Run) -> Result<Cost, SimulationError> {
     let method = run.method(&assembled.system);
@@ -53,13 +65,14 @@ pub(super) fn measure(assembled: &Assembled, run: &Run) -> Result<Cost, Simulati
     let warm_up = (WARM_UP * step).min(0.2 * run.until);
     let trial = |until: f64| Run {
         until,
-        every: until,
+        // A sample a step, to look at the clock between them.
+        every: step.min(until),
         ..run.clone()
     };
     let mut warming = Simulation::from_assembled(assembled.clone(), &trial(warm_up))?;
-    while warming.next_sample()?.is_some() {}
+    take_steps(&mut warming, PATIENCE[0])?;
     let mut simulation = Simulation::from_assembled(assembled.clone(), &trial(measured))?;
-    while simulation.next_sample()?.is_some() {}
+    take_steps(&mut simulation, PATIENCE[1])?;
 
     let taken = simulation.statistics().steps.max(1);
     let time_per_step = simulation.stepping_time() / taken as f64;

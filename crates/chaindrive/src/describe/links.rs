@@ -102,5 +102,5 @@ fn kind(law: serde_json::Result<Value>) -> String {
     let kind = law
         .ok()
         .and_then(|law| Some(law["kind"].as_str()?.to_owned()));
-    kind.unwrap_or_default().replace('_', "-")
+    kind.unwrap_or_default()
 }

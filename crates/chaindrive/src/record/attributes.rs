@@ -23,6 +23,8 @@ pub struct Provenance {
     pub title: String,
     /// The text that reproduces the scene, changes included.
     pub scene: String,
+    /// The scene in full, with the settings as they were in the end; none before the run begins.
+    pub resolved_scene: Option<String>,
     /// File or preset it was read from.
     pub scene_name: String,
     /// Settings of the run.
@@ -39,6 +41,7 @@ impl Provenance {
         Self {
             title: scene.title().to_owned(),
             scene: scene.text().to_owned(),
+            resolved_scene: None,
             scene_name: scene.name().to_owned(),
             run: run.clone(),
             choice: None,
@@ -107,6 +110,9 @@ pub fn attributes(
     }
     story.text("scene_name", &provenance.scene_name);
     story.text("scene", &provenance.scene);
+    if let Some(text) = &provenance.resolved_scene {
+        story.text("resolved_scene", text);
+    }
 
     story.number("until", provenance.run.until);
     story.number("every", provenance.run.every);

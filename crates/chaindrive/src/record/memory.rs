@@ -1,10 +1,8 @@
 //! Results in memory.
 
-use std::convert::Infallible;
-
 use super::{EventTable, Provenance, Recording};
 use crate::run::{End, Sink};
-use crate::{Channel, Simulation};
+use crate::{Channel, Simulation, SimulationError};
 
 /// Keeps samples and contacts in memory.
 #[derive(Clone, Debug, Default)]
@@ -16,20 +14,20 @@ pub struct Memory {
 }
 
 impl Sink for Memory {
-    type Error = Infallible;
+    type Error = SimulationError;
 
     fn begin(
         &mut self,
         simulation: &Simulation,
         channels: &[Channel],
-        _: &Provenance,
-    ) -> Result<(), Infallible> {
-        self.recording = Recording::new(channels, simulation.system());
+        provenance: &Provenance,
+    ) -> Result<(), SimulationError> {
+        self.recording = Recording::of_run(channels, simulation.system(), &provenance.run)?;
         self.events = EventTable::new(simulation.system());
         Ok(())
     }
 
-    fn push(&mut self, simulation: &Simulation) -> Result<(), Infallible> {
+    fn push(&mut self, simulation: &Simulation) -> Result<(), SimulationError> {
         self.recording.push(simulation.observation());
         simulation
             .events()
@@ -38,7 +36,7 @@ impl Sink for Memory {
         Ok(())
     }
 
-    fn end(&mut self, end: &End<'_>) -> Result<(), Infallible> {
+    fn end(&mut self, end: &End<'_>) -> Result<(), SimulationError> {
         let lasting = end.simulation.outstanding_events();
         for event in &lasting {
             self.events.push(event);

@@ -169,7 +169,6 @@ impl ZarrWriter {
     /// samples behind it are for statistics; and `waveform_horizon_of`, the channel on whose errors it was found.
     pub fn judge(&mut self, judgement: &Judgement) {
         self.content.judge(judgement);
-        }
         self.judgement = Some(judgement.clone());
     }
 

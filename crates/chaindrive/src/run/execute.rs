@@ -172,9 +172,11 @@ pub fn execute<S: Sink>(
     let Begun {
         drive,
         mut simulation,
-        provenance,
+        mut provenance,
     } = begin(request, &watch)?;
     let run = provenance.run.clone();
+    let full = request.scene.resolved_for(&run, simulation.method());
+    provenance.resolved_scene = Some(full.map_err(RunError::Scene)?.text().to_owned());
     let channels =
         Channel::chosen(&request.record, simulation.system()).map_err(RunError::Start)?;
     sink.begin(&simulation, &channels, &provenance)

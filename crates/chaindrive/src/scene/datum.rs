@@ -29,7 +29,8 @@ impl Scene {
         let (place, _) = self.tree.locate(path);
         let mut tree = self.tree.clone();
         tree.expand_chain();
-        let unit = validate::unit_of(&mut tree, schema::raw(), &place);
+        let units = validate::units(&mut tree, schema::raw());
+        let unit = units.get(&place).copied();
         match &tree.find(path)?.value {
             Value::Float(number) => Some(Datum::Quantity(*number, unit.unwrap_or("1"))),
             Value::Integer(number) => Some(match unit {

@@ -5,7 +5,7 @@ use toml_edit::{DocumentMut, Item, Value as Toml};
 
 use super::suggest::one_of;
 use super::tree::{Node, Value, is_json, steps};
-use super::{Problem, Scene, SceneError};
+use super::{Problem, Scene, SceneError, limits};
 
 impl Scene {
     /// The scene with one value replaced, checked anew.
@@ -18,6 +18,8 @@ impl Scene {
     /// # Errors
     /// A path that leads nowhere; otherwise those of [`Scene::from_text`].
     pub fn replace(&self, path: &str, value: &str) -> Result<Self, SceneError> {
+        let deep = |problem| SceneError::new(&self.name, vec![problem]);
+        limits::check_toml(value).map_err(deep)?;
         let toml = value
             .trim()
             .parse::<Toml>()
@@ -90,6 +92,7 @@ impl Scene {
 
     /// The steps of a path, with names in lists turned into indices.
     fn keys(&self, path: &str) -> Result<Vec<Key>, SceneError> {
+        limits::check_path(path).map_err(|problem| SceneError::new(&self.name, vec![problem]))?;
         let mut node = Some(&self.tree);
         let mut keys = Vec::new();
         for step in steps(path) {

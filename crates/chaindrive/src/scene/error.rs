@@ -48,13 +48,62 @@ impl fmt::Display for Problem {
     }
 }
 
+/// Problems that are kept: more than anybody mends at once.
+const MOST: usize = 100;
+
+/// Problems as they are found: the first ones, and the number of the rest.
+#[derive(Debug, Default)]
+pub(crate) struct Problems {
+    kept: Vec<Problem>,
+    found: usize,
+}
+
+impl Problems {
+    pub(crate) fn push(&mut self, problem: Problem) {
+        self.push_with(|| problem);
+    }
+
+    /// Counts a problem, and makes it only if it will be kept.
+    pub(crate) fn push_with(&mut self, problem: impl FnOnce() -> Problem) {
+        self.found += 1;
+        if self.kept.len() < MOST {
+            self.kept.push(problem());
+        }
+    }
+
+    /// Number of problems found.
+    pub(crate) fn count(&self) -> usize {
+        self.found
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.found == 0
+    }
+
+    /// Whether a problem of this place is kept.
+    pub(crate) fn speak_of(&self, path: &str) -> bool {
+        self.kept.iter().any(|problem| problem.path == path)
+    }
+
+    /// The error of a text of this name.
+    pub(crate) fn of(self, source_name: &str) -> SceneError {
+        let omitted = self.found - self.kept.len();
+        SceneError {
+            omitted,
+            ..SceneError::new(source_name, self.kept)
+        }
+    }
+}
+
 /// Why a text is not a scene, or a scene not a drive: every problem found, in the order of the text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneError {
     /// Name of the text: a file, a preset, or whatever the caller called it.
     pub source_name: String,
-    /// The problems; at least one.
+    /// The problems; at least one, and at most a hundred.
     pub problems: Vec<Problem>,
+    /// Number of further problems.
+    pub omitted: usize,
 }
 
 impl SceneError {
@@ -63,6 +112,7 @@ impl SceneError {
         Self {
             source_name: source_name.to_owned(),
             problems,
+            omitted: 0,
         }
     }
 }
@@ -75,7 +125,11 @@ impl fmt::Display for SceneError {
             let gap = if problem.line.is_some() { "" } else { " " };
             write!(f, "{end_of_last}{}:{gap}{problem}", self.source_name)?;
         }
-        Ok(())
+        match self.omitted {
+            0 => Ok(()),
+            1 => write!(f, "\n{}: and 1 more problem", self.source_name),
+            more => write!(f, "\n{}: and {more} more problems", self.source_name),
+        }
     }
 }
 

@@ -103,11 +103,40 @@ fn words_of(schema: &Json) -> impl Iterator<Item = &str> {
     listed.chain(schema.get("const")).filter_map(Json::as_str)
 }
 
-/// First line of a description, to stand after "give the".
-pub(crate) fn description(schema: &Json) -> Option<String> {
+/// What to do about a key that is missing: "give the nominal pitch", "say what pushes it".
+pub(crate) fn request(schema: &Json) -> Option<String> {
     let text = schema.get("description")?.as_str()?;
-    let sentence = text.split(['.', ';', ':', ',']).next()?.replace('\n', " ");
+    let sentence = text
+        .split(['.', ';', ':', ',', '('])
+        .next()?
+        .trim()
+        .replace('\n', " ");
     let mut letters = sentence.chars();
     let first = letters.next()?.to_lowercase();
-    Some(first.chain(letters).collect())
+    let sentence: String = first.chain(letters).collect();
+    let word = sentence.split_whitespace().next()?;
+    Some(match word {
+        "what" | "where" | "how" | "which" | "whether" => format!("say {sentence}"),
+        "the" | "a" | "an" | "its" => format!("give {sentence}"),
+        _ => format!("give the {sentence}"),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn requests_are_english() {
+        for (description, request_) in [
+            ("The chain, or the name of one.", "give the chain"),
+            ("Nominal pitch [m]: what …", "give the nominal pitch [m]"),
+            ("What pushes it.", "say what pushes it"),
+            ("Its end (x, y) [m].", "give its end"),
+        ] {
+            let schema = json!({"description": description});
+            assert_eq!(request(&schema).as_deref(), Some(request_));
+        }
+    }
 }

@@ -51,13 +51,17 @@
 //! ```
 
 mod datum;
+mod defaults;
+mod diff;
 mod edit;
 mod error;
 mod expected;
+mod limits;
 mod presets;
 mod quantity;
 mod read;
 mod resolve;
+mod resolved;
 mod schema;
 mod suggest;
 mod tree;
@@ -68,6 +72,7 @@ use chaindrive_mechanics::{Drive, EventKinds};
 use serde::Deserialize;
 
 pub use datum::Datum;
+pub use diff::{Difference, diff};
 pub use error::{Problem, SceneError};
 pub use presets::presets;
 pub use schema::schema;
@@ -117,20 +122,15 @@ impl Scene {
     }
 
     fn from_tree(tree: Node, text: &str, name: &str) -> Result<Self, SceneError> {
+        validate::known_version(&tree).map_err(|problem| SceneError::new(name, vec![problem]))?;
         let mut normalised = tree.clone();
         normalised.expand_chain();
         let problems = validate::validate(&mut normalised, schema::raw());
         if !problems.is_empty() {
-            return Err(SceneError::new(name, problems));
+            return Err(problems.of(name));
         }
-        let content = SceneText::deserialize(normalised.to_json()).map_err(|error| {
-            // The validator has let something pass that serde does not: our mistake, not the user's.
-            let problem = Problem::new("", None, format!("the scene could not be read: {error}"));
-            SceneError::new(
-                name,
-                vec![problem.hint("please report this scene as a bug")],
-            )
-        })?;
+        let content = SceneText::deserialize(normalised.to_json())
+            .map_err(|error| SceneError::new(name, vec![unreadable(&error)]))?;
         Ok(Self {
             name: name.to_owned(),
             text: text.to_owned(),
@@ -144,8 +144,9 @@ impl Scene {
     /// # Errors
     /// Every part out of range and every pair of parts that do not go together.
     pub fn drive(&self) -> Result<Drive, SceneError> {
-        resolve::drive(&self.content, &self.tree)
-            .map_err(|problems| SceneError::new(&self.name, problems))
+        let drive = resolve::drive(&self.content, &self.tree);
+        let drive = drive.map_err(|problems| problems.of(&self.name))?;
+        Ok(drive.0)
     }
 
     /// What the scene shows, in a line; may be empty.
@@ -178,6 +179,12 @@ impl Scene {
             events: events(&run.events),
         }
     }
+}
+
+/// The validator has let something pass that serde does not: our mistake, not the user's.
+fn unreadable(error: &serde_json::Error) -> Problem {
+    let problem = Problem::new("", None, format!("the scene could not be read: {error}"));
+    problem.hint("please report this scene as a bug")
 }
 
 /// What a scene suggests to run and record.

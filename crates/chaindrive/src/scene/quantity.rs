@@ -7,7 +7,7 @@
 use std::borrow::Cow;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::unit::{self, Powers, UnitProblem};
 
@@ -38,7 +38,7 @@ macro_rules! quantities {
         }),*];
         $(
             $(#[$doc])*
-            #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+            #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
             #[serde(transparent)]
             pub(crate) struct $type(
                 /// The value in SI units.

@@ -4,6 +4,8 @@ use serde_json::Value as Json;
 use toml_edit::{Item, TableLike, Value as Toml};
 
 use super::error::Problem;
+use super::limits;
+use super::validate::shorten;
 
 /// A value and the line it stands on.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,6 +63,7 @@ impl Node {
 
     /// Parses TOML.
     pub(crate) fn parse_toml(text: &str) -> Result<Self, Problem> {
+        limits::check_toml(text)?;
         let lines = Lines::new(text);
         let document = toml_edit::Document::parse(text).map_err(|error| {
             let line = error.span().map(|span| lines.at(span.start));
@@ -71,8 +74,12 @@ impl Node {
 
     /// Parses JSON.
     pub(crate) fn parse_json(text: &str) -> Result<Self, Problem> {
+        limits::check_json(text)?;
         let json: Json = serde_json::from_str(text).map_err(|error| {
             let message = error.to_string();
+            if message.starts_with("recursion limit") {
+                return limits::too_deep("", Some(error.line()));
+            }
             let message = message.split(" at line").next().unwrap_or_default();
             Problem::new("", Some(error.line()), format!("not JSON: {message}"))
         })?;
@@ -134,6 +141,14 @@ impl Node {
                 };
                 entry.node.value = Value::Table(vec![named]);
             }
+        }
+    }
+
+    /// A quantity as it was written, with its unit.
+    pub(crate) fn written(&self) -> Option<String> {
+        match &self.value {
+            Value::Text(text) => Some(shorten(text)),
+            _ => None,
         }
     }
 

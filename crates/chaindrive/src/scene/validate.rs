@@ -3,44 +3,72 @@
 //! Afterwards serde can read the tree: what it would refuse has been refused here, with a place,
 //! a line and a hint.
 
+use std::collections::{HashMap, HashSet};
+
 use serde_json::{Map, Value as Json};
 
-use super::error::Problem;
-use super::expected::{Expected, Reading, description, kind_of};
+use super::error::{Problem, Problems};
+use super::expected::{Expected, Reading, kind_of, request};
 use super::quantity::{CONTACT_STIFFNESS, Dimension};
+use super::schema::Version;
 use super::suggest::{nearest, one_of};
 use super::tree::{Entry, Node, Value, push_step};
 
 /// Checks `tree` against `schema` and normalises it: quantities become SI numbers, bare names of
 /// kinds become tables.
-pub(crate) fn validate(tree: &mut Node, schema: &Json) -> Vec<Problem> {
-    let mut validator = Validator::new(schema, "");
+pub(crate) fn validate(tree: &mut Node, schema: &Json) -> Problems {
+    let mut validator = Validator::new(schema);
     validator.visit(tree, schema, "", None);
     validator.problems
 }
 
-/// As [`validate`], of a tree that is valid; returns the SI unit of the quantity at a path.
-pub(crate) fn unit_of(tree: &mut Node, schema: &Json, path: &str) -> Option<&'static str> {
-    let mut validator = Validator::new(schema, path);
+/// SI units of the quantities of a valid tree, by path; the tree is normalised.
+pub(crate) fn units(tree: &mut Node, schema: &Json) -> HashMap<String, &'static str> {
+    let mut validator = Validator::new(schema);
+    validator.units = Some(HashMap::new());
     validator.visit(tree, schema, "", None);
-    validator.unit
+    validator.units.unwrap_or_default()
+}
+
+/// Refuses a format that this version does not know, before all that would be wrong in consequence.
+pub(crate) fn known_version(tree: &Node) -> Result<(), Problem> {
+    for key in ["format", "defaults"] {
+        let Some(node) = tree.get(key) else {
+            continue;
+        };
+        let known = Version::ALL.map(Version::name);
+        let written = match &node.value {
+            Value::Text(text) if known.contains(&text.as_str()) => continue,
+            Value::Text(text) => shorten(text),
+            Value::Float(number) => number.to_string(),
+            other => other.kind().to_owned(),
+        };
+        let hint = if known.contains(&written.as_str()) {
+            format!("a version is a text: \"{written}\"")
+        } else {
+            let version = env!("CARGO_PKG_VERSION");
+            let known = known.join(", ");
+            format!("chaindrive {version} knows {known}; take a newer one, or leave it out")
+        };
+        let message = format!("`{written}` is not a known version");
+        return Err(Problem::new(key, node.line, message).hint(hint));
+    }
+    Ok(())
 }
 
 struct Validator<'s> {
     schema: Reading<'s>,
-    problems: Vec<Problem>,
-    /// The place whose unit is wanted, and its unit once it was passed.
-    wanted: &'s str,
-    unit: Option<&'static str>,
+    problems: Problems,
+    /// Units of the quantities passed, where they are wanted.
+    units: Option<HashMap<String, &'static str>>,
 }
 
 impl<'s> Validator<'s> {
-    fn new(schema: &'s Json, wanted: &'s str) -> Self {
+    fn new(schema: &'s Json) -> Self {
         Self {
             schema: Reading::new(schema),
-            problems: Vec::new(),
-            wanted,
-            unit: None,
+            problems: Problems::default(),
+            units: None,
         }
     }
 
@@ -51,7 +79,7 @@ impl<'s> Validator<'s> {
     /// `exponent` is that of the power law the value belongs to.
     fn visit(&mut self, node: &mut Node, schema: &'s Json, path: &str, exponent: Option<f64>) {
         let core = self.schema.core(schema);
-        let before = self.problems.len();
+        let before = self.problems.count();
         match Expected::of(core) {
             Expected::Table(core) => self.table(node, core, path, None),
             Expected::List(core) => self.list(node, core, path, exponent),
@@ -73,7 +101,7 @@ impl<'s> Validator<'s> {
             }
             Expected::Anything => {}
         }
-        if self.problems.len() == before {
+        if self.problems.count() == before {
             self.range(node, core, path);
             if !std::ptr::eq(core, schema) {
                 self.range(node, schema, path);
@@ -113,41 +141,40 @@ impl<'s> Validator<'s> {
             .unwrap_or(&nothing);
         let known: Vec<&str> = properties.keys().map(String::as_str).collect();
         let mut meant = Vec::new();
-        let mut seen: Vec<String> = Vec::new();
+        let mut seen: HashSet<String> = HashSet::new();
         for entry in entries.iter_mut() {
             let place = below(path, &entry.key);
-            if seen.contains(&entry.key) {
+            if !seen.insert(entry.key.clone()) {
                 let message = "stands twice";
                 self.refuse(Problem::new(&place, entry.line, message).hint("keep one of them"));
             }
-            seen.push(entry.key.clone());
             // A lookup by the schema's own lifetime, not that of the local default.
             let property = schema.get("properties").and_then(|all| all.get(&entry.key));
             match property {
                 Some(_) if entry.key == "kind" && kind.is_some() => {}
                 Some(property) => self.visit(&mut entry.node, property, &place, exponent),
-                None => {
+                None => self.problems.push_with(|| {
                     let (near, problem) = unknown_key(entry, &place, &known, kind);
                     meant.extend(near);
-                    self.refuse(problem);
-                }
+                    problem
+                }),
             }
         }
         let listed = |keys: Option<&'s Json>| keys.and_then(Json::as_array).into_iter().flatten();
         // Keys that another key may stand for.
         let unless = schema.get("x-required-unless").and_then(Json::as_object);
         let unless = unless.into_iter().flatten();
-        let alone = unless.filter(|(key, _)| !seen.contains(key));
+        let alone = unless.filter(|(key, _)| !seen.contains(*key));
         let required = listed(schema.get("required"));
         let required = required.chain(alone.flat_map(|(_, keys)| listed(Some(keys))));
         for key in required.filter_map(Json::as_str) {
-            if seen.iter().any(|k| k == key) || meant.iter().any(|k| k == key) {
+            if seen.contains(key) || meant.iter().any(|k| k == key) {
                 continue;
             }
             let place = below(path, key);
             let problem = Problem::new(&place, line, "missing");
-            self.refuse(match description(&properties[key]) {
-                Some(text) => problem.hint(format!("give the {text}")),
+            self.refuse(match request(&properties[key]) {
+                Some(text) => problem.hint(text),
                 None => problem,
             });
         }
@@ -166,14 +193,20 @@ impl<'s> Validator<'s> {
             self.wrong_type(node, path, "a list");
             return;
         };
-        let count = entries.len();
+        let count = entries.len() as u64;
         let bound = |key| schema.get(key).and_then(Json::as_u64);
-        let outside = |limit: Option<u64>| limit.is_some_and(|limit| limit != count as u64);
-        if let (Some(least), Some(most)) = (bound("minItems"), bound("maxItems"))
-            && (outside(Some(least)) && outside(Some(most)))
-        {
-            let message = format!("{count} values, needed are {least}");
+        let (least, most) = (bound("minItems"), bound("maxItems"));
+        let refusal = match (least, most) {
+            (Some(least), Some(most)) if least == most && count != least => {
+                Some(format!("{count} values, needed are {least}"))
+            }
+            (_, Some(most)) if count > most => Some(format!("{count} values, at most {most}")),
+            _ => None,
+        };
+        if let Some(message) = refusal {
             self.refuse(Problem::new(path, line, message));
+            // Whatever the values are, they are too many or too few.
+            return;
         }
         for (index, entry) in entries.iter_mut().enumerate() {
             self.visit(entry, items, &below(path, &index.to_string()), exponent);
@@ -285,8 +318,8 @@ impl<'s> Validator<'s> {
         path: &str,
         exponent: Option<f64>,
     ) {
-        if path == self.wanted {
-            self.unit = Some(dimension.unit);
+        if let Some(units) = &mut self.units {
+            units.insert(path.to_owned(), dimension.unit);
         }
         let value = match &node.value {
             Value::Integer(_) | Value::Float(_) => number(node).unwrap_or(f64::NAN),

@@ -1,6 +1,5 @@
 //! What is kept of one variant: statistics, and channels where they are asked for.
 
-use std::convert::Infallible;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -10,8 +9,8 @@ use super::Outcome;
 use crate::precision::{Choice, Promise};
 use crate::record::{ContactStatistics, EventTable, Provenance, SpanStatistics, labels};
 use crate::{
-    Channel, End, Recording, Report, Request, RunError, Scene, Settings, Simulation, Sink,
-    Stepping, Stop, Summary, execute,
+    Channel, End, Recording, Report, Request, RunError, Scene, Settings, Simulation,
+    SimulationError, Sink, Stepping, Stop, Summary, execute,
 };
 
 macro_rules! statistics {
@@ -220,27 +219,27 @@ struct Kept {
 }
 
 impl Sink for Kept {
-    type Error = Infallible;
+    type Error = SimulationError;
 
     fn begin(
         &mut self,
         simulation: &Simulation,
         channels: &[Channel],
-        _: &Provenance,
-    ) -> Result<(), Infallible> {
+        provenance: &Provenance,
+    ) -> Result<(), SimulationError> {
         let channels = if self.wanted { channels } else { &[] };
-        self.recording = Recording::new(channels, simulation.system());
+        self.recording = Recording::of_run(channels, simulation.system(), &provenance.run)?;
         Ok(())
     }
 
-    fn push(&mut self, simulation: &Simulation) -> Result<(), Infallible> {
+    fn push(&mut self, simulation: &Simulation) -> Result<(), SimulationError> {
         if self.wanted {
             self.recording.push(simulation.observation());
         }
         Ok(())
     }
 
-    fn end(&mut self, _: &End<'_>) -> Result<(), Infallible> {
+    fn end(&mut self, _: &End<'_>) -> Result<(), SimulationError> {
         Ok(())
     }
 }

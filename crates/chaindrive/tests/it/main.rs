@@ -15,6 +15,8 @@ mod precision;
 mod reference;
 mod reproducible;
 mod requests;
+mod resolved;
+mod robust_scenes;
 mod scenes;
 mod sweep;
 mod tooth_gaps;

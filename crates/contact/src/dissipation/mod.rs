@@ -10,14 +10,14 @@
 //! |---|---|---|---|
 //! | none | `none` | | 1 |
 //! | [`Exact`] | `exact` | χ (1 + e) = ln\[(1 + χ)/(1 − χe)\] | 0.500 |
-//! | [`HuntCrossley`] | `hunt_crossley` | ³⁄₂ (1 − e) | 0.663 |
-//! | [`LankaraniNikravesh`] | `lankarani_nikravesh` | ¾ (1 − e²) | 0.725 |
-//! | [`LeeWang`] | `lee_wang` | ¾ (1 − e) | 0.799 |
-//! | [`HerbertMcWhannell`] | `herbert_mcwhannell` | 6 (1 − e)/\[(2e − 1)² + 3\] | 0.594 |
+//! | [`HuntCrossley`] | `hunt-crossley` | ³⁄₂ (1 − e) | 0.663 |
+//! | [`LankaraniNikravesh`] | `lankarani-nikravesh` | ¾ (1 − e²) | 0.725 |
+//! | [`LeeWang`] | `lee-wang` | ¾ (1 − e) | 0.799 |
+//! | [`HerbertMcWhannell`] | `herbert-mcwhannell` | 6 (1 − e)/\[(2e − 1)² + 3\] | 0.594 |
 //! | [`Gonthier`] | `gonthier` | (1 − e²)/e | 0.488 |
-//! | [`ZhiyingQishao`] | `zhiying_qishao` | ¾ (1 − e²) exp\[2 (1 − e)\] | 0.483 |
+//! | [`ZhiyingQishao`] | `zhiying-qishao` | ¾ (1 − e²) exp\[2 (1 − e)\] | 0.483 |
 //! | [`Flores`] | `flores` | 8 (1 − e)/(5e) | 0.470 |
-//! | [`HuGuo`] | `hu_guo` | 3 (1 − e)/(2e) | 0.488 |
+//! | [`HuGuo`] | `hu-guo` | 3 (1 − e)/(2e) | 0.488 |
 //! | [`Viscous`]: Kelvin–Voigt | `viscous` | a dashpot c beside the spring | depends on mass and speed |
 
 mod action;
@@ -55,7 +55,7 @@ const POSITIVE: &str =
 
 /// A dissipation, chosen at run time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case")]
+#[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Dissipation {
     /// No loss: the contact returns what it stored.
     #[serde(deserialize_with = "no_parameters")]
@@ -69,7 +69,7 @@ pub enum Dissipation {
     /// Hysteretic, χ = ¾ (1 − e).
     LeeWang(LeeWang),
     /// Hysteretic, χ = 6 (1 − e)/\[(2e − 1)² + 3\].
-    #[serde(rename = "herbert_mcwhannell")]
+    #[serde(rename = "herbert-mcwhannell")]
     HerbertMcWhannell(HerbertMcWhannell),
     /// Hysteretic, χ = (1 − e²)/e.
     Gonthier(Gonthier),

@@ -109,7 +109,7 @@ impl Cylinders {
 
 /// A law of the family, to be built from the geometry of two parallel cylinders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[serde(rename_all = "kebab-case")]
 pub enum CylinderLaw {
     /// [`Johnson`], D = 4ΔR; inside, outside and flat.
     Johnson,
@@ -118,7 +118,7 @@ pub enum CylinderLaw {
     /// [`Radzimovsky`], D = e^{5/3} ΔR; inside, outside and flat.
     Radzimovsky,
     /// [`Esdu78035`], D = 4e² ΔR; inside, outside and flat.
-    #[serde(rename = "esdu_78035")]
+    #[serde(rename = "esdu-78035")]
     Esdu78035,
     /// [`DubowskyFreudenstein`], D = e² L²/R; needs no depth.
     DubowskyFreudenstein,

@@ -11,8 +11,8 @@
 //! | [`Johnson`] | `johnson` | parallel cylinders, the reference | δ ≤ 0.16 ΔR to 4.5 % |
 //! | [`Conformal`] | `conformal` | Johnson, extended to wide contacts in a hole | δ ≤ 1.59 ΔR |
 //! | [`Radzimovsky`] | `radzimovsky` | Johnson with D = 5.294 ΔR | δ < 0.716 ΔR |
-//! | [`Esdu78035`] | `esdu_78035` | Johnson with D = 29.56 ΔR | δ < 4 ΔR |
-//! | [`DubowskyFreudenstein`] | `dubowsky_freudenstein` | Johnson with D = e² L²/R | δ < L²/R |
+//! | [`Esdu78035`] | `esdu-78035` | Johnson with D = 29.56 ΔR | δ < 4 ΔR |
+//! | [`DubowskyFreudenstein`] | `dubowsky-freudenstein` | Johnson with D = e² L²/R | δ < L²/R |
 //! | [`Cylindrical`] | `cylindrical` | a power fitted to Johnson | ΔR 0.005–10 mm inside, 4–300 mm outside |
 //!
 //! [`CylinderLaw::between`] builds those of cylinders from radii and lengths. What they cost and how far they
@@ -76,7 +76,7 @@ pub trait ElasticLaw: Copy {
 
 /// An elastic law, chosen at run time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case")]
+#[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Elastic {
     /// A power of the penetration: linear, Hertzian, or fitted.
     Power(Power),
@@ -87,7 +87,7 @@ pub enum Elastic {
     /// Two parallel cylinders after Radzimovsky.
     Radzimovsky(Radzimovsky),
     /// Two parallel cylinders after ESDU 78035.
-    #[serde(rename = "esdu_78035")]
+    #[serde(rename = "esdu-78035")]
     Esdu78035(Esdu78035),
     /// Two parallel cylinders after Dubowsky and Freudenstein.
     DubowskyFreudenstein(DubowskyFreudenstein),

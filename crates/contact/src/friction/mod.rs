@@ -9,8 +9,8 @@
 //! | [`Coulomb`] | `coulomb` | creeps, slope μN/v_s | no |
 //! | [`Ambrosio`] | `ambrosio` | free below v₀ | no |
 //! | [`Threlfall`] | `threlfall` | creeps, slope 3 μN/v_r | no |
-//! | [`BengisuAkay`] | `bengisu_akay` | creeps, slope 2 μ_s N/v₀ | yes |
-//! | [`BrownMcphee`] | `brown_mcphee` | creeps, slope above 4 μ_d N/v_t | yes |
+//! | [`BengisuAkay`] | `bengisu-akay` | creeps, slope 2 μ_s N/v₀ | yes |
+//! | [`BrownMcphee`] | `brown-mcphee` | creeps, slope above 4 μ_d N/v_t | yes |
 //! | [`Lugre`] | `lugre` | sticks, a spring σ₀ N | yes |
 
 mod ambrosio;
@@ -34,7 +34,7 @@ use crate::error::{no_parameters, require};
 
 /// A friction law, chosen at run time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case")]
+#[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Friction {
     /// No friction.
     #[serde(deserialize_with = "no_parameters")]

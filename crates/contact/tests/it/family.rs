@@ -256,7 +256,7 @@ fn laws_survive_their_file_form() {
         assert_eq!(serde_json::from_str::<Law>(&text).unwrap(), law);
     }
     let text = r#"{"elastic": {"kind": "power", "stiffness": 1e8, "exponent": 1.5},
-        "dissipation": {"kind": "lankarani_nikravesh", "restitution": 1.4}, "onset_floor": 1e-3}"#;
+        "dissipation": {"kind": "lankarani-nikravesh", "restitution": 1.4}, "onset_floor": 1e-3}"#;
     let law: Law = serde_json::from_str(text).unwrap();
     assert_eq!(
         law.check().unwrap_err().to_string(),

@@ -268,7 +268,7 @@ fn parameters_out_of_range_are_named() {
             "upper_speed = 1, must be above lower_speed [m/s]",
         ),
         (
-            r#"{"kind": "brown_mcphee", "static_coefficient": 0.1, "coefficient": 0.2, "slip_speed": 1.0}"#,
+            r#"{"kind": "brown-mcphee", "static_coefficient": 0.1, "coefficient": 0.2, "slip_speed": 1.0}"#,
             "static_coefficient = 0.1, must be at least the coefficient of sliding",
         ),
         (

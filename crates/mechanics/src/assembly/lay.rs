@@ -30,7 +30,15 @@ pub(super) fn lay(drive: &Drive) -> Result<(Laid, Option<Fitting>), AssemblyErro
             };
             Ok((laid, None))
         }
-        Layout::Route { stops, phase, fit } => around(drive.parts(), stops, *phase, fit),
+        Layout::Route { stops, phase, fit } => {
+            let parts = drive.parts();
+            let name = |stop: usize| match stops.get(stop) {
+                Some(Stop::Sprocket(index)) => format!("`{}`", parts.sprockets[*index].name),
+                Some(Stop::Guide(index)) => format!("`{}`", parts.guides[*index].name),
+                None => format!("stop {stop}"),
+            };
+            around(parts, stops, *phase, fit).map_err(|error| error.with_names(&name))
+        }
     }
 }
 

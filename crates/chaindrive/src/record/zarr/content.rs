@@ -8,8 +8,8 @@ use super::error::Fault;
 use super::events::EventTracks;
 use super::store::Storage;
 use super::track::{Track, samples_per_chunk, store_labels};
-use crate::{Judgement, Simulation};
 use crate::record::{Axis, Channel, Provenance, labels};
+use crate::{Judgement, Simulation};
 
 /// All arrays of a run.
 pub(super) struct Content {

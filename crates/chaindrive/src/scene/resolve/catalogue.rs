@@ -1,7 +1,9 @@
 //! Chains of the catalogue: what a scene leaves out is taken from there.
 
+use serde::Serialize;
+
 use super::Findings;
-use crate::catalogue::{CatalogueChain, Number, catalogue};
+use crate::catalogue::{CatalogueChain, Number, Status, catalogue};
 use crate::scene::quantity::{Inertia, Length, Mass, Stiffness};
 use crate::scene::schema::{self, ChainModel, Rollers};
 use crate::scene::suggest::one_of;
@@ -24,44 +26,134 @@ pub(super) fn roller_length(chain: &CatalogueChain) -> Option<f64> {
 }
 
 /// The chain as written, with the values of the catalogue where it has none.
-pub(super) fn completed(text: &schema::Chain, chain: &CatalogueChain) -> schema::Chain {
+pub(super) fn completed(
+    text: &schema::Chain,
+    chain: &CatalogueChain,
+    findings: &mut Findings<'_>,
+) -> schema::Chain {
     let mut text = text.clone();
-    let length = |number| chain.number(number).map(Length);
-    let mass = |number| chain.number(number).map(Mass);
-    let inertia = |number| chain.number(number).map(Inertia);
-    text.pitch = text.pitch.or(length(Number::Pitch));
-    text.roller_diameter = text.roller_diameter.or(length(Number::RollerDiameter));
-    text.plate_height = text.plate_height.or(length(Number::PlateHeight));
+    let mut take = Taking { chain, findings };
+    take.number(&mut text.pitch, "pitch", Number::Pitch, Length);
+    take.number(
+        &mut text.roller_diameter,
+        "roller_diameter",
+        Number::RollerDiameter,
+        Length,
+    );
+    take.number(
+        &mut text.plate_height,
+        "plate_height",
+        Number::PlateHeight,
+        Length,
+    );
     if text.model == ChainModel::Particles {
         if text.masses.is_none() {
-            text.mass = text.mass.or(chain.mass().map(Mass));
+            take.value(&mut text.mass, "mass", chain.mass().map(Mass), Status::Mass);
         }
         if text.stiffnesses.is_none() {
-            let stiffness = chain.number(Number::LinkStiffness).map(Stiffness);
-            text.stiffness = text.stiffness.or(stiffness);
+            take.number(
+                &mut text.stiffness,
+                "stiffness",
+                Number::LinkStiffness,
+                Stiffness,
+            );
         }
         return text;
     }
     let inner = text.inner.get_or_insert_default();
-    inner.mass = inner.mass.or(mass(Number::InnerMass));
-    inner.inertia = inner.inertia.or(inertia(Number::InnerInertia));
+    take.number(&mut inner.mass, "inner.mass", Number::InnerMass, Mass);
+    take.number(
+        &mut inner.inertia,
+        "inner.inertia",
+        Number::InnerInertia,
+        Inertia,
+    );
     let outer = text.outer.get_or_insert_default();
-    outer.mass = outer.mass.or(mass(Number::OuterMass));
-    outer.inertia = outer.inertia.or(inertia(Number::OuterInertia));
+    take.number(&mut outer.mass, "outer.mass", Number::OuterMass, Mass);
+    take.number(
+        &mut outer.inertia,
+        "outer.inertia",
+        Number::OuterInertia,
+        Inertia,
+    );
     if chain.kind == "bush" {
-        text.rollers = text.rollers.or(Some(Rollers::None));
+        let none = Some(Rollers::None);
+        take.value(&mut text.rollers, "rollers", none, Status::Dimensions);
     }
     if text.rollers != Some(Rollers::None) {
         let roller = text.roller.get_or_insert_default();
-        roller.mass = roller.mass.or(mass(Number::RollerMass));
-        roller.inertia = roller.inertia.or(inertia(Number::RollerInertia));
-        roller.bush_diameter = roller.bush_diameter.or(length(Number::BushDiameter));
+        take.number(&mut roller.mass, "roller.mass", Number::RollerMass, Mass);
+        take.number(
+            &mut roller.inertia,
+            "roller.inertia",
+            Number::RollerInertia,
+            Inertia,
+        );
+        take.number(
+            &mut roller.bush_diameter,
+            "roller.bush_diameter",
+            Number::BushDiameter,
+            Length,
+        );
     }
     if text.model == ChainModel::ClearanceJoints {
         let joint = text.joint.get_or_insert_default();
-        joint.pin_diameter = joint.pin_diameter.or(length(Number::PinDiameter));
-        joint.clearance = joint.clearance.or(chain.joint_clearance().map(Length));
-        joint.length = joint.length.or(chain.joint_length().map(Length));
+        take.number(
+            &mut joint.pin_diameter,
+            "joint.pin_diameter",
+            Number::PinDiameter,
+            Length,
+        );
+        let clearance = chain.joint_clearance().map(Length);
+        take.value(
+            &mut joint.clearance,
+            "joint.clearance",
+            clearance,
+            Status::Bore,
+        );
+        let length = chain.joint_length().map(Length);
+        take.value(
+            &mut joint.length,
+            "joint.length",
+            length,
+            Status::Dimensions,
+        );
     }
     text
+}
+
+/// Takes from the catalogue what a scene leaves open.
+struct Taking<'c, 'f, 't> {
+    chain: &'c CatalogueChain,
+    findings: &'f mut Findings<'t>,
+}
+
+impl Taking<'_, '_, '_> {
+    fn number<T: Serialize>(
+        &mut self,
+        place: &mut Option<T>,
+        key: &str,
+        number: Number,
+        quantity: fn(f64) -> T,
+    ) {
+        let value = self.chain.number(number).map(quantity);
+        self.value(place, key, value, number.status());
+    }
+
+    fn value<T: Serialize>(
+        &mut self,
+        place: &mut Option<T>,
+        key: &str,
+        value: Option<T>,
+        status: Status,
+    ) {
+        if place.is_some() {
+            return;
+        }
+        if let Some(Ok(json)) = value.as_ref().map(serde_json::to_value) {
+            let remark = format!("{}: {}", self.chain.name, self.chain.status(status));
+            self.findings.assume(&format!("chain.{key}"), json, remark);
+        }
+        *place = value;
+    }
 }

@@ -1,19 +1,12 @@
 //! The chain: completed from the catalogue, then lengths, masses, stiffness and damping, link by link.
 
-use chaindrive_geometry::{Route, Side, Wheel};
 use chaindrive_mechanics::{Chain, ChainModel, End, Ends};
 
 use super::law::Pair;
 use super::scatter::Normal;
-use super::{Findings, catalogue, links, motion, point};
+use super::{Findings, catalogue, count, links, motion};
+use crate::scene::defaults;
 use crate::scene::schema::{self, SceneText};
-
-/// Roller diameter \[pitches\] of a strand that touches nothing.
-const UNTOUCHED_ROLLER: f64 = 0.6;
-/// Height of a link plate \[roller diameters\]: 1.31 to 1.47 in the catalogues.
-const PLATE: f64 = 1.4;
-/// Damping ratio ζ \[–\] of a link: measured values are not published, 0.01 to 0.05 are in use.
-const DAMPING_RATIO: f64 = 0.03;
 
 /// The chain, and what contacts want to know of it.
 #[derive(Debug)]
@@ -21,6 +14,8 @@ pub(super) struct Resolved {
     pub(super) chain: Chain,
     /// Length of the rollers on the teeth \[m\], where it is known.
     pub(super) roller_length: Option<f64>,
+    /// Why the number of links is a guess that must not be used; the other parts are looked at with it.
+    pub(super) uncounted: Option<String>,
 }
 
 impl Resolved {
@@ -57,15 +52,15 @@ pub(super) fn resolve(
     if scene.chain.model == schema::ChainModel::Particles {
         links::refuse_on_particles(&scene.chain, findings);
     }
-    let text = &of_type.map_or_else(
-        || scene.chain.clone(),
-        |chain| catalogue::completed(&scene.chain, chain),
-    );
+    let text = &match of_type {
+        Some(chain) => catalogue::completed(&scene.chain, chain, findings),
+        None => scene.chain.clone(),
+    };
     let Some(pitch) = text.pitch.map(|pitch| pitch.0) else {
         findings.refuse_with("chain.pitch", "missing", "give the nominal pitch");
         return None;
     };
-    let links = count(scene, text, pitch, findings)?;
+    let count::Count { links, uncounted } = count::links(scene, text, pitch, findings)?;
     let lengths = lengths(text, pitch, links, findings);
     let roller_diameter = match text.roller_diameter {
         Some(diameter) => diameter.0,
@@ -74,7 +69,10 @@ pub(super) fn resolve(
             findings.refuse_with("chain.roller_diameter", "missing", hint);
             return None;
         }
-        None => UNTOUCHED_ROLLER * pitch,
+        None => {
+            let default = &defaults::ROLLER_DIAMETER;
+            findings.or_multiple(None, "chain.roller_diameter", default, pitch)
+        }
     };
     let roller_length = text.roller.and_then(|roller| roller.length);
     let roller_length = roller_length.map(|length| length.0);
@@ -104,7 +102,13 @@ pub(super) fn resolve(
     let damping = if let Some(damping) = text.damping {
         vec![damping.0; links]
     } else {
-        let ratio = text.damping_ratio.map_or(DAMPING_RATIO, |ratio| ratio.0);
+        let ratio = text.damping_ratio.map(|ratio| ratio.0);
+        let ratio = if matches!(model, ChainModel::Particles) {
+            findings.or_default(ratio, "chain.damping_ratio", &defaults::DAMPING_RATIO)
+        } else {
+            // Rigid links are laid, not damped: whatever damping belongs to the laying stiffness.
+            ratio.unwrap_or(defaults::DAMPING_RATIO.value(findings.version))
+        };
         // c = 2 ζ √(k m)
         let pairs = stiffness.iter().zip(&masses);
         pairs
@@ -118,15 +122,19 @@ pub(super) fn resolve(
         damping,
         masses,
         roller_diameter,
-        plate_height: text
-            .plate_height
-            .map_or(PLATE * roller_diameter, |height| height.0),
+        plate_height: findings.or_multiple(
+            text.plate_height.map(|height| height.0),
+            "chain.plate_height",
+            &defaults::PLATE_HEIGHT,
+            roller_diameter,
+        ),
         ends: ends?,
         model,
     };
     Some(Resolved {
         chain,
         roller_length,
+        uncounted,
     })
 }
 
@@ -166,56 +174,6 @@ fn particles(text: &schema::Chain, links: usize, findings: &mut Findings<'_>) ->
         stiffness: stiffness?,
         model: ChainModel::Particles,
     })
-}
-
-/// The number of links: as given, or for a chain of the catalogue the even one nearest to the taut
-/// route.
-fn count(
-    scene: &SceneText,
-    text: &schema::Chain,
-    pitch: f64,
-    findings: &mut Findings<'_>,
-) -> Option<usize> {
-    if let Some(links) = text.links {
-        return Some(links as usize);
-    }
-    let pitches = if text.of_type.is_some() && text.ends.is_none() && text.start.is_none() {
-        taut(scene, pitch)
-    } else {
-        None
-    };
-    let Some(pitches) = pitches else {
-        findings.refuse_with("chain.links", "missing", "give the number of links");
-        return None;
-    };
-    // Two at a time, because inner and outer links alternate.
-    let pairs = (0.5 * pitches).round().clamp(2.0, 50_000.0);
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "between 2 and 50 000"
-    )]
-    Some(2 * pairs as usize)
-}
-
-/// Pitches of the taut route; none where guides take part, or where there is none.
-fn taut(scene: &SceneText, pitch: f64) -> Option<f64> {
-    let wheel = |sprocket: &schema::Sprocket| {
-        let side = match sprocket.side {
-            schema::Side::Left => Side::Left,
-            schema::Side::Right => Side::Right,
-        };
-        Wheel::toothed(point(sprocket.centre), sprocket.teeth, pitch, side)
-    };
-    let stops = scene.route.as_ref().and_then(|route| route.stops.as_ref());
-    let wheels: Option<Vec<Wheel>> = match stops {
-        None => Some(scene.sprockets.iter().map(wheel).collect()),
-        Some(names) => names
-            .iter()
-            .map(|name| scene.sprockets.iter().find(|s| s.name == *name).map(wheel))
-            .collect(),
-    };
-    Route::taut(&wheels?).ok().map(|route| route.pitches(pitch))
 }
 
 fn lengths(

@@ -10,6 +10,8 @@ use chaindrive_mechanics::Surface;
 
 use super::Findings;
 use super::law::{Pair, elastic};
+use crate::scene::defaults::{self, Default};
+use crate::scene::quantity::Speed;
 use crate::scene::schema::{self, Contact};
 
 /// What a contact falls back on.
@@ -17,35 +19,32 @@ use crate::scene::schema::{self, Contact};
 pub(super) struct Fallback {
     /// Place of the contact that holds for all.
     path: &'static str,
-    restitution: f64,
+    restitution: &'static Default,
 }
 
 /// Teeth of steel.
 pub(super) const TEETH: Fallback = Fallback {
     path: "contact.teeth",
-    restitution: 0.8,
+    restitution: &defaults::TEETH_RESTITUTION,
 };
 
 /// Guides lined with rubber or plastic.
 pub(super) const GUIDES: Fallback = Fallback {
     path: "contact.guides",
-    restitution: 0.5,
+    restitution: &defaults::GUIDES_RESTITUTION,
 };
 
 /// Pins of steel in oiled bushes.
 pub(super) const JOINTS: Fallback = Fallback {
     path: "contact.joints",
-    restitution: 0.7,
+    restitution: &defaults::JOINTS_RESTITUTION,
 };
 
 /// Bushes of steel in oiled rollers.
 pub(super) const ROLLERS: Fallback = Fallback {
     path: "contact.rollers",
-    restitution: 0.7,
+    restitution: &defaults::ROLLERS_RESTITUTION,
 };
-
-/// Least speed at onset \[m/s\].
-const ONSET_FLOOR: f64 = 0.05;
 
 /// The surface of one body: its own contact at `path`, then the common one, then the fallback, for
 /// which `absent` knows the elastic law.
@@ -67,14 +66,20 @@ pub(super) fn surface(
     let friction = match (own.friction, common.friction) {
         (Some(text), _) => friction(text, path, findings),
         (None, Some(text)) => friction(text, fallback.path, findings),
-        (None, None) => Some(Friction::None),
+        (None, None) => {
+            let place = format!("{}.friction", fallback.path);
+            findings.assume_kind(&place, "none");
+            Some(Friction::None)
+        }
     };
-    let floor = own.onset_floor.or(common.onset_floor);
+    let floor = own.onset_floor.or(common.onset_floor).map(|v| v.0);
+    let place = format!("{}.onset_floor", fallback.path);
+    let onset_floor = findings.or_default(floor, &place, &defaults::ONSET_FLOOR);
     Some(Surface {
         law: Law {
             elastic: elastic?,
             dissipation: dissipation?,
-            onset_floor: floor.map_or(ONSET_FLOOR, |v| v.0),
+            onset_floor,
         },
         friction: friction?,
     })
@@ -137,9 +142,24 @@ fn dissipation(
         twice("restitution", "dissipation = \"none\"");
         return None;
     }
-    let restitution = said.restitution.or(common.restitution);
-    let restitution = restitution.map_or(fallback.restitution, |e| e.0);
-    let dissipation = match name.unwrap_or(Name::LankaraniNikravesh) {
+    let name = name.unwrap_or_else(|| {
+        let remark = "assumed: the usual choice, for nearly elastic impacts";
+        findings.assume(
+            &format!("{place}.dissipation"),
+            "lankarani-nikravesh",
+            remark,
+        );
+        Name::LankaraniNikravesh
+    });
+    let restitution = match name {
+        Name::None => 1.0,
+        _ => findings.or_default(
+            said.restitution.or(common.restitution).map(|e| e.0),
+            &format!("{place}.restitution"),
+            fallback.restitution,
+        ),
+    };
+    let dissipation = match name {
         Name::None => Dissipation::None,
         Name::Exact => Dissipation::Exact(Exact { restitution }),
         Name::HuntCrossley => Dissipation::HuntCrossley(HuntCrossley { restitution }),
@@ -163,7 +183,7 @@ fn dissipation(
 }
 
 fn friction(text: schema::Friction, place: &str, findings: &mut Findings<'_>) -> Option<Friction> {
-    let friction = rubbing(text);
+    let friction = rubbing(text, place, findings);
     let sound = friction.check().map_err(|error| {
         let path = format!("{place}.friction.{}", error.parameter);
         let message = format!("{}, must be {}", error.value, error.allowed);
@@ -172,7 +192,11 @@ fn friction(text: schema::Friction, place: &str, findings: &mut Findings<'_>) ->
     sound.ok().map(|()| friction)
 }
 
-fn rubbing(text: schema::Friction) -> Friction {
+fn rubbing(text: schema::Friction, place: &str, findings: &mut Findings<'_>) -> Friction {
+    let slip = |given: Option<Speed>, findings: &mut Findings<'_>| {
+        let path = format!("{place}.friction.slip_speed");
+        findings.or_default(given.map(|v| v.0), &path, &defaults::SLIP_SPEED)
+    };
     match text {
         schema::Friction::None => Friction::None,
         schema::Friction::Coulomb {
@@ -180,7 +204,7 @@ fn rubbing(text: schema::Friction) -> Friction {
             slip_speed,
         } => Friction::Coulomb(Coulomb {
             coefficient: coefficient.0,
-            slip_speed: slip_speed.0,
+            slip_speed: slip(slip_speed, findings),
         }),
         schema::Friction::Ambrosio {
             coefficient,
@@ -196,7 +220,7 @@ fn rubbing(text: schema::Friction) -> Friction {
             slip_speed,
         } => Friction::Threlfall(Threlfall {
             coefficient: coefficient.0,
-            slip_speed: slip_speed.0,
+            slip_speed: slip(slip_speed, findings),
         }),
         schema::Friction::BengisuAkay {
             static_coefficient,
@@ -206,7 +230,7 @@ fn rubbing(text: schema::Friction) -> Friction {
         } => Friction::BengisuAkay(BengisuAkay {
             static_coefficient: static_coefficient.0,
             coefficient: coefficient.0,
-            slip_speed: slip_speed.0,
+            slip_speed: slip(slip_speed, findings),
             decay: decay.0,
         }),
         schema::Friction::BrownMcphee {
@@ -218,9 +242,13 @@ fn rubbing(text: schema::Friction) -> Friction {
         } => Friction::BrownMcphee(BrownMcphee {
             static_coefficient: static_coefficient.0,
             coefficient: coefficient.0,
-            slip_speed: slip_speed.0,
+            slip_speed: slip(slip_speed, findings),
             viscosity: viscosity.0,
-            transition_force: transition_force.0,
+            transition_force: findings.or_default(
+                transition_force.map(|force| force.0),
+                &format!("{place}.friction.transition_force"),
+                &defaults::TRANSITION_FORCE,
+            ),
         }),
         schema::Friction::Lugre {
             static_coefficient,
@@ -232,7 +260,7 @@ fn rubbing(text: schema::Friction) -> Friction {
         } => Friction::Lugre(Lugre {
             static_coefficient: static_coefficient.0,
             coefficient: coefficient.0,
-            slip_speed: slip_speed.0,
+            slip_speed: slip(slip_speed, findings),
             stiffness: stiffness.0,
             damping: damping.0,
             viscosity: viscosity.0,

@@ -2,19 +2,14 @@
 
 use std::f64::consts::TAU;
 
-use chaindrive_contact::Elastic;
-use chaindrive_contact::elastic::Power;
 use chaindrive_geometry::{Arc, ArcSpline, GeometryError, Piece, Point, bar, rail};
 use chaindrive_mechanics::{Guide, GuideSupport, Touches};
 
 use super::chain::Resolved;
+use super::law::linear;
 use super::{Findings, Names, contact, motion, point};
+use crate::scene::defaults;
 use crate::scene::schema::{self, Face, SceneText, TravelSide};
-
-/// Radius of the ends of a bar \[straight lengths\].
-const END_RADIUS: f64 = 0.25;
-/// Angle of the ends of a bar \[deg\].
-const END_ANGLE: f64 = 10.0;
 
 pub(super) fn resolve_all(
     scene: &SceneText,
@@ -39,7 +34,9 @@ fn resolve(
     chain: &Resolved,
     findings: &mut Findings<'_>,
 ) -> Option<Guide> {
-    let face = findings.keep(&format!("{path}.face"), face(&text.face));
+    let place = format!("{path}.face");
+    let face = face(&text.face, &place, findings);
+    let face = findings.keep(&place, face);
     let support = support(text, path, names, findings);
     let surface = contact::surface(
         &text.contact,
@@ -48,8 +45,12 @@ fn resolve(
         contact::GUIDES,
         chain.roller(),
         findings,
-        // As soft as a link: a lining.
-        |_| Some(Elastic::Power(Power::linear(chain.link_stiffness()))),
+        |findings| {
+            let place = format!("{path}.contact.law");
+            let stiffness = chain.link_stiffness();
+            let default = &defaults::GUIDES_STIFFNESS;
+            Some(linear(stiffness, &place, default, findings))
+        },
     );
     Some(Guide {
         name: text.name.clone(),
@@ -65,7 +66,7 @@ fn resolve(
 }
 
 /// Working face with its material on the left of travel.
-fn face(face: &Face) -> Result<ArcSpline, GeometryError> {
+fn face(face: &Face, path: &str, findings: &mut Findings<'_>) -> Result<ArcSpline, GeometryError> {
     match face {
         Face::Bar {
             start,
@@ -78,8 +79,13 @@ fn face(face: &Face) -> Result<ArcSpline, GeometryError> {
                 TravelSide::Left => (point(*start), point(*end)),
                 TravelSide::Right => (point(*end), point(*start)),
             };
-            let radius = end_radius.map_or_else(|| END_RADIUS * (end - start).norm(), |r| r.0);
-            let angle = end_angle.map_or(END_ANGLE.to_radians(), |angle| angle.0);
+            let radius = end_radius.map(|radius| radius.0);
+            let place = format!("{path}.end_radius");
+            let straight = (end - start).norm();
+            let radius = findings.or_multiple(radius, &place, &defaults::END_RADIUS, straight);
+            let angle = end_angle.map(|angle| angle.0);
+            let place = format!("{path}.end_angle");
+            let angle = findings.or_default(angle, &place, &defaults::END_ANGLE);
             bar(start, end, radius, angle)
         }
         Face::Points {
@@ -120,7 +126,11 @@ fn support(
 ) -> Option<GuideSupport> {
     let path = format!("{path}.support");
     Some(match &text.support {
-        None | Some(schema::GuideSupport::Fixed) => GuideSupport::Fixed,
+        None => {
+            findings.assume_kind(&path, "fixed");
+            GuideSupport::Fixed
+        }
+        Some(schema::GuideSupport::Fixed) => GuideSupport::Fixed,
         Some(schema::GuideSupport::Prescribed { x, y }) => {
             let x = motion::shift(x, &format!("{path}.x"), findings);
             let y = motion::shift(y, &format!("{path}.y"), findings);

@@ -3,8 +3,12 @@
 use chaindrive_contact::elastic::{CylinderLaw, Cylinders, Johnson, Power};
 use chaindrive_contact::{Elastic, Elasticity, ParameterError};
 
+use serde_json::json;
+
 use super::Findings;
+use crate::scene::defaults::{self, Default};
 use crate::scene::schema;
+use crate::scene::schema::Version;
 
 /// The two surfaces of a contact, as far as the drive gives them.
 #[derive(Clone, Copy, Debug)]
@@ -17,9 +21,12 @@ pub(super) struct Pair {
     pub(super) length: Option<f64>,
 }
 
-/// Composite modulus of steel on steel \[Pa\].
-pub(super) fn steel() -> f64 {
-    Elasticity::STEEL.composite(Elasticity::STEEL)
+/// What the material of surfaces is taken for.
+pub(super) fn steel(version: Version) -> Elasticity {
+    Elasticity {
+        modulus: defaults::MODULUS.value(version),
+        poisson: defaults::POISSON.value(version),
+    }
 }
 
 /// The enhanced cylindrical law of steel in a hollow that is wider by `clearance` \[m\].
@@ -27,14 +34,30 @@ pub(super) fn cylindrical(
     pair: Pair,
     clearance: f64,
     length: f64,
+    steel: Elasticity,
 ) -> Result<Elastic, ParameterError> {
     let hollow = pair.radius + clearance;
     CylinderLaw::Cylindrical.between(&Cylinders::pin_in_hole(
         hollow,
         pair.radius,
         length,
-        steel(),
+        steel.composite(steel),
     ))
+}
+
+/// A spring with a multiple of a stiffness \[N/m\], for a law that a scene leaves open.
+pub(super) fn linear(
+    stiffness: f64,
+    path: &str,
+    default: &Default,
+    findings: &mut Findings<'_>,
+) -> Elastic {
+    let factor = default.value(findings.version);
+    let stiffness = factor * stiffness;
+    let remark = format!("{factor} {}, {}", default.unit, default.basis.remark());
+    let text = json!({"kind": "linear", "stiffness": stiffness});
+    findings.assume(path, text, remark);
+    Elastic::Power(Power::linear(stiffness))
 }
 
 /// The law that a scene describes at `path`.
@@ -64,8 +87,8 @@ pub(super) fn elastic(
             other_radius,
         } => {
             let text = schema::Cylinders {
-                modulus: Some(*modulus),
-                poisson: Some(*poisson),
+                modulus: *modulus,
+                poisson: *poisson,
                 radius: *radius,
                 other_radius: *other_radius,
                 ..schema::Cylinders::default()
@@ -95,10 +118,17 @@ fn cylinders(
     path: &str,
     findings: &mut Findings<'_>,
 ) -> Option<Elastic> {
-    let Some(length) = text.length.map(|length| length.0).or(pair.length) else {
-        let hint = "give the length of the contact";
-        findings.refuse_once(&format!("{path}.length"), "missing", hint);
-        return None;
+    let place = format!("{path}.length");
+    let length = match (text.length, pair.length) {
+        (Some(length), _) => length.0,
+        (None, Some(length)) => {
+            findings.assume(&place, length, "length of the roller or joint");
+            length
+        }
+        (None, None) => {
+            findings.refuse_once(&place, "missing", "give the length of the contact");
+            return None;
+        }
     };
     let Sides {
         radius,
@@ -115,10 +145,14 @@ fn cylinders(
             (None, Some(other)) => Johnson::external(radius, other, length, modulus),
         }));
     }
+    let cap = text.depth_cap.map(|depth| depth.0);
     let cylinders = match other {
         // D = 4 r, as Johnson's law on a flat.
-        None => Cylinders::on_curve(radius, 0.0, length, modulus, radius),
-        Some(other) => Cylinders::on_curve(radius, 1.0 / other, length, modulus, other.abs()),
+        None => Cylinders::on_curve(radius, 0.0, length, modulus, cap.unwrap_or(radius)),
+        Some(other) => {
+            let cap = cap.unwrap_or(other.abs());
+            Cylinders::on_curve(radius, 1.0 / other, length, modulus, cap)
+        }
     };
     match kind.between(&cylinders) {
         Ok(law) => Some(law),
@@ -150,10 +184,12 @@ impl Sides {
         path: &str,
         findings: &mut Findings<'_>,
     ) -> Option<Self> {
-        let steel = Elasticity::STEEL;
+        let modulus = text.modulus.map(|modulus| modulus.0);
+        let poisson = text.poisson.map(|poisson| poisson.0);
+        let (at_modulus, at_poisson) = (format!("{path}.modulus"), format!("{path}.poisson"));
         let body = Elasticity {
-            modulus: text.modulus.map_or(steel.modulus, |modulus| modulus.0),
-            poisson: text.poisson.map_or(steel.poisson, |poisson| poisson.0),
+            modulus: findings.or_default(modulus, &at_modulus, &defaults::MODULUS),
+            poisson: findings.or_default(poisson, &at_poisson, &defaults::POISSON),
         };
         let modulus = body.composite(body);
         if let Some(bore) = pair.bore {
@@ -174,7 +210,13 @@ impl Sides {
                 modulus,
             });
         }
-        let radius = text.radius.map_or(pair.radius, |radius| radius.0);
+        let radius = text.radius.map_or_else(
+            || {
+                findings.assume(&format!("{path}.radius"), pair.radius, "that of the roller");
+                pair.radius
+            },
+            |radius| radius.0,
+        );
         let other = text.other_radius.map(|radius| radius.0);
         if let Some(other) = other
             && (other == 0.0 || (other < 0.0 && -other <= radius))

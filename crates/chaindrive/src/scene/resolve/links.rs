@@ -1,24 +1,23 @@
 //! Rigid links: bodies, joints and rollers.
 
+use chaindrive_contact::Elastic;
 use chaindrive_contact::Law;
 use chaindrive_contact::elastic::{ElasticLaw, Johnson};
-use chaindrive_contact::{Elastic, Elasticity};
 use chaindrive_geometry::Vector;
 use chaindrive_mechanics::{
     ChainModel, Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel,
 };
 
+use serde_json::json;
+
 use super::chain::Body;
-use super::law::{Pair, cylindrical, elastic};
+use super::law::{Pair, cylindrical, elastic, steel};
 use super::{Findings, contact};
+use crate::scene::defaults;
 use crate::scene::schema::{self, Rollers, SceneText};
 
 /// Indentation \[m\] at which a contact counts as pressed, where no pretension says how far.
 const PRESSED: f64 = 1e-6;
-
-/// How much stiffer than a tooth rigid links with ideal joints are while they are laid \[–\]: their
-/// stretch must not show beside the indentation of the teeth.
-const RIGID: f64 = 10.0;
 
 /// Keys of rigid links have no meaning for particles.
 pub(super) fn refuse_on_particles(text: &schema::Chain, findings: &mut Findings<'_>) {
@@ -171,7 +170,12 @@ fn rollers(
 ) -> Option<RollerModel> {
     let roller = text.roller.unwrap_or_default();
     let mass = roller.mass.map(|mass| mass.0);
-    match text.rollers.unwrap_or(Rollers::Lumped) {
+    let model = text.rollers.unwrap_or_else(|| {
+        let findings = &mut needs.findings;
+        findings.assume("chain.rollers", "lumped", "assumed: the usual choice");
+        Rollers::Lumped
+    });
+    match model {
         Rollers::Lumped => {
             let mass = needs.value(mass, "roller.mass", "mass of a roller")?;
             Some(RollerModel::Lumped { mass })
@@ -304,7 +308,18 @@ fn surface(
             findings.refuse_with(&format!("chain.{name}.length"), "missing", hint);
             return None;
         };
-        let law = cylindrical(pair, clearance, length);
+        let steel = steel(findings.version);
+        let law = cylindrical(pair, clearance, length, steel);
+        if law.is_ok() {
+            let text = json!({
+                "kind": "cylindrical",
+                "length": length,
+                "modulus": steel.modulus,
+                "poisson": steel.poisson,
+            });
+            let place = format!("contact.{name}s.law");
+            findings.assume(&place, text, "follows from the dimensions of the chain");
+        }
         law.map_err(|error| {
             let message = format!("{}, must be {}", error.value, error.allowed);
             let hint = format!("say so in `contact.{name}s.law`");
@@ -325,13 +340,16 @@ fn laying_stiffness(
     if let Joint::Clearance(joint) = joint {
         let pretension = scene.route.as_ref().map_or(0.0, |route| route.pretension.0);
         let law = &joint.surface.law;
-        return Some(law.stiffness(indentation(law, pretension, pair.radius).max(PRESSED)));
+        let stiffness = law.stiffness(indentation(law, pretension, pair.radius).max(PRESSED));
+        let remark = "follows from a joint under the pretension";
+        findings.assume("chain.stiffness", stiffness, remark);
+        return Some(stiffness);
     }
     let teeth = match (&scene.contact.teeth.law, pair.length) {
         (Some(law), _) => elastic(law, pair, "contact.teeth.law", findings)?,
         (None, Some(length)) => {
-            let steel = Elasticity::STEEL.composite(Elasticity::STEEL);
-            Elastic::Johnson(Johnson::flat(pair.radius, length, steel))
+            let steel = steel(findings.version);
+            Elastic::Johnson(Johnson::flat(pair.radius, length, steel.composite(steel)))
         }
         (None, None) => {
             let hint = "rigid links are laid with it; or give `contact.teeth.law`, of whose stiffness it is ten times";
@@ -339,7 +357,9 @@ fn laying_stiffness(
             return None;
         }
     };
-    Some(RIGID * teeth.stiffness(PRESSED))
+    let tooth = teeth.stiffness(PRESSED);
+    let default = &defaults::LAYING_STIFFNESS;
+    Some(findings.or_multiple(None, "chain.stiffness", default, tooth))
 }
 
 /// Indentation \[m\] at which a law reaches a force \[N\], at most `most`.

@@ -3,6 +3,7 @@
 mod catalogue;
 mod chain;
 mod contact;
+mod count;
 mod flank;
 mod guide;
 mod law;
@@ -15,46 +16,60 @@ mod start;
 mod tensioner;
 mod tooth;
 
+use std::collections::HashSet;
+
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_mechanics::{Drive, DriveError, Parts};
+use serde_json::{Value as Json, json};
 
-use super::error::Problem;
+use super::defaults::{self, Default};
+use super::error::{Problem, Problems};
 use super::quantity::{Length, Ratio};
-use super::schema::SceneText;
+use super::schema::{SceneText, Version};
 use super::suggest::one_of;
 use super::tree::Node;
 
 /// Builds the drive of a scene, or collects everything that prevents it.
-pub(crate) fn drive(scene: &SceneText, tree: &Node) -> Result<Drive, Vec<Problem>> {
+pub(crate) fn drive(scene: &SceneText, tree: &Node) -> Result<(Drive, Vec<Assumption>), Problems> {
     let mut findings = Findings {
         tree,
-        problems: Vec::new(),
+        version: scene.defaults.unwrap_or_default(),
+        problems: Problems::default(),
+        assumptions: Vec::new(),
+        assumed: HashSet::new(),
     };
     let names = Names::new(scene, &mut findings);
     let parts = parts(scene, &names, &mut findings);
-    let Some(parts) = parts.filter(|_| findings.problems.is_empty()) else {
+    let Some((parts, uncounted)) = parts.filter(|_| findings.problems.is_empty()) else {
         return Err(findings.problems);
     };
-    Drive::new(parts).map_err(|errors| {
-        for error in errors {
-            findings.drive_error(error);
+    match (Drive::new(parts), uncounted) {
+        (Ok(drive), None) => return Ok((drive, findings.assumptions)),
+        (Err(errors), _) => {
+            for error in errors {
+                findings.drive_error(error);
+            }
         }
-        findings.problems
-    })
+        (Ok(_), Some(reason)) => findings.refuse_with("chain.links", "missing", reason),
+    }
+    Err(findings.problems)
 }
 
-fn parts(scene: &SceneText, names: &Names<'_>, findings: &mut Findings<'_>) -> Option<Parts> {
+/// The parts, and why the number of links is a guess, if it is one.
+fn parts(
+    scene: &SceneText,
+    names: &Names<'_>,
+    findings: &mut Findings<'_>,
+) -> Option<(Parts, Option<String>)> {
     let touched = !(scene.sprockets.is_empty() && scene.guides.is_empty());
     let chain = chain::resolve(scene, touched, findings);
     let tensioners = tensioner::resolve_all(scene, findings);
-    let gravity = scene
-        .gravity
-        .map_or_else(|| Vector::new(0.0, -9.81), |[x, y]| Vector::new(x.0, y.0));
+    let gravity = gravity(scene, findings);
     let chain = chain?;
     let sprockets = sprocket::resolve_all(scene, names, &chain, findings);
     let guides = guide::resolve_all(scene, names, &chain, findings);
     let layout = route::layout(scene, names, &chain.chain, gravity, findings);
-    Some(Parts {
+    let parts = Parts {
         layout: layout?,
         chain: chain.chain,
         sprockets: sprockets?,
@@ -62,7 +77,18 @@ fn parts(scene: &SceneText, names: &Names<'_>, findings: &mut Findings<'_>) -> O
         tensioners: tensioners?,
         settle: scene.settle,
         gravity,
-    })
+    };
+    Some((parts, chain.uncounted))
+}
+
+fn gravity(scene: &SceneText, findings: &mut Findings<'_>) -> Vector {
+    if let Some([x, y]) = scene.gravity {
+        return Vector::new(x.0, y.0);
+    }
+    let down = defaults::GRAVITY.value(findings.version);
+    let remark = defaults::GRAVITY.basis.remark();
+    findings.assume("gravity", json!([0.0, down]), remark);
+    Vector::new(0.0, down)
 }
 
 /// The names by which parts refer to each other.
@@ -103,22 +129,75 @@ impl<'s> Names<'s> {
     }
 }
 
-/// The problems found so far, and the tree that knows their lines.
+/// A value that a scene leaves open, with what is taken for it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Assumption {
+    /// Place in the scene, with entries of lists by index.
+    pub(crate) path: String,
+    /// The value, in SI units.
+    pub(crate) value: Json,
+    /// Where it comes from.
+    pub(crate) remark: String,
+}
+
+/// The problems and assumptions found so far, and the tree that knows the lines.
 struct Findings<'t> {
     tree: &'t Node,
-    problems: Vec<Problem>,
+    /// Whose defaults hold.
+    version: Version,
+    problems: Problems,
+    assumptions: Vec<Assumption>,
+    assumed: HashSet<String>,
 }
 
 impl Findings<'_> {
+    /// Notes what is taken for an absent value; several bodies may share it.
+    fn assume(&mut self, path: &str, value: impl Into<Json>, remark: impl Into<String>) {
+        if self.assumed.insert(path.to_owned()) {
+            self.assumptions.push(Assumption {
+                path: path.to_owned(),
+                value: value.into(),
+                remark: remark.into(),
+            });
+        }
+    }
+
+    /// Notes the member of a family that stands for nothing.
+    fn assume_kind(&mut self, path: &str, kind: &str) {
+        self.assume(path, json!({"kind": kind}), "not given");
+    }
+
+    /// A number, or its default.
+    fn or_default(&mut self, given: Option<f64>, path: &str, default: &Default) -> f64 {
+        given.unwrap_or_else(|| {
+            let value = default.value(self.version);
+            self.assume(path, value, default.basis.remark());
+            value
+        })
+    }
+
+    /// A number, or a multiple of another that has its unit.
+    fn or_multiple(&mut self, given: Option<f64>, path: &str, default: &Default, of: f64) -> f64 {
+        given.unwrap_or_else(|| {
+            let factor = default.value(self.version);
+            let remark = format!("{factor} {}, {}", default.unit, default.basis.remark());
+            self.assume(path, factor * of, remark);
+            factor * of
+        })
+    }
+
     fn refuse(&mut self, path: &str, message: impl Into<String>) {
-        let (path, line) = self.tree.locate(path);
-        self.problems.push(Problem::new(&path, line, message));
+        self.problems.push_with(|| {
+            let (path, line) = self.tree.locate(path);
+            Problem::new(&path, line, message)
+        });
     }
 
     fn refuse_with(&mut self, path: &str, message: impl Into<String>, hint: impl Into<String>) {
-        let (path, line) = self.tree.locate(path);
-        self.problems
-            .push(Problem::new(&path, line, message).hint(hint));
+        self.problems.push_with(|| {
+            let (path, line) = self.tree.locate(path);
+            Problem::new(&path, line, message).hint(hint)
+        });
     }
 
     /// Refuses a value that several bodies share, once.
@@ -126,7 +205,7 @@ impl Findings<'_> {
     /// An empty hint is none.
     fn refuse_once(&mut self, path: &str, message: impl Into<String>, hint: &str) {
         let (place, _) = self.tree.locate(path);
-        if self.problems.iter().any(|problem| problem.path == place) {
+        if self.problems.speak_of(&place) {
             return;
         }
         if hint.is_empty() {
@@ -156,17 +235,17 @@ impl Findings<'_> {
     }
 
     fn unique<'n>(&mut self, names: impl Iterator<Item = (String, &'n str)>) {
-        let mut seen = Vec::new();
+        let mut seen = HashSet::new();
         for (path, name) in names {
             if name.trim().is_empty() {
                 self.refuse(&path, "the name is empty");
             } else if name.contains(['.', '[', ']']) {
                 let hint = "paths such as `sprockets.crank.teeth` use them";
                 self.refuse_with(&path, format!("`{name}` has a point or a bracket"), hint);
-            } else if seen.contains(&name) {
+            } else if seen.contains(name) {
                 self.refuse_with(&path, format!("`{name}` is taken"), "names must differ");
             }
-            seen.push(name);
+            seen.insert(name);
         }
     }
 

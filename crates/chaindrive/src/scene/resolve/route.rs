@@ -4,6 +4,7 @@ use chaindrive_geometry::Vector;
 use chaindrive_mechanics::{Adjust, Chain, Fit, Layout, Stop, Tighten};
 
 use super::{Findings, Names, start};
+use crate::scene::defaults;
 use crate::scene::schema::{self, Carrier, Route, SceneText};
 use crate::scene::suggest::one_of;
 
@@ -32,6 +33,10 @@ pub(super) fn layout(
     }
     let absent = Route::default();
     let route = scene.route.as_ref().unwrap_or(&absent);
+    if scene.route.is_none() {
+        findings.assume("route.pretension", 0.0, "not given");
+        findings.assume("route.tighten", "rest-length", "not given");
+    }
     let stops = stops(route, names, findings);
     let adjust = adjust(route, scene, names, findings);
     let adjust = adjust?;
@@ -43,9 +48,10 @@ pub(super) fn layout(
         let hint = "say in `route.adjust` what moves, or take `rest-length`";
         findings.refuse_with("route.tighten", "nothing is there to travel", hint);
     }
+    let phase = route.phase.map(|phase| phase.0);
     Some(Layout::Route {
         stops: stops?,
-        phase: route.phase.map_or(0.5, |phase| phase.0),
+        phase: findings.or_default(phase, "route.phase", &defaults::PHASE),
         fit: Fit {
             adjust,
             pretension: route.pretension.0,
@@ -63,6 +69,8 @@ fn stops(route: &Route, names: &Names<'_>, findings: &mut Findings<'_>) -> Optio
             findings.refuse_with("sprockets", message, hint);
             return None;
         }
+        let remark = "all sprockets, in the order of the text";
+        findings.assume("route.stops", names.sprockets.clone(), remark);
         return Some((0..count).map(Stop::Sprocket).collect());
     };
     let mut found = Vec::new();
@@ -128,7 +136,11 @@ fn adjust(
         Some(index)
     };
     match &route.adjust {
-        None | Some(schema::Adjust::Nothing) => Some(Adjust::Nothing),
+        None => {
+            findings.assume_kind("route.adjust", "nothing");
+            Some(Adjust::Nothing)
+        }
+        Some(schema::Adjust::Nothing) => Some(Adjust::Nothing),
         Some(schema::Adjust::Sprocket {
             name,
             direction,

@@ -1,19 +1,16 @@
 //! Sprockets.
 
-use std::f64::consts::FRAC_PI_2;
-
 use chaindrive_contact::Elastic;
-use chaindrive_contact::elastic::Power;
 use chaindrive_geometry::{Side, ToothGap};
 use chaindrive_mechanics::{Rotation, Sprocket, Support};
 
-use super::chain::Resolved;
-use super::law::cylindrical;
-use super::{Findings, Names, contact, flank, motion, point, tooth};
-use crate::scene::schema::{self, Push, SceneText};
+use serde_json::json;
 
-/// Stiffness of teeth \[link stiffnesses\] that the scene leaves open.
-const TEETH_PER_LINK: f64 = 5.0;
+use super::chain::Resolved;
+use super::law::{cylindrical, linear, steel};
+use super::{Findings, Names, contact, flank, motion, point, tooth};
+use crate::scene::defaults;
+use crate::scene::schema::{self, Push, SceneText};
 
 pub(super) fn resolve_all(
     scene: &SceneText,
@@ -77,7 +74,14 @@ fn resolve(
         contact::TEETH,
         chain.roller(),
         findings,
-        |findings| law(gap.as_ref()?, chain, findings),
+        |findings| {
+            law(
+                gap.as_ref()?,
+                chain,
+                &format!("{path}.contact.law"),
+                findings,
+            )
+        },
     );
     let flank = gap
         .as_ref()
@@ -106,22 +110,41 @@ fn resolve(
         mass: text.mass.map_or(0.0, |mass| mass.0),
         surface: surface?,
         flank,
-        gap_angle: text.gap_angle.map_or(FRAC_PI_2, |angle| angle.0),
+        gap_angle: findings.or_default(
+            text.gap_angle.map(|angle| angle.0),
+            &format!("{path}.gap_angle"),
+            &defaults::GAP_ANGLE,
+        ),
     })
 }
 
 /// Elastic law of teeth that the scene leaves open.
-fn law(gap: &ToothGap, chain: &Resolved, findings: &mut Findings<'_>) -> Option<Elastic> {
+fn law(
+    gap: &ToothGap,
+    chain: &Resolved,
+    path: &str,
+    findings: &mut Findings<'_>,
+) -> Option<Elastic> {
     if !chain.is_rigid() {
-        // Stiffer than a link, which bends its pins.
-        let stiffness = TEETH_PER_LINK * chain.link_stiffness();
-        return Some(Elastic::Power(Power::linear(stiffness)));
+        let default = &defaults::TEETH_STIFFNESS;
+        return Some(linear(chain.link_stiffness(), path, default, findings));
     }
     let roller = chain.roller();
+    let steel = steel(findings.version);
     let seated = roller
         .length
-        .and_then(|length| cylindrical(roller, gap.seat_clearance, length).ok());
-    if seated.is_none() {
+        .and_then(|length| cylindrical(roller, gap.seat_clearance, length, steel).ok());
+    if seated.is_some() {
+        let text = json!({
+            "kind": "cylindrical",
+            "length": roller.length,
+            "modulus": steel.modulus,
+            "poisson": steel.poisson,
+            "radius": roller.radius,
+            "clearance": gap.seat_clearance,
+        });
+        findings.assume(path, text, "follows from roller and seat");
+    } else {
         let hint =
             "give a law, or `chain.roller.length`, with which it follows from roller and seat";
         findings.refuse_once("contact.teeth.law", "missing", hint);
@@ -161,7 +184,11 @@ fn support(
 ) -> Option<Support> {
     let path = format!("{path}.support");
     Some(match &text.support {
-        None | Some(schema::Support::Fixed) => Support::Fixed,
+        None => {
+            findings.assume_kind(&path, "fixed");
+            Support::Fixed
+        }
+        Some(schema::Support::Fixed) => Support::Fixed,
         Some(schema::Support::Prescribed { x, y }) => {
             let x = motion::shift(x, &format!("{path}.x"), findings);
             let y = motion::shift(y, &format!("{path}.y"), findings);

@@ -4,14 +4,12 @@ use chaindrive_geometry::{
     Arc, GeometryError, Piece, Point, Seat, Segment, Tip, ToothForm, Turn, fit_arcs,
 };
 
-use super::{Findings, point};
-use crate::scene::quantity::Length;
-use crate::scene::schema::{self, GapForm, PathPiece, TipForm, Tooth};
+use serde_json::json;
 
-/// Radius of a circular seat \[roller diameters\], that of ISO 606.
-const SEAT_RADIUS: f64 = 0.505;
-/// How far a fit may stray from measured points \[pitches\].
-const TOLERANCE: f64 = 1e-3;
+use super::{Findings, point};
+use crate::scene::defaults;
+use crate::scene::quantity::Length;
+use crate::scene::schema::{self, PathPiece, TipForm, Tooth};
 
 /// The tooth form of a sprocket at `path`.
 pub(super) fn form(
@@ -33,8 +31,11 @@ pub(super) fn form(
         (TipForm::Max, None) => Some(Tip::Maximum),
     };
     let Some(tooth) = tooth else {
+        let gap = defaults::GAP.value(findings.version);
+        let text = json!({"kind": "iso606", "gap": gap, "tip": "mid", "seat": "bottom"});
+        findings.assume(path, text, defaults::GAP.basis.remark());
         return Some(ToothForm::Iso606 {
-            gap: GapForm::default().0,
+            gap,
             tip: Tip::Mid,
             seat: Seat::Bottom,
         });
@@ -62,8 +63,13 @@ pub(super) fn form(
             tip_diameter,
             seat,
         } => ToothForm::Circular {
-            seat_radius: seat_radius.map_or(SEAT_RADIUS * roller_diameter, |radius| radius.0),
             tip: tip(*form, *tip_diameter)?,
+            seat_radius: findings.or_multiple(
+                seat_radius.map(|radius| radius.0),
+                &format!("{path}.seat_radius"),
+                &defaults::SEAT_RADIUS,
+                roller_diameter,
+            ),
             seat: seat_of(*seat),
         },
         Tooth::Path { from, pieces } => ToothForm::Path {
@@ -71,7 +77,9 @@ pub(super) fn form(
         },
         Tooth::Points { points, tolerance } => {
             let points: Vec<Point> = points.iter().copied().map(point).collect();
-            let tolerance = tolerance.map_or(TOLERANCE * pitch, |tolerance| tolerance.0);
+            let tolerance = tolerance.map(|tolerance| tolerance.0);
+            let place = format!("{path}.tolerance");
+            let tolerance = findings.or_multiple(tolerance, &place, &defaults::TOLERANCE, pitch);
             let pieces = fit_arcs(&points, false, tolerance);
             ToothForm::Path {
                 pieces: findings.keep(&format!("{path}.points"), pieces)?,

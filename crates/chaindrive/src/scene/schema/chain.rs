@@ -1,14 +1,14 @@
 //! The chain and the places where a strand begins.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::{ChainModel, Joint, Link, Motion, Roller, Rollers};
 use crate::scene::quantity::{AngularSpeed, Damping, Force, Length, Mass, Ratio, Speed, Stiffness};
 
 /// The chain. Written as a text, `chain = "16B-1"`, it is a chain of the catalogue in which
 /// nothing is changed.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("x-required-unless" = {"type": ["pitch", "links"]}))]
 pub(crate) struct Chain {
@@ -104,7 +104,7 @@ pub(crate) struct Chain {
 }
 
 /// Random differences between links: normal, each with a relative standard deviation.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Scatter {
     /// Standard deviation of the link length over the pitch [–].
@@ -126,7 +126,7 @@ pub(crate) struct Scatter {
 }
 
 /// What happens at one end of an open strand.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum End {
     /// The end roller moves freely.
@@ -150,7 +150,7 @@ pub(crate) enum End {
 }
 
 /// Where the chain lies at the start, if not along a route.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum Start {
     /// A strand drawn straight from one point to another, stretched or slack as the distance asks.

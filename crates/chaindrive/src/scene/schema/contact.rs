@@ -1,7 +1,7 @@
 //! How surfaces push and rub.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::Friction;
 use crate::scene::quantity::{
@@ -9,7 +9,7 @@ use crate::scene::quantity::{
 };
 
 /// Contact laws, one for every kind of pair in the drive.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Contacts {
     /// Contact of rollers with teeth.
@@ -31,7 +31,7 @@ pub(crate) struct Contacts {
 }
 
 /// The flank of a tooth, where it does not answer like the hollow seat.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Flank {
     /// Elastic law beyond the hollow.
@@ -45,7 +45,7 @@ pub(crate) struct Flank {
 
 /// A contact. What a sprocket or guide leaves out is taken from `contact.teeth` or
 /// `contact.guides`.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Contact {
     /// Elastic law; absent, for particles: linear, with five times the link stiffness on teeth and the
@@ -76,7 +76,7 @@ pub(crate) struct Contact {
 }
 
 /// How a restitution becomes a force: the factor χ of F = g(δ) (1 + χ δ̇/v).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Dissipation {
     /// No loss; without a restitution.
@@ -103,7 +103,7 @@ pub(crate) enum Dissipation {
 }
 
 /// An elastic law: force over penetration.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum Elastic {
     /// A spring.
@@ -124,13 +124,13 @@ pub(crate) enum Elastic {
     /// Hertz's point contact of two bodies of one material. Too soft for cylinders.
     Hertz {
         /// Young's modulus [Pa]; absent: steel, 207 GPa.
-        #[serde(default = "steel_modulus")]
+        #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
-        modulus: Pressure,
+        modulus: Option<Pressure>,
         /// Poisson's ratio [–]; absent: 0.3.
-        #[serde(default = "steel_poisson")]
+        #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = -1, "maximum" = 0.5))]
-        poisson: Ratio,
+        poisson: Option<Ratio>,
         /// Radius of the first body [m]; absent: that of the roller.
         #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
@@ -156,7 +156,7 @@ pub(crate) enum Elastic {
 }
 
 /// Two parallel cylinders of one material. In joints and rollers the radii are those of the chain.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Cylinders {
     /// Length of the contact [m]; absent: that of the roller or joint, where the chain gives it.
@@ -182,12 +182,9 @@ pub(crate) struct Cylinders {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) clearance: Option<Length>,
-}
-
-fn steel_modulus() -> Pressure {
-    Pressure(207e9)
-}
-
-fn steel_poisson() -> Ratio {
-    Ratio(0.3)
+    /// Greatest depth that the law reckons with [m], where the second surface is a part of a cylinder; absent: the
+    /// second radius, or on a flat the first one.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) depth_cap: Option<Length>,
 }

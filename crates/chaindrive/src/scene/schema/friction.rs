@@ -1,7 +1,7 @@
 //! How surfaces rub.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::scene::quantity::{Damping, Force, PerLength, Ratio, Slowness, Speed};
 
@@ -9,7 +9,7 @@ use crate::scene::quantity::{Damping, Force, PerLength, Ratio, Slowness, Speed};
 pub(crate) const PLAIN: &str = "coulomb";
 
 /// A friction law. A table without `kind` is Coulomb's.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 #[schemars(extend("x-default-kind" = PLAIN))]
 pub(crate) enum Friction {
@@ -21,9 +21,9 @@ pub(crate) enum Friction {
         #[schemars(extend("minimum" = 0))]
         coefficient: Ratio,
         /// Speed of slip around which the friction changes sign [m/s]; absent: 0.05 m/s.
-        #[serde(default = "slip_speed")]
+        #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
-        slip_speed: Speed,
+        slip_speed: Option<Speed>,
     },
     /// Coulomb friction that fades in between two speeds of slip, after Ambrósio.
     Ambrosio {
@@ -43,9 +43,9 @@ pub(crate) enum Friction {
         #[schemars(extend("minimum" = 0))]
         coefficient: Ratio,
         /// Speed of slip at which the friction reaches 95 % [m/s]; absent: 0.05 m/s.
-        #[serde(default = "slip_speed")]
+        #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
-        slip_speed: Speed,
+        slip_speed: Option<Speed>,
     },
     /// A parabola up to static friction and a decay to kinetic friction, after Bengisu and Akay.
     BengisuAkay {
@@ -56,9 +56,9 @@ pub(crate) enum Friction {
         #[schemars(extend("minimum" = 0))]
         coefficient: Ratio,
         /// Speed of slip of the greatest friction [m/s]; absent: 0.05 m/s.
-        #[serde(default = "slip_speed")]
+        #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
-        slip_speed: Speed,
+        slip_speed: Option<Speed>,
         /// Decay from static to kinetic friction [s/m].
         #[schemars(extend("exclusiveMinimum" = 0))]
         decay: Slowness,
@@ -72,17 +72,17 @@ pub(crate) enum Friction {
         #[schemars(extend("minimum" = 0))]
         coefficient: Ratio,
         /// Speed of slip of the greatest friction [m/s]; absent: 0.05 m/s.
-        #[serde(default = "slip_speed")]
+        #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
-        slip_speed: Speed,
+        slip_speed: Option<Speed>,
         /// Viscous friction [N s/m]; absent: none.
         #[serde(default)]
         #[schemars(extend("minimum" = 0))]
         viscosity: Damping,
         /// Normal force at which viscous friction is whole [N]; absent: 1 N.
-        #[serde(default = "transition_force")]
+        #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
-        transition_force: Force,
+        transition_force: Option<Force>,
     },
     /// Bristles that bend, the LuGre model: friction that sticks, with a state.
     Lugre {
@@ -93,9 +93,9 @@ pub(crate) enum Friction {
         #[schemars(extend("exclusiveMinimum" = 0))]
         coefficient: Ratio,
         /// Stribeck speed [m/s]; absent: 0.05 m/s.
-        #[serde(default = "slip_speed")]
+        #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
-        slip_speed: Speed,
+        slip_speed: Option<Speed>,
         /// Stiffness of the bristles per normal force [1/m].
         #[schemars(extend("exclusiveMinimum" = 0))]
         stiffness: PerLength,
@@ -108,12 +108,4 @@ pub(crate) enum Friction {
         #[schemars(extend("minimum" = 0))]
         viscosity: Slowness,
     },
-}
-
-fn slip_speed() -> Speed {
-    Speed(0.05)
-}
-
-fn transition_force() -> Force {
-    Force(1.0)
 }

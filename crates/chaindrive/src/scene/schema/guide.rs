@@ -1,13 +1,13 @@
 //! Rails on which the chain slides.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::{Contact, Motion};
 use crate::scene::quantity::{Angle, Length, Speed};
 
 /// A rail.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Guide {
     /// Name, unique among sprockets and guides.
@@ -26,7 +26,7 @@ pub(crate) struct Guide {
 }
 
 /// The working face of a guide.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum Face {
     /// A straight bar whose ends curve away from the chain.
@@ -74,7 +74,7 @@ pub(crate) enum Face {
 }
 
 /// Side of a path.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum TravelSide {
     /// On the left of travel.
@@ -85,7 +85,7 @@ pub(crate) enum TravelSide {
 }
 
 /// Which part of the chain touches a guide.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Touches {
     /// The rollers.
@@ -98,7 +98,7 @@ pub(crate) enum Touches {
 }
 
 /// What holds a guide.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum GuideSupport {
     /// Bolted to the frame.

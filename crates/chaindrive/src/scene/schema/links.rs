@@ -1,12 +1,12 @@
 //! What rigid links are made of: plates, joints, rollers.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::scene::quantity::{Inertia, Length, Mass};
 
 /// What the chain is made of.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum ChainModel {
     /// Point masses at the rollers, joined by links that are springs with dampers.
@@ -19,7 +19,7 @@ pub(crate) enum ChainModel {
 }
 
 /// What runs on the teeth of a chain of rigid links.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Rollers {
     /// Rollers that move with their bush.
@@ -31,7 +31,7 @@ pub(crate) enum Rollers {
 }
 
 /// Mass properties of one link: its two plates and its bushes or pins, without rollers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Link {
     /// Mass [kg].
@@ -49,7 +49,7 @@ pub(crate) struct Link {
 }
 
 /// Pins in their bushes. The contact of the two is `contact.joints`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Joint {
     /// Diameter of the pin [m].
@@ -67,7 +67,7 @@ pub(crate) struct Joint {
 }
 
 /// Rollers on their bushes. The contact of the two is `contact.rollers`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Roller {
     /// Mass of one roller [kg].

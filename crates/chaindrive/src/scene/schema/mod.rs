@@ -21,28 +21,35 @@ pub(crate) use guide::{Face, Guide, GuideSupport, Touches, TravelSide};
 pub(crate) use links::{ChainModel, Joint, Link, Roller, Rollers};
 pub(crate) use motion::{Motion, Torque};
 pub(crate) use route::{Adjust, Events, Method, Route, Run, Tighten};
-pub(crate) use sprocket::{GapForm, PathPiece, Seat, Side, Sprocket, Support, TipForm, Tooth};
+pub(crate) use sprocket::{PathPiece, Seat, Side, Sprocket, Support, TipForm, Tooth};
 pub(crate) use tensioner::{Carrier, Oil, Push, Tensioner};
 
 use std::sync::LazyLock;
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
+use super::defaults;
 use super::quantity::Acceleration;
 
 /// A chain drive: a chain, what it runs around, and how it starts.
 ///
 /// Every quantity is a number in SI units or a text with a unit, such as "88.9 mm". Positions are
 /// (x, y) with x to the right and y up; angles are counter-clockwise.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "chaindrive scene")]
 pub(crate) struct SceneText {
     /// Address of the schema, for editors; ignored.
-    #[serde(default, rename = "$schema")]
+    #[serde(default, rename = "$schema", skip_serializing)]
     pub(crate) _schema: Option<String>,
+    /// Version of the format that the scene is written in; absent: the present one.
+    #[serde(default, skip_serializing)]
+    pub(crate) format: Option<Version>,
+    /// Version whose defaults hold for whatever the scene leaves open; absent: the present one.
+    #[serde(default, skip_serializing)]
+    pub(crate) defaults: Option<Version>,
     /// What the scene shows, in a line.
     #[serde(default)]
     pub(crate) title: String,
@@ -60,12 +67,15 @@ pub(crate) struct SceneText {
     pub(crate) contact: Contacts,
     /// The sprockets, usually in the order in which the chain passes them.
     #[serde(default)]
+    #[schemars(extend("maxItems" = 1000))]
     pub(crate) sprockets: Vec<Sprocket>,
     /// Rails on which the chain slides.
     #[serde(default)]
+    #[schemars(extend("maxItems" = 1000))]
     pub(crate) guides: Vec<Guide>,
     /// Movable carriers that press sprockets or guides on the chain.
     #[serde(default)]
+    #[schemars(extend("maxItems" = 1000))]
     pub(crate) tensioners: Vec<Tensioner>,
     /// How a closed chain lies around its sprockets; absent: around all sprockets, in file order.
     #[serde(default)]
@@ -73,6 +83,33 @@ pub(crate) struct SceneText {
     /// What the front ends run and record unless told otherwise.
     #[serde(default)]
     pub(crate) run: Run,
+}
+
+/// A version of chaindrive.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize, JsonSchema,
+)]
+pub(crate) enum Version {
+    /// The first one.
+    #[serde(rename = "0.1")]
+    V0_1,
+    /// The present one.
+    #[default]
+    #[serde(rename = "0.2")]
+    V0_2,
+}
+
+impl Version {
+    /// Every version, the first one first.
+    pub(crate) const ALL: [Self; 2] = [Self::V0_1, Self::V0_2];
+
+    /// Its name, as a scene writes it.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::V0_1 => "0.1",
+            Self::V0_2 => "0.2",
+        }
+    }
 }
 
 fn settle() -> bool {
@@ -85,6 +122,7 @@ fn settle() -> bool {
 /// `chaindrive.schema.json` is this value.
 pub fn schema() -> Value {
     let mut schema = raw().clone();
+    defaults::put_into(&mut schema);
     for_editors(&mut schema);
     let chain = &mut schema["properties"]["chain"];
     *chain = json!({
@@ -126,7 +164,13 @@ fn drop_null(object: &mut Map<String, Value>) {
             object.insert("type".into(), only);
         }
     }
-    if object.get("default") == Some(&Value::Null) {
+    let says_nothing = |default: &Value| match default {
+        Value::Null => true,
+        Value::Object(table) => !table.contains_key("kind"),
+        Value::Array(items) => items.is_empty(),
+        _ => false,
+    };
+    if object.get("default").is_some_and(says_nothing) {
         object.remove("default");
     }
     if let Some(Value::Array(choices)) = object.get_mut("anyOf") {

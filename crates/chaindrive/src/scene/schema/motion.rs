@@ -1,14 +1,14 @@
 //! Prescribed motions and shaft torques.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::scene::quantity::{
     Angle, AngularDamping, AngularSpeed, Frequency, QuadraticDamping, Ratio, Time, Torque as Moment,
 };
 
 /// A coordinate given in time, counted from the assembled position.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 #[schemars(rename = "Motion_of_{Position}")]
 pub(crate) enum Motion<Position, Rate> {
@@ -51,7 +51,7 @@ pub(crate) enum Motion<Position, Rate> {
 }
 
 /// One sine term of a motion.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Term_of_{Position}")]
 pub(crate) struct Term<Position> {
@@ -66,7 +66,7 @@ pub(crate) struct Term<Position> {
 }
 
 /// A torque on a shaft, counter-clockwise positive.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum Torque {
     /// A constant torque.

@@ -1,12 +1,12 @@
 //! The way of a closed chain, and what a front end runs by default.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::scene::quantity::{Angle, Force, Length, Ratio, Time};
 
 /// How a closed chain lies around its sprockets.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Route {
     /// Names of sprockets and curved guides in the order in which the chain passes them, a
@@ -30,7 +30,7 @@ pub(crate) struct Route {
 }
 
 /// How the pretension is made.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Tighten {
     /// The links are made shorter by the strain of the pretension.
@@ -41,7 +41,7 @@ pub(crate) enum Tighten {
 }
 
 /// What is moved until the given number of links closes without stress.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum Adjust {
     /// Nothing: a small misfit becomes strain, an excess of length becomes sag.
@@ -75,7 +75,7 @@ pub(crate) enum Adjust {
 }
 
 /// What a front end runs and records unless told otherwise.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Run {
     /// Duration of the run [s].
@@ -117,7 +117,7 @@ pub(crate) struct Run {
 }
 
 /// Contacts that can be logged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Events {
     /// Rollers on teeth.
@@ -129,7 +129,7 @@ pub(crate) enum Events {
 }
 
 /// A method of time stepping.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Method {
     /// What suits the chain: implicit damping for rigid links, Verlet for particles.

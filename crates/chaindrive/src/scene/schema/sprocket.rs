@@ -1,7 +1,7 @@
 //! Sprockets, their teeth and what holds them.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::{Contact, Flank, Motion, Torque};
 use crate::scene::quantity::{
@@ -12,7 +12,7 @@ use crate::scene::quantity::{
 ///
 /// With `motion` its angle is given in time; without, it turns freely with `inertia` under the
 /// chain, `drive` and `load`.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Sprocket {
     /// Name, unique among sprockets and guides.
@@ -61,7 +61,7 @@ pub(crate) struct Sprocket {
 }
 
 /// Side of the travelling chain.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Side {
     /// On the left: the chain turns counter-clockwise around the wheel.
@@ -72,7 +72,7 @@ pub(crate) enum Side {
 }
 
 /// The profile of the teeth.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum Tooth {
     /// The form of ISO 606, anywhere between its two extremes.
@@ -139,7 +139,7 @@ pub(crate) enum Tooth {
 }
 
 /// Gap form between the ISO extremes.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(transparent)]
 pub(crate) struct GapForm(pub(crate) f64);
 
@@ -172,7 +172,7 @@ impl JsonSchema for GapForm {
 }
 
 /// Tip diameter within the limits of ISO 606.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum TipForm {
     /// The smallest.
@@ -185,7 +185,7 @@ pub(crate) enum TipForm {
 }
 
 /// Where the seat of a roller is centred.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Seat {
     /// Rollers touch the bottom of the gap when they lie on the pitch circle.
@@ -196,7 +196,7 @@ pub(crate) enum Seat {
 }
 
 /// One piece of a tooth gap.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum PathPiece {
     /// A straight line.
@@ -214,7 +214,7 @@ pub(crate) enum PathPiece {
 }
 
 /// What holds the centre of a sprocket.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum Support {
     /// A fixed bearing.

@@ -1,7 +1,7 @@
 //! Tensioners: how they move and what pushes them.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::scene::quantity::{
     AngularDamping, AngularStiffness, Damping, Force, Inertia, Length, Mass, Pressure, Ratio,
@@ -9,7 +9,7 @@ use crate::scene::quantity::{
 };
 
 /// A carrier with one degree of freedom that presses sprockets or guides on the chain.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Tensioner {
     /// Name, unique among tensioners. Sprockets and guides refer to it by `support`.
@@ -21,7 +21,7 @@ pub(crate) struct Tensioner {
 }
 
 /// How a tensioner moves.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum Carrier {
     /// A straight slide.
@@ -49,7 +49,7 @@ pub(crate) enum Carrier {
 }
 
 /// A plunger on an arm.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Plunger {
     /// Point of the arm on which it pushes (x, y) [m].
@@ -59,7 +59,7 @@ pub(crate) struct Plunger {
 }
 
 /// What pushes a tensioner.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum Push {
     /// Nothing: the carrier stays where it was assembled.
@@ -122,7 +122,7 @@ pub(crate) enum Push {
 }
 
 /// A plunger that leaks through an annular gap.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Oil {
     /// Plunger diameter [m].

@@ -1,0 +1,207 @@
+//! What is taken for what a scene leaves open: one table, with the value of every version, its unit, and where it is from.
+//!
+//! A default stands here and nowhere else: the parts of a scene are resolved with it, the schema tells it to
+//! editors, and [`Scene::resolved`](super::Scene::resolved) writes it out. To change one add its value
+//! for the new version; scenes that say `defaults = "…"` keep the old one.
+//!
+//! What is simply not there (no friction, no damping, a phase of zero) is no default in this sense: it
+//! is the empty value of its type in `schema`.
+
+use std::borrow::Cow;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use serde_json::{Value as Json, json};
+
+use super::schema::Version;
+
+/// Where a default comes from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Basis {
+    /// Nothing but judgement; the text gives the reason.
+    Assumed(&'static str),
+    /// Something published, or a definition.
+    Source(&'static str),
+}
+
+impl Basis {
+    /// As a remark: "assumed: …", or the source.
+    pub(crate) fn remark(self) -> Cow<'static, str> {
+        match self {
+            Self::Assumed("") => "assumed".into(),
+            Self::Assumed(reason) => format!("assumed: {reason}").into(),
+            Self::Source(source) => source.into(),
+        }
+    }
+}
+
+/// A number that is taken where a scene gives none.
+#[derive(Debug)]
+pub(crate) struct Default {
+    /// Keys of the schema that it is for, as `Type.key`.
+    pub(crate) keys: &'static [&'static str],
+    /// Unit, or what it is a multiple of.
+    pub(crate) unit: &'static str,
+    /// Where it comes from.
+    pub(crate) basis: Basis,
+    /// Its values, each from a version on, the first version first.
+    values: &'static [(Version, f64)],
+}
+
+impl Default {
+    /// The value in a version.
+    pub(crate) fn value(&self, version: Version) -> f64 {
+        let holds = |(since, _): &&(Version, f64)| *since <= version;
+        let last = self.values.iter().rfind(holds);
+        last.map_or(f64::NAN, |(_, value)| *value)
+    }
+}
+
+macro_rules! defaults {
+    ($($(#[$doc:meta])* $name:ident = $value:expr, $unit:literal, $basis:expr, $keys:expr;)*) => {
+        $($(#[$doc])* pub(crate) static $name: Default = Default {
+            keys: &$keys,
+            unit: $unit,
+            basis: $basis,
+            values: &$value,
+        };)*
+        /// Every default.
+        static ALL: &[&Default] = &[$(&$name),*];
+    };
+}
+
+/// A value that has not changed since the first version.
+const fn always(value: f64) -> [(Version, f64); 1] {
+    [(Version::V0_1, value)]
+}
+
+use Basis::{Assumed, Source};
+
+const STEEL: &str = "steel on steel";
+
+defaults! {
+    /// Acceleration of gravity along y.
+    GRAVITY = always(-9.81), "m/s^2", Source("standard gravity, to three digits"), ["SceneText.gravity"];
+    /// Damping ratio ζ of a link.
+    DAMPING_RATIO = always(0.03), "1", Assumed("measured values are not published, 0.01 to 0.05 are in use"), ["Chain.damping_ratio"];
+    /// Height of the link plates.
+    PLATE_HEIGHT = always(1.4), "roller diameters", Source("1.31 to 1.47 in the catalogues"), ["Chain.plate_height"];
+    /// Roller diameter of a strand that touches nothing.
+    ROLLER_DIAMETER = always(0.6), "pitches", Assumed("it touches nothing"), ["Chain.roller_diameter"];
+    /// Laying stiffness of rigid links with ideal joints.
+    LAYING_STIFFNESS = always(10.0), "stiffnesses of a tooth", Assumed("their stretch must not show beside the indentation of the teeth"), ["Chain.stiffness"];
+    /// Restitution on teeth.
+    TEETH_RESTITUTION = always(0.8), "1", Assumed("teeth of steel"), ["Contact.restitution"];
+    /// Restitution on guides.
+    GUIDES_RESTITUTION = always(0.5), "1", Assumed("a lining of rubber or plastic"), ["Contact.restitution"];
+    /// Restitution of pins in their bushes.
+    JOINTS_RESTITUTION = always(0.7), "1", Assumed("steel in an oiled bush"), ["Contact.restitution"];
+    /// Restitution of bushes in free rollers.
+    ROLLERS_RESTITUTION = always(0.7), "1", Assumed("steel in an oiled roller"), ["Contact.restitution"];
+    /// Least closing speed that a restitution reckons with.
+    ONSET_FLOOR = always(0.05), "m/s", Assumed("keeps contacts that begin gently from overdamping"), ["Contact.onset_floor"];
+    /// Stiffness of teeth under a chain of particles.
+    TEETH_STIFFNESS = always(5.0), "link stiffnesses", Assumed("stiffer than a link, which bends its pins"), ["Contact.law"];
+    /// Stiffness of guides.
+    GUIDES_STIFFNESS = always(1.0), "link stiffnesses", Assumed("a lining as soft as a link"), ["Contact.law"];
+    /// Young's modulus.
+    MODULUS = always(207e9), "Pa", Assumed(STEEL), ["Cylinders.modulus", "Elastic.modulus"];
+    /// Poisson's ratio.
+    POISSON = always(0.3), "1", Assumed(STEEL), ["Cylinders.poisson", "Elastic.poisson"];
+    /// Passage from the law of the seat to that of the flank, on either side.
+    FLANK_WIDTH = always(0.05), "roller diameters", Assumed("about the half-width of the patch of contact"), ["Flank.width"];
+    /// Speed of slip at which friction is fully there.
+    SLIP_SPEED = always(0.05), "m/s", Assumed("small beside the speeds at which chains slide"), ["Friction.slip_speed"];
+    /// Normal force at which viscous friction is whole.
+    TRANSITION_FORCE = always(1.0), "N", Assumed("small beside the forces of a chain"), ["Friction.transition_force"];
+    /// Gap between the extremes of ISO 606.
+    GAP = always(0.5), "1", Assumed("half-way between the extreme forms of ISO 606"), ["Sprocket.tooth"];
+    /// Radius of a circular seat.
+    SEAT_RADIUS = always(0.505), "roller diameters", Source("ISO 606, smallest seat"), ["Tooth.seat_radius"];
+    /// Angle of a gap on a sprocket that no route passes.
+    GAP_ANGLE = always(FRAC_PI_2), "rad", Assumed("a gap upward"), ["Sprocket.gap_angle"];
+    /// Deviation of the fit from measured points.
+    TOLERANCE = always(1e-3), "pitches", Assumed("finer than teeth are cut"), ["Tooth.tolerance"];
+    /// Radius of the ends of a bar.
+    END_RADIUS = always(0.25), "straight lengths", Assumed(""), ["Face.end_radius"];
+    /// Angle of the ends of a bar.
+    END_ANGLE = always(PI / 18.0), "rad", Assumed("10 degrees lead the chain in"), ["Face.end_angle"];
+    /// Place of the first sprocket within a tooth.
+    PHASE = always(0.5), "1", Assumed("symmetric"), ["Route.phase"];
+}
+
+/// Writes the defaults of the present version into the schema, as `x-defaults`.
+pub(crate) fn put_into(schema: &mut Json) {
+    for default in ALL {
+        let told = json!({
+            "value": default.value(Version::default()),
+            "unit": default.unit,
+            "basis": default.basis.remark(),
+        });
+        for place in default.keys {
+            for property in properties(schema, place) {
+                let list = &mut property["x-defaults"];
+                match list.as_array_mut() {
+                    Some(list) => list.push(told.clone()),
+                    None => *list = json!([told]),
+                }
+            }
+        }
+    }
+}
+
+/// The properties of the schema called `Type.key`, one for every member of a family.
+fn properties<'s>(schema: &'s mut Json, place: &str) -> Vec<&'s mut Json> {
+    let (of_type, key) = place.split_once('.').unwrap_or_default();
+    let table = if of_type == "SceneText" {
+        Some(schema)
+    } else {
+        schema["$defs"].get_mut(of_type)
+    };
+    let Some(table) = table.and_then(Json::as_object_mut) else {
+        return Vec::new();
+    };
+    let mut found = Vec::new();
+    for (name, part) in table {
+        match name.as_str() {
+            "properties" => found.extend(part.get_mut(key)),
+            "oneOf" => {
+                let members = part.as_array_mut().into_iter().flatten();
+                found.extend(members.filter_map(|member| member["properties"].get_mut(key)));
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::schema::raw;
+
+    #[test]
+    fn every_default_has_a_value_in_every_version_and_a_key_in_the_schema() {
+        let mut schema = raw().clone();
+        for default in ALL {
+            for version in Version::ALL {
+                assert!(default.value(version).is_finite(), "{default:?}");
+            }
+            assert!(default.values.is_sorted_by_key(|(since, _)| *since));
+            for key in default.keys {
+                assert!(!properties(&mut schema, key).is_empty(), "{key}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_version_keeps_its_values() {
+        let changed = Default {
+            keys: &[],
+            unit: "1",
+            basis: Assumed("a test"),
+            values: &[(Version::V0_1, 1.0), (Version::V0_2, 2.0)],
+        };
+        let values = Version::ALL.map(|version| changed.value(version).to_bits());
+        assert_eq!(values, [1.0_f64.to_bits(), 2.0_f64.to_bits()]);
+    }
+}
