@@ -114,7 +114,7 @@ impl System {
 
     /// SI units of the position and of the push of every tensioner.
     pub fn tensioner_units(&self) -> Vec<(&'static str, &'static str)> {
-        let carriers = self.slides.iter().map(|slide| &slide.carrier);
+        let carriers = self.bodies.slides.iter().map(|slide| &slide.carrier);
         carriers
             .map(|carrier| (carrier.coordinate_unit(), carrier.push_unit()))
             .collect()
