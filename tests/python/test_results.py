@@ -173,6 +173,21 @@ def test_a_run_says_how_exact_it_is() -> None:
     # The waveform is good for a millisecond or two, and the variable says so.
     assert run["span_tension"].attrs["waveform_horizon"] == story["waveform_horizon"] < 6e-3
     assert story["chaos_horizon"] > story["waveform_horizon"]
+    assert run["span_tension"].attrs["waveform_horizon_of"] == "span_tension"
+
+
+def test_a_result_that_contradicts_itself_is_warned_of(recwarn: pytest.WarningsRecorder) -> None:
+    settings = {"every": 1e-5, "method": "implicit-damping", "error": False}
+    fast = cd.scenes.bicycle().replace({"sprockets.chainring.motion.speed": "-5000 rpm"})
+    with pytest.warns(cd.DistrustedResultWarning, match="does not add up"):
+        run = cd.simulate(fast, until=3e-3, **settings)
+    assert run.attrs["verdict"] == "distrusted"
+    assert "energy-missing" in run.attrs["reasons"].split()
+    assert run.attrs["summary"].startswith("verdict                  distrusted")
+    recwarn.clear()
+    run = cd.simulate(cd.scenes.bicycle(), until=3e-3, **settings)
+    assert run.attrs["verdict"] == "caution"
+    assert not recwarn.list
 
 
 def test_the_error_can_be_left_out() -> None:
