@@ -65,10 +65,6 @@ pub(crate) struct Rail {
 
 /// What touches a rail.
 #[derive(Clone, Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "a drive has a handful of rails, and a box would cost the kernels a look"
-)]
 pub(crate) enum RailContact {
     Circles(Contacts),
     Plates(PlateContact),
