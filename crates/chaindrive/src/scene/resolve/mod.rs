@@ -16,7 +16,7 @@ mod tensioner;
 mod tooth;
 
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_mechanics::{Drive, DriveError, Parts};
+use chaindrive_mechanics::{Drive, DriveError, Parts, PlacedChain};
 
 use super::error::Problem;
 use super::quantity::{Length, Ratio};
@@ -54,12 +54,19 @@ fn parts(scene: &SceneText, names: &Names<'_>, findings: &mut Findings<'_>) -> O
     let sprockets = sprocket::resolve_all(scene, names, &chain, findings);
     let guides = guide::resolve_all(scene, names, &chain, findings);
     let layout = route::layout(scene, names, &chain.chain, gravity, findings);
-    Some(Parts {
-        layout: layout?,
+    let (sprockets, guides) = (sprockets?, guides?);
+    let placed = PlacedChain {
         chain: chain.chain,
-        sprockets: sprockets?,
-        guides: guides?,
+        layout: layout?,
+        sprockets: (0..sprockets.len()).collect(),
+        guides: (0..guides.len()).collect(),
+    };
+    Some(Parts {
+        chains: vec![placed],
+        sprockets,
+        guides,
         tensioners: tensioners?,
+        torsions: Vec::new(),
         settle: scene.settle,
         gravity,
     })
