@@ -8,6 +8,7 @@ mod settle;
 mod slack;
 
 use chaindrive_geometry::Point;
+use chaindrive_integrate::SecondOrderSystem;
 
 use crate::chains::LaidAs;
 use crate::drive::{Layout, Parts};
@@ -126,6 +127,11 @@ impl Drive {
             })
             .collect();
         if self.settle && !tightenings.is_empty() {
+            if !system.can_solve() {
+                return Err(AssemblyError::Layout {
+                    problem: "a chain whose pins have play settles beside chains of rigid links only; start with `settle = false`, or make all chains of rigid links".into(),
+                });
+            }
             settle::settle(system, q, &tightenings)?;
         }
         system.close_in_motion(q, v);
