@@ -26,7 +26,9 @@ impl System {
     pub(super) fn solve_step(&self, weights: Weights, record: &mut Record, x: &mut [f64]) -> bool {
         if let [member] = self.chains.as_slice() {
             let bodies = &self.bodies;
-            return member.chain.solve(bodies, weights, &mut record.chains[0], x);
+            return member
+                .chain
+                .solve(bodies, weights, &mut record.chains[0], x);
         }
         self.solve_joined(weights, record, x).is_some()
     }
