@@ -147,8 +147,8 @@ impl Description {
         let meshing = drive.sprockets.iter().zip(&start.sprocket_speed);
         let mesh = meshing.map(|(s, speed)| (s.name.clone(), mesh_frequency(s.gap.teeth, *speed)));
         Ok(Self {
-            chain: chain_facts(&drive.chain, &spans),
-            closing: assembled.fitting.as_ref().map(|fitting| Closing {
+            chain: chain_facts(&drive.chains[0].chain, &spans),
+            closing: assembled.fittings[0].as_ref().map(|fitting| Closing {
                 strain: fitting.strain,
                 travel: fitting.travel,
             }),
@@ -242,7 +242,7 @@ fn model(drive: &Drive, assembled: &Assembled) -> Model {
         .filter(|guide| guide.support == GuideSupport::Fixed);
     let (free, fixed) = (free.count(), fixed.count());
     let contacts = links::contacts(drive);
-    let particles = drive.chain.model == ChainModel::Particles;
+    let particles = drive.chains[0].chain.model == ChainModel::Particles;
     let lacks = [
         (drive.sprockets.is_empty(), "sprockets"),
         (drive.guides.is_empty(), "guides"),
@@ -252,7 +252,7 @@ fn model(drive: &Drive, assembled: &Assembled) -> Model {
             "friction",
         ),
         (
-            particles && drive.chain.damping.iter().all(|d| *d <= 0.0),
+            particles && drive.chains[0].chain.damping.iter().all(|d| *d <= 0.0),
             "damping of the links",
         ),
         (drive.gravity.norm() <= 0.0, "gravity"),

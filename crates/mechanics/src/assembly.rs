@@ -8,6 +8,7 @@ mod settle;
 mod slack;
 
 use chaindrive_geometry::Point;
+use chaindrive_integrate::SecondOrderSystem;
 
 use crate::chains::LaidAs;
 use crate::drive::{Layout, Parts};
@@ -28,8 +29,8 @@ pub struct Assembled {
     pub v: Vec<f64>,
     /// Static states on the way, when the drive was settled: after pretension, gravity and load.
     pub statics: Vec<Statics>,
-    /// How the chain was fitted, when it runs around sprockets.
-    pub fitting: Option<Fitting>,
+    /// How every chain was fitted, where it runs around sprockets.
+    pub fittings: Vec<Option<Fitting>>,
 }
 
 /// How a closed chain was fitted.
@@ -45,6 +46,15 @@ pub struct Fitting {
     pub travel: f64,
 }
 
+/// Where the rollers of a chain lie before anything pulls at them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RollerLayout {
+    /// Roller positions \[m\], (rollers,).
+    pub positions: Vec<Point>,
+    /// How the chain was fitted, where it runs around sprockets.
+    pub fitting: Option<Fitting>,
+}
+
 impl Drive {
     /// Lays the chain, finds the static state where asked, and sets everything going at the
     /// speed of the first driven sprocket.
@@ -52,7 +62,8 @@ impl Drive {
     /// # Errors
     /// [`AssemblyError`] when the chain does not close or no equilibrium is found.
     pub fn assemble(&self) -> Result<Assembled, AssemblyError> {
-        if self.chain.model.stretches() {
+        let mut chains = self.chains.iter();
+        if chains.all(|placed| placed.chain.model.stretches()) {
             self.assemble_as_is()
         } else {
             self.assemble_hard()
@@ -60,16 +71,15 @@ impl Drive {
     }
 
     fn assemble_as_is(&self) -> Result<Assembled, AssemblyError> {
-        let (laid, fitting) = lay::lay(self)?;
+        let (laid, fittings) = lay::lay(self)?;
         let (mut system, mut q) = System::build(&laid)?;
         let mut statics = Vec::new();
         if self.settle {
             statics = relax::settle(&mut system, &mut q)?;
         }
         let mut v = vec![0.0; q.len()];
-        for (index, layout) in [&self.layout].into_iter().enumerate() {
-            setting_off::set_off(&system, index, layout, &q, &mut v);
-        }
+        let layouts: Vec<&Layout> = self.chains.iter().map(|placed| &placed.layout).collect();
+        setting_off::set_off(&system, &layouts, &q, &mut v);
         self.put_in_place(&mut system, &laid.parts, &mut q, &mut v)?;
         system.start(0.0, &mut q, &mut v);
         Ok(Assembled {
@@ -77,7 +87,7 @@ impl Drive {
             q,
             v,
             statics,
-            fitting,
+            fittings,
         })
     }
 
@@ -90,11 +100,11 @@ impl Drive {
         v: &mut Vec<f64>,
     ) -> Result<(), AssemblyError> {
         let mut replaced = false;
-        for (index, (chain, layout)) in [(&parts.chain, &parts.layout)].into_iter().enumerate() {
+        for (index, placed) in parts.chains.iter().enumerate() {
             let laid = LaidAs {
-                chain,
-                pretension: layout.pretension(),
-                on_route: matches!(layout, Layout::Route { .. }),
+                chain: &placed.chain,
+                pretension: placed.layout.pretension(),
+                on_route: matches!(placed.layout, Layout::Route { .. }),
                 gravity: parts.gravity,
             };
             replaced |= system.put_in_place(index, &laid, [&mut *q, &mut *v]);
@@ -105,29 +115,40 @@ impl Drive {
         let mut still = vec![0.0; q.len()];
         system.start(0.0, q, &mut still);
         let loose = |index: &usize| system.chains[*index].chain.has_play();
-        let tightenings: Vec<Tightening> = [(&parts.chain, &parts.layout)]
-            .into_iter()
+        let tightenings: Vec<Tightening> = parts
+            .chains
+            .iter()
             .enumerate()
             .filter(|(index, _)| loose(index))
-            .map(|(index, (chain, layout))| Tightening {
+            .map(|(index, placed)| Tightening {
                 chain: index,
-                pretension: layout.pretension(),
-                stiffness: chain.stiffness[0],
+                pretension: placed.layout.pretension(),
+                stiffness: placed.chain.stiffness[0],
             })
             .collect();
         if self.settle && !tightenings.is_empty() {
+            if !system.can_solve() {
+                return Err(AssemblyError::Layout {
+                    problem: "a chain whose pins have play settles beside chains of rigid links only; start with `settle = false`, or make all chains of rigid links".into(),
+                });
+            }
             settle::settle(system, q, &tightenings)?;
         }
         system.close_in_motion(q, v);
         Ok(())
     }
 
-    /// Lays the chain only, without settling: roller positions \[m\], (rollers,), and the fitting.
+    /// Lays the chains only, without settling.
     ///
     /// # Errors
-    /// [`AssemblyError`] when the chain does not close.
-    pub fn layout_positions(&self) -> Result<(Vec<Point>, Option<Fitting>), AssemblyError> {
-        let (mut laid, fitting) = lay::lay(self)?;
-        Ok((std::mem::take(&mut laid.chains[0].positions), fitting))
+    /// [`AssemblyError`] when a chain does not close.
+    pub fn layouts(&self) -> Result<Vec<RollerLayout>, AssemblyError> {
+        let (laid, fittings) = lay::lay(self)?;
+        let chains = laid.chains.into_iter().zip(fittings);
+        let layouts = chains.map(|(chain, fitting)| RollerLayout {
+            positions: chain.positions,
+            fitting,
+        });
+        Ok(layouts.collect())
     }
 }

@@ -6,13 +6,38 @@ use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_geometry::{Point, Vector};
 
 use crate::drive::{
-    Adjust, Fit, GuideSupport, Layout, Parts, Rotation, Sprocket, Stop, Support, Surface,
+    Adjust, Fit, GuideSupport, Layout, Parts, PlacedChain, Rotation, Sprocket, Stop, Support,
+    Surface, Torsion,
 };
 use crate::{DriveError, Ends};
 
 /// Every reason why `parts` is not a drive.
 pub(crate) fn problems(parts: &Parts) -> Vec<DriveError> {
-    let mut found = parts.chain.problems();
+    let mut found = Vec::new();
+    if parts.chains.is_empty() {
+        found.push(conflict("chains", "a drive has at least one chain".into()));
+    }
+    for (index, placed) in parts.chains.iter().enumerate() {
+        let mut own = placed.chain.problems();
+        own.extend(layout_problems(placed, parts));
+        own.extend(plane_problems(placed, parts));
+        if parts.chains.len() > 1 {
+            for problem in &mut own {
+                problem.place_in(&format!("chains[{index}]"));
+            }
+        }
+        found.extend(own);
+    }
+    for (index, sprocket) in parts.sprockets.iter().enumerate() {
+        found.extend(gear_problems(index, sprocket, parts));
+    }
+    for (index, torsion) in parts.torsions.iter().enumerate() {
+        found.extend(torsion_problems(
+            &format!("shafts[{index}]"),
+            torsion,
+            parts,
+        ));
+    }
     for sprocket in &parts.sprockets {
         found.extend(sprocket_problems(sprocket, parts.tensioners.len()));
     }
@@ -40,8 +65,7 @@ pub(crate) fn problems(parts: &Parts) -> Vec<DriveError> {
     }
     found.extend(finite(parts.gravity, "gravity"));
     found.extend(duplicate_names(parts));
-    found.extend(overlaps(&parts.sprockets));
-    found.extend(layout_problems(parts));
+    found.extend(overlaps(parts));
     found
 }
 
@@ -119,6 +143,7 @@ fn sprocket_problems(sprocket: &Sprocket, tensioners: usize) -> Vec<DriveError> 
         Rotation::Prescribed(motion) => {
             found.extend(motion.check(&format!("{place}.motion")).err());
         }
+        Rotation::Geared { .. } => {}
         Rotation::Free { drive, load } => {
             for (name, torques) in [("drive", drive), ("load", load)] {
                 for (i, torque) in torques.iter().enumerate() {
@@ -174,10 +199,20 @@ fn duplicate_names(parts: &Parts) -> Vec<DriveError> {
 }
 
 /// Sprockets whose teeth would cut into each other.
-fn overlaps(sprockets: &[Sprocket]) -> Vec<DriveError> {
+/// Sprockets in one another's way; those of different chains pass each other.
+fn overlaps(parts: &Parts) -> Vec<DriveError> {
+    let sprockets = &parts.sprockets;
+    let apart = |first: usize, second: usize| {
+        let mut planes = parts.chains.iter().map(|placed| &placed.sprockets);
+        parts.chains.len() > 1
+            && !planes.any(|plane| plane.contains(&first) && plane.contains(&second))
+    };
     let mut found = Vec::new();
     for (i, first) in sprockets.iter().enumerate() {
-        for second in &sprockets[i + 1..] {
+        for (j, second) in sprockets.iter().enumerate().skip(i + 1) {
+            if apart(i, j) {
+                continue;
+            }
             let distance = (first.centre - second.centre).norm();
             let overlap = first.gap.tip_radius + second.gap.tip_radius - distance;
             if overlap > 0.0 {
@@ -192,17 +227,20 @@ fn overlaps(sprockets: &[Sprocket]) -> Vec<DriveError> {
     found
 }
 
-fn layout_problems(parts: &Parts) -> Vec<DriveError> {
-    let conflict = |path: &str, problem: String| DriveError::Conflict {
+fn conflict(path: &str, problem: String) -> DriveError {
+    DriveError::Conflict {
         path: path.to_owned(),
         problem,
-    };
-    match &parts.layout {
+    }
+}
+
+fn layout_problems(placed: &PlacedChain, parts: &Parts) -> Vec<DriveError> {
+    match &placed.layout {
         Layout::Points {
             positions,
             velocities,
         } => {
-            let rollers = parts.chain.rollers();
+            let rollers = placed.chain.rollers();
             let mut found = Vec::new();
             for (name, count) in [
                 ("positions", positions.len()),
@@ -224,7 +262,7 @@ fn layout_problems(parts: &Parts) -> Vec<DriveError> {
         }
         Layout::Route { stops, phase, fit } => {
             let mut found = Vec::new();
-            if parts.chain.ends != Ends::Closed {
+            if placed.chain.ends != Ends::Closed {
                 found.push(conflict(
                     "route",
                     "an open strand has no route; lay it by `start`".into(),
@@ -265,6 +303,89 @@ fn layout_problems(parts: &Parts) -> Vec<DriveError> {
             found
         }
     }
+}
+
+/// What a chain can touch: there, no body twice, and every stop of the route among it.
+fn plane_problems(placed: &PlacedChain, parts: &Parts) -> Vec<DriveError> {
+    let mut found = Vec::new();
+    let kinds = [
+        ("sprocket", &placed.sprockets, parts.sprockets.len()),
+        ("guide", &placed.guides, parts.guides.len()),
+    ];
+    for (kind, indices, known) in kinds {
+        let mut seen = HashSet::new();
+        for &index in indices {
+            found.extend(reference("chain", kind, index, known));
+            if !seen.insert(index) {
+                found.push(conflict("chain", format!("{kind} {index} stands twice")));
+            }
+        }
+    }
+    if let Layout::Route { stops, .. } = &placed.layout {
+        let missing = stops.iter().find(|stop| match stop {
+            Stop::Sprocket(index) => !placed.sprockets.contains(index),
+            Stop::Guide(index) => !placed.guides.contains(index),
+        });
+        found.extend(missing.map(|stop| {
+            conflict(
+                "route.stops",
+                format!("{stop:?} is not among what the chain can touch"),
+            )
+        }));
+    }
+    found
+}
+
+/// A geared sprocket follows one that has a motion or coordinate of its own.
+fn gear_problems(index: usize, sprocket: &Sprocket, parts: &Parts) -> Vec<DriveError> {
+    let Rotation::Geared { leader, ratio } = sprocket.rotation else {
+        return Vec::new();
+    };
+    let place = format!("sprockets.{}", sprocket.name);
+    let mut found = Vec::new();
+    found.extend(reference(&place, "sprocket", leader, parts.sprockets.len()));
+    let geared = |other: &Sprocket| matches!(other.rotation, Rotation::Geared { .. });
+    if leader == index || parts.sprockets.get(leader).is_some_and(geared) {
+        found.push(conflict(
+            &place,
+            "must follow a sprocket that turns by itself; give the ratio to that one".into(),
+        ));
+    }
+    let turns = ratio.is_finite() && ratio.abs() > 0.0;
+    let path = format!("{place}.ratio");
+    found.extend(DriveError::require(turns, &path, ratio, "finite and not zero").err());
+    found
+}
+
+fn torsion_problems(place: &str, torsion: &Torsion, parts: &Parts) -> Vec<DriveError> {
+    let mut found = Vec::new();
+    for index in torsion.sprockets {
+        found.extend(reference(place, "sprocket", index, parts.sprockets.len()));
+    }
+    if torsion.sprockets[0] == torsion.sprockets[1] {
+        found.push(conflict(place, "joins a sprocket with itself".into()));
+    }
+    let Torsion {
+        stiffness, damping, ..
+    } = *torsion;
+    for (name, ok, value, allowed) in [
+        (
+            "stiffness",
+            stiffness > 0.0,
+            stiffness,
+            "positive [N m/rad]",
+        ),
+        (
+            "damping",
+            damping >= 0.0,
+            damping,
+            "not negative [N m s/rad]",
+        ),
+    ] {
+        let ok = ok && value.is_finite();
+        found.extend(DriveError::require(ok, &format!("{place}.{name}"), value, allowed).err());
+    }
+    found
 }
 
 fn fit_problems(fit: &Fit, parts: &Parts) -> Vec<DriveError> {

@@ -94,7 +94,7 @@ pub(crate) struct Contacts {
     pub(crate) accepted: f64,
     /// Whether the circles belong to rigid links. Faces are then written down for implicit steps, and no lane rests: a link that is
     /// struck at its other end moves at once.
-    pub(crate) for_links: bool,
+    pub(crate) writes_faces: bool,
 }
 
 /// Contact state per slot; where a gap has several stretches, each is a side, and the slots of one stand behind those of the
@@ -178,7 +178,7 @@ impl Contacts {
             axis_y: Vec::new(),
             memory: Box::default(),
             accepted: 0.0,
-            for_links: false,
+            writes_faces: false,
         }
     }
 

@@ -71,6 +71,18 @@ pub enum Rotation {
         /// Torques that load the shaft.
         load: Vec<Torque>,
     },
+    /// The angle follows that of another sprocket: on one shaft with it, or through a pair of gears. Torques act
+    /// on the shaft of that one.
+    ///
+    /// ```text
+    /// θ − θ(0) = i (θ_leader − θ_leader(0))
+    /// ```
+    Geared {
+        /// Index of the other sprocket, which is not geared itself.
+        leader: usize,
+        /// Ratio i \[–\]: 1 on one shaft, −z_leader/z for a pair of spur gears.
+        ratio: f64,
+    },
 }
 
 /// What holds the centre of a sprocket.
@@ -222,19 +234,49 @@ pub enum Tighten {
     Travel,
 }
 
+/// A chain, where it lies, and what it can touch.
+///
+/// Chains run in planes of their own: a chain meets the sprockets and guides of its plane and passes all others.
+#[derive(Clone, Debug)]
+pub struct PlacedChain {
+    /// The chain.
+    pub chain: Chain,
+    /// Where it lies at the start.
+    pub layout: Layout,
+    /// Sprockets that it can touch, those of its route among them.
+    pub sprockets: Vec<usize>,
+    /// Guides that it can touch.
+    pub guides: Vec<usize>,
+}
+
+/// A shaft that twists: a torsional spring and damper between the hubs of two sprockets, without stress as assembled.
+///
+/// ```text
+/// M = k φ + c φ̇,   φ = (θ₁ − θ₁(0)) − (θ₀ − θ₀(0)),   M on the first hub, −M on the second
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Torsion {
+    /// The two sprockets.
+    pub sprockets: [usize; 2],
+    /// Stiffness k \[N m/rad\], positive.
+    pub stiffness: f64,
+    /// Damping c \[N m s/rad\], not negative.
+    pub damping: f64,
+}
+
 /// A drive as described, not yet checked.
 #[derive(Clone, Debug)]
 pub struct Parts {
-    /// The chain.
-    pub chain: Chain,
+    /// The chains, at least one, and where they lie.
+    pub chains: Vec<PlacedChain>,
     /// Sprockets.
     pub sprockets: Vec<Sprocket>,
     /// Guides.
     pub guides: Vec<Guide>,
     /// Tensioners.
     pub tensioners: Vec<Tensioner>,
-    /// Where the chain lies at the start.
-    pub layout: Layout,
+    /// Torsional springs between shafts.
+    pub torsions: Vec<Torsion>,
     /// Whether the drive settles into static equilibrium under gravity and load before it runs.
     pub settle: bool,
     /// Gravity \[m/s²\], (x, y).

@@ -69,6 +69,19 @@ impl DriveError {
     }
 }
 
+impl DriveError {
+    /// Puts the path behind the name of what it belongs to.
+    pub(crate) fn place_in(&mut self, whole: &str) {
+        match self {
+            Self::Parameter { path, .. }
+            | Self::Law { path, .. }
+            | Self::Reference { path, .. }
+            | Self::Conflict { path, .. } => *path = format!("{whole}.{path}"),
+            Self::Table { .. } | Self::Overlap { .. } => {}
+        }
+    }
+}
+
 /// Why a valid drive could not be brought into its initial state.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]

@@ -36,13 +36,13 @@ mod system;
 mod tensioner;
 mod torque;
 
-pub use assembly::{Assembled, Statics};
+pub use assembly::{Assembled, Fitting, RollerLayout, Statics};
 pub use chain::{Chain, End, Ends};
 pub use chains::ChainModel;
 pub use chains::links::model::{Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel};
 pub use drive::{
-    Adjust, Drive, Fit, Flank, Guide, GuideSupport, Layout, Parts, Rotation, Sprocket, Stop,
-    Support, Surface, Tighten, Touches,
+    Adjust, Drive, Fit, Flank, Guide, GuideSupport, Layout, Parts, PlacedChain, Rotation, Sprocket,
+    Stop, Support, Surface, Tighten, Torsion, Touches,
 };
 pub use energy::{Energy, Flow, Store};
 pub use error::{AssemblyError, DriveError};

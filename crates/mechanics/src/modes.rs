@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use chaindrive_geometry::Vector;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use crate::system::{Wheel, WheelRotation, WheelSupport};
+use crate::system::{Wheel, WheelSupport};
 use crate::{Assembled, AssemblyError, assembly};
 
 /// Small free vibrations of a drive about its static state, in ascending order.
@@ -120,9 +120,9 @@ impl Assembled {
             };
             wheels.iter().map(part).collect()
         };
-        let angle = |wheel: &Wheel| match wheel.rotation {
-            WheelRotation::Free { dof, .. } => shape[dof],
-            WheelRotation::Prescribed(_) => 0.0,
+        let angle = |wheel: &Wheel| {
+            let turned = wheel.turned_by();
+            turned.map_or(0.0, |(dof, ratio)| ratio * shape[dof])
         };
         let mut rollers = Vec::new();
         for member in &self.system.chains {

@@ -4,7 +4,7 @@ use chaindrive_geometry::Point;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 
 use crate::energy::{Energy, Flow, Store};
-use crate::system::{Member, OnWheel, RailContact, Record, WheelRotation, WheelSupport};
+use crate::system::{Member, OnWheel, RailContact, Record, WheelSupport};
 use crate::{Carrier, System};
 
 /// Everything that can be read off one state. SI units; arrays in the order of the drive.
@@ -314,8 +314,7 @@ impl System {
             let course = wheel.course(at.t, at.q, at.v);
             let (centre, velocity, _) = wheel.centre_course(at.t, at.q, at.v, &bodies.slides);
             let moves = !matches!(wheel.support, WheelSupport::Fixed);
-            let spins = wheel.inertia > 0.0 || matches!(wheel.rotation, WheelRotation::Free { .. });
-            if spins {
+            if wheel.inertia > 0.0 {
                 add(
                     Store::Sprockets,
                     0.5 * wheel.inertia * course.rate * course.rate,
@@ -351,6 +350,11 @@ impl System {
                 };
                 add(Store::Guides, stored);
             }
+        }
+        for torsion in &bodies.torsions {
+            let [twist, _] = bodies.twist(torsion, at);
+            // U = ½ k φ²
+            add(Store::Supports, 0.5 * torsion.stiffness * twist * twist);
         }
         for slide in &bodies.slides {
             let pose = slide.pose(at.q, at.v);

@@ -10,6 +10,7 @@ mod contacts;
 mod equations;
 mod inputs;
 mod member;
+mod solve;
 
 use chaindrive_geometry::Point;
 use chaindrive_integrate::{Continuity, Moment, SecondOrderSystem, Verdict, Weights};
@@ -352,12 +353,6 @@ impl SecondOrderSystem for System {
     }
 
     fn solve(&self, weights: Weights, record: &mut Record, x: &mut [f64]) -> bool {
-        let [member] = self.chains.as_slice() else {
-            return false;
-        };
-        let bodies = &self.bodies;
-        member
-            .chain
-            .solve(bodies, weights, &mut record.chains[0], x)
+        self.solve_step(weights, record, x)
     }
 }

@@ -30,7 +30,8 @@ pub(crate) fn of<'py>(
                 pairs(&sample.sprocket_x, &sample.sprocket_y),
             ))
         } else {
-            let (rollers, _) = drive.layout_positions().or_raise()?;
+            let laid = drive.layouts().or_raise()?;
+            let rollers = laid.into_iter().flat_map(|chain| chain.positions).collect();
             Ok((
                 rollers,
                 drive
@@ -62,9 +63,9 @@ pub(crate) fn of<'py>(
     }
     let answer = PyDict::new(py);
     answer.set_item("rollers", points(py, &rollers)?)?;
-    answer.set_item("closed", drive.chain.is_closed())?;
-    answer.set_item("pitch", drive.chain.pitch)?;
-    answer.set_item("roller_diameter", drive.chain.roller_diameter)?;
+    answer.set_item("closed", drive.chains[0].chain.is_closed())?;
+    answer.set_item("pitch", drive.chains[0].chain.pitch)?;
+    answer.set_item("roller_diameter", drive.chains[0].chain.roller_diameter)?;
     answer.set_item("sprockets", sprockets)?;
     answer.set_item("guides", guides)?;
     Ok(answer)

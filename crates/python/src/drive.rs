@@ -107,7 +107,7 @@ impl Drive {
     /// Number of links.
     #[getter]
     fn links(&self) -> usize {
-        self.drive.chain.links()
+        self.drive.chains[0].chain.links()
     }
 
     /// Names of the sprockets.
@@ -185,7 +185,7 @@ impl Drive {
             .map(|guide| (&guide.name, &guide.surface));
         let found = sprockets.chain(guides).find(|(name, _)| *name == body);
         let found = found.map(|(_, surface)| surface);
-        let surface = found.or_else(|| match &self.drive.chain.model {
+        let surface = found.or_else(|| match &self.drive.chains[0].chain.model {
             ChainModel::Rigid(links) => match (body, &links.joint, &links.rollers) {
                 ("joints", Joint::Clearance(joint), _) => Some(&joint.surface),
                 ("rollers", _, RollerModel::Free(roller)) => Some(&roller.surface),

@@ -70,7 +70,7 @@ pub(super) fn contacts(drive: &Drive) -> Vec<ContactFacts> {
     let teeth = drive.sprockets.iter().map(|s| ("teeth", &s.surface));
     let guides = drive.guides.iter().map(|guide| ("guides", &guide.surface));
     let mut surfaces: Vec<(&'static str, &Surface)> = teeth.chain(guides).collect();
-    if let ChainModel::Rigid(links) = &drive.chain.model {
+    if let ChainModel::Rigid(links) = &drive.chains[0].chain.model {
         if let Joint::Clearance(joint) = &links.joint {
             surfaces.push(("joints", &joint.surface));
         }

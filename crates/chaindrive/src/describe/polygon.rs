@@ -30,7 +30,7 @@ pub struct PolygonPair {
 
 /// All strands for which the question makes sense.
 pub(super) fn pairs(drive: &Drive, start: &Observation) -> Vec<PolygonPair> {
-    let Layout::Route { stops, .. } = &drive.layout else {
+    let Layout::Route { stops, .. } = &drive.chains[0].layout else {
         return Vec::new();
     };
     let next = stops.iter().cycle().skip(1);
@@ -54,7 +54,7 @@ fn pair(drive: &Drive, start: &Observation, from: usize, to: usize) -> Option<Po
     let centre = |i: usize| Point::new(start.sprocket_x[i], start.sprocket_y[i]);
     let distance = (centre(from) - centre(to)).norm();
     let teeth = |i: usize| drive.sprockets[i].gap.teeth;
-    let pitch = drive.chain.pitch;
+    let pitch = drive.chains[0].chain.pitch;
     let action = PolygonAction::new(teeth(driver), teeth(driven), pitch, distance).ok()?;
     let (least_ratio, greatest_ratio) = action.ratio_extremes();
     let speed = start.sprocket_speed[driver];

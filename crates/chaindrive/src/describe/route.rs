@@ -49,7 +49,7 @@ pub fn spans_at_rest(drive: &Drive, assembled: &Assembled) -> Vec<SpanAtRest> {
         .statics
         .last()
         .map_or(&start.link_tension, |last| &last.tensions);
-    let chain = &drive.chain;
+    let chain = &drive.chains[0].chain;
     let masses = chain.masses.iter().sum::<f64>() / chain.masses.len() as f64;
     let mass_per_length = masses / chain.pitch;
     let place = |roller: usize| {
@@ -86,10 +86,12 @@ fn mean(values: &[f64]) -> f64 {
 
 /// Name and links of every span: roller 0 is the first on the first stop.
 fn ranges(drive: &Drive, assembled: &Assembled) -> Vec<(String, Range<usize>)> {
-    let (Layout::Route { stops, .. }, Some(fitting)) = (&drive.layout, &assembled.fitting) else {
+    let (Layout::Route { stops, .. }, Some(fitting)) =
+        (&drive.chains[0].layout, &assembled.fittings[0])
+    else {
         return Vec::new();
     };
-    let links = drive.chain.links();
+    let links = drive.chains[0].chain.links();
     let mut at = 0;
     let mut ranges = Vec::with_capacity(stops.len());
     for (i, (seated, span)) in fitting.seated.iter().zip(&fitting.spans).enumerate() {
@@ -119,7 +121,9 @@ fn name<'d>(drive: &'d Drive, stop: &Stop) -> &'d str {
 
 /// The bodies of the route.
 pub(super) fn stops(drive: &Drive, assembled: &Assembled, start: &Observation) -> Vec<StopFacts> {
-    let (Layout::Route { stops, .. }, Some(fitting)) = (&drive.layout, &assembled.fitting) else {
+    let (Layout::Route { stops, .. }, Some(fitting)) =
+        (&drive.chains[0].layout, &assembled.fittings[0])
+    else {
         return Vec::new();
     };
     let taut = taut(drive, stops, start);
@@ -149,7 +153,7 @@ fn taut(drive: &Drive, stops: &[Stop], start: &Observation) -> Option<Route> {
             Some(Wheel::toothed(
                 centre,
                 sprocket.gap.teeth,
-                drive.chain.pitch,
+                drive.chains[0].chain.pitch,
                 sprocket.side,
             ))
         }

@@ -222,7 +222,7 @@ fn assembly(story: &mut Story, simulation: &Simulation) {
     story.count("links", system.links() as u64);
     story.count("rollers", system.rollers() as u64);
     story.count("degrees_of_freedom", system.free_dofs() as u64);
-    if let Some(fitting) = &assembled.fitting {
+    if let Some(fitting) = &assembled.fittings[0] {
         story.number("closing_strain", fitting.strain);
         story.number("closing_travel", fitting.travel);
         story.list("pitches_seated", fitting.seated.iter().copied());

@@ -40,10 +40,10 @@
 //!     "two_sprockets.toml",
 //! )?;
 //! let drive = scene.drive()?;
-//! assert_eq!(drive.chain.links(), 78);
+//! assert_eq!(drive.chains[0].chain.links(), 78);
 //!
 //! let longer = scene.replace("chain.links", "80")?;
-//! assert_eq!(longer.drive()?.chain.links(), 80);
+//! assert_eq!(longer.drive()?.chains[0].chain.links(), 80);
 //!
 //! let error = Scene::from_text("[chain]\npitch = '12 rpm'", "bad.toml").unwrap_err();
 //! assert!(error.to_string().starts_with("bad.toml:1: chain.links: missing"));

@@ -106,6 +106,44 @@ fn mechanics_reads_no_file_clock_or_chance() {
     }
 }
 
+/// The chains are a family: outside its folder and its table of contents nobody knows which members there are.
+#[test]
+fn no_member_of_the_chain_family_is_named_outside() {
+    let mechanics = root().join("crates/mechanics/src");
+    let family = [mechanics.join("chains"), mechanics.join("chains.rs")];
+    // What users of the crate describe chains with, and what says which description makes which member.
+    let doors = ["lib.rs"];
+    let members = [
+        "Linkage",
+        "Particles",
+        "RigidLinks",
+        "linkage",
+        "for_links",
+        "links::",
+        "particles::",
+    ];
+    for path in sources(&mechanics) {
+        let inside = family.iter().any(|part| path.starts_with(part));
+        let door = doors.iter().any(|door| path == mechanics.join(door));
+        if inside || door {
+            continue;
+        }
+        let text = fs::read_to_string(&path).expect("sources are text");
+        // Tests build drives, and say of what.
+        let own = text.split("#[cfg(test)]").next().unwrap_or_default();
+        if path.ends_with("tests.rs") {
+            continue;
+        }
+        for member in members {
+            assert!(
+                !own.contains(member),
+                "{member} in {}: ask the chain instead",
+                path.display()
+            );
+        }
+    }
+}
+
 #[test]
 fn modules_open_with_a_line_and_fit_one_sitting() {
     let drawers = [

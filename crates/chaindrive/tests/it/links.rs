@@ -15,7 +15,7 @@ fn preset(name: &str) -> Scene {
 
 fn links(scene: &Scene) -> RigidLinks {
     let drive = scene.drive().unwrap_or_else(|error| panic!("{error}"));
-    match &drive.chain.model {
+    match &drive.chains[0].chain.model {
         ChainModel::Rigid(links) => links.clone(),
         ChainModel::Particles => panic!("these are particles"),
     }
@@ -40,7 +40,7 @@ fn the_bicycle_is_what_the_catalogue_says() {
     assert!((found.inner.mass - 2.889e-3).abs() < 1e-12);
     assert_eq!(found.rollers, RollerModel::Lumped { mass: 0.465e-3 });
     // 0.30 kg/m over 104 pitches of 12.7 mm.
-    let mass: f64 = scene.drive().unwrap().chain.masses.iter().sum();
+    let mass: f64 = scene.drive().unwrap().chains[0].chain.masses.iter().sum();
     assert!((mass / (0.3 * 104.0 * 0.0127) - 1.0).abs() < 2e-3, "{mass}");
     // The fit of Pereira, Ramalho and Ambrósio, with K and n of a clearance of 25 µm.
     let Elastic::Cylindrical(law) = pins.surface.law.elastic else {
@@ -56,8 +56,8 @@ fn one_key_changes_the_model() {
     let scene = preset("bicycle");
     let particles = scene.replace("chain.model", "particles").unwrap();
     let drive = particles.drive().unwrap();
-    assert_eq!(drive.chain.model, ChainModel::Particles);
-    assert!((drive.chain.stiffness[0] - 47.65e6).abs() < 1.0);
+    assert_eq!(drive.chains[0].chain.model, ChainModel::Particles);
+    assert!((drive.chains[0].chain.stiffness[0] - 47.65e6).abs() < 1.0);
     let ideal = scene.replace("chain.model", "ideal-joints").unwrap();
     assert_eq!(links(&ideal).joint, Joint::Ideal);
     let free = scene
@@ -89,12 +89,12 @@ fn a_text_names_a_chain_whose_links_are_counted() {
     "#;
     let scene = Scene::from_text(text, "text").unwrap();
     let drive = scene.drive().unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(drive.chain.links(), 120);
-    assert!((drive.chain.pitch - 0.0254).abs() < 1e-15);
-    assert!((drive.chain.masses[0] - 2.71 * 0.0254).abs() < 1e-12);
+    assert_eq!(drive.chains[0].chain.links(), 120);
+    assert!((drive.chains[0].chain.pitch - 0.0254).abs() < 1e-15);
+    assert!((drive.chains[0].chain.masses[0] - 2.71 * 0.0254).abs() < 1e-12);
     // A change turns the name into a table.
     let longer = scene.replace("chain.links", "124").unwrap();
-    assert_eq!(longer.drive().unwrap().chain.links(), 124);
+    assert_eq!(longer.drive().unwrap().chains[0].chain.links(), 124);
     assert!(
         longer.text().contains("type = \"16B-1\""),
         "{}",

@@ -45,10 +45,10 @@ fn a_preset_that_does_not_exist_names_its_neighbour() {
 #[test]
 fn the_marine_preset_is_what_its_source_says() {
     let drive = Scene::preset("marine_engine").unwrap().drive().unwrap();
-    assert_eq!(drive.chain.links(), 122);
-    assert!((drive.chain.stiffness[7] - 815e6).abs() < 1e-3);
+    assert_eq!(drive.chains[0].chain.links(), 122);
+    assert!((drive.chains[0].chain.stiffness[7] - 815e6).abs() < 1e-3);
     // c = 2 ζ √(k m) = 2.97 kN s/m
-    assert!((drive.chain.damping[7] - 2.97e3).abs() < 5.0);
+    assert!((drive.chains[0].chain.damping[7] - 2.97e3).abs() < 5.0);
     assert!((drive.sprockets[0].gap.pitch_radius - 0.679_631_089_876_26).abs() < 1e-14);
     assert_eq!(drive.guides.len(), 3);
 }
@@ -89,7 +89,7 @@ fn the_text_of_a_changed_scene_reproduces_it_and_keeps_its_comments() {
     assert!(other.text().contains("# Reconstructed: teeth"));
     assert_eq!(other.run_defaults().method, Some("verlet"));
     let drive = other.drive().unwrap_or_else(|error| panic!("{error}"));
-    assert!((drive.chain.damping[0] - 990.5).abs() < 1.0);
+    assert!((drive.chains[0].chain.damping[0] - 990.5).abs() < 1.0);
     let again = Scene::from_text(other.text(), other.name()).unwrap();
     assert_eq!(again, other);
 }
@@ -102,7 +102,7 @@ fn a_scene_in_json_stays_json() {
     let other = scene.replace("chain.links", "12").unwrap();
     let other = other.replace("chain.start.speed", "900 rpm").unwrap();
     assert!(other.text().starts_with('{'));
-    assert_eq!(other.drive().unwrap().chain.links(), 12);
+    assert_eq!(other.drive().unwrap().chains[0].chain.links(), 12);
 }
 
 #[test]
@@ -203,7 +203,7 @@ fn starts_lie_where_they_should() {
     use chaindrive_mechanics::Layout;
     let points = |name: &str| {
         let drive = Scene::preset(name).unwrap().drive().unwrap();
-        match &drive.layout {
+        match &drive.chains[0].layout {
             Layout::Points {
                 positions,
                 velocities,
@@ -232,7 +232,9 @@ fn settled_tensions(name: &str) -> (f64, f64) {
     let assembled = drive
         .assemble()
         .unwrap_or_else(|error| panic!("{name}: {error}"));
-    let strain = assembled.fitting.map_or(0.0, |fitting| fitting.strain);
+    let strain = assembled.fittings[0]
+        .as_ref()
+        .map_or(0.0, |fitting| fitting.strain);
     let slack = ["bicycle_slack", "motorcycle"].contains(&name);
     assert!(
         strain.abs() < 1e-5 || (slack && strain < 0.0),

@@ -16,7 +16,7 @@ use reference::Reference;
 fn gap_angle(text: &str, driver: usize) -> f64 {
     let scene = Scene::from_text(text, "case.toml").unwrap_or_else(|error| panic!("{error}"));
     let drive = scene.drive().unwrap_or_else(|error| panic!("{error}"));
-    let (places, _) = drive.layout_positions().expect("the chain closes");
+    let places = &drive.layouts().expect("the chain closes")[0].positions;
     let radius = drive.sprockets[driver].gap.pitch_radius;
     let seated = places
         .iter()

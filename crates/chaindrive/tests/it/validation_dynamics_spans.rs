@@ -268,7 +268,8 @@ fn v06_two_free_wheels_twist_on_a_taut_chain() {
     let text = scene_of(span * pitch, &adjust);
     let scene = Scene::from_text(&text, "v06.toml").unwrap_or_else(|error| panic!("{error}"));
     let drive = scene.drive().unwrap_or_else(|error| panic!("{error}"));
-    let (places, fitting) = drive.layout_positions().expect("the chain closes");
+    let laid = &drive.layouts().expect("the chain closes")[0];
+    let (places, fitting) = (&laid.positions, laid.fitting.as_ref());
     let fitting = fitting.expect("it runs around sprockets");
     let distance = span * pitch + fitting.travel;
     let radii = [z1, z2].map(|z| pitch / (2.0 * (PI / z).sin()));

@@ -43,7 +43,7 @@ fn sound(name: &str) -> Result<String, Failure> {
     })?;
     Ok(format!(
         "sound; {} links, {} sprockets, {} guides, {} tensioners, {} degrees of freedom",
-        drive.chain.links(),
+        drive.chains[0].chain.links(),
         drive.sprockets.len(),
         drive.guides.len(),
         drive.tensioners.len(),

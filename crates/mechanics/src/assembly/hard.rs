@@ -1,6 +1,6 @@
 //! Chains whose links do not stretch: laid with links that hardly do.
 
-use crate::drive::Layout;
+use crate::drive::{Layout, PlacedChain};
 use crate::{Assembled, AssemblyError, Drive};
 
 /// Depth at which the teeth are asked for their stiffness \[m\].
@@ -12,6 +12,19 @@ const HARD: f64 = 1e3;
 const HANGING: f64 = 10.0;
 /// Relative error of the pretension that is left.
 const MET: f64 = 1e-3;
+/// Drives assembled before the search is given up.
+const MOST: usize = 20;
+
+/// The search for how a chain is to be laid such that it carries what it shall.
+struct Search {
+    /// Which chain.
+    chain: usize,
+    /// Tension \[N\] that it shall carry, and that it is laid with.
+    asked: f64,
+    given: f64,
+    /// The last pair of tensions given and found.
+    before: Option<(f64, f64)>,
+}
 
 impl Drive {
     /// Lays links so stiff that they hardly stretch.
@@ -19,22 +32,31 @@ impl Drive {
     /// Such a chain owes its tension to the teeth alone. What the links are shortened by is found by the secant
     /// method, until the chain without gravity and load carries the pretension.
     pub(super) fn assemble_hard(&self) -> Result<Assembled, AssemblyError> {
-        let teeth = self
-            .sprockets
-            .iter()
-            .map(|sprocket| sprocket.surface.law.stiffness(PRESSED))
-            .fold(0.0, f64::max);
-        if teeth <= 0.0 {
-            return self.assemble_as_is();
-        }
         let mut parts = self.parts().clone();
-        let asked = parts.layout.pretension();
-        let hard = if asked > 0.0 { HARD } else { HANGING };
-        parts.chain.stiffness.fill(hard * teeth);
-        let (mut given, mut before) = (asked, None);
-        for _ in 0..20 {
-            if let Layout::Route { fit, .. } = &mut parts.layout {
-                fit.pretension = given;
+        let mut searches = Vec::new();
+        for (index, placed) in parts.chains.iter_mut().enumerate() {
+            let asked = placed.layout.pretension();
+            let touched = placed.sprockets.iter().map(|&i| &self.sprockets[i]);
+            let teeth = touched
+                .map(|sprocket| sprocket.surface.law.stiffness(PRESSED))
+                .fold(0.0, f64::max);
+            if placed.chain.model.stretches() || teeth <= 0.0 {
+                continue;
+            }
+            let hard = if asked > 0.0 { HARD } else { HANGING };
+            placed.chain.stiffness.fill(hard * teeth);
+            searches.extend((asked > 0.0).then_some(Search {
+                chain: index,
+                asked,
+                given: asked,
+                before: None,
+            }));
+        }
+        for _ in 0..MOST {
+            for search in &searches {
+                if let Layout::Route { fit, .. } = &mut parts.chains[search.chain].layout {
+                    fit.pretension = search.given;
+                }
             }
             let assembled = Self {
                 parts: parts.clone(),
@@ -44,26 +66,51 @@ impl Drive {
                 .statics
                 .first()
                 .filter(|statics| statics.stage == "pretension");
-            let Some(taut) = taut.filter(|_| asked > 0.0) else {
+            let Some(taut) = taut else {
                 return Ok(assembled);
             };
-            let found = taut.tensions.iter().sum::<f64>() / taut.tensions.len() as f64;
-            if (found / asked - 1.0).abs() < MET {
+            let mut met = true;
+            for search in &mut searches {
+                let tensions = &taut.tensions[links_of(&parts.chains, search.chain)];
+                let found = tensions.iter().sum::<f64>() / tensions.len() as f64;
+                met &= search.meets(found);
+            }
+            if met {
                 return Ok(assembled);
             }
-            let next = match before {
-                Some((x, y)) if f64::abs(found - y) > 1e-3 * asked => {
-                    given + (asked - found) * (given - x) / (found - y)
-                }
-                _ => given * (asked / found).clamp(0.1, 30.0),
-            };
-            before = Some((given, found));
-            given = next.clamp(0.1 * given, 30.0 * given);
         }
         Err(AssemblyError::NoEquilibrium {
             stage: "pretension on ideal joints",
             residual: 1.0,
-            iterations: 20,
+            iterations: MOST,
         })
     }
+}
+
+impl Search {
+    /// Whether the tension found will do; otherwise says what to try next.
+    fn meets(&mut self, found: f64) -> bool {
+        let Self { asked, given, .. } = *self;
+        if (found / asked - 1.0).abs() < MET {
+            return true;
+        }
+        let next = match self.before {
+            Some((x, y)) if f64::abs(found - y) > 1e-3 * asked => {
+                given + (asked - found) * (given - x) / (found - y)
+            }
+            _ => given * (asked / found).clamp(0.1, 30.0),
+        };
+        self.before = Some((given, found));
+        self.given = next.clamp(0.1 * given, 30.0 * given);
+        false
+    }
+}
+
+/// Where the links of a chain stand among those of all.
+fn links_of(chains: &[PlacedChain], index: usize) -> std::ops::Range<usize> {
+    let first = chains[..index]
+        .iter()
+        .map(|placed| placed.chain.links())
+        .sum();
+    first..first + chains[index].chain.links()
 }

@@ -15,40 +15,51 @@ use crate::{AssemblyError, Carrier, Chain, Drive};
 /// Strain of a chain laid straight below which it is taken as slack rather than compressed.
 const SLACK: f64 = -1e-6;
 
-/// Lays the chain as the drive's layout says.
-pub(super) fn lay(drive: &Drive) -> Result<(Laid, Option<Fitting>), AssemblyError> {
-    match &drive.layout {
-        Layout::Points { positions, .. } => {
-            let parts = drive.parts().clone();
-            let laid = Laid {
-                gap_angles: parts.sprockets.iter().map(|s| s.gap_angle).collect(),
-                chains: vec![LaidChain {
+/// Lays the chains as their layouts say, one after the other; what an earlier one has moved stays where it is.
+pub(super) fn lay(drive: &Drive) -> Result<(Laid, Vec<Option<Fitting>>), AssemblyError> {
+    let parts = drive.parts().clone();
+    let mut laid = Laid {
+        gap_angles: parts.sprockets.iter().map(|s| s.gap_angle).collect(),
+        chains: Vec::new(),
+        parts,
+    };
+    let mut fittings = Vec::new();
+    for index in 0..laid.parts.chains.len() {
+        let layout = laid.parts.chains[index].layout.clone();
+        fittings.push(match &layout {
+            Layout::Points { positions, .. } => {
+                laid.chains.push(LaidChain {
                     route: Vec::new(),
                     positions: positions.clone(),
-                }],
-                parts,
-            };
-            Ok((laid, None))
-        }
-        Layout::Route { stops, phase, fit } => {
-            let parts = drive.parts();
-            let name = |stop: usize| match stops.get(stop) {
-                Some(Stop::Sprocket(index)) => format!("`{}`", parts.sprockets[*index].name),
-                Some(Stop::Guide(index)) => format!("`{}`", parts.guides[*index].name),
-                None => format!("stop {stop}"),
-            };
-            around(parts, stops, *phase, fit).map_err(|error| error.with_names(&name))
-        }
+                });
+                None
+            }
+            Layout::Route { stops, phase, fit } => {
+                let sprockets = laid.parts.sprockets.iter().map(|s| s.name.clone());
+                let guides = laid.parts.guides.iter().map(|g| g.name.clone());
+                let (sprockets, guides): (Vec<_>, Vec<_>) = (sprockets.collect(), guides.collect());
+                let name = |stop: usize| match stops.get(stop) {
+                    Some(Stop::Sprocket(index)) => format!("`{}`", sprockets[*index]),
+                    Some(Stop::Guide(index)) => format!("`{}`", guides[*index]),
+                    None => format!("stop {stop}"),
+                };
+                let fitting = around(&mut laid, index, stops, *phase, fit);
+                Some(fitting.map_err(|error| error.with_names(&name))?)
+            }
+        });
     }
+    Ok((laid, fittings))
 }
 
 fn around(
-    parts: &Parts,
+    laid: &mut Laid,
+    index: usize,
     stops: &[Stop],
     phase: f64,
     fit: &Fit,
-) -> Result<(Laid, Option<Fitting>), AssemblyError> {
-    let chain = &parts.chain;
+) -> Result<Fitting, AssemblyError> {
+    let parts = &laid.parts;
+    let chain = &parts.chains[index].chain;
     let pitch = chain.lengths.iter().sum::<f64>() / chain.links() as f64;
     let links = u32::try_from(chain.links()).map_err(|_| AssemblyError::Layout {
         problem: format!("{} links are more than a chain can have", chain.links()),
@@ -61,7 +72,7 @@ fn around(
 
     let (travel, moved, closing, strain) = match &fit.adjust {
         Adjust::Nothing => {
-            let wheels = wheels(parts, stops)?;
+            let wheels = wheels(parts, chain, stops)?;
             let (strain, closing) = close_by_strain(&wheels, pitch, links, phase)?;
             (0.0, parts.clone(), closing, strain)
         }
@@ -72,11 +83,11 @@ fn around(
                 Adjust::Nothing => 0.0,
             };
             // The wheels move without failing where the parts at rest have made wheels.
-            wheels(parts, stops)?;
+            wheels(parts, chain, stops)?;
             let mut moving = |travel: f64| {
                 // No wheels at all is an error of the closing, never a wrong place.
                 shifted(parts, adjust, travel)
-                    .and_then(|moved| wheels(&moved, stops))
+                    .and_then(|moved| wheels(&moved, chain, stops))
                     .unwrap_or_default()
             };
             let range = (-within, within);
@@ -85,7 +96,7 @@ fn around(
             (travel, shifted(parts, adjust, travel)?, closing, strain)
         }
     };
-    let wheels = wheels(&moved, stops)?;
+    let wheels = wheels(&moved, chain, stops)?;
     let slack = strain < SLACK && fit.pretension <= 0.0;
     let (positions, closing) = if slack {
         let closing = Closing::march(&wheels, pitch, phase)?;
@@ -102,11 +113,10 @@ fn around(
         )
     };
 
-    let mut gap_angles: Vec<f64> = moved.sprockets.iter().map(|s| s.gap_angle).collect();
     let mut route = Vec::new();
     for (stop, seat) in stops.iter().zip(&closing.seats) {
         if let Stop::Sprocket(index) = stop {
-            gap_angles[*index] = seat.first_angle;
+            laid.gap_angles[*index] = seat.first_angle;
             route.push(*index);
         }
     }
@@ -114,26 +124,22 @@ fn around(
     if fit.pretension > 0.0 && !by_travel {
         // ℓ₀ = p (1 + ε) / (1 + ε₀): the laid chain then carries T₀ in every link.
         let scale = (1.0 + strain) / (1.0 + tightening);
-        for length in &mut moved.chain.lengths {
+        for length in &mut moved.chains[index].chain.lengths {
             *length *= scale;
         }
     }
-    let fitting = Fitting {
+    laid.parts = moved;
+    laid.chains.push(LaidChain { positions, route });
+    Ok(Fitting {
         seated: closing.seats.iter().map(|seat| seat.pitches).collect(),
         spans: closing.spans.clone(),
         strain,
         travel,
-    };
-    let laid = Laid {
-        parts: moved,
-        chains: vec![LaidChain { positions, route }],
-        gap_angles,
-    };
-    Ok((laid, Some(fitting)))
+    })
 }
 
 /// The stops as wheels of the route.
-fn wheels(parts: &Parts, stops: &[Stop]) -> Result<Vec<Wheel>, AssemblyError> {
+fn wheels(parts: &Parts, chain: &Chain, stops: &[Stop]) -> Result<Vec<Wheel>, AssemblyError> {
     let centre = |stop: &Stop| match stop {
         Stop::Sprocket(i) => parts.sprockets[*i].centre,
         Stop::Guide(i) => {
@@ -159,7 +165,7 @@ fn wheels(parts: &Parts, stops: &[Stop]) -> Result<Vec<Wheel>, AssemblyError> {
             Stop::Guide(index) => {
                 let before = centre(&stops[(place + stops.len() - 1) % stops.len()]);
                 let after = centre(&stops[(place + 1) % stops.len()]);
-                guide_wheel(&parts.guides[*index], &parts.chain, after - before)
+                guide_wheel(&parts.guides[*index], chain, after - before)
             }
         })
         .collect()

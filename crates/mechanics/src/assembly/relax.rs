@@ -423,6 +423,15 @@ impl Newton<'_> {
                 }
             }
         }
+        for torsion in &bodies.torsions {
+            let [twist, _] = bodies.twist(torsion, at_rest(q, &still));
+            for (entry, share) in bodies.twisted_by(torsion) {
+                sum.force(entry, torsion.stiffness * twist * share);
+                for (other, other_share) in bodies.twisted_by(torsion) {
+                    sum.stiffen(entry, other, torsion.stiffness * share * other_share);
+                }
+            }
+        }
         for slide in &bodies.slides {
             let Some(dof) = slide.dof else { continue };
             let s = q[dof];

@@ -5,79 +5,138 @@ use chaindrive_integrate::Moment;
 
 use crate::System;
 use crate::drive::{Layout, Stop};
-use crate::system::{WheelRotation, WheelSupport};
+use crate::system::{Member, WheelRotation};
 
-/// Gives a chain the velocities that its layout asks for, and along a route its sprockets too.
-pub(super) fn set_off(system: &System, chain: usize, layout: &Layout, q: &[f64], v: &mut [f64]) {
-    let places = roller_places(system, chain, q);
-    let velocities = match layout {
-        Layout::Route { stops, .. } => along_route(system, chain, stops, &places, q, v),
-        Layout::Points { velocities, .. } => velocities.clone(),
-    };
-    let member = &system.chains[chain];
-    let own = &mut v[member.entries.clone()];
-    member.chain.set_off(&places, &velocities, own);
+/// Gives chains the velocities that their layouts ask for, and along routes the sprockets too.
+pub(super) fn set_off(system: &System, layouts: &[&Layout], q: &[f64], v: &mut [f64]) {
+    let speeds = speeds(system, layouts);
+    for (wheel, speed) in system.bodies.wheels.iter().zip(&speeds) {
+        if let (WheelRotation::Free { dof, .. }, Some(speed)) = (&wheel.rotation, speed) {
+            v[*dof] = *speed;
+        }
+    }
+    for (member, layout) in system.chains.iter().zip(layouts) {
+        let places = roller_places(member, q);
+        let velocities = match layout {
+            Layout::Route { .. } => along_route(system, member, &places, q, v),
+            Layout::Points { velocities, .. } => velocities.clone(),
+        };
+        let own = &mut v[member.entries.clone()];
+        member.chain.set_off(&places, &velocities, own);
+    }
 }
 
-fn roller_places(system: &System, chain: usize, q: &[f64]) -> Vec<Point> {
-    let member = &system.chains[chain];
+/// Angular speeds of the sprockets \[rad/s\], where something prescribes them: their own motion, that of the shaft they sit on, or
+/// that of the chain that runs over them.
+///
+/// ```text
+/// ω z p = the same for all sprockets of a route
+/// ```
+fn speeds(system: &System, layouts: &[&Layout]) -> Vec<Option<f64>> {
+    let wheels = &system.bodies.wheels;
+    let mut speeds: Vec<Option<f64>> = wheels
+        .iter()
+        .map(|wheel| {
+            // The course of a free shaft would be read off the state.
+            let given = !matches!(wheel.rotation, WheelRotation::Free { .. })
+                && wheel.turned_by().is_none();
+            given.then(|| wheel.course(0.0, &[], &[]).rate)
+        })
+        .collect();
+    let mut waiting: Vec<usize> = (0..layouts.len()).collect();
+    while share_shafts(system, &mut speeds)
+        | share_chains(system, layouts, &mut waiting, &mut speeds)
+    {}
+    speeds
+}
+
+/// Passes speeds on along shafts; whether there was one to pass.
+fn share_shafts(system: &System, speeds: &mut [Option<f64>]) -> bool {
+    let wheels = &system.bodies.wheels;
+    let mut news = false;
+    for from in 0..wheels.len() {
+        let (Some(speed), Some((dof, ratio))) = (speeds[from], wheels[from].turned_by()) else {
+            continue;
+        };
+        for (wheel, other) in wheels.iter().zip(speeds.iter_mut()) {
+            if let (None, Some((shaft, other_ratio))) = (*other, wheel.turned_by())
+                && shaft == dof
+            {
+                *other = Some(speed * other_ratio / ratio);
+                news = true;
+            }
+        }
+    }
+    for torsion in &system.bodies.torsions {
+        for [from, to] in [[0, 1], [1, 0]].map(|ends| ends.map(|end| torsion.sprockets[end])) {
+            if speeds[to].is_none() && speeds[from].is_some() {
+                speeds[to] = speeds[from];
+                news = true;
+            }
+        }
+    }
+    news
+}
+
+/// Passes speeds on along the routes of chains that wait for one; whether there was one to pass.
+fn share_chains(
+    system: &System,
+    layouts: &[&Layout],
+    waiting: &mut Vec<usize>,
+    speeds: &mut [Option<f64>],
+) -> bool {
+    let before = waiting.len();
+    waiting.retain(|&chain| {
+        let Layout::Route { stops, .. } = layouts[chain] else {
+            return false;
+        };
+        let member = &system.chains[chain];
+        let pitch = member.chain.pitch();
+        let known = stops.iter().find_map(|stop| match stop {
+            Stop::Sprocket(index) => {
+                let wheel = &system.bodies.wheels[*index];
+                // Chain speed along the path: v = s ω z p / 2π
+                speeds[*index].map(|speed| wheel.sense * speed / pitch_angle(pitch, wheel))
+            }
+            Stop::Guide(_) => None,
+        });
+        let Some(speed) = known else { return true };
+        for &index in &member.route {
+            let wheel = &system.bodies.wheels[index];
+            let own = wheel.sense * speed * pitch_angle(pitch, wheel);
+            speeds[index].get_or_insert(own);
+        }
+        false
+    });
+    waiting.len() < before
+}
+
+fn roller_places(member: &Member, q: &[f64]) -> Vec<Point> {
     let own = &q[member.entries.clone()];
     (0..member.chain.rollers())
         .map(|roller| member.chain.roller_moving(own, roller).place)
         .collect()
 }
 
-/// Velocities of the rollers at the chain speed of the first driven sprocket; sets free sprockets going.
+/// Velocities of the rollers where sprockets carry them, and between.
 ///
 /// ```text
-/// ω z p = the same for all,    v = v_c + ω × d on a sprocket, linear in between
+/// v = v_c + ω × d on a sprocket, linear in between
 /// ```
 ///
 /// Consistent to O((π/z)²), like every steady state of a polygon drive.
 fn along_route(
     system: &System,
-    chain: usize,
-    stops: &[Stop],
+    member: &Member,
     places: &[Point],
     q: &[f64],
-    v: &mut [f64],
+    v: &[f64],
 ) -> Vec<Vector> {
-    let still = vec![0.0; v.len()];
-    let at = Moment {
-        t: 0.0,
-        q,
-        v: &still,
-    };
+    let at = Moment { t: 0.0, q, v };
     let bodies = &system.bodies;
-    let member = &system.chains[chain];
-    let pitch = member.chain.pitch();
-    let speed = stops
-        .iter()
-        .filter_map(|stop| match stop {
-            Stop::Sprocket(index) => Some(&bodies.wheels[*index]),
-            Stop::Guide(_) => None,
-        })
-        .find_map(|wheel| match &wheel.rotation {
-            // Chain speed along the path: v = s ω z p / 2π
-            WheelRotation::Prescribed(motion) => {
-                Some(wheel.sense * motion.at(0.0).rate / pitch_angle(pitch, wheel))
-            }
-            WheelRotation::Free { .. } => None,
-        });
-    let speed = speed.unwrap_or(0.0);
-
     let mut seats: Vec<Option<usize>> = vec![None; places.len()];
     for on in &member.contacts.teeth {
         let wheel = &bodies.wheels[on.wheel];
-        if let WheelRotation::Free { dof, .. } = wheel.rotation
-            && member.route.contains(&on.wheel)
-        {
-            v[dof] = wheel.sense * speed * pitch_angle(pitch, wheel);
-        }
-        if let WheelSupport::Springs { dof, .. } = wheel.support {
-            v[dof] = 0.0;
-            v[dof + 1] = 0.0;
-        }
         let centre = bodies.wheel_centre(on.wheel, at);
         let circle = member.riding_radius(wheel);
         let seat = circle.hypot(0.5 * wheel.pitch);

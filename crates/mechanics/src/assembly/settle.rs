@@ -227,7 +227,7 @@ impl System {
                 *motion = Motion::Held;
             }
             if let WheelRotation::Free { .. } = wheel.rotation {
-                wheel.inertia = heaviest * wheel.pitch_radius * wheel.pitch_radius;
+                wheel.shaft_inertia = heaviest * wheel.pitch_radius * wheel.pitch_radius;
             }
         }
         light.bodies.weigh(self.dofs - self.bodies.first);
@@ -264,7 +264,7 @@ impl System {
         }
         for wheel in &self.bodies.wheels {
             if let WheelRotation::Free { dof, .. } = wheel.rotation {
-                worst = worst.max(wheel.inertia * a[dof].abs() / wheel.pitch_radius);
+                worst = worst.max(wheel.shaft_inertia * a[dof].abs() / wheel.pitch_radius);
             }
         }
         let weight = self.heaviest() * self.bodies.gravity.norm();

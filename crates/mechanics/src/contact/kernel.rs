@@ -99,7 +99,7 @@ impl Contacts {
                 let reach = teeth.tip_radius + self.radius;
                 let away = dx * dx + dy * dy - w.splat(reach * reach);
                 near = w.splat(0.0).greater(away) & near;
-                if !near.any() && self.for_links {
+                if !near.any() && self.writes_faces {
                     slots.leave_open(w, here.lane, 0.0);
                     return false;
                 }
@@ -121,7 +121,7 @@ impl Contacts {
             slots.set_wake(here.lane, 0.0);
             return true;
         };
-        if self.for_links {
+        if self.writes_faces {
             slots.set_wake(here.lane, 0.0);
             return false;
         }

@@ -35,7 +35,7 @@ impl<'a, S: Simd> Slots<'a, S> {
     pub(super) fn new(w: Wide<S>, contacts: &'a Contacts, touch: &'a mut Touch) -> Self {
         let (slots, sides) = (contacts.slots, contacts.sides());
         let n = slots * sides;
-        let faces = if contacts.for_links {
+        let faces = if contacts.writes_faces {
             touch.faces.resize(n);
             let faces = &mut touch.faces;
             Some(FacesNow {

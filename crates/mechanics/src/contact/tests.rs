@@ -179,7 +179,7 @@ impl Roller {
             touch: Box::default(),
         };
         // Moved at will, a roller must be looked at every time.
-        roller.contacts.for_links = true;
+        roller.contacts.writes_faces = true;
         if let Shape::Rail { .. } = roller.contacts.shape {
             roller.frame = Frame::fixed();
         }

@@ -6,7 +6,7 @@ use chaindrive_integrate::Moment;
 use super::inputs::Inputs;
 use crate::contact::Frame;
 use crate::motion::Course;
-use crate::{Carrier, Motion, Push, Torque};
+use crate::{Carrier, Motion, Push, Torque, Torsion};
 
 /// What chains touch.
 #[derive(Clone, Debug)]
@@ -14,6 +14,7 @@ pub(crate) struct Bodies {
     pub(crate) wheels: Vec<Wheel>,
     pub(crate) rails: Vec<Rail>,
     pub(crate) slides: Vec<Slide>,
+    pub(crate) torsions: Vec<Torsion>,
     pub(crate) gravity: Vector,
     /// Where their coordinates begin in the state, behind those of all chains.
     pub(crate) first: usize,
@@ -32,7 +33,9 @@ pub(crate) struct Wheel {
     pub(crate) angle: f64,
     pub(crate) rotation: WheelRotation,
     pub(crate) support: WheelSupport,
+    /// Its own inertia \[kg m²\], and that of all that turns with it about its own shaft.
     pub(crate) inertia: f64,
+    pub(crate) shaft_inertia: f64,
     pub(crate) mass: f64,
     pub(crate) teeth: u32,
     pub(crate) pitch_radius: f64,
@@ -49,6 +52,21 @@ pub(crate) enum WheelRotation {
         dof: usize,
         drive: Vec<Torque>,
         load: Vec<Torque>,
+    },
+    Geared {
+        leader: Leader,
+        ratio: f64,
+    },
+}
+
+/// What a geared wheel follows.
+#[derive(Clone, Debug)]
+pub(crate) enum Leader {
+    Prescribed(Motion),
+    /// A free wheel, and its angle at assembly.
+    Free {
+        dof: usize,
+        angle: f64,
     },
 }
 
@@ -185,6 +203,17 @@ impl Bodies {
             squared = squared.max(own);
             damping = damping.max(drag);
         }
+        for torsion in &self.torsions {
+            let ends = torsion.sprockets.map(|index| {
+                let wheel = &self.wheels[index];
+                let turned = wheel.turned_by();
+                turned.map_or(0.0, |(_, ratio)| ratio * ratio / wheel.shaft_inertia)
+            });
+            // k (φ₁ − φ₀)² ≤ 2 k (φ₀² + φ₁²), exactly the sum for two shafts alone
+            let light = ends[0] + ends[1];
+            squared = squared.max(torsion.stiffness * light);
+            damping = damping.max(torsion.damping * light);
+        }
         for slide in &self.slides {
             let (_, lever) = slide.carrier.extension(0.0);
             let light = lever * lever / slide.inertia;
@@ -199,8 +228,13 @@ impl Bodies {
         let old = std::mem::replace(&mut self.first, first);
         let shift = |dof: &mut usize| *dof = *dof - old + first;
         for wheel in &mut self.wheels {
-            if let WheelRotation::Free { dof, .. } = &mut wheel.rotation {
-                shift(dof);
+            match &mut wheel.rotation {
+                WheelRotation::Free { dof, .. }
+                | WheelRotation::Geared {
+                    leader: Leader::Free { dof, .. },
+                    ..
+                } => shift(dof),
+                WheelRotation::Prescribed(_) | WheelRotation::Geared { .. } => {}
             }
             if let WheelSupport::Springs { dof, .. } = &mut wheel.support {
                 shift(dof);
@@ -217,7 +251,7 @@ impl Bodies {
     fn each_inertia(&self, mut visit: impl FnMut(usize, f64)) {
         for wheel in &self.wheels {
             if let WheelRotation::Free { dof, .. } = wheel.rotation {
-                visit(dof, wheel.inertia);
+                visit(dof, wheel.shaft_inertia);
             }
             if let WheelSupport::Springs { dof, .. } = wheel.support {
                 visit(dof, wheel.mass);
@@ -266,6 +300,25 @@ impl Bodies {
                 slide.push.damping() * squared,
             );
         }
+    }
+
+    /// Twist φ of a shaft and its rate.
+    pub(crate) fn twist(&self, torsion: &Torsion, at: Moment<'_>) -> [f64; 2] {
+        let [from, to] = torsion.sprockets.map(|index| {
+            let wheel = &self.wheels[index];
+            let course = wheel.course(at.t, at.q, at.v);
+            [course.position - wheel.angle, course.rate]
+        });
+        [to[0] - from[0], to[1] - from[1]]
+    }
+
+    /// Coordinates that twist a shaft, with ∂φ/∂q.
+    pub(crate) fn twisted_by(&self, torsion: &Torsion) -> impl Iterator<Item = (usize, f64)> {
+        let ends = torsion.sprockets.into_iter().zip([-1.0, 1.0]);
+        ends.filter_map(|(index, sign)| {
+            let turned = self.wheels[index].turned_by();
+            turned.map(|(dof, ratio)| (dof, sign * ratio))
+        })
     }
 
     /// What a coordinate is, in words.
@@ -350,6 +403,34 @@ impl Wheel {
                 rate: v[*dof],
                 acceleration: 0.0,
             },
+            WheelRotation::Geared { leader, ratio } => {
+                let lead = match leader {
+                    Leader::Prescribed(motion) => motion.at(t),
+                    Leader::Free { dof, angle } => Course {
+                        position: q[*dof] - angle,
+                        rate: v[*dof],
+                        acceleration: 0.0,
+                    },
+                };
+                // θ − θ₀ = i (θ_leader − θ_leader,₀)
+                Course {
+                    position: self.angle + ratio * lead.position,
+                    rate: ratio * lead.rate,
+                    acceleration: ratio * lead.acceleration,
+                }
+            }
+        }
+    }
+
+    /// The coordinate that turns the wheel, and how far it turns with that; none where the angle is given in time.
+    pub(crate) fn turned_by(&self) -> Option<(usize, f64)> {
+        match &self.rotation {
+            WheelRotation::Free { dof, .. } => Some((*dof, 1.0)),
+            WheelRotation::Geared {
+                leader: Leader::Free { dof, .. },
+                ratio,
+            } => Some((*dof, *ratio)),
+            WheelRotation::Prescribed(_) | WheelRotation::Geared { .. } => None,
         }
     }
 
@@ -391,9 +472,16 @@ impl Wheel {
     /// How easily a force at the teeth moves the rim \[1/kg\]: R²/J of a free shaft, 1/m of a free
     /// centre.
     pub(crate) fn mobility(&self, slides: &[Slide]) -> f64 {
-        let turning = match self.rotation {
+        let turning = match &self.rotation {
             WheelRotation::Prescribed(_) => 0.0,
-            WheelRotation::Free { .. } => self.pitch_radius * self.pitch_radius / self.inertia,
+            WheelRotation::Free { .. } => {
+                self.pitch_radius * self.pitch_radius / self.shaft_inertia
+            }
+            // Rim and shaft of the leader differ by the ratio.
+            WheelRotation::Geared { ratio, .. } => match self.turned_by() {
+                Some(_) => (self.pitch_radius * ratio).powi(2) / self.shaft_inertia,
+                None => 0.0,
+            },
         };
         let moving = match &self.support {
             WheelSupport::Fixed | WheelSupport::Prescribed { .. } => 0.0,
@@ -422,7 +510,7 @@ impl Wheel {
         }
         if let WheelRotation::Free { drive, load, .. } = &self.rotation {
             let drag: f64 = drive.iter().chain(load).map(Torque::drag).sum();
-            rates[1] = rates[1].max(drag / self.inertia);
+            rates[1] = rates[1].max(drag / self.shaft_inertia);
         }
         rates
     }

@@ -1,14 +1,18 @@
 //! From the laid drive to flat arrays.
 
+use std::collections::HashSet;
+
 use chaindrive_geometry::Point;
 
-use super::bodies::{Anchor, Bodies, Rail, RailSupport, Slide, Wheel, WheelRotation, WheelSupport};
+use super::bodies::{
+    Anchor, Bodies, Leader, Rail, RailSupport, Slide, Wheel, WheelRotation, WheelSupport,
+};
 use super::{BodyContacts, Member, OnRail, OnWheel, RailContact, System};
 use crate::chains;
 use crate::contact::{Contacts, PlateContact, Shape, Teeth};
-use crate::drive::{Guide, GuideSupport, Parts, Rotation, Sprocket, Support, Touches};
+use crate::drive::{Guide, GuideSupport, Parts, PlacedChain, Rotation, Sprocket, Support, Touches};
 use crate::profile::{GapFace, Profile};
-use crate::{AssemblyError, Carrier, Chain, Push};
+use crate::{AssemblyError, Carrier, Chain, Motion, Push};
 
 /// A drive with its chains laid: where everything is at t = 0.
 #[derive(Clone, Debug)]
@@ -36,9 +40,10 @@ impl System {
         let parts = &laid.parts;
         let mut q = Vec::new();
         let mut chains = Vec::new();
-        for (chain, lies) in [&parts.chain].into_iter().zip(&laid.chains) {
-            let (built, own) = chains::Chain::laid(chain, &lies.positions);
-            let contacts = contacts(laid, chain)?;
+        let mut touched = Touched::default();
+        for (placed, lies) in parts.chains.iter().zip(&laid.chains) {
+            let (built, own) = chains::Chain::laid(&placed.chain, &lies.positions);
+            let contacts = contacts(laid, placed, &mut touched)?;
             chains.push(Member::new(built, q.len(), contacts, lies.route.clone()));
             q.extend(own);
         }
@@ -49,12 +54,13 @@ impl System {
             next - count
         };
         let slides = slides(parts, &mut take);
-        let wheels: Vec<Wheel> = parts
+        let mut wheels: Vec<Wheel> = parts
             .sprockets
             .iter()
             .zip(&laid.gap_angles)
             .map(|(sprocket, &angle)| wheel(sprocket, angle, &mut take))
             .collect();
+        gear(parts, &mut wheels);
         let dofs = next;
         q.resize(dofs, 0.0);
         for wheel in &wheels {
@@ -70,6 +76,7 @@ impl System {
             wheels,
             rails: parts.guides.iter().map(rail).collect(),
             slides,
+            torsions: parts.torsions.clone(),
             gravity: parts.gravity,
             first,
             inertias: Vec::new(),
@@ -90,27 +97,62 @@ impl System {
     }
 }
 
+/// Bodies that chains before this one touch.
+#[derive(Default)]
+struct Touched {
+    sprockets: HashSet<usize>,
+    guides: HashSet<usize>,
+}
+
 /// Contacts of a chain with everything that it can touch.
-fn contacts(laid: &Laid, chain: &Chain) -> Result<BodyContacts, AssemblyError> {
+fn contacts(
+    laid: &Laid,
+    placed: &PlacedChain,
+    touched: &mut Touched,
+) -> Result<BodyContacts, AssemblyError> {
     let parts = &laid.parts;
-    let sprockets = parts.sprockets.iter().zip(&laid.gap_angles).enumerate();
-    let teeth = sprockets.map(|(wheel, (sprocket, &angle))| OnWheel {
+    let teeth = placed.sprockets.iter().map(|&wheel| OnWheel {
         wheel,
-        first: true,
-        contacts: teeth(sprocket, chain),
-        anchor: Anchor::at(angle),
+        first: touched.sprockets.insert(wheel),
+        contacts: teeth(&parts.sprockets[wheel], &placed.chain),
+        anchor: Anchor::at(laid.gap_angles[wheel]),
     });
-    let rails = parts.guides.iter().enumerate().map(|(rail, guide)| {
+    let rails = placed.guides.iter().map(|&rail| {
         Ok(OnRail {
             rail,
-            first: true,
-            contact: face(guide, chain, parts)?,
+            first: touched.guides.insert(rail),
+            contact: face(&parts.guides[rail], &placed.chain, parts)?,
         })
     });
     Ok(BodyContacts {
         teeth: teeth.collect(),
         rails: rails.collect::<Result<_, AssemblyError>>()?,
     })
+}
+
+/// Lets geared wheels follow their leaders, and gives every shaft the inertia of all that turns with it.
+fn gear(parts: &Parts, wheels: &mut [Wheel]) {
+    for (index, sprocket) in parts.sprockets.iter().enumerate() {
+        let Rotation::Geared { leader, ratio } = sprocket.rotation else {
+            continue;
+        };
+        let angle = wheels[leader].angle;
+        let followed = match &wheels[leader].rotation {
+            WheelRotation::Free { dof, .. } => Leader::Free { dof: *dof, angle },
+            WheelRotation::Prescribed(motion) => Leader::Prescribed(motion.clone()),
+            WheelRotation::Geared { leader, .. } => leader.clone(),
+        };
+        wheels[leader].shaft_inertia += ratio * ratio * sprocket.inertia;
+        wheels[index].rotation = WheelRotation::Geared {
+            leader: followed,
+            ratio,
+        };
+    }
+    for (index, sprocket) in parts.sprockets.iter().enumerate() {
+        if let Rotation::Geared { leader, .. } = sprocket.rotation {
+            wheels[index].shaft_inertia = wheels[leader].shaft_inertia;
+        }
+    }
 }
 
 fn slides(parts: &Parts, take: &mut impl FnMut(usize) -> usize) -> Vec<Slide> {
@@ -155,6 +197,11 @@ fn wheel(sprocket: &Sprocket, angle: f64, take: &mut impl FnMut(usize) -> usize)
             drive: drive.clone(),
             load: load.clone(),
         },
+        // Until all wheels are there: see `gear`.
+        Rotation::Geared { ratio, .. } => WheelRotation::Geared {
+            leader: Leader::Prescribed(Motion::Held),
+            ratio: *ratio,
+        },
     };
     let support = match &sprocket.support {
         Support::Fixed => WheelSupport::Fixed,
@@ -176,6 +223,7 @@ fn wheel(sprocket: &Sprocket, angle: f64, take: &mut impl FnMut(usize) -> usize)
         rotation,
         support,
         inertia: sprocket.inertia,
+        shaft_inertia: sprocket.inertia,
         mass: sprocket.mass,
         teeth: gap.teeth,
         pitch_radius: gap.pitch_radius,

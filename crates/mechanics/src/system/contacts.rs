@@ -148,11 +148,11 @@ impl BodyContacts {
     /// Says whether the faces that rollers press on are to be written down.
     pub(crate) fn write_faces(&mut self, wanted: bool) {
         for on in &mut self.teeth {
-            on.contacts.for_links = wanted;
+            on.contacts.writes_faces = wanted;
         }
         for on in &mut self.rails {
             if let RailContact::Circles(contacts) = &mut on.contact {
-                contacts.for_links = wanted;
+                contacts.writes_faces = wanted;
             }
         }
     }

@@ -16,6 +16,7 @@ impl Bodies {
         rates: &mut [f64],
         [wheel_wrenches, rail_wrenches]: [&[Wrench]; 2],
     ) {
+        self.turn_shafts(at, a, rates, wheel_wrenches);
         for (i, (wheel, wrench)) in self.wheels.iter().zip(wheel_wrenches).enumerate() {
             let course = wheel.course(at.t, at.q, at.v);
             let (centre, velocity, acceleration) =
@@ -34,8 +35,16 @@ impl Bodies {
                     let (driving, loading) = (sum(drive) + self.inputs.torque(i), sum(load));
                     rates[Flow::DriveTorque as usize] += driving * course.rate;
                     rates[Flow::Load as usize] += loading * course.rate;
-                    // J α = M + M_drive + M_load
-                    a[*dof] = (wrench.moment + driving + loading) / wheel.inertia;
+                    // J α = M + M_drive + M_load, and what else hangs on the shaft
+                    let hanging = a[*dof];
+                    let own = wrench.moment + driving + loading;
+                    a[*dof] = (own + hanging) / wheel.shaft_inertia;
+                }
+                WheelRotation::Geared { .. } => {
+                    if wheel.turned_by().is_none() {
+                        let torque = wheel.inertia * course.acceleration - wrench.moment;
+                        rates[Flow::Driver as usize] += torque * course.rate;
+                    }
                 }
             }
             match &wheel.support {
@@ -106,6 +115,39 @@ impl Bodies {
                 force += slide.project([weight.x, weight.y], place);
             }
             a[dof] = force / slide.inertia;
+        }
+    }
+
+    /// Torques of twisted shafts and of geared wheels, on the coordinates that they turn.
+    fn turn_shafts(
+        &self,
+        at: Moment<'_>,
+        a: &mut [f64],
+        rates: &mut [f64],
+        wheel_wrenches: &[Wrench],
+    ) {
+        for (wheel, wrench) in self.wheels.iter().zip(wheel_wrenches) {
+            if let (WheelRotation::Geared { .. }, Some((dof, ratio))) =
+                (&wheel.rotation, wheel.turned_by())
+            {
+                a[dof] += ratio * wrench.moment;
+            }
+        }
+        for torsion in &self.torsions {
+            let [twist, rate] = self.twist(torsion, at);
+            // M = k φ + c φ̇
+            let torque = torsion.stiffness * twist + torsion.damping * rate;
+            rates[Flow::SupportLoss as usize] += torsion.damping * rate * rate;
+            for (index, sign) in torsion.sprockets.into_iter().zip([1.0, -1.0]) {
+                let wheel = &self.wheels[index];
+                if let Some((dof, ratio)) = wheel.turned_by() {
+                    a[dof] += sign * ratio * torque;
+                } else {
+                    // A motion that is given supplies what the shaft takes.
+                    let speed = wheel.course(at.t, at.q, at.v).rate;
+                    rates[Flow::Driver as usize] -= sign * torque * speed;
+                }
+            }
         }
     }
 }

@@ -72,6 +72,9 @@ impl System {
         match input {
             Input::Torque { sprocket } => match self.bodies.wheels[sprocket].rotation {
                 WheelRotation::Free { .. } => None,
+                WheelRotation::Geared { .. } => {
+                    Some("it follows another sprocket; set the torque on that one")
+                }
                 WheelRotation::Prescribed(_) => Some(
                     "its motion is given, and no torque changes it; give it an inertia and no motion",
                 ),
@@ -143,6 +146,8 @@ impl System {
         let wheels = self.bodies.wheels.iter().map(|wheel| {
             let turning = match &wheel.rotation {
                 WheelRotation::Prescribed(motion) => motion.next_knot(t),
+                // Its leader is asked.
+                WheelRotation::Geared { .. } => None,
                 WheelRotation::Free { drive, load, .. } => {
                     let torques = drive.iter().chain(load);
                     Some(earliest(&mut torques.map(|torque| torque.next_knot(t))))

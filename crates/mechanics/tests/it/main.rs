@@ -2,3 +2,5 @@
 
 mod marine;
 mod marine_statics;
+mod modes_of_links;
+mod several_chains;

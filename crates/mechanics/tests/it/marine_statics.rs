@@ -38,7 +38,7 @@ fn span_tensions_match_the_reference_states() {
     };
     let drive = Drive::new(marine::parts(law)).expect("the marine drive is valid");
     let assembled = drive.assemble().expect("the marine drive assembles");
-    let fitting = assembled.fitting.expect("it has a route");
+    let fitting = assembled.fittings[0].clone().expect("it has a route");
     assert_eq!(fitting.seated, [19, 11, 8, 3]);
     assert_eq!(fitting.spans, [28, 14, 19, 20]);
     assert!(fitting.strain.abs() < 1e-12, "{}", fitting.strain);

@@ -19,7 +19,7 @@ mod tooth;
 use std::collections::HashSet;
 
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_mechanics::{Drive, DriveError, Parts};
+use chaindrive_mechanics::{Drive, DriveError, Parts, PlacedChain};
 use serde_json::{Value as Json, json};
 
 use super::defaults::{self, Default};
@@ -69,12 +69,19 @@ fn parts(
     let sprockets = sprocket::resolve_all(scene, names, &chain, findings);
     let guides = guide::resolve_all(scene, names, &chain, findings);
     let layout = route::layout(scene, names, &chain.chain, gravity, findings);
-    let parts = Parts {
-        layout: layout?,
+    let (sprockets, guides) = (sprockets?, guides?);
+    let placed = PlacedChain {
         chain: chain.chain,
-        sprockets: sprockets?,
-        guides: guides?,
+        layout: layout?,
+        sprockets: (0..sprockets.len()).collect(),
+        guides: (0..guides.len()).collect(),
+    };
+    let parts = Parts {
+        chains: vec![placed],
+        sprockets,
+        guides,
         tensioners: tensioners?,
+        torsions: Vec::new(),
         settle: scene.settle,
         gravity,
     };

@@ -8,15 +8,14 @@ use super::{Sum, at_rest};
 use crate::chains::{Moving, Way};
 use crate::contact::{Contacts, Frame, PlateContact};
 use crate::profile::Probe;
-use crate::system::{
-    Bodies, Member, RailContact, RailSupport, Slide, Wheel, WheelRotation, WheelSupport,
-};
+use crate::system::{Bodies, Member, RailContact, RailSupport, Slide, Wheel, WheelSupport};
 use crate::{Carrier, System};
 
 /// State entries that place a body: its angle, and what moves its centre.
 #[derive(Clone, Default)]
 struct Mount {
-    angle: Option<usize>,
+    /// The entry, and how far the body turns with it.
+    angle: Option<(usize, f64)>,
     centre: Vec<Way>,
 }
 
@@ -54,10 +53,10 @@ fn wheel_mount(bodies: &Bodies, wheel: &Wheel, at: Moment<'_>) -> (Frame, Mount)
         velocity: Vector::zeros(),
         spin: 0.0,
     };
-    let mut mount = Mount::default();
-    if let WheelRotation::Free { dof, .. } = wheel.rotation {
-        mount.angle = Some(dof);
-    }
+    let mut mount = Mount {
+        angle: wheel.turned_by(),
+        ..Mount::default()
+    };
     match &wheel.support {
         WheelSupport::Springs { dof, .. } => {
             let ways = Moving::free(origin, [*dof, dof + 1]);
@@ -75,7 +74,7 @@ fn rail_mount(bodies: &Bodies, rail: usize, frame: &Frame) -> Mount {
         let slide = &bodies.slides[*index];
         match (&slide.carrier, slide.dof) {
             (Carrier::Slider { .. }, Some(_)) => mount.centre = carried(slide, frame.origin),
-            (Carrier::Arm { .. }, dof) => mount.angle = dof,
+            (Carrier::Arm { .. }, dof) => mount.angle = dof.map(|dof| (dof, 1.0)),
             _ => {}
         }
     }
@@ -242,13 +241,13 @@ fn add_edge(edge: &Edge, probe: &Probe, push: Push, mount: &Mount, sum: &mut Sum
             frame_turn: 0.0,
         });
     }
-    if let Some(entry) = mount.angle {
+    if let Some((entry, ratio)) = mount.angle {
         moves.push(Move {
             entry,
             shift: Vector::zeros(),
-            relative: -around,
-            line_turn: -1.0,
-            frame_turn: 1.0,
+            relative: -around * ratio,
+            line_turn: -ratio,
+            frame_turn: ratio,
         });
     }
     for a in &moves {
@@ -315,8 +314,8 @@ fn add_one(
     for way in &mount.centre {
         moves.push((way.entry, -m.dot(&way.first), -way.first, 0.0));
     }
-    if let Some(entry) = mount.angle {
-        moves.push((entry, -m.dot(&around), Vector::zeros(), 1.0));
+    if let Some((entry, ratio)) = mount.angle {
+        moves.push((entry, -m.dot(&around) * ratio, Vector::zeros(), ratio));
     }
     let mixed = t * (1.0 - kappa * lever);
     let twice = kappa * lever * lever - m.dot(&d);

@@ -18,8 +18,8 @@ pub(crate) enum Partner {
 pub(crate) struct Mount {
     /// (border unknown, shift of the frame's origin per unit); unused ones have no unknown.
     pub(crate) shifts: [Option<(usize, Vector)>; 2],
-    /// Border unknown of the rotation.
-    pub(crate) turn: Option<usize>,
+    /// Border unknown of the rotation, and how far the frame turns with it.
+    pub(crate) turn: Option<(usize, f64)>,
 }
 
 /// A closed contact between a body `a` and its partner `b`.

@@ -112,6 +112,18 @@ impl Linkage {
             let j = self.border(bodies, dof);
             blocks.corner[(j, j)] += weights.stiffness * stiffness + weights.damping * damping;
         });
+        for torsion in &bodies.torsions {
+            let weight = weights.stiffness * torsion.stiffness + weights.damping * torsion.damping;
+            for (dof, share) in bodies.twisted_by(torsion) {
+                for (other, other_share) in bodies.twisted_by(torsion) {
+                    let [i, j] = [dof, other].map(|dof| self.border(bodies, dof));
+                    // The lower half is kept.
+                    if i >= j {
+                        blocks.corner[(i, j)] += weight * share * other_share;
+                    }
+                }
+            }
+        }
         let mut sum = Sum {
             linkage: self,
             blocks: &mut blocks,
@@ -271,8 +283,8 @@ impl Sum<'_> {
             Partner::Ground => {}
             Partner::Body(body) => self.add_turn(body, weight * other.max(0.0)),
             Partner::Mount(mount) => {
-                if let Some(j) = mounts[mount].turn {
-                    self.blocks.corner[(j, j)] += weight * other.max(0.0);
+                if let Some((j, ratio)) = mounts[mount].turn {
+                    self.blocks.corner[(j, j)] += weight * other.max(0.0) * ratio * ratio;
                 }
             }
         }
@@ -475,8 +487,8 @@ pub(super) fn partner_row(
                     *entry = (*j, direction.dot(shift));
                 }
             }
-            if let Some(j) = mount.turn {
-                entries[2] = (j, direction.dot(&turned(element.arm_b)) + lever);
+            if let Some((j, ratio)) = mount.turn {
+                entries[2] = (j, (direction.dot(&turned(element.arm_b)) + lever) * ratio);
             }
             Row::Border(entries)
         }

@@ -212,10 +212,22 @@ impl Impulses {
             self.joints
                 .add_right::<R, C>(place, -inertia * b[linkage.coordinates() + j]);
         }
+        let place = |dof: usize| Place::Border(first + dof - bodies.first);
         bodies.each_support(|dof, _, damping| {
-            let place = Place::Border(first + dof - bodies.first);
-            self.joints.add::<R, C>(place, place, -c * damping);
+            self.joints
+                .add::<R, C>(place(dof), place(dof), -c * damping);
         });
+        for torsion in &bodies.torsions {
+            for (dof, share) in bodies.twisted_by(torsion) {
+                for (other, other_share) in bodies.twisted_by(torsion) {
+                    // Both halves are one.
+                    if dof >= other {
+                        let damping = c * torsion.damping * share * other_share;
+                        self.joints.add::<R, C>(place(dof), place(other), -damping);
+                    }
+                }
+            }
+        }
     }
 
     /// x ← b − M⁻¹ Jᵀ y of the joints.

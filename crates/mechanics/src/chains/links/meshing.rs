@@ -11,7 +11,7 @@ use crate::chains::{Loads, Rollers, Surroundings};
 use crate::contact::{Contacts, Frame, Touch, Wrench};
 use crate::energy::Flow;
 use crate::lanes::{Wide, dispatch};
-use crate::system::{Bodies, RailContact, RailSupport, Wheel, WheelRotation, WheelSupport};
+use crate::system::{Bodies, RailContact, RailSupport, Wheel, WheelSupport};
 
 impl Linkage {
     /// Contacts with wheels and rails.
@@ -58,10 +58,7 @@ impl Linkage {
 
     fn wheel_mount(&self, bodies: &Bodies, wheel: &Wheel, frame: &Frame) -> Mount {
         let border = |dof: usize| self.border(bodies, dof);
-        let turn = match wheel.rotation {
-            WheelRotation::Free { dof, .. } => Some(border(dof)),
-            WheelRotation::Prescribed(_) => None,
-        };
+        let turn = wheel.turned_by().map(|(dof, ratio)| (border(dof), ratio));
         let shifts = match &wheel.support {
             WheelSupport::Fixed | WheelSupport::Prescribed { .. } => [None; 2],
             WheelSupport::Springs { dof, .. } => [
@@ -93,7 +90,7 @@ impl Linkage {
                         mount.shifts[0] = Some((self.border(bodies, dof), *direction));
                     }
                     // The frame of a rail on an arm has the pivot as its origin.
-                    Carrier::Arm { .. } => mount.turn = Some(self.border(bodies, dof)),
+                    Carrier::Arm { .. } => mount.turn = Some((self.border(bodies, dof), 1.0)),
                 }
             }
         }

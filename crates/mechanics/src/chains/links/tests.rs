@@ -12,8 +12,8 @@ use crate::chains::Chain;
 use crate::energy::Flow;
 use crate::{
     Adjust, ChainModel, Clearance, Drive, End, Ends, Fit, Flank, FreeRoller, Joint, Layout,
-    LinkBody, Motion, Parts, Record, RigidLinks, RollerModel, Rotation, Sprocket, Stop, Support,
-    Surface, System, Tighten, Torque,
+    LinkBody, Motion, Parts, PlacedChain, Record, RigidLinks, RollerModel, Rotation, Sprocket,
+    Stop, Support, Surface, System, Tighten, Torque,
 };
 
 /// Steel on steel with a little friction, so that normals and tangents take part.
@@ -59,32 +59,37 @@ pub(super) fn bicycle(model: ChainModel) -> Parts {
     };
     let driver = Rotation::Prescribed(Motion::Constant { rate: -9.42 });
     Parts {
-        chain: crate::Chain {
-            pitch,
-            lengths: vec![pitch; links],
-            stiffness: vec![47.7e6; links],
-            damping: vec![25.6; links],
-            masses: vec![3.81e-3; links],
-            roller_diameter,
-            plate_height: 9.6e-3,
-            ends: Ends::Closed,
-            model,
-        },
+        chains: vec![PlacedChain {
+            chain: crate::Chain {
+                pitch,
+                lengths: vec![pitch; links],
+                stiffness: vec![47.7e6; links],
+                damping: vec![25.6; links],
+                masses: vec![3.81e-3; links],
+                roller_diameter,
+                plate_height: 9.6e-3,
+                ends: Ends::Closed,
+                model,
+            },
+            layout: Layout::Route {
+                stops: vec![Stop::Sprocket(0), Stop::Sprocket(1)],
+                phase: 0.5,
+                fit: Fit {
+                    adjust: Adjust::Nothing,
+                    pretension: 60.0,
+                    tighten: Tighten::RestLength,
+                },
+            },
+            sprockets: vec![0, 1],
+            guides: Vec::new(),
+        }],
         sprockets: vec![
             sprocket("chainring", 44, 0.0, driver, 0.0),
             sprocket("sprocket", 18, -0.460_544_624_366, driven, 0.12),
         ],
         guides: Vec::new(),
         tensioners: Vec::new(),
-        layout: Layout::Route {
-            stops: vec![Stop::Sprocket(0), Stop::Sprocket(1)],
-            phase: 0.5,
-            fit: Fit {
-                adjust: Adjust::Nothing,
-                pretension: 60.0,
-                tighten: Tighten::RestLength,
-            },
-        },
+        torsions: Vec::new(),
         settle: true,
         gravity: Vector::new(0.0, -9.81),
     }
@@ -127,7 +132,7 @@ pub(super) fn free_rollers() -> RollerModel {
 pub(super) fn kinds() -> Vec<(&'static str, Parts)> {
     let lumped = RollerModel::Lumped { mass: 0.453e-3 };
     let smooth = |mut parts: Parts| {
-        if let ChainModel::Rigid(links) = &mut parts.chain.model
+        if let ChainModel::Rigid(links) = &mut parts.chains[0].chain.model
             && let Joint::Clearance(joint) = &mut links.joint
         {
             joint.surface.friction = Friction::None;
@@ -167,19 +172,22 @@ pub(super) fn kinds() -> Vec<(&'static str, Parts)> {
 /// Eleven links of a chain held at both ends, a little longer than they are apart.
 fn strand(mut parts: Parts) -> Parts {
     let links = 11;
-    parts.chain.lengths.truncate(links);
-    parts.chain.stiffness.truncate(links);
-    parts.chain.damping.truncate(links);
-    parts.chain.masses = vec![parts.chain.masses[0]; links + 1];
-    parts.chain.ends = Ends::Open([End::Fixed, End::Fixed]);
-    parts.sprockets.clear();
-    let pitch = parts.chain.pitch + 30e-6;
-    parts.layout = Layout::Points {
+    let placed = &mut parts.chains[0];
+    let chain = &mut placed.chain;
+    chain.lengths.truncate(links);
+    chain.stiffness.truncate(links);
+    chain.damping.truncate(links);
+    chain.masses = vec![chain.masses[0]; links + 1];
+    chain.ends = Ends::Open([End::Fixed, End::Fixed]);
+    let pitch = chain.pitch + 30e-6;
+    placed.layout = Layout::Points {
         positions: (0..=links)
             .map(|i| Point::new(pitch * i as f64, 1e-6 * (i % 3) as f64))
             .collect(),
         velocities: vec![Vector::zeros(); links + 1],
     };
+    placed.sprockets.clear();
+    parts.sprockets.clear();
     parts.settle = false;
     parts
 }

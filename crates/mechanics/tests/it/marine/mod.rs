@@ -3,8 +3,8 @@
 use chaindrive_contact::{Friction, Law};
 use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
 use chaindrive_mechanics::{
-    Adjust, Chain, Ends, Fit, Layout, Motion, Parts, Rotation, Sprocket, Stop, Support, Surface,
-    Tighten, Torque,
+    Adjust, Chain, Ends, Fit, Layout, Motion, Parts, PlacedChain, Rotation, Sprocket, Stop,
+    Support, Surface, Tighten, Torque,
 };
 
 /// Pitch, link mass and stiffness as published; the rest is a reconstruction that closes exactly.
@@ -54,29 +54,34 @@ pub(crate) fn parts(law: Law) -> Parts {
         gap_angle: 0.0,
     });
     Parts {
-        chain: Chain {
-            pitch,
-            lengths: vec![pitch; links],
-            stiffness: vec![stiffness; links],
-            damping: vec![2.97e3; links],
-            masses: vec![mass; links],
-            roller_diameter,
-            plate_height: 0.0778,
-            ends: Ends::Closed,
-            model: chaindrive_mechanics::ChainModel::Particles,
-        },
+        chains: vec![PlacedChain {
+            chain: Chain {
+                pitch,
+                lengths: vec![pitch; links],
+                stiffness: vec![stiffness; links],
+                damping: vec![2.97e3; links],
+                masses: vec![mass; links],
+                roller_diameter,
+                plate_height: 0.0778,
+                ends: Ends::Closed,
+                model: chaindrive_mechanics::ChainModel::Particles,
+            },
+            layout: Layout::Route {
+                stops: (0..4).map(Stop::Sprocket).collect(),
+                phase: 0.5,
+                fit: Fit {
+                    adjust: Adjust::Nothing,
+                    pretension: 15e3,
+                    tighten: Tighten::RestLength,
+                },
+            },
+            sprockets: (0..4).collect(),
+            guides: Vec::new(),
+        }],
         sprockets: sprockets.into(),
         guides: Vec::new(),
         tensioners: Vec::new(),
-        layout: Layout::Route {
-            stops: (0..4).map(Stop::Sprocket).collect(),
-            phase: 0.5,
-            fit: Fit {
-                adjust: Adjust::Nothing,
-                pretension: 15e3,
-                tighten: Tighten::RestLength,
-            },
-        },
+        torsions: Vec::new(),
         settle: true,
         gravity: Vector::new(0.0, -9.81),
     }
