@@ -48,7 +48,7 @@ impl Folder {
 
     /// Takes note that the folder was moved.
     pub(super) fn moved_to(&self, root: &Path) {
-        self.state().root = root.to_owned();
+        root.clone_into(&mut self.state().root);
     }
 
     /// What was written and is not there any more, if anything.

@@ -171,7 +171,7 @@ fn rollers(
     let roller = text.roller.unwrap_or_default();
     let mass = roller.mass.map(|mass| mass.0);
     let model = text.rollers.unwrap_or_else(|| {
-        let findings = &mut needs.findings;
+        let findings = &mut *needs.findings;
         findings.assume("chain.rollers", "lumped", "assumed: the usual choice");
         Rollers::Lumped
     });

@@ -147,7 +147,7 @@ fn fill(file: File, sweep: &Sweep, stacked: &Stacked, ending: &Ending) -> io::Re
     let mut file = BufWriter::new(file);
     let mut heading = vec![VARIANT.to_owned()];
     let swept = sweep.dimensions().iter();
-    heading.extend(swept.map(|it| named(&it.name, it.unit.as_deref())));
+    heading.extend(swept.map(|it| named(&it.name, it.unit)));
     for it in &stacked.quantities {
         let (name, unit) = (it.quantity.name(), it.quantity.unit());
         let labels = it.quantity.along().and_then(|along| {
