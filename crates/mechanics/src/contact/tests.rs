@@ -293,8 +293,12 @@ fn forces_are_those_of_the_exact_outline() {
             }
         }
         assert!(compared > 100_000, "{kind:?}: {compared}");
-        let expected = matches!(kind, Kind::Narrow);
-        assert_eq!(doubles > 100, expected, "{kind:?}: {doubles}");
+        // Only a narrow hollow bears a roller on two sides, in the short way between its ends.
+        let twice = matches!(kind, Kind::Narrow);
+        assert!(
+            if twice { doubles > 20 } else { doubles == 0 },
+            "{kind:?}: {doubles}"
+        );
     }
 }
 
@@ -316,7 +320,11 @@ fn a_roller_bouncing_in_a_gap_keeps_its_energy() {
         let mut worst = [0.0_f64; 2];
         for _ in 0..6 {
             let pieces = gap(kind, &mut dice);
-            let start = Point::new(dice.between(-1e-3, 1e-3), 0.06 + 1.05 * RADIUS + 1e-3);
+            let outline = ArcSpline::open(&pieces).unwrap();
+            let mut start = Point::new(dice.between(-3e-4, 3e-4), 0.06 + RADIUS);
+            while outline.nearest(start, 1.0).unwrap().distance < 1.03 * RADIUS {
+                start.y += 1e-4;
+            }
             for (worst, refined) in worst.iter_mut().zip([1_u32, 2]) {
                 let step = 1e-6 / f64::from(refined);
                 let mut roller = Roller::new(one_gap(&pieces), start);
@@ -336,7 +344,7 @@ fn a_roller_bouncing_in_a_gap_keeps_its_energy() {
                 }
             }
         }
-        // 25 mJ fall to the bottom.
+        // Some 10 mJ fall to the bottom.
         assert!(
             worst[0] < 1e-4 && worst[1] < 0.5 * worst[0],
             "{kind:?}: {worst:?}"

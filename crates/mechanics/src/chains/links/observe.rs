@@ -87,7 +87,9 @@ impl Linkage {
         let pin = matches!(self.joining, Joining::Clearance(_))
             .then(|| self.memory.joints.closed(joint))
             .flatten();
-        [pin, self.memory.bushes.closed(joint)]
+        let bush = self.free_rollers.is_some();
+        let bush = bush.then(|| self.memory.bushes.closed(joint)).flatten();
+        [pin, bush]
     }
 }
 
