@@ -189,7 +189,7 @@ impl Contacts {
             fy += rub * ty;
             // M = −(d − r n) × F
             moment = motion.dy * fx - motion.dx * fy + rub * radius;
-            damping = damping + rubbing.steepest;
+            damping += rubbing.steepest;
             if let Some(faces) = &mut slots.faces {
                 faces.rub.set(lane, rub);
                 faces.drag.set(lane, rubbing.drag);

@@ -127,9 +127,13 @@ impl SurfaceLaw {
 
     /// Onset and normal force of a lane of contacts with these gaps and closing speeds; none if all are open.
     ///
-    /// `share` is that of the flank's law, `weight` the part of a contact that is meant. Of gaps that are
-    /// negative the contacts are closed.
+    /// Contacts are closed where the gap is negative. `share` is that of the flank's law, and `weight` the part of every contact
+    /// that is counted here: at an eye two plates bear a half each.
     #[inline(always)]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "lanes are handed on by value, and the rest is what they are reckoned with"
+    )]
     pub(crate) fn press<S: Simd>(
         &self,
         w: Wide<S>,
@@ -194,6 +198,10 @@ impl SurfaceLaw {
 
     /// Friction of a lane at some slip speeds, `dt` after the accepted state.
     #[inline(always)]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "lanes are handed on by value, and the rest is what they are reckoned with"
+    )]
     pub(crate) fn rub<S: Simd>(
         &self,
         w: Wide<S>,

@@ -37,6 +37,7 @@ pub(super) enum View<'a> {
 }
 
 /// The surface that rollers face, in the world.
+#[derive(Clone, Copy)]
 pub(super) struct Hit<S: Simd> {
     pub(super) gap: Lane<S>,
     pub(super) nx: Lane<S>,
@@ -110,7 +111,7 @@ impl<S: Simd> Place<S> {
     }
 }
 
-impl<'a> View<'a> {
+impl View<'_> {
     /// The surfaces that circles of some radius face; how far beyond the hollow they are only if `measured`.
     #[inline(always)]
     pub(super) fn hit<S: Simd>(

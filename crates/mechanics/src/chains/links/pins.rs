@@ -239,7 +239,7 @@ impl Contacts<'_> {
                 push = [push[0] + rub * tx, push[1] + rub * ty];
                 let [lever_before, lever_after] = grip.levers;
                 moment_before = moment_before - rub * (bx * ty - by * tx + lever_before);
-                moment_after = moment_after + rub * (ax * ty - ay * tx + lever_after);
+                moment_after += rub * (ax * ty - ay * tx + lever_after);
                 rub.store(&mut pins.rub, start);
                 grip.drag.store(&mut pins.drag, start);
                 grip.secant.store(&mut pins.secant, start);
