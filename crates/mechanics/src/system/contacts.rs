@@ -39,10 +39,6 @@ pub(crate) struct OnRail {
 
 /// What of the chain touches a guide.
 #[derive(Clone, Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "a drive has a handful of rails, and a box would cost the kernels a look"
-)]
 pub(crate) enum RailContact {
     Circles(Contacts),
     Plates(PlateContact),
