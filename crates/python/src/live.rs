@@ -1,7 +1,5 @@
 //! Drives that Python moves itself: read at any time, torques and forces set, states kept.
 
-use std::cell::RefCell;
-
 use chaindrive::{Axis, Channel, Control, Onlooker, Request, Settings, SimulationError};
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -59,22 +57,22 @@ impl Simulation {
     /// Moves on to a time; Ctrl-C leaves the simulation where it is, and it can go on from there.
     fn advance_to(&mut self, py: Python<'_>, time: f64) -> PyResult<()> {
         let simulation = &mut self.0;
-        let raised = RefCell::new(None);
-        py.detach(|| {
+        let (done, raised) = py.detach(|| {
             let interpreter = Interpreter::new(None);
-            loop {
+            let done = loop {
                 match simulation.advance_towards(time, PATIENCE) {
-                    Ok(true) => return Ok(()),
-                    Ok(false) if interpreter.stop() => {
-                        raised.replace(interpreter.raised.into_inner());
-                        return Err(SimulationError::Interrupted);
-                    }
+                    Ok(true) => break Ok(()),
+                    Ok(false) if interpreter.stop() => break Err(SimulationError::Interrupted),
                     Ok(false) => {}
-                    Err(error) => return Err(error),
+                    Err(error) => break Err(error),
                 }
-            }
-        })
-        .map_err(|error| raised.into_inner().unwrap_or_else(|| error.exception()))
+            };
+            (done, interpreter.raised.into_inner())
+        });
+        match (done, raised) {
+            (Err(_), Some(raised)) => Err(raised),
+            (done, _) => done.or_raise(),
+        }
     }
 
     /// Time of the last reading.
