@@ -68,7 +68,14 @@ impl CsvWriter {
         self.row.clear();
         self.row.push(simulation.observation());
         let columns = self.row.columns.iter().flat_map(|column| &column.values);
-        let row: Vec<String> = self.row.time.iter().chain(columns).map(digits).collect();
+        let row: Vec<String> = self
+            .row
+            .time
+            .iter()
+            .chain(columns)
+            .copied()
+            .map(digits)
+            .collect();
         self.samples.push(&row)?;
         self.push_contacts(simulation.events())
     }
@@ -89,6 +96,7 @@ impl CsvWriter {
                     .numbers(column)
                     .into_iter()
                     .flatten()
+                    .copied()
                     .map(digits)
                     .collect(),
             });
@@ -112,7 +120,7 @@ impl CsvWriter {
 }
 
 /// The shortest digits that read back to the same number.
-fn digits(value: &f64) -> String {
+fn digits(value: f64) -> String {
     format!("{value:?}")
 }
 

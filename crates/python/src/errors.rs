@@ -50,6 +50,12 @@ impl IntoException for SceneError {
     }
 }
 
+impl IntoException for std::convert::Infallible {
+    fn exception(self) -> PyErr {
+        match self {}
+    }
+}
+
 impl IntoException for ParameterError {
     fn exception(self) -> PyErr {
         parameter(self.to_string(), self.parameter, self.allowed)

@@ -184,6 +184,7 @@ fn scatter_is_the_same_every_time_and_follows_the_seed() {
             .unwrap()
             .drive()
             .unwrap()
+            .chains[0]
             .chain
             .lengths
             .clone()

@@ -7,8 +7,8 @@ use chaindrive_contact::{Dissipation, Elastic, Friction, Law};
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Stepper};
 use chaindrive_mechanics::{
-    Chain, ChainModel, Clearance, End, Ends, Guide, Joint, Layout, LinkBody, Motion, Parts, Record,
-    RigidLinks, RollerModel, Surface, System,
+    Chain, ChainModel, Clearance, End, Ends, Guide, Joint, Layout, LinkBody, Motion, Parts,
+    PlacedChain, Record, RigidLinks, RollerModel, Surface, System,
 };
 
 /// A chain of rigid links laid by points. Its fields are open: a case sets what it is about.
@@ -68,14 +68,19 @@ impl Strand {
             model: ChainModel::Rigid(self.links.clone()),
         };
         let parts = Parts {
-            chain,
+            chains: vec![PlacedChain {
+                chain,
+                layout: Layout::Points {
+                    positions: self.places.iter().map(|p| Point::new(p[0], p[1])).collect(),
+                    velocities: self.velocities.iter().map(|&v| v.into()).collect(),
+                },
+                sprockets: Vec::new(),
+                guides: (0..self.guides.len()).collect(),
+            }],
             sprockets: Vec::new(),
             guides: self.guides.clone(),
             tensioners: Vec::new(),
-            layout: Layout::Points {
-                positions: self.places.iter().map(|p| Point::new(p[0], p[1])).collect(),
-                velocities: self.velocities.iter().map(|&v| v.into()).collect(),
-            },
+            torsions: Vec::new(),
             settle: self.settle,
             gravity: self.gravity.into(),
         };
