@@ -104,9 +104,9 @@ defaults! {
     /// Stiffness of guides.
     GUIDES_STIFFNESS = always(1.0), "link stiffnesses", Assumed("a lining as soft as a link"), ["Contact.law"];
     /// Young's modulus.
-    MODULUS = always(207e9), "Pa", Assumed(STEEL), ["Cylinders.modulus", "Elastic.modulus"];
+    MODULUS = always(207e9), "Pa", Assumed(STEEL), ["Elastic.modulus"];
     /// Poisson's ratio.
-    POISSON = always(0.3), "1", Assumed(STEEL), ["Cylinders.poisson", "Elastic.poisson"];
+    POISSON = always(0.3), "1", Assumed(STEEL), ["Elastic.poisson"];
     /// Passage from the law of the seat to that of the flank, on either side.
     FLANK_WIDTH = always(0.05), "roller diameters", Assumed("about the half-width of the patch of contact"), ["Flank.width"];
     /// Speed of slip at which friction is fully there.

@@ -38,7 +38,7 @@ impl fmt::Display for Difference {
 /// let scene = Scene::preset("marine_engine")?;
 /// let other = scene.replace("sprockets.crank.teeth", "25")?;
 /// let differences = diff(&scene, &other)?;
-/// assert_eq!(differences[0].to_string(), "sprockets.crank.teeth: 24 | 25");
+/// assert_eq!(differences[0].to_string(), "sprockets.crank.teeth: 48 | 25");
 /// # Ok::<(), chaindrive::scene::SceneError>(())
 /// ```
 ///

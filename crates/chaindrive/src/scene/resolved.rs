@@ -39,7 +39,7 @@ impl Scene {
     ///
     /// let scene = Scene::preset("industrial_16b")?;
     /// let full = scene.resolved()?;
-    /// assert!(full.text().contains("onset_floor = 0.05 # [m/s] assumed"));
+    /// assert!(full.text().contains("poisson = 0.3 # assumed: steel on steel"));
     /// assert_eq!(format!("{:?}", full.drive()?), format!("{:?}", scene.drive()?));
     /// # Ok::<(), chaindrive::scene::SceneError>(())
     /// ```

@@ -159,7 +159,7 @@ fn a_drop_delivers_the_restitution_of_its_law() {
         let found = events[1].onset_speed / events[0].onset_speed;
         let member = members
             .iter()
-            .find(|member| serde_json::to_value(member).unwrap()["kind"] == name.replace('-', "_"));
+            .find(|member| serde_json::to_value(member).unwrap()["kind"] == *name);
         let factor = member
             .and_then(Dissipation::factor)
             .expect("a hysteretic member");

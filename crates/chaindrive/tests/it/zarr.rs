@@ -210,7 +210,7 @@ fn units_of_tensioners_are_those_of_their_carriers() {
         match line.split_once(", plunger = ") {
             Some((carrier, _)) => format!("{carrier} }}\n"),
             None if line.starts_with("push = ") => {
-                "push = { kind = 'spring', preload = '-9 N m', stiffness = '100 N m/rad', damping = '1 N m s' }\n".into()
+                "push = { kind = 'torsion-spring', preload = '-9 N m', stiffness = '100 N m/rad', damping = '1 N m s' }\n".into()
             }
             None => format!("{line}\n"),
         }

@@ -164,7 +164,8 @@ fn forces_of_the_table() {
 }
 
 fn factor(model: &str, restitution: f64) -> f64 {
-    let kind = format!(r#"{{"kind": "{model}", "restitution": {restitution}}}"#);
+    let kind = model.replace('_', "-");
+    let kind = format!(r#"{{"kind": "{kind}", "restitution": {restitution}}}"#);
     let dissipation: Dissipation = serde_json::from_str(&kind).expect("a known name");
     dissipation.check().expect("in range");
     assert_eq!(dissipation.restitution(), Some(restitution));
