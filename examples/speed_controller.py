@@ -1,7 +1,7 @@
 """A controller at 1 kHz holds the speed of a large chain drive by the torque on its crank.
 
-The drive starts at rest with a crank that is free to turn. Every millisecond the controller reads the
-speed, and sets the torque that a PI law asks for; in the middle of the run the load doubles.
+The drive starts at rest with a crank that is free to turn. Every millisecond the controller reads
+the speed, and sets the torque that a PI law asks for; in the middle of the run the load doubles.
 
 Run it as ``python examples/speed_controller.py [--until SECONDS] [--results FOLDER]``.
 """

@@ -11,6 +11,8 @@ __all__ = [
     "Drive",
     "Friction",
     "Law",
+    "Simulation",
+    "Snapshot",
     "Sweep",
     "__version__",
     "_cli",
@@ -18,6 +20,7 @@ __all__ = [
     "centre_distance_for",
     "channels",
     "diff",
+    "is_being_written",
     "links_for",
     "methods",
     "polygon_action",
@@ -114,12 +117,14 @@ class Sweep:
     def part(self, first: int, end: int) -> list[_Outcome]: ...
     def stack(self, outcomes: Sequence[_Outcome | None]) -> dict[str, Any]: ...
 
+@final
 class Snapshot: ...
 
+@final
 class Simulation:
-    def __init__(
-        self, drive: Drive, settings: Sequence[tuple[str, str | float | Sequence[str]]]
-    ) -> None: ...
+    def __new__(
+        cls, drive: Drive, settings: Sequence[tuple[str, str | float | Sequence[str]]]
+    ) -> Simulation: ...
     def advance_to(self, time: float) -> None: ...
     @property
     def time(self) -> float: ...

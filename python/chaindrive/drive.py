@@ -116,8 +116,8 @@ class Drive:
         --------
         >>> import chaindrive as cd
         >>> full = cd.scenes.spinning_ring().resolved()
-        >>> [line for line in full.text.splitlines() if "damping_ratio" in line][0][:31]
-        'damping_ratio = 0.03 # assumed:'
+        >>> [line for line in full.text.splitlines() if "plate_height" in line][0][:50]
+        'plate_height = 0.010667999999999999 # [m] 1.4 roll'
         """
         return Drive._of(self._inner.resolved())
 

@@ -192,7 +192,7 @@ def simulate(
     stop: Any = result["stop"]
     if isinstance(stop, KeyboardInterrupt):
         # The very exception, for a class of its own would change the exit code of a script.
-        stop.result = dataset
+        vars(stop)["result"] = dataset
         reached = f"the run got to {dataset.attrs['time_reached']:.6g} s"
         stop.add_note(f"{reached}: `except KeyboardInterrupt as stop` finds it in `stop.result`")
     if stop is not None:

@@ -11,7 +11,9 @@ import chaindrive as cd
 def test_one_tree():
     for name in cd.errors.__all__:
         kind = getattr(cd.errors, name)
-        if name != "Problem":
+        if issubclass(kind, Warning):
+            assert issubclass(kind, UserWarning)
+        elif name != "Problem":
             assert issubclass(kind, cd.ChaindriveError)
     assert issubclass(cd.SceneError, ValueError)
     assert issubclass(cd.ParameterError, ValueError)

@@ -81,20 +81,15 @@ impl Recording {
         let samples = (run.until / run.every).floor() + 1.0;
         // Time and values, eight bytes each.
         let bytes = 8.0 * samples * (1 + values) as f64;
-        // All of it at once: the system says whether it can, and has it back.
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "what does not fit becomes the largest number, which is refused"
-        )]
-        let room = Vec::<u8>::new().try_reserve_exact(bytes as usize);
-        match room {
-            Ok(()) => Ok(recording),
-            Err(_) => Err(SimulationError::TooLarge {
+        // An allocator would promise more than there is, and the system would then kill the program.
+        if bytes <= free_memory() {
+            Ok(recording)
+        } else {
+            Err(SimulationError::TooLarge {
                 gigabytes: bytes * 1e-9,
                 samples,
                 values,
-            }),
+            })
         }
     }
 
@@ -141,5 +136,18 @@ pub fn labels(axis: Axis, system: &System) -> Option<Vec<String>> {
         Axis::Tensioner => Some(system.tensioner_names()),
         Axis::Store => Some(Store::ALL.iter().map(|s| s.name().to_owned()).collect()),
         Axis::Flow => Some(Flow::ALL.iter().map(|f| f.name().to_owned()).collect()),
+    }
+}
+
+/// Memory that this program can still have \[bytes\], limits of its control group included; without bounds where the
+/// system does not say.
+fn free_memory() -> f64 {
+    let mut system = sysinfo::System::new();
+    system.refresh_memory();
+    let group = system.cgroup_limits().map(|limits| limits.free_memory);
+    let free = system.available_memory();
+    match group.map_or(free, |group| group.min(free)) {
+        0 => f64::INFINITY,
+        bytes => bytes as f64,
     }
 }
