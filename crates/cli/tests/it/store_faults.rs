@@ -201,6 +201,10 @@ fn every_signal_that_asks_for_an_end_is_heard() {
         ("ring.zarr", "-HUP"),
         ("ring.csv", "-HUP"),
     ] {
+        if number == "-HUP" && hang_up_is_ignored() {
+            // As under `nohup`: programs that it starts are not to hear it either.
+            continue;
+        }
         let folder = tempfile::tempdir().unwrap();
         let at = folder.path();
         let path = at.join(name);
@@ -215,6 +219,14 @@ fn every_signal_that_asks_for_an_end_is_heard() {
             assert_eq!(last_line(&path), "# incomplete: interrupted");
         }
     }
+}
+
+/// Whether this process, and so what it starts, ignores the end of its terminal; SIGHUP is signal 1.
+fn hang_up_is_ignored() -> bool {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
+        .is_some_and(|mask| mask & 1 == 1)
 }
 
 /// As `nohup` does it.
@@ -266,8 +278,12 @@ fn removed_under_way_it_is_not_made_anew() {
         }
         let (code, err) = told(child.wait_with_output().unwrap());
         assert_eq!(code, Some(3), "{err}");
+        // A folder goes piece by piece: what the writer misses first may be a part of it.
+        let missed =
+            err.starts_with(&format!("{name}: `")) && path.extension() == Some("zarr".as_ref());
         assert!(
-            err.starts_with(&format!("{name}: the result was removed or moved")),
+            (missed && err.contains("was removed or moved"))
+                || err.starts_with(&format!("{name}: the result was removed or moved")),
             "{err}"
         );
         assert!(names(at).is_empty(), "{:?}", names(at));
