@@ -69,6 +69,8 @@ def test_a_result_is_running_or_was_killed(growing):
 def test_a_signal_takes_effect_when_the_result_says_so(growing, name):
     store, writer = growing
     number = signal.Signals[name]
+    if signal.getsignal(number) is signal.SIG_IGN:
+        pytest.skip(f"{name} is ignored here, as under nohup, and by what is started here")
     writer.send_signal(number)
     writer.wait(60)
     assert writer.returncode == -number
