@@ -51,5 +51,5 @@ pub use modes::{Mode, Modes};
 pub use motion::{Course, Harmonic, Motion, Table};
 pub use observe::Observation;
 pub use system::{Input, Record, System};
-pub use tensioner::{Carrier, Hydraulic, Plunger, Push, PushForce, Spring, Tensioner};
+pub use tensioner::{Carrier, Hydraulic, Push, PushForce, Spring, Tensioner, carriers};
 pub use torque::{Argument, Torque};

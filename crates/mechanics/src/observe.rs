@@ -3,9 +3,10 @@
 use chaindrive_geometry::Point;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 
+use crate::System;
 use crate::energy::{Energy, Flow, Store};
 use crate::system::{Member, OnWheel, RailContact, Record, WheelSupport};
-use crate::{Carrier, System};
+use crate::tensioner::{Extension, Reduced};
 
 /// Everything that can be read off one state. SI units; arrays in the order of the drive.
 #[derive(Clone, Debug, Default)]
@@ -291,8 +292,8 @@ impl System {
         out.tensioner_force.clear();
         for slide in &self.bodies.slides {
             let pose = slide.pose(at.q, at.v);
-            let (extension, lever) = slide.carrier.extension(pose.coordinate);
-            let push = slide.push.force(extension, lever * pose.rate);
+            let Extension { length, lever } = slide.carrier.extension(pose.coordinate);
+            let push = slide.push.force(length, lever * pose.rate);
             out.tensioner_position.push(pose.coordinate);
             out.tensioner_force.push(push.elastic + push.damping);
         }
@@ -358,13 +359,13 @@ impl System {
         }
         for slide in &bodies.slides {
             let pose = slide.pose(at.q, at.v);
-            add(Store::Carriers, 0.5 * slide.inertia * pose.rate * pose.rate);
-            let (extension, _) = slide.carrier.extension(pose.coordinate);
-            add(Store::Tensioners, slide.push.energy(extension));
-            for (mass, place) in &slide.weights {
-                let (place, _) = slide.carry(pose, *place);
-                let fixed = slide.dof.is_none() && matches!(slide.carrier, Carrier::Arm { .. });
-                if !fixed {
+            let Reduced { inertia, .. } = slide.reduced(pose);
+            add(Store::Carriers, 0.5 * inertia * pose.rate * pose.rate);
+            let Extension { length, .. } = slide.carrier.extension(pose.coordinate);
+            add(Store::Tensioners, slide.push.energy(length));
+            if slide.dof.is_some() {
+                for (mass, place) in slide.weights() {
+                    let (place, _) = slide.carry(pose, place);
                     add(Store::Gravity, -mass * bodies.gravity.dot(&place.coords));
                 }
             }

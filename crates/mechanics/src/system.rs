@@ -10,16 +10,18 @@ mod contacts;
 mod equations;
 mod inputs;
 mod member;
+mod slide;
 mod solve;
 
 use chaindrive_geometry::Point;
 use chaindrive_integrate::{Continuity, Moment, SecondOrderSystem, Verdict, Weights};
 
-pub(crate) use bodies::{Bodies, RailSupport, Slide, Wheel, WheelRotation, WheelSupport};
+pub(crate) use bodies::{Bodies, RailSupport, Wheel, WheelRotation, WheelSupport};
 pub(crate) use build::{Laid, LaidChain};
 pub(crate) use contacts::{BodyContacts, OnRail, OnWheel, RailContact};
 pub use inputs::Input;
 pub(crate) use member::Member;
+pub(crate) use slide::Slide;
 
 use crate::End;
 use crate::chains::{self, Chain, LaidAs};

@@ -1,10 +1,11 @@
 //! Tensioners: a carrier with one degree of freedom and the force that drives it outward.
 
+pub mod carriers;
 mod hydraulic;
 mod spring;
 
-use chaindrive_geometry::{Point, Vector};
-
+pub use carriers::Carrier;
+pub(crate) use carriers::{Extension, Reduced, Weight};
 pub use hydraulic::Hydraulic;
 pub use spring::Spring;
 
@@ -22,33 +23,6 @@ pub struct Tensioner {
     pub inertia: f64,
     /// What pushes it.
     pub push: Push,
-}
-
-/// How a tensioner moves. At assembly s = 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Carrier {
-    /// A straight slide; s is the travel \[m\].
-    Slider {
-        /// Direction of travel for positive s; unit vector.
-        direction: Vector,
-    },
-    /// An arm about a pivot; s is the angle \[rad\], counter-clockwise.
-    Arm {
-        /// Pivot \[m\].
-        pivot: Point,
-        /// Where and along which unit vector a plunger pushes; without one the push is a
-        /// torque about the pivot.
-        plunger: Option<Plunger>,
-    },
-}
-
-/// A plunger that pushes on an arm.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plunger {
-    /// Point of the arm on which it pushes, at assembly \[m\].
-    pub at: Point,
-    /// Direction of the push; unit vector.
-    pub direction: Vector,
 }
 
 /// The law of the push F(x, ẋ), x being the extension since assembly.
@@ -109,47 +83,6 @@ impl Push {
     }
 }
 
-impl Carrier {
-    /// SI unit of its coordinate.
-    pub fn coordinate_unit(&self) -> &'static str {
-        match self {
-            Self::Slider { .. } => "m",
-            Self::Arm { .. } => "rad",
-        }
-    }
-
-    /// SI unit of the push on it: without a plunger an arm is pushed by a torque.
-    pub fn push_unit(&self) -> &'static str {
-        match self {
-            Self::Slider { .. }
-            | Self::Arm {
-                plunger: Some(_), ..
-            } => "N",
-            Self::Arm { plunger: None, .. } => "N m",
-        }
-    }
-
-    /// Extension of the push and its lever ∂x/∂s at coordinate `s`.
-    pub fn extension(&self, s: f64) -> (f64, f64) {
-        match self {
-            Self::Slider { .. } | Self::Arm { plunger: None, .. } => (s, 1.0),
-            Self::Arm {
-                pivot,
-                plunger: Some(Plunger { at, direction }),
-            } => {
-                let arm = at - pivot;
-                let (sine, cosine) = s.sin_cos();
-                let turned =
-                    Vector::new(cosine * arm.x - sine * arm.y, sine * arm.x + cosine * arm.y);
-                // x = d·(R(s) r − r),   ∂x/∂s = d·(ẑ × R(s) r)
-                let x = direction.dot(&(turned - arm));
-                let lever = direction.dot(&Vector::new(-turned.y, turned.x));
-                (x, lever)
-            }
-        }
-    }
-}
-
 impl Tensioner {
     /// Names every parameter out of range.
     pub fn problems(&self) -> Vec<DriveError> {
@@ -166,22 +99,8 @@ impl Tensioner {
                 .err(),
             );
         }
-        let unit = |v: &Vector| (v.norm() - 1.0).abs() < 1e-9;
-        let direction = match &self.carrier {
-            Carrier::Slider { direction } => Some(direction),
-            Carrier::Arm { plunger, .. } => plunger.as_ref().map(|p| &p.direction),
-        };
-        if let Some(direction) = direction {
-            problems.extend(
-                DriveError::require(
-                    unit(direction),
-                    &place("direction"),
-                    direction.norm(),
-                    "a unit vector",
-                )
-                .err(),
-            );
-        }
+        let carrier = format!("tensioners.{}", self.name);
+        problems.extend(self.carrier.check(&carrier).err());
         match &self.push {
             Push::Locked => {}
             Push::Spring(spring) => problems.extend(spring.check(&place("push")).err()),

@@ -146,7 +146,7 @@ const CASES: &[Case] = &[
     ("kind = \"slider\", direction = [1, 0], mass = \"1 kg\"", "kind = \"arm\", pivot = [0, 0], inertia = \"1 kg m^2\"", "tensioners[0].push", 32, "give the arm a `plunger`"),
     ("kind = \"spring\", preload = \"2 kN\", stiffness = \"10 kN/m\"", "kind = \"hydraulic\", preload = \"2 kN\"", "tensioners[0].push.leak", 32, "or `oil`, from which they follow"),
     ("pretension = \"1 kN\"", "tighten = \"travel\"", "route.tighten", 35, "nothing is there to travel"),
-    ("pretension = \"1 kN\"", "adjust = { kind = \"arm\", name = \"slide\", within = \"1 deg\" }", "route.adjust.name", 35, "`slide` is a slider; take `kind = \"slider\"`"),
+    ("pretension = \"1 kN\"", "adjust = { kind = \"arm\", name = \"slide\", within = \"1 deg\" }", "route.adjust.name", 35, "`slide` travels; take `kind = \"slider\"`"),
     ("end = [\"0.5 m\", \"-0.12 m\"]", "end = [\"0.2 m\", \"-0.12 m\"]", "guides[0].face", 28, "coincide"),
     ("end = [\"0.5 m\", \"-0.12 m\"]", "end = [\"0.5 m\", \"-0.12 m\"], end_angle = \"200 deg\"", "guides[0].face", 28, "must be in (0, π]"),
     ("teeth = 19\ncentre = [\"0 mm\"", "teeth = 19\ntooth = { kind = \"circular\", seat_radius = \"5 mm\" }\ncentre = [\"0 mm\"", "sprockets[0].tooth", 16, "at least the roller radius"),

@@ -1,8 +1,7 @@
 //! Where the rollers lie before anything pulls at them.
 
 use chaindrive_geometry::{
-    ArcSpline, Closing, Piece, Point, Side, Vector, Wheel, WheelKind, close_by_motion,
-    close_by_strain,
+    Closing, Piece, Side, Vector, Wheel, WheelKind, close_by_motion, close_by_strain,
 };
 
 use super::{Fitting, slack};
@@ -10,7 +9,7 @@ use crate::drive::{
     Adjust, Fit, Guide, GuideSupport, Layout, Parts, Stop, Support, Tighten, Touches,
 };
 use crate::system::{Laid, LaidChain};
-use crate::{AssemblyError, Carrier, Chain, Drive};
+use crate::{AssemblyError, Chain, Drive};
 
 /// Strain of a chain laid straight below which it is taken as slack rather than compressed.
 const SLACK: f64 = -1e-6;
@@ -219,51 +218,18 @@ fn shifted(parts: &Parts, adjust: &Adjust, travel: f64) -> Result<Parts, Assembl
         }
         Adjust::Tensioner { tensioner, .. } => {
             let carrier = parts.tensioners[*tensioner].carrier;
-            let place = |p: Point| carried(&carrier, p, travel);
             for sprocket in &mut parts.sprockets {
                 if sprocket.support == Support::Tensioner(*tensioner) {
-                    sprocket.centre = place(sprocket.centre);
+                    sprocket.centre = carrier.carry(travel, sprocket.centre).0;
                 }
             }
             for guide in &mut parts.guides {
                 if guide.support == GuideSupport::Tensioner(*tensioner) {
-                    guide.face = moved_face(&guide.face, &carrier, travel)?;
+                    guide.face = carrier.carry_face(travel, &guide.face)?;
                 }
             }
-            if let Carrier::Arm {
-                plunger: Some(plunger),
-                ..
-            } = &mut parts.tensioners[*tensioner].carrier
-            {
-                plunger.at = place(plunger.at);
-            }
+            parts.tensioners[*tensioner].carrier = carrier.assembled_at(travel);
         }
     }
     Ok(parts)
-}
-
-fn carried(carrier: &Carrier, p: Point, travel: f64) -> Point {
-    match carrier {
-        Carrier::Slider { direction } => p + direction * travel,
-        Carrier::Arm { pivot, .. } => {
-            let arm = p - pivot;
-            let (s, c) = travel.sin_cos();
-            pivot + Vector::new(c * arm.x - s * arm.y, s * arm.x + c * arm.y)
-        }
-    }
-}
-
-fn moved_face(
-    face: &ArcSpline,
-    carrier: &Carrier,
-    travel: f64,
-) -> Result<ArcSpline, AssemblyError> {
-    let pieces = face.pieces().iter().map(|piece| match carrier {
-        Carrier::Slider { direction } => piece.translated(direction * travel),
-        Carrier::Arm { pivot, .. } => piece
-            .translated(-pivot.coords)
-            .rotated(travel)
-            .translated(pivot.coords),
-    });
-    Ok(ArcSpline::open(&pieces.collect::<Vec<_>>())?)
 }

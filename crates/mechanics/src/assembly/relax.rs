@@ -19,7 +19,8 @@ use nalgebra_sparse::factorization::CscCholesky;
 use nalgebra_sparse::{CooMatrix, CscMatrix};
 
 use crate::chains::{Balance, Load, Sum};
-use crate::system::{Member, Slide, WheelRotation, WheelSupport};
+use crate::system::{Member, WheelRotation, WheelSupport};
+use crate::tensioner::Extension;
 use crate::{AssemblyError, System};
 
 pub(crate) use curvature::{Curvature, curvature};
@@ -193,23 +194,13 @@ impl Unknowns {
         }
         for slide in &system.bodies.slides {
             if let Some(dof) = slide.dof {
-                add(dof, arm_length(slide).powi(2), &mut scale);
+                add(dof, slide.carrier.reach().powi(2), &mut scale);
             }
         }
         Self {
             row,
             count: scale.len(),
             scale,
-        }
-    }
-}
-
-/// Length that turns the coordinate of a carrier into metres.
-fn arm_length(slide: &Slide) -> f64 {
-    match &slide.carrier {
-        crate::Carrier::Slider { .. } => 1.0,
-        crate::Carrier::Arm { pivot, plunger } => {
-            plunger.map_or(0.1, |plunger| (plunger.at - pivot).norm().max(1e-3))
         }
     }
 }
@@ -435,12 +426,12 @@ impl Newton<'_> {
         for slide in &bodies.slides {
             let Some(dof) = slide.dof else { continue };
             let s = q[dof];
-            let (extension, lever) = slide.carrier.extension(s);
-            let force = slide.push.force(extension, 0.0).elastic;
+            let Extension { length, lever } = slide.carrier.extension(s);
+            let force = slide.push.force(length, 0.0).elastic;
             let h = 1e-6;
             // The lever of a plunger changes slowly with the angle of its arm.
-            let bend =
-                (slide.carrier.extension(s + h).1 - slide.carrier.extension(s - h).1) / (2.0 * h);
+            let [behind, ahead] = [s - h, s + h].map(|s| slide.carrier.extension(s).lever);
+            let bend = (ahead - behind) / (2.0 * h);
             sum.force(dof, -force * lever);
             sum.stiffen(
                 dof,
@@ -448,13 +439,16 @@ impl Newton<'_> {
                 slide.push.stiffness() * lever * lever - force * bend,
             );
             let pose = slide.pose(q, &still);
-            for (mass, at_rest) in &slide.weights {
-                let weight = bodies.gravity * (*mass * load.gravity);
-                let (place, _) = slide.carry(pose, *at_rest);
-                sum.force(dof, -slide.project([weight.x, weight.y], place));
-                if let crate::Carrier::Arm { pivot, .. } = &slide.carrier {
-                    // ∂²(−m g·x)/∂φ² = m g·r
-                    sum.stiffen(dof, dof, weight.dot(&(place - pivot)));
+            for (mass, at_rest) in slide.weights() {
+                let weight = bodies.gravity * (mass * load.gravity);
+                let (place, _) = slide.carry(pose, at_rest);
+                let Some(way) = slide.way(pose, place) else {
+                    continue;
+                };
+                sum.force(dof, -way.first.dot(&weight));
+                if way.bends() {
+                    // ∂²(−m g·x)/∂s² = −m g·∂²x/∂s²
+                    sum.stiffen(dof, dof, -weight.dot(&way.second));
                 }
             }
         }

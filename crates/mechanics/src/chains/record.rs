@@ -1,5 +1,6 @@
 //! What one evaluation of a chain leaves behind.
 
+use super::Way;
 use super::links::{Impulses, Play};
 use crate::contact::{ContactMemory, Frame, Touch, Wrench};
 use crate::system::BodyContacts;
@@ -18,6 +19,8 @@ pub(crate) struct Loads {
     pub(crate) rail_wrenches: Vec<Wrench>,
     /// Frames of the wheels, then of the rails.
     pub(crate) frames: Vec<Frame>,
+    /// How their origins go on with the tensioners that carry them, for chains that solve equations.
+    pub(crate) ways: Vec<Option<Way>>,
 }
 
 /// Contact states, and the work space of the member.
@@ -42,6 +45,7 @@ impl Record {
                 wheel_wrenches: vec![Wrench::default(); wheels],
                 rail_wrenches: vec![Wrench::default(); rails],
                 frames: vec![Frame::fixed(); wheels + rails],
+                ways: vec![None; wheels + rails],
             },
             ..Self::default()
         }

@@ -3,10 +3,11 @@
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 
+use super::Slide;
 use super::inputs::Inputs;
 use crate::contact::Frame;
 use crate::motion::Course;
-use crate::{Carrier, Motion, Push, Torque, Torsion};
+use crate::{Motion, Torque, Torsion};
 
 /// What chains touch.
 #[derive(Clone, Debug)]
@@ -100,20 +101,6 @@ pub(crate) enum RailSupport {
     Fixed,
     Prescribed { x: Motion, y: Motion },
     Carried(usize),
-}
-
-/// A tensioner in the system.
-#[derive(Clone, Debug)]
-pub(crate) struct Slide {
-    pub(crate) name: String,
-    pub(crate) carrier: Carrier,
-    pub(crate) push: Push,
-    /// Inertia with all that it carries \[kg or kg m²\].
-    pub(crate) inertia: f64,
-    /// Degree of freedom; none while locked.
-    pub(crate) dof: Option<usize>,
-    /// Masses that it carries and where they are at assembly, itself included for a slider.
-    pub(crate) weights: Vec<(f64, Point)>,
 }
 
 /// An angle whose cosine and sine are known.
@@ -215,7 +202,7 @@ impl Bodies {
             damping = damping.max(torsion.damping * light);
         }
         for slide in &self.slides {
-            let (_, lever) = slide.carrier.extension(0.0);
+            let lever = slide.carrier.extension(0.0).lever;
             let light = lever * lever / slide.inertia;
             squared = squared.max(slide.push.stiffness() * light);
             damping = damping.max(slide.push.damping() * light);
@@ -292,7 +279,7 @@ impl Bodies {
         }
         for slide in &self.slides {
             let Some(dof) = slide.dof else { continue };
-            let (_, lever) = slide.carrier.extension(0.0);
+            let lever = slide.carrier.extension(0.0).lever;
             let squared = lever * lever;
             visit(
                 dof,
@@ -344,48 +331,6 @@ impl Bodies {
     }
 }
 
-/// Where a carrier is.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Pose {
-    pub(crate) coordinate: f64,
-    pub(crate) rate: f64,
-}
-
-impl Slide {
-    pub(crate) fn pose(&self, q: &[f64], v: &[f64]) -> Pose {
-        self.dof.map_or_else(Pose::default, |dof| Pose {
-            coordinate: q[dof],
-            rate: v[dof],
-        })
-    }
-
-    /// Place and velocity of a point that is at `at` when s = 0.
-    pub(crate) fn carry(&self, pose: Pose, at: Point) -> (Point, Vector) {
-        match &self.carrier {
-            Carrier::Slider { direction } => {
-                (at + direction * pose.coordinate, direction * pose.rate)
-            }
-            Carrier::Arm { pivot, .. } => {
-                let (s, c) = pose.coordinate.sin_cos();
-                let arm = at - pivot;
-                let turned = Vector::new(c * arm.x - s * arm.y, s * arm.x + c * arm.y);
-                (pivot + turned, Vector::new(-turned.y, turned.x) * pose.rate)
-            }
-        }
-    }
-
-    /// Generalised force of a force at a carried point.
-    pub(crate) fn project(&self, force: [f64; 2], at: Point) -> f64 {
-        match &self.carrier {
-            Carrier::Slider { direction } => direction.x * force[0] + direction.y * force[1],
-            Carrier::Arm { pivot, .. } => {
-                let arm = at - pivot;
-                arm.x * force[1] - arm.y * force[0]
-            }
-        }
-    }
-}
-
 impl Wheel {
     /// Angle of the first gap axis and its rates at time `t`.
     #[inline(always)]
@@ -431,6 +376,14 @@ impl Wheel {
                 ratio,
             } => Some((*dof, *ratio)),
             WheelRotation::Prescribed(_) | WheelRotation::Geared { .. } => None,
+        }
+    }
+
+    /// The tensioner that carries it.
+    pub(crate) fn carried(&self) -> Option<usize> {
+        match self.support {
+            WheelSupport::Carried(index) => Some(index),
+            _ => None,
         }
     }
 
@@ -488,11 +441,8 @@ impl Wheel {
             WheelSupport::Springs { .. } => 1.0 / self.mass,
             WheelSupport::Carried(index) => {
                 let slide = &slides[*index];
-                let arm = match &slide.carrier {
-                    Carrier::Slider { .. } => 1.0,
-                    Carrier::Arm { pivot, .. } => (self.centre - pivot).norm_squared(),
-                };
-                slide.dof.map_or(0.0, |_| arm / slide.inertia)
+                let lever = slide.carrier.squared_lever(0.0, self.centre);
+                slide.dof.map_or(0.0, |_| lever / slide.inertia)
             }
         };
         turning + moving
@@ -517,6 +467,14 @@ impl Wheel {
 }
 
 impl Rail {
+    /// The tensioner that carries it.
+    pub(crate) fn carried(&self) -> Option<usize> {
+        match self.support {
+            RailSupport::Carried(index) => Some(index),
+            _ => None,
+        }
+    }
+
     /// The frame of the face, and its reference origin, at time `t`.
     pub(crate) fn frame(&self, t: f64, q: &[f64], v: &[f64], slides: &[Slide]) -> Frame {
         match &self.support {
@@ -532,18 +490,14 @@ impl Rail {
             RailSupport::Carried(index) => {
                 let slide = &slides[*index];
                 let pose = slide.pose(q, v);
-                match &slide.carrier {
-                    Carrier::Slider { direction } => Frame {
-                        origin: Point::origin() + direction * pose.coordinate,
-                        velocity: direction * pose.rate,
-                        ..Frame::fixed()
-                    },
-                    Carrier::Arm { pivot, .. } => Frame {
-                        origin: *pivot,
-                        turn: [pose.coordinate.cos(), pose.coordinate.sin()],
-                        velocity: Vector::zeros(),
-                        spin: pose.rate,
-                    },
+                let (origin, velocity) = slide.carry(pose, slide.carrier.origin());
+                let turning = slide.carrier.turning();
+                let angle = turning * pose.coordinate;
+                Frame {
+                    origin,
+                    turn: [angle.cos(), angle.sin()],
+                    velocity,
+                    spin: turning * pose.rate,
                 }
             }
         }

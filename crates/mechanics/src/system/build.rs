@@ -5,14 +5,15 @@ use std::collections::HashSet;
 use chaindrive_geometry::Point;
 
 use super::bodies::{
-    Anchor, Bodies, Leader, Rail, RailSupport, Slide, Wheel, WheelRotation, WheelSupport,
+    Anchor, Bodies, Leader, Rail, RailSupport, Wheel, WheelRotation, WheelSupport,
 };
-use super::{BodyContacts, Member, OnRail, OnWheel, RailContact, System};
+use super::{BodyContacts, Member, OnRail, OnWheel, RailContact, Slide, System};
 use crate::chains;
 use crate::contact::{Contacts, PlateContact, Shape, Teeth};
 use crate::drive::{Guide, GuideSupport, Parts, PlacedChain, Rotation, Sprocket, Support, Touches};
 use crate::profile::{GapFace, Profile};
-use crate::{AssemblyError, Carrier, Chain, Motion, Push};
+use crate::tensioner::Weight;
+use crate::{AssemblyError, Chain, Motion, Push};
 
 /// A drive with its chains laid: where everything is at t = 0.
 #[derive(Clone, Debug)]
@@ -165,24 +166,16 @@ fn slides(parts: &Parts, take: &mut impl FnMut(usize) -> usize) -> Vec<Slide> {
                 .sprockets
                 .iter()
                 .filter(|s| s.support == Support::Tensioner(index));
-            let mut weights: Vec<(f64, Point)> = carried.map(|s| (s.mass, s.centre)).collect();
-            let mut inertia = tensioner.inertia;
-            for (mass, place) in &weights {
-                inertia += match &tensioner.carrier {
-                    Carrier::Slider { .. } => *mass,
-                    Carrier::Arm { pivot, .. } => mass * (place - pivot).norm_squared(),
-                };
-            }
-            if matches!(tensioner.carrier, Carrier::Slider { .. }) {
-                weights.push((tensioner.inertia, Point::origin()));
-            }
+            let carried: Vec<Weight> = carried.map(|s| (s.mass, s.centre)).collect();
+            let carrier = tensioner.carrier;
             Slide {
                 name: tensioner.name.clone(),
-                carrier: tensioner.carrier,
+                carrier,
                 push: tensioner.push,
-                inertia,
+                own: tensioner.inertia,
+                inertia: carrier.reduced(0.0, tensioner.inertia, &carried).inertia,
                 dof: (tensioner.push != Push::Locked).then(|| take(1)),
-                weights,
+                carried,
             }
         })
         .collect()
@@ -270,10 +263,7 @@ fn teeth(sprocket: &Sprocket, chain: &Chain) -> Contacts {
 fn face(guide: &Guide, chain: &Chain, parts: &Parts) -> Result<RailContact, AssemblyError> {
     let profile = Profile::new(guide.face.pieces(), true, true);
     let reference = match &guide.support {
-        GuideSupport::Tensioner(index) => match &parts.tensioners[*index].carrier {
-            Carrier::Slider { .. } => Point::origin(),
-            Carrier::Arm { pivot, .. } => *pivot,
-        },
+        GuideSupport::Tensioner(index) => parts.tensioners[*index].carrier.origin(),
         GuideSupport::Fixed | GuideSupport::Prescribed { .. } => Point::origin(),
     };
     let bounds = bounds(guide);

@@ -4,7 +4,7 @@ use chaindrive_integrate::Moment;
 
 use super::Bodies;
 use super::bodies::Anchor;
-use crate::chains::{Loads, Pose};
+use crate::chains::{Loads, Pose, Way};
 use crate::contact::{Contacts, Frame, Places, PlateContact};
 use crate::drive::Surface;
 
@@ -62,6 +62,28 @@ impl BodyContacts {
         }
         for (frame, on) in rails.iter_mut().zip(&self.rails) {
             *frame = bodies.rail_frame(on.rail, at);
+        }
+    }
+
+    /// How the origins of the frames go on with the tensioners that carry them.
+    pub(crate) fn ways(
+        &self,
+        bodies: &Bodies,
+        at: Moment<'_>,
+        frames: &[Frame],
+        ways: &mut [Option<Way>],
+    ) {
+        let wheels = self
+            .teeth
+            .iter()
+            .map(|on| bodies.wheels[on.wheel].carried());
+        let rails = self.rails.iter().map(|on| bodies.rails[on.rail].carried());
+        let carriers = wheels.chain(rails);
+        for ((way, frame), carrier) in ways.iter_mut().zip(frames).zip(carriers) {
+            *way = carrier.and_then(|index| {
+                let slide = &bodies.slides[index];
+                slide.way(slide.pose(at.q, at.v), frame.origin)
+            });
         }
     }
 

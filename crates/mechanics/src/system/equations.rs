@@ -1,11 +1,12 @@
 //! The equations of motion of everything but the chains, and the powers that go with them.
 
-use chaindrive_geometry::{Point, Vector};
+use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
 
 use super::bodies::{Bodies, RailSupport, WheelRotation, WheelSupport};
 use crate::contact::Wrench;
 use crate::energy::Flow;
+use crate::tensioner::Extension;
 
 impl Bodies {
     /// Accelerations of the bodies under what all chains together do to wheels and rails, and the powers that go with them.
@@ -73,7 +74,8 @@ impl Bodies {
                 WheelSupport::Carried(index) => {
                     let slide = &self.slides[*index];
                     if let Some(dof) = slide.dof {
-                        a[dof] += slide.project(wrench.force, centre);
+                        let pose = slide.pose(at.q, at.v);
+                        a[dof] += slide.project(pose, wrench.force, centre);
                     }
                 }
             }
@@ -89,13 +91,11 @@ impl Bodies {
                 RailSupport::Carried(index) => {
                     let slide = &self.slides[*index];
                     if let Some(dof) = slide.dof {
-                        // A rail on an arm has the pivot as its origin: the moment is about it.
-                        a[dof] += match &slide.carrier {
-                            crate::Carrier::Slider { .. } => {
-                                slide.project(wrench.force, Point::origin())
-                            }
-                            crate::Carrier::Arm { .. } => wrench.moment,
-                        };
+                        // Q = F·∂x/∂s + M ∂φ/∂s, both about the origin of the face
+                        let origin = rail.frame(at.t, at.q, at.v, &self.slides).origin;
+                        let pose = slide.pose(at.q, at.v);
+                        let shifting = slide.project(pose, wrench.force, origin);
+                        a[dof] += shifting + slide.carrier.turning() * wrench.moment;
                     }
                 }
             }
@@ -103,18 +103,20 @@ impl Bodies {
         for (i, slide) in self.slides.iter().enumerate() {
             let Some(dof) = slide.dof else { continue };
             let pose = slide.pose(at.q, at.v);
-            let (extension, lever) = slide.carrier.extension(pose.coordinate);
-            let push = slide.push.force(extension, lever * pose.rate);
+            let Extension { length, lever } = slide.carrier.extension(pose.coordinate);
+            let push = slide.push.force(length, lever * pose.rate);
             rates[Flow::TensionerLoss as usize] -= push.damping * lever * pose.rate;
             let input = self.inputs.force(i);
             rates[Flow::DriveTorque as usize] += input * pose.rate;
             let mut force = a[dof] + (push.elastic + push.damping) * lever + input;
-            for (mass, at_rest) in &slide.weights {
-                let (place, _) = slide.carry(pose, *at_rest);
-                let weight = self.gravity * *mass;
-                force += slide.project([weight.x, weight.y], place);
+            for (mass, at_rest) in slide.weights() {
+                let (place, _) = slide.carry(pose, at_rest);
+                let weight = self.gravity * mass;
+                force += slide.project(pose, [weight.x, weight.y], place);
             }
-            a[dof] = force / slide.inertia;
+            // I s̈ = Σ Q − ½ I′ ṡ²
+            let reduced = slide.reduced(pose);
+            a[dof] = (force - 0.5 * reduced.slope * pose.rate * pose.rate) / reduced.inertia;
         }
     }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use chaindrive_integrate::Moment;
 
 use super::{Bodies, BodyContacts, Wheel};
-use crate::chains::{Chain, Record, Surroundings};
+use crate::chains::{Chain, Loads, Record, Surroundings};
 
 /// One chain and what it touches.
 #[derive(Clone, Debug)]
@@ -67,6 +67,10 @@ impl Member {
     ) {
         // Frames are in memory well before the kernel loads them again.
         self.contacts.frames(bodies, at, &mut record.loads.frames);
+        if self.chain.can_solve() {
+            let Loads { frames, ways, .. } = &mut record.loads;
+            self.contacts.ways(bodies, at, frames, ways);
+        }
         let around = Surroundings {
             bodies,
             contacts: &self.contacts,

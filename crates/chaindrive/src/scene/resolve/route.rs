@@ -5,7 +5,7 @@ use chaindrive_mechanics::{Adjust, Chain, Fit, Layout, Stop, Tighten};
 
 use super::{Findings, Names, start};
 use crate::scene::defaults;
-use crate::scene::schema::{self, Carrier, Route, SceneText};
+use crate::scene::schema::{self, Route, SceneText};
 use crate::scene::suggest::one_of;
 
 /// The layout of the chain: as `chain.start` says, or else along the route.
@@ -120,17 +120,16 @@ fn adjust(
     findings: &mut Findings<'_>,
 ) -> Option<Adjust> {
     let path = "route.adjust.name";
-    let carried = |index: usize| matches!(scene.tensioners[index].carrier, Carrier::Slider { .. });
-    let tensioner = |name: &str, slides: bool, findings: &mut Findings<'_>| {
+    let tensioner = |name: &str, turned: bool, findings: &mut Findings<'_>| {
         let index = names.tensioner(name, path, findings)?;
-        if carried(index) != slides {
-            let (is, other) = if slides {
-                ("an arm", "arm")
+        if scene.tensioners[index].carrier.turns() != turned {
+            let (does, other) = if turned {
+                ("travels", "slider")
             } else {
-                ("a slider", "slider")
+                ("turns", "arm")
             };
             let hint = format!("take `kind = \"{other}\"`");
-            findings.refuse_with(path, format!("`{name}` is {is}"), hint);
+            findings.refuse_with(path, format!("`{name}` {does}"), hint);
             return None;
         }
         Some(index)
@@ -155,11 +154,11 @@ fn adjust(
             })
         }
         Some(schema::Adjust::Slider { name, within }) => Some(Adjust::Tensioner {
-            tensioner: tensioner(name, true, findings)?,
+            tensioner: tensioner(name, false, findings)?,
             within: within.0,
         }),
         Some(schema::Adjust::Arm { name, within }) => Some(Adjust::Tensioner {
-            tensioner: tensioner(name, false, findings)?,
+            tensioner: tensioner(name, true, findings)?,
             within: within.0,
         }),
     }

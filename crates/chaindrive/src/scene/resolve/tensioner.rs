@@ -1,6 +1,7 @@
 //! Tensioners.
 
-use chaindrive_mechanics::{Carrier, Hydraulic, Plunger, Push, Spring, Tensioner};
+use chaindrive_mechanics::carriers::{Arm, Plunger, Slider};
+use chaindrive_mechanics::{Carrier, Hydraulic, Push, Spring, Tensioner};
 
 use super::{Findings, point};
 use crate::scene::schema::{self, GuideSupport, Oil, SceneText, Support};
@@ -32,7 +33,7 @@ fn resolve(text: &schema::Tensioner, path: &str, findings: &mut Findings<'_>) ->
     let (carrier, inertia, key) = match &text.carrier {
         schema::Carrier::Slider { direction, mass } => {
             let direction = findings.direction(&format!("{path}.carrier.direction"), *direction);
-            let carrier = direction.map(|direction| Carrier::Slider { direction });
+            let carrier = direction.map(|direction| Carrier::Slider(Slider { direction }));
             (carrier, mass.map(|mass| mass.0), "mass")
         }
         schema::Carrier::Arm {
@@ -55,7 +56,7 @@ fn resolve(text: &schema::Tensioner, path: &str, findings: &mut Findings<'_>) ->
                     }),
             };
             let pivot = point(*pivot);
-            let carrier = plunger.map(|plunger| Carrier::Arm { pivot, plunger });
+            let carrier = plunger.map(|plunger| Carrier::Arm(Arm { pivot, plunger }));
             (carrier, inertia.map(|inertia| inertia.0), "inertia")
         }
     };

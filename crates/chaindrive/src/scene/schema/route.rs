@@ -56,7 +56,7 @@ pub(crate) enum Adjust {
         #[schemars(extend("exclusiveMinimum" = 0))]
         within: Length,
     },
-    /// A tensioner that is a slider, along its travel.
+    /// A tensioner that travels, like a slider.
     Slider {
         /// Its name.
         name: String,
@@ -64,7 +64,7 @@ pub(crate) enum Adjust {
         #[schemars(extend("exclusiveMinimum" = 0))]
         within: Length,
     },
-    /// A tensioner that is an arm, about its pivot.
+    /// A tensioner that turns, like an arm.
     Arm {
         /// Its name.
         name: String,

@@ -48,6 +48,16 @@ pub(crate) enum Carrier {
     },
 }
 
+impl Carrier {
+    /// Whether its coordinate is an angle.
+    pub(crate) fn turns(&self) -> bool {
+        match self {
+            Self::Slider { .. } => false,
+            Self::Arm { .. } => true,
+        }
+    }
+}
+
 /// A plunger on an arm.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

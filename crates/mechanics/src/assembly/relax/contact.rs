@@ -1,15 +1,15 @@
 //! Contact terms of the static balance, from the scalar form of the profiles.
 
 use chaindrive_contact::elastic::ElasticLaw;
-use chaindrive_geometry::{Point, Vector};
+use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
 
 use super::{Sum, at_rest};
+use crate::System;
 use crate::chains::{Moving, Way};
 use crate::contact::{Contacts, Frame, PlateContact};
 use crate::profile::Probe;
-use crate::system::{Bodies, Member, RailContact, RailSupport, Slide, Wheel, WheelSupport};
-use crate::{Carrier, System};
+use crate::system::{Bodies, Member, RailContact, RailSupport, Wheel, WheelSupport};
 
 /// State entries that place a body: its angle, and what moves its centre.
 #[derive(Clone, Default)]
@@ -33,7 +33,7 @@ pub(super) fn add_contacts(system: &System, q: &[f64], sum: &mut Sum<'_>) {
         }
         for on in &member.contacts.rails {
             let frame = bodies.rail_frame(on.rail, at);
-            let mount = rail_mount(bodies, on.rail, &frame);
+            let mount = rail_mount(bodies, on.rail, &frame, at);
             match &on.contact {
                 RailContact::Circles(contacts) => {
                     add_circles(member, contacts, &frame, &mount, q, sum);
@@ -62,42 +62,25 @@ fn wheel_mount(bodies: &Bodies, wheel: &Wheel, at: Moment<'_>) -> (Frame, Mount)
             let ways = Moving::free(origin, [*dof, dof + 1]);
             mount.centre = ways.ways().to_vec();
         }
-        WheelSupport::Carried(slide) => mount.centre = carried(&bodies.slides[*slide], origin),
+        WheelSupport::Carried(index) => {
+            let slide = &bodies.slides[*index];
+            let way = slide.way(slide.pose(at.q, at.v), origin);
+            mount.centre.extend(way);
+        }
         WheelSupport::Fixed | WheelSupport::Prescribed { .. } => {}
     }
     (frame, mount)
 }
 
-fn rail_mount(bodies: &Bodies, rail: usize, frame: &Frame) -> Mount {
+fn rail_mount(bodies: &Bodies, rail: usize, frame: &Frame, at: Moment<'_>) -> Mount {
     let mut mount = Mount::default();
     if let RailSupport::Carried(index) = &bodies.rails[rail].support {
         let slide = &bodies.slides[*index];
-        match (&slide.carrier, slide.dof) {
-            (Carrier::Slider { .. }, Some(_)) => mount.centre = carried(slide, frame.origin),
-            (Carrier::Arm { .. }, dof) => mount.angle = dof.map(|dof| (dof, 1.0)),
-            _ => {}
-        }
+        let way = slide.way(slide.pose(at.q, at.v), frame.origin);
+        mount.centre.extend(way);
+        mount.angle = slide.turn();
     }
     mount
-}
-
-/// How a carried centre moves with its carrier.
-fn carried(slide: &Slide, place: Point) -> Vec<Way> {
-    let Some(entry) = slide.dof else {
-        return Vec::new();
-    };
-    let (first, second) = match &slide.carrier {
-        Carrier::Slider { direction } => (*direction, Vector::zeros()),
-        Carrier::Arm { pivot, .. } => {
-            let arm = place - pivot;
-            (Vector::new(-arm.y, arm.x), -arm)
-        }
-    };
-    vec![Way {
-        entry,
-        first,
-        second,
-    }]
 }
 
 fn add_circles(

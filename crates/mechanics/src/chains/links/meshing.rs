@@ -5,9 +5,8 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 use pulp::{Simd, WithSimd};
 
-use super::{Element, Linkage, Mount, Partner, Play, Posture, turned};
-use crate::Carrier;
-use crate::chains::{Loads, Rollers, Surroundings};
+use super::{Element, Linkage, Mount, Partner, Play, Posture};
+use crate::chains::{Loads, Rollers, Surroundings, Way};
 use crate::contact::{Contacts, Frame, Touch, Wrench};
 use crate::energy::Flow;
 use crate::lanes::{Wide, dispatch};
@@ -27,7 +26,7 @@ impl Linkage {
         play.mounts.clear();
         for (i, on) in contacts.teeth.iter().enumerate() {
             let frame = loads.frames[i];
-            let mount = self.wheel_mount(bodies, &bodies.wheels[on.wheel], &frame);
+            let mount = self.wheel_mount(bodies, &bodies.wheels[on.wheel], loads.ways[i]);
             play.mounts.push(mount);
             let touch = &mut loads.teeth[i];
             let wrench = self.roll(&on.contacts, &frame, i, at, touch, play);
@@ -38,7 +37,7 @@ impl Linkage {
         for (i, on) in contacts.rails.iter().enumerate() {
             let number = contacts.teeth.len() + i;
             let frame = loads.frames[number];
-            let mount = self.rail_mount(bodies, &bodies.rails[on.rail].support);
+            let mount = self.rail_mount(bodies, &bodies.rails[on.rail].support, loads.ways[number]);
             play.mounts.push(mount);
             let wrench = match &on.contact {
                 RailContact::Circles(contacts) => {
@@ -56,7 +55,7 @@ impl Linkage {
         }
     }
 
-    fn wheel_mount(&self, bodies: &Bodies, wheel: &Wheel, frame: &Frame) -> Mount {
+    fn wheel_mount(&self, bodies: &Bodies, wheel: &Wheel, way: Option<Way>) -> Mount {
         let border = |dof: usize| self.border(bodies, dof);
         let turn = wheel.turned_by().map(|(dof, ratio)| (border(dof), ratio));
         let shifts = match &wheel.support {
@@ -65,36 +64,21 @@ impl Linkage {
                 Some((border(*dof), Vector::x())),
                 Some((border(dof + 1), Vector::y())),
             ],
-            WheelSupport::Carried(index) => {
-                let slide = &bodies.slides[*index];
-                let shift = match &slide.carrier {
-                    Carrier::Slider { direction } => *direction,
-                    Carrier::Arm { pivot, .. } => turned(frame.origin - pivot),
-                };
-                [slide.dof.map(|dof| (border(dof), shift)), None]
-            }
+            WheelSupport::Carried(_) => [way.map(|way| (border(way.entry), way.first)), None],
         };
         Mount { shifts, turn }
     }
 
-    fn rail_mount(&self, bodies: &Bodies, support: &RailSupport) -> Mount {
-        let mut mount = Mount {
-            shifts: [None; 2],
-            turn: None,
+    fn rail_mount(&self, bodies: &Bodies, support: &RailSupport, way: Option<Way>) -> Mount {
+        let border = |dof: usize| self.border(bodies, dof);
+        let turn = match support {
+            RailSupport::Carried(index) => bodies.slides[*index].turn(),
+            RailSupport::Fixed | RailSupport::Prescribed { .. } => None,
         };
-        if let RailSupport::Carried(index) = support {
-            let slide = &bodies.slides[*index];
-            if let Some(dof) = slide.dof {
-                match &slide.carrier {
-                    Carrier::Slider { direction } => {
-                        mount.shifts[0] = Some((self.border(bodies, dof), *direction));
-                    }
-                    // The frame of a rail on an arm has the pivot as its origin.
-                    Carrier::Arm { .. } => mount.turn = Some((self.border(bodies, dof), 1.0)),
-                }
-            }
+        Mount {
+            shifts: [way.map(|way| (border(way.entry), way.first)), None],
+            turn: turn.map(|(dof, ratio)| (border(dof), ratio)),
         }
-        mount
     }
 }
 

@@ -1,0 +1,81 @@
+//! Tensioners, compiled: a carrier with its coordinate and what it carries.
+
+use chaindrive_geometry::{Point, Vector};
+
+use crate::chains::Way;
+use crate::tensioner::{Reduced, Weight};
+use crate::{Carrier, Push};
+
+/// A tensioner in the system.
+#[derive(Clone, Debug)]
+pub(crate) struct Slide {
+    pub(crate) name: String,
+    pub(crate) carrier: Carrier,
+    pub(crate) push: Push,
+    /// Its own inertia \[kg or kg m²\].
+    pub(crate) own: f64,
+    /// Inertia at assembly with all that it carries \[kg or kg m²\].
+    pub(crate) inertia: f64,
+    /// Degree of freedom; none while locked.
+    pub(crate) dof: Option<usize>,
+    /// Masses that it carries.
+    pub(crate) carried: Vec<Weight>,
+}
+
+/// Where a carrier is.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Pose {
+    pub(crate) coordinate: f64,
+    pub(crate) rate: f64,
+}
+
+impl Slide {
+    pub(crate) fn pose(&self, q: &[f64], v: &[f64]) -> Pose {
+        self.dof.map_or_else(Pose::default, |dof| Pose {
+            coordinate: q[dof],
+            rate: v[dof],
+        })
+    }
+
+    /// Place and velocity of a point that is at `at` when s = 0.
+    pub(crate) fn carry(&self, pose: Pose, at: Point) -> (Point, Vector) {
+        let (place, first) = self.carrier.carry(pose.coordinate, at);
+        (place, first * pose.rate)
+    }
+
+    /// Generalised force of a force at a carried point.
+    pub(crate) fn project(&self, pose: Pose, force: [f64; 2], place: Point) -> f64 {
+        let [first, _] = self.carrier.ways(pose.coordinate, place);
+        first.x * force[0] + first.y * force[1]
+    }
+
+    /// How a carried point goes on with the coordinate; none where it stands still.
+    pub(crate) fn way(&self, pose: Pose, place: Point) -> Option<Way> {
+        let entry = self.dof?;
+        let [first, second] = self.carrier.ways(pose.coordinate, place);
+        (first != Vector::zeros()).then_some(Way {
+            entry,
+            first,
+            second,
+        })
+    }
+
+    /// The coordinate that turns what it carries, and how far; none where it does not turn.
+    pub(crate) fn turn(&self) -> Option<(usize, f64)> {
+        let turning = self.carrier.turning();
+        let turns = turning.abs() > 0.0;
+        self.dof.filter(|_| turns).map(|dof| (dof, turning))
+    }
+
+    /// Inertia as it now is.
+    pub(crate) fn reduced(&self, pose: Pose) -> Reduced {
+        self.carrier
+            .reduced(pose.coordinate, self.own, &self.carried)
+    }
+
+    /// Masses whose weight moves it, and where they are at assembly.
+    pub(crate) fn weights(&self) -> impl Iterator<Item = Weight> {
+        let own = self.carrier.own_weight(self.own);
+        self.carried.iter().copied().chain(own)
+    }
+}

@@ -1,0 +1,116 @@
+//! An arm about a pivot.
+
+use chaindrive_geometry::{Point, Vector};
+
+use super::{Carries, Extension, require_unit};
+use crate::DriveError;
+
+/// An arm about a pivot, pushed by a plunger or by a torque.
+///
+/// ```text
+/// x(s) = pivot + R(s) (x₀ − pivot)
+/// ```
+///
+/// Its own weight is left out: where its centre of mass lies is not known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arm {
+    /// Pivot \[m\].
+    pub pivot: Point,
+    /// Where and along which unit vector a plunger pushes; without one the push is a torque about
+    /// the pivot.
+    pub plunger: Option<Plunger>,
+}
+
+/// A plunger that pushes on an arm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plunger {
+    /// Point of the arm on which it pushes, at assembly \[m\].
+    pub at: Point,
+    /// Direction of the push; unit vector.
+    pub direction: Vector,
+}
+
+impl Arm {
+    /// A point of the arm seen from the pivot, turned by s.
+    fn turned(&self, s: f64, at: Point) -> Vector {
+        let arm = at - self.pivot;
+        let (sine, cosine) = s.sin_cos();
+        Vector::new(cosine * arm.x - sine * arm.y, sine * arm.x + cosine * arm.y)
+    }
+}
+
+/// ẑ × r
+fn across(r: Vector) -> Vector {
+    Vector::new(-r.y, r.x)
+}
+
+impl Carries for Arm {
+    fn coordinate_unit(&self) -> &'static str {
+        "rad"
+    }
+
+    fn push_unit(&self) -> &'static str {
+        if self.plunger.is_some() { "N" } else { "N m" }
+    }
+
+    fn reach(&self) -> f64 {
+        // A bare arm has no length of its own; 0.1 m is that of most.
+        self.plunger
+            .map_or(0.1, |plunger| (plunger.at - self.pivot).norm().max(1e-3))
+    }
+
+    fn check(&self, path: &str) -> Result<(), DriveError> {
+        match &self.plunger {
+            Some(plunger) => require_unit(plunger.direction, path),
+            None => Ok(()),
+        }
+    }
+
+    fn extension(&self, s: f64) -> Extension {
+        match &self.plunger {
+            None => Extension {
+                length: s,
+                lever: 1.0,
+            },
+            Some(Plunger { at, direction }) => {
+                let turned = self.turned(s, *at);
+                // x = d·(R(s) r − r),   ∂x/∂s = d·(ẑ × R(s) r)
+                Extension {
+                    length: direction.dot(&(turned - (at - self.pivot))),
+                    lever: direction.dot(&across(turned)),
+                }
+            }
+        }
+    }
+
+    fn carry(&self, s: f64, at: Point) -> (Point, Vector) {
+        let turned = self.turned(s, at);
+        (self.pivot + turned, across(turned))
+    }
+
+    fn ways(&self, _: f64, place: Point) -> [Vector; 2] {
+        let arm = place - self.pivot;
+        // ∂x/∂s = ẑ × r,   ∂²x/∂s² = −r
+        [across(arm), -arm]
+    }
+
+    fn squared_lever(&self, _: f64, at: Point) -> f64 {
+        (at - self.pivot).norm_squared()
+    }
+
+    fn turning(&self) -> f64 {
+        1.0
+    }
+
+    fn origin(&self) -> Point {
+        self.pivot
+    }
+
+    fn assembled_at(&self, s: f64) -> Self {
+        let plunger = self.plunger.map(|plunger| Plunger {
+            at: self.carry(s, plunger.at).0,
+            ..plunger
+        });
+        Self { plunger, ..*self }
+    }
+}
