@@ -42,9 +42,9 @@ class Profile:
     >>> import chaindrive as cd
     >>> crank = cd.scenes.marine_engine().profile("crank", settled=False)
     >>> crank.distance([[0.0, 0.0], [0.0, 1.0]]).round(3)
-    array([-0.653,  0.283])
-    >>> crank.contains([0.6, 0.1])
-    True
+    array([-0.653,  0.301])
+    >>> crank.contains([[0.6, 0.1], [0.6, 0.4]])
+    array([ True, False])
     >>> crank.outline(1e-4).shape[1]
     2
     """
@@ -69,7 +69,7 @@ class Profile:
 
     @property
     def closed(self) -> bool:
-        """Whether the profile encloses its material: that of a sprocket does, a guide's does not."""
+        """Whether the profile encloses its material: a sprocket's does, a guide's does not."""
         return self._inner.closed
 
     @property
