@@ -33,6 +33,7 @@ from chaindrive.friction import Friction, friction
 from chaindrive.law import Law, law
 from chaindrive.live import Simulation, Snapshot
 from chaindrive.precision import work_precision
+from chaindrive.profile import Profile
 from chaindrive.results import open_result
 from chaindrive.simulation import simulate
 from chaindrive.sweeping import sweep
@@ -47,6 +48,7 @@ __all__ = [
     "IntegrationError",
     "Law",
     "ParameterError",
+    "Profile",
     "ResultWarning",
     "SceneError",
     "Simulation",

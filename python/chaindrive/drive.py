@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from chaindrive import _core
 from chaindrive.errors import ParameterError, SceneError
 from chaindrive.law import Law
+from chaindrive.profile import Profile
 
 if TYPE_CHECKING:
     from typing import Self
@@ -283,6 +284,27 @@ class Drive:
             No sprocket or guide has this name, or the chain has no such contacts.
         """
         return Law._of(self._inner.law(body))
+
+    def profile(self, name: str, *, settled: bool = True) -> Profile:
+        """Return the whole profile of a sprocket or guide in its place.
+
+        Parameters
+        ----------
+        name
+            A sprocket, or a guide, shoes of tensioners among them. Where both have the name, the
+            sprocket is meant.
+        settled
+            Where it stands at the start of a run; otherwise where it stands when the chain has
+            been laid, before gravity and load move anything, which takes no time.
+
+        Raises
+        ------
+        ParameterError
+            No sprocket or guide has this name.
+        AssemblyError
+            The drive does not close or settle.
+        """
+        return Profile._of(self._inner.profile(name, settled), name)
 
     def __repr__(self) -> str:
         bodies = ", ".join([*self.sprockets, *self.guides, *self.tensioners]) or "nothing around it"

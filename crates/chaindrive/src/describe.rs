@@ -1,4 +1,4 @@
-//! What a scene will be simulated as, before it is: route, statics, model, time scales, cost.
+//! A drive described before it is simulated: route, statics, model, time scales, cost.
 //!
 //! Everything is read off the assembled drive or follows from geometry alone; only the cost is
 //! measured, by a few hundred steps. Front ends print a [`Description`] as text or as JSON.
@@ -12,7 +12,7 @@ mod text;
 use chaindrive_geometry::mesh_frequency;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 use chaindrive_mechanics::{
-    Assembled, Chain, ChainModel, Drive, Flow, GuideSupport, Observation, Rotation, Statics,
+    Assembled, Chain, ChainModel, Clash, Drive, Flow, GuideSupport, Observation, Rotation, Statics,
 };
 use serde::Serialize;
 
@@ -36,7 +36,7 @@ pub struct Description {
     pub spans: Vec<SpanAtRest>,
     /// The static states on the way to the start.
     pub statics: Vec<StaticStage>,
-    /// What moves and what touches.
+    /// Moving parts and contacts.
     pub model: Model,
     /// How fast things happen.
     pub time_scales: TimeScales,
@@ -44,6 +44,8 @@ pub struct Description {
     pub polygon: Vec<PolygonPair>,
     /// Method, steps and run time.
     pub cost: Cost,
+    /// Bodies that take the same room in the plane, and must pass side by side.
+    pub warnings: Vec<String>,
 }
 
 /// The chain in numbers.
@@ -55,7 +57,7 @@ pub struct ChainFacts {
     pub pitch: f64,
     /// Mass per length \[kg/m\].
     pub mass_per_length: f64,
-    /// What it is made of.
+    /// Its links, joints and rollers.
     pub bodies: LinkFacts,
     /// Axial stiffness of one link \[N/m\], mean; of rigid links that with which they are laid.
     pub link_stiffness: f64,
@@ -79,7 +81,7 @@ pub struct Closing {
 /// A static state on the way to the start.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StaticStage {
-    /// What had been applied: pretension, gravity or load.
+    /// The load applied last: pretension, gravity or load.
     pub stage: &'static str,
     /// Newton iterations.
     pub iterations: usize,
@@ -89,7 +91,7 @@ pub struct StaticStage {
     pub span_tensions: Vec<f64>,
 }
 
-/// What moves and what touches.
+/// Moving parts and contacts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Model {
     /// Degrees of freedom that move.
@@ -110,7 +112,7 @@ pub struct Model {
     pub tensioners: usize,
     /// Contact laws, each kind of pair once for every law.
     pub contacts: Vec<ContactFacts>,
-    /// What the scene leaves out.
+    /// Kinds of bodies and effects that the drive does not have.
     pub absent: Vec<&'static str>,
 }
 
@@ -163,6 +165,7 @@ impl Description {
             },
             polygon: polygon::pairs(drive, &start),
             cost: cost::measure(&assembled, run)?,
+            warnings: assembled.warnings.iter().map(Clash::to_string).collect(),
             spans,
         })
     }

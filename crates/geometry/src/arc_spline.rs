@@ -25,7 +25,7 @@ const GAP: f64 = 1e-9;
 pub struct ArcSpline {
     pieces: Vec<Piece>,
     /// Arc length at the start of each piece, and at the end of the last \[m\].
-    lengths: Vec<f64>,
+    pub(crate) lengths: Vec<f64>,
     pub(crate) stations: Vec<Station>,
     pub(crate) tree: Tree,
     bounds: BoundingBox,

@@ -7,11 +7,14 @@ mod setting_off;
 mod settle;
 mod slack;
 
-use chaindrive_geometry::Point;
-use chaindrive_integrate::SecondOrderSystem;
+use chaindrive_geometry::{ArcSpline, Point};
+use chaindrive_integrate::{Moment, SecondOrderSystem};
 
 use crate::chains::LaidAs;
+use crate::check::clash::{Clash, clashes};
 use crate::drive::{Layout, Parts};
+use crate::standing::Standing;
+use crate::system::Laid;
 use crate::{AssemblyError, Drive, System};
 use settle::Tightening;
 
@@ -31,6 +34,10 @@ pub struct Assembled {
     pub statics: Vec<Statics>,
     /// How every chain was fitted, where it runs around sprockets.
     pub fittings: Vec<Option<Fitting>>,
+    /// Bodies that take the same room in the plane, and are in each other's way unless they pass side by side.
+    pub warnings: Vec<Clash>,
+    /// The parts as they were laid.
+    parts: Parts,
 }
 
 /// How a closed chain was fitted.
@@ -63,11 +70,13 @@ impl Drive {
     /// [`AssemblyError`] when the chain does not close or no equilibrium is found.
     pub fn assemble(&self) -> Result<Assembled, AssemblyError> {
         let mut chains = self.chains.iter();
-        if chains.all(|placed| placed.chain.model.stretches()) {
+        let mut assembled = if chains.all(|placed| placed.chain.model.stretches()) {
             self.assemble_as_is()
         } else {
             self.assemble_hard()
-        }
+        }?;
+        assembled.warnings = assembled.clashes()?;
+        Ok(assembled)
     }
 
     fn assemble_as_is(&self) -> Result<Assembled, AssemblyError> {
@@ -75,7 +84,8 @@ impl Drive {
         let (mut system, mut q) = System::build(&laid)?;
         let mut statics = Vec::new();
         if self.settle {
-            statics = relax::settle(&mut system, &mut q)?;
+            statics = relax::settle(&mut system, &mut q)
+                .map_err(|error| laid_through_a_guide(&laid).unwrap_or(error))?;
         }
         let mut v = vec![0.0; q.len()];
         let layouts: Vec<&Layout> = self.chains.iter().map(|placed| &placed.layout).collect();
@@ -88,6 +98,8 @@ impl Drive {
             v,
             statics,
             fittings,
+            warnings: Vec::new(),
+            parts: laid.parts,
         })
     }
 
@@ -151,4 +163,61 @@ impl Drive {
         });
         Ok(layouts.collect())
     }
+
+    /// The whole profile of a sprocket or guide where it stands when the chains have been laid, without settling.
+    ///
+    /// That of a sprocket is closed: all its teeth. That of a guide is its working face, an open curve with the material on the left
+    /// of travel. Where a sprocket and a guide share a name, the sprocket is meant.
+    ///
+    /// # Errors
+    /// [`AssemblyError`] when a chain does not close, or nothing has this name.
+    pub fn profile(&self, name: &str) -> Result<ArcSpline, AssemblyError> {
+        let (laid, _) = lay::lay(self)?;
+        Standing::laid(&laid).profile(&laid.parts, name)
+    }
+}
+
+impl Assembled {
+    /// The whole profile of a sprocket or guide where it stands at t = 0, as [`Drive::profile`] has it.
+    ///
+    /// # Errors
+    /// [`AssemblyError`] when nothing has this name.
+    pub fn profile(&self, name: &str) -> Result<ArcSpline, AssemblyError> {
+        self.standing()?.profile(&self.parts, name)
+    }
+
+    fn standing(&self) -> Result<Standing, AssemblyError> {
+        Ok(Standing::of(&self.system, &self.parts, self.start())?)
+    }
+
+    fn start(&self) -> Moment<'_> {
+        Moment {
+            t: 0.0,
+            q: &self.q,
+            v: &self.v,
+        }
+    }
+
+    /// What may be in each other's way at t = 0.
+    ///
+    /// # Errors
+    /// What is.
+    fn clashes(&self) -> Result<Vec<Clash>, AssemblyError> {
+        let rollers = self.system.roller_places(self.start());
+        let found = clashes(&self.parts, &self.standing()?, &rollers);
+        let (may_pass, certain): (Vec<_>, Vec<_>) = found.into_iter().partition(Clash::may_pass);
+        if certain.is_empty() {
+            Ok(may_pass)
+        } else {
+            Err(AssemblyError::Clash { clashes: certain })
+        }
+    }
+}
+
+/// What keeps a chain from settling, where it was laid through a guide.
+fn laid_through_a_guide(laid: &Laid) -> Option<AssemblyError> {
+    let rollers: Vec<_> = laid.chains.iter().map(|c| c.positions.clone()).collect();
+    let mut clashes = clashes(&laid.parts, &Standing::laid(laid), &rollers);
+    clashes.retain(|clash| matches!(clash, Clash::Chain { .. }));
+    (!clashes.is_empty()).then_some(AssemblyError::Clash { clashes })
 }

@@ -1,5 +1,7 @@
 //! Cross-checks between the parts of a drive.
 
+pub(crate) mod clash;
+
 use std::collections::HashSet;
 
 use chaindrive_contact::elastic::ElasticLaw;
@@ -65,7 +67,7 @@ pub(crate) fn problems(parts: &Parts) -> Vec<DriveError> {
     }
     found.extend(finite(parts.gravity, "gravity"));
     found.extend(duplicate_names(parts));
-    found.extend(overlaps(parts));
+    found.extend(clash::overlaps(parts));
     found
 }
 
@@ -196,35 +198,6 @@ fn duplicate_names(parts: &Parts) -> Vec<DriveError> {
             problem: format!("two of them are named `{name}`; names must differ"),
         })
         .collect()
-}
-
-/// Sprockets whose teeth would cut into each other.
-/// Sprockets in one another's way; those of different chains pass each other.
-fn overlaps(parts: &Parts) -> Vec<DriveError> {
-    let sprockets = &parts.sprockets;
-    let apart = |first: usize, second: usize| {
-        let mut planes = parts.chains.iter().map(|placed| &placed.sprockets);
-        parts.chains.len() > 1
-            && !planes.any(|plane| plane.contains(&first) && plane.contains(&second))
-    };
-    let mut found = Vec::new();
-    for (i, first) in sprockets.iter().enumerate() {
-        for (j, second) in sprockets.iter().enumerate().skip(i + 1) {
-            if apart(i, j) {
-                continue;
-            }
-            let distance = (first.centre - second.centre).norm();
-            let overlap = first.gap.tip_radius + second.gap.tip_radius - distance;
-            if overlap > 0.0 {
-                found.push(DriveError::Overlap {
-                    first: first.name.clone(),
-                    second: second.name.clone(),
-                    overlap,
-                });
-            }
-        }
-    }
-    found
 }
 
 fn conflict(path: &str, problem: String) -> DriveError {

@@ -3,6 +3,8 @@
 use chaindrive_contact::ParameterError;
 use chaindrive_geometry::GeometryError;
 
+use crate::Clash;
+
 /// Why a description is not a drive. Every variant names the place.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -118,6 +120,14 @@ pub enum AssemblyError {
     #[error("guide `{guide}`: {problem}")]
     Guide { guide: String, problem: String },
 
+    /// Bodies in each other's way, or a chain that runs through a guide.
+    #[error("{}", listed(.clashes))]
+    Clash { clashes: Vec<Clash> },
+
+    /// A name that no sprocket or guide has.
+    #[error("no sprocket or guide is named `{name}`; {known}")]
+    UnknownBody { name: String, known: String },
+
     /// The chain does not lie between the parts as described.
     #[error("{problem}")]
     Layout { problem: String },
@@ -134,4 +144,9 @@ impl AssemblyError {
             other => other,
         }
     }
+}
+
+fn listed(clashes: &[Clash]) -> String {
+    let told: Vec<_> = clashes.iter().map(Clash::to_string).collect();
+    told.join("\n")
 }

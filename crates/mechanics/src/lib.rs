@@ -32,6 +32,7 @@ mod motion;
 mod nudge;
 mod observe;
 mod profile;
+mod standing;
 mod system;
 mod tensioner;
 mod torque;
@@ -40,6 +41,7 @@ pub use assembly::{Assembled, Fitting, RollerLayout, Statics};
 pub use chain::{Chain, End, Ends};
 pub use chains::ChainModel;
 pub use chains::links::model::{Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel};
+pub use check::clash::Clash;
 pub use drive::{
     Adjust, Drive, Fit, Flank, Guide, GuideSupport, Layout, Parts, PlacedChain, Rotation, Sprocket,
     Stop, Support, Surface, Tighten, Torsion, Touches,

@@ -134,6 +134,19 @@ impl System {
         self.commit(t, q, v, &mut record);
     }
 
+    /// Where the rollers of every chain are \[m\].
+    pub(crate) fn roller_places(&self, at: Moment<'_>) -> Vec<Vec<Point>> {
+        let mut record = self.new_record();
+        let chains = self.chains.iter().zip(&mut record.chains);
+        chains
+            .map(|(member, record)| {
+                let pose = member.chain.pose(member.own(at), record);
+                let places = pose.x.iter().zip(pose.y).take(member.chain.rollers());
+                places.map(|(&x, &y)| Point::new(x, y)).collect()
+            })
+            .collect()
+    }
+
     /// Speed of the fastest roller \[m/s\].
     pub fn fastest_roller(&self, at: Moment<'_>) -> f64 {
         let mut record = self.new_record();

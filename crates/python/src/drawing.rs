@@ -1,15 +1,15 @@
 //! Polylines of a drive, for plots.
 
 use chaindrive::{Drive, Run, Simulation};
-use chaindrive_geometry::{ArcSpline, Piece, Point};
+use chaindrive_geometry::{ArcSpline, Point};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::errors::OrRaise;
 
-/// Chords along one arc of a tooth or guide.
-const CHORDS: u32 = 8;
+/// How far chords may stand off teeth and guides, in fractions of their size.
+const COARSE: f64 = 1e-4;
 
 /// What can be drawn of a drive, settled or as it was laid.
 pub(crate) fn of<'py>(
@@ -53,13 +53,13 @@ pub(crate) fn of<'py>(
         drawn.set_item("centre", points(py, &[centre])?.reshape([2])?)?;
         drawn.set_item(
             "outline",
-            points(py, &polyline(&gap.outline().or_raise()?))?,
+            points(py, &polyline(&gap.outline().or_raise()?)?)?,
         )?;
         sprockets.set_item(&sprocket.name, drawn)?;
     }
     let guides = PyDict::new(py);
     for guide in &drive.guides {
-        guides.set_item(&guide.name, points(py, &polyline(&guide.face))?)?;
+        guides.set_item(&guide.name, points(py, &polyline(&guide.face)?)?)?;
     }
     let answer = PyDict::new(py);
     answer.set_item("rollers", points(py, &rollers)?)?;
@@ -71,20 +71,15 @@ pub(crate) fn of<'py>(
     Ok(answer)
 }
 
-fn polyline(curve: &ArcSpline) -> Vec<Point> {
-    let mut line: Vec<Point> = curve.pieces().iter().take(1).map(Piece::start).collect();
-    for piece in curve.pieces() {
-        match piece {
-            Piece::Segment(segment) => line.push(segment.end),
-            Piece::Arc(arc) => line
-                .extend((1..=CHORDS).map(|chord| arc.point(f64::from(chord) / f64::from(CHORDS)))),
-        }
-    }
-    line
+fn polyline(curve: &ArcSpline) -> PyResult<Vec<Point>> {
+    curve.polyline(COARSE * curve.aabb().diagonal()).or_raise()
 }
 
 /// Points as an array (points, 2).
-fn points<'py>(py: Python<'py>, points: &[Point]) -> PyResult<Bound<'py, PyArray2<f64>>> {
+pub(crate) fn points<'py>(
+    py: Python<'py>,
+    points: &[Point],
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let flat: Vec<f64> = points.iter().flat_map(|point| [point.x, point.y]).collect();
     PyArray1::from_vec(py, flat).reshape([points.len(), 2])
 }

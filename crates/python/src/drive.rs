@@ -15,6 +15,7 @@ use pyo3::types::PyDict;
 use crate::drawing;
 use crate::errors::{OrRaise, parameter};
 use crate::law::Law;
+use crate::profile::Profile;
 
 /// Name, link tensions, span tensions and closed contacts of a static stage.
 type StaticStage<'py> = (
@@ -195,6 +196,18 @@ impl Drive {
         });
         let surface = surface.ok_or_else(|| PyKeyError::new_err(body.to_owned()))?;
         Ok(Law(surface.law))
+    }
+
+    /// The whole profile of a sprocket or guide, settled or as it was laid.
+    fn profile(&self, py: Python<'_>, name: &str, settled: bool) -> PyResult<Profile> {
+        let found = py.detach(|| {
+            if settled {
+                self.drive.assemble()?.profile(name)
+            } else {
+                self.drive.profile(name)
+            }
+        });
+        Ok(Profile(found.or_raise()?))
     }
 
     /// What the drive will be simulated as: as a text, and as JSON.

@@ -80,6 +80,9 @@ impl IntoException for AssemblyError {
             Self::Guide { guide, .. } => {
                 python::AssemblyError::new_err((message, format!("guides.{guide}")))
             }
+            Self::UnknownBody { known, .. } => {
+                python::ParameterError::new_err((message, "name", known))
+            }
             _ => python::AssemblyError::new_err((message,)),
         }
     }

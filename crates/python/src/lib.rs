@@ -16,6 +16,7 @@ mod kinematics;
 mod law;
 mod live;
 mod precision;
+mod profile;
 mod run;
 mod sweep;
 
@@ -44,6 +45,8 @@ mod core {
     use crate::live::{Simulation, Snapshot};
     #[pymodule_export]
     use crate::precision::work_precision;
+    #[pymodule_export]
+    use crate::profile::Profile;
     #[pymodule_export]
     use crate::run::{channels, is_being_written, methods, simulate};
 

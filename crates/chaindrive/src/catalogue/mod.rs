@@ -23,7 +23,7 @@ pub struct CatalogueChain {
     pub name: String,
     /// ANSI number; empty where there is none.
     pub ansi: String,
-    /// What runs on the teeth: "roller" or "bush".
+    /// The part that runs on the teeth: "roller" or "bush".
     pub kind: String,
     /// Where its dimensions, breaking load and mass per length are from.
     pub dimensions_status: String,

@@ -12,7 +12,9 @@ impl fmt::Display for Description {
         self.model.fmt(f)?;
         self.time_scales(f)?;
         self.polygon(f)?;
-        self.cost(f)
+        self.cost(f)?;
+        let mut warnings = self.warnings.iter();
+        warnings.try_for_each(|warning| writeln!(f, "warning: {warning}"))
     }
 }
 

@@ -41,6 +41,9 @@ fn sound(name: &str) -> Result<String, Failure> {
         scene: scene.name().to_owned(),
         source: error.into(),
     })?;
+    for warning in &assembled.warnings {
+        eprintln!("warning: {name}: {warning}");
+    }
     Ok(format!(
         "sound; {} links, {} sprockets, {} guides, {} tensioners, {} degrees of freedom",
         drive.chains[0].chain.links(),

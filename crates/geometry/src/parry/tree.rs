@@ -46,6 +46,14 @@ impl Tree {
             .map(|(i, (_, found))| (i as usize, found))
     }
 
+    /// Calls `visit` with every pair of pieces, one of each curve, whose boxes overlap.
+    pub(crate) fn pairs(&self, other: &Self, mut visit: impl FnMut(usize, usize)) {
+        let pairs = self.0.leaf_pairs(&other.0, |a, b| a.intersects(b));
+        for (first, second) in pairs {
+            visit(first as usize, second as usize);
+        }
+    }
+
     /// Calls `visit` with every piece whose box comes within `reach` \[m\] of `p`.
     pub(crate) fn within(&self, p: Point, reach: f64, mut visit: impl FnMut(usize)) {
         let p = to_parry(p);

@@ -2,6 +2,7 @@
 
 mod clearance;
 mod closing;
+mod crossings;
 mod drives;
 mod fitting;
 mod nearest_is_nearest;

@@ -262,10 +262,7 @@ fn teeth(sprocket: &Sprocket, chain: &Chain) -> Contacts {
 /// Contacts of a chain with a guide.
 fn face(guide: &Guide, chain: &Chain, parts: &Parts) -> Result<RailContact, AssemblyError> {
     let profile = Profile::new(guide.face.pieces(), true, true);
-    let reference = match &guide.support {
-        GuideSupport::Tensioner(index) => parts.tensioners[*index].carrier.origin(),
-        GuideSupport::Fixed | GuideSupport::Prescribed { .. } => Point::origin(),
-    };
+    let reference = parts.reference(&guide.support);
     let bounds = bounds(guide);
     let radius = match guide.touches {
         Touches::Rollers => 0.5 * chain.roller_diameter,
