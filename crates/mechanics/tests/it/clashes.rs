@@ -4,6 +4,7 @@ use chaindrive_contact::dissipation::Dissipation;
 use chaindrive_contact::elastic::Power;
 use chaindrive_contact::{Elastic, Friction, Law};
 use chaindrive_geometry::{Arc, ArcSpline, Piece, Point, Segment, Vector, bar};
+use chaindrive_mechanics::carriers::{Arm, Slider};
 use chaindrive_mechanics::{
     AssemblyError, Carrier, Clash, Drive, DriveError, Guide, GuideSupport, Layout, Parts, Push,
     Support, Surface, Tensioner, Touches,
@@ -228,9 +229,9 @@ fn guides_on_different_supports_must_not_cross() {
         let mut parts = with_guides(cross(offset));
         parts.tensioners.push(Tensioner {
             name: "slide".into(),
-            carrier: Carrier::Slider {
+            carrier: Carrier::Slider(Slider {
                 direction: Vector::x(),
-            },
+            }),
             inertia: 1.0,
             push: Push::Locked,
         });
@@ -291,9 +292,9 @@ fn profiles_stand_where_the_chain_meets_them() {
     parts.settle = true;
     parts.tensioners.push(Tensioner {
         name: "slide".into(),
-        carrier: Carrier::Slider {
+        carrier: Carrier::Slider(Slider {
             direction: Vector::new(-0.17, 0.98).normalize(),
-        },
+        }),
         inertia: 60.0,
         push: Push::Spring(chaindrive_mechanics::Spring {
             preload: 20e3,
@@ -332,10 +333,10 @@ fn faces_on_arms_turn_about_the_pivot() {
     parts.guides[0].support = GuideSupport::Tensioner(0);
     parts.tensioners.push(Tensioner {
         name: "arm".into(),
-        carrier: Carrier::Arm {
+        carrier: Carrier::Arm(Arm {
             pivot,
             plunger: None,
-        },
+        }),
         inertia: 0.1,
         push: Push::Spring(chaindrive_mechanics::Spring {
             preload: 0.3,
