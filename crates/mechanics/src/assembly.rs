@@ -1,5 +1,6 @@
 //! From a valid drive to one that is ready to move: lay the chain, settle it, set it going.
 
+mod apart;
 mod hard;
 mod lay;
 mod relax;
@@ -13,6 +14,7 @@ use chaindrive_integrate::{Moment, SecondOrderSystem};
 use crate::chains::LaidAs;
 use crate::check::clash::{Clash, clashes};
 use crate::drive::{Layout, Parts};
+use crate::groups::groups;
 use crate::standing::Standing;
 use crate::system::Laid;
 use crate::{AssemblyError, Drive, System};
@@ -69,6 +71,15 @@ impl Drive {
     /// # Errors
     /// [`AssemblyError`] when the chain does not close or no equilibrium is found.
     pub fn assemble(&self) -> Result<Assembled, AssemblyError> {
+        let groups = groups(self.parts());
+        if let [_] = groups.as_slice() {
+            self.assemble_joined()
+        } else {
+            self.assemble_apart(&groups)
+        }
+    }
+
+    fn assemble_joined(&self) -> Result<Assembled, AssemblyError> {
         let mut chains = self.chains.iter();
         let mut assembled = if chains.all(|placed| placed.chain.model.stretches()) {
             self.assemble_as_is()

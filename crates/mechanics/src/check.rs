@@ -1,6 +1,7 @@
 //! Cross-checks between the parts of a drive.
 
 pub(crate) mod clash;
+mod shafts;
 
 use std::collections::HashSet;
 
@@ -8,8 +9,7 @@ use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_geometry::{Point, Vector};
 
 use crate::drive::{
-    Adjust, Fit, GuideSupport, Layout, Parts, PlacedChain, Rotation, Sprocket, Stop, Support,
-    Surface, Torsion,
+    Adjust, Fit, GuideSupport, Layout, Parts, PlacedChain, Sprocket, Stop, Support, Surface,
 };
 use crate::{DriveError, Ends};
 
@@ -30,16 +30,7 @@ pub(crate) fn problems(parts: &Parts) -> Vec<DriveError> {
         }
         found.extend(own);
     }
-    for (index, sprocket) in parts.sprockets.iter().enumerate() {
-        found.extend(gear_problems(index, sprocket, parts));
-    }
-    for (index, torsion) in parts.torsions.iter().enumerate() {
-        found.extend(torsion_problems(
-            &format!("shafts[{index}]"),
-            torsion,
-            parts,
-        ));
-    }
+    found.extend(shafts::problems(parts));
     for sprocket in &parts.sprockets {
         found.extend(sprocket_problems(sprocket, parts.tensioners.len()));
     }
@@ -89,12 +80,11 @@ fn sprocket_problems(sprocket: &Sprocket, tensioners: usize) -> Vec<DriveError> 
     };
     let positive = |value: f64| value > 0.0 && value.is_finite();
     let not_negative = |value: f64| value >= 0.0 && value.is_finite();
-    let free = matches!(sprocket.rotation, Rotation::Free { .. });
     need(
-        not_negative(sprocket.inertia) && (!free || sprocket.inertia > 0.0),
+        not_negative(sprocket.inertia),
         "inertia",
         sprocket.inertia,
-        "positive [kg m²] where the sprocket turns freely, not negative elsewhere",
+        "not negative [kg m²]",
     );
     let floats = matches!(sprocket.support, Support::Springs { .. });
     need(
@@ -141,19 +131,6 @@ fn sprocket_problems(sprocket: &Sprocket, tensioners: usize) -> Vec<DriveError> 
         }
         Support::Fixed | Support::Springs { .. } => {}
     }
-    match &sprocket.rotation {
-        Rotation::Prescribed(motion) => {
-            found.extend(motion.check(&format!("{place}.motion")).err());
-        }
-        Rotation::Geared { .. } => {}
-        Rotation::Free { drive, load } => {
-            for (name, torques) in [("drive", drive), ("load", load)] {
-                for (i, torque) in torques.iter().enumerate() {
-                    found.extend(torque.check(&format!("{place}.{name}[{i}]")).err());
-                }
-            }
-        }
-    }
     found.extend(finite(sprocket.centre.coords, &format!("{place}.centre")));
     found
 }
@@ -190,6 +167,10 @@ fn duplicate_names(parts: &Parts) -> Vec<DriveError> {
     let names = parts.sprockets.iter().map(|s| ("sprockets", &s.name));
     let names = names.chain(parts.guides.iter().map(|g| ("guides", &g.name)));
     let names = names.chain(parts.tensioners.iter().map(|t| ("tensioners", &t.name)));
+    let shafts = parts.shafts.iter().filter_map(|s| s.name.as_ref());
+    let names = names.chain(shafts.map(|name| ("shafts", name)));
+    let names = names.chain(parts.couplings.iter().map(|c| ("couplings", &c.name)));
+    let names = names.chain(parts.gears.iter().map(|g| ("gears", &g.name)));
     let mut seen = HashSet::new();
     names
         .filter(|entry| !seen.insert(*entry))
@@ -305,58 +286,6 @@ fn plane_problems(placed: &PlacedChain, parts: &Parts) -> Vec<DriveError> {
                 format!("{stop:?} is not among what the chain can touch"),
             )
         }));
-    }
-    found
-}
-
-/// A geared sprocket follows one that has a motion or coordinate of its own.
-fn gear_problems(index: usize, sprocket: &Sprocket, parts: &Parts) -> Vec<DriveError> {
-    let Rotation::Geared { leader, ratio } = sprocket.rotation else {
-        return Vec::new();
-    };
-    let place = format!("sprockets.{}", sprocket.name);
-    let mut found = Vec::new();
-    found.extend(reference(&place, "sprocket", leader, parts.sprockets.len()));
-    let geared = |other: &Sprocket| matches!(other.rotation, Rotation::Geared { .. });
-    if leader == index || parts.sprockets.get(leader).is_some_and(geared) {
-        found.push(conflict(
-            &place,
-            "must follow a sprocket that turns by itself; give the ratio to that one".into(),
-        ));
-    }
-    let turns = ratio.is_finite() && ratio.abs() > 0.0;
-    let path = format!("{place}.ratio");
-    found.extend(DriveError::require(turns, &path, ratio, "finite and not zero").err());
-    found
-}
-
-fn torsion_problems(place: &str, torsion: &Torsion, parts: &Parts) -> Vec<DriveError> {
-    let mut found = Vec::new();
-    for index in torsion.sprockets {
-        found.extend(reference(place, "sprocket", index, parts.sprockets.len()));
-    }
-    if torsion.sprockets[0] == torsion.sprockets[1] {
-        found.push(conflict(place, "joins a sprocket with itself".into()));
-    }
-    let Torsion {
-        stiffness, damping, ..
-    } = *torsion;
-    for (name, ok, value, allowed) in [
-        (
-            "stiffness",
-            stiffness > 0.0,
-            stiffness,
-            "positive [N m/rad]",
-        ),
-        (
-            "damping",
-            damping >= 0.0,
-            damping,
-            "not negative [N m s/rad]",
-        ),
-    ] {
-        let ok = ok && value.is_finite();
-        found.extend(DriveError::require(ok, &format!("{place}.{name}"), value, allowed).err());
     }
     found
 }

@@ -42,11 +42,11 @@ pub struct Sprocket {
     pub side: Side,
     /// Centre in the assembled position \[m\].
     pub centre: Point,
-    /// How it turns.
-    pub rotation: Rotation,
+    /// Index of the shaft that it sits on.
+    pub shaft: usize,
     /// What holds its centre.
     pub support: Support,
-    /// Moment of inertia about the centre, shaft included \[kg m²\]; positive when free.
+    /// Moment of inertia about the centre \[kg m²\], beside that of its shaft; not negative.
     pub inertia: f64,
     /// Mass \[kg\]; positive when the centre is free to move.
     pub mass: f64,
@@ -59,29 +59,39 @@ pub struct Sprocket {
     pub gap_angle: f64,
 }
 
-/// How a sprocket turns.
+/// What turns: it carries sprockets of any chains, rigidly, or none.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shaft {
+    /// Name, unique among the shafts; none for the shaft of a single sprocket, which is called like that.
+    pub name: Option<String>,
+    /// What turns it.
+    pub rotation: Rotation,
+    /// Moment of inertia \[kg m²\] beside those of its sprockets, not negative.
+    pub inertia: f64,
+}
+
+impl Shaft {
+    /// The shaft of a single sprocket.
+    pub fn of_one(rotation: Rotation) -> Self {
+        Self {
+            name: None,
+            rotation,
+            inertia: 0.0,
+        }
+    }
+}
+
+/// What turns a shaft.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Rotation {
     /// The angle is given in time \[rad\].
     Prescribed(Motion),
-    /// The angle follows from inertia, chain and torques.
+    /// The angle follows from inertia, chains, couplings, gears and torques.
     Free {
         /// Torques that drive the shaft.
         drive: Vec<Torque>,
         /// Torques that load the shaft.
         load: Vec<Torque>,
-    },
-    /// The angle follows that of another sprocket: on one shaft with it, or through a pair of gears. Torques act
-    /// on the shaft of that one.
-    ///
-    /// ```text
-    /// θ − θ(0) = i (θ_leader − θ_leader(0))
-    /// ```
-    Geared {
-        /// Index of the other sprocket, which is not geared itself.
-        leader: usize,
-        /// Ratio i \[–\]: 1 on one shaft, −z_leader/z for a pair of spur gears.
-        ratio: f64,
     },
 }
 
@@ -239,6 +249,8 @@ pub enum Tighten {
 /// Chains run in planes of their own: a chain meets the sprockets and guides of its plane and passes all others.
 #[derive(Clone, Debug)]
 pub struct PlacedChain {
+    /// Name, unique among the chains; none where there is one only.
+    pub name: Option<String>,
     /// The chain.
     pub chain: Chain,
     /// Where it lies at the start.
@@ -249,19 +261,36 @@ pub struct PlacedChain {
     pub guides: Vec<usize>,
 }
 
-/// A shaft that twists: a torsional spring and damper between the hubs of two sprockets, without stress as assembled.
+/// A torsional spring and damper between two shafts, without stress as assembled.
 ///
 /// ```text
-/// M = k φ + c φ̇,   φ = (θ₁ − θ₁(0)) − (θ₀ − θ₀(0)),   M on the first hub, −M on the second
+/// M = k φ + c φ̇,   φ = (θ₁ − θ₁(0)) − (θ₀ − θ₀(0)),   M on the first shaft, −M on the second
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Torsion {
-    /// The two sprockets.
-    pub sprockets: [usize; 2],
-    /// Stiffness k \[N m/rad\], positive.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coupling {
+    /// Name, unique among the couplings.
+    pub name: String,
+    /// The two shafts.
+    pub shafts: [usize; 2],
+    /// Stiffness k \[N m/rad\], not negative.
     pub stiffness: f64,
     /// Damping c \[N m s/rad\], not negative.
     pub damping: f64,
+}
+
+/// A pair of gears between two shafts, without play or loss.
+///
+/// ```text
+/// θ₁ − θ₁(0) = i (θ₀ − θ₀(0))
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct GearPair {
+    /// Name, unique among the pairs.
+    pub name: String,
+    /// The two shafts.
+    pub shafts: [usize; 2],
+    /// Ratio i \[–\]: −z₀/z₁ for gears side by side, +z₀/z₁ where one runs within the other.
+    pub ratio: f64,
 }
 
 /// A drive as described, not yet checked.
@@ -275,8 +304,12 @@ pub struct Parts {
     pub guides: Vec<Guide>,
     /// Tensioners.
     pub tensioners: Vec<Tensioner>,
-    /// Torsional springs between shafts.
-    pub torsions: Vec<Torsion>,
+    /// Shafts, those of single sprockets included.
+    pub shafts: Vec<Shaft>,
+    /// Torsional springs and dampers between shafts.
+    pub couplings: Vec<Coupling>,
+    /// Pairs of gears between shafts.
+    pub gears: Vec<GearPair>,
     /// Whether the drive settles into static equilibrium under gravity and load before it runs.
     pub settle: bool,
     /// Gravity \[m/s²\], (x, y).

@@ -12,7 +12,7 @@
 pub enum Store {
     /// Kinetic energy of the rollers.
     Chain,
-    /// Kinetic energy of the sprockets, rotation and centre.
+    /// Kinetic energy of the sprockets, rotation and centre, and of their shafts.
     Sprockets,
     /// Kinetic energy of the tensioners.
     Carriers,
@@ -26,7 +26,7 @@ pub enum Store {
     Guides,
     /// Weight.
     Gravity,
-    /// Bearing springs.
+    /// Bearing springs and couplings.
     Supports,
     /// Tensioner springs.
     Tensioners,
@@ -45,7 +45,7 @@ pub enum Flow {
     GuideLoss,
     /// Loss by friction.
     FrictionLoss,
-    /// Loss in bearing dampers.
+    /// Loss in the dampers of bearings and couplings.
     SupportLoss,
     /// Loss in tensioners.
     TensionerLoss,

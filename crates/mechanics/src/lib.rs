@@ -9,7 +9,7 @@
 //! | particle chain | [`ChainModel::Particles`] | 2 per roller |
 //! | rigid links, ideal joints or clearance | [`ChainModel::Rigid`] | 3 per link |
 //! | free rollers on them | [`RollerModel::Free`] | 3 per roller |
-//! | sprocket, free to turn | [`Sprocket`] | 1 |
+//! | shaft, free to turn, with its sprockets | [`Shaft`] | 1 |
 //! | sprocket centre on springs | [`Support::Springs`] | 2 |
 //! | tensioner: slider or arm | [`Tensioner`] | 1 |
 //! | guide | [`Guide`] | 0 |
@@ -26,6 +26,7 @@ mod drive;
 mod energy;
 mod error;
 mod events;
+mod groups;
 mod lanes;
 mod modes;
 mod motion;
@@ -36,6 +37,7 @@ mod standing;
 mod system;
 mod tensioner;
 mod torque;
+mod trains;
 
 pub use assembly::{Assembled, Fitting, RollerLayout, Statics};
 pub use chain::{Chain, End, Ends};
@@ -43,15 +45,15 @@ pub use chains::ChainModel;
 pub use chains::links::model::{Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel};
 pub use check::clash::Clash;
 pub use drive::{
-    Adjust, Drive, Fit, Flank, Guide, GuideSupport, Layout, Parts, PlacedChain, Rotation, Sprocket,
-    Stop, Support, Surface, Tighten, Torsion, Touches,
+    Adjust, Coupling, Drive, Fit, Flank, GearPair, Guide, GuideSupport, Layout, Parts, PlacedChain,
+    Rotation, Shaft, Sprocket, Stop, Support, Surface, Tighten, Touches,
 };
 pub use energy::{Energy, Flow, Store};
 pub use error::{AssemblyError, DriveError};
 pub use events::{ContactEvent, ContactPair, EventKinds};
 pub use modes::{Mode, Modes};
 pub use motion::{Course, Harmonic, Motion, Table};
-pub use observe::Observation;
+pub use observe::{ChainSize, Observation};
 pub use system::{Input, Record, System};
 pub use tensioner::{Carrier, Hydraulic, Push, PushForce, Spring, Tensioner, carriers};
 pub use torque::{Argument, Torque};

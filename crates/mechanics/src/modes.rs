@@ -121,7 +121,7 @@ impl Assembled {
             wheels.iter().map(part).collect()
         };
         let angle = |wheel: &Wheel| {
-            let turned = wheel.turned_by();
+            let turned = wheel.turn.turned_by();
             turned.map_or(0.0, |(dof, ratio)| ratio * shape[dof])
         };
         let mut rollers = Vec::new();

@@ -66,12 +66,31 @@ pub struct Observation {
     pub sprocket_x: Vec<f64>,
     /// See `sprocket_x`.
     pub sprocket_y: Vec<f64>,
+    /// Rotation of every shaft with a name since the start \[rad\], (shafts,).
+    pub shaft_angle: Vec<f64>,
+    /// Its speed \[rad/s\], (shafts,).
+    pub shaft_speed: Vec<f64>,
+    /// Torque of every coupling on its first shaft \[N m\], (couplings,).
+    pub coupling_torque: Vec<f64>,
     /// Coordinate of every tensioner \[m or rad\], (tensioners,).
     pub tensioner_position: Vec<f64>,
     /// Push of every tensioner \[N or N m\], (tensioners,).
     pub tensioner_force: Vec<f64>,
     /// The energy ledger.
     pub energy: Energy,
+}
+
+/// How much there is of a chain.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ChainSize {
+    /// Rollers.
+    pub rollers: usize,
+    /// Links.
+    pub links: usize,
+    /// Joints with a state of their own.
+    pub joints: usize,
+    /// Spans between sprockets.
+    pub spans: usize,
 }
 
 impl System {
@@ -84,6 +103,40 @@ impl System {
                 (0..route.len()).map(move |i| format!("{}-{}", name(i), name(i + 1)))
             })
             .collect()
+    }
+
+    /// Names of the chains, empty where there is one only; and how many rollers, links, joints and spans each has.
+    pub fn chain_sizes(&self) -> Vec<(String, ChainSize)> {
+        let size = |member: &Member| ChainSize {
+            rollers: member.chain.rollers(),
+            links: member.chain.links(),
+            joints: member.chain.joints(),
+            spans: member.route.len(),
+        };
+        let members = self.chains.iter();
+        members
+            .map(|member| (member.name.clone().unwrap_or_default(), size(member)))
+            .collect()
+    }
+
+    /// Names of the shafts that have one, those that carry no more than a sprocket of their own left out.
+    pub fn shaft_names(&self) -> Vec<String> {
+        let shafts = self.bodies.shafts.iter();
+        shafts.filter_map(|shaft| shaft.name.clone()).collect()
+    }
+
+    /// The shaft of a name, or that of the sprocket of a name.
+    pub fn shaft_named(&self, name: &str) -> Option<usize> {
+        let mut shafts = self.bodies.shafts.iter();
+        let own = shafts.position(|shaft| shaft.name.as_deref() == Some(name));
+        let wheel = || self.bodies.wheels.iter().find(|wheel| wheel.name == name);
+        own.or_else(|| wheel().map(|wheel| wheel.shaft))
+    }
+
+    /// Names of the couplings.
+    pub fn coupling_names(&self) -> Vec<String> {
+        let couplings = self.bodies.couplings.iter();
+        couplings.map(|coupling| coupling.name.clone()).collect()
     }
 
     /// Names of the sprockets.
@@ -125,7 +178,13 @@ impl System {
     pub fn place(&self, dof: usize) -> String {
         let chain = self.chains.iter().find(|m| m.entries.contains(&dof));
         match chain {
-            Some(member) => member.chain.name(dof - member.entries.start),
+            Some(member) => {
+                let place = member.chain.name(dof - member.entries.start);
+                match &member.name {
+                    Some(name) => format!("{place}, in chain `{name}`"),
+                    None => place,
+                }
+            }
             None => self.bodies.name(dof),
         }
     }
@@ -151,6 +210,7 @@ impl System {
         self.observe_sprockets(at, record, out);
         self.observe_spans(out);
         Self::observe_guides(record, out);
+        self.observe_shafts(at, out);
         self.observe_tensioners(at, out);
         out.energy = self.energy(at, flows, record);
     }
@@ -287,6 +347,21 @@ impl System {
         }
     }
 
+    fn observe_shafts(&self, at: Moment<'_>, out: &mut Observation) {
+        out.shaft_angle.clear();
+        out.shaft_speed.clear();
+        out.coupling_torque.clear();
+        for shaft in self.bodies.shafts.iter().filter(|it| it.name.is_some()) {
+            let course = shaft.turn.course(at.t, at.q, at.v);
+            out.shaft_angle.push(course.position);
+            out.shaft_speed.push(course.rate);
+        }
+        for coupling in &self.bodies.couplings {
+            let [torque, _] = self.bodies.coupling_torque(coupling, at);
+            out.coupling_torque.push(torque);
+        }
+    }
+
     fn observe_tensioners(&self, at: Moment<'_>, out: &mut Observation) {
         out.tensioner_position.clear();
         out.tensioner_force.clear();
@@ -352,10 +427,14 @@ impl System {
                 add(Store::Guides, stored);
             }
         }
-        for torsion in &bodies.torsions {
-            let [twist, _] = bodies.twist(torsion, at);
+        for shaft in bodies.shafts.iter().filter(|shaft| shaft.inertia > 0.0) {
+            let rate = shaft.turn.course(at.t, at.q, at.v).rate;
+            add(Store::Sprockets, 0.5 * shaft.inertia * rate * rate);
+        }
+        for coupling in &bodies.couplings {
+            let [twist, _] = bodies.twist(coupling, at);
             // U = ½ k φ²
-            add(Store::Supports, 0.5 * torsion.stiffness * twist * twist);
+            add(Store::Supports, 0.5 * coupling.stiffness * twist * twist);
         }
         for slide in &bodies.slides {
             let pose = slide.pose(at.q, at.v);

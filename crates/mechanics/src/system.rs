@@ -1,26 +1,31 @@
 //! The compiled drive: chains and bodies, evaluated by the time stepping.
 //!
 //! ```text
-//! q = [ coordinates of the first chain | of the next ones | sprocket angles, centres, tensioners ]
+//! q = [ coordinates of the first chain | of the next ones | tensioners, shafts, sprocket centres ]
 //! ```
 
+mod beside;
 mod bodies;
 mod build;
 mod contacts;
 mod equations;
 mod inputs;
 mod member;
+mod shafts;
 mod slide;
 mod solve;
+
+use std::ops::Range;
 
 use chaindrive_geometry::Point;
 use chaindrive_integrate::{Continuity, Moment, SecondOrderSystem, Verdict, Weights};
 
-pub(crate) use bodies::{Bodies, RailSupport, Wheel, WheelRotation, WheelSupport};
+pub(crate) use bodies::{Bodies, RailSupport, Wheel, WheelSupport};
 pub(crate) use build::{Laid, LaidChain};
 pub(crate) use contacts::{BodyContacts, OnRail, OnWheel, RailContact};
 pub use inputs::Input;
 pub(crate) use member::Member;
+pub(crate) use shafts::{Shaft, Turn, TurnedBy};
 pub(crate) use slide::Slide;
 
 use crate::End;
@@ -35,12 +40,22 @@ pub struct System {
     pub(crate) chains: Vec<Member>,
     pub(crate) bodies: Bodies,
     pub(crate) dofs: usize,
+    /// What nothing joins with the rest.
+    pub(crate) groups: Vec<Group>,
     /// The log of contacts, where one is kept.
     pub(crate) events: Option<EventLog>,
     /// 1/ω of the stiffest mode, damping included and left out \[s\].
     time_scales: [f64; 2],
     /// Deepest first penetration accepted \[m\], when steps are to be rejected for it.
     onset_depth: Option<f64>,
+}
+
+/// Chains and bodies that nothing joins with others.
+#[derive(Clone, Debug)]
+pub(crate) struct Group {
+    pub(crate) chains: Vec<usize>,
+    /// Coordinates of its bodies, counted from the first of all bodies.
+    pub(crate) bodies: Range<usize>,
 }
 
 /// An end roller whose motion or load is given.

@@ -19,7 +19,7 @@ use nalgebra_sparse::factorization::CscCholesky;
 use nalgebra_sparse::{CooMatrix, CscMatrix};
 
 use crate::chains::{Balance, Load, Sum};
-use crate::system::{Member, WheelRotation, WheelSupport};
+use crate::system::{Member, WheelSupport};
 use crate::tensioner::Extension;
 use crate::{AssemblyError, System};
 
@@ -148,10 +148,8 @@ fn rounding(member: &Member, q: &[f64]) -> f64 {
 }
 
 fn has_load(system: &System) -> bool {
-    let torque = system.bodies.wheels.iter().any(|wheel| {
-        matches!(&wheel.rotation, WheelRotation::Free { drive, load, .. }
-            if !drive.is_empty() || !load.is_empty())
-    });
+    let mut shafts = system.bodies.shafts.iter();
+    let torque = shafts.any(|shaft| !(shaft.drive.is_empty() && shaft.load.is_empty()));
     torque || system.chains.iter().any(|member| member.chain.is_pulled())
 }
 
@@ -183,16 +181,23 @@ impl Unknowns {
                 );
             }
         }
-        for wheel in &system.bodies.wheels {
-            if let WheelRotation::Free { dof, .. } = wheel.rotation {
-                add(dof, wheel.pitch_radius * wheel.pitch_radius, &mut scale);
+        let bodies = &system.bodies;
+        for wheel in &bodies.wheels {
+            if let Some((dof, _)) = wheel.turn.turned_by() {
+                let lever = bodies.shafts[wheel.shaft].lever;
+                add(dof, lever * lever, &mut scale);
             }
             if let WheelSupport::Springs { dof, .. } = wheel.support {
                 add(dof, 1.0, &mut scale);
                 add(dof + 1, 1.0, &mut scale);
             }
         }
-        for slide in &system.bodies.slides {
+        for shaft in &bodies.shafts {
+            if let Some(dof) = shaft.led() {
+                add(dof, shaft.lever * shaft.lever, &mut scale);
+            }
+        }
+        for slide in &bodies.slides {
             if let Some(dof) = slide.dof {
                 add(dof, slide.carrier.reach().powi(2), &mut scale);
             }
@@ -390,21 +395,15 @@ impl Newton<'_> {
     fn add_bodies(&self, q: &[f64], load: Load, sum: &mut Sum<'_>) {
         let bodies = &self.system.bodies;
         let still = vec![0.0; q.len()];
-        for wheel in &bodies.wheels {
-            if let WheelRotation::Free {
-                dof,
-                drive,
-                load: loads,
-            } = &wheel.rotation
-            {
-                let angle = q[*dof] - wheel.angle;
-                let torque: f64 = drive
-                    .iter()
-                    .chain(loads)
-                    .map(|m| m.at(0.0, angle, 0.0))
-                    .sum();
-                sum.force(*dof, -load.torque * torque);
+        for shaft in &bodies.shafts {
+            if let Some((dof, ratio)) = shaft.turn.turned_by() {
+                let angle = shaft.turn.course(0.0, q, &still).position;
+                let torques = shaft.drive.iter().chain(&shaft.load);
+                let torque: f64 = torques.map(|m| m.at(0.0, angle, 0.0)).sum();
+                sum.force(dof, -load.torque * (ratio * torque));
             }
+        }
+        for wheel in &bodies.wheels {
             if let WheelSupport::Springs { dof, stiffness, .. } = &wheel.support {
                 for axis in 0..2 {
                     let away = q[dof + axis] - wheel.centre[axis];
@@ -414,12 +413,12 @@ impl Newton<'_> {
                 }
             }
         }
-        for torsion in &bodies.torsions {
-            let [twist, _] = bodies.twist(torsion, at_rest(q, &still));
-            for (entry, share) in bodies.twisted_by(torsion) {
-                sum.force(entry, torsion.stiffness * twist * share);
-                for (other, other_share) in bodies.twisted_by(torsion) {
-                    sum.stiffen(entry, other, torsion.stiffness * share * other_share);
+        for coupling in &bodies.couplings {
+            let [twist, _] = bodies.twist(coupling, at_rest(q, &still));
+            for (entry, share) in bodies.twisted_by(coupling) {
+                sum.force(entry, coupling.stiffness * twist * share);
+                for (other, other_share) in bodies.twisted_by(coupling) {
+                    sum.stiffen(entry, other, coupling.stiffness * share * other_share);
                 }
             }
         }

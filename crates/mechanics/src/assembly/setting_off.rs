@@ -5,14 +5,14 @@ use chaindrive_integrate::Moment;
 
 use crate::System;
 use crate::drive::{Layout, Stop};
-use crate::system::{Member, WheelRotation};
+use crate::system::{Member, Shaft, TurnedBy};
 
 /// Gives chains the velocities that their layouts ask for, and along routes the sprockets too.
 pub(super) fn set_off(system: &System, layouts: &[&Layout], q: &[f64], v: &mut [f64]) {
     let speeds = speeds(system, layouts);
-    for (wheel, speed) in system.bodies.wheels.iter().zip(&speeds) {
-        if let (WheelRotation::Free { dof, .. }, Some(speed)) = (&wheel.rotation, speed) {
-            v[*dof] = *speed;
+    for (shaft, speed) in system.bodies.shafts.iter().zip(&speeds) {
+        if let (Some(dof), Some(speed)) = (shaft.led(), speed) {
+            v[dof] = *speed;
         }
     }
     for (member, layout) in system.chains.iter().zip(layouts) {
@@ -26,23 +26,19 @@ pub(super) fn set_off(system: &System, layouts: &[&Layout], q: &[f64], v: &mut [
     }
 }
 
-/// Angular speeds of the sprockets \[rad/s\], where something prescribes them: their own motion, that of the shaft they sit on, or
-/// that of the chain that runs over them.
+/// Angular speeds of the shafts \[rad/s\], where something prescribes them: their own motion, that of a shaft they are joined with,
+/// or that of a chain that runs over their sprockets.
 ///
 /// ```text
 /// ω z p = the same for all sprockets of a route
 /// ```
 fn speeds(system: &System, layouts: &[&Layout]) -> Vec<Option<f64>> {
-    let wheels = &system.bodies.wheels;
-    let mut speeds: Vec<Option<f64>> = wheels
-        .iter()
-        .map(|wheel| {
-            // The course of a free shaft would be read off the state.
-            let given = !matches!(wheel.rotation, WheelRotation::Free { .. })
-                && wheel.turned_by().is_none();
-            given.then(|| wheel.course(0.0, &[], &[]).rate)
-        })
-        .collect();
+    let given = |shaft: &Shaft| match &shaft.turn.by {
+        TurnedBy::Motion(_) => Some(shaft.turn.course(0.0, &[], &[]).rate),
+        // That of a coordinate would be read off the state.
+        TurnedBy::Coordinate(_) => None,
+    };
+    let mut speeds: Vec<Option<f64>> = system.bodies.shafts.iter().map(given).collect();
     let mut waiting: Vec<usize> = (0..layouts.len()).collect();
     while share_shafts(system, &mut speeds)
         | share_chains(system, layouts, &mut waiting, &mut speeds)
@@ -50,25 +46,26 @@ fn speeds(system: &System, layouts: &[&Layout]) -> Vec<Option<f64>> {
     speeds
 }
 
-/// Passes speeds on along shafts; whether there was one to pass.
+/// Passes speeds on through gears and couplings; whether there was one to pass.
 fn share_shafts(system: &System, speeds: &mut [Option<f64>]) -> bool {
-    let wheels = &system.bodies.wheels;
+    let shafts = &system.bodies.shafts;
     let mut news = false;
-    for from in 0..wheels.len() {
-        let (Some(speed), Some((dof, ratio))) = (speeds[from], wheels[from].turned_by()) else {
+    for from in 0..shafts.len() {
+        let (Some(speed), Some((dof, ratio))) = (speeds[from], shafts[from].turn.turned_by())
+        else {
             continue;
         };
-        for (wheel, other) in wheels.iter().zip(speeds.iter_mut()) {
-            if let (None, Some((shaft, other_ratio))) = (*other, wheel.turned_by())
-                && shaft == dof
+        for (shaft, other) in shafts.iter().zip(speeds.iter_mut()) {
+            if let (None, Some((own, other_ratio))) = (*other, shaft.turn.turned_by())
+                && own == dof
             {
                 *other = Some(speed * other_ratio / ratio);
                 news = true;
             }
         }
     }
-    for torsion in &system.bodies.torsions {
-        for [from, to] in [[0, 1], [1, 0]].map(|ends| ends.map(|end| torsion.sprockets[end])) {
+    for coupling in &system.bodies.couplings {
+        for [from, to] in [[0, 1], [1, 0]].map(|ends| ends.map(|end| coupling.shafts[end])) {
             if speeds[to].is_none() && speeds[from].is_some() {
                 speeds[to] = speeds[from];
                 news = true;
@@ -96,7 +93,7 @@ fn share_chains(
             Stop::Sprocket(index) => {
                 let wheel = &system.bodies.wheels[*index];
                 // Chain speed along the path: v = s ω z p / 2π
-                speeds[*index].map(|speed| wheel.sense * speed / pitch_angle(pitch, wheel))
+                speeds[wheel.shaft].map(|speed| wheel.sense * speed / pitch_angle(pitch, wheel))
             }
             Stop::Guide(_) => None,
         });
@@ -104,7 +101,7 @@ fn share_chains(
         for &index in &member.route {
             let wheel = &system.bodies.wheels[index];
             let own = wheel.sense * speed * pitch_angle(pitch, wheel);
-            speeds[index].get_or_insert(own);
+            speeds[wheel.shaft].get_or_insert(own);
         }
         false
     });

@@ -14,7 +14,7 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Moment, SecondOrderSystem, Weights};
 
 use crate::energy::Flow;
-use crate::system::{RailSupport, Record, System, WheelRotation, WheelSupport};
+use crate::system::{RailSupport, Record, System, Turn, WheelSupport};
 use crate::{AssemblyError, Motion};
 
 /// Forces out of balance, relative to the largest joint force, at which a state counts as static.
@@ -80,11 +80,9 @@ fn tighten(
 ) -> Result<(), AssemblyError> {
     let mut bare = system.at_rest();
     bare.bodies.gravity = Vector::zeros();
-    for wheel in &mut bare.bodies.wheels {
-        if let WheelRotation::Free { drive, load, .. } = &mut wheel.rotation {
-            drive.clear();
-            load.clear();
-        }
+    for shaft in &mut bare.bodies.shafts {
+        shaft.drive.clear();
+        shaft.load.clear();
     }
     // Too long and too short, with what is missing of the tension there.
     let mut bracket: [Option<(f64, f64)>; 2] = [None, None];
@@ -223,14 +221,15 @@ impl System {
             if let WheelSupport::Prescribed { x, y } = &mut wheel.support {
                 (*x, *y) = (Motion::Held, Motion::Held);
             }
-            if let WheelRotation::Prescribed(motion) = &mut wheel.rotation {
-                *motion = Motion::Held;
-            }
-            if let WheelRotation::Free { .. } = wheel.rotation {
-                wheel.shaft_inertia = heaviest * wheel.pitch_radius * wheel.pitch_radius;
+        }
+        light.bodies.turns_mut().for_each(Turn::hold);
+        for index in 0..light.bodies.shafts.len() {
+            let shaft = &light.bodies.shafts[index];
+            if let Some(dof) = shaft.led() {
+                let inertia = heaviest * shaft.lever * shaft.lever;
+                light.bodies.inertias[dof - self.bodies.first] = inertia;
             }
         }
-        light.bodies.weigh(self.dofs - self.bodies.first);
         for rail in &mut light.bodies.rails {
             if let RailSupport::Prescribed { x, y } = &mut rail.support {
                 (*x, *y) = (Motion::Held, Motion::Held);
@@ -262,9 +261,10 @@ impl System {
             worst = worst.max(member.chain.imbalance(&a[member.entries.clone()]));
             pressed = pressed.max(member.chain.pressed(member.own(at), record));
         }
-        for wheel in &self.bodies.wheels {
-            if let WheelRotation::Free { dof, .. } = wheel.rotation {
-                worst = worst.max(wheel.shaft_inertia * a[dof].abs() / wheel.pitch_radius);
+        for shaft in &self.bodies.shafts {
+            if let Some(dof) = shaft.led() {
+                let inertia = self.bodies.inertia(dof);
+                worst = worst.max(inertia * a[dof].abs() / shaft.lever);
             }
         }
         let weight = self.heaviest() * self.bodies.gravity.norm();

@@ -165,7 +165,7 @@ impl Particles {
         for (on, wrench) in contacts.teeth.iter().zip(&record.loads.wheel_wrenches) {
             let stiffness = on.contacts.surface.stiffness(wrench.depth);
             let seated: usize = on.contacts.runs.iter().map(|run| run.count).sum();
-            let mobility = bodies.wheels[on.wheel].mobility(&bodies.slides);
+            let mobility = bodies.mobility(on.wheel);
             let shared = mobility * seated as f64;
             contact = contact.max(stiffness * (self.lightest + shared));
             drag = drag.max(wrench.damping * (self.lightest + shared));

@@ -5,9 +5,10 @@ use chaindrive_integrate::Moment;
 
 use super::Slide;
 use super::inputs::Inputs;
+use super::shafts::{Shaft, Turn};
 use crate::contact::Frame;
 use crate::motion::Course;
-use crate::{Motion, Torque, Torsion};
+use crate::{Coupling, Motion};
 
 /// What chains touch.
 #[derive(Clone, Debug)]
@@ -15,7 +16,8 @@ pub(crate) struct Bodies {
     pub(crate) wheels: Vec<Wheel>,
     pub(crate) rails: Vec<Rail>,
     pub(crate) slides: Vec<Slide>,
-    pub(crate) torsions: Vec<Torsion>,
+    pub(crate) shafts: Vec<Shaft>,
+    pub(crate) couplings: Vec<Coupling>,
     pub(crate) gravity: Vector,
     /// Where their coordinates begin in the state, behind those of all chains.
     pub(crate) first: usize,
@@ -32,43 +34,19 @@ pub(crate) struct Wheel {
     /// Centre and gap angle at assembly.
     pub(crate) centre: Point,
     pub(crate) angle: f64,
-    pub(crate) rotation: WheelRotation,
+    /// The angle of its first gap.
+    pub(crate) turn: Turn,
+    /// Index of its shaft.
+    pub(crate) shaft: usize,
     pub(crate) support: WheelSupport,
-    /// Its own inertia \[kg m²\], and that of all that turns with it about its own shaft.
+    /// Its own inertia \[kg m²\].
     pub(crate) inertia: f64,
-    pub(crate) shaft_inertia: f64,
     pub(crate) mass: f64,
     pub(crate) teeth: u32,
     pub(crate) pitch_radius: f64,
     pub(crate) pitch: f64,
     /// +1 where the chain turns counter-clockwise around the wheel.
     pub(crate) sense: f64,
-}
-
-/// How a wheel turns.
-#[derive(Clone, Debug)]
-pub(crate) enum WheelRotation {
-    Prescribed(Motion),
-    Free {
-        dof: usize,
-        drive: Vec<Torque>,
-        load: Vec<Torque>,
-    },
-    Geared {
-        leader: Leader,
-        ratio: f64,
-    },
-}
-
-/// What a geared wheel follows.
-#[derive(Clone, Debug)]
-pub(crate) enum Leader {
-    Prescribed(Motion),
-    /// A free wheel, and its angle at assembly.
-    Free {
-        dof: usize,
-        angle: f64,
-    },
 }
 
 /// What holds a wheel's centre.
@@ -190,16 +168,20 @@ impl Bodies {
             squared = squared.max(own);
             damping = damping.max(drag);
         }
-        for torsion in &self.torsions {
-            let ends = torsion.sprockets.map(|index| {
-                let wheel = &self.wheels[index];
-                let turned = wheel.turned_by();
-                turned.map_or(0.0, |(_, ratio)| ratio * ratio / wheel.shaft_inertia)
+        for shaft in &self.shafts {
+            if let Some((dof, ratio)) = shaft.turn.turned_by() {
+                damping = damping.max(ratio * ratio * shaft.drag() / self.inertia(dof));
+            }
+        }
+        for coupling in &self.couplings {
+            let ends = coupling.shafts.map(|index| {
+                let turned = self.shafts[index].turn.turned_by();
+                turned.map_or(0.0, |(dof, ratio)| ratio * ratio / self.inertia(dof))
             });
             // k (φ₁ − φ₀)² ≤ 2 k (φ₀² + φ₁²), exactly the sum for two shafts alone
             let light = ends[0] + ends[1];
-            squared = squared.max(torsion.stiffness * light);
-            damping = damping.max(torsion.damping * light);
+            squared = squared.max(coupling.stiffness * light);
+            damping = damping.max(coupling.damping * light);
         }
         for slide in &self.slides {
             let lever = slide.carrier.extension(0.0).lever;
@@ -214,15 +196,10 @@ impl Bodies {
     pub(crate) fn move_to(&mut self, first: usize) {
         let old = std::mem::replace(&mut self.first, first);
         let shift = |dof: &mut usize| *dof = *dof - old + first;
+        for turn in self.turns_mut() {
+            turn.move_dof(|dof| dof - old + first);
+        }
         for wheel in &mut self.wheels {
-            match &mut wheel.rotation {
-                WheelRotation::Free { dof, .. }
-                | WheelRotation::Geared {
-                    leader: Leader::Free { dof, .. },
-                    ..
-                } => shift(dof),
-                WheelRotation::Prescribed(_) | WheelRotation::Geared { .. } => {}
-            }
             if let WheelSupport::Springs { dof, .. } = &mut wheel.support {
                 shift(dof);
             }
@@ -234,11 +211,16 @@ impl Bodies {
         }
     }
 
-    /// Visits (entry of the state, mass or inertia) of everything that has a coordinate.
+    /// Visits (entry of the state, mass or inertia) of everything that moves with a coordinate.
     fn each_inertia(&self, mut visit: impl FnMut(usize, f64)) {
+        for shaft in &self.shafts {
+            if let Some((dof, ratio)) = shaft.turn.turned_by() {
+                visit(dof, ratio * ratio * shaft.inertia);
+            }
+        }
         for wheel in &self.wheels {
-            if let WheelRotation::Free { dof, .. } = wheel.rotation {
-                visit(dof, wheel.shaft_inertia);
+            if let Some((dof, ratio)) = wheel.turn.turned_by() {
+                visit(dof, ratio * ratio * wheel.inertia);
             }
             if let WheelSupport::Springs { dof, .. } = wheel.support {
                 visit(dof, wheel.mass);
@@ -255,17 +237,18 @@ impl Bodies {
     /// Works out the inertias of all coordinates, of which there are `count`.
     pub(crate) fn weigh(&mut self, count: usize) {
         let mut inertias = vec![0.0; count];
-        self.each_inertia(|dof, inertia| inertias[dof - self.first] = inertia);
+        self.each_inertia(|dof, inertia| inertias[dof - self.first] += inertia);
         self.inertias = inertias;
     }
 
     /// Bearings, tensioners and shafts: visits (entry of the state, stiffness, damping) of what they have of their own.
     pub(crate) fn each_support(&self, mut visit: impl FnMut(usize, f64, f64)) {
-        for wheel in &self.wheels {
-            if let WheelRotation::Free { dof, drive, load } = &wheel.rotation {
-                let drag: f64 = drive.iter().chain(load).map(Torque::drag).sum();
-                visit(*dof, 0.0, drag);
+        for shaft in &self.shafts {
+            if let Some((dof, ratio)) = shaft.turn.turned_by() {
+                visit(dof, 0.0, ratio * ratio * shaft.drag());
             }
+        }
+        for wheel in &self.wheels {
             if let WheelSupport::Springs {
                 dof,
                 stiffness,
@@ -289,43 +272,28 @@ impl Bodies {
         }
     }
 
-    /// Twist φ of a shaft and its rate.
-    pub(crate) fn twist(&self, torsion: &Torsion, at: Moment<'_>) -> [f64; 2] {
-        let [from, to] = torsion.sprockets.map(|index| {
-            let wheel = &self.wheels[index];
-            let course = wheel.course(at.t, at.q, at.v);
-            [course.position - wheel.angle, course.rate]
-        });
-        [to[0] - from[0], to[1] - from[1]]
-    }
-
-    /// Coordinates that twist a shaft, with ∂φ/∂q.
-    pub(crate) fn twisted_by(&self, torsion: &Torsion) -> impl Iterator<Item = (usize, f64)> {
-        let ends = torsion.sprockets.into_iter().zip([-1.0, 1.0]);
-        ends.filter_map(|(index, sign)| {
-            let turned = self.wheels[index].turned_by();
-            turned.map(|(dof, ratio)| (dof, sign * ratio))
-        })
-    }
-
     /// What a coordinate is, in words.
     pub(crate) fn name(&self, dof: usize) -> String {
-        let wheel = self
-            .wheels
-            .iter()
-            .find_map(|wheel| match (&wheel.rotation, &wheel.support) {
-                (WheelRotation::Free { dof: angle, .. }, _) if *angle == dof => {
-                    Some(format!("the angle of sprocket `{}`", wheel.name))
+        let shaft = || {
+            let index = self.shafts.iter().position(|s| s.led() == Some(dof))?;
+            let called = match &self.shafts[index].name {
+                Some(name) => format!("shaft `{name}`"),
+                None => {
+                    let wheel = self.wheels.iter().find(|wheel| wheel.shaft == index)?;
+                    format!("sprocket `{}`", wheel.name)
                 }
-                (_, WheelSupport::Springs { dof: centre, .. })
-                    if (*centre..centre + 2).contains(&dof) =>
-                {
-                    Some(format!("the centre of sprocket `{}`", wheel.name))
-                }
-                _ => None,
-            });
+            };
+            Some(format!("the angle of {called}"))
+        };
+        let wheel = self.wheels.iter().find_map(|wheel| match wheel.support {
+            WheelSupport::Springs { dof: centre, .. } if (centre..centre + 2).contains(&dof) => {
+                Some(format!("the centre of sprocket `{}`", wheel.name))
+            }
+            _ => None,
+        });
         let slide = self.slides.iter().find(|slide| slide.dof == Some(dof));
         wheel
+            .or_else(shaft)
             .or_else(|| slide.map(|slide| format!("tensioner `{}`", slide.name)))
             .unwrap_or_else(|| format!("coordinate {dof}"))
     }
@@ -335,48 +303,7 @@ impl Wheel {
     /// Angle of the first gap axis and its rates at time `t`.
     #[inline(always)]
     pub(crate) fn course(&self, t: f64, q: &[f64], v: &[f64]) -> Course {
-        match &self.rotation {
-            WheelRotation::Prescribed(motion) => {
-                let course = motion.at(t);
-                Course {
-                    position: self.angle + course.position,
-                    ..course
-                }
-            }
-            WheelRotation::Free { dof, .. } => Course {
-                position: q[*dof],
-                rate: v[*dof],
-                acceleration: 0.0,
-            },
-            WheelRotation::Geared { leader, ratio } => {
-                let lead = match leader {
-                    Leader::Prescribed(motion) => motion.at(t),
-                    Leader::Free { dof, angle } => Course {
-                        position: q[*dof] - angle,
-                        rate: v[*dof],
-                        acceleration: 0.0,
-                    },
-                };
-                // θ − θ₀ = i (θ_leader − θ_leader,₀)
-                Course {
-                    position: self.angle + ratio * lead.position,
-                    rate: ratio * lead.rate,
-                    acceleration: ratio * lead.acceleration,
-                }
-            }
-        }
-    }
-
-    /// The coordinate that turns the wheel, and how far it turns with that; none where the angle is given in time.
-    pub(crate) fn turned_by(&self) -> Option<(usize, f64)> {
-        match &self.rotation {
-            WheelRotation::Free { dof, .. } => Some((*dof, 1.0)),
-            WheelRotation::Geared {
-                leader: Leader::Free { dof, .. },
-                ratio,
-            } => Some((*dof, *ratio)),
-            WheelRotation::Prescribed(_) | WheelRotation::Geared { .. } => None,
-        }
+        self.turn.course(t, q, v)
     }
 
     /// The tensioner that carries it.
@@ -421,34 +348,31 @@ impl Wheel {
     }
 }
 
-impl Wheel {
-    /// How easily a force at the teeth moves the rim \[1/kg\]: R²/J of a free shaft, 1/m of a free
+impl Bodies {
+    /// How easily a force at the teeth moves the rim of a wheel \[1/kg\]: R²/J of a free shaft, 1/m of a free
     /// centre.
-    pub(crate) fn mobility(&self, slides: &[Slide]) -> f64 {
-        let turning = match &self.rotation {
-            WheelRotation::Prescribed(_) => 0.0,
-            WheelRotation::Free { .. } => {
-                self.pitch_radius * self.pitch_radius / self.shaft_inertia
-            }
-            // Rim and shaft of the leader differ by the ratio.
-            WheelRotation::Geared { ratio, .. } => match self.turned_by() {
-                Some(_) => (self.pitch_radius * ratio).powi(2) / self.shaft_inertia,
-                None => 0.0,
-            },
+    pub(crate) fn mobility(&self, wheel: usize) -> f64 {
+        let wheel = &self.wheels[wheel];
+        let turning = match wheel.turn.turned_by() {
+            // Rim and coordinate differ by the ratio.
+            Some((dof, ratio)) => (wheel.pitch_radius * ratio).powi(2) / self.inertia(dof),
+            None => 0.0,
         };
-        let moving = match &self.support {
+        let moving = match &wheel.support {
             WheelSupport::Fixed | WheelSupport::Prescribed { .. } => 0.0,
-            WheelSupport::Springs { .. } => 1.0 / self.mass,
+            WheelSupport::Springs { .. } => 1.0 / wheel.mass,
             WheelSupport::Carried(index) => {
-                let slide = &slides[*index];
-                let lever = slide.carrier.squared_lever(0.0, self.centre);
+                let slide = &self.slides[*index];
+                let lever = slide.carrier.squared_lever(0.0, wheel.centre);
                 slide.dof.map_or(0.0, |_| lever / slide.inertia)
             }
         };
         turning + moving
     }
+}
 
-    /// ω² and damping rate of the wheel on its own bearing and shaft.
+impl Wheel {
+    /// ω² and damping rate of the wheel on its own bearing.
     pub(crate) fn own_rates(&self) -> [f64; 2] {
         let mut rates = [0.0_f64; 2];
         if let WheelSupport::Springs {
@@ -457,10 +381,6 @@ impl Wheel {
         {
             rates[0] = stiffness[0].max(stiffness[1]) / self.mass;
             rates[1] = damping[0].max(damping[1]) / self.mass;
-        }
-        if let WheelRotation::Free { drive, load, .. } = &self.rotation {
-            let drag: f64 = drive.iter().chain(load).map(Torque::drag).sum();
-            rates[1] = rates[1].max(drag / self.shaft_inertia);
         }
         rates
     }

@@ -1,18 +1,20 @@
 //! From the laid drive to flat arrays.
 
 use std::collections::HashSet;
+use std::ops::Range;
 
 use chaindrive_geometry::Point;
 
-use super::bodies::{
-    Anchor, Bodies, Leader, Rail, RailSupport, Wheel, WheelRotation, WheelSupport,
-};
-use super::{BodyContacts, Member, OnRail, OnWheel, RailContact, Slide, System};
+use super::bodies::{Anchor, Bodies, Rail, RailSupport, Wheel, WheelSupport};
+use super::shafts::{Shaft, Turn, TurnedBy};
+use super::{BodyContacts, Group, Member, OnRail, OnWheel, RailContact, Slide, System};
 use crate::chains;
 use crate::contact::{Contacts, PlateContact, Shape, Teeth};
 use crate::drive::{Guide, GuideSupport, Parts, PlacedChain, Rotation, Sprocket, Support, Touches};
+use crate::groups::groups;
 use crate::profile::{GapFace, Profile};
 use crate::tensioner::Weight;
+use crate::trains::{InTrain, trains};
 use crate::{AssemblyError, Chain, Motion, Push};
 
 /// A drive with its chains laid: where everything is at t = 0.
@@ -45,29 +47,26 @@ impl System {
         for (placed, lies) in parts.chains.iter().zip(&laid.chains) {
             let (built, own) = chains::Chain::laid(&placed.chain, &lies.positions);
             let contacts = contacts(laid, placed, &mut touched)?;
-            chains.push(Member::new(built, q.len(), contacts, lies.route.clone()));
+            let mut member = Member::new(built, q.len(), contacts, lies.route.clone());
+            member.name.clone_from(&placed.name);
+            chains.push(member);
             q.extend(own);
         }
         let first = q.len();
-        let mut next = first;
-        let mut take = |count: usize| {
-            next += count;
-            next - count
-        };
-        let slides = slides(parts, &mut take);
-        let mut wheels: Vec<Wheel> = parts
-            .sprockets
-            .iter()
-            .zip(&laid.gap_angles)
-            .map(|(sprocket, &angle)| wheel(sprocket, angle, &mut take))
-            .collect();
-        gear(parts, &mut wheels);
-        let dofs = next;
+        let trains = trains(parts);
+        let places = Places::new(parts, &trains, first);
+        let wheels = wheels(laid, &trains, &places);
+        let shafts = shafts(laid, &trains, &places);
+        let slides = slides(parts, &places);
+        let dofs = places.groups.last().map_or(first, |range| range.end);
         q.resize(dofs, 0.0);
-        for wheel in &wheels {
-            if let WheelRotation::Free { dof, .. } = wheel.rotation {
-                q[dof] = wheel.angle;
+        for shaft in &shafts {
+            if let Some(dof) = shaft.led() {
+                // Where the shaft has not turned yet.
+                q[dof] = 0.0 - shaft.turn.zero;
             }
+        }
+        for wheel in &wheels {
             if let WheelSupport::Springs { dof, .. } = wheel.support {
                 q[dof] = wheel.centre.x;
                 q[dof + 1] = wheel.centre.y;
@@ -77,7 +76,8 @@ impl System {
             wheels,
             rails: parts.guides.iter().map(rail).collect(),
             slides,
-            torsions: parts.torsions.clone(),
+            shafts,
+            couplings: parts.couplings.clone(),
             gravity: parts.gravity,
             first,
             inertias: Vec::new(),
@@ -88,6 +88,7 @@ impl System {
             chains,
             bodies,
             dofs,
+            groups: places.solved(first),
             events: None,
             time_scales: [f64::INFINITY; 2],
             onset_depth: None,
@@ -97,6 +98,9 @@ impl System {
         Ok((system, q))
     }
 }
+
+/// Length that turns the angle of a shaft into metres where there is no sprocket \[m\].
+const NO_SPROCKET: f64 = 0.1;
 
 /// Bodies that chains before this one touch.
 #[derive(Default)]
@@ -131,32 +135,142 @@ fn contacts(
     })
 }
 
-/// Lets geared wheels follow their leaders, and gives every shaft the inertia of all that turns with it.
-fn gear(parts: &Parts, wheels: &mut [Wheel]) {
-    for (index, sprocket) in parts.sprockets.iter().enumerate() {
-        let Rotation::Geared { leader, ratio } = sprocket.rotation else {
-            continue;
+/// Where the coordinates of the bodies stand in the state, those of a group side by side.
+struct Places {
+    slides: Vec<Option<usize>>,
+    /// What turns the shafts that lead a train.
+    shafts: Vec<TurnedBy>,
+    /// Centres on springs, x before y.
+    centres: Vec<Option<usize>>,
+    groups: Vec<Range<usize>>,
+    chains: Vec<Vec<usize>>,
+}
+
+impl Places {
+    fn new(parts: &Parts, trains: &[InTrain], first: usize) -> Self {
+        let mut places = Self {
+            slides: vec![None; parts.tensioners.len()],
+            shafts: parts.shafts.iter().map(given).collect(),
+            centres: vec![None; parts.sprockets.len()],
+            groups: Vec::new(),
+            chains: Vec::new(),
         };
-        let angle = wheels[leader].angle;
-        let followed = match &wheels[leader].rotation {
-            WheelRotation::Free { dof, .. } => Leader::Free { dof: *dof, angle },
-            WheelRotation::Prescribed(motion) => Leader::Prescribed(motion.clone()),
-            WheelRotation::Geared { leader, .. } => leader.clone(),
+        let mut next = first;
+        let mut take = |count: usize| {
+            next += count;
+            next - count
         };
-        wheels[leader].shaft_inertia += ratio * ratio * sprocket.inertia;
-        wheels[index].rotation = WheelRotation::Geared {
-            leader: followed,
-            ratio,
-        };
-    }
-    for (index, sprocket) in parts.sprockets.iter().enumerate() {
-        if let Rotation::Geared { leader, .. } = sprocket.rotation {
-            wheels[index].shaft_inertia = wheels[leader].shaft_inertia;
+        for group in groups(parts) {
+            let start = take(0);
+            for &index in &group.tensioners {
+                let moves = parts.tensioners[index].push != Push::Locked;
+                places.slides[index] = moves.then(|| take(1));
+            }
+            for &index in &group.sprockets {
+                let sprocket = &parts.sprockets[index];
+                places.turn(parts, trains[sprocket.shaft].leader, &mut take);
+                if let Support::Springs { .. } = sprocket.support {
+                    places.centres[index] = Some(take(2));
+                }
+            }
+            for &index in &group.shafts {
+                places.turn(parts, trains[index].leader, &mut take);
+            }
+            places.groups.push(start..take(0));
+            places.chains.push(group.chains);
         }
+        places
+    }
+
+    /// Gives a free shaft its coordinate, once.
+    fn turn(&mut self, parts: &Parts, leader: usize, take: &mut impl FnMut(usize) -> usize) {
+        let free = matches!(parts.shafts[leader].rotation, Rotation::Free { .. });
+        let placed = matches!(self.shafts[leader], TurnedBy::Coordinate(_));
+        if free && !placed {
+            self.shafts[leader] = TurnedBy::Coordinate(take(1));
+        }
+    }
+
+    /// The groups of the system.
+    fn solved(self, first: usize) -> Vec<Group> {
+        let groups = self.chains.into_iter().zip(self.groups);
+        let relative = |range: Range<usize>| range.start - first..range.end - first;
+        groups
+            .map(|(chains, range)| Group {
+                chains,
+                bodies: relative(range),
+            })
+            .collect()
     }
 }
 
-fn slides(parts: &Parts, take: &mut impl FnMut(usize) -> usize) -> Vec<Slide> {
+/// How a shaft, or a sprocket on it, turns from an angle on.
+fn turn(laid: &Laid, train: InTrain, angle: f64, places: &Places) -> Turn {
+    let parts = &laid.parts;
+    let InTrain { leader, ratio } = train;
+    // The coordinate begins at the gap angle of the first sprocket on the shaft that leads, so that the angle of a
+    // sprocket alone on its shaft is the coordinate itself.
+    let first = parts.sprockets.iter().position(|s| s.shaft == leader);
+    let start = first.map_or(0.0, |sprocket| laid.gap_angles[sprocket]);
+    let by = places.shafts[leader].clone();
+    let zero = match by {
+        TurnedBy::Coordinate(_) => angle - ratio * start,
+        TurnedBy::Motion(_) => angle,
+    };
+    Turn { by, ratio, zero }
+}
+
+/// The motion of a shaft whose angle is given in time; others get a coordinate.
+fn given(shaft: &crate::Shaft) -> TurnedBy {
+    TurnedBy::Motion(match &shaft.rotation {
+        Rotation::Prescribed(motion) => motion.clone(),
+        Rotation::Free { .. } => Motion::Held,
+    })
+}
+
+fn wheels(laid: &Laid, trains: &[InTrain], places: &Places) -> Vec<Wheel> {
+    let sprockets = laid.parts.sprockets.iter().zip(&laid.gap_angles);
+    sprockets
+        .zip(&places.centres)
+        .map(|((sprocket, &angle), &centre)| {
+            let turn = turn(laid, trains[sprocket.shaft], angle, places);
+            wheel(sprocket, angle, turn, centre)
+        })
+        .collect()
+}
+
+fn shafts(laid: &Laid, trains: &[InTrain], places: &Places) -> Vec<Shaft> {
+    let parts = &laid.parts;
+    let lever = |leader: usize| {
+        let in_train = |sprocket: &&Sprocket| trains[sprocket.shaft].leader == leader;
+        let own = parts.sprockets.iter().filter(in_train);
+        let rims = own.map(|s| s.gap.pitch_radius * trains[s.shaft].ratio.abs());
+        let all = || parts.sprockets.iter().map(|s| s.gap.pitch_radius);
+        // A shaft without sprockets is as large as those around it.
+        rims.reduce(f64::max)
+            .or_else(|| all().reduce(f64::max))
+            .unwrap_or(NO_SPROCKET)
+    };
+    let shafts = parts.shafts.iter().zip(trains).enumerate();
+    let shafts = shafts.map(|(index, (shaft, &train))| {
+        let (drive, load) = match &shaft.rotation {
+            Rotation::Prescribed(_) => (Vec::new(), Vec::new()),
+            Rotation::Free { drive, load } => (drive.clone(), load.clone()),
+        };
+        Shaft {
+            name: shaft.name.clone(),
+            turn: turn(laid, train, 0.0, places),
+            lever: lever(train.leader),
+            leads: train.leader == index,
+            inertia: shaft.inertia,
+            drive,
+            load,
+        }
+    });
+    shafts.collect()
+}
+
+fn slides(parts: &Parts, places: &Places) -> Vec<Slide> {
     parts
         .tensioners
         .iter()
@@ -174,49 +288,37 @@ fn slides(parts: &Parts, take: &mut impl FnMut(usize) -> usize) -> Vec<Slide> {
                 push: tensioner.push,
                 own: tensioner.inertia,
                 inertia: carrier.reduced(0.0, tensioner.inertia, &carried).inertia,
-                dof: (tensioner.push != Push::Locked).then(|| take(1)),
+                dof: places.slides[index],
                 carried,
             }
         })
         .collect()
 }
 
-fn wheel(sprocket: &Sprocket, angle: f64, take: &mut impl FnMut(usize) -> usize) -> Wheel {
+fn wheel(sprocket: &Sprocket, angle: f64, turn: Turn, centre: Option<usize>) -> Wheel {
     let gap = &sprocket.gap;
-    let rotation = match &sprocket.rotation {
-        Rotation::Prescribed(motion) => WheelRotation::Prescribed(motion.clone()),
-        Rotation::Free { drive, load } => WheelRotation::Free {
-            dof: take(1),
-            drive: drive.clone(),
-            load: load.clone(),
-        },
-        // Until all wheels are there: see `gear`.
-        Rotation::Geared { ratio, .. } => WheelRotation::Geared {
-            leader: Leader::Prescribed(Motion::Held),
-            ratio: *ratio,
-        },
-    };
-    let support = match &sprocket.support {
-        Support::Fixed => WheelSupport::Fixed,
-        Support::Prescribed { x, y } => WheelSupport::Prescribed {
+    let support = match (&sprocket.support, centre) {
+        (Support::Prescribed { x, y }, _) => WheelSupport::Prescribed {
             x: x.clone(),
             y: y.clone(),
         },
-        Support::Springs { stiffness, damping } => WheelSupport::Springs {
-            dof: take(2),
+        (Support::Springs { stiffness, damping }, Some(dof)) => WheelSupport::Springs {
+            dof,
             stiffness: *stiffness,
             damping: *damping,
         },
-        Support::Tensioner(index) => WheelSupport::Carried(*index),
+        (Support::Tensioner(index), _) => WheelSupport::Carried(*index),
+        // Springs have a place.
+        (Support::Fixed | Support::Springs { .. }, _) => WheelSupport::Fixed,
     };
     Wheel {
         name: sprocket.name.clone(),
         centre: sprocket.centre,
         angle,
-        rotation,
+        turn,
+        shaft: sprocket.shaft,
         support,
         inertia: sprocket.inertia,
-        shaft_inertia: sprocket.inertia,
         mass: sprocket.mass,
         teeth: gap.teeth,
         pitch_radius: gap.pitch_radius,

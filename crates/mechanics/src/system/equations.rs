@@ -3,7 +3,7 @@
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
 
-use super::bodies::{Bodies, RailSupport, WheelRotation, WheelSupport};
+use super::bodies::{Bodies, RailSupport, WheelSupport};
 use crate::contact::Wrench;
 use crate::energy::Flow;
 use crate::tensioner::Extension;
@@ -18,36 +18,9 @@ impl Bodies {
         [wheel_wrenches, rail_wrenches]: [&[Wrench]; 2],
     ) {
         self.turn_shafts(at, a, rates, wheel_wrenches);
-        for (i, (wheel, wrench)) in self.wheels.iter().zip(wheel_wrenches).enumerate() {
-            let course = wheel.course(at.t, at.q, at.v);
+        for (wheel, wrench) in self.wheels.iter().zip(wheel_wrenches) {
             let (centre, velocity, acceleration) =
                 wheel.centre_course(at.t, at.q, at.v, &self.slides);
-            match &wheel.rotation {
-                WheelRotation::Prescribed(_) => {
-                    // P = (J α − M) ω
-                    let torque = wheel.inertia * course.acceleration - wrench.moment;
-                    rates[Flow::Driver as usize] += torque * course.rate;
-                }
-                WheelRotation::Free { dof, drive, load } => {
-                    let sum = |torques: &[crate::Torque]| -> f64 {
-                        let angle = course.position - wheel.angle;
-                        torques.iter().map(|m| m.at(at.t, angle, course.rate)).sum()
-                    };
-                    let (driving, loading) = (sum(drive) + self.inputs.torque(i), sum(load));
-                    rates[Flow::DriveTorque as usize] += driving * course.rate;
-                    rates[Flow::Load as usize] += loading * course.rate;
-                    // J α = M + M_drive + M_load, and what else hangs on the shaft
-                    let hanging = a[*dof];
-                    let own = wrench.moment + driving + loading;
-                    a[*dof] = (own + hanging) / wheel.shaft_inertia;
-                }
-                WheelRotation::Geared { .. } => {
-                    if wheel.turned_by().is_none() {
-                        let torque = wheel.inertia * course.acceleration - wrench.moment;
-                        rates[Flow::Driver as usize] += torque * course.rate;
-                    }
-                }
-            }
             match &wheel.support {
                 WheelSupport::Fixed => {}
                 WheelSupport::Prescribed { .. } => {
@@ -120,7 +93,11 @@ impl Bodies {
         }
     }
 
-    /// Torques of twisted shafts and of geared wheels, on the coordinates that they turn.
+    /// Accelerations of the shafts.
+    ///
+    /// ```text
+    /// (Σ i² J) α = Σ i (M_chain + M_drive + M_load + M_coupling),   over all that turns with a coordinate
+    /// ```
     fn turn_shafts(
         &self,
         at: Moment<'_>,
@@ -129,27 +106,52 @@ impl Bodies {
         wheel_wrenches: &[Wrench],
     ) {
         for (wheel, wrench) in self.wheels.iter().zip(wheel_wrenches) {
-            if let (WheelRotation::Geared { .. }, Some((dof, ratio))) =
-                (&wheel.rotation, wheel.turned_by())
-            {
+            if let Some((dof, ratio)) = wheel.turn.turned_by() {
                 a[dof] += ratio * wrench.moment;
+            } else {
+                // P = (J α − M) ω
+                let course = wheel.course(at.t, at.q, at.v);
+                let torque = wheel.inertia * course.acceleration - wrench.moment;
+                rates[Flow::Driver as usize] += torque * course.rate;
             }
         }
-        for torsion in &self.torsions {
-            let [twist, rate] = self.twist(torsion, at);
-            // M = k φ + c φ̇
-            let torque = torsion.stiffness * twist + torsion.damping * rate;
-            rates[Flow::SupportLoss as usize] += torsion.damping * rate * rate;
-            for (index, sign) in torsion.sprockets.into_iter().zip([1.0, -1.0]) {
-                let wheel = &self.wheels[index];
-                if let Some((dof, ratio)) = wheel.turned_by() {
+        for (i, shaft) in self.shafts.iter().enumerate() {
+            let course = shaft.turn.course(at.t, at.q, at.v);
+            let sum = |torques: &[crate::Torque]| -> f64 {
+                let angle = course.position;
+                torques.iter().map(|m| m.at(at.t, angle, course.rate)).sum()
+            };
+            let (driving, loading) = (
+                sum(&shaft.drive) + self.inputs.torque(i),
+                sum(&shaft.load),
+            );
+            rates[Flow::DriveTorque as usize] += driving * course.rate;
+            rates[Flow::Load as usize] += loading * course.rate;
+            if let Some((dof, ratio)) = shaft.turn.turned_by() {
+                a[dof] += ratio * driving;
+                a[dof] += ratio * loading;
+            } else {
+                // What else turns with a motion that is given, or resists it, is supplied by it.
+                let torque = shaft.inertia * course.acceleration - driving - loading;
+                rates[Flow::Driver as usize] += torque * course.rate;
+            }
+        }
+        for coupling in &self.couplings {
+            let [torque, rate] = self.coupling_torque(coupling, at);
+            rates[Flow::SupportLoss as usize] += coupling.damping * rate * rate;
+            for (index, sign) in coupling.shafts.into_iter().zip([1.0, -1.0]) {
+                let turn = &self.shafts[index].turn;
+                if let Some((dof, ratio)) = turn.turned_by() {
                     a[dof] += sign * ratio * torque;
                 } else {
-                    // A motion that is given supplies what the shaft takes.
-                    let speed = wheel.course(at.t, at.q, at.v).rate;
+                    // A motion that is given supplies what the coupling takes.
+                    let speed = turn.course(at.t, at.q, at.v).rate;
                     rates[Flow::Driver as usize] -= sign * torque * speed;
                 }
             }
+        }
+        for dof in self.shafts.iter().filter_map(super::shafts::Shaft::led) {
+            a[dof] /= self.inertia(dof);
         }
     }
 }

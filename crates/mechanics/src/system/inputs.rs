@@ -5,17 +5,17 @@
 
 use chaindrive_integrate::slack;
 
-use super::{System, WheelRotation, WheelSupport};
+use super::{System, TurnedBy, WheelSupport};
 use crate::Motion;
 use crate::motion::Course;
 
 /// What can be set from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Input {
-    /// Torque on the shaft of a free sprocket \[N m\], counter-clockwise positive, beside those of the scene.
+    /// Torque on a free shaft \[N m\], counter-clockwise positive, beside those of the scene.
     Torque {
-        /// Index of the sprocket.
-        sprocket: usize,
+        /// Index of the shaft.
+        shaft: usize,
     },
     /// Generalised force on a tensioner that moves \[N, or N m on an arm\], beside its push.
     Force {
@@ -42,9 +42,9 @@ pub(crate) struct Inputs {
 }
 
 impl Inputs {
-    /// Torque on a sprocket \[N m\].
-    pub(crate) fn torque(&self, sprocket: usize) -> f64 {
-        self.torques.get(sprocket).copied().unwrap_or(0.0)
+    /// Torque on a shaft \[N m\].
+    pub(crate) fn torque(&self, shaft: usize) -> f64 {
+        self.torques.get(shaft).copied().unwrap_or(0.0)
     }
 
     /// Force on a tensioner \[N or N m\].
@@ -70,12 +70,9 @@ impl System {
     /// Why an input cannot be set; nothing if it can.
     pub fn refuses(&self, input: Input) -> Option<&'static str> {
         match input {
-            Input::Torque { sprocket } => match self.bodies.wheels[sprocket].rotation {
-                WheelRotation::Free { .. } => None,
-                WheelRotation::Geared { .. } => {
-                    Some("it follows another sprocket; set the torque on that one")
-                }
-                WheelRotation::Prescribed(_) => Some(
+            Input::Torque { shaft } => match self.bodies.shafts[shaft].turn.by {
+                TurnedBy::Coordinate(_) => None,
+                TurnedBy::Motion(_) => Some(
                     "its motion is given, and no torque changes it; give it an inertia and no motion",
                 ),
             },
@@ -112,7 +109,7 @@ impl System {
         let changes: Vec<_> = self.bodies.inputs.planned.drain(..count).collect();
         for (time, input, value) in changes {
             match input {
-                Input::Torque { sprocket } => set(&mut self.bodies.inputs.torques, sprocket, value),
+                Input::Torque { shaft } => set(&mut self.bodies.inputs.torques, shaft, value),
                 Input::Force { tensioner } => set(&mut self.bodies.inputs.forces, tensioner, value),
                 Input::Centre { sprocket, axis } => self.accelerate(sprocket, axis, time, value),
             }
@@ -143,28 +140,26 @@ impl System {
         let earliest = |times: &mut dyn Iterator<Item = Option<f64>>| {
             times.flatten().fold(f64::INFINITY, f64::min)
         };
-        let wheels = self.bodies.wheels.iter().map(|wheel| {
-            let turning = match &wheel.rotation {
-                WheelRotation::Prescribed(motion) => motion.next_knot(t),
-                // Its leader is asked.
-                WheelRotation::Geared { .. } => None,
-                WheelRotation::Free { drive, load, .. } => {
-                    let torques = drive.iter().chain(load);
-                    Some(earliest(&mut torques.map(|torque| torque.next_knot(t))))
-                }
+        let shafts = self.bodies.shafts.iter().map(|shaft| {
+            let motion = match &shaft.turn.by {
+                TurnedBy::Motion(motion) => motion.next_knot(t),
+                TurnedBy::Coordinate(_) => None,
             };
-            let moving = match &wheel.support {
-                WheelSupport::Prescribed { x, y } => knots(x, y, t),
-                _ => f64::INFINITY,
-            };
-            Some(turning.unwrap_or(f64::INFINITY).min(moving))
+            let torques = shaft.drive.iter().chain(&shaft.load);
+            let knots = torques.map(|torque| torque.next_knot(t));
+            Some(earliest(&mut knots.chain([motion])))
+        });
+        let wheels = self.bodies.wheels.iter().map(|wheel| match &wheel.support {
+            WheelSupport::Prescribed { x, y } => Some(knots(x, y, t)),
+            _ => None,
         });
         let rails = self.bodies.rails.iter().map(|rail| match &rail.support {
             super::RailSupport::Prescribed { x, y } => Some(knots(x, y, t)),
             _ => None,
         });
         let ends = self.chains.iter().map(|member| member.chain.next_knot(t));
-        let mut all = wheels
+        let mut all = shafts
+            .chain(wheels)
             .chain(rails)
             .chain(ends)
             .chain([self.bodies.inputs.next_change(t)]);

@@ -10,6 +10,8 @@ use crate::chains::{Chain, Loads, Record, Surroundings};
 /// One chain and what it touches.
 #[derive(Clone, Debug)]
 pub(crate) struct Member {
+    /// Its name; none where there is one chain only.
+    pub(crate) name: Option<String>,
     pub(crate) chain: Chain,
     /// Its entries of the state.
     pub(crate) entries: Range<usize>,
@@ -36,6 +38,7 @@ impl Member {
         route: Vec<usize>,
     ) -> Self {
         Self {
+            name: None,
             entries: first..first + chain.coordinates(),
             chain,
             contacts,

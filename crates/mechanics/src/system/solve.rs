@@ -111,10 +111,10 @@ impl Bodies {
             let i = dof - self.first;
             matrix[(i, i)] += weights.stiffness * stiffness + weights.damping * damping;
         });
-        for torsion in &self.torsions {
-            let weight = weights.stiffness * torsion.stiffness + weights.damping * torsion.damping;
-            for (dof, share) in self.twisted_by(torsion) {
-                for (other, other_share) in self.twisted_by(torsion) {
+        for coupling in &self.couplings {
+            let weight = weights.stiffness * coupling.stiffness + weights.damping * coupling.damping;
+            for (dof, share) in self.twisted_by(coupling) {
+                for (other, other_share) in self.twisted_by(coupling) {
                     matrix[(dof - self.first, other - self.first)] += weight * share * other_share;
                 }
             }

@@ -75,6 +75,7 @@ fn alone(
     };
     Parts {
         chains: vec![PlacedChain {
+            name: None,
             chain,
             layout: Layout::Points {
                 positions,
@@ -86,7 +87,9 @@ fn alone(
         sprockets: Vec::new(),
         guides: Vec::new(),
         tensioners: Vec::new(),
-        torsions: Vec::new(),
+        shafts: Vec::new(),
+        couplings: Vec::new(),
+        gears: Vec::new(),
         settle: true,
         gravity,
     }

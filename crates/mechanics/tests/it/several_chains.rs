@@ -5,26 +5,29 @@ use chaindrive_contact::{Dissipation, Elastic, Friction, Law, elastic::Power};
 use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Weights};
 use chaindrive_mechanics::{
-    Adjust, Assembled, Chain, ChainModel, Clearance, Drive, Ends, Fit, Joint, Layout, LinkBody,
-    Motion, Observation, Parts, PlacedChain, RigidLinks, RollerModel, Rotation, Sprocket, Stop,
-    Support, Surface, System, Tighten, Torque, Torsion,
+    Adjust, Assembled, Chain, ChainModel, Clearance, Coupling, Drive, Ends, Fit, GearPair, Joint,
+    Layout, LinkBody, Motion, Observation, Parts, PlacedChain, RigidLinks, RollerModel, Rotation,
+    Shaft, Sprocket, Stop, Support, Surface, System, Tighten, Torque,
 };
 
 const PITCH: f64 = 0.0127;
 const ROLLER: f64 = 7.75e-3;
 
-fn sprocket(name: &str, teeth: u32, centre: [f64; 2], rotation: Rotation) -> Sprocket {
+/// A sprocket, and what turns it.
+type Turning = (Sprocket, Rotation);
+
+fn sprocket(name: &str, teeth: u32, centre: [f64; 2], rotation: Rotation) -> Turning {
     let form = ToothForm::Iso606 {
         gap: 0.5,
         tip: Tip::Mid,
         seat: Seat::Bottom,
     };
-    Sprocket {
+    let sprocket = Sprocket {
         name: name.into(),
         gap: ToothGap::new(teeth, PITCH, ROLLER, &form).expect("the form fits the chain"),
         side: Side::Left,
         centre: Point::new(centre[0], centre[1]),
-        rotation,
+        shaft: 0,
         support: Support::Fixed,
         inertia: 2e-3,
         mass: 1.0,
@@ -38,12 +41,14 @@ fn sprocket(name: &str, teeth: u32, centre: [f64; 2], rotation: Rotation) -> Spr
         },
         flank: None,
         gap_angle: 0.0,
-    }
+    };
+    (sprocket, rotation)
 }
 
 /// A chain around sprockets `stops`, `links` long, with a tension of 60 N as laid.
 fn chain(links: usize, stops: [usize; 2]) -> PlacedChain {
     PlacedChain {
+        name: None,
         chain: Chain {
             pitch: PITCH,
             lengths: vec![PITCH; links],
@@ -81,20 +86,31 @@ fn driven() -> Rotation {
 }
 
 /// Two sprockets as far apart as a number of links needs; the second one turns freely.
-fn pair(prefix: &str, teeth: [u32; 2], x: f64, distance: f64, first: Rotation) -> [Sprocket; 2] {
+fn pair(prefix: &str, teeth: [u32; 2], x: f64, distance: f64, first: Rotation) -> [Turning; 2] {
     [
         sprocket(&format!("{prefix}a"), teeth[0], [x, 0.0], first),
         sprocket(&format!("{prefix}b"), teeth[1], [x, distance], free(-2.0)),
     ]
 }
 
-fn parts(chains: Vec<PlacedChain>, sprockets: Vec<Sprocket>) -> Parts {
+/// Every sprocket has a shaft of its own.
+fn parts(chains: Vec<PlacedChain>, turning: Vec<Turning>) -> Parts {
+    let (mut sprockets, mut shafts) = (Vec::new(), Vec::new());
+    for (index, (sprocket, rotation)) in turning.into_iter().enumerate() {
+        sprockets.push(Sprocket {
+            shaft: index,
+            ..sprocket
+        });
+        shafts.push(Shaft::of_one(rotation));
+    }
     Parts {
         chains,
         sprockets,
         guides: Vec::new(),
         tensioners: Vec::new(),
-        torsions: Vec::new(),
+        shafts,
+        couplings: Vec::new(),
+        gears: Vec::new(),
         settle: true,
         gravity: Vector::new(0.0, -9.81),
     }
@@ -142,14 +158,11 @@ fn run(assembled: Assembled, step: f64, steps: usize) -> Observation {
 /// Chains that nothing joins move, and pull, as each would in a drive of its own: to the last bit.
 #[test]
 fn two_chains_that_nothing_joins_are_two_drives() {
-    // As laid: settled together, the two would stop the iteration at other places.
     let first = || pair("left ", [20, 20], 0.0, EVEN, driven());
     let second = || pair("right ", [20, 20], 2.0, EVEN + 0.3e-3, driven());
     let (step, steps) = (1e-6, 3000);
-    let run = |chains: Vec<PlacedChain>, sprockets: Vec<Sprocket>| {
-        let mut parts = parts(chains, sprockets);
-        parts.settle = false;
-        run(assembled(parts), step, steps)
+    let run = |chains: Vec<PlacedChain>, sprockets: Vec<Turning>| {
+        run(assembled(parts(chains, sprockets)), step, steps)
     };
     let alone = [first(), second()].map(|pair| run(vec![chain(40, [0, 1])], pair.into()));
     let both = run(
@@ -180,14 +193,15 @@ fn two_chains_that_nothing_joins_are_two_drives() {
 fn a_shaft_that_twists_has_its_closed_frequency() {
     let (stiffness, inertias) = (400.0, [2e-3, 5e-3]);
     let [mut a, mut b] = [0.0, 1.0].map(|x| sprocket("a", 20, [x, 5.0], free(0.0)));
-    b.name = "b".into();
-    (a.inertia, b.inertia) = (inertias[0], inertias[1]);
+    b.0.name = "b".into();
+    (a.0.inertia, b.0.inertia) = (inertias[0], inertias[1]);
     let [c, d] = pair("", [20, 20], 0.0, EVEN, driven());
     let mut parts = parts(vec![chain(40, [0, 1])], vec![c, d, a, b]);
     parts.sprockets[0].name = "c".into();
     parts.sprockets[1].name = "d".into();
-    parts.torsions = vec![Torsion {
-        sprockets: [2, 3],
+    parts.couplings = vec![Coupling {
+        name: "spring".into(),
+        shafts: [2, 3],
         stiffness,
         damping: 0.0,
     }];
@@ -250,10 +264,26 @@ fn a_shaft_that_twists_has_its_closed_frequency() {
 fn a_shaft_carries_sprockets_of_two_chains() {
     for ratio in [1.0, -0.5] {
         let [a, b] = pair("first ", [20, 20], 0.0, EVEN, driven());
-        let [mut c, mut d] = pair("second ", [20, 20], 2.0, EVEN, driven());
-        c.rotation = Rotation::Geared { leader: 1, ratio };
-        d.rotation = free(-1.0_f64.copysign(ratio));
-        let drive = parts(vec![chain(40, [0, 1]), chain(40, [2, 3])], vec![a, b, c, d]);
+        let [mut c, mut d] = pair("second ", [20, 20], 2.0, EVEN, free(0.0));
+        d.1 = free(-1.0_f64.copysign(ratio));
+        let on_one = ratio == 1.0;
+        if on_one {
+            c.0.centre = b.0.centre;
+            d.0.centre = Point::new(0.0, 2.0 * EVEN);
+        }
+        let mut drive = parts(vec![chain(40, [0, 1]), chain(40, [2, 3])], vec![a, b, c, d]);
+        if on_one {
+            drive.shafts[1].name = Some("middle".into());
+            drive.sprockets[2].shaft = 1;
+            drive.sprockets[3].shaft = 2;
+            drive.shafts.remove(2);
+        } else {
+            drive.gears.push(GearPair {
+                name: "step".into(),
+                shafts: [1, 2],
+                ratio,
+            });
+        }
         let assembled = assembled(drive);
         assert!(
             assembled
@@ -351,23 +381,25 @@ fn with_play(placed: &mut PlacedChain) {
 #[test]
 fn an_implicit_step_joins_chains_of_rigid_links() {
     let [a, b] = pair("first ", [20, 20], 0.0, EVEN, driven());
-    let [mut c, d] = pair("second ", [20, 20], 2.0, EVEN, driven());
-    c.rotation = Rotation::Geared {
-        leader: 1,
-        ratio: -2.0,
-    };
+    let [c, d] = pair("second ", [20, 20], 2.0, EVEN, free(0.0));
     let free_end = sprocket("flywheel", 20, [4.0, 0.0], free(0.0));
     let mut parts = parts(
         vec![chain(40, [0, 1]), chain(40, [2, 3])],
         vec![a, b, c, d, free_end],
     );
+    parts.gears.push(GearPair {
+        name: "step".into(),
+        shafts: [1, 2],
+        ratio: -2.0,
+    });
     parts.chains.iter_mut().for_each(with_play);
-    parts.torsions = vec![Torsion {
-        sprockets: [3, 4],
+    parts.couplings.push(Coupling {
+        name: "spring".into(),
+        shafts: [3, 4],
         stiffness: 400.0,
         damping: 0.05,
-    }];
-    parts.sprockets[3].rotation = free(2.0);
+    });
+    parts.shafts[3].rotation = free(2.0);
     for sprocket in &mut parts.sprockets {
         sprocket.surface.law.dissipation = Dissipation::Viscous(Viscous { damping: 300.0 });
     }

@@ -69,6 +69,7 @@ impl Strand {
         };
         let parts = Parts {
             chains: vec![PlacedChain {
+                name: None,
                 chain,
                 layout: Layout::Points {
                     positions: self.places.iter().map(|p| Point::new(p[0], p[1])).collect(),
@@ -80,7 +81,9 @@ impl Strand {
             sprockets: Vec::new(),
             guides: self.guides.clone(),
             tensioners: Vec::new(),
-            torsions: Vec::new(),
+            shafts: Vec::new(),
+            couplings: Vec::new(),
+            gears: Vec::new(),
             settle: self.settle,
             gravity: self.gravity.into(),
         };

@@ -54,7 +54,7 @@ fn wheel_mount(bodies: &Bodies, wheel: &Wheel, at: Moment<'_>) -> (Frame, Mount)
         spin: 0.0,
     };
     let mut mount = Mount {
-        angle: wheel.turned_by(),
+        angle: wheel.turn.turned_by(),
         ..Mount::default()
     };
     match &wheel.support {

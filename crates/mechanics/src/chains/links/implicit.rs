@@ -112,10 +112,10 @@ impl Linkage {
             let j = self.border(bodies, dof);
             blocks.corner[(j, j)] += weights.stiffness * stiffness + weights.damping * damping;
         });
-        for torsion in &bodies.torsions {
-            let weight = weights.stiffness * torsion.stiffness + weights.damping * torsion.damping;
-            for (dof, share) in bodies.twisted_by(torsion) {
-                for (other, other_share) in bodies.twisted_by(torsion) {
+        for coupling in &bodies.couplings {
+            let weight = weights.stiffness * coupling.stiffness + weights.damping * coupling.damping;
+            for (dof, share) in bodies.twisted_by(coupling) {
+                for (other, other_share) in bodies.twisted_by(coupling) {
                     let [i, j] = [dof, other].map(|dof| self.border(bodies, dof));
                     // The lower half is kept.
                     if i >= j {

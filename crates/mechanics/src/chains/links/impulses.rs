@@ -217,12 +217,12 @@ impl Impulses {
             self.joints
                 .add::<R, C>(place(dof), place(dof), -c * damping);
         });
-        for torsion in &bodies.torsions {
-            for (dof, share) in bodies.twisted_by(torsion) {
-                for (other, other_share) in bodies.twisted_by(torsion) {
+        for coupling in &bodies.couplings {
+            for (dof, share) in bodies.twisted_by(coupling) {
+                for (other, other_share) in bodies.twisted_by(coupling) {
                     // Both halves are one.
                     if dof >= other {
-                        let damping = c * torsion.damping * share * other_share;
+                        let damping = c * coupling.damping * share * other_share;
                         self.joints.add::<R, C>(place(dof), place(other), -damping);
                     }
                 }

@@ -57,7 +57,7 @@ impl Linkage {
 
     fn wheel_mount(&self, bodies: &Bodies, wheel: &Wheel, way: Option<Way>) -> Mount {
         let border = |dof: usize| self.border(bodies, dof);
-        let turn = wheel.turned_by().map(|(dof, ratio)| (border(dof), ratio));
+        let turn = wheel.turn.turned_by().map(|(dof, ratio)| (border(dof), ratio));
         let shifts = match &wheel.support {
             WheelSupport::Fixed | WheelSupport::Prescribed { .. } => [None; 2],
             WheelSupport::Springs { dof, .. } => [

@@ -222,7 +222,7 @@ impl Play {
             }
         }
         for (sum, on) in sums.iter_mut().zip(&contacts.teeth) {
-            let mobility = bodies.wheels[on.wheel].mobility(&bodies.slides);
+            let mobility = bodies.mobility(on.wheel);
             sum[0] *= mobility;
             sum[1] *= mobility;
         }

@@ -12,7 +12,7 @@ use crate::chains::Chain;
 use crate::energy::Flow;
 use crate::{
     Adjust, ChainModel, Clearance, Drive, End, Ends, Fit, Flank, FreeRoller, Joint, Layout,
-    LinkBody, Motion, Parts, PlacedChain, Record, RigidLinks, RollerModel, Rotation, Sprocket,
+    LinkBody, Motion, Parts, PlacedChain, Record, RigidLinks, RollerModel, Rotation, Shaft, Sprocket,
     Stop, Support, Surface, System, Tighten, Torque,
 };
 
@@ -40,12 +40,12 @@ pub(super) fn bicycle(model: ChainModel) -> Parts {
         tip: Tip::Mid,
         seat: Seat::Bottom,
     };
-    let sprocket = |name: &str, teeth: u32, x: f64, rotation: Rotation, inertia: f64| Sprocket {
+    let sprocket = |name: &str, teeth: u32, x: f64, shaft: usize, inertia: f64| Sprocket {
         name: name.into(),
         gap: ToothGap::new(teeth, pitch, roller_diameter, &form).unwrap(),
         side: Side::Left,
         centre: Point::new(x, 0.0),
-        rotation,
+        shaft,
         support: Support::Fixed,
         inertia,
         mass: 1.0,
@@ -60,6 +60,7 @@ pub(super) fn bicycle(model: ChainModel) -> Parts {
     let driver = Rotation::Prescribed(Motion::Constant { rate: -9.42 });
     Parts {
         chains: vec![PlacedChain {
+            name: None,
             chain: crate::Chain {
                 pitch,
                 lengths: vec![pitch; links],
@@ -84,12 +85,14 @@ pub(super) fn bicycle(model: ChainModel) -> Parts {
             guides: Vec::new(),
         }],
         sprockets: vec![
-            sprocket("chainring", 44, 0.0, driver, 0.0),
-            sprocket("sprocket", 18, -0.460_544_624_366, driven, 0.12),
+            sprocket("chainring", 44, 0.0, 0, 0.0),
+            sprocket("sprocket", 18, -0.460_544_624_366, 1, 0.12),
         ],
         guides: Vec::new(),
         tensioners: Vec::new(),
-        torsions: Vec::new(),
+        shafts: vec![Shaft::of_one(driver), Shaft::of_one(driven)],
+        couplings: Vec::new(),
+        gears: Vec::new(),
         settle: true,
         gravity: Vector::new(0.0, -9.81),
     }
@@ -243,10 +246,10 @@ fn pretension_is_met() {
     ] {
         let mut parts = bicycle(links(joint, rollers));
         parts.gravity = Vector::zeros();
-        if let Rotation::Free { load, .. } = &mut parts.sprockets[1].rotation {
+        if let Rotation::Free { load, .. } = &mut parts.shafts[1].rotation {
             load.clear();
         }
-        if let Rotation::Prescribed(motion) = &mut parts.sprockets[0].rotation {
+        if let Rotation::Prescribed(motion) = &mut parts.shafts[0].rotation {
             *motion = Motion::Held;
         }
         let assembled = Drive::new(parts).unwrap().assemble().unwrap();

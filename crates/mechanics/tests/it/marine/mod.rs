@@ -3,7 +3,7 @@
 use chaindrive_contact::{Friction, Law};
 use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
 use chaindrive_mechanics::{
-    Adjust, Chain, Ends, Fit, Layout, Motion, Parts, PlacedChain, Rotation, Sprocket, Stop,
+    Adjust, Chain, Ends, Fit, Layout, Motion, Parts, PlacedChain, Rotation, Shaft, Sprocket, Stop,
     Support, Surface, Tighten, Torque,
 };
 
@@ -22,13 +22,8 @@ pub(crate) fn parts(law: Law) -> Parts {
         tip: Tip::Mid,
         seat: Seat::Bottom,
     };
-    let sprockets = wheels.map(|(name, x, y, teeth, inertia)| Sprocket {
-        name: name.into(),
-        gap: ToothGap::new(teeth, pitch, roller_diameter, &form)
-            .expect("the tooth form fits the chain"),
-        side: Side::Left,
-        centre: Point::new(x, y),
-        rotation: if name == "crank" {
+    let shafts = wheels.map(|(name, ..)| {
+        Shaft::of_one(if name == "crank" {
             Rotation::Prescribed(Motion::Constant {
                 rate: -13.299_408_9,
             })
@@ -42,7 +37,16 @@ pub(crate) fn parts(law: Law) -> Parts {
                 drive: Vec::new(),
                 load,
             }
-        },
+        })
+    });
+    let mut numbers = 0..;
+    let sprockets = wheels.map(|(name, x, y, teeth, inertia)| Sprocket {
+        name: name.into(),
+        gap: ToothGap::new(teeth, pitch, roller_diameter, &form)
+            .expect("the tooth form fits the chain"),
+        side: Side::Left,
+        centre: Point::new(x, y),
+        shaft: numbers.next().expect("without end"),
         support: Support::Fixed,
         inertia,
         mass: 100.0,
@@ -55,6 +59,7 @@ pub(crate) fn parts(law: Law) -> Parts {
     });
     Parts {
         chains: vec![PlacedChain {
+            name: None,
             chain: Chain {
                 pitch,
                 lengths: vec![pitch; links],
@@ -81,7 +86,9 @@ pub(crate) fn parts(law: Law) -> Parts {
         sprockets: sprockets.into(),
         guides: Vec::new(),
         tensioners: Vec::new(),
-        torsions: Vec::new(),
+        shafts: shafts.into(),
+        couplings: Vec::new(),
+        gears: Vec::new(),
         settle: true,
         gravity: Vector::new(0.0, -9.81),
     }

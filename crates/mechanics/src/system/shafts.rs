@@ -1,0 +1,142 @@
+//! Shafts, compiled: what turns, and what turns with it.
+
+use chaindrive_integrate::Moment;
+
+use super::Bodies;
+use crate::motion::Course;
+use crate::{Coupling, Motion, Torque};
+
+/// How an angle follows from time or state.
+///
+/// ```text
+/// θ = z + i x,   x: a motion given in time, or a coordinate
+/// ```
+#[derive(Clone, Debug)]
+pub(crate) struct Turn {
+    pub(crate) by: TurnedBy,
+    /// Ratio i \[–\].
+    pub(crate) ratio: f64,
+    /// Angle z at x = 0 \[rad\].
+    pub(crate) zero: f64,
+}
+
+/// What turns a train of shafts.
+#[derive(Clone, Debug)]
+pub(crate) enum TurnedBy {
+    Motion(Motion),
+    /// An entry of the state.
+    Coordinate(usize),
+}
+
+impl Turn {
+    /// The angle and its rates; the acceleration is known where the motion is.
+    #[inline(always)]
+    pub(crate) fn course(&self, t: f64, q: &[f64], v: &[f64]) -> Course {
+        let of = match &self.by {
+            TurnedBy::Coordinate(dof) => Course {
+                position: q[*dof],
+                rate: v[*dof],
+                acceleration: 0.0,
+            },
+            TurnedBy::Motion(motion) => motion.at(t),
+        };
+        Course {
+            position: self.zero + self.ratio * of.position,
+            rate: self.ratio * of.rate,
+            acceleration: self.ratio * of.acceleration,
+        }
+    }
+
+    /// The coordinate that turns it, and how far it turns with that; none where the angle is given in time.
+    #[inline(always)]
+    pub(crate) fn turned_by(&self) -> Option<(usize, f64)> {
+        match self.by {
+            TurnedBy::Coordinate(dof) => Some((dof, self.ratio)),
+            TurnedBy::Motion(_) => None,
+        }
+    }
+
+    /// Moves the coordinate.
+    pub(crate) fn move_dof(&mut self, place: impl FnOnce(usize) -> usize) {
+        if let TurnedBy::Coordinate(dof) = &mut self.by {
+            *dof = place(*dof);
+        }
+    }
+
+    /// Holds what moves in time.
+    pub(crate) fn hold(&mut self) {
+        if let TurnedBy::Motion(motion) = &mut self.by {
+            *motion = Motion::Held;
+        }
+    }
+}
+
+/// A shaft in the system.
+#[derive(Clone, Debug)]
+pub(crate) struct Shaft {
+    /// Its name; none where it is that of its only sprocket.
+    pub(crate) name: Option<String>,
+    /// Its rotation since the assembly.
+    pub(crate) turn: Turn,
+    /// Length that turns the coordinate of its train into metres: the largest pitch radius in it \[m\].
+    pub(crate) lever: f64,
+    /// Whether its coordinate is that of its train.
+    pub(crate) leads: bool,
+    /// Inertia beside that of its sprockets \[kg m²\].
+    pub(crate) inertia: f64,
+    pub(crate) drive: Vec<Torque>,
+    pub(crate) load: Vec<Torque>,
+}
+
+impl Shaft {
+    /// Linear resistance of all torques \[N m s\].
+    pub(crate) fn drag(&self) -> f64 {
+        self.drive.iter().chain(&self.load).map(Torque::drag).sum()
+    }
+
+    /// The coordinate of a train, for the shaft that leads it.
+    pub(crate) fn led(&self) -> Option<usize> {
+        self.turn
+            .turned_by()
+            .filter(|_| self.leads)
+            .map(|(dof, _)| dof)
+    }
+}
+
+impl Bodies {
+    /// Inertia that goes with a coordinate \[kg or kg m²\].
+    pub(crate) fn inertia(&self, dof: usize) -> f64 {
+        self.inertias[dof - self.first]
+    }
+
+    /// Everything that turns.
+    pub(crate) fn turns_mut(&mut self) -> impl Iterator<Item = &mut Turn> {
+        let wheels = self.wheels.iter_mut().map(|wheel| &mut wheel.turn);
+        let shafts = self.shafts.iter_mut().map(|shaft| &mut shaft.turn);
+        wheels.chain(shafts)
+    }
+
+    /// Twist φ of a coupling and its rate.
+    pub(crate) fn twist(&self, coupling: &Coupling, at: Moment<'_>) -> [f64; 2] {
+        let [from, to] = coupling.shafts.map(|index| {
+            let course = self.shafts[index].turn.course(at.t, at.q, at.v);
+            [course.position, course.rate]
+        });
+        [to[0] - from[0], to[1] - from[1]]
+    }
+
+    /// Coordinates that twist a coupling, with ∂φ/∂q.
+    pub(crate) fn twisted_by(&self, coupling: &Coupling) -> impl Iterator<Item = (usize, f64)> {
+        let ends = coupling.shafts.into_iter().zip([-1.0, 1.0]);
+        ends.filter_map(|(index, sign)| {
+            let turned = self.shafts[index].turn.turned_by();
+            turned.map(|(dof, ratio)| (dof, sign * ratio))
+        })
+    }
+
+    /// Torque of a coupling, M = k φ + c φ̇ \[N m\], and the rate of its twist.
+    pub(crate) fn coupling_torque(&self, coupling: &Coupling, at: Moment<'_>) -> [f64; 2] {
+        let [twist, rate] = self.twist(coupling, at);
+        [coupling.stiffness * twist + coupling.damping * rate, rate]
+    }
+}
