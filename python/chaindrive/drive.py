@@ -139,8 +139,23 @@ class Drive:
 
     @property
     def links(self) -> int:
-        """Number of links."""
+        """Number of links, of all chains."""
         return self._inner.links
+
+    @property
+    def chains(self) -> dict[str, int]:
+        """Number of links of every chain, by its name; empty where there is one chain only."""
+        return dict(self._inner.chains)
+
+    @property
+    def shafts(self) -> list[str]:
+        """Names of the shafts that the scene names."""
+        return self._inner.shafts
+
+    @property
+    def couplings(self) -> list[str]:
+        """Names of the couplings between shafts."""
+        return self._inner.couplings
 
     @property
     def sprockets(self) -> list[str]:
@@ -277,6 +292,8 @@ class Drive:
 
     def law(self, body: str) -> Law:
         """Return the contact law of a sprocket or guide by name, or of ``"joints"``, ``"rollers"``.
+
+        Of several chains each has its own: ``"primary.joints"``.
 
         Raises
         ------

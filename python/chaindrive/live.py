@@ -112,6 +112,9 @@ class Simulation:
             coordinates[dims[0]] = np.arange(len(labels))
         else:
             coordinates[dims[0]] = labels
+        chains = self._inner.chains(channel)
+        if chains is not None:
+            coordinates[chains[0]] = (dims[0], chains[1])
         attributes = {"units": about.unit, "long_name": about.description}
         return xr.DataArray(values, coords=coordinates, dims=dims, name=channel, attrs=attributes)
 

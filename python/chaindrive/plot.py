@@ -53,8 +53,9 @@ def layout(
     """
     drawing = drive._inner.drawing(settled)
     ax = _axes(ax)
-    rollers = drawing["rollers"]
-    _links(ax, rollers, closed=drawing["closed"])
+    rollers = [chain["rollers"] for chain in drawing["chains"]]
+    for chain, places in zip(drawing["chains"], rollers, strict=True):
+        _links(ax, places, closed=chain["closed"])
     centres = {name: wheel["centre"] for name, wheel in drawing["sprockets"].items()}
     _bodies(ax, drawing, rollers, centres, names=names)
     ax.set_title(drive.title)
@@ -93,7 +94,9 @@ def frame(
     drive = drive or _from_text(run.attrs["scene"], run.attrs.get("scene_name", "scene"))
     drawing = drive._inner.drawing(False)
     now = run.sel(time=time, method="nearest")
-    rollers = np.column_stack([now["roller_x"].to_numpy(), now["roller_y"].to_numpy()])
+    places = np.column_stack([now["roller_x"].to_numpy(), now["roller_y"].to_numpy()])
+    ends = np.cumsum([len(chain["rollers"]) for chain in drawing["chains"]])
+    rollers = np.split(places, ends[:-1])
     centres = {name: wheel["centre"] for name, wheel in drawing["sprockets"].items()}
     if "sprocket_x" in now and "sprocket_y" in now:
         for name in centres:
@@ -101,7 +104,7 @@ def frame(
             centres[name] = np.array([float(place["sprocket_x"]), float(place["sprocket_y"])])
     ax = _axes(ax)
     tensions = now["link_tension"].to_numpy() if "link_tension" in now else None
-    _links(ax, rollers, closed=drawing["closed"], tensions=tensions)
+    _recorded_links(ax, drawing["chains"], rollers, tensions)
     _bodies(ax, drawing, rollers, centres, names=False)
     ax.set_title(f"t = {float(now['time']):.4g} s")
     return _finish(ax)
@@ -204,22 +207,37 @@ def _finish(ax: Axes) -> Axes:
     return ax
 
 
-def _links(
-    ax: Axes,
-    rollers: NDArray[np.float64],
-    *,
-    closed: bool,
-    tensions: NDArray[np.float64] | None = None,
-) -> None:
+_LOOK: dict[str, Any] = {"linewidths": 2.5, "capstyle": "round", "zorder": 5}
+
+
+def _segments(rollers: NDArray[np.float64], *, closed: bool) -> NDArray[np.float64]:
+    path = np.concatenate([rollers, rollers[:1]]) if closed else rollers
+    return np.stack([path[:-1], path[1:]], axis=1)
+
+
+def _links(ax: Axes, rollers: NDArray[np.float64], *, closed: bool) -> None:
     from matplotlib.collections import LineCollection
 
-    path = np.concatenate([rollers, rollers[:1]]) if closed else rollers
-    segments = np.stack([path[:-1], path[1:]], axis=1)
-    look: dict[str, Any] = {"linewidths": 2.5, "capstyle": "round", "zorder": 5}
+    segments = _segments(rollers, closed=closed)
+    ax.add_collection(LineCollection(list(segments), colors=_CHAIN, **_LOOK))
+
+
+def _recorded_links(
+    ax: Axes,
+    chains: list[dict[str, Any]],
+    rollers: list[NDArray[np.float64]],
+    tensions: NDArray[np.float64] | None,
+) -> None:
+    """Draw all chains with one scale of colours, where tensions are known."""
+    from matplotlib.collections import LineCollection
+
+    pairs = list(zip(chains, rollers, strict=True))
     if tensions is None:
-        ax.add_collection(LineCollection(list(segments), colors=_CHAIN, **look))
+        for chain, places in pairs:
+            _links(ax, places, closed=chain["closed"])
         return
-    links = LineCollection(list(segments), array=tensions, cmap="viridis", **look)
+    segments = np.concatenate([_segments(it, closed=chain["closed"]) for chain, it in pairs])
+    links = LineCollection(list(segments), array=tensions, cmap="viridis", **_LOOK)
     ax.add_collection(links)
     ax.figure.colorbar(links, ax=ax, label="link tension [N]", shrink=0.8)
 
@@ -227,7 +245,7 @@ def _links(
 def _bodies(
     ax: Axes,
     drawing: dict[str, Any],
-    rollers: NDArray[np.float64],
+    rollers: list[NDArray[np.float64]],
     centres: dict[str, NDArray[np.float64]],
     *,
     names: bool,
@@ -235,9 +253,13 @@ def _bodies(
     from matplotlib.collections import PatchCollection
     from matplotlib.patches import Circle, Polygon
 
+    chains = list(zip(drawing["chains"], rollers, strict=True))
     for name, wheel in drawing["sprockets"].items():
         centre = centres[name]
-        turn = _turn(rollers, centre, wheel, drawing["pitch"])
+        turn = 0.0
+        for chain, places in chains:
+            if name in chain["sprockets"]:
+                turn = _turn(places, centre, wheel, chain["pitch"])
         rotation = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
         outline = centre + wheel["outline"] @ rotation
         ax.add_patch(Polygon(outline, facecolor=_STEEL, edgecolor=_OUTLINE, alpha=0.6, lw=0.6))
@@ -257,7 +279,7 @@ def _bodies(
             # Halfway along the face, on the side away from the loop.
             length = np.insert(np.cumsum(np.hypot(*np.diff(face, axis=0).T)), 0, 0.0)
             x, y = (float(np.interp(0.5 * length[-1], length, axis)) for axis in face.T)
-            right = x > rollers[:, 0].mean()
+            right = x > np.concatenate(rollers)[:, 0].mean()
             ax.annotate(
                 name,
                 (x, y),
@@ -268,10 +290,11 @@ def _bodies(
                 ha="left" if right else "right",
                 va="center",
             )
-    radius = 0.5 * drawing["roller_diameter"]
-    circles = PatchCollection([Circle((x, y), radius) for x, y in rollers], zorder=4)
-    circles.set(facecolor="white", edgecolor=_OUTLINE, linewidth=0.5)
-    ax.add_collection(circles)
+    for chain, places in chains:
+        radius = 0.5 * chain["roller_diameter"]
+        circles = PatchCollection([Circle((x, y), radius) for x, y in places], zorder=4)
+        circles.set(facecolor="white", edgecolor=_OUTLINE, linewidth=0.5)
+        ax.add_collection(circles)
 
 
 def _turn(

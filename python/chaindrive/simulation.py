@@ -222,6 +222,8 @@ def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:
         dim: np.arange(labels) if isinstance(labels, int) else np.asarray(labels, dtype=np.str_)
         for dim, labels in result["labels"].items()
     }
+    for name, (dim, chains) in result["chains"].items():
+        coordinates[name] = (dim, np.asarray(chains, dtype=np.str_))
     coordinates["time"] = ("time", result["time"], {"units": "s", "long_name": "time"})
     return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 

@@ -12,7 +12,8 @@ mod text;
 use chaindrive_geometry::mesh_frequency;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 use chaindrive_mechanics::{
-    Assembled, Chain, ChainModel, Clash, Drive, Flow, GuideSupport, Observation, Rotation, Statics,
+    Assembled, ChainModel, Clash, Drive, Fitting, Flow, GuideSupport, Observation, PlacedChain,
+    Rotation, Statics,
 };
 use serde::Serialize;
 
@@ -26,14 +27,14 @@ use crate::{Run, SimulationError};
 /// A drive and a run, described.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Description {
-    /// The chain.
-    pub chain: ChainFacts,
-    /// How the chain was fitted; absent when it does not run around sprockets.
-    pub closing: Option<Closing>,
-    /// The bodies of the route, in path order.
+    /// The chains.
+    pub chains: Vec<ChainFacts>,
+    /// The bodies of the routes, in path order, chain by chain.
     pub stops: Vec<StopFacts>,
-    /// The spans of the route after the last static stage, in path order.
+    /// The spans of the routes after the last static stage, in path order, chain by chain.
     pub spans: Vec<SpanAtRest>,
+    /// What turns under a name of its own.
+    pub shafts: Vec<ShaftFacts>,
     /// The static states on the way to the start.
     pub statics: Vec<StaticStage>,
     /// Moving parts and contacts.
@@ -48,9 +49,11 @@ pub struct Description {
     pub warnings: Vec<String>,
 }
 
-/// The chain in numbers.
+/// A chain in numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChainFacts {
+    /// Its name; none where there is one chain only.
+    pub name: Option<String>,
     /// Number of links.
     pub links: usize,
     /// Nominal pitch \[m\].
@@ -67,6 +70,23 @@ pub struct ChainFacts {
     pub longitudinal_wave_speed: f64,
     /// Speed of transverse waves at the least and the greatest static tension of a span \[m/s\].
     pub transverse_wave_speeds: Option<[f64; 2]>,
+    /// How the chain was fitted; absent when it does not run around sprockets.
+    pub closing: Option<Closing>,
+}
+
+/// A shaft and all that turns with it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ShaftFacts {
+    /// Its name.
+    pub name: String,
+    /// Names of the sprockets on it.
+    pub sprockets: Vec<String>,
+    /// Moment of inertia with its sprockets \[kg m²\].
+    pub inertia: f64,
+    /// Speed at the start \[rad/s\].
+    pub speed: f64,
+    /// Couplings and pairs of gears that join it with others.
+    pub joined_by: Vec<String>,
 }
 
 /// How the chain was fitted.
@@ -148,12 +168,12 @@ impl Description {
             .map(|(x, y)| speed(*x, *y));
         let meshing = drive.sprockets.iter().zip(&start.sprocket_speed);
         let mesh = meshing.map(|(s, speed)| (s.name.clone(), mesh_frequency(s.gap.teeth, *speed)));
+        let chains = drive.chains.iter().zip(&assembled.fittings);
         Ok(Self {
-            chain: chain_facts(&drive.chains[0].chain, &spans),
-            closing: assembled.fittings[0].as_ref().map(|fitting| Closing {
-                strain: fitting.strain,
-                travel: fitting.travel,
-            }),
+            chains: chains
+                .map(|(placed, fitting)| chain_facts(placed, fitting.as_ref(), &spans))
+                .collect(),
+            shafts: shafts(drive, &start),
             stops: route::stops(drive, &assembled, &start),
             statics: static_stages(drive, &assembled),
             model: model(drive, &assembled),
@@ -205,7 +225,37 @@ fn at_start(assembled: &Assembled) -> Observation {
     start
 }
 
-fn chain_facts(chain: &Chain, spans: &[SpanAtRest]) -> ChainFacts {
+/// The shafts that have names.
+fn shafts(drive: &Drive, start: &Observation) -> Vec<ShaftFacts> {
+    let shafts = drive.shafts.iter().enumerate();
+    let named = shafts.filter_map(|(index, shaft)| Some((index, shaft, shaft.name.clone()?)));
+    named
+        .zip(&start.shaft_speed)
+        .map(|((index, shaft, name), &speed)| {
+            let on_it = || drive.sprockets.iter().filter(|s| s.shaft == index);
+            let couplings = drive.couplings.iter().map(|it| (&it.name, it.shafts));
+            let gears = drive.gears.iter().map(|it| (&it.name, it.shafts));
+            let joins = couplings.chain(gears);
+            ShaftFacts {
+                name,
+                sprockets: on_it().map(|sprocket| sprocket.name.clone()).collect(),
+                inertia: shaft.inertia + on_it().map(|sprocket| sprocket.inertia).sum::<f64>(),
+                speed,
+                joined_by: joins
+                    .filter(|(_, ends)| ends.contains(&index))
+                    .map(|(name, _)| name.clone())
+                    .collect(),
+            }
+        })
+        .collect()
+}
+
+fn chain_facts(
+    placed: &PlacedChain,
+    fitting: Option<&Fitting>,
+    spans: &[SpanAtRest],
+) -> ChainFacts {
+    let chain = &placed.chain;
     let links = chain.links() as f64;
     let mass = chain.masses.iter().sum::<f64>() / chain.masses.len() as f64;
     // Springs in series: the harmonic mean.
@@ -214,11 +264,17 @@ fn chain_facts(chain: &Chain, spans: &[SpanAtRest]) -> ChainFacts {
     let tensions = || {
         spans
             .iter()
+            .filter(|span| span.chain == placed.name)
             .map(|span| span.tension)
             .filter(|tension| *tension > 0.0)
     };
     let (least, most) = (tensions().reduce(f64::min), tensions().reduce(f64::max));
     ChainFacts {
+        name: placed.name.clone(),
+        closing: fitting.map(|fitting| Closing {
+            strain: fitting.strain,
+            travel: fitting.travel,
+        }),
         links: chain.links(),
         pitch: chain.pitch,
         mass_per_length,
@@ -238,14 +294,18 @@ fn model(drive: &Drive, assembled: &Assembled) -> Model {
     let free = drive
         .sprockets
         .iter()
-        .filter(|s| matches!(s.rotation, Rotation::Free { .. }));
+        .filter(|s| matches!(drive.shafts[s.shaft].rotation, Rotation::Free { .. }));
     let fixed = drive
         .guides
         .iter()
         .filter(|guide| guide.support == GuideSupport::Fixed);
     let (free, fixed) = (free.count(), fixed.count());
     let contacts = links::contacts(drive);
-    let particles = drive.chains[0].chain.model == ChainModel::Particles;
+    let mut chains = drive.chains.iter();
+    let undamped = chains.all(|placed| {
+        let particles = placed.chain.model == ChainModel::Particles;
+        particles && placed.chain.damping.iter().all(|d| *d <= 0.0)
+    });
     let lacks = [
         (drive.sprockets.is_empty(), "sprockets"),
         (drive.guides.is_empty(), "guides"),
@@ -254,10 +314,7 @@ fn model(drive: &Drive, assembled: &Assembled) -> Model {
             contacts.iter().all(|contact| contact.friction == "none"),
             "friction",
         ),
-        (
-            particles && drive.chains[0].chain.damping.iter().all(|d| *d <= 0.0),
-            "damping of the links",
-        ),
+        (undamped, "damping of the links"),
         (drive.gravity.norm() <= 0.0, "gravity"),
         (!drive.settle, "settling before the start"),
     ];

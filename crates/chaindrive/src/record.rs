@@ -10,7 +10,7 @@ mod memory;
 mod summary;
 mod zarr;
 
-use chaindrive_mechanics::{Energy, Flow, Observation, Store, System};
+use chaindrive_mechanics::{ChainSize, Energy, Flow, Observation, Store, System};
 
 use crate::{Run, SimulationError};
 
@@ -50,6 +50,35 @@ impl Axis {
     pub fn is_numbered(self) -> bool {
         matches!(self, Self::Roller | Self::Link | Self::Joint)
     }
+}
+
+impl Axis {
+    /// Name of the coordinate that tells the chain of every entry.
+    pub fn chain_coordinate(self) -> Option<&'static str> {
+        match self {
+            Self::Roller => Some("roller_chain"),
+            Self::Link => Some("link_chain"),
+            Self::Joint => Some("joint_chain"),
+            Self::Span => Some("span_chain"),
+            _ => None,
+        }
+    }
+}
+
+/// The chain that every entry along an axis belongs to, by name; none where there is one chain only, and along axes that do not
+/// run over chains.
+pub fn chains_along(axis: Axis, system: &System) -> Option<Vec<String>> {
+    let count: fn(&ChainSize) -> usize = match axis {
+        Axis::Roller => |size| size.rollers,
+        Axis::Link => |size| size.links,
+        Axis::Joint => |size| size.joints,
+        Axis::Span => |size| size.spans,
+        _ => return None,
+    };
+    let chains = system.chain_sizes();
+    let several = chains.len() > 1;
+    let repeated = |(name, size): (String, ChainSize)| vec![name; count(&size)];
+    several.then(|| chains.into_iter().flat_map(repeated).collect())
 }
 
 impl Recording {
@@ -132,6 +161,8 @@ pub fn labels(axis: Axis, system: &System) -> Option<Vec<String>> {
         Axis::Joint => Some(numbers(system.joints())),
         Axis::Span => Some(system.span_names()),
         Axis::Sprocket => Some(system.sprocket_names()),
+        Axis::Shaft => Some(system.shaft_names()),
+        Axis::Coupling => Some(system.coupling_names()),
         Axis::Guide => Some(system.guide_names()),
         Axis::Tensioner => Some(system.tensioner_names()),
         Axis::Store => Some(Store::ALL.iter().map(|s| s.name().to_owned()).collect()),

@@ -72,13 +72,18 @@ impl DriveError {
 }
 
 impl DriveError {
-    /// Puts the path behind the name of what it belongs to.
+    /// Puts a path within `chain` or `route` behind that of one of several chains.
     pub(crate) fn place_in(&mut self, whole: &str) {
         match self {
             Self::Parameter { path, .. }
             | Self::Law { path, .. }
             | Self::Reference { path, .. }
-            | Self::Conflict { path, .. } => *path = format!("{whole}.{path}"),
+            | Self::Conflict { path, .. } => {
+                *path = match path.strip_prefix("chain") {
+                    Some(rest) => format!("{whole}{rest}"),
+                    None => format!("{whole}.{path}"),
+                }
+            }
             Self::Table { .. } | Self::Overlap { .. } => {}
         }
     }

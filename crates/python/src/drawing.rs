@@ -4,7 +4,7 @@ use chaindrive::{Drive, Run, Simulation};
 use chaindrive_geometry::{ArcSpline, Point};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyList};
 
 use crate::errors::OrRaise;
 
@@ -17,7 +17,7 @@ pub(crate) fn of<'py>(
     drive: &Drive,
     settled: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (rollers, centres) = py.detach(|| {
+    let (mut rollers, centres) = py.detach(|| {
         if settled {
             let mut simulation = Simulation::start(drive, &Run::default()).or_raise()?;
             simulation.next_sample().or_raise()?;
@@ -61,11 +61,22 @@ pub(crate) fn of<'py>(
     for guide in &drive.guides {
         guides.set_item(&guide.name, points(py, &polyline(&guide.face)?)?)?;
     }
+    let chains = PyList::empty(py);
+    for placed in &drive.chains {
+        let behind = rollers.split_off(placed.chain.rollers());
+        let drawn = PyDict::new(py);
+        drawn.set_item("rollers", points(py, &rollers)?)?;
+        drawn.set_item("closed", placed.chain.is_closed())?;
+        drawn.set_item("pitch", placed.chain.pitch)?;
+        drawn.set_item("roller_diameter", placed.chain.roller_diameter)?;
+        let touched = placed.sprockets.iter();
+        let touched: Vec<&str> = touched.map(|&i| drive.sprockets[i].name.as_str()).collect();
+        drawn.set_item("sprockets", touched)?;
+        chains.append(drawn)?;
+        rollers = behind;
+    }
     let answer = PyDict::new(py);
-    answer.set_item("rollers", points(py, &rollers)?)?;
-    answer.set_item("closed", drive.chains[0].chain.is_closed())?;
-    answer.set_item("pitch", drive.chains[0].chain.pitch)?;
-    answer.set_item("roller_diameter", drive.chains[0].chain.roller_diameter)?;
+    answer.set_item("chains", chains)?;
     answer.set_item("sprockets", sprockets)?;
     answer.set_item("guides", guides)?;
     Ok(answer)

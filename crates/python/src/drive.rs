@@ -105,10 +105,33 @@ impl Drive {
         self.scene.title()
     }
 
-    /// Number of links.
+    /// Number of links of all chains.
     #[getter]
     fn links(&self) -> usize {
-        self.drive.chains[0].chain.links()
+        let chains = self.drive.chains.iter();
+        chains.map(|placed| placed.chain.links()).sum()
+    }
+
+    /// Names of the chains, where there are several, with their numbers of links.
+    #[getter]
+    fn chains(&self) -> Vec<(String, usize)> {
+        let chains = self.drive.chains.iter();
+        let named = chains.filter_map(|it| Some((it.name.clone()?, it.chain.links())));
+        named.collect()
+    }
+
+    /// Names of the shafts.
+    #[getter]
+    fn shafts(&self) -> Vec<String> {
+        let shafts = self.drive.shafts.iter();
+        shafts.filter_map(|shaft| shaft.name.clone()).collect()
+    }
+
+    /// Names of the couplings.
+    #[getter]
+    fn couplings(&self) -> Vec<String> {
+        let couplings = self.drive.couplings.iter();
+        couplings.map(|coupling| coupling.name.clone()).collect()
     }
 
     /// Names of the sprockets.
@@ -186,13 +209,22 @@ impl Drive {
             .map(|guide| (&guide.name, &guide.surface));
         let found = sprockets.chain(guides).find(|(name, _)| *name == body);
         let found = found.map(|(_, surface)| surface);
-        let surface = found.or_else(|| match &self.drive.chains[0].chain.model {
-            ChainModel::Rigid(links) => match (body, &links.joint, &links.rollers) {
+        let surface = found.or_else(|| {
+            // "joints" of the only chain, "primary.joints" of one of several.
+            let (chain, contact) = match body.rsplit_once('.') {
+                Some((chain, contact)) => (Some(chain), contact),
+                None => (None, body),
+            };
+            let mut chains = self.drive.chains.iter();
+            let placed = chains.find(|placed| placed.name.as_deref() == chain)?;
+            let ChainModel::Rigid(links) = &placed.chain.model else {
+                return None;
+            };
+            match (contact, &links.joint, &links.rollers) {
                 ("joints", Joint::Clearance(joint), _) => Some(&joint.surface),
                 ("rollers", _, RollerModel::Free(roller)) => Some(&roller.surface),
                 _ => None,
-            },
-            ChainModel::Particles => None,
+            }
         });
         let surface = surface.ok_or_else(|| PyKeyError::new_err(body.to_owned()))?;
         Ok(Law(surface.law))

@@ -97,6 +97,16 @@ impl Simulation {
         Ok(chaindrive::record::labels(axis, self.0.system()))
     }
 
+    /// The chain of every entry of a channel, by name, and the coordinate that tells it; none of one chain.
+    fn chains(&self, name: &str) -> PyResult<Option<(&'static str, Vec<String>)>> {
+        let channels = Channel::chosen(&[name], self.0.system()).or_raise()?;
+        let axis = channels
+            .first()
+            .map_or(Axis::None, |channel| channel.axis());
+        let chains = chaindrive::record::chains_along(axis, self.0.system());
+        Ok(axis.chain_coordinate().zip(chains))
+    }
+
     /// Sets what acts on the drive from a time on, that of the last reading where none is given.
     #[pyo3(signature = (kind, name, value, at))]
     fn set(&mut self, kind: &str, name: String, value: f64, at: Option<f64>) -> PyResult<()> {

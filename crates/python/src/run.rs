@@ -102,6 +102,7 @@ fn told<'py>(
     answer.set_item("labels", labels(py, &recorded, &report.simulation)?)?;
     let attributes = serde_json::Value::Object(report.attributes.clone());
     answer.set_item("attributes", attributes.to_string())?;
+    answer.set_item("chains", chains(py, &recorded, &report.simulation)?)?;
     let units = PyDict::new(py);
     for &channel in &recorded {
         let unit = channel.unit_in(report.simulation.system());
@@ -235,6 +236,24 @@ fn labels<'py>(
             } else {
                 answer.set_item(name, labels)?;
             }
+        }
+    }
+    Ok(answer)
+}
+
+/// The chain of every entry, by name, along the axes that run over several chains: coordinate, axis and names.
+fn chains<'py>(
+    py: Python<'py>,
+    channels: &[Channel],
+    simulation: &Simulation,
+) -> PyResult<Bound<'py, PyDict>> {
+    let answer = PyDict::new(py);
+    for axis in channels.iter().map(|channel| channel.axis()) {
+        let chains = record::chains_along(axis, simulation.system());
+        if let (Some(name), Some(along), Some(chains)) =
+            (axis.chain_coordinate(), axis.name(), chains)
+        {
+            answer.set_item(name, (along, chains))?;
         }
     }
     Ok(answer)

@@ -70,12 +70,14 @@ pub(super) fn contacts(drive: &Drive) -> Vec<ContactFacts> {
     let teeth = drive.sprockets.iter().map(|s| ("teeth", &s.surface));
     let guides = drive.guides.iter().map(|guide| ("guides", &guide.surface));
     let mut surfaces: Vec<(&'static str, &Surface)> = teeth.chain(guides).collect();
-    if let ChainModel::Rigid(links) = &drive.chains[0].chain.model {
-        if let Joint::Clearance(joint) = &links.joint {
-            surfaces.push(("joints", &joint.surface));
-        }
-        if let RollerModel::Free(roller) = &links.rollers {
-            surfaces.push(("rollers", &roller.surface));
+    for placed in &drive.chains {
+        if let ChainModel::Rigid(links) = &placed.chain.model {
+            if let Joint::Clearance(joint) = &links.joint {
+                surfaces.push(("joints", &joint.surface));
+            }
+            if let RollerModel::Free(roller) = &links.rollers {
+                surfaces.push(("rollers", &roller.surface));
+            }
         }
     }
     let mut found: Vec<ContactFacts> = Vec::new();

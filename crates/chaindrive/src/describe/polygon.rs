@@ -1,7 +1,7 @@
 //! Polygonal kinematics of every strand between two sprockets on the same side of the chain.
 
 use chaindrive_geometry::{Point, PolygonAction, mesh_frequency};
-use chaindrive_mechanics::{Drive, Layout, Observation, Stop};
+use chaindrive_mechanics::{Drive, Layout, Observation, PlacedChain, Stop};
 use serde::Serialize;
 
 /// A strand between two neighbouring sprockets, were it tight and the only one.
@@ -30,20 +30,33 @@ pub struct PolygonPair {
 
 /// All strands for which the question makes sense.
 pub(super) fn pairs(drive: &Drive, start: &Observation) -> Vec<PolygonPair> {
-    let Layout::Route { stops, .. } = &drive.chains[0].layout else {
+    let chains = drive.chains.iter();
+    chains.flat_map(|placed| along(drive, placed, start)).collect()
+}
+
+/// Those of one chain.
+fn along(drive: &Drive, placed: &PlacedChain, start: &Observation) -> Vec<PolygonPair> {
+    let Layout::Route { stops, .. } = &placed.layout else {
         return Vec::new();
     };
     let next = stops.iter().cycle().skip(1);
     let neighbours = stops.iter().zip(next);
+    let pitch = placed.chain.pitch;
     neighbours
         .filter_map(|(from, to)| match (*from, *to) {
-            (Stop::Sprocket(from), Stop::Sprocket(to)) => pair(drive, start, from, to),
+            (Stop::Sprocket(from), Stop::Sprocket(to)) => pair(drive, pitch, start, from, to),
             _ => None,
         })
         .collect()
 }
 
-fn pair(drive: &Drive, start: &Observation, from: usize, to: usize) -> Option<PolygonPair> {
+fn pair(
+    drive: &Drive,
+    pitch: f64,
+    start: &Observation,
+    from: usize,
+    to: usize,
+) -> Option<PolygonPair> {
     let (a, b) = (&drive.sprockets[from], &drive.sprockets[to]);
     if a.side != b.side {
         return None;
@@ -54,7 +67,6 @@ fn pair(drive: &Drive, start: &Observation, from: usize, to: usize) -> Option<Po
     let centre = |i: usize| Point::new(start.sprocket_x[i], start.sprocket_y[i]);
     let distance = (centre(from) - centre(to)).norm();
     let teeth = |i: usize| drive.sprockets[i].gap.teeth;
-    let pitch = drive.chains[0].chain.pitch;
     let action = PolygonAction::new(teeth(driver), teeth(driven), pitch, distance).ok()?;
     let (least_ratio, greatest_ratio) = action.ratio_extremes();
     let speed = start.sprocket_speed[driver];

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use chaindrive_geometry::{Point, Route, Wheel};
-use chaindrive_mechanics::{Assembled, Drive, Layout, Observation, Stop};
+use chaindrive_mechanics::{Assembled, Drive, Fitting, Layout, Observation, PlacedChain, Stop};
 use serde::Serialize;
 
 use super::at_start;
@@ -12,6 +12,8 @@ use super::at_start;
 /// A body of the route.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StopFacts {
+    /// Name of the chain; none where there is one only.
+    pub chain: Option<String>,
     /// Name of the sprocket or guide.
     pub name: String,
     /// Teeth; none for a guide.
@@ -26,6 +28,8 @@ pub struct StopFacts {
 /// A span between two stops, at rest under all loads.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SpanAtRest {
+    /// Name of the chain; none where there is one only.
+    pub chain: Option<String>,
     /// Name, "from-to".
     pub name: String,
     /// Number of links.
@@ -49,35 +53,76 @@ pub fn spans_at_rest(drive: &Drive, assembled: &Assembled) -> Vec<SpanAtRest> {
         .statics
         .last()
         .map_or(&start.link_tension, |last| &last.tensions);
-    let chain = &drive.chains[0].chain;
-    let masses = chain.masses.iter().sum::<f64>() / chain.masses.len() as f64;
-    let mass_per_length = masses / chain.pitch;
-    let place = |roller: usize| {
-        let i = roller % start.roller_x.len();
-        Point::new(start.roller_x[i], start.roller_y[i])
-    };
-    let span = |(name, links): (String, Range<usize>)| {
-        let tension = mean(&tensions[links.clone()]);
-        let length = (place(links.end) - place(links.start)).norm();
-        SpanAtRest {
-            name,
-            pitches: links.len(),
-            length,
-            tension,
-            // f = √(T/μ) / 2L
-            frequency: (tension > 0.0).then(|| (tension / mass_per_length).sqrt() / (2.0 * length)),
-        }
-    };
-    ranges(drive, assembled).into_iter().map(span).collect()
+    let mut spans = Vec::new();
+    for run in runs(drive, assembled) {
+        let chain = &run.placed.chain;
+        let masses = chain.masses.iter().sum::<f64>() / chain.masses.len() as f64;
+        let mass_per_length = masses / chain.pitch;
+        let place = |roller: usize| {
+            let i = run.first_roller + roller % chain.rollers();
+            Point::new(start.roller_x[i], start.roller_y[i])
+        };
+        let span = |(name, links): (String, Range<usize>)| {
+            let tension = mean(&tensions[run.of_all(&links)]);
+            let length = (place(links.end) - place(links.start)).norm();
+            SpanAtRest {
+                chain: run.placed.name.clone(),
+                name,
+                pitches: links.len(),
+                length,
+                tension,
+                // f = √(T/μ) / 2L
+                frequency: (tension > 0.0)
+                    .then(|| (tension / mass_per_length).sqrt() / (2.0 * length)),
+            }
+        };
+        spans.extend(ranges(drive, &run).into_iter().map(span));
+    }
+    spans
+}
+
+/// A chain, how it was fitted, and where its rollers and links stand among those of all chains.
+struct ChainRun<'d> {
+    placed: &'d PlacedChain,
+    fitting: Option<&'d Fitting>,
+    first_roller: usize,
+    first_link: usize,
+}
+
+impl ChainRun<'_> {
+    /// Links of the chain among those of all.
+    fn of_all(&self, links: &Range<usize>) -> Range<usize> {
+        self.first_link + links.start..self.first_link + links.end
+    }
+}
+
+/// All chains.
+fn runs<'d>(drive: &'d Drive, assembled: &'d Assembled) -> Vec<ChainRun<'d>> {
+    let (mut first_roller, mut first_link) = (0, 0);
+    let chains = drive.chains.iter().zip(&assembled.fittings);
+    chains
+        .map(|(placed, fitting)| {
+            let run = ChainRun {
+                placed,
+                fitting: fitting.as_ref(),
+                first_roller,
+                first_link,
+            };
+            first_roller += placed.chain.rollers();
+            first_link += placed.chain.links();
+            run
+        })
+        .collect()
 }
 
 /// Mean of some link tensions over every span \[N\].
 pub(super) fn tensions(drive: &Drive, assembled: &Assembled, links: &[f64]) -> Vec<f64> {
-    let spans = ranges(drive, assembled);
+    let mut spans = Vec::new();
+    for run in runs(drive, assembled) {
+        let ranges = ranges(drive, &run).into_iter();
+        spans.extend(ranges.map(|(_, range)| mean(&links[run.of_all(&range)])));
+    }
     spans
-        .into_iter()
-        .map(|(_, range)| mean(&links[range]))
-        .collect()
 }
 
 fn mean(values: &[f64]) -> f64 {
@@ -85,13 +130,11 @@ fn mean(values: &[f64]) -> f64 {
 }
 
 /// Name and links of every span: roller 0 is the first on the first stop.
-fn ranges(drive: &Drive, assembled: &Assembled) -> Vec<(String, Range<usize>)> {
-    let (Layout::Route { stops, .. }, Some(fitting)) =
-        (&drive.chains[0].layout, &assembled.fittings[0])
-    else {
+fn ranges(drive: &Drive, run: &ChainRun<'_>) -> Vec<(String, Range<usize>)> {
+    let (Layout::Route { stops, .. }, Some(fitting)) = (&run.placed.layout, run.fitting) else {
         return Vec::new();
     };
-    let links = drive.chains[0].chain.links();
+    let links = run.placed.chain.links();
     let mut at = 0;
     let mut ranges = Vec::with_capacity(stops.len());
     for (i, (seated, span)) in fitting.seated.iter().zip(&fitting.spans).enumerate() {
@@ -119,14 +162,19 @@ fn name<'d>(drive: &'d Drive, stop: &Stop) -> &'d str {
     }
 }
 
-/// The bodies of the route.
+/// The bodies of the routes.
 pub(super) fn stops(drive: &Drive, assembled: &Assembled, start: &Observation) -> Vec<StopFacts> {
-    let (Layout::Route { stops, .. }, Some(fitting)) =
-        (&drive.chains[0].layout, &assembled.fittings[0])
-    else {
+    let runs = runs(drive, assembled);
+    runs.iter()
+        .flat_map(|run| stops_of(drive, run, start))
+        .collect()
+}
+
+fn stops_of(drive: &Drive, run: &ChainRun<'_>, start: &Observation) -> Vec<StopFacts> {
+    let (Layout::Route { stops, .. }, Some(fitting)) = (&run.placed.layout, run.fitting) else {
         return Vec::new();
     };
-    let taut = taut(drive, stops, start);
+    let taut = taut(drive, run, stops, start);
     let facts = |(i, stop): (usize, &Stop)| {
         let pitches = fitting.seated[i];
         let teeth = match *stop {
@@ -135,6 +183,7 @@ pub(super) fn stops(drive: &Drive, assembled: &Assembled, start: &Observation) -
         };
         let seated = teeth.map(|z| f64::from(pitches) * TAU / f64::from(z));
         StopFacts {
+            chain: run.placed.name.clone(),
             name: name(drive, stop).to_owned(),
             teeth,
             pitches,
@@ -145,7 +194,12 @@ pub(super) fn stops(drive: &Drive, assembled: &Assembled, start: &Observation) -
 }
 
 /// The smooth route around the sprockets where they stand; none where a guide takes part.
-fn taut(drive: &Drive, stops: &[Stop], start: &Observation) -> Option<Route> {
+fn taut(
+    drive: &Drive,
+    run: &ChainRun<'_>,
+    stops: &[Stop],
+    start: &Observation,
+) -> Option<Route> {
     let wheel = |stop: &Stop| match *stop {
         Stop::Sprocket(i) => {
             let sprocket = &drive.sprockets[i];
@@ -153,7 +207,7 @@ fn taut(drive: &Drive, stops: &[Stop], start: &Observation) -> Option<Route> {
             Some(Wheel::toothed(
                 centre,
                 sprocket.gap.teeth,
-                drive.chains[0].chain.pitch,
+                run.placed.chain.pitch,
                 sprocket.side,
             ))
         }

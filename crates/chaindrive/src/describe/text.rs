@@ -2,12 +2,15 @@
 
 use std::fmt;
 
-use super::{ContactFacts, Description, LinkFacts, Model, SpanAtRest};
+use super::{ChainFacts, ContactFacts, Description, LinkFacts, Model, SpanAtRest};
 
 impl fmt::Display for Description {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.chain(f)?;
-        self.route(f)?;
+        for chain in &self.chains {
+            chain.fmt(f)?;
+            self.route(chain, f)?;
+        }
+        self.shafts(f)?;
         self.statics(f)?;
         self.model.fmt(f)?;
         self.time_scales(f)?;
@@ -18,10 +21,13 @@ impl fmt::Display for Description {
     }
 }
 
-impl Description {
-    fn chain(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let chain = &self.chain;
-        writeln!(f, "chain")?;
+impl fmt::Display for ChainFacts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let chain = self;
+        match &chain.name {
+            Some(name) => writeln!(f, "chain {name}")?,
+            None => writeln!(f, "chain")?,
+        }
         row(
             f,
             "links",
@@ -51,13 +57,15 @@ impl Description {
         };
         row(f, "wave speeds", &waves)
     }
+}
 
-    fn route(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Some(closing) = &self.closing else {
+impl Description {
+    fn route(&self, chain: &ChainFacts, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(closing) = &chain.closing else {
             return Ok(());
         };
         writeln!(f, "route                      teeth   pitches   wrap [deg]")?;
-        for stop in &self.stops {
+        for stop in self.stops.iter().filter(|it| it.chain == chain.name) {
             let dash = || "–".to_owned();
             let teeth = stop.teeth.map_or_else(dash, |teeth| teeth.to_string());
             let wrap = stop
@@ -79,7 +87,8 @@ impl Description {
             length,
             tension,
             frequency,
-        } in &self.spans
+            ..
+        } in self.spans.iter().filter(|it| it.chain == chain.name)
         {
             let frequency = frequency.map_or_else(|| "–".to_owned(), |f| format!("{f:.2}"));
             writeln!(
@@ -95,12 +104,39 @@ impl Description {
         row(f, "closing", &closing)
     }
 
+    fn shafts(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.shafts.is_empty() {
+            return Ok(());
+        }
+        writeln!(
+            f,
+            "shafts                inertia [kg m²]   speed [rad/s]   sprockets; joined by"
+        )?;
+        for shaft in &self.shafts {
+            let sprockets = match shaft.sprockets.as_slice() {
+                [] => "–".to_owned(),
+                names => names.join(", "),
+            };
+            let joins = match shaft.joined_by.as_slice() {
+                [] => String::new(),
+                names => format!("; {}", names.join(", ")),
+            };
+            writeln!(
+                f,
+                "  {:18} {:>16.4e}   {:>13.4}   {sprockets}{joins}",
+                shaft.name, shaft.inertia, shaft.speed
+            )?;
+        }
+        Ok(())
+    }
+
     fn statics(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.statics.is_empty() {
             return Ok(());
         }
         // Rigid links take over where the springs have settled.
-        let of = if self.chain.bodies.rollers.is_some() {
+        let rigid = |chain: &ChainFacts| chain.bodies.rollers.is_some();
+        let of = if self.chains.iter().any(rigid) {
             "statics, laid as springs "
         } else {
             "statics                  "

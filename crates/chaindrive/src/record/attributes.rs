@@ -222,11 +222,20 @@ fn assembly(story: &mut Story, simulation: &Simulation) {
     story.count("links", system.links() as u64);
     story.count("rollers", system.rollers() as u64);
     story.count("degrees_of_freedom", system.free_dofs() as u64);
-    if let Some(fitting) = &assembled.fittings[0] {
-        story.number("closing_strain", fitting.strain);
-        story.number("closing_travel", fitting.travel);
-        story.list("pitches_seated", fitting.seated.iter().copied());
-        story.list("pitches_in_spans", fitting.spans.iter().copied());
+    let chains = system.chain_sizes();
+    for ((chain, _), fitting) in chains.iter().zip(&assembled.fittings) {
+        let Some(fitting) = fitting else { continue };
+        // Of several chains each says its own.
+        let named = |what: &str| match chains.len() {
+            1 => what.to_owned(),
+            _ => format!("{what}_{chain}"),
+        };
+        story.number(&named("closing_strain"), fitting.strain);
+        story.number(&named("closing_travel"), fitting.travel);
+        let seated = fitting.seated.iter().copied();
+        story.list(&named("pitches_seated"), seated);
+        let spans = fitting.spans.iter().copied();
+        story.list(&named("pitches_in_spans"), spans);
     }
     if !assembled.statics.is_empty() {
         let statics = &assembled.statics;

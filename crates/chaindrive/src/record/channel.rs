@@ -19,6 +19,10 @@ pub enum Axis {
     Span,
     /// One a sprocket.
     Sprocket,
+    /// One a shaft that has a name.
+    Shaft,
+    /// One a coupling.
+    Coupling,
     /// One a guide.
     Guide,
     /// One a tensioner.
@@ -31,12 +35,14 @@ pub enum Axis {
 
 impl Axis {
     /// All axes with labels.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 11] = [
         Self::Roller,
         Self::Link,
         Self::Joint,
         Self::Span,
         Self::Sprocket,
+        Self::Shaft,
+        Self::Coupling,
         Self::Guide,
         Self::Tensioner,
         Self::Store,
@@ -52,6 +58,8 @@ impl Axis {
             Self::Joint => Some("joint"),
             Self::Span => Some("span"),
             Self::Sprocket => Some("sprocket"),
+            Self::Shaft => Some("shaft"),
+            Self::Coupling => Some("coupling"),
             Self::Guide => Some("guide"),
             Self::Tensioner => Some("tensioner"),
             Self::Store => Some("store"),
@@ -120,6 +128,9 @@ channels! {
     SprocketForceY, "sprocket_force_y", "N", Sprocket, "resultant of the chain on the sprocket, y";
     SprocketX, "sprocket_x", "m", Sprocket, "sprocket centre, x";
     SprocketY, "sprocket_y", "m", Sprocket, "sprocket centre, y";
+    ShaftAngle, "shaft_angle", "rad", Shaft, "rotation since the start, counter-clockwise";
+    ShaftSpeed, "shaft_speed", "rad/s", Shaft, "angular speed, counter-clockwise";
+    CouplingTorque, "coupling_torque", "N m", Coupling, "torque of the coupling on its first shaft";
     GuideForceX, "guide_force_x", "N", Guide, "resultant of the chain on the guide, x";
     GuideForceY, "guide_force_y", "N", Guide, "resultant of the chain on the guide, y";
     TensionerPosition, "tensioner_position", "m or rad", Tensioner, "travel of a slider in m, or angle of an arm in rad";
@@ -198,9 +209,15 @@ impl Channel {
     }
 
     /// Whether a system has what the channel records: joints and directions of links belong to rigid
-    /// links.
+    /// links, shafts and couplings are those that a scene names.
     pub fn is_of(self, system: &System) -> bool {
-        self != Self::LinkAngle && self.axis() != Axis::Joint || system.joints() > 0
+        match self.axis() {
+            Axis::Joint => system.joints() > 0,
+            Axis::Link if self == Self::LinkAngle => system.joints() > 0,
+            Axis::Shaft => !system.shaft_names().is_empty(),
+            Axis::Coupling => !system.coupling_names().is_empty(),
+            _ => true,
+        }
     }
 
     /// The channels of some names for a system, each once: `all` that it has, or the default ones of
@@ -282,6 +299,9 @@ impl Channel {
             Self::SprocketForceY => to.extend(&sample.sprocket_force_y),
             Self::SprocketX => to.extend(&sample.sprocket_x),
             Self::SprocketY => to.extend(&sample.sprocket_y),
+            Self::ShaftAngle => to.extend(&sample.shaft_angle),
+            Self::ShaftSpeed => to.extend(&sample.shaft_speed),
+            Self::CouplingTorque => to.extend(&sample.coupling_torque),
             Self::GuideForceX => to.extend(&sample.guide_force_x),
             Self::GuideForceY => to.extend(&sample.guide_force_y),
             Self::TensionerPosition => to.extend(&sample.tensioner_position),

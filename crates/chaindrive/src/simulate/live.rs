@@ -12,8 +12,8 @@ use crate::{Channel, SimulationError};
 /// A value holds until another one is set; at the start nothing acts beside what the scene says.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Control {
-    /// Torque on the shaft of a sprocket without a given motion \[N m\], counter-clockwise positive, beside the
-    /// torques of the scene.
+    /// Torque on a shaft without a given motion, by its name or that of a sprocket on it \[N m\], counter-clockwise positive,
+    /// beside the torques of the scene.
     Torque(String),
     /// Force on a tensioner \[N, or N m on an arm\] towards positive coordinates, beside its push.
     Force(String),
@@ -213,7 +213,12 @@ impl Control {
     fn input(&self, system: &System) -> Result<Input, SimulationError> {
         let (what, known, name) = match self {
             Self::Force(name) => ("tensioner", system.tensioner_names(), name),
-            Self::Torque(name) | Self::CentreX(name) | Self::CentreY(name) => {
+            Self::Torque(name) => {
+                let mut known = system.sprocket_names();
+                known.extend(system.shaft_names());
+                ("shaft", known, name)
+            }
+            Self::CentreX(name) | Self::CentreY(name) => {
                 ("sprocket", system.sprocket_names(), name)
             }
         };
@@ -231,7 +236,9 @@ impl Control {
         };
         let input = match self {
             Self::Force(_) => Input::Force { tensioner: index },
-            Self::Torque(_) => Input::Torque { sprocket: index },
+            Self::Torque(name) => Input::Torque {
+                shaft: system.shaft_named(name).unwrap_or(index),
+            },
             Self::CentreX(_) => Input::Centre {
                 sprocket: index,
                 axis: 0,

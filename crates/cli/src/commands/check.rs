@@ -44,9 +44,13 @@ fn sound(name: &str) -> Result<String, Failure> {
     for warning in &assembled.warnings {
         eprintln!("warning: {name}: {warning}");
     }
+    let links = assembled.system.links();
+    let chain = match drive.chains.len() {
+        1 => format!("{links} links"),
+        chains => format!("{chains} chains of {links} links"),
+    };
     Ok(format!(
-        "sound; {} links, {} sprockets, {} guides, {} tensioners, {} degrees of freedom",
-        drive.chains[0].chain.links(),
+        "sound; {chain}, {} sprockets, {} guides, {} tensioners, {} degrees of freedom",
         drive.sprockets.len(),
         drive.guides.len(),
         drive.tensioners.len(),

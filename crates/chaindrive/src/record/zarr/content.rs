@@ -7,8 +7,8 @@ use super::about;
 use super::error::Fault;
 use super::events::EventTracks;
 use super::store::Storage;
-use super::track::{Track, samples_per_chunk, store_labels};
-use crate::record::{Axis, Channel, Provenance, labels};
+use super::track::{Track, samples_per_chunk, store_chains, store_labels};
+use crate::record::{Axis, Channel, Provenance, chains_along, labels};
 use crate::{Judgement, Simulation};
 
 /// All arrays of a run.
@@ -44,7 +44,18 @@ impl Content {
             {
                 fixed.push((name, store_labels(storage, name, axis, &labels)?));
             }
-            let about = about(&channel.unit_in(system), channel.description());
+            let mut about = about(&channel.unit_in(system), channel.description());
+            if let (Some(along), Some(name), Some(chains)) = (
+                axis.name(),
+                axis.chain_coordinate(),
+                chains_along(axis, system),
+            ) {
+                // By this attribute readers of netCDF and Zarr know a coordinate that is no dimension.
+                about.insert("coordinates".into(), name.into());
+                if !fixed.iter().any(|(known, _)| *known == name) {
+                    fixed.push((name, store_chains(storage, name, along, &chains)?));
+                }
+            }
             tracks.push((
                 channel,
                 Track::new(storage, channel.name(), axis, system, samples, about)?,

@@ -139,8 +139,27 @@ pub(super) fn store_labels(
     axis: Axis,
     labels: &[String],
 ) -> Result<Value, Fault> {
+    store_along(storage, name, name, labels, axis.is_numbered())
+}
+
+/// Writes the names of the chains that the entries of an axis belong to, and returns the array's metadata.
+pub(super) fn store_chains(
+    storage: &Storage,
+    name: &'static str,
+    along: &'static str,
+    chains: &[String],
+) -> Result<Value, Fault> {
+    store_along(storage, name, along, chains, false)
+}
+
+fn store_along(
+    storage: &Storage,
+    name: &'static str,
+    along: &'static str,
+    labels: &[String],
+    numbers: bool,
+) -> Result<Value, Fault> {
     let count = labels.len() as u64;
-    let numbers = axis.is_numbered();
     let (shape, chunk) = (vec![count], vec![count.max(1)]);
     let mut builder = if numbers {
         ArrayBuilder::new(shape, chunk, data_type::int64(), 0_i64)
@@ -148,7 +167,7 @@ pub(super) fn store_labels(
         ArrayBuilder::new(shape, chunk, data_type::string(), "")
     };
     let array = builder
-        .dimension_names(Some([name]))
+        .dimension_names(Some([along]))
         .build(storage.clone(), &format!("/{name}"))?;
     if count > 0 {
         let options = CodecOptions::default().with_store_empty_chunks(true);

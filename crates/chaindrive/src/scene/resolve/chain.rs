@@ -2,6 +2,7 @@
 
 use chaindrive_mechanics::{Chain, ChainModel, End, Ends};
 
+use super::chains::Described;
 use super::law::Pair;
 use super::scatter::Normal;
 use super::{Findings, catalogue, count, links, motion};
@@ -39,28 +40,30 @@ impl Resolved {
     }
 }
 
-/// `touched`: whether there is a sprocket or guide for which the roller diameter matters.
 pub(super) fn resolve(
     scene: &SceneText,
-    touched: bool,
+    described: &Described<'_>,
     findings: &mut Findings<'_>,
 ) -> Option<Resolved> {
-    let of_type = match &scene.chain.of_type {
+    let written = described.text;
+    // The roller diameter matters where there is a sprocket or guide.
+    let touched = !(described.sprockets.is_empty() && described.guides.is_empty());
+    let of_type = match &written.of_type {
         Some(name) => Some(catalogue::named(name, findings)?),
         None => None,
     };
-    if scene.chain.model == schema::ChainModel::Particles {
-        links::refuse_on_particles(&scene.chain, findings);
+    if written.model == schema::ChainModel::Particles {
+        links::refuse_on_particles(written, findings);
     }
     let text = &match of_type {
-        Some(chain) => catalogue::completed(&scene.chain, chain, findings),
-        None => scene.chain.clone(),
+        Some(chain) => catalogue::completed(written, chain, findings),
+        None => written.clone(),
     };
     let Some(pitch) = text.pitch.map(|pitch| pitch.0) else {
         findings.refuse_with("chain.pitch", "missing", "give the nominal pitch");
         return None;
     };
-    let count::Count { links, uncounted } = count::links(scene, text, pitch, findings)?;
+    let count::Count { links, uncounted } = count::links(scene, described, text, pitch, findings)?;
     let lengths = lengths(text, pitch, links, findings);
     let roller_diameter = match text.roller_diameter {
         Some(diameter) => diameter.0,
@@ -74,13 +77,16 @@ pub(super) fn resolve(
             findings.or_multiple(None, "chain.roller_diameter", default, pitch)
         }
     };
-    let roller_length = text.roller.and_then(|roller| roller.length);
+    let roller_length = text.roller.as_ref().and_then(|roller| roller.length);
     let roller_length = roller_length.map(|length| length.0);
     let roller_length = roller_length.or(of_type.and_then(catalogue::roller_length));
     let ends = ends(text, findings);
     let body = match text.model {
         schema::ChainModel::Particles => particles(text, links, findings),
-        _ => links::resolve(scene, text, links, roller_diameter, roller_length, findings),
+        _ => {
+            let all = (scene, described.route);
+            links::resolve(all, text, links, roller_diameter, roller_length, findings)
+        }
     };
 
     let scatter = text.scatter.clone().unwrap_or_default();

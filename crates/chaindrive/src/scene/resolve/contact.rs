@@ -85,25 +85,6 @@ pub(super) fn surface(
     })
 }
 
-/// The common contact in full: that of joints and rollers, of which a chain has one kind.
-pub(super) fn common_surface(
-    common: &Contact,
-    fallback: Fallback,
-    pair: Pair,
-    findings: &mut Findings<'_>,
-    absent: impl FnOnce(&mut Findings<'_>) -> Option<Elastic>,
-) -> Option<Surface> {
-    surface(
-        common,
-        fallback.path,
-        common,
-        fallback,
-        pair,
-        findings,
-        absent,
-    )
-}
-
 fn dissipation(
     own: &Contact,
     path: &str,

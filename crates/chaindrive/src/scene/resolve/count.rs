@@ -2,6 +2,7 @@
 
 use chaindrive_geometry::{Closing, Side, Wheel};
 
+use super::chains::Described;
 use super::{Findings, point};
 use crate::scene::schema::{self, SceneText};
 
@@ -26,6 +27,7 @@ pub(super) struct Count {
 /// The number of links of a chain of this pitch \[m\].
 pub(super) fn links(
     scene: &SceneText,
+    described: &Described<'_>,
     text: &schema::Chain,
     pitch: f64,
     findings: &mut Findings<'_>,
@@ -40,7 +42,7 @@ pub(super) fn links(
         findings.refuse_with("chain.links", "missing", "give the number of links");
         return None;
     }
-    Some(match around(scene, pitch) {
+    Some(match around(scene, described, pitch) {
         Ok(links) => {
             findings.assume("chain.links", links, "follows from the taut route");
             Count {
@@ -59,11 +61,14 @@ pub(super) fn links(
 ///
 /// It is even, because inner and outer links alternate. A chain that nothing adjusts and nothing tightens must
 /// not be short, for want of a link would stretch all others; elsewhere the nearest number will do.
-fn around(scene: &SceneText, pitch: f64) -> Result<usize, String> {
-    let route = scene.route.as_ref();
+fn around(scene: &SceneText, described: &Described<'_>, pitch: f64) -> Result<usize, String> {
+    let route = described.route;
     let stops = route.and_then(|route| route.stops.as_ref());
     let names: Vec<&str> = match stops {
-        None => scene.sprockets.iter().map(|s| s.name.as_str()).collect(),
+        None => {
+            let own = described.sprockets.iter();
+            own.map(|&i| scene.sprockets[i].name.as_str()).collect()
+        }
         Some(names) => names.iter().map(String::as_str).collect(),
     };
     let wheels: Result<Vec<Wheel>, String> =

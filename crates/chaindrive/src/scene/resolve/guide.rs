@@ -11,17 +11,21 @@ use super::{Findings, Names, contact, motion, point};
 use crate::scene::defaults;
 use crate::scene::schema::{self, Face, SceneText, TravelSide};
 
-pub(super) fn resolve_all(
+/// All guides, each with the chain that it belongs to.
+pub(super) fn resolve_all<'c>(
     scene: &SceneText,
     names: &Names<'_>,
-    chain: &Resolved,
     findings: &mut Findings<'_>,
+    chain_of: impl Fn(usize) -> &'c Resolved,
 ) -> Option<Vec<Guide>> {
     let guides: Vec<_> = scene
         .guides
         .iter()
         .enumerate()
-        .map(|(i, text)| resolve(text, &format!("guides[{i}]"), scene, names, chain, findings))
+        .map(|(i, text)| {
+            let path = format!("guides[{i}]");
+            resolve(text, &path, scene, names, chain_of(i), findings)
+        })
         .collect();
     guides.into_iter().collect()
 }

@@ -14,7 +14,7 @@ use super::chain::Body;
 use super::law::{Pair, cylindrical, elastic, steel};
 use super::{Findings, contact};
 use crate::scene::defaults;
-use crate::scene::schema::{self, Rollers, SceneText};
+use crate::scene::schema::{self, Rollers, Route, SceneText};
 
 /// Indentation \[m\] at which a contact counts as pressed, where no pretension says how far.
 const PRESSED: f64 = 1e-6;
@@ -101,7 +101,7 @@ impl Needs<'_, '_> {
 
 /// The links of a chain of rigid bodies. `text` is the chain completed from the catalogue.
 pub(super) fn resolve(
-    scene: &SceneText,
+    (scene, route): (&SceneText, Option<&Route>),
     text: &schema::Chain,
     count: usize,
     roller_diameter: f64,
@@ -131,7 +131,7 @@ pub(super) fn resolve(
     };
     let stiffness = match text.stiffness {
         Some(stiffness) => stiffness.0,
-        None => laying_stiffness(scene, &links.joint, pair, findings)?,
+        None => laying_stiffness((scene, route), &links.joint, pair, findings)?,
     };
     Some(Body {
         masses: masses(&links, count, text.ends.is_some()),
@@ -168,7 +168,7 @@ fn rollers(
     length: Option<f64>,
     needs: &mut Needs<'_, '_>,
 ) -> Option<RollerModel> {
-    let roller = text.roller.unwrap_or_default();
+    let roller = text.roller.clone().unwrap_or_default();
     let mass = roller.mass.map(|mass| mass.0);
     let model = text.rollers.unwrap_or_else(|| {
         let findings = &mut *needs.findings;
@@ -218,9 +218,8 @@ fn rollers(
                 bore: Some(bore),
                 length,
             };
-            let common = &scene.contact.rollers;
             let surface = surface(
-                common,
+                (&roller.contact, &scene.contact.rollers),
                 contact::ROLLERS,
                 pair,
                 clearance,
@@ -253,7 +252,7 @@ fn joint(
         }
         return Some(Joint::Ideal);
     }
-    let joint = text.joint.unwrap_or_default();
+    let joint = text.joint.clone().unwrap_or_default();
     let pin = joint.pin_diameter.map(|diameter| 0.5 * diameter.0);
     let pin = needs.value(pin, "joint.pin_diameter", "diameter of the pin");
     let clearance = joint.clearance.map(|clearance| clearance.0);
@@ -262,7 +261,7 @@ fn joint(
     let (pin, clearance) = (pin?, clearance?);
     let bore = pin + clearance;
     // What surrounds the bore: the bush, and at the latest the roller.
-    let bush = text.roller.and_then(|roller| roller.bush_diameter);
+    let bush = text.roller.as_ref().and_then(|roller| roller.bush_diameter);
     let bush = bush.map_or(roller_diameter, |diameter| diameter.0);
     if 2.0 * bore >= bush {
         let message = format!("{}, must be less", 2.0 * pin);
@@ -277,9 +276,8 @@ fn joint(
         bore: Some(bore),
         length: joint.length.map(|length| length.0),
     };
-    let common = &scene.contact.joints;
     let surface = surface(
-        common,
+        (&joint.contact, &scene.contact.joints),
         contact::JOINTS,
         pair,
         clearance,
@@ -295,14 +293,15 @@ fn joint(
 
 /// Contact of what turns in a bore; steel, and the enhanced cylindrical law, unless the scene says more.
 fn surface(
-    common: &schema::Contact,
+    (own, common): (&schema::Contact, &schema::Contact),
     fallback: contact::Fallback,
     pair: Pair,
     clearance: f64,
     name: &str,
     findings: &mut Findings<'_>,
 ) -> Option<chaindrive_mechanics::Surface> {
-    contact::common_surface(common, fallback, pair, findings, |findings| {
+    let place = format!("chain.{name}.contact");
+    contact::surface(own, &place, common, fallback, pair, findings, |findings| {
         let Some(length) = pair.length else {
             let hint = format!("give the length of the contact, or `contact.{name}s.law`");
             findings.refuse_with(&format!("chain.{name}.length"), "missing", hint);
@@ -317,8 +316,7 @@ fn surface(
                 "modulus": steel.modulus,
                 "poisson": steel.poisson,
             });
-            let place = format!("contact.{name}s.law");
-            findings.assume(&place, text, "follows from the dimensions of the chain");
+            findings.assume(&format!("{place}.law"), text, "follows from the dimensions of the chain");
         }
         law.map_err(|error| {
             let message = format!("{}, must be {}", error.value, error.allowed);
@@ -332,13 +330,13 @@ fn surface(
 /// Stiffness with which the links are laid and settled \[N/m\]: that of a joint under the pretension,
 /// or ten times that of a tooth.
 fn laying_stiffness(
-    scene: &SceneText,
+    (scene, route): (&SceneText, Option<&Route>),
     joint: &Joint,
     pair: Pair,
     findings: &mut Findings<'_>,
 ) -> Option<f64> {
     if let Joint::Clearance(joint) = joint {
-        let pretension = scene.route.as_ref().map_or(0.0, |route| route.pretension.0);
+        let pretension = route.map_or(0.0, |route| route.pretension.0);
         let law = &joint.surface.law;
         let stiffness = law.stiffness(indentation(law, pretension, pair.radius).max(PRESSED));
         let remark = "follows from a joint under the pretension";

@@ -2,6 +2,7 @@
 
 mod catalogue;
 mod chain;
+mod chains;
 mod contact;
 mod count;
 mod flank;
@@ -11,12 +12,13 @@ mod links;
 mod motion;
 mod route;
 mod scatter;
+mod shafts;
 mod sprocket;
 mod start;
 mod tensioner;
 mod tooth;
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_mechanics::{Drive, DriveError, Parts, PlacedChain};
@@ -34,58 +36,101 @@ pub(crate) fn drive(scene: &SceneText, tree: &Node) -> Result<(Drive, Vec<Assump
     let mut findings = Findings {
         tree,
         version: scene.defaults.unwrap_or_default(),
+        chain: None,
         problems: Problems::default(),
         assumptions: Vec::new(),
-        assumed: HashSet::new(),
+        assumed: HashMap::new(),
     };
     let names = Names::new(scene, &mut findings);
     let parts = parts(scene, &names, &mut findings);
     let Some((parts, uncounted)) = parts.filter(|_| findings.problems.is_empty()) else {
         return Err(findings.problems);
     };
-    match (Drive::new(parts), uncounted) {
-        (Ok(drive), None) => return Ok((drive, findings.assumptions)),
-        (Err(errors), _) => {
+    match Drive::new(parts) {
+        Ok(drive) if uncounted.is_empty() => return Ok((drive, findings.assumptions())),
+        Ok(_) => {
+            for (chain, reason) in uncounted {
+                findings.chain = chain;
+                findings.refuse_with("chain.links", "missing", reason);
+            }
+        }
+        Err(errors) => {
             for error in errors {
                 findings.drive_error(error);
             }
         }
-        (Ok(_), Some(reason)) => findings.refuse_with("chain.links", "missing", reason),
     }
     Err(findings.problems)
 }
 
-/// The parts, and why the number of links is a guess, if it is one.
+/// Why the number of links of a chain is a guess.
+type Uncounted = (Option<usize>, String);
+
+/// The parts, and why numbers of links are guesses, where they are.
 fn parts(
     scene: &SceneText,
     names: &Names<'_>,
     findings: &mut Findings<'_>,
-) -> Option<(Parts, Option<String>)> {
-    let touched = !(scene.sprockets.is_empty() && scene.guides.is_empty());
-    let chain = chain::resolve(scene, touched, findings);
+) -> Option<(Parts, Vec<Uncounted>)> {
+    let described = chains::described(scene, names, findings);
+    let mut resolved = Vec::new();
+    for (index, chain) in described.iter().flatten().enumerate() {
+        findings.chain = chain.name.map(|_| index);
+        resolved.push(chain::resolve(scene, chain, findings));
+    }
+    findings.chain = None;
     let tensioners = tensioner::resolve_all(scene, findings);
     let gravity = gravity(scene, findings);
-    let chain = chain?;
-    let sprockets = sprocket::resolve_all(scene, names, &chain, findings);
-    let guides = guide::resolve_all(scene, names, &chain, findings);
-    let layout = route::layout(scene, names, &chain.chain, gravity, findings);
-    let (sprockets, guides) = (sprockets?, guides?);
-    let placed = PlacedChain {
-        chain: chain.chain,
-        layout: layout?,
-        sprockets: (0..sprockets.len()).collect(),
-        guides: (0..guides.len()).collect(),
-    };
+    let turning = shafts::resolve(scene, names, findings);
+    let described = described?;
+    let resolved: Vec<chain::Resolved> = resolved.into_iter().collect::<Option<_>>()?;
+    // Every body has an owner.
+    let owner = |owner: Option<usize>| &resolved[owner.unwrap_or(0)];
+    let sprockets = sprocket::resolve_all(scene, names, findings, |body| {
+        owner(described.iter().position(|it| it.sprockets.contains(&body)))
+    });
+    let guides = guide::resolve_all(scene, names, findings, |body| {
+        owner(described.iter().position(|it| it.guides.contains(&body)))
+    });
+    let mut layouts = Vec::new();
+    for (index, (chain, resolved)) in described.iter().zip(&resolved).enumerate() {
+        findings.chain = chain.name.map(|_| index);
+        let chain = (chain, &resolved.chain);
+        layouts.push(route::layout(scene, chain, names, gravity, findings));
+    }
+    findings.chain = None;
+    let layouts: Vec<_> = layouts.into_iter().collect::<Option<_>>()?;
+    let (mut sprockets, guides, turning) = (sprockets?, guides?, turning?);
+    for (sprocket, shaft) in sprockets.iter_mut().zip(turning.of_sprockets) {
+        sprocket.shaft = shaft;
+    }
+    let mut chains = Vec::new();
+    let mut uncounted = Vec::new();
+    for (index, ((described, chain), layout)) in
+        described.into_iter().zip(resolved).zip(layouts).enumerate()
+    {
+        let place = described.name.map(|_| index);
+        uncounted.extend(chain.uncounted.map(|reason| (place, reason)));
+        chains.push(PlacedChain {
+            name: described.name.map(str::to_owned),
+            chain: chain.chain,
+            layout,
+            sprockets: described.sprockets,
+            guides: described.guides,
+        });
+    }
     let parts = Parts {
-        chains: vec![placed],
+        chains,
         sprockets,
         guides,
         tensioners: tensioners?,
-        torsions: Vec::new(),
+        shafts: turning.shafts,
+        couplings: turning.couplings,
+        gears: turning.gears,
         settle: scene.settle,
         gravity,
     };
-    Some((parts, chain.uncounted))
+    Some((parts, uncounted))
 }
 
 fn gravity(scene: &SceneText, findings: &mut Findings<'_>) -> Vector {
@@ -100,6 +145,8 @@ fn gravity(scene: &SceneText, findings: &mut Findings<'_>) -> Vector {
 
 /// The names by which parts refer to each other.
 struct Names<'s> {
+    chains: Vec<&'s str>,
+    shafts: Vec<&'s str>,
     sprockets: Vec<&'s str>,
     guides: Vec<&'s str>,
     tensioners: Vec<&'s str>,
@@ -108,25 +155,27 @@ struct Names<'s> {
 impl<'s> Names<'s> {
     fn new(scene: &'s SceneText, findings: &mut Findings<'_>) -> Self {
         let names = Self {
+            chains: scene.chains.iter().map(|c| c.name.as_str()).collect(),
+            shafts: scene.shafts.iter().map(|s| s.name.as_str()).collect(),
             sprockets: scene.sprockets.iter().map(|s| s.name.as_str()).collect(),
             guides: scene.guides.iter().map(|g| g.name.as_str()).collect(),
             tensioners: scene.tensioners.iter().map(|t| t.name.as_str()).collect(),
         };
         let place = |list: &str, index: usize| format!("{list}[{index}].name");
-        let stops = names
-            .sprockets
-            .iter()
-            .enumerate()
-            .map(|(i, name)| (place("sprockets", i), *name));
-        let guides = names
-            .guides
-            .iter()
-            .enumerate()
-            .map(|(i, name)| (place("guides", i), *name));
-        let tensioners = names.tensioners.iter().enumerate();
-        let tensioners = tensioners.map(|(i, name)| (place("tensioners", i), *name));
-        findings.unique(stops.chain(guides));
-        findings.unique(tensioners);
+        let listed = |list: &'static str, names: &[&'s str]| {
+            let names = names.to_vec().into_iter().enumerate();
+            names.map(move |(i, name)| (place(list, i), name))
+        };
+        let sprockets = || listed("sprockets", &names.sprockets);
+        findings.unique(sprockets().chain(listed("guides", &names.guides)));
+        // Names in `sprockets` have been looked at.
+        findings.unique_beside(&names.sprockets, listed("shafts", &names.shafts));
+        findings.unique(listed("tensioners", &names.tensioners));
+        findings.unique(listed("chains", &names.chains));
+        let couplings: Vec<&str> = scene.couplings.iter().map(|c| c.name.as_str()).collect();
+        findings.unique(listed("couplings", &couplings));
+        let gears: Vec<&str> = scene.gears.iter().map(|g| g.name.as_str()).collect();
+        findings.unique(listed("gears", &gears));
         names
     }
 
@@ -152,21 +201,60 @@ struct Findings<'t> {
     tree: &'t Node,
     /// Whose defaults hold.
     version: Version,
+    /// The chain that `chain` and `route` in paths mean, where there are several.
+    chain: Option<usize>,
     problems: Problems,
     assumptions: Vec<Assumption>,
-    assumed: HashSet<String>,
+    /// What has been assumed at a place; none where chains differ in it.
+    assumed: HashMap<String, Option<Json>>,
 }
 
 impl Findings<'_> {
+    /// A path in the scene, with that of the chain in work.
+    fn at(&self, path: &str) -> String {
+        let of_chain = ["chain", "route"].iter().any(|key| {
+            let rest = path.strip_prefix(key);
+            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+        });
+        match self.chain {
+            Some(index) if of_chain => {
+                let rest = path.strip_prefix("chain").unwrap_or(path);
+                let dot = if rest.starts_with("route") { "." } else { "" };
+                format!("chains[{index}]{dot}{rest}")
+            }
+            _ => path.to_owned(),
+        }
+    }
+
     /// Notes what is taken for an absent value; several bodies may share it.
     fn assume(&mut self, path: &str, value: impl Into<Json>, remark: impl Into<String>) {
-        if self.assumed.insert(path.to_owned()) {
-            self.assumptions.push(Assumption {
-                path: path.to_owned(),
-                value: value.into(),
-                remark: remark.into(),
-            });
+        let (path, value) = (self.at(path), value.into());
+        match self.assumed.get_mut(&path) {
+            None => {
+                self.assumed.insert(path.clone(), Some(value.clone()));
+                let remark = remark.into();
+                self.assumptions.push(Assumption {
+                    path,
+                    value,
+                    remark,
+                });
+            }
+            // What follows from chains that differ stays open: it follows from them again.
+            Some(known) if known.as_ref().is_some_and(|known| *known != value) => *known = None,
+            Some(_) => {}
         }
+    }
+
+    /// Everything assumed.
+    fn assumptions(self) -> Vec<Assumption> {
+        let Self {
+            mut assumptions,
+            assumed,
+            ..
+        } = self;
+        let stands = |it: &Assumption| assumed.get(&it.path).is_some_and(Option::is_some);
+        assumptions.retain(stands);
+        assumptions
     }
 
     /// Notes the member of a family that stands for nothing.
@@ -194,6 +282,7 @@ impl Findings<'_> {
     }
 
     fn refuse(&mut self, path: &str, message: impl Into<String>) {
+        let path = &self.at(path);
         self.problems.push_with(|| {
             let (path, line) = self.tree.locate(path);
             Problem::new(&path, line, message)
@@ -201,6 +290,7 @@ impl Findings<'_> {
     }
 
     fn refuse_with(&mut self, path: &str, message: impl Into<String>, hint: impl Into<String>) {
+        let path = &self.at(path);
         self.problems.push_with(|| {
             let (path, line) = self.tree.locate(path);
             Problem::new(&path, line, message).hint(hint)
@@ -211,7 +301,7 @@ impl Findings<'_> {
     ///
     /// An empty hint is none.
     fn refuse_once(&mut self, path: &str, message: impl Into<String>, hint: &str) {
-        let (place, _) = self.tree.locate(path);
+        let (place, _) = self.tree.locate(&self.at(path));
         if self.problems.speak_of(&place) {
             return;
         }
@@ -242,7 +332,16 @@ impl Findings<'_> {
     }
 
     fn unique<'n>(&mut self, names: impl Iterator<Item = (String, &'n str)>) {
-        let mut seen = HashSet::new();
+        self.unique_beside(&[], names);
+    }
+
+    /// As [`unique`](Self::unique), where some names are taken.
+    fn unique_beside<'n>(
+        &mut self,
+        taken: &[&'n str],
+        names: impl Iterator<Item = (String, &'n str)>,
+    ) {
+        let mut seen: HashSet<&str> = taken.iter().copied().collect();
         for (path, name) in names {
             if name.trim().is_empty() {
                 self.refuse(&path, "the name is empty");
@@ -273,7 +372,7 @@ impl Findings<'_> {
                 allowed,
             } => self.refuse(&path, format!("{value}, must be {allowed}")),
             DriveError::Law { path, source } => {
-                let path = format!("{}.{}", in_scene(&path), source.parameter);
+                let path = format!("{}.{}", self.in_scene(&path), source.parameter);
                 self.refuse(
                     &path,
                     format!("{}, must be {}", source.value, source.allowed),
@@ -288,16 +387,28 @@ impl Findings<'_> {
                 format!("overlaps sprocket `{first}` by {:.1} mm", overlap * 1e3),
                 "move the centres apart",
             ),
-            DriveError::Conflict { path, problem } => self.refuse(&in_scene(&path), problem),
+            DriveError::Conflict { path, problem } => {
+                let path = self.in_scene(&path);
+                self.refuse(&path, problem);
+            }
             other => self.refuse("", other.to_string()),
         }
     }
-}
 
-/// Where a scene has the contacts that a drive has in its joints and rollers.
-fn in_scene(path: &str) -> String {
-    path.replacen("chain.joint.contact", "contact.joints", 1)
-        .replacen("chain.roller.contact", "contact.rollers", 1)
+    /// Where a scene has the contacts of joints and rollers: with their chain, or for all.
+    fn in_scene(&self, path: &str) -> String {
+        for (own, common) in [
+            ("joint.contact", "contact.joints"),
+            ("roller.contact", "contact.rollers"),
+        ] {
+            if let Some((_, rest)) = path.split_once(own)
+                && self.tree.find(path).is_none()
+            {
+                return format!("{common}{rest}");
+            }
+        }
+        path.to_owned()
+    }
 }
 
 fn point([x, y]: [Length; 2]) -> Point {

@@ -3,41 +3,42 @@
 use chaindrive_geometry::Vector;
 use chaindrive_mechanics::{Adjust, Chain, Fit, Layout, Stop, Tighten};
 
+use super::chains::Described;
 use super::{Findings, Names, start};
 use crate::scene::defaults;
 use crate::scene::schema::{self, Route, SceneText};
 use crate::scene::suggest::one_of;
 
-/// The layout of the chain: as `chain.start` says, or else along the route.
+/// The layout of a chain: as `chain.start` says, or else along the route.
 pub(super) fn layout(
     scene: &SceneText,
+    (described, chain): (&Described<'_>, &Chain),
     names: &Names<'_>,
-    chain: &Chain,
     gravity: Vector,
     findings: &mut Findings<'_>,
 ) -> Option<Layout> {
-    if let Some(start) = &scene.chain.start {
-        if scene.route.is_some() {
+    if let Some(start) = &described.text.start {
+        if described.route.is_some() {
             let hint = "keep one of them";
             findings.refuse_with("route", "`chain.start` lays the chain already", hint);
         }
         return start::layout(start, chain, gravity, findings);
     }
-    if scene.chain.ends.is_some() {
+    if described.text.ends.is_some() {
         let hint = "say where an open strand lies: `line`, `hang` or `points`";
         findings.refuse_with("chain.start", "missing", hint);
-        if scene.route.is_some() {
+        if described.route.is_some() {
             findings.refuse("route", "an open strand has no route");
         }
         return None;
     }
     let absent = Route::default();
-    let route = scene.route.as_ref().unwrap_or(&absent);
-    if scene.route.is_none() {
+    let route = described.route.unwrap_or(&absent);
+    if described.route.is_none() {
         findings.assume("route.pretension", 0.0, "not given");
         findings.assume("route.tighten", "rest-length", "not given");
     }
-    let stops = stops(route, names, findings);
+    let stops = stops(route, &described.sprockets, names, findings);
     let adjust = adjust(route, scene, names, findings);
     let adjust = adjust?;
     let tighten = match route.tighten {
@@ -60,9 +61,14 @@ pub(super) fn layout(
     })
 }
 
-fn stops(route: &Route, names: &Names<'_>, findings: &mut Findings<'_>) -> Option<Vec<Stop>> {
+fn stops(
+    route: &Route,
+    own: &[usize],
+    names: &Names<'_>,
+    findings: &mut Findings<'_>,
+) -> Option<Vec<Stop>> {
     let Some(stops) = &route.stops else {
-        let count = names.sprockets.len();
+        let count = own.len();
         if count < 2 {
             let message = format!("{count} sprockets, but a closed chain runs around at least two");
             let hint = "add a sprocket, or make the chain a strand with `chain.ends`";
@@ -70,8 +76,9 @@ fn stops(route: &Route, names: &Names<'_>, findings: &mut Findings<'_>) -> Optio
             return None;
         }
         let remark = "all sprockets, in the order of the text";
-        findings.assume("route.stops", names.sprockets.clone(), remark);
-        return Some((0..count).map(Stop::Sprocket).collect());
+        let passed: Vec<&str> = own.iter().map(|&i| names.sprockets[i]).collect();
+        findings.assume("route.stops", passed, remark);
+        return Some(own.iter().copied().map(Stop::Sprocket).collect());
     };
     let mut found = Vec::new();
     let mut complete = true;

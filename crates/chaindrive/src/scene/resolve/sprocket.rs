@@ -2,7 +2,7 @@
 
 use chaindrive_contact::Elastic;
 use chaindrive_geometry::{Side, ToothGap};
-use chaindrive_mechanics::{Rotation, Sprocket, Support};
+use chaindrive_mechanics::{Sprocket, Support};
 
 use serde_json::json;
 
@@ -12,11 +12,12 @@ use super::{Findings, Names, contact, flank, motion, point, tooth};
 use crate::scene::defaults;
 use crate::scene::schema::{self, Push, SceneText};
 
-pub(super) fn resolve_all(
+/// All sprockets, each with the chain that it belongs to; their shafts are found elsewhere.
+pub(super) fn resolve_all<'c>(
     scene: &SceneText,
     names: &Names<'_>,
-    chain: &Resolved,
     findings: &mut Findings<'_>,
+    chain_of: impl Fn(usize) -> &'c Resolved,
 ) -> Option<Vec<Sprocket>> {
     let sprockets: Vec<_> = scene
         .sprockets
@@ -28,7 +29,7 @@ pub(super) fn resolve_all(
                 &format!("sprockets[{i}]"),
                 scene,
                 names,
-                chain,
+                chain_of(i),
                 findings,
             )
         })
@@ -65,7 +66,6 @@ fn resolve(
         };
         findings.keep(&format!("{path}.{place}"), gap)
     });
-    let rotation = rotation(text, path, findings);
     let support = support(text, path, names, findings);
     let surface = contact::surface(
         &text.contact,
@@ -104,7 +104,7 @@ fn resolve(
             schema::Side::Right => Side::Right,
         },
         centre: point(text.centre),
-        rotation: rotation?,
+        shaft: 0,
         support,
         inertia: text.inertia.map_or(0.0, |inertia| inertia.0),
         mass: text.mass.map_or(0.0, |mass| mass.0),
@@ -150,30 +150,6 @@ fn law(
         findings.refuse_once("contact.teeth.law", "missing", hint);
     }
     seated
-}
-
-fn rotation(text: &schema::Sprocket, path: &str, findings: &mut Findings<'_>) -> Option<Rotation> {
-    if let Some(given) = &text.motion {
-        for (key, torques) in [("drive", &text.drive), ("load", &text.load)] {
-            if !torques.is_empty() {
-                let hint =
-                    "keep one of them: a prescribed motion supplies whatever torque it takes";
-                findings.refuse_with(&format!("{path}.{key}"), "`motion` is given too", hint);
-            }
-        }
-        let motion = motion::turn(given, &format!("{path}.motion"), findings);
-        return motion.map(Rotation::Prescribed);
-    }
-    if text.inertia.is_none() {
-        let hint = "give the moment of inertia of a wheel that turns freely, or `motion`";
-        findings.refuse_with(&format!("{path}.inertia"), "missing", hint);
-    }
-    let drive = motion::torques(&text.drive, &format!("{path}.drive"), findings);
-    let load = motion::torques(&text.load, &format!("{path}.load"), findings);
-    Some(Rotation::Free {
-        drive: drive?,
-        load: load?,
-    })
 }
 
 fn support(

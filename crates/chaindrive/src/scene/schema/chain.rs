@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{ChainModel, Joint, Link, Motion, Roller, Rollers};
+use super::{ChainModel, Joint, Link, Motion, Roller, Rollers, Route};
 use crate::scene::quantity::{AngularSpeed, Damping, Force, Length, Mass, Ratio, Speed, Stiffness};
 
 /// The chain. Written as a text, `chain = "16B-1"`, it is a chain of the catalogue in which
@@ -101,6 +101,21 @@ pub(crate) struct Chain {
     /// Where the chain lies at the start; absent: along the route.
     #[serde(default)]
     pub(crate) start: Option<Start>,
+}
+
+/// One of several chains: all that a chain has, a name, and a route of its own.
+///
+/// Chains run in planes of their own. A sprocket or guide belongs to the chain whose route passes it, or that its `chain` names.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+pub(crate) struct NamedChain {
+    /// Name, unique among the chains.
+    pub(crate) name: String,
+    /// How it lies around its sprockets; absent: around all that belong to it, in file order.
+    #[serde(default)]
+    pub(crate) route: Option<Route>,
+    /// The chain.
+    #[serde(flatten)]
+    pub(crate) chain: Chain,
 }
 
 /// Random differences between links: normal, each with a relative standard deviation.

@@ -12,6 +12,9 @@ use crate::scene::quantity::{Angle, Length, Speed};
 pub(crate) struct Guide {
     /// Name, unique among sprockets and guides.
     pub(crate) name: String,
+    /// Name of the chain that it belongs to, where there are several and no route passes it.
+    #[serde(default)]
+    pub(crate) chain: Option<String>,
     /// Working face.
     pub(crate) face: Face,
     /// Which part of the chain touches it; absent: the rollers.

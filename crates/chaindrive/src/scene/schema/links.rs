@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::Contact;
 use crate::scene::quantity::{Inertia, Length, Mass};
 
 /// What the chain is made of.
@@ -48,8 +49,8 @@ pub(crate) struct Link {
     pub(crate) centre: [Length; 2],
 }
 
-/// Pins in their bushes. The contact of the two is `contact.joints`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
+/// Pins in their bushes.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Joint {
     /// Diameter of the pin [m].
@@ -64,10 +65,13 @@ pub(crate) struct Joint {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) length: Option<Length>,
+    /// Contact of pin and bush, where it differs from `contact.joints`.
+    #[serde(default)]
+    pub(crate) contact: Contact,
 }
 
-/// Rollers on their bushes. The contact of the two is `contact.rollers`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
+/// Rollers on their bushes.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Roller {
     /// Mass of one roller [kg].
@@ -91,4 +95,7 @@ pub(crate) struct Roller {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) length: Option<Length>,
+    /// Contact of bush and roller, where it differs from `contact.rollers`.
+    #[serde(default)]
+    pub(crate) contact: Contact,
 }

@@ -11,16 +11,18 @@ mod guide;
 mod links;
 mod motion;
 mod route;
+mod shaft;
 mod sprocket;
 mod tensioner;
 
-pub(crate) use chain::{Chain, End, Start};
+pub(crate) use chain::{Chain, End, NamedChain, Start};
 pub(crate) use contact::{Contact, Contacts, Cylinders, Dissipation, Elastic, Flank};
 pub(crate) use friction::Friction;
 pub(crate) use guide::{Face, Guide, GuideSupport, Touches, TravelSide};
 pub(crate) use links::{ChainModel, Joint, Link, Roller, Rollers};
 pub(crate) use motion::{Motion, Torque};
 pub(crate) use route::{Adjust, Events, Method, Route, Run, Tighten};
+pub(crate) use shaft::{Coupling, Gears, Mesh, Shaft};
 pub(crate) use sprocket::{PathPiece, Seat, Side, Sprocket, Support, TipForm, Tooth};
 pub(crate) use tensioner::{Carrier, Oil, Push, Tensioner};
 
@@ -39,7 +41,7 @@ use super::quantity::Acceleration;
 /// (x, y) with x to the right and y up; angles are counter-clockwise.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "chaindrive scene")]
+#[schemars(rename = "chaindrive scene", extend("x-required-unless" = {"chains": ["chain"]}))]
 pub(crate) struct SceneText {
     /// Address of the schema, for editors; ignored.
     #[serde(default, rename = "$schema", skip_serializing)]
@@ -61,7 +63,12 @@ pub(crate) struct SceneText {
     #[serde(default = "settle")]
     pub(crate) settle: bool,
     /// The chain, or the name of a chain of the catalogue, such as "16B-1".
-    pub(crate) chain: Chain,
+    #[serde(default)]
+    pub(crate) chain: Option<Chain>,
+    /// Several chains, each with a name and a route of its own, instead of `chain` and `route`.
+    #[serde(default)]
+    #[schemars(extend("maxItems" = 100))]
+    pub(crate) chains: Vec<NamedChain>,
     /// Contact laws that hold wherever a sprocket or guide does not give its own.
     #[serde(default)]
     pub(crate) contact: Contacts,
@@ -77,6 +84,18 @@ pub(crate) struct SceneText {
     #[serde(default)]
     #[schemars(extend("maxItems" = 1000))]
     pub(crate) tensioners: Vec<Tensioner>,
+    /// What turns, where a sprocket does not turn by itself.
+    #[serde(default)]
+    #[schemars(extend("maxItems" = 1000))]
+    pub(crate) shafts: Vec<Shaft>,
+    /// Torsional springs and dampers between shafts.
+    #[serde(default)]
+    #[schemars(extend("maxItems" = 1000))]
+    pub(crate) couplings: Vec<Coupling>,
+    /// Pairs of gears between shafts.
+    #[serde(default)]
+    #[schemars(extend("maxItems" = 1000))]
+    pub(crate) gears: Vec<Gears>,
     /// How a closed chain lies around its sprockets; absent: around all sprockets, in file order.
     #[serde(default)]
     pub(crate) route: Option<Route>,

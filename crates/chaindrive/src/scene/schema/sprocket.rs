@@ -11,12 +11,15 @@ use crate::scene::quantity::{
 /// A toothed wheel.
 ///
 /// With `motion` its angle is given in time; without, it turns freely with `inertia` under the
-/// chain, `drive` and `load`.
+/// chain, `drive` and `load`. One that sits on one of the `shafts` turns with that.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Sprocket {
     /// Name, unique among sprockets and guides.
     pub(crate) name: String,
+    /// Name of the chain that it belongs to, where there are several and no route passes it.
+    #[serde(default)]
+    pub(crate) chain: Option<String>,
     /// Number of teeth.
     #[schemars(extend("minimum" = 5, "maximum" = 600))]
     pub(crate) teeth: u32,
@@ -32,7 +35,8 @@ pub(crate) struct Sprocket {
     /// Rotation given in time. Excludes `drive` and `load`.
     #[serde(default)]
     pub(crate) motion: Option<Motion<Angle, AngularSpeed>>,
-    /// Moment of inertia about the centre, shaft included [kg m²]; needed without `motion`.
+    /// Moment of inertia about the centre, shaft included [kg m²]; needed without `motion`. Of one that sits on one of the
+    /// `shafts`: its own, and none if absent.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) inertia: Option<Inertia>,

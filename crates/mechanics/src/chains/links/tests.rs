@@ -191,6 +191,7 @@ fn strand(mut parts: Parts) -> Parts {
     };
     placed.sprockets.clear();
     parts.sprockets.clear();
+    parts.shafts.clear();
     parts.settle = false;
     parts
 }

@@ -1,0 +1,210 @@
+//! Shafts, and what joins them.
+
+use chaindrive_mechanics::{Coupling, GearPair, Rotation, Shaft};
+
+use super::{Findings, Names, motion};
+use crate::scene::quantity::{Angle, AngularSpeed};
+use crate::scene::schema::{self, Mesh, SceneText};
+use crate::scene::suggest::one_of;
+
+/// All that turns.
+#[derive(Debug)]
+pub(super) struct Turning {
+    /// Those of single sprockets, then those of the scene.
+    pub(super) shafts: Vec<Shaft>,
+    /// The shaft of every sprocket.
+    pub(super) of_sprockets: Vec<usize>,
+    pub(super) couplings: Vec<Coupling>,
+    pub(super) gears: Vec<GearPair>,
+}
+
+pub(super) fn resolve(
+    scene: &SceneText,
+    names: &Names<'_>,
+    findings: &mut Findings<'_>,
+) -> Option<Turning> {
+    let carriers = carriers(scene, names, findings);
+    let mut shafts = Vec::new();
+    let mut of_sprockets = Vec::new();
+    for (i, (text, carrier)) in scene.sprockets.iter().zip(&carriers).enumerate() {
+        let path = format!("sprockets[{i}]");
+        if let Some(shaft) = carrier {
+            refuse_own_turning(text, &path, &scene.shafts[*shaft].name, findings);
+            continue;
+        }
+        if text.motion.is_none() && text.inertia.is_none() {
+            let hint = "give the moment of inertia of a wheel that turns freely, or `motion`";
+            findings.refuse_with(&format!("{path}.inertia"), "missing", hint);
+        }
+        let turned = (&text.motion, &text.drive, &text.load);
+        shafts.push(rotation(turned, &path, findings).map(Shaft::of_one));
+    }
+    let own = shafts.len();
+    let mut next = 0..own;
+    for carrier in &carriers {
+        let own_shaft = || next.next().unwrap_or(own);
+        of_sprockets.push(carrier.map_or_else(own_shaft, |shaft| own + shaft));
+    }
+    for (i, text) in scene.shafts.iter().enumerate() {
+        let path = format!("shafts[{i}]");
+        let turned = (&text.motion, &text.drive, &text.load);
+        shafts.push(rotation(turned, &path, findings).map(|rotation| Shaft {
+            name: Some(text.name.clone()),
+            rotation,
+            inertia: text.inertia.map_or(0.0, |inertia| inertia.0),
+        }));
+    }
+    let ends = Ends {
+        shafts: names.shafts.clone(),
+        sprockets: names.sprockets.clone(),
+        own,
+        of_sprockets: &of_sprockets,
+    };
+    let couplings: Vec<_> = scene
+        .couplings
+        .iter()
+        .enumerate()
+        .map(|(i, text)| {
+            Some(Coupling {
+                name: text.name.clone(),
+                shafts: ends.find(&text.between, &format!("couplings[{i}]"), findings)?,
+                stiffness: text.stiffness.0,
+                damping: text.damping.0,
+            })
+        })
+        .collect();
+    let gears: Vec<_> = scene
+        .gears
+        .iter()
+        .enumerate()
+        .map(|(i, text)| {
+            let [first, second] = text.teeth.map(|teeth| f64::from(teeth.0));
+            // i = ∓ z₀/z₁
+            let ratio = first / second;
+            Some(GearPair {
+                name: text.name.clone(),
+                shafts: ends.find(&text.between, &format!("gears[{i}]"), findings)?,
+                ratio: match text.mesh {
+                    Mesh::External => -ratio,
+                    Mesh::Internal => ratio,
+                },
+            })
+        })
+        .collect();
+    Some(Turning {
+        shafts: shafts.into_iter().collect::<Option<_>>()?,
+        couplings: couplings.into_iter().collect::<Option<_>>()?,
+        gears: gears.into_iter().collect::<Option<_>>()?,
+        of_sprockets,
+    })
+}
+
+/// The shaft of the scene that carries every sprocket, where one does.
+fn carriers(
+    scene: &SceneText,
+    names: &Names<'_>,
+    findings: &mut Findings<'_>,
+) -> Vec<Option<usize>> {
+    let mut carriers: Vec<Option<usize>> = vec![None; scene.sprockets.len()];
+    for (index, shaft) in scene.shafts.iter().enumerate() {
+        for (i, name) in shaft.sprockets.iter().enumerate() {
+            let path = format!("shafts[{index}].sprockets[{i}]");
+            let found = findings.lookup(&names.sprockets, "sprocket", name, &path);
+            let Some(sprocket) = found else { continue };
+            if let Some(other) = carriers[sprocket] {
+                let message = format!("`{name}` sits on shaft `{}` already", names.shafts[other]);
+                findings.refuse_with(&path, message, "a sprocket sits on one shaft");
+            }
+            carriers[sprocket] = Some(index);
+        }
+    }
+    carriers
+}
+
+/// A sprocket on a shaft has no rotation of its own.
+fn refuse_own_turning(
+    text: &schema::Sprocket,
+    path: &str,
+    shaft: &str,
+    findings: &mut Findings<'_>,
+) {
+    for (key, given) in [
+        ("motion", text.motion.is_some()),
+        ("drive", !text.drive.is_empty()),
+        ("load", !text.load.is_empty()),
+    ] {
+        if given {
+            let message = format!("`{}` turns with shaft `{shaft}`", text.name);
+            let hint = format!("give it to `shafts.{shaft}`");
+            findings.refuse_with(&format!("{path}.{key}"), message, hint);
+        }
+    }
+}
+
+type Turned<'t> = (
+    &'t Option<schema::Motion<Angle, AngularSpeed>>,
+    &'t Vec<schema::Torque>,
+    &'t Vec<schema::Torque>,
+);
+
+/// What turns a shaft: a motion, or torques that drive and load it.
+fn rotation(
+    (given, drive, load): Turned<'_>,
+    path: &str,
+    findings: &mut Findings<'_>,
+) -> Option<Rotation> {
+    if let Some(given) = given {
+        for (key, torques) in [("drive", drive), ("load", load)] {
+            if !torques.is_empty() {
+                let hint =
+                    "keep one of them: a prescribed motion supplies whatever torque it takes";
+                findings.refuse_with(&format!("{path}.{key}"), "`motion` is given too", hint);
+            }
+        }
+        let motion = motion::turn(given, &format!("{path}.motion"), findings);
+        return motion.map(Rotation::Prescribed);
+    }
+    let drive = motion::torques(drive, &format!("{path}.drive"), findings);
+    let load = motion::torques(load, &format!("{path}.load"), findings);
+    Some(Rotation::Free {
+        drive: drive?,
+        load: load?,
+    })
+}
+
+/// What couplings and gears can join, by name.
+struct Ends<'n> {
+    shafts: Vec<&'n str>,
+    sprockets: Vec<&'n str>,
+    /// Number of shafts before those of the scene.
+    own: usize,
+    of_sprockets: &'n [usize],
+}
+
+impl Ends<'_> {
+    /// The shafts that two names mean.
+    fn find(
+        &self,
+        between: &[String; 2],
+        path: &str,
+        findings: &mut Findings<'_>,
+    ) -> Option<[usize; 2]> {
+        let [first, second] = [0, 1].map(|i| {
+            let name = between[i].as_str();
+            let shaft = self.shafts.iter().position(|known| *known == name);
+            let sprocket = || self.sprockets.iter().position(|known| *known == name);
+            let found = shaft
+                .map(|shaft| self.own + shaft)
+                .or_else(|| sprocket().map(|sprocket| self.of_sprockets[sprocket]));
+            if found.is_none() {
+                let all = self.shafts.iter().chain(&self.sprockets);
+                let known: Vec<&str> = all.copied().collect();
+                let message = format!("no shaft or sprocket is named `{name}`");
+                let path = format!("{path}.between[{i}]");
+                findings.refuse_with(&path, message, one_of(name, &known));
+            }
+            found
+        });
+        Some([first?, second?])
+    }
+}

@@ -1,0 +1,84 @@
+//! Shafts, couplings and gears.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Motion, Torque};
+use crate::scene::quantity::{Angle, AngularDamping, AngularSpeed, AngularStiffness, Inertia};
+
+/// What turns about one axis: it carries sprockets of any chains, rigidly, or none, such as a wheel behind a coupling.
+///
+/// A sprocket that no shaft names has a shaft of its own, which its `motion`, `drive`, `load` and `inertia` mean.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Shaft {
+    /// Name, unique among shafts and sprockets.
+    pub(crate) name: String,
+    /// Names of the sprockets that it carries, all about the same centre; absent: none.
+    #[serde(default)]
+    #[schemars(extend("maxItems" = 1000))]
+    pub(crate) sprockets: Vec<String>,
+    /// Rotation given in time. Excludes `drive` and `load`.
+    #[serde(default)]
+    pub(crate) motion: Option<Motion<Angle, AngularSpeed>>,
+    /// Moment of inertia [kg m²] beside those of its sprockets; absent: none.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0))]
+    pub(crate) inertia: Option<Inertia>,
+    /// Torques that drive the shaft.
+    #[serde(default)]
+    pub(crate) drive: Vec<Torque>,
+    /// Torques that load the shaft.
+    #[serde(default)]
+    pub(crate) load: Vec<Torque>,
+}
+
+/// A torsional spring and damper between two shafts, without stress as assembled.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Coupling {
+    /// Name, unique among couplings.
+    pub(crate) name: String,
+    /// Names of the two shafts, or of sprockets on them.
+    pub(crate) between: [String; 2],
+    /// Stiffness [N m/rad]; absent: none.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0))]
+    pub(crate) stiffness: AngularStiffness,
+    /// Damping [N m s/rad]; absent: none.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0))]
+    pub(crate) damping: AngularDamping,
+}
+
+/// A pair of gears between two shafts, without play or loss.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Gears {
+    /// Name, unique among the pairs.
+    pub(crate) name: String,
+    /// Names of the two shafts, or of sprockets on them.
+    pub(crate) between: [String; 2],
+    /// Numbers of teeth, in the same order.
+    pub(crate) teeth: [Teeth; 2],
+    /// Whether one gear runs within the other; absent: external.
+    #[serde(default)]
+    pub(crate) mesh: Mesh,
+}
+
+/// Number of teeth of a gear.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(transparent)]
+#[schemars(extend("minimum" = 1, "maximum" = 10_000))]
+pub(crate) struct Teeth(pub(crate) u32);
+
+/// How two gears mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Mesh {
+    /// Side by side: they turn against each other.
+    #[default]
+    External,
+    /// One within the other: they turn the same way.
+    Internal,
+}
