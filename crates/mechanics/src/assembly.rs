@@ -128,6 +128,7 @@ impl Drive {
                 chain: &placed.chain,
                 pretension: placed.layout.pretension(),
                 on_route: matches!(placed.layout, Layout::Route { .. }),
+                sprockets: &placed.sprockets,
                 gravity: parts.gravity,
             };
             replaced |= system.put_in_place(index, &laid, [&mut *q, &mut *v]);

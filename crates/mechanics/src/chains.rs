@@ -27,7 +27,7 @@ pub(crate) use rollers::Rollers;
 use crate::contact::{Frame, PlateContact};
 use crate::energy::Energy;
 use crate::observe::Observation;
-use crate::system::{Bodies, BodyContacts, HeldEnd};
+use crate::system::{Bodies, BodyContacts, GroupBodies, HeldEnd};
 use crate::{End, Ends};
 
 /// A chain ready to move.
@@ -44,6 +44,8 @@ pub(crate) enum Chain {
 pub(crate) struct Surroundings<'a> {
     /// All bodies of the drive.
     pub(crate) bodies: &'a Bodies,
+    /// First coordinate of the bodies of the chain's group.
+    pub(crate) first: usize,
     /// The chain's contacts with them.
     pub(crate) contacts: &'a BodyContacts,
 }
@@ -56,6 +58,8 @@ pub(crate) struct LaidAs<'a> {
     pub(crate) pretension: f64,
     /// Whether it runs around sprockets.
     pub(crate) on_route: bool,
+    /// Sprockets that it can touch.
+    pub(crate) sprockets: &'a [usize],
     pub(crate) gravity: Vector,
 }
 
@@ -91,7 +95,7 @@ impl Chain {
     pub(crate) fn put_in_place(
         &self,
         entries: Range<usize>,
-        bodies: &Bodies,
+        bodies: GroupBodies<'_>,
         laid: &LaidAs<'_>,
         at: Moment<'_>,
     ) -> Option<(Self, [Vec<f64>; 2])> {
@@ -105,7 +109,7 @@ impl Chain {
     }
 
     /// Brings velocities of the chain and, behind it, the bodies to where no joint opens.
-    pub(crate) fn close_in_motion(&self, bodies: &Bodies, q: &[f64], v: &mut [f64]) {
+    pub(crate) fn close_in_motion(&self, bodies: GroupBodies<'_>, q: &[f64], v: &mut [f64]) {
         match self {
             Self::Particles(_) => {}
             Self::Links(chain) => chain.close_in_motion(bodies, q, v),
@@ -219,10 +223,10 @@ impl Chain {
         }
     }
 
-    /// x ← (M + c C + k K)⁻¹ M x over the chain and, behind it, the bodies.
+    /// x ← (M + c C + k K)⁻¹ M x over the chain and, behind it, the bodies of its group.
     pub(crate) fn solve(
         &self,
-        bodies: &Bodies,
+        bodies: GroupBodies<'_>,
         weights: Weights,
         record: &mut Record,
         x: &mut [f64],

@@ -9,13 +9,12 @@ mod bodies;
 mod build;
 mod contacts;
 mod equations;
+mod group;
 mod inputs;
 mod member;
 mod shafts;
 mod slide;
 mod solve;
-
-use std::ops::Range;
 
 use chaindrive_geometry::Point;
 use chaindrive_integrate::{Continuity, Moment, SecondOrderSystem, Verdict, Weights};
@@ -23,6 +22,7 @@ use chaindrive_integrate::{Continuity, Moment, SecondOrderSystem, Verdict, Weigh
 pub(crate) use bodies::{Bodies, RailSupport, Wheel, WheelSupport};
 pub(crate) use build::{Laid, LaidChain};
 pub(crate) use contacts::{BodyContacts, OnRail, OnWheel, RailContact};
+pub(crate) use group::{Group, GroupBodies};
 pub use inputs::Input;
 pub(crate) use member::Member;
 pub(crate) use shafts::{Shaft, Turn, TurnedBy};
@@ -48,14 +48,6 @@ pub struct System {
     time_scales: [f64; 2],
     /// Deepest first penetration accepted \[m\], when steps are to be rejected for it.
     onset_depth: Option<f64>,
-}
-
-/// Chains and bodies that nothing joins with others.
-#[derive(Clone, Debug)]
-pub(crate) struct Group {
-    pub(crate) chains: Vec<usize>,
-    /// Coordinates of its bodies, counted from the first of all bodies.
-    pub(crate) bodies: Range<usize>,
 }
 
 /// An end roller whose motion or load is given.
@@ -208,7 +200,8 @@ impl System {
         let member = &self.chains[index];
         let at = Moment { t: 0.0, q, v };
         let entries = member.entries.clone();
-        let placed = member.chain.put_in_place(entries, &self.bodies, laid, at);
+        let bodies = self.group_bodies(self.group_of(index));
+        let placed = member.chain.put_in_place(entries, bodies, laid, at);
         let Some((chain, own)) = placed else {
             return false;
         };
@@ -218,16 +211,16 @@ impl System {
 
     /// Brings velocities to where no joint opens.
     pub(crate) fn close_in_motion(&self, q: &[f64], v: &mut [f64]) {
-        let first = self.bodies.first;
-        for member in &self.chains {
+        for (index, member) in self.chains.iter().enumerate() {
             let entries = member.entries.clone();
-            let mut own = [&v[entries.clone()], &v[first..]].concat();
+            let group = self.group_bodies(self.group_of(index));
+            let mut own = [&v[entries.clone()], &v[group.range()]].concat();
             member
                 .chain
-                .close_in_motion(&self.bodies, &q[entries.clone()], &mut own);
+                .close_in_motion(group, &q[entries.clone()], &mut own);
             let (chain, bodies) = own.split_at(entries.len());
             v[entries].copy_from_slice(chain);
-            v[first..].copy_from_slice(bodies);
+            v[group.range()].copy_from_slice(bodies);
         }
     }
 

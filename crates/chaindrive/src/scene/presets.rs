@@ -4,7 +4,7 @@ use super::suggest::one_of;
 use super::{Problem, Scene, SceneError};
 
 /// Name, one-line description and text of every embedded scene.
-const PRESETS: [(&str, &str, &str); 11] = [
+const PRESETS: [(&str, &str, &str); 13] = [
     (
         "marine_engine",
         "Camshaft drive of a large two-stroke engine: four sprockets, three guide bars, tensioner",
@@ -26,6 +26,11 @@ const PRESETS: [(&str, &str, &str); 11] = [
         include_str!("../../scenes/timing_drive.toml"),
     ),
     (
+        "two_stage_timing",
+        "Valve timing in two stages: two chains, an intermediate shaft, arms with hydraulic plungers",
+        include_str!("../../scenes/two_stage_timing.toml"),
+    ),
+    (
         "bicycle",
         "Chain of a bicycle, 44 to 18 teeth, tight: rigid links with play in their joints",
         include_str!("../../scenes/bicycle.toml"),
@@ -34,6 +39,11 @@ const PRESETS: [(&str, &str, &str); 11] = [
         "bicycle_slack",
         "The chain of the bicycle, slack: the rear wheel 1 mm nearer",
         include_str!("../../scenes/bicycle_slack.toml"),
+    ),
+    (
+        "bicycle_crank",
+        "A rider who pedals: torque of two legs, chain, rear hub and wheel joined by a torsional spring",
+        include_str!("../../scenes/bicycle_crank.toml"),
     ),
     (
         "motorcycle",

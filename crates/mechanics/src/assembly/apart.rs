@@ -50,7 +50,8 @@ fn stages(groups: &[Group], alone: &[Assembled]) -> Vec<Statics> {
     };
     let present = |stage: &usize| {
         let all = alone.iter().flat_map(|assembled| &assembled.statics);
-        all.into_iter().any(|statics| statics.stage == names[*stage])
+        all.into_iter()
+            .any(|statics| statics.stage == names[*stage])
     };
     let merged = |stage: usize| {
         let states: Vec<Statics> = alone.iter().map(|it| reached(it, stage)).collect();

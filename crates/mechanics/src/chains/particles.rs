@@ -159,7 +159,9 @@ impl Particles {
     ///
     /// The damping rate enters because Verlet's predicted velocity limits h D to 1.
     pub(super) fn rates(&self, around: Surroundings<'_>, record: &Record) -> [f64; 2] {
-        let Surroundings { bodies, contacts } = around;
+        let Surroundings {
+            bodies, contacts, ..
+        } = around;
         let [mut squared, mut damping] = self.link_rates;
         let (mut contact, mut drag) = (0.0_f64, 0.0_f64);
         for (on, wrench) in contacts.teeth.iter().zip(&record.loads.wheel_wrenches) {

@@ -77,7 +77,10 @@ fn shaft_problems(index: usize, shaft: &Shaft, parts: &Parts) -> Vec<DriveError>
     let mut on_it = parts.sprockets.iter().filter(|s| s.shaft == index);
     let Some(first) = on_it.next() else {
         if shaft.name.is_none() {
-            found.push(conflict(&place, "a shaft without sprockets needs a name".into()));
+            found.push(conflict(
+                &place,
+                "a shaft without sprockets needs a name".into(),
+            ));
         }
         return found;
     };
@@ -158,7 +161,8 @@ fn gear_problems(parts: &Parts) -> Vec<DriveError> {
             continue;
         }
         if !sets.join(shafts[0], shafts[1]) {
-            let problem = "closes a loop of gears, which would lock or be redundant; leave one pair out";
+            let problem =
+                "closes a loop of gears, which would lock or be redundant; leave one pair out";
             found.push(conflict(&place, problem.into()));
             continue;
         }

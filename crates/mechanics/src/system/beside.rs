@@ -73,6 +73,7 @@ impl System {
                 all.extend(&own[first..]);
             }
         }
+        whole.refer_to_groups();
         (whole, state)
     }
 

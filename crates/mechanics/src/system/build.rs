@@ -93,6 +93,7 @@ impl System {
             time_scales: [f64::INFINITY; 2],
             onset_depth: None,
         };
+        system.refer_to_groups();
         let mut v = vec![0.0; dofs];
         system.start(0.0, &mut q, &mut v);
         Ok((system, q))

@@ -121,10 +121,7 @@ impl Bodies {
                 let angle = course.position;
                 torques.iter().map(|m| m.at(at.t, angle, course.rate)).sum()
             };
-            let (driving, loading) = (
-                sum(&shaft.drive) + self.inputs.torque(i),
-                sum(&shaft.load),
-            );
+            let (driving, loading) = (sum(&shaft.drive) + self.inputs.torque(i), sum(&shaft.load));
             rates[Flow::DriveTorque as usize] += driving * course.rate;
             rates[Flow::Load as usize] += loading * course.rate;
             if let Some((dof, ratio)) = shaft.turn.turned_by() {

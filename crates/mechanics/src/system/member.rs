@@ -15,6 +15,8 @@ pub(crate) struct Member {
     pub(crate) chain: Chain,
     /// Its entries of the state.
     pub(crate) entries: Range<usize>,
+    /// First coordinate of the bodies of its group, counted from that of all bodies.
+    pub(crate) first_body: usize,
     pub(crate) contacts: BodyContacts,
     /// Sprockets in path order, for the naming of spans.
     pub(crate) route: Vec<usize>,
@@ -40,6 +42,7 @@ impl Member {
         Self {
             name: None,
             entries: first..first + chain.coordinates(),
+            first_body: 0,
             chain,
             contacts,
             route,
@@ -76,6 +79,7 @@ impl Member {
         }
         let around = Surroundings {
             bodies,
+            first: bodies.first + self.first_body,
             contacts: &self.contacts,
         };
         let a = &mut a[self.entries.clone()];
@@ -95,6 +99,7 @@ impl Member {
     pub(crate) fn rates_at(&self, bodies: &Bodies, record: &Record) -> [f64; 2] {
         let around = Surroundings {
             bodies,
+            first: bodies.first + self.first_body,
             contacts: &self.contacts,
         };
         self.chain.rates(around, record)

@@ -15,7 +15,7 @@ use crate::chains::LaidAs;
 use crate::chains::particles::Particles;
 use crate::contact::ContactMemory;
 use crate::lanes::padded;
-use crate::system::Bodies;
+use crate::system::{Bodies, GroupBodies};
 use crate::{Chain, End};
 
 /// A chain of rigid links in the place of laid particles, with its coordinates and velocities.
@@ -29,14 +29,14 @@ pub(crate) struct Replacement {
 pub(crate) fn replace(
     particles: &Particles,
     entries: Range<usize>,
-    bodies: &Bodies,
+    bodies: GroupBodies<'_>,
     laid: &LaidAs<'_>,
     links: &RigidLinks,
     at: Moment<'_>,
 ) -> Replacement {
     let (q, v) = (&at.q[entries.clone()], &at.v[entries]);
     let n = particles.stride;
-    let (inward, shorter) = bush_shifts(particles, bodies, links, at, q);
+    let (inward, shorter) = bush_shifts(particles, (bodies.all, laid.sprockets), links, at, q);
     let place = |k: usize| Point::new(q[k], q[n + k]) + inward[k];
     let velocity = |k: usize| Vector::new(v[k], v[n + k]);
     let count = particles.rollers;
@@ -72,7 +72,7 @@ pub(crate) fn replace(
     linkage.set_off(&places, &velocities, &mut chain_v);
     if !laid.on_route {
         // Along a route the links have taken the lengths that they were laid with.
-        let mut whole = [chain_q, vec![0.0; bodies.inertias.len()]].concat();
+        let mut whole = [chain_q, vec![0.0; bodies.count]].concat();
         linkage.close_in_place(bodies, &mut whole);
         whole.truncate(linkage.coordinates());
         chain_q = whole;
@@ -116,7 +116,7 @@ impl Linkage {
 
     /// Moves ideal joints together that stand a little apart, as when the particles that the chain was laid as had
     /// stretched; links keep their lengths.
-    pub(crate) fn close_in_place(&self, bodies: &Bodies, q: &mut [f64]) {
+    pub(crate) fn close_in_place(&self, bodies: GroupBodies<'_>, q: &mut [f64]) {
         if matches!(self.joining, Joining::Clearance(_)) {
             return;
         }
@@ -149,7 +149,7 @@ impl Linkage {
 
     /// Velocities of the chain and, behind it, the bodies brought to where no hinge opens: what the stabilisation would otherwise
     /// take out of the chain in its first milliseconds.
-    pub(crate) fn close_in_motion(&self, bodies: &Bodies, q: &[f64], v: &mut [f64]) {
+    pub(crate) fn close_in_motion(&self, bodies: GroupBodies<'_>, q: &[f64], v: &mut [f64]) {
         if matches!(self.joining, Joining::Clearance(_)) {
             return;
         }
@@ -180,7 +180,7 @@ const PASSES: usize = 4;
 /// wheels is shorter \[m\].
 fn bush_shifts(
     particles: &Particles,
-    bodies: &Bodies,
+    (bodies, sprockets): (&Bodies, &[usize]),
     links: &RigidLinks,
     at: Moment<'_>,
     q: &[f64],
@@ -193,15 +193,12 @@ fn bush_shifts(
     let seats: Vec<Option<Vector>> = (0..count)
         .map(|joint| {
             let place = particles.place(q, joint);
-            let (wheel, d) = bodies
-                .wheels
-                .iter()
-                .enumerate()
-                .find_map(|(index, wheel)| {
-                    let d = place - bodies.wheel_centre(index, at);
-                    let seat = wheel.pitch_radius.hypot(0.5 * wheel.pitch);
-                    (d.norm() < 0.5 * (wheel.pitch_radius + seat)).then_some((wheel, d))
-                })?;
+            let (wheel, d) = sprockets.iter().find_map(|&index| {
+                let wheel = &bodies.wheels[index];
+                let d = place - bodies.wheel_centre(index, at);
+                let seat = wheel.pitch_radius.hypot(0.5 * wheel.pitch);
+                (d.norm() < 0.5 * (wheel.pitch_radius + seat)).then_some((wheel, d))
+            })?;
             shorter += roller.gap() * std::f64::consts::TAU / f64::from(wheel.teeth);
             Some(-d.normalize() * roller.gap())
         })

@@ -17,7 +17,7 @@ use super::impulses::MOST_WHEELS;
 use super::loose::Loose;
 use super::{Blocks, Element, Joining, Linkage, Mount, Partner, Play, cross, turned};
 use crate::chains::Record;
-use crate::system::Bodies;
+use crate::system::GroupBodies;
 
 /// A row over the unknowns of the partner.
 #[derive(Clone, Copy)]
@@ -38,8 +38,8 @@ enum Place {
 
 impl Linkage {
     /// Place of a further degree of freedom in the border.
-    pub(crate) fn border(&self, bodies: &Bodies, dof: usize) -> usize {
-        dof - bodies.first + if self.closed { 3 } else { 0 }
+    pub(crate) fn border(&self, first: usize, dof: usize) -> usize {
+        dof - first + if self.closed { 3 } else { 0 }
     }
 
     fn place(&self, body: usize) -> Place {
@@ -55,7 +55,7 @@ impl Linkage {
     /// x ← (M + c C + k K)⁻¹ M x of the chain and, behind it, the bodies, at the state that the record was left by.
     pub(crate) fn solve(
         &self,
-        bodies: &Bodies,
+        bodies: GroupBodies<'_>,
         weights: Weights,
         record: &mut Record,
         x: &mut [f64],
@@ -72,7 +72,7 @@ impl Linkage {
     /// given; least in kinetic energy.
     pub(crate) fn nearest(
         &self,
-        bodies: &Bodies,
+        bodies: GroupBodies<'_>,
         play: &mut Play,
         towards: &[Vector],
         count: usize,
@@ -91,7 +91,7 @@ impl Linkage {
 
     pub(super) fn eliminate(
         &self,
-        bodies: &Bodies,
+        bodies: GroupBodies<'_>,
         weights: Weights,
         play: &mut Play,
         x: &mut [f64],
@@ -108,22 +108,14 @@ impl Linkage {
             roller.clear();
         }
         self.add_masses(bodies, &mut blocks, &mut loose, x);
-        bodies.each_support(|dof, stiffness, damping| {
-            let j = self.border(bodies, dof);
-            blocks.corner[(j, j)] += weights.stiffness * stiffness + weights.damping * damping;
-        });
-        for coupling in &bodies.couplings {
-            let weight = weights.stiffness * coupling.stiffness + weights.damping * coupling.damping;
-            for (dof, share) in bodies.twisted_by(coupling) {
-                for (other, other_share) in bodies.twisted_by(coupling) {
-                    let [i, j] = [dof, other].map(|dof| self.border(bodies, dof));
-                    // The lower half is kept.
-                    if i >= j {
-                        blocks.corner[(i, j)] += weight * share * other_share;
-                    }
-                }
+        let first = if self.closed { 3 } else { 0 };
+        bodies.each_own(|[i, j], stiffness, damping| {
+            // The lower half is kept.
+            if i >= j {
+                blocks.corner[(first + i, first + j)] +=
+                    weights.stiffness * stiffness + weights.damping * damping;
             }
-        }
+        });
         let mut sum = Sum {
             linkage: self,
             blocks: &mut blocks,
@@ -151,7 +143,13 @@ impl Linkage {
         solved
     }
 
-    fn add_masses(&self, bodies: &Bodies, blocks: &mut Blocks, loose: &mut [Loose], x: &[f64]) {
+    fn add_masses(
+        &self,
+        bodies: GroupBodies<'_>,
+        blocks: &mut Blocks,
+        loose: &mut [Loose],
+        x: &[f64],
+    ) {
         for (index, body) in self.bodies.iter().enumerate() {
             let mass = Vector3::new(body.mass, body.mass, body.inertia);
             let b = Vector3::new(x[3 * index], x[3 * index + 1], x[3 * index + 2]);
@@ -176,7 +174,7 @@ impl Linkage {
         let first = if self.closed { 3 } else { 0 };
         for (j, (x, &inertia)) in x[self.coordinates()..]
             .iter()
-            .zip(&bodies.inertias)
+            .zip(bodies.inertias())
             .enumerate()
         {
             blocks.corner[(first + j, first + j)] = inertia;

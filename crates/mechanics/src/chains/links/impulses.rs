@@ -20,7 +20,7 @@ use pulp::{Simd, WithSimd};
 
 use super::{Bearing, Joining, Linkage, Play};
 use crate::lanes::{Wide, dispatch};
-use crate::system::Bodies;
+use crate::system::GroupBodies;
 use local::Local;
 use rows::Rows;
 use tridiagonal::{Place, Tridiagonal};
@@ -43,7 +43,7 @@ impl Linkage {
     /// x ← (M + c C)⁻¹ M x; false if a pivot vanishes.
     pub(crate) fn damp(
         &self,
-        bodies: &Bodies,
+        bodies: GroupBodies<'_>,
         c: f64,
         play: &Play,
         work: &mut Impulses,
@@ -76,7 +76,7 @@ impl Linkage {
 struct Step<'a> {
     linkage: &'a Linkage,
     bearing: &'a Bearing,
-    bodies: &'a Bodies,
+    bodies: GroupBodies<'a>,
     c: f64,
     play: &'a Play,
 }
@@ -201,33 +201,24 @@ impl Impulses {
     fn fill_wheels<const R: usize, const C: usize>(
         &mut self,
         linkage: &Linkage,
-        bodies: &Bodies,
+        bodies: GroupBodies<'_>,
         c: f64,
         b: &[f64],
     ) {
         let first = if linkage.closed { R } else { 0 };
-        for (j, &inertia) in bodies.inertias.iter().enumerate() {
+        for (j, &inertia) in bodies.inertias().iter().enumerate() {
             let place = Place::Border(first + j);
             self.joints.add::<R, C>(place, place, -inertia);
             self.joints
                 .add_right::<R, C>(place, -inertia * b[linkage.coordinates() + j]);
         }
-        let place = |dof: usize| Place::Border(first + dof - bodies.first);
-        bodies.each_support(|dof, _, damping| {
-            self.joints
-                .add::<R, C>(place(dof), place(dof), -c * damping);
-        });
-        for coupling in &bodies.couplings {
-            for (dof, share) in bodies.twisted_by(coupling) {
-                for (other, other_share) in bodies.twisted_by(coupling) {
-                    // Both halves are one.
-                    if dof >= other {
-                        let damping = c * coupling.damping * share * other_share;
-                        self.joints.add::<R, C>(place(dof), place(other), -damping);
-                    }
-                }
+        bodies.each_own(|places, _, damping| {
+            let [i, j] = places.map(|place| Place::Border(first + place));
+            // Both halves are one.
+            if places[0] >= places[1] {
+                self.joints.add::<R, C>(i, j, -c * damping);
             }
-        }
+        });
     }
 
     /// x ← b − M⁻¹ Jᵀ y of the joints.
@@ -288,7 +279,7 @@ mod tests {
 
     use super::{Impulses, Joining, Step};
     use crate::chains::links::held::Asked;
-    use crate::chains::links::tests::{kinds, of, started};
+    use crate::chains::links::tests::{kinds, of, started, whole};
 
     /// The bodies' own equations, block by block, give the same answer: two independent eliminations.
     #[test]
@@ -300,7 +291,7 @@ mod tests {
             let mut impulses = b.clone();
             let mut work = Impulses::default();
             assert!(linkage.damp(
-                &system.bodies,
+                whole(&system),
                 c,
                 &record.chains[0].play,
                 &mut work,
@@ -313,7 +304,7 @@ mod tests {
             let step = Step {
                 linkage,
                 bearing,
-                bodies: &system.bodies,
+                bodies: whole(&system),
                 c,
                 play: &record.chains[0].play,
             };
@@ -325,7 +316,7 @@ mod tests {
                 stiffness: 0.0,
             };
             assert!(linkage.eliminate(
-                &system.bodies,
+                whole(&system),
                 weights,
                 &mut record.chains[0].play,
                 &mut blocks,

@@ -22,11 +22,16 @@ impl Linkage {
         loads: &mut Loads,
         play: &mut Play,
     ) {
-        let Surroundings { bodies, contacts } = around;
+        let Surroundings {
+            bodies,
+            first,
+            contacts,
+        } = around;
         play.mounts.clear();
         for (i, on) in contacts.teeth.iter().enumerate() {
             let frame = loads.frames[i];
-            let mount = self.wheel_mount(bodies, &bodies.wheels[on.wheel], loads.ways[i]);
+            let wheel = &bodies.wheels[on.wheel];
+            let mount = self.wheel_mount(first, wheel, loads.ways[i]);
             play.mounts.push(mount);
             let touch = &mut loads.teeth[i];
             let wrench = self.roll(&on.contacts, &frame, i, at, touch, play);
@@ -37,7 +42,8 @@ impl Linkage {
         for (i, on) in contacts.rails.iter().enumerate() {
             let number = contacts.teeth.len() + i;
             let frame = loads.frames[number];
-            let mount = self.rail_mount(bodies, &bodies.rails[on.rail].support, loads.ways[number]);
+            let support = &bodies.rails[on.rail].support;
+            let mount = self.rail_mount((bodies, first), support, loads.ways[number]);
             play.mounts.push(mount);
             let wrench = match &on.contact {
                 RailContact::Circles(contacts) => {
@@ -55,9 +61,10 @@ impl Linkage {
         }
     }
 
-    fn wheel_mount(&self, bodies: &Bodies, wheel: &Wheel, way: Option<Way>) -> Mount {
-        let border = |dof: usize| self.border(bodies, dof);
-        let turn = wheel.turn.turned_by().map(|(dof, ratio)| (border(dof), ratio));
+    fn wheel_mount(&self, first: usize, wheel: &Wheel, way: Option<Way>) -> Mount {
+        let border = |dof: usize| self.border(first, dof);
+        let turned = wheel.turn.turned_by();
+        let turn = turned.map(|(dof, ratio)| (border(dof), ratio));
         let shifts = match &wheel.support {
             WheelSupport::Fixed | WheelSupport::Prescribed { .. } => [None; 2],
             WheelSupport::Springs { dof, .. } => [
@@ -69,8 +76,13 @@ impl Linkage {
         Mount { shifts, turn }
     }
 
-    fn rail_mount(&self, bodies: &Bodies, support: &RailSupport, way: Option<Way>) -> Mount {
-        let border = |dof: usize| self.border(bodies, dof);
+    fn rail_mount(
+        &self,
+        (bodies, first): (&Bodies, usize),
+        support: &RailSupport,
+        way: Option<Way>,
+    ) -> Mount {
+        let border = |dof: usize| self.border(first, dof);
         let turn = match support {
             RailSupport::Carried(index) => bodies.slides[*index].turn(),
             RailSupport::Fixed | RailSupport::Prescribed { .. } => None,

@@ -211,7 +211,9 @@ fn largest(matrix: &Packed) -> f64 {
 impl Play {
     /// Sums of stiffness and damping at the rims, times the mobility of the wheels.
     fn wheel_rates(&self, around: Surroundings<'_>) -> Vec<[f64; 2]> {
-        let Surroundings { bodies, contacts } = around;
+        let Surroundings {
+            bodies, contacts, ..
+        } = around;
         let mut sums = vec![[0.0; 2]; contacts.teeth.len()];
         for element in &self.elements {
             if let Partner::Mount(mount) = element.b

@@ -10,10 +10,11 @@ use chaindrive_integrate::{Moment, SecondOrderSystem};
 use super::Linkage;
 use crate::chains::Chain;
 use crate::energy::Flow;
+use crate::system::GroupBodies;
 use crate::{
     Adjust, ChainModel, Clearance, Drive, End, Ends, Fit, Flank, FreeRoller, Joint, Layout,
-    LinkBody, Motion, Parts, PlacedChain, Record, RigidLinks, RollerModel, Rotation, Shaft, Sprocket,
-    Stop, Support, Surface, System, Tighten, Torque,
+    LinkBody, Motion, Parts, PlacedChain, Record, RigidLinks, RollerModel, Rotation, Shaft,
+    Sprocket, Stop, Support, Surface, System, Tighten, Torque,
 };
 
 /// Steel on steel with a little friction, so that normals and tangents take part.
@@ -30,6 +31,11 @@ fn surface(hole: f64, pin: f64, length: f64) -> Surface {
             slip_speed: 0.01,
         }),
     }
+}
+
+/// All bodies, of which there is one group.
+pub(super) fn whole(system: &System) -> GroupBodies<'_> {
+    system.group_bodies(0)
 }
 
 /// 44/18 teeth, 104 links of half an inch, centre distance computed so that they close without stress.
