@@ -247,9 +247,18 @@ class Drive:
                 "link": np.arange(self.links),
                 "span": spans,
                 "sprocket": self.sprockets,
-            },
+            }
+            | self._chain_of_every_link(),
             attrs={"scene": self.text},
         )
+
+    def _chain_of_every_link(self) -> dict[str, Any]:
+        """Return the coordinate ``link_chain``, where there are several chains."""
+        chains = self.chains
+        if not chains:
+            return {}
+        names = np.asarray(list(chains), dtype=np.str_)
+        return {"link_chain": ("link", np.repeat(names, list(chains.values())))}
 
     def modes(self) -> xr.Dataset:
         """Return natural frequencies and mode shapes about the static state.

@@ -118,13 +118,13 @@ class Simulation:
         attributes = {"units": about.unit, "long_name": about.description}
         return xr.DataArray(values, coords=coordinates, dims=dims, name=channel, attrs=attributes)
 
-    def set_torque(self, sprocket: str, torque: float, *, at: float | None = None) -> None:
-        """Set a torque on the shaft of a sprocket, beside those of the scene.
+    def set_torque(self, shaft: str, torque: float, *, at: float | None = None) -> None:
+        """Set a torque on a shaft, beside those of the scene.
 
         Parameters
         ----------
-        sprocket
-            Its name; one whose motion is given takes no torque.
+        shaft
+            Its name, or that of a sprocket on it; one whose motion is given takes no torque.
         torque
             Torque [N m], counter-clockwise positive; it acts until another one is set.
         at
@@ -133,9 +133,9 @@ class Simulation:
         Raises
         ------
         ParameterError
-            No sprocket has this name, its motion is given, or the time is past.
+            No shaft or sprocket has this name, its motion is given, or the time is past.
         """
-        self._inner.set("torque", sprocket, torque, at)
+        self._inner.set("torque", shaft, torque, at)
 
     def set_force(self, tensioner: str, force: float, *, at: float | None = None) -> None:
         """Set a force on a tensioner, beside its push.

@@ -94,6 +94,9 @@ def simulate(
     -------
     xarray.Dataset
         One variable a channel, (time,) or (time, labels), with ``units`` and ``long_name``.
+        Where there are several chains, rollers, links, joints and spans run over all of them in
+        the order of the scene, and ``roller_chain``, ``link_chain``, ``joint_chain`` and
+        ``span_chain`` name the chain of each: ``run.sel(span=run.span_chain == "primary")``.
         Contacts that were logged are ``event_kind``, ``event_body``, ``event_roller``,
         ``event_start``, ``event_end``, ``event_onset_speed``, ``event_peak_force`` and
         ``event_impulse``, (event,), in the order of their ends; what lasts comes last, with an

@@ -167,6 +167,8 @@ fn duplicate_names(parts: &Parts) -> Vec<DriveError> {
     let names = parts.sprockets.iter().map(|s| ("sprockets", &s.name));
     let names = names.chain(parts.guides.iter().map(|g| ("guides", &g.name)));
     let names = names.chain(parts.tensioners.iter().map(|t| ("tensioners", &t.name)));
+    let chains = parts.chains.iter().filter_map(|c| c.name.as_ref());
+    let names = names.chain(chains.map(|name| ("chains", name)));
     let shafts = parts.shafts.iter().filter_map(|s| s.name.as_ref());
     let names = names.chain(shafts.map(|name| ("shafts", name)));
     let names = names.chain(parts.couplings.iter().map(|c| ("couplings", &c.name)));

@@ -121,6 +121,10 @@ pub enum AssemblyError {
     )]
     NotStatic { residual: f64 },
 
+    /// One of several chains has one of these problems.
+    #[error("chain {chains}: {source}")]
+    OfChain { chains: String, source: Box<Self> },
+
     /// A guide cannot carry the kernel's search along its face.
     #[error("guide `{guide}`: {problem}")]
     Guide { guide: String, problem: String },
@@ -139,6 +143,18 @@ pub enum AssemblyError {
 }
 
 impl AssemblyError {
+    /// The error with the names of the chains that it is about, once, where they have names.
+    pub(crate) fn of_chains<'n>(self, names: impl Iterator<Item = Option<&'n String>>) -> Self {
+        let names: Option<Vec<String>> = names.map(|name| Some(format!("`{}`", name?))).collect();
+        match (self, names) {
+            (told @ Self::OfChain { .. }, _) | (told, None) => told,
+            (source, Some(names)) => Self::OfChain {
+                chains: names.join(", "),
+                source: Box::new(source),
+            },
+        }
+    }
+
     /// An error of the geometry with the names of the stops.
     pub(crate) fn with_names(self, name: &dyn Fn(usize) -> String) -> Self {
         match self {

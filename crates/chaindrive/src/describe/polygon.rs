@@ -31,7 +31,9 @@ pub struct PolygonPair {
 /// All strands for which the question makes sense.
 pub(super) fn pairs(drive: &Drive, start: &Observation) -> Vec<PolygonPair> {
     let chains = drive.chains.iter();
-    chains.flat_map(|placed| along(drive, placed, start)).collect()
+    chains
+        .flat_map(|placed| along(drive, placed, start))
+        .collect()
 }
 
 /// Those of one chain.

@@ -194,12 +194,7 @@ fn stops_of(drive: &Drive, run: &ChainRun<'_>, start: &Observation) -> Vec<StopF
 }
 
 /// The smooth route around the sprockets where they stand; none where a guide takes part.
-fn taut(
-    drive: &Drive,
-    run: &ChainRun<'_>,
-    stops: &[Stop],
-    start: &Observation,
-) -> Option<Route> {
+fn taut(drive: &Drive, run: &ChainRun<'_>, stops: &[Stop], start: &Observation) -> Option<Route> {
     let wheel = |stop: &Stop| match *stop {
         Stop::Sprocket(i) => {
             let sprocket = &drive.sprockets[i];

@@ -360,7 +360,7 @@ fn a_description_says_what_the_chain_is() {
         Description::of(&scene.drive().unwrap(), &run).unwrap()
     };
     let bicycle = describe("bicycle");
-    assert_eq!(bicycle.chain.bodies.model, "clearance-joints");
+    assert_eq!(bicycle.chains[0].bodies.model, "clearance-joints");
     assert_eq!(bicycle.model.degrees_of_freedom, 3 * 104 + 1);
     let text = bicycle.to_string();
     for words in [

@@ -18,6 +18,7 @@ mod requests;
 mod resolved;
 mod robust_scenes;
 mod scenes;
+mod several_chains;
 mod sweep;
 mod tooth_gaps;
 mod validation_contact;

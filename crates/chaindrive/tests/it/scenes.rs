@@ -170,7 +170,7 @@ fn lists_may_share_a_unit() {
     let shared = scene.replace("sprockets.driver.motion", motion).unwrap();
     let spelt = "{ kind = 'table', times = ['0 ms', '20 ms', '50.5 ms'], values = ['0 deg', '10 deg', '30 deg'] }";
     let spelt = scene.replace("sprockets.driver.motion", spelt).unwrap();
-    let rotation = |scene: &Scene| scene.drive().unwrap().sprockets[0].rotation.clone();
+    let rotation = |scene: &Scene| scene.drive().unwrap().shafts[0].rotation.clone();
     assert_eq!(rotation(&shared), rotation(&spelt));
 }
 

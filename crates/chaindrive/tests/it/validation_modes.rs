@@ -317,10 +317,10 @@ fn forces_of_whole_drives_agree_with_their_modes() {
             .unwrap()
             .parts()
             .clone();
-        for sprocket in &mut parts.sprockets {
+        for shaft in &mut parts.shafts {
             // A tooth that comes toward a roller at rest would push it by its damping too.
-            if matches!(sprocket.rotation, Rotation::Prescribed(_)) {
-                sprocket.rotation = Rotation::Prescribed(Motion::Held);
+            if matches!(shaft.rotation, Rotation::Prescribed(_)) {
+                shaft.rotation = Rotation::Prescribed(Motion::Held);
             }
         }
         let drive = Drive::new(parts).unwrap();
@@ -359,7 +359,9 @@ fn forces_of_whole_drives_agree_with_their_modes() {
                 shape[stride + i] = mode.roller_y[i % rollers];
             }
             let free = drive.sprockets.iter().zip(&mode.sprocket_angle);
-            let angles = free.filter(|(s, _)| matches!(s.rotation, Rotation::Free { .. }));
+            let turns =
+                |shaft: usize| matches!(drive.shafts[shaft].rotation, Rotation::Free { .. });
+            let angles = free.filter(|(s, _)| turns(s.shaft));
             let moving = mode
                 .tensioner_position
                 .iter()

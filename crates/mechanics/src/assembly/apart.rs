@@ -15,7 +15,9 @@ impl Drive {
             let drive = Self {
                 parts: group.parts(self.parts()),
             };
-            alone.push(drive.assemble_joined()?);
+            let names = || drive.chains.iter().map(|placed| placed.name.as_ref());
+            let assembled = drive.assemble_joined();
+            alone.push(assembled.map_err(|error| error.of_chains(names()))?);
         }
         let statics = stages(groups, &alone);
         let fittings = alone.iter().map(|assembled| assembled.fittings.clone());

@@ -43,7 +43,12 @@ pub(super) fn lay(drive: &Drive) -> Result<(Laid, Vec<Option<Fitting>>), Assembl
                     None => format!("stop {stop}"),
                 };
                 let fitting = around(&mut laid, index, stops, *phase, fit);
-                Some(fitting.map_err(|error| error.with_names(&name))?)
+                let called = laid.parts.chains[index].name.clone();
+                let told = |error: AssemblyError| {
+                    let named = error.with_names(&name);
+                    named.of_chains(std::iter::once(called.as_ref()))
+                };
+                Some(fitting.map_err(told)?)
             }
         });
     }

@@ -26,7 +26,8 @@ pub(super) fn described<'s>(
         return several(scene, names, findings);
     };
     if !scene.chains.is_empty() {
-        let hint = "keep one of them: several chains are all `[[chains]]`, each with its `[chains.route]`";
+        let hint =
+            "keep one of them: several chains are all `[[chains]]`, each with its `[chains.route]`";
         findings.refuse_with("chains", "`chain` is given too", hint);
         return None;
     }
@@ -64,7 +65,12 @@ fn several<'s>(
         findings.refuse_with("route", "several chains have no common route", hint);
     }
     // One entry a body, sprockets first.
-    let bodies: Vec<&str> = names.sprockets.iter().chain(&names.guides).copied().collect();
+    let bodies: Vec<&str> = names
+        .sprockets
+        .iter()
+        .chain(&names.guides)
+        .copied()
+        .collect();
     let mut owners: Vec<Option<usize>> = vec![None; bodies.len()];
     let mut sound = true;
     for (index, chain) in scene.chains.iter().enumerate() {
@@ -79,7 +85,8 @@ fn several<'s>(
                     let path = format!("chains[{index}].route.stops[{i}]");
                     let message =
                         format!("`{stop}` is on the route of `{}` too", names.chains[other]);
-                    let hint = "a sprocket has one chain: put two of them on one of the `[[shafts]]`";
+                    let hint =
+                        "a sprocket has one chain: put two of them on one of the `[[shafts]]`";
                     findings.refuse_with(&path, message, hint);
                     sound = false;
                 }
@@ -115,12 +122,16 @@ fn several<'s>(
             .collect()
     };
     let (sprockets, guides) = owners.split_at(scene.sprockets.len());
-    let described = scene.chains.iter().enumerate().map(|(index, chain)| Described {
-        name: Some(&chain.name),
-        text: &chain.chain,
-        route: chain.route.as_ref(),
-        sprockets: of(sprockets, index),
-        guides: of(guides, index),
-    });
+    let described = scene
+        .chains
+        .iter()
+        .enumerate()
+        .map(|(index, chain)| Described {
+            name: Some(&chain.name),
+            text: &chain.chain,
+            route: chain.route.as_ref(),
+            sprockets: of(sprockets, index),
+            guides: of(guides, index),
+        });
     sound.then(|| described.collect())
 }

@@ -316,7 +316,11 @@ fn surface(
                 "modulus": steel.modulus,
                 "poisson": steel.poisson,
             });
-            findings.assume(&format!("{place}.law"), text, "follows from the dimensions of the chain");
+            findings.assume(
+                &format!("{place}.law"),
+                text,
+                "follows from the dimensions of the chain",
+            );
         }
         law.map_err(|error| {
             let message = format!("{}, must be {}", error.value, error.allowed);
