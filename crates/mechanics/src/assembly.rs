@@ -72,22 +72,22 @@ impl Drive {
     /// [`AssemblyError`] when the chain does not close or no equilibrium is found.
     pub fn assemble(&self) -> Result<Assembled, AssemblyError> {
         let groups = groups(self.parts());
-        if let [_] = groups.as_slice() {
+        let mut assembled = if let [_] = groups.as_slice() {
             self.assemble_joined()
         } else {
             self.assemble_apart(&groups)
-        }
+        }?;
+        assembled.warnings = assembled.clashes()?;
+        Ok(assembled)
     }
 
     fn assemble_joined(&self) -> Result<Assembled, AssemblyError> {
         let mut chains = self.chains.iter();
-        let mut assembled = if chains.all(|placed| placed.chain.model.stretches()) {
+        if chains.all(|placed| placed.chain.model.stretches()) {
             self.assemble_as_is()
         } else {
             self.assemble_hard()
-        }?;
-        assembled.warnings = assembled.clashes()?;
-        Ok(assembled)
+        }
     }
 
     fn assemble_as_is(&self) -> Result<Assembled, AssemblyError> {

@@ -196,6 +196,24 @@ impl Group {
     }
 }
 
+impl Group {
+    /// Puts the parts of a drive where those of the group lie.
+    pub(crate) fn place(&self, laid: &Parts, whole: &mut Parts) {
+        for (&index, placed) in self.chains.iter().zip(&laid.chains) {
+            whole.chains[index].chain.clone_from(&placed.chain);
+        }
+        for (&index, sprocket) in self.sprockets.iter().zip(&laid.sprockets) {
+            whole.sprockets[index].centre = sprocket.centre;
+        }
+        for (&index, guide) in self.guides.iter().zip(&laid.guides) {
+            whole.guides[index].face.clone_from(&guide.face);
+        }
+        for (&index, tensioner) in self.tensioners.iter().zip(&laid.tensioners) {
+            whole.tensioners[index].carrier = tensioner.carrier;
+        }
+    }
+}
+
 /// What belongs to the parts of groups, in the order of the drive.
 pub(crate) fn in_order<'g, T>(of_groups: impl Iterator<Item = (&'g Vec<usize>, Vec<T>)>) -> Vec<T> {
     let mut all: Vec<(usize, T)> = of_groups

@@ -20,6 +20,10 @@ impl Drive {
             alone.push(assembled.map_err(|error| error.of_chains(names()))?);
         }
         let statics = stages(groups, &alone);
+        let mut parts = self.parts().clone();
+        for (group, assembled) in groups.iter().zip(&alone) {
+            group.place(&assembled.parts, &mut parts);
+        }
         let fittings = alone.iter().map(|assembled| assembled.fittings.clone());
         let fittings = in_order(groups.iter().map(|group| &group.chains).zip(fittings));
         let systems = alone.into_iter().map(|it| (it.system, [it.q, it.v]));
@@ -30,6 +34,8 @@ impl Drive {
             v,
             statics,
             fittings,
+            warnings: Vec::new(),
+            parts,
         })
     }
 }
