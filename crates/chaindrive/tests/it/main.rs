@@ -36,6 +36,7 @@ mod validation_modes;
 mod validation_statics;
 mod verdict;
 mod work;
+mod wrong_chains;
 mod wrong_links;
 mod wrong_scenes;
 mod zarr;

@@ -316,11 +316,11 @@ fn surface(
                 "modulus": steel.modulus,
                 "poisson": steel.poisson,
             });
-            findings.assume(
-                &format!("{place}.law"),
-                text,
-                "follows from the dimensions of the chain",
-            );
+            // What is common is that of the only chain.
+            let common = format!("contact.{name}s");
+            let of = findings.chain.map_or(common, |_| place.clone());
+            let remark = "follows from the dimensions of the chain";
+            findings.assume(&format!("{of}.law"), text, remark);
         }
         law.map_err(|error| {
             let message = format!("{}, must be {}", error.value, error.allowed);
