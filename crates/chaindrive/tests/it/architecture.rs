@@ -148,6 +148,24 @@ fn no_member_of_the_chain_family_is_named_outside() {
     }
 }
 
+/// Constants of a law, such as the factor of an exact dissipation that Newton's method finds, are worked out when a drive is built:
+/// who asks a law for forces has prepared it in the same file.
+#[test]
+fn laws_are_prepared_before_they_are_asked() {
+    let mut asking = 0;
+    for path in sources(&root().join("crates/mechanics/src")) {
+        let text = arrows::code(&fs::read_to_string(&path).expect("sources are text"));
+        if path.ends_with("tests.rs") || !text.contains("Approach {") {
+            continue;
+        }
+        asking += 1;
+        let prepares = text.contains(".prepared()") && text.contains("Prepared");
+        let at_once = text.contains("law.prepared().") || text.contains("surface.law.respond");
+        assert!(prepares && !at_once, "{}", path.display());
+    }
+    assert!(asking > 0, "nobody asks a law, or not like this");
+}
+
 /// Chains borrow the bodies, never the system that holds them all.
 #[test]
 fn chains_do_not_know_the_system() {
