@@ -294,6 +294,9 @@ impl Lattice<'_> {
     }
 
     /// The span to a wheel of free phase, leaving this one at a seat near `guess` and not before `least`.
+    ///
+    /// The span arrives up to half a pitch angle off the smooth tangent. On a shoe of large radius that may be many
+    /// seats, or links: where none near the guess has the span in its window, the search goes on as long as it comes nearer.
     fn reach(&self, guess: i64, least: i64, to: &Reach<'_>) -> Option<Bridge> {
         let mut best: Option<Bridge> = None;
         for leaves in (guess - 1).max(least)..=guess + 1 {
@@ -304,60 +307,101 @@ impl Lattice<'_> {
                 best = Some(bridge);
             }
         }
-        best
+        let mut best = best?;
+        for step in [-1, 1] {
+            while best.depth < 0.0 && best.leaves + step >= least {
+                match self.reach_from(best.leaves + step, to) {
+                    Some(next) if next.depth > best.depth => best = next,
+                    _ => break,
+                }
+            }
+        }
+        Some(best)
     }
 
     fn reach_from(&self, leaves: i64, to: &Reach<'_>) -> Option<Bridge> {
-        let (from, wheel) = (self.at(leaves), to.wheel);
-        let line = from - wheel.centre;
-        let (distance, bearing) = (line.norm(), line.y.atan2(line.x));
-        let half = 0.5 * wheel.pitch_angle(to.pitch);
         let mut best: Option<Bridge> = None;
         for links in whole(to.expected - 2.5).max(1)..=whole(to.expected + 2.5) {
-            let length = links as f64 * to.pitch;
-            // |A B| = m p with B on the circle: D² + R² − 2 D R cos(ψ − ψ_A) = m² p²
-            let cosine = (distance * distance + wheel.radius * wheel.radius - length * length)
-                / (2.0 * distance * wheel.radius);
-            if cosine.abs() > 1.0 {
-                continue;
+            let bridge = self.bridge(leaves, links, to);
+            if let Some(bridge) = bridge.filter(|new| best.is_none_or(|b| new.depth > b.depth)) {
+                best = Some(bridge);
             }
-            // The chain arrives before it turns: behind the bearing in the sense of the wheel.
-            for angle in [bearing + cosine.acos(), bearing - cosine.acos()] {
-                let span = wheel.at(angle) - from;
-                let direction = span.y.atan2(span.x);
-                let depth = depth(wheel, half, angle, direction).min(self.depth(leaves, direction));
-                if best.is_none_or(|b| depth > b.depth) {
-                    best = Some(Bridge {
-                        leaves,
-                        links: count(links),
-                        angle,
-                        depth,
-                    });
+        }
+        let mut best = best?;
+        for step in [-1, 1] {
+            while best.depth < 0.0 && i64::from(best.links) + step >= 1 {
+                match self.bridge(leaves, i64::from(best.links) + step, to) {
+                    Some(next) if next.depth > best.depth => best = next,
+                    _ => break,
                 }
             }
         }
         // A lone link more or less shifts the seat by a whole window; far outside there is no chain.
-        best.filter(|b| b.depth > -half.max(self.half))
+        let half = 0.5 * to.wheel.pitch_angle(to.pitch);
+        (best.depth > -half.max(self.half)).then_some(best)
+    }
+
+    /// The span of some links to wherever on the circle it ends.
+    fn bridge(&self, leaves: i64, links: i64, to: &Reach<'_>) -> Option<Bridge> {
+        let (from, wheel) = (self.at(leaves), to.wheel);
+        let line = from - wheel.centre;
+        let (distance, bearing) = (line.norm(), line.y.atan2(line.x));
+        let half = 0.5 * wheel.pitch_angle(to.pitch);
+        let length = links as f64 * to.pitch;
+        // |A B| = m p with B on the circle: D² + R² − 2 D R cos(ψ − ψ_A) = m² p²
+        let cosine = (distance * distance + wheel.radius * wheel.radius - length * length)
+            / (2.0 * distance * wheel.radius);
+        if cosine.abs() > 1.0 {
+            return None;
+        }
+        // The chain arrives before it turns: behind the bearing in the sense of the wheel.
+        let ends = [bearing + cosine.acos(), bearing - cosine.acos()].map(|angle| {
+            let span = wheel.at(angle) - from;
+            let direction = span.y.atan2(span.x);
+            let depth = depth(wheel, half, angle, direction).min(self.depth(leaves, direction));
+            Bridge {
+                leaves,
+                links: count(links),
+                angle,
+                depth,
+            }
+        });
+        let [first, second] = ends;
+        Some(if second.depth > first.depth {
+            second
+        } else {
+            first
+        })
     }
 
     /// The seats of the span that joins this lattice to another one, both fixed: seats near the two guesses.
     pub(crate) fn join(&self, to: &Lattice<'_>, leaving: i64, arriving: i64) -> Option<(i64, i64)> {
+        let depth = |leaves: i64, arrives: i64| {
+            let span = to.at(arrives) - self.at(leaves);
+            let direction = span.y.atan2(span.x);
+            self.depth(leaves, direction)
+                .min(to.depth(arrives, direction))
+        };
         let mut best = None;
         let mut deepest = -self.half.max(to.half);
         for leaves in (leaving - 1).max(0)..=leaving + 1 {
             for arrives in arriving - 2..=arriving + 2 {
-                let span = to.at(arrives) - self.at(leaves);
-                let direction = span.y.atan2(span.x);
-                let depth = self
-                    .depth(leaves, direction)
-                    .min(to.depth(arrives, direction));
+                let depth = depth(leaves, arrives);
                 if depth > deepest {
                     deepest = depth;
                     best = Some((leaves, arrives));
                 }
             }
         }
-        best
+        // As in `reach`: further along, while no window holds the span and it comes nearer.
+        let (mut leaves, arrives) = best?;
+        for step in [-1, 1] {
+            while deepest < 0.0 && leaves + step >= 0 && depth(leaves + step, arrives) > deepest {
+                leaves += step;
+                deepest = depth(leaves, arrives);
+            }
+        }
+        Some((leaves, arrives))
     }
 }
 

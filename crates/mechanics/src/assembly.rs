@@ -12,12 +12,12 @@ use chaindrive_geometry::{ArcSpline, Point};
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 
 use crate::chains::LaidAs;
-use crate::check::clash::{Clash, clashes};
+use crate::check::clash::clashes;
 use crate::drive::{Layout, Parts};
 use crate::groups::groups;
 use crate::standing::Standing;
 use crate::system::Laid;
-use crate::{AssemblyError, Drive, System};
+use crate::{AssemblyError, Clash, Drive, System};
 use settle::Tightening;
 
 pub use relax::Statics;

@@ -10,7 +10,6 @@ pub(crate) mod links;
 mod model;
 pub(crate) mod particles;
 mod record;
-mod rollers;
 
 use std::ops::Range;
 
@@ -22,7 +21,6 @@ use links::Linkage;
 pub use model::ChainModel;
 use particles::Particles;
 pub(crate) use record::{Loads, Record};
-pub(crate) use rollers::Rollers;
 
 use crate::contact::{Frame, PlateContact};
 use crate::energy::Energy;

@@ -9,12 +9,27 @@ use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_geometry::{Point, Vector};
 
 use crate::drive::{
-    Adjust, Fit, GuideSupport, Layout, Parts, PlacedChain, Sprocket, Stop, Support, Surface,
+    Adjust, Drive, Fit, GuideSupport, Layout, Parts, PlacedChain, Sprocket, Stop, Support, Surface,
 };
 use crate::{DriveError, Ends};
 
+impl Drive {
+    /// Checks the parts.
+    ///
+    /// # Errors
+    /// Every problem found, not only the first.
+    pub fn new(parts: Parts) -> Result<Self, Vec<DriveError>> {
+        let problems = problems(&parts);
+        if problems.is_empty() {
+            Ok(Self { parts })
+        } else {
+            Err(problems)
+        }
+    }
+}
+
 /// Every reason why `parts` is not a drive.
-pub(crate) fn problems(parts: &Parts) -> Vec<DriveError> {
+fn problems(parts: &Parts) -> Vec<DriveError> {
     let mut found = Vec::new();
     if parts.chains.is_empty() {
         found.push(conflict("chains", "a drive has at least one chain".into()));

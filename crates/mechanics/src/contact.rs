@@ -11,6 +11,7 @@ mod look;
 mod memory;
 mod plates;
 mod rest;
+mod rollers;
 mod slots;
 #[cfg(test)]
 mod tests;
@@ -23,6 +24,7 @@ use chaindrive_geometry::{Point, Vector};
 pub(crate) use law::SurfaceLaw;
 pub(crate) use memory::{ContactMemory, MemoryLanes};
 pub(crate) use plates::{PlateContact, PlatePins, PlatePlaces};
+pub(crate) use rollers::Rollers;
 pub(crate) use window::{FAR, Places, Run};
 pub(crate) use wrench::{LaneTally, Wrench};
 

@@ -3,7 +3,7 @@
 use chaindrive_contact::{Elastic, Friction, Law};
 use chaindrive_geometry::{ArcSpline, Point, Side, ToothGap, Vector};
 
-use crate::{Chain, DriveError, Motion, Tensioner, Torque};
+use crate::{Chain, Motion, Tensioner, Torque};
 
 /// How two surfaces push and rub on each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -323,19 +323,6 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// Checks the parts.
-    ///
-    /// # Errors
-    /// Every problem found, not only the first.
-    pub fn new(parts: Parts) -> Result<Self, Vec<DriveError>> {
-        let problems = crate::check::problems(&parts);
-        if problems.is_empty() {
-            Ok(Self { parts })
-        } else {
-            Err(problems)
-        }
-    }
-
     /// The parts.
     pub fn parts(&self) -> &Parts {
         &self.parts

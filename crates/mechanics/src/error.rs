@@ -1,9 +1,11 @@
 //! Why a drive cannot be built, assembled or evaluated.
 
+mod clash;
+
 use chaindrive_contact::ParameterError;
 use chaindrive_geometry::GeometryError;
 
-use crate::Clash;
+pub use clash::Clash;
 
 /// Why a description is not a drive. Every variant names the place.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -43,13 +43,12 @@ pub use assembly::{Assembled, Fitting, RollerLayout, Statics};
 pub use chain::{Chain, End, Ends};
 pub use chains::ChainModel;
 pub use chains::links::model::{Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel};
-pub use check::clash::Clash;
 pub use drive::{
     Adjust, Coupling, Drive, Fit, Flank, GearPair, Guide, GuideSupport, Layout, Parts, PlacedChain,
     Rotation, Shaft, Sprocket, Stop, Support, Surface, Tighten, Touches,
 };
 pub use energy::{Energy, Flow, Store};
-pub use error::{AssemblyError, DriveError};
+pub use error::{AssemblyError, Clash, DriveError};
 pub use events::{ContactEvent, ContactPair, EventKinds};
 pub use modes::{Mode, Modes};
 pub use motion::{Course, Harmonic, Motion, Table};

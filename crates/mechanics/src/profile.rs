@@ -14,6 +14,7 @@
 //! a corner (R = 0), g = n·(q − p) − r on a straight.
 
 mod gap;
+mod lookup;
 
 use chaindrive_geometry::{Piece, Point, Vector};
 use pulp::Simd;
@@ -49,6 +50,8 @@ pub(crate) struct Profile {
     pub(crate) bulges: bool,
     /// First feature behind a hollow that is not hollow itself: where the flank begins.
     pub(crate) flank: Option<usize>,
+    /// Where every reach ends, of rows that are looked up; empty for short ones.
+    reaches: Box<[usize]>,
 }
 
 /// The nearest surface of a profile as one roller sees it.
@@ -75,6 +78,14 @@ pub(crate) struct Nearest<S: Simd> {
     pub(crate) bend: Lane<S>,
 }
 
+/// The features that the circles of a lane belong to.
+struct Chosen<S: Simd> {
+    centre: [Lane<S>; 2],
+    radius: Lane<S>,
+    sign: Lane<S>,
+    straight: [Lane<S>; 2],
+}
+
 /// Joints that turn by less than this \[rad\] count as tangent.
 const TANGENT: f64 = 1e-7;
 
@@ -94,6 +105,7 @@ impl Profile {
                 has_straights: false,
                 bulges: false,
                 flank: None,
+                reaches: Box::default(),
             };
         };
         if open_start {
@@ -124,11 +136,17 @@ impl Profile {
                 Some(hollow + behind)
             });
         bulges &= features.iter().all(|f| f.sign > 0.0);
+        let reaches = if features.len() > lookup::FEW {
+            lookup::reaches(&features)
+        } else {
+            Box::default()
+        };
         Self {
             features,
             has_straights,
             bulges,
             flank,
+            reaches,
         }
     }
 
@@ -151,30 +169,30 @@ impl Profile {
         [x, y]: [Lane<S>; 2],
         radius: f64,
     ) -> Nearest<S> {
+        let chosen = if self.features.len() > lookup::LONG {
+            self.looked_up(w, [x, y])
+        } else {
+            self.passed(w, [x, y])
+        };
+        self.facing(w, [x, y], chosen, radius)
+    }
+
+    /// The surface of the features that circles of some radius at (x, y) belong to.
+    #[inline(always)]
+    fn facing<S: Simd>(
+        &self,
+        w: Wide<S>,
+        [x, y]: [Lane<S>; 2],
+        chosen: Chosen<S>,
+        radius: f64,
+    ) -> Nearest<S> {
         let zero = w.splat(0.0);
-        let first = &self.features[0];
-        let mut cx = w.splat(first.centre.x);
-        let mut cy = w.splat(first.centre.y);
-        let mut r = w.splat(first.radius);
-        let mut sign = w.splat(first.sign);
-        let mut mx = w.splat(first.straight.x);
-        let mut my = w.splat(first.straight.y);
-        let mut passed = w.first(Wide::<S>::COUNT);
-        for index in 1..self.features.len() {
-            let f = &self.features[index];
-            passed = passed & self.ahead(w, index, [x, y]).greater(zero);
-            if !passed.any() {
-                break;
-            }
-            cx = passed.select(w.splat(f.centre.x), cx);
-            cy = passed.select(w.splat(f.centre.y), cy);
-            r = passed.select(w.splat(f.radius), r);
-            sign = passed.select(w.splat(f.sign), sign);
-            if self.has_straights {
-                mx = passed.select(w.splat(f.straight.x), mx);
-                my = passed.select(w.splat(f.straight.y), my);
-            }
-        }
+        let Chosen {
+            centre: [cx, cy],
+            radius: r,
+            sign,
+            straight: [mx, my],
+        } = chosen;
         let (ex, ey) = (x - cx, y - cy);
         let [distance, inverse] = (ex * ex + ey * ey).roots();
         let scale = sign * inverse;
@@ -191,6 +209,41 @@ impl Profile {
             bend = straight.select(zero, bend);
         }
         Nearest { gap, nx, ny, bend }
+    }
+
+    /// The last features whose starting lines circles at (x, y) have passed, one line after the other.
+    #[inline(always)]
+    fn passed<S: Simd>(&self, w: Wide<S>, at: [Lane<S>; 2]) -> Chosen<S> {
+        let zero = w.splat(0.0);
+        let first = &self.features[0];
+        let mut cx = w.splat(first.centre.x);
+        let mut cy = w.splat(first.centre.y);
+        let mut r = w.splat(first.radius);
+        let mut sign = w.splat(first.sign);
+        let mut mx = w.splat(first.straight.x);
+        let mut my = w.splat(first.straight.y);
+        let mut passed = w.first(Wide::<S>::COUNT);
+        for index in 1..self.features.len() {
+            let f = &self.features[index];
+            passed = passed & self.ahead(w, index, at).greater(zero);
+            if !passed.any() {
+                break;
+            }
+            cx = passed.select(w.splat(f.centre.x), cx);
+            cy = passed.select(w.splat(f.centre.y), cy);
+            r = passed.select(w.splat(f.radius), r);
+            sign = passed.select(w.splat(f.sign), sign);
+            if self.has_straights {
+                mx = passed.select(w.splat(f.straight.x), mx);
+                my = passed.select(w.splat(f.straight.y), my);
+            }
+        }
+        Chosen {
+            centre: [cx, cy],
+            radius: r,
+            sign,
+            straight: [mx, my],
+        }
     }
 
     /// How far beyond the end of the hollow places are \[m\], negative in the hollow; without one, beyond any measure.

@@ -1,5 +1,8 @@
 //! The rules of `docs/architecture.md` that a machine can check.
 
+mod arrows;
+mod layers;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -88,6 +91,7 @@ fn parry_stays_in_its_adapter() {
 fn mechanics_reads_no_file_clock_or_chance() {
     for path in sources(&root().join("crates/mechanics/src")) {
         let text = fs::read_to_string(&path).expect("sources are text");
+        let text = arrows::code(&text);
         for forbidden in [
             "std::fs",
             "std::time",
@@ -141,6 +145,40 @@ fn no_member_of_the_chain_family_is_named_outside() {
                 path.display()
             );
         }
+    }
+}
+
+/// Constants of a law, such as the factor of an exact dissipation that Newton's method finds, are worked out when a drive is built:
+/// who asks a law for forces has prepared it in the same file.
+#[test]
+fn laws_are_prepared_before_they_are_asked() {
+    let mut asking = 0;
+    for path in sources(&root().join("crates/mechanics/src")) {
+        let text = arrows::code(&fs::read_to_string(&path).expect("sources are text"));
+        if path.ends_with("tests.rs") || !text.contains("Approach {") {
+            continue;
+        }
+        asking += 1;
+        let prepares = text.contains(".prepared()") && text.contains("Prepared");
+        let at_once = text.contains("law.prepared().") || text.contains("surface.law.respond");
+        assert!(prepares && !at_once, "{}", path.display());
+    }
+    assert!(asking > 0, "nobody asks a law, or not like this");
+}
+
+/// Chains borrow the bodies, never the system that holds them all.
+#[test]
+fn chains_do_not_know_the_system() {
+    for path in sources(&root().join("crates/mechanics/src/chains")) {
+        let text = fs::read_to_string(&path).expect("sources are text");
+        let own = text.split("#[cfg(test)]").next().unwrap_or_default();
+        let words = own
+            .lines()
+            .filter(|line| !line.trim_start().starts_with("//"))
+            .flat_map(|line| line.split(|c: char| !c.is_alphanumeric() && c != '_'));
+        let test = path.ends_with("tests.rs");
+        let named = words.filter(|word| *word == "System").count();
+        assert!(test || named == 0, "{}", path.display());
     }
 }
 

@@ -9,6 +9,7 @@ mod nearest_is_nearest;
 mod parry;
 mod polygon_action;
 mod polygon_hull;
+mod profiles;
 mod route;
 mod shapes;
 mod taut_polygon;

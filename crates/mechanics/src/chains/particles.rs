@@ -20,7 +20,8 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 use pulp::Arch;
 
-use super::{Pose, Record, Rollers, Surroundings};
+use super::{Pose, Record, Surroundings};
+use crate::contact::Rollers;
 use crate::contact::{PlatePins, PlatePlaces};
 use crate::system::HeldEnd;
 pub(super) use springs::Links;

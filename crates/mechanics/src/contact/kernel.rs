@@ -7,8 +7,7 @@ use super::rest::{CLOSE, Clear};
 use super::slots::Slots;
 use super::window::FAR;
 use super::wrench::{Sums, Wrench};
-use super::{Contacts, Frame, Shape, Touch};
-use crate::chains::Rollers;
+use super::{Contacts, Frame, Rollers, Shape, Touch};
 use crate::lanes::{LANES, Lane, Mask, Wide};
 use crate::profile::SHARPEST;
 

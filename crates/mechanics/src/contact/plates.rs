@@ -87,9 +87,7 @@ impl PlateContact {
             weight: if share > 0.0 && share < 1.0 { 1.0 } else { 0.5 },
         };
         let ends = [0.0, 1.0].into_iter();
-        let feet = self
-            .profile
-            .features
+        let feet = self.profile.features[self.profile.features_along(a, b)]
             .iter()
             .filter(|f| f.sign > 0.0 && f.straight == Vector::zeros());
         let feet = feet.map(|f| ((f.centre - a).dot(&edge) / length_squared).clamp(0.0, 1.0));

@@ -73,8 +73,7 @@ mod tests {
     use pulp::{Arch, WithSimd};
 
     use super::*;
-    use crate::chains::Rollers;
-    use crate::contact::{Contacts, Frame, Places, Shape, Teeth, Touch};
+    use crate::contact::{Contacts, Frame, Places, Rollers, Shape, Teeth, Touch};
     use crate::drive::Surface;
     use crate::profile::{GapFace, Profile};
 

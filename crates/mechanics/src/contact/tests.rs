@@ -8,7 +8,6 @@ use chaindrive_contact::{Dissipation, Elastic, Friction, Law};
 use chaindrive_geometry::{Arc, ArcSpline, Foot, Piece, Point, Segment, Vector};
 
 use super::*;
-use crate::chains::Rollers;
 use crate::lanes::{LANES, Wide};
 
 const RADIUS: f64 = 0.01;

@@ -6,7 +6,8 @@ use chaindrive_integrate::Moment;
 use pulp::{Simd, WithSimd};
 
 use super::{Element, Linkage, Mount, Partner, Play, Posture};
-use crate::chains::{Loads, Rollers, Surroundings, Way};
+use crate::chains::{Loads, Surroundings, Way};
+use crate::contact::Rollers;
 use crate::contact::{Contacts, Frame, Touch, Wrench};
 use crate::energy::Flow;
 use crate::lanes::{Wide, dispatch};

@@ -4,7 +4,7 @@ use chaindrive_geometry::{Point, Vector};
 use pulp::Simd;
 
 use crate::Chain;
-use crate::chains::Rollers;
+use crate::contact::Rollers;
 use crate::lanes::{LANES, Wide, padded};
 
 /// The links in flat arrays, padded to whole lanes with links of no stiffness.

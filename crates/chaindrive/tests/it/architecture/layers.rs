@@ -1,0 +1,219 @@
+//! The layers of every crate, from the ground up: a module names modules of lower layers only.
+
+use std::collections::BTreeSet;
+
+use super::{arrows, root};
+
+/// A crate, its modules by layers from the ground up, and the arrows that point up all the same, each with its reason.
+struct Storeys {
+    folder: &'static str,
+    layers: &'static [&'static [&'static str]],
+    exceptions: &'static [(&'static str, &'static str, &'static str)],
+}
+
+const CRATES: [Storeys; 4] = [
+    Storeys {
+        folder: "mechanics",
+        layers: &[
+            &["energy", "error", "lanes"],
+            &["motion", "profile", "tensioner"],
+            &["chain", "torque"],
+            &["drive"],
+            &["contact"],
+            &["chains"],
+            &["system"],
+            &["events", "observe", "standing"],
+            &["check"],
+            &["assembly"],
+            &["modes", "nudge"],
+        ],
+        exceptions: &[
+            (
+                "chain",
+                "chains",
+                "a chain is described with the model it is made of, and the models are listed where the members are",
+            ),
+            (
+                "chains",
+                "system",
+                "chains borrow the bodies and their contacts with them, which lie in the system's folder; never the system",
+            ),
+            (
+                "chains",
+                "observe",
+                "every chain writes what it shows into an observation, which lies beside what the system shows",
+            ),
+            (
+                "system",
+                "events",
+                "the system keeps the log of contacts that it writes when a step is accepted",
+            ),
+        ],
+    },
+    Storeys {
+        folder: "chaindrive",
+        layers: &[
+            &["catalogue"],
+            &["error", "scene"],
+            &["run"],
+            &["simulate"],
+            &["record"],
+            &["precision"],
+            &["verdict"],
+            &["describe", "sweep"],
+        ],
+        exceptions: &[
+            (
+                "error",
+                "run",
+                "messages name methods, and `Run` is what was refused",
+            ),
+            (
+                "scene",
+                "run",
+                "a resolved scene holds the method and step of the run",
+            ),
+            (
+                "scene",
+                "precision",
+                "the accuracy that a scene may ask for is that of the study",
+            ),
+            (
+                "run",
+                "simulate",
+                "`execute` carries out a whole run, and lies beside the settings of runs",
+            ),
+            ("run", "record", "see simulate: it hands samples to a sink"),
+            ("run", "precision", "see simulate: it chooses the method"),
+            ("run", "verdict", "see simulate: it judges the result"),
+            (
+                "simulate",
+                "record",
+                "channels are read at any time by the names that recordings have for them",
+            ),
+            (
+                "record",
+                "precision",
+                "attributes of results are made in one place, and tell how a method was chosen",
+            ),
+            (
+                "record",
+                "verdict",
+                "see precision: and what the verdict is",
+            ),
+            (
+                "record",
+                "sweep",
+                "see precision: and a store of a sweep holds its outcomes",
+            ),
+        ],
+    },
+    Storeys {
+        folder: "cli",
+        layers: &[
+            &["failure"],
+            &["csv", "progress", "request", "stdout"],
+            &["commands"],
+        ],
+        exceptions: &[],
+    },
+    Storeys {
+        folder: "python",
+        layers: &[
+            &["errors"],
+            &["drawing", "kinematics", "law"],
+            &["friction", "profile"],
+            &["drive"],
+            &["run"],
+            &["live", "precision", "sweep"],
+        ],
+        exceptions: &[],
+    },
+];
+
+/// Whoever draws a new arrow upward meets this test: turn it round, or put the reason into the table. An exception that is no
+/// longer needed must leave the table, so that it cannot come back unseen.
+#[test]
+fn modules_name_modules_of_lower_layers() {
+    let mut problems = Vec::new();
+    for Storeys {
+        folder,
+        layers,
+        exceptions,
+    } in CRATES
+    {
+        let layer_of = |module: &str| layers.iter().position(|layer| layer.contains(&module));
+        let arrows = arrows::of(&root().join("crates").join(folder).join("src"));
+        let mut upward = BTreeSet::new();
+        for (from, uses) in &arrows {
+            let Some(own) = layer_of(from) else {
+                problems.push(format!("{folder}: `{from}` stands in no layer"));
+                continue;
+            };
+            for to in uses {
+                if layer_of(to).is_none_or(|layer| layer >= own) {
+                    upward.insert((from.as_str(), to.as_str()));
+                }
+            }
+        }
+        let known: BTreeSet<_> = exceptions
+            .iter()
+            .map(|(from, to, _)| (*from, *to))
+            .collect();
+        for (from, to) in upward.difference(&known) {
+            problems.push(format!("{folder}: `{from}` must not name `{to}`"));
+        }
+        for (from, to) in known.difference(&upward) {
+            problems.push(format!(
+                "{folder}: `{from}` no longer names `{to}`: strike the exception"
+            ));
+        }
+        let named = layers.iter().flat_map(|layer| layer.iter());
+        for absent in named.filter(|module| !arrows.contains_key(**module)) {
+            problems.push(format!("{folder}: there is no module `{absent}`"));
+        }
+    }
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+/// The reader of arrows sees what imports look like: lists, nested lists, new names, `super`, re-exports; no comments and no tests.
+#[test]
+fn arrows_are_read_off_the_sources() {
+    let folder = std::env::temp_dir().join(format!("chaindrive-arrows-{}", std::process::id()));
+    let write = |name: &str, text: &str| {
+        let path = folder.join(name);
+        std::fs::create_dir_all(path.parent().expect("inside")).expect("a folder");
+        std::fs::write(path, text).expect("a file");
+    };
+    write(
+        "lib.rs",
+        "mod a;\nmod b;\nmod c;\nmod d;\nmod e;\npub use b::{Bee, inner::Queen as Regent};\npub use d::Dee;\npub type Alias = u8;\n",
+    );
+    write(
+        "a.rs",
+        "use crate::{Alias, Regent,\n    c::{x, y}};\n// crate::e::Not\n#[cfg(test)]\nmod tests {\n    use crate::e::Neither;\n}\n",
+    );
+    write("a/deep.rs", "use super::super::d::Dee;\nuse super::own;\n");
+    write(
+        "b.rs",
+        "fn f() { crate::c::g() }\n#[cfg(test)]\nmod tests;\nuse super::d;\n",
+    );
+    write("b/tests.rs", "use crate::e;\n");
+    write("c/mod.rs", "use super::e;\n");
+    write("d.rs", "");
+    write("e.rs", "use crate::Dee;\n");
+    let found = arrows::of(&folder);
+    std::fs::remove_dir_all(&folder).expect("it was there");
+    let expected = [
+        ("a", vec!["b", "c", "d"]),
+        ("b", vec!["c", "d"]),
+        ("c", vec!["e"]),
+        ("d", vec![]),
+        ("e", vec!["d"]),
+    ];
+    let plain: Vec<(&str, Vec<&str>)> = found
+        .iter()
+        .map(|(from, uses)| (from.as_str(), uses.iter().map(String::as_str).collect()))
+        .collect();
+    assert_eq!(plain, expected);
+}

@@ -1,0 +1,77 @@
+//! Bodies in each other's way, in words.
+
+use chaindrive_geometry::Point;
+
+/// Two parts of a drive that take the same room.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(
+    missing_docs,
+    reason = "each message names its fields; depth and place are in metres"
+)]
+pub enum Clash {
+    /// The teeth of two sprockets sweep through each other.
+    #[error("sprockets `{first}` and `{second}` overlap by {}; move the centres apart", told(*.depth, .at))]
+    Sprockets {
+        first: String,
+        second: String,
+        depth: f64,
+        at: Point,
+    },
+
+    /// The teeth of a sprocket sweep over the face of a guide.
+    #[error(
+        "guide `{guide}` cuts into the teeth of `{sprocket}` by {}; {}", told(*.depth, .at),
+        if *.beside { "it must pass beside them, or be moved back or shortened" } else { "move it back or shorten its face" }
+    )]
+    Teeth {
+        guide: String,
+        sprocket: String,
+        depth: f64,
+        at: Point,
+        /// Whether the guide carries link plates, and so may lie beside the teeth.
+        beside: bool,
+    },
+
+    /// The faces of two guides that move against each other cross.
+    #[error(
+        "guides `{first}` and `{second}` cut into each other by {}; move them apart, shorten one, or let the same support hold both",
+        told(*.depth, .at)
+    )]
+    Guides {
+        first: String,
+        second: String,
+        depth: f64,
+        at: Point,
+    },
+
+    /// A chain lies behind the face of a guide that should carry it.
+    #[error(
+        "{chain} runs {} deep through guide `{guide}`, and a contact carries what is no deeper than {:.1} mm; move the guide back, or make it a stop of the route",
+        told(*.depth, .at), .carries * 1e3
+    )]
+    Chain {
+        chain: String,
+        guide: String,
+        depth: f64,
+        carries: f64,
+        at: Point,
+    },
+}
+
+impl Clash {
+    /// Whether the two may lie side by side all the same: rails that carry link plates can leave room for teeth between them.
+    pub fn may_pass(&self) -> bool {
+        matches!(self, Self::Teeth { beside: true, .. })
+    }
+}
+
+/// Depth and place, as messages tell them.
+fn told(depth: f64, at: &Point) -> String {
+    format!(
+        "{:.1} mm at ({:.1}, {:.1}) mm",
+        depth * 1e3,
+        at.x * 1e3,
+        at.y * 1e3
+    )
+}
