@@ -47,11 +47,11 @@ pub use drive::{
     Stop, Support, Surface, Tighten, Torsion, Touches,
 };
 pub use energy::{Energy, Flow, Store};
-pub use error::{AssemblyError, DriveError};
+pub use error::{AssemblyError, DriveError, MemoryError};
 pub use events::{ContactEvent, ContactPair, EventKinds};
 pub use modes::{Mode, Modes};
 pub use motion::{Course, Harmonic, Motion, Table};
 pub use observe::Observation;
-pub use system::{Input, Record, System};
+pub use system::{Input, Record, System, SystemMemory};
 pub use tensioner::{Carrier, Hydraulic, Push, PushForce, Spring, Tensioner, carriers};
 pub use torque::{Argument, Torque};

@@ -10,17 +10,20 @@ mod contacts;
 mod equations;
 mod inputs;
 mod member;
+mod memory;
 mod slide;
 mod solve;
 
 use chaindrive_geometry::Point;
 use chaindrive_integrate::{Continuity, Moment, SecondOrderSystem, Verdict, Weights};
+use serde::{Deserialize, Serialize};
 
 pub(crate) use bodies::{Bodies, RailSupport, Wheel, WheelRotation, WheelSupport};
 pub(crate) use build::{Laid, LaidChain};
 pub(crate) use contacts::{BodyContacts, OnRail, OnWheel, RailContact};
 pub use inputs::Input;
 pub(crate) use member::Member;
+pub use memory::SystemMemory;
 pub(crate) use slide::Slide;
 
 use crate::End;
@@ -53,7 +56,7 @@ pub(crate) struct HeldEnd {
 }
 
 /// What one evaluation leaves behind: contact states, work space and what the bodies feel.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Record {
     pub(crate) chains: Vec<chains::Record>,
     /// What all chains together do to every wheel and rail.
