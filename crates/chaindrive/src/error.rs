@@ -77,6 +77,10 @@ pub enum SimulationError {
     )]
     Past { time: f64, read: f64 },
 
+    /// An end before what has been simulated.
+    #[error("until = {until} s is past: the run has samples up to {reached} s")]
+    Ended { until: f64, reached: f64 },
+
     /// What cannot be set while a drive moves.
     #[error("{what} `{name}` cannot be set: {reason}")]
     Control {

@@ -17,6 +17,8 @@ pub struct Request {
     pub accuracy: Option<f64>,
     /// Whether the run ends with an estimate of its numerical error.
     pub estimate: bool,
+    /// Simulated time \[s\] between two checkpoints, for results that can be carried on; none without.
+    pub checkpoint_every: Option<f64>,
 }
 
 /// Why there is nothing that could be run.
@@ -53,6 +55,7 @@ impl Request {
             record: wanted.record,
             accuracy,
             estimate: true,
+            checkpoint_every: None,
         })
     }
 
@@ -73,5 +76,24 @@ impl Request {
             estimate: false,
             ..self
         }
+    }
+
+    /// The request with a checkpoint at the first sample after every so much simulated time \[s\]: a run that is killed
+    /// goes on from the last one. What is simulated stays the same to the last bit.
+    ///
+    /// # Errors
+    /// [`SimulationError::Setting`] for a time that is not positive.
+    pub fn with_checkpoints(self, every: f64) -> Result<Self, SimulationError> {
+        if !(every > 0.0 && every.is_finite()) {
+            return Err(SimulationError::Setting {
+                name: "checkpoint_every",
+                value: every,
+                allowed: "positive",
+            });
+        }
+        Ok(Self {
+            checkpoint_every: Some(every),
+            ..self
+        })
     }
 }
