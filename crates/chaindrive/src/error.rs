@@ -61,7 +61,7 @@ pub enum SimulationError {
     Conflict { given: &'static str },
 
     /// The system refuses a thread.
-    #[error("the drive cannot be assembled: no thread can be started: {reason}")]
+    #[error("no thread can be started: {reason}")]
     Thread { reason: String },
 
     /// A chain faster than strain can travel in it.

@@ -42,7 +42,7 @@ pub use precision::{Choice, Estimate, Judgement};
 pub use record::{Axis, Channel, EventTable, Memory, Recording, Summary};
 pub use run::{
     Checkpoint, End, Given, Onlooker, Report, Request, RequestError, Run, RunError, Settings, Sink,
-    Stepping, Stop, execute,
+    Stepping, Stop, assemble, execute, patiently,
 };
 pub use scene::Scene;
 pub use seal::SealError;

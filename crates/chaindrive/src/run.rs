@@ -2,6 +2,7 @@
 
 mod checkpoint;
 pub(crate) mod execute;
+mod patience;
 mod request;
 mod settings;
 
@@ -13,8 +14,9 @@ use crate::SimulationError;
 use crate::scene::RunDefaults;
 
 pub use checkpoint::Checkpoint;
-pub use execute::{End, Onlooker, Report, RunError, Sink, Stop, execute};
+pub use execute::{End, Onlooker, Report, RunError, Sink, Stop, assemble, execute};
 pub(crate) use execute::resume;
+pub use patience::patiently;
 pub use request::{Request, RequestError};
 pub use settings::{Given, Settings};
 

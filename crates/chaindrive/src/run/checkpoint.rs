@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Request, Run};
+use super::{Given, Request, Run};
 use crate::precision::Choice;
 use crate::record::{Provenance, Summary};
 use crate::scene::SceneError;
@@ -82,6 +82,11 @@ impl Checkpoint {
         }
     }
 
+    /// File or preset that the scene was read from.
+    pub fn scene_name(&self) -> &str {
+        &self.scene_name
+    }
+
     /// Samples taken so far.
     pub fn samples(&self) -> u64 {
         self.summary.samples
@@ -102,23 +107,24 @@ impl Checkpoint {
         self.run.until
     }
 
-    /// Another end \[s\], not before the last sample.
+    /// Another end, not before the last sample.
     ///
     /// # Errors
-    /// [`SimulationError::Setting`] for an end that lies behind or leaves too many samples.
-    pub fn extend(&mut self, until: f64) -> Result<(), RequestError> {
+    /// A text that is no time, an end that lies behind or leaves too many samples.
+    pub(crate) fn extend(&mut self, until: &Given) -> Result<(), RequestError> {
+        let scene = Scene::from_text(&self.scene, &self.scene_name)?;
+        let time = until.time(&scene, "until")?;
         let reached = self.summary.samples.saturating_sub(1) as f64 * self.run.every;
-        if until.is_nan() || until < reached {
+        if time.is_nan() || time < reached {
+            let until = time;
             return Err(SimulationError::Ended { until, reached }.into());
         }
         let run = Run {
-            until,
+            until: time,
             ..self.run.clone()
         };
         run.check()?;
-        let scene = Scene::from_text(&self.scene, &self.scene_name)?;
-        let until = serde_json::Value::from(until);
-        self.scene = scene.replace_json("run.until", &until)?.text().to_owned();
+        self.scene = until.put(&scene, "run.until")?.text().to_owned();
         self.run = run;
         Ok(())
     }

@@ -1,11 +1,11 @@
 //! One run, whoever asks for it: assemble, choose, step, sample, judge.
 
 use std::convert::Infallible;
-use std::time::Duration;
 
 use chaindrive_mechanics::{Assembled, Drive};
 use serde_json::{Map, Value};
 
+use super::patience::{LOOK, patiently};
 use super::{Checkpoint, Request};
 use crate::precision::{Choice, Judgement, choose};
 use crate::record::{Ending, Provenance, Summary, attributes};
@@ -156,9 +156,6 @@ impl Stop {
         }
     }
 }
-
-/// Wall time between two looks at the onlooker while no sample is due.
-const LOOK: Duration = Duration::from_millis(50);
 
 /// Carries out a request: assembles the drive, chooses method and step where an accuracy is asked for, hands every
 /// sample to the sink, and judges the result.
@@ -426,30 +423,10 @@ pub(crate) fn carry_out<E>(
 }
 
 /// Assembles a drive on a thread of its own, so that the user need not wait for a chain that settles.
-pub(crate) fn assemble(
-    drive: &Drive,
-    stop: &dyn Fn() -> bool,
-) -> Result<Assembled, SimulationError> {
-    let (sender, receiver) = std::sync::mpsc::channel();
+///
+/// # Errors
+/// [`SimulationError`] when the drive does not assemble, or somebody wants to stop.
+pub fn assemble(drive: &Drive, stop: &dyn Fn() -> bool) -> Result<Assembled, SimulationError> {
     let drive = drive.clone();
-    let thread = std::thread::Builder::new().spawn(move || {
-        // Nobody listens any more after an interrupt.
-        sender.send(drive.assemble()).ok();
-    });
-    let thread = thread.map_err(|error| SimulationError::Thread {
-        reason: error.to_string(),
-    })?;
-    loop {
-        match receiver.recv_timeout(LOOK) {
-            Ok(assembled) => return Ok(assembled?),
-            Err(std::sync::mpsc::RecvTimeoutError::Timeout) if stop() => {
-                return Err(SimulationError::Interrupted);
-            }
-            Err(std::sync::mpsc::RecvTimeoutError::Timeout) => {}
-            Err(std::sync::mpsc::RecvTimeoutError::Disconnected) => match thread.join() {
-                Err(panic) => std::panic::resume_unwind(panic),
-                Ok(()) => return Err(SimulationError::Interrupted),
-            },
-        }
-    }
+    Ok(patiently(move || drive.assemble(), stop)??)
 }

@@ -1,6 +1,6 @@
 //! What somebody wants to have run.
 
-use super::{Run, Settings};
+use super::{Given, Run, Settings};
 use crate::scene::SceneError;
 use crate::{Channel, Scene, SimulationError};
 
@@ -78,21 +78,23 @@ impl Request {
         }
     }
 
-    /// The request with a checkpoint at the first sample after every so much simulated time \[s\]: a run that is killed
-    /// goes on from the last one. What is simulated stays the same to the last bit.
+    /// The request with a checkpoint at the first sample after every so much simulated time: a run that is killed goes
+    /// on from the last one. What is simulated stays the same to the last bit.
     ///
     /// # Errors
-    /// [`SimulationError::Setting`] for a time that is not positive.
-    pub fn with_checkpoints(self, every: f64) -> Result<Self, SimulationError> {
-        if !(every > 0.0 && every.is_finite()) {
-            return Err(SimulationError::Setting {
-                name: "checkpoint_every",
-                value: every,
+    /// A text that is no time, or a time that is not positive.
+    pub fn with_checkpoints(self, every: &Given) -> Result<Self, RequestError> {
+        let name = "checkpoint_every";
+        let time = every.time(&self.scene, name)?;
+        if !(time > 0.0 && time.is_finite()) {
+            return Err(RequestError::Setting(SimulationError::Setting {
+                name,
+                value: time,
                 allowed: "positive",
-            });
+            }));
         }
         Ok(Self {
-            checkpoint_every: Some(every),
+            checkpoint_every: Some(time),
             ..self
         })
     }

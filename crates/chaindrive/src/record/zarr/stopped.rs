@@ -8,7 +8,7 @@ use super::target::CHECKPOINT;
 use crate::record::WriteError;
 use crate::record::in_store::InStore;
 use crate::run::resume;
-use crate::{Checkpoint, Onlooker, Report, RequestError, RunError, SealError};
+use crate::{Checkpoint, Given, Onlooker, Report, RequestError, RunError, SealError};
 
 /// A result whose run can go on, claimed for that.
 ///
@@ -27,10 +27,10 @@ use crate::{Checkpoint, Onlooker, Report, RequestError, RunError, SealError};
 /// # let path = folder.path().join("ring.zarr");
 /// let settings = Settings::default().with("until", Given::Number(4e-3));
 /// let request = Request::new(&Scene::preset("spinning_ring")?, &settings)?;
-/// let request = request.without_estimate().with_checkpoints(1e-3)?;
+/// let request = request.without_estimate().with_checkpoints(&Given::Number(1e-3))?;
 /// execute(&request, &mut InStore::new(path.clone(), Existing::Keep), &|| false)?;
 ///
-/// let report = Stopped::open(&path, Some(6e-3))?.resume(&|| false)?;
+/// let report = Stopped::open(&path, Some(&Given::Number(6e-3)))?.resume(&|| false)?;
 /// assert_eq!(report.attributes["status"], "complete");
 /// assert_eq!(report.attributes["samples"], 7);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -86,12 +86,12 @@ pub enum ResumeError {
 }
 
 impl Stopped {
-    /// Claims a result and reads its checkpoint. The run goes on to the end that was asked for, or to another one \[s\],
+    /// Claims a result and reads its checkpoint. The run goes on to the end that was asked for, or to another one,
     /// which may be as early as the last sample.
     ///
     /// # Errors
     /// [`ResumeError`]: somebody writes it, it is no result, it is complete, or it has no checkpoint that could be used.
-    pub fn open(path: &Path, until: Option<f64>) -> Result<Self, ResumeError> {
+    pub fn open(path: &Path, until: Option<&Given>) -> Result<Self, ResumeError> {
         if !path.exists() {
             let source = std::io::ErrorKind::NotFound.into();
             let path = path.to_owned();
