@@ -14,8 +14,8 @@ use crate::SimulationError;
 use crate::scene::RunDefaults;
 
 pub use checkpoint::Checkpoint;
-pub use execute::{End, Onlooker, Report, RunError, Sink, Stop, assemble, execute};
 pub(crate) use execute::resume;
+pub use execute::{End, Onlooker, Report, RunError, Sink, Stop, assemble, execute};
 pub use patience::patiently;
 pub use request::{Request, RequestError};
 pub use settings::{Given, Settings};

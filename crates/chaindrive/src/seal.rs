@@ -125,7 +125,10 @@ mod tests {
             opened::<Numbers>(&bytes[..place]).unwrap_err();
         }
         let kind = "table";
-        assert_eq!(opened::<Others>(&bytes).unwrap_err(), SealError::Foreign { kind });
+        assert_eq!(
+            opened::<Others>(&bytes).unwrap_err(),
+            SealError::Foreign { kind }
+        );
         let text = String::from_utf8_lossy(&bytes).replace("version 0", "version 9");
         let error = opened::<Numbers>(text.as_bytes()).unwrap_err();
         assert!(matches!(error, SealError::Version { .. }), "{error}");

@@ -1,9 +1,9 @@
 //! How a command ends when it does not end well.
 
 use chaindrive::record::{ResumeError, WriteError};
-use chaindrive::{RequestError, SimulationError};
 use chaindrive::scene::SceneError;
 use chaindrive::sweep::SweepError;
+use chaindrive::{RequestError, SimulationError};
 
 /// Exit code of bad input; also that of arguments the parser refuses.
 pub(crate) const BAD_INPUT: u8 = 2;

@@ -64,10 +64,15 @@ pub(crate) struct RunArguments {
 /// Reads a scene file, stdin or an embedded scene; what comes through a pipe may be a long time in coming.
 pub(crate) fn load(name: &str, interrupted: &dyn Fn() -> bool) -> Result<Scene, Failure> {
     let read = |work: Box<dyn FnOnce() -> Result<Scene, SceneError> + Send>| {
-        Ok(Failure::or_interrupted(patiently(work, interrupted), name)??)
+        Ok(Failure::or_interrupted(
+            patiently(work, interrupted),
+            name,
+        )??)
     };
     if name == "-" {
-        return read(Box::new(|| Scene::read_from(std::io::stdin().lock(), "stdin")));
+        return read(Box::new(|| {
+            Scene::read_from(std::io::stdin().lock(), "stdin")
+        }));
     }
     let path = Path::new(name);
     let preset = presets().iter().any(|(known, _)| *known == name);

@@ -85,11 +85,7 @@ impl Sink for InStore {
         }
     }
 
-    fn keep(
-        &mut self,
-        simulation: &Simulation,
-        checkpoint: &Checkpoint,
-    ) -> Result<(), WriteError> {
+    fn keep(&mut self, simulation: &Simulation, checkpoint: &Checkpoint) -> Result<(), WriteError> {
         match &mut self.writer {
             Some(writer) => writer.keep(simulation, checkpoint),
             None => Ok(()),

@@ -233,16 +233,20 @@ fn complete<S: Sink>(
         .map_err(RunError::Sink)?;
 
     let mut marks = Marks::after(request.checkpoint_every, &simulation, &summary);
-    let carried = carry_out(&mut simulation, onlooker, |simulation| -> Result<(), S::Error> {
-        summary.push(simulation.observation());
-        summary.count(simulation.events());
-        sink.push(simulation)?;
-        if marks.pass(simulation) {
-            let checkpoint = Checkpoint::of(request, &provenance, simulation, &summary);
-            sink.keep(simulation, &checkpoint)?;
-        }
-        Ok(())
-    });
+    let carried = carry_out(
+        &mut simulation,
+        onlooker,
+        |simulation| -> Result<(), S::Error> {
+            summary.push(simulation.observation());
+            summary.count(simulation.events());
+            sink.push(simulation)?;
+            if marks.pass(simulation) {
+                let checkpoint = Checkpoint::of(request, &provenance, simulation, &summary);
+                sink.keep(simulation, &checkpoint)?;
+            }
+            Ok(())
+        },
+    );
     let carried = carried.and_then(|stop| -> Result<Stop, S::Error> {
         let goes_on = match &stop {
             Stop::End => request.checkpoint_every.is_some(),

@@ -4,9 +4,7 @@ use std::fmt::{self, Write};
 use std::sync::Arc;
 
 use chaindrive_integrate::{IntegrationError, State, StepperMemory};
-use chaindrive_mechanics::{
-    ContactEvent, Energy, MemoryError, Observation, Record, SystemMemory,
-};
+use chaindrive_mechanics::{ContactEvent, Energy, MemoryError, Observation, Record, SystemMemory};
 use serde::{Deserialize, Serialize};
 
 use super::{Moving, Simulation};

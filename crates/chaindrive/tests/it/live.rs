@@ -124,11 +124,18 @@ fn a_run_by_snapshots_is_the_run_in_one() {
             let mut bytes = fresh.snapshot().to_bytes();
             for k in 1..=100 {
                 let mut piece = fresh.clone();
-                piece.restore(&Snapshot::from_bytes(&bytes).unwrap()).unwrap();
+                piece
+                    .restore(&Snapshot::from_bytes(&bytes).unwrap())
+                    .unwrap();
                 piece.advance_to(4e-4 * f64::from(k) / 100.0).unwrap();
                 bytes = piece.snapshot().to_bytes();
                 if k == 100 {
-                    assert_eq!(bits(piece.observation()), end, "{} {stepping:?}", scene.name());
+                    assert_eq!(
+                        bits(piece.observation()),
+                        end,
+                        "{} {stepping:?}",
+                        scene.name()
+                    );
                     assert_eq!(piece.statistics(), whole.statistics());
                 }
             }

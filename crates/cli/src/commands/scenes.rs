@@ -16,10 +16,7 @@ pub(crate) struct Resolve {
     scene: SceneArguments,
 }
 
-pub(crate) fn resolve(
-    arguments: &Resolve,
-    interrupted: &dyn Fn() -> bool,
-) -> Result<(), Failure> {
+pub(crate) fn resolve(arguments: &Resolve, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
     let full = arguments.scene.load(interrupted)?.resolved()?;
     print(full.text().trim_end())
 }

@@ -7,8 +7,8 @@ use chaindrive_integrate::slack;
 use serde::{Deserialize, Serialize};
 
 use super::{System, WheelRotation, WheelSupport};
-use crate::{MemoryError, Motion};
 use crate::motion::Course;
+use crate::{MemoryError, Motion};
 
 /// What can be set from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

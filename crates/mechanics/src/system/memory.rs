@@ -85,7 +85,8 @@ impl System {
                 let loads = &chain.loads;
                 let plates = [loads.plates.len(), loads.wheel_wrenches.len()];
                 let circles = [loads.teeth.len(), loads.circles.len()];
-                [plates, circles, [loads.rail_wrenches.len(), loads.frames.len()]].concat()
+                let rest = [loads.rail_wrenches.len(), loads.frames.len()];
+                ([plates, circles, rest], loads.ways.len())
             });
             (bodies, chains.collect::<Vec<_>>())
         };

@@ -79,10 +79,7 @@ pub enum ResumeError {
 
     /// The end asked for.
     #[error("{}: {source}", .path.display())]
-    Until {
-        path: PathBuf,
-        source: RequestError,
-    },
+    Until { path: PathBuf, source: RequestError },
 }
 
 impl Stopped {
@@ -93,9 +90,9 @@ impl Stopped {
     /// [`ResumeError`]: somebody writes it, it is no result, it is complete, or it has no checkpoint that could be used.
     pub fn open(path: &Path, until: Option<&Given>) -> Result<Self, ResumeError> {
         if !path.exists() {
-            let source = std::io::ErrorKind::NotFound.into();
+            let why = "there is nothing of this name".to_owned();
             let path = path.to_owned();
-            return Err(WriteError::Io { path, source }.into());
+            return Err(ResumeError::NoCheckpoint { path, why });
         }
         let store = Store::reopen(path)?;
         let path = || path.to_owned();
@@ -107,9 +104,10 @@ impl Stopped {
                     "the run is complete, and was not asked to keep checkpoints".to_owned()
                 }
                 (Some("failed"), Some(reason)) => {
-                    format!("the run failed and would fail again: {reason}")
+                    format!("the run failed, and was left without one: {reason}")
                 }
-                _ => "the run was killed, and was not asked to keep checkpoints; begin anew".to_owned(),
+                _ => "the run was killed, and was not asked to keep checkpoints; begin anew"
+                    .to_owned(),
             };
             return Err(ResumeError::NoCheckpoint { path: path(), why });
         };

@@ -45,7 +45,10 @@ pub(super) fn check(asked: &Path, place: &Path, existing: Existing) -> Result<()
         // What a killed run leaves of a file it was about to put in place: `zarr.json#1`.
         let staged = name.starts_with(&format!("{GROUP}#"));
         let checkpoint = name == CHECKPOINT || name == format!("{CHECKPOINT}#1");
-        name == GROUP || staged || checkpoint || arrays.is_some_and(|arrays| arrays.contains_key(name))
+        name == GROUP
+            || staged
+            || checkpoint
+            || arrays.is_some_and(|arrays| arrays.contains_key(name))
     };
     let names = entries
         .iter()
