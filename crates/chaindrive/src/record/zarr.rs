@@ -168,10 +168,13 @@ impl ZarrWriter {
             judgement: None,
             told: None,
             samples,
-            kept: true,
+            kept: false,
             committed: Instant::now(),
             store,
         };
+        // It may have another end by now, which a second interruption is not to forget.
+        let kept = writer.store.put(CHECKPOINT, checkpoint.to_bytes());
+        kept.map_err(|fault| writer.store.fault(fault))?;
         writer.commit(simulation, &Ending::None)?;
         // Readers see the checkpoint's samples alone from here on.
         for (array, last) in writer.content.last_chunks() {

@@ -116,6 +116,8 @@ impl Stopped {
             path: path(),
             source,
         })?;
+        let end = store.attributes().get("until");
+        let is_whole = end.and_then(serde_json::Value::as_f64) == Some(checkpoint.until());
         if !checkpoint.is_of(said("scene").unwrap_or_default()) {
             return Err(ResumeError::OtherScene { path: path() });
         }
@@ -125,7 +127,7 @@ impl Stopped {
                 path: path(),
                 source,
             })?;
-        } else if said("status") == Some("complete") {
+        } else if said("status") == Some("complete") && is_whole {
             return Err(ResumeError::Complete {
                 path: path(),
                 until: checkpoint.until(),
