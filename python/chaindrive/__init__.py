@@ -25,6 +25,7 @@ from chaindrive.errors import (
     IntegrationError,
     ParameterError,
     ResultWarning,
+    ResumeError,
     SceneError,
     SimulationError,
     WriteError,
@@ -35,7 +36,7 @@ from chaindrive.live import Simulation, Snapshot
 from chaindrive.precision import work_precision
 from chaindrive.profile import Profile
 from chaindrive.results import open_result
-from chaindrive.simulation import simulate
+from chaindrive.simulation import resume, simulate
 from chaindrive.sweeping import sweep
 
 __all__ = [
@@ -50,6 +51,7 @@ __all__ = [
     "ParameterError",
     "Profile",
     "ResultWarning",
+    "ResumeError",
     "SceneError",
     "Simulation",
     "SimulationError",
@@ -66,6 +68,7 @@ __all__ = [
     "load",
     "open_result",
     "plot",
+    "resume",
     "scenes",
     "schema",
     "simulate",

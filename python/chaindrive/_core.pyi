@@ -137,7 +137,10 @@ class Sweep:
     def stack(self, outcomes: Sequence[_Outcome | None]) -> dict[str, Any]: ...
 
 @final
-class Snapshot: ...
+class Snapshot:
+    def __new__(cls, data: bytes) -> Snapshot: ...
+    def __bytes__(self) -> bytes: ...
+    def __getnewargs__(self) -> tuple[bytes]: ...
 
 @final
 class Simulation:
@@ -161,7 +164,14 @@ def simulate(
     *,
     output: str | PathLike[str] | None,
     overwrite: bool,
+    checkpoint_every: str | float | Sequence[str] | None,
     error: bool,
+    progress: Callable[[float], object] | None,
+) -> Mapping[str, Any]: ...
+def resume(
+    path: str | PathLike[str],
+    *,
+    until: str | float | Sequence[str] | None,
     progress: Callable[[float], object] | None,
 ) -> Mapping[str, Any]: ...
 def work_precision(

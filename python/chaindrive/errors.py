@@ -17,6 +17,7 @@ __all__ = [
     "ParameterError",
     "Problem",
     "ResultWarning",
+    "ResumeError",
     "SceneError",
     "SimulationError",
     "WriteError",
@@ -105,6 +106,13 @@ class IntegrationError(SimulationError):
 
 class WriteError(ChaindriveError, OSError):
     """Results could not be written; `path` is the file."""
+
+    def __init__(self, message: str, path: object = None, hint: str | None = None) -> None:
+        super().__init__(message, None if path is None else str(path), hint)
+
+
+class ResumeError(ChaindriveError, ValueError):
+    """A run cannot be carried on: there is nothing to go on from; `path` is its result."""
 
     def __init__(self, message: str, path: object = None, hint: str | None = None) -> None:
         super().__init__(message, None if path is None else str(path), hint)

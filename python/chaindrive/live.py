@@ -14,7 +14,11 @@ from chaindrive.drive import Drive, _needed
 __all__ = ["Simulation", "Snapshot"]
 
 Snapshot = _core.Snapshot
-"""A simulation as it was at a moment, to the last bit; see `Simulation.snapshot`."""
+"""A simulation as it was at a moment, to the last bit; see `Simulation.snapshot`.
+
+``bytes(snapshot)`` is for a file or another process, ``Snapshot(data)`` reads it back, and `pickle`
+does both. Only the version that wrote it reads it.
+"""
 
 
 class Simulation:
@@ -185,7 +189,19 @@ class Simulation:
         return self._inner.snapshot()
 
     def restore(self, snapshot: Snapshot) -> None:
-        """Go back, or on, to what a snapshot of this drive holds."""
+        """Go back, or on, to what a snapshot holds.
+
+        Parameters
+        ----------
+        snapshot
+            Of a simulation of the same drive, begun with the same method and step: this one,
+            another one, or one in another process.
+
+        Raises
+        ------
+        ParameterError
+            The snapshot is of something else.
+        """
         self._inner.restore(snapshot)
 
     def __repr__(self) -> str:

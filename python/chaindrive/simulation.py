@@ -6,8 +6,8 @@ import json
 import sys
 import time
 import warnings
-from collections.abc import Callable, Iterable
-from contextlib import nullcontext
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, nullcontext
 from os import PathLike, fspath
 from typing import Any
 
@@ -17,10 +17,10 @@ import xarray as xr
 from chaindrive import _core
 from chaindrive.channels import channels
 from chaindrive.drive import Drive, _needed
-from chaindrive.errors import DistrustedResultWarning
+from chaindrive.errors import DistrustedResultWarning, ParameterError
 from chaindrive.signals import heard
 
-__all__ = ["simulate"]
+__all__ = ["resume", "simulate"]
 
 
 def simulate(
@@ -37,6 +37,7 @@ def simulate(
     events: str | Iterable[str] | None = None,
     output: str | PathLike[str] | None = None,
     overwrite: bool = False,
+    checkpoint_every: float | str | None = None,
     error: bool = True,
     progress: bool | Callable[[float], object] = False,
 ) -> xr.Dataset:
@@ -84,6 +85,10 @@ def simulate(
         returned reads from the store. Takes the extra ``zarr``.
     overwrite
         Whether an earlier result at `output` may be replaced; one that is being written may not.
+    checkpoint_every
+        Simulated time between two checkpoints in the store at `output` [s]: killed at any moment,
+        the run goes on from the last one by `resume`. The samples are the same as without, to the
+        last bit.
     error
         Whether the run ends with an estimate of its own numerical error. It takes the time of some
         32 000 steps of the default length, whatever the length of the run.
@@ -162,6 +167,9 @@ def simulate(
     _needed(drive)
     if output is not None:
         _require_zarr()
+    elif checkpoint_every is not None:
+        message = "checkpoint_every: nothing is written; give `output`, a Zarr store"
+        raise ParameterError(message, "checkpoint_every", "give `output`")
     given: dict[str, Any] = {
         "until": until,
         "every": every,
@@ -173,21 +181,89 @@ def simulate(
         "record": None if record is None else _listed(record),
         "events": None if events is None else _listed(events),
     }
+    # What is in memory only is lost with the program anyway.
+    with _told(progress) as tell, nullcontext() if output is None else heard():
+        result = _core.simulate(
+            drive._inner,
+            [(key, value) for key, value in given.items() if value is not None],
+            output=None if output is None else fspath(output),
+            overwrite=overwrite,
+            checkpoint_every=checkpoint_every,
+            error=error,
+            progress=tell,
+        )
+    return _concluded(result, output)
+
+
+def resume(
+    path: str | PathLike[str],
+    *,
+    until: float | str | None = None,
+    progress: bool | Callable[[float], object] = False,
+) -> xr.Dataset:
+    """Carry on a run that was stopped or killed, or a complete one to a later end.
+
+    Ctrl-C and SIGTERM leave a checkpoint in the result of a run, and runs with `checkpoint_every`
+    leave them under way and at their end. What the result holds behind its checkpoint is simulated
+    again: in the end it is that of a run that was never stopped, to the last bit, but for the wall
+    times.
+
+    Parameters
+    ----------
+    path
+        Zarr store of the run.
+    until
+        Another end than was asked for [s], not before the last sample.
+    progress
+        As in `simulate`.
+
+    Returns
+    -------
+    xarray.Dataset
+        As from `simulate`, read from the store.
+
+    Raises
+    ------
+    ResumeError
+        The run is complete, has no checkpoint, or one that is damaged, of another scene, or of
+        another version of the program.
+    ParameterError
+        The end lies before the last sample.
+    WriteError
+        Another process writes the result, or it cannot be written.
+    KeyboardInterrupt
+        As from `simulate`; the run can be carried on again.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import chaindrive as cd
+    >>> path = tempfile.mkdtemp() + "/ring.zarr"
+    >>> drive = cd.scenes.spinning_ring()
+    >>> run = cd.simulate(drive, until=2e-3, every=1e-3, output=path, checkpoint_every=1e-3)
+    >>> cd.resume(path, until=4e-3).sizes["time"]
+    5
+    """
+    _require_zarr()
+    with _told(progress) as tell, heard():
+        result = _core.resume(fspath(path), until=until, progress=tell)
+    return _concluded(result, path)
+
+
+@contextmanager
+def _told(
+    progress: bool | Callable[[float], object],
+) -> Iterator[Callable[[float], object] | None]:
+    """Yield what is to be told how far a run is."""
     line = _Line()
-    tell = progress if callable(progress) else line if progress else None
     try:
-        # What is in memory only is lost with the program anyway.
-        with nullcontext() if output is None else heard():
-            result = _core.simulate(
-                drive._inner,
-                [(key, value) for key, value in given.items() if value is not None],
-                output=None if output is None else fspath(output),
-                overwrite=overwrite,
-                error=error,
-                progress=tell,
-            )
+        yield progress if callable(progress) else line if progress else None
     finally:
         line.close()
+
+
+def _concluded(result: Any, output: str | PathLike[str] | None) -> xr.Dataset:
+    """Return what a run has left, or raise what stopped it."""
     if output is None:
         dataset = _dataset(result, json.loads(result["attributes"]))
     else:
@@ -201,7 +277,7 @@ def simulate(
     if stop is not None:
         raise stop
     if result["warning"] is not None:
-        warnings.warn(result["warning"], DistrustedResultWarning, stacklevel=2)
+        warnings.warn(result["warning"], DistrustedResultWarning, stacklevel=3)
     return dataset
 
 

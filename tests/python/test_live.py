@@ -1,6 +1,7 @@
 """Drives that a program moves itself."""
 
 import importlib.util
+import pickle
 from pathlib import Path
 
 import numpy as np
@@ -58,6 +59,24 @@ def test_a_snapshot_brings_back_every_bit():
     assert simulation.time == 3e-4
     simulation.advance_to(6e-4)
     np.testing.assert_array_equal(simulation["joint_force"], first)
+    for copy in (cd.Snapshot(bytes(kept)), pickle.loads(pickle.dumps(kept))):
+        other = cd.Simulation(cd.scenes.bicycle())
+        other.restore(copy)
+        other.advance_to(6e-4)
+        np.testing.assert_array_equal(other["joint_force"], first)
+
+
+def test_a_snapshot_of_something_else_is_refused():
+    simulation = cd.Simulation(cd.scenes.bicycle())
+    with pytest.raises(cd.ParameterError, match="another drive") as caught:
+        simulation.restore(cd.Simulation(cd.scenes.bicycle_slack()).snapshot())
+    assert caught.value.path == "snapshot"
+    data = bytearray(bytes(simulation.snapshot()))
+    data[-1] ^= 1
+    with pytest.raises(cd.ParameterError, match="the snapshot is damaged"):
+        cd.Snapshot(bytes(data))
+    with pytest.raises(cd.ParameterError, match="this is no snapshot"):
+        cd.Snapshot(b"")
 
 
 def test_what_cannot_be_set_is_refused():

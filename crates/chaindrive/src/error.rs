@@ -61,7 +61,7 @@ pub enum SimulationError {
     Conflict { given: &'static str },
 
     /// The system refuses a thread.
-    #[error("the drive cannot be assembled: no thread can be started: {reason}")]
+    #[error("no thread can be started: {reason}")]
     Thread { reason: String },
 
     /// A chain faster than strain can travel in it.
@@ -76,6 +76,10 @@ pub enum SimulationError {
         "t = {time} s is past: the simulation was read at {read} s; take a snapshot to go back to"
     )]
     Past { time: f64, read: f64 },
+
+    /// An end before what has been simulated.
+    #[error("until = {until} s is past: the run has samples up to {reached} s")]
+    Ended { until: f64, reached: f64 },
 
     /// What cannot be set while a drive moves.
     #[error("{what} `{name}` cannot be set: {reason}")]

@@ -25,6 +25,7 @@ pub mod precision;
 pub mod record;
 mod run;
 pub mod scene;
+mod seal;
 mod simulate;
 pub mod sweep;
 pub mod verdict;
@@ -40,9 +41,10 @@ pub use error::SimulationError;
 pub use precision::{Choice, Estimate, Judgement};
 pub use record::{Axis, Channel, EventTable, Memory, Recording, Summary};
 pub use run::{
-    End, Given, Onlooker, Report, Request, RequestError, Run, RunError, Settings, Sink, Stepping,
-    Stop, execute,
+    Checkpoint, End, Given, Onlooker, Report, Request, RequestError, Run, RunError, Settings, Sink,
+    Stepping, Stop, assemble, execute, patiently,
 };
 pub use scene::Scene;
-pub use simulate::{Control, Simulation, Snapshot};
+pub use seal::SealError;
+pub use simulate::{Control, Simulation, Snapshot, SnapshotError};
 pub use verdict::{Reason, Trust, Verdict};

@@ -22,7 +22,7 @@ pub use event::{EventColumn, EventTable};
 pub use in_store::InStore;
 pub use memory::Memory;
 pub use summary::{ContactStatistics, ForceStatistics, Ledger, SpanStatistics, Summary};
-pub use zarr::{Existing, SweepWriter, ZarrWriter};
+pub use zarr::{Existing, ResumeError, Stopped, SweepWriter, ZarrWriter};
 
 /// One channel of a recording.
 #[derive(Clone, Debug)]

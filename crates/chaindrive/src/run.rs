@@ -1,21 +1,27 @@
 //! What to run: how long, how often to sample, by which method.
 
+mod checkpoint;
 pub(crate) mod execute;
+mod patience;
 mod request;
 mod settings;
 
 use chaindrive_integrate::{Method, SecondOrderSystem};
 use chaindrive_mechanics::{EventKinds, System};
+use serde::{Deserialize, Serialize};
 
 use crate::SimulationError;
 use crate::scene::RunDefaults;
 
-pub use execute::{End, Onlooker, Report, RunError, Sink, Stop, execute};
+pub use checkpoint::Checkpoint;
+pub(crate) use execute::resume;
+pub use execute::{End, Onlooker, Report, RunError, Sink, Stop, assemble, execute};
+pub use patience::patiently;
 pub use request::{Request, RequestError};
 pub use settings::{Given, Settings};
 
 /// Settings of one run.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// End \[s\], positive.
     pub until: f64,
@@ -50,7 +56,7 @@ impl Default for Run {
 }
 
 /// Methods of time stepping.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Stepping {
     /// What suits the drive: implicit damping for those that solve the equations of an implicit step,
     /// else Verlet.

@@ -1,12 +1,15 @@
 //! A drive in motion: step, read, set, sample.
 
 mod live;
+mod snapshot;
 
 use std::sync::Arc;
 use std::time::Duration;
 
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Statistics, Stepper};
-use chaindrive_mechanics::{Assembled, ContactEvent, Drive, Energy, Observation, Record, System};
+use chaindrive_mechanics::{
+    Assembled, ContactEvent, Drive, Energy, EventKinds, Observation, Record, System,
+};
 
 use crate::SimulationError;
 use crate::run::Run;
@@ -40,6 +43,8 @@ pub struct Simulation {
     assembled: Arc<Assembled>,
     until: f64,
     every: f64,
+    /// Contacts that are logged.
+    events: EventKinds,
     next: u64,
     observation: Observation,
     record: Record,
@@ -67,7 +72,8 @@ impl Moving {
 }
 
 use live::Changes;
-pub use live::{Control, Snapshot};
+pub use live::Control;
+pub use snapshot::{Snapshot, SnapshotError};
 
 /// Fastest that a chain may run at the start \[m/s\]: the speed of sound in steel.
 ///
@@ -139,6 +145,7 @@ impl Simulation {
             assembled: Arc::new(assembled),
             until: run.until,
             every: run.every,
+            events: run.events,
             next: 0,
             observation: Observation::default(),
             record,
@@ -255,6 +262,16 @@ impl Simulation {
     /// The method with its step or tolerances.
     pub fn method(&self) -> Method {
         self.moving.stepper.method()
+    }
+
+    /// Counts wall time that was spent on the same run before.
+    pub(crate) fn has_spent(&mut self, time: Duration) {
+        self.stepping_time += time.as_secs_f64();
+    }
+
+    /// Energy at the first reading; none before it.
+    pub(crate) fn start_energy(&self) -> Option<Energy> {
+        self.start_energy
     }
 
     /// Wall time spent in stepping, sampling not counted \[s\].

@@ -1,9 +1,9 @@
 //! How a command ends when it does not end well.
 
-use chaindrive::SimulationError;
-use chaindrive::record::WriteError;
+use chaindrive::record::{ResumeError, WriteError};
 use chaindrive::scene::SceneError;
 use chaindrive::sweep::SweepError;
+use chaindrive::{RequestError, SimulationError};
 
 /// Exit code of bad input; also that of arguments the parser refuses.
 pub(crate) const BAD_INPUT: u8 = 2;
@@ -49,6 +49,10 @@ pub(crate) enum Failure {
     #[error(transparent)]
     Write(#[from] WriteError),
 
+    /// There is nothing to go on with.
+    #[error(transparent)]
+    Resume(ResumeError),
+
     /// The result could not be written.
     #[error("{path}: {source}")]
     File {
@@ -69,7 +73,42 @@ pub(crate) enum Failure {
     Interrupted,
 }
 
+impl From<ResumeError> for Failure {
+    fn from(error: ResumeError) -> Self {
+        match error {
+            ResumeError::Store(error) => Self::Write(error),
+            other => Self::Resume(other),
+        }
+    }
+}
+
 impl Failure {
+    /// What was done for a scene, unless the user did not want to wait for it.
+    pub(crate) fn or_interrupted<T>(
+        done: Result<T, SimulationError>,
+        scene: &str,
+    ) -> Result<T, Self> {
+        done.map_err(|source| match source {
+            SimulationError::Interrupted => Self::Interrupted,
+            source => Self::Start {
+                scene: scene.to_owned(),
+                source,
+            },
+        })
+    }
+
+    /// What is wrong with a request.
+    pub(crate) fn request(error: RequestError, scene: &str) -> Self {
+        match error {
+            RequestError::Setting(source) => Self::Start {
+                scene: scene.to_owned(),
+                source,
+            },
+            RequestError::Scene(error) => error.into(),
+            error => Self::Argument(error.to_string()),
+        }
+    }
+
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
             Self::Simulation { .. } | Self::Variants { .. } => 1,
@@ -77,6 +116,7 @@ impl Failure {
             | Self::Argument(_)
             | Self::Scenes { .. }
             | Self::Start { .. }
+            | Self::Resume(_)
             | Self::Sweep(_) => BAD_INPUT,
             Self::Write(_) | Self::File { .. } | Self::Taken { .. } => 3,
             Self::Interrupted => crate::INTERRUPTED,

@@ -21,7 +21,7 @@ use std::ffi::OsString;
 
 use clap::{Parser, Subcommand};
 
-use commands::{bench, check, describe, lists, run as run_command, scenes, sweep};
+use commands::{bench, check, describe, lists, resume, run as run_command, scenes, sweep};
 
 /// Exit code of a run that was stopped by Ctrl-C.
 pub const INTERRUPTED: u8 = 130;
@@ -45,6 +45,7 @@ struct Command {
 #[derive(Debug, Subcommand)]
 enum Verb {
     Run(run_command::Arguments),
+    Resume(resume::Arguments),
     Sweep(sweep::Arguments),
     Bench(bench::Arguments),
     Check(check::Arguments),
@@ -84,12 +85,13 @@ where
     };
     let done = match &command.verb {
         Verb::Run(arguments) => run_command::run(arguments, interrupted),
+        Verb::Resume(arguments) => resume::resume(arguments, interrupted),
         Verb::Sweep(arguments) => sweep::sweep(arguments, interrupted),
         Verb::Bench(arguments) => bench::bench(arguments, interrupted),
-        Verb::Check(arguments) => check::check(arguments),
+        Verb::Check(arguments) => check::check(arguments, interrupted),
         Verb::Describe(arguments) => describe::describe(arguments, interrupted),
-        Verb::Resolve(arguments) => scenes::resolve(arguments),
-        Verb::Diff(arguments) => scenes::diff(arguments),
+        Verb::Resolve(arguments) => scenes::resolve(arguments, interrupted),
+        Verb::Diff(arguments) => scenes::diff(arguments, interrupted),
         Verb::Scenes(arguments) => lists::scenes(arguments),
         Verb::Schema => lists::schema(),
         Verb::Channels => lists::channels(),

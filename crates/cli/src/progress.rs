@@ -17,6 +17,8 @@ pub(crate) struct Progress {
     bar: Option<ProgressBar>,
     began: Instant,
     shown: Instant,
+    /// Share done and time simulated when it began: not zero where a run goes on.
+    from: Option<[f64; 2]>,
 }
 
 impl Progress {
@@ -33,14 +35,17 @@ impl Progress {
             bar,
             began: now,
             shown: now,
+            from: None,
         }
     }
 
     /// Shows how far the run is.
     pub(crate) fn show(&mut self, simulation: &Simulation) {
+        let now = [simulation.progress(), simulation.time()];
+        let [_, before] = *self.from.get_or_insert(now);
         self.tell(simulation.progress(), |elapsed, left| {
-            let factor = simulation.time() / elapsed;
             let time = simulation.time();
+            let factor = (time - before) / elapsed;
             format!("t = {time:.4} s, {left} left, {factor:.3} × real time")
         });
     }
@@ -63,8 +68,8 @@ impl Progress {
         }
         self.shown = Instant::now();
         let elapsed = self.began.elapsed().as_secs_f64();
-        let done = done.max(f64::MIN_POSITIVE);
-        let left = elapsed * (1.0 - done) / done;
+        let before = self.from.map_or(0.0, |[share, _]| share);
+        let left = elapsed * (1.0 - done) / (done - before).max(f64::MIN_POSITIVE);
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use chaindrive::scene::presets;
-use chaindrive::{Given, Request, RequestError, Scene, Settings, Stepping};
+use chaindrive::scene::{SceneError, presets};
+use chaindrive::{Given, Request, Scene, Settings, Stepping, patiently};
 use clap::Args;
 
 use crate::failure::Failure;
@@ -61,16 +61,26 @@ pub(crate) struct RunArguments {
     events: Vec<String>,
 }
 
-/// Reads a scene file, stdin or an embedded scene.
-pub(crate) fn load(name: &str) -> Result<Scene, Failure> {
+/// Reads a scene file, stdin or an embedded scene; what comes through a pipe may be a long time in coming.
+pub(crate) fn load(name: &str, interrupted: &dyn Fn() -> bool) -> Result<Scene, Failure> {
+    let read = |work: Box<dyn FnOnce() -> Result<Scene, SceneError> + Send>| {
+        Ok(Failure::or_interrupted(
+            patiently(work, interrupted),
+            name,
+        )??)
+    };
     if name == "-" {
-        return Ok(Scene::read_from(std::io::stdin().lock(), "stdin")?);
+        return read(Box::new(|| {
+            Scene::read_from(std::io::stdin().lock(), "stdin")
+        }));
     }
     let path = Path::new(name);
     let preset = presets().iter().any(|(known, _)| *known == name);
     let looks_like_a_file = path.extension().is_some() || path.components().count() > 1;
-    if path.is_file() || (looks_like_a_file && !preset) {
-        Ok(Scene::read(path)?)
+    // Whatever exists that is no folder is to be read: pipes and devices too.
+    if (path.exists() && !path.is_dir()) || (looks_like_a_file && !preset) {
+        let path = path.to_owned();
+        read(Box::new(|| Scene::read(path)))
     } else {
         Ok(Scene::preset(name)?)
     }
@@ -86,8 +96,8 @@ impl SceneArguments {
     }
 
     /// The scene with its changes.
-    pub(crate) fn load(&self) -> Result<Scene, Failure> {
-        let mut scene = load(&self.scene)?;
+    pub(crate) fn load(&self, interrupted: &dyn Fn() -> bool) -> Result<Scene, Failure> {
+        let mut scene = load(&self.scene, interrupted)?;
         for change in &self.set {
             let Some((path, value)) = change.split_once('=') else {
                 return Err(Failure::Argument(format!(
@@ -159,14 +169,7 @@ impl RunArguments {
                 settings = settings.with(key(path), Given::Names(names));
             }
         }
-        Request::new(scene, &settings).map_err(|error| match error {
-            RequestError::Setting(source) => Failure::Start {
-                scene: scene.name().to_owned(),
-                source,
-            },
-            RequestError::Scene(error) => error.into(),
-            error => Failure::Argument(error.to_string()),
-        })
+        Request::new(scene, &settings).map_err(|error| Failure::request(error, scene.name()))
     }
 }
 

@@ -1,5 +1,7 @@
 //! Interpolation between two accepted states.
 
+use serde::{Deserialize, Serialize};
+
 /// A time within an interval.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Interval {
@@ -10,7 +12,7 @@ pub(crate) struct Interval {
 }
 
 /// How to read positions and velocities between two accepted states: what the ends know at the order of the method.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Interpolation {
     /// From q, v and a of both ends.
     #[default]

@@ -47,6 +47,13 @@ pub enum IntegrationError {
         expected: usize,
     },
 
+    /// A memory of another method.
+    #[error("the stepper goes by {expected}, and what it is to remember is of {found}")]
+    OtherMethod {
+        expected: &'static str,
+        found: &'static str,
+    },
+
     /// An implicit method for a system without [`solve`](crate::SecondOrderSystem::solve).
     #[error(
         "{method} is an implicit method, and this system does not solve the equations of an implicit \

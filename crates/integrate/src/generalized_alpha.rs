@@ -87,6 +87,11 @@ impl GeneralizedAlpha {
         self.accepted.copy_from_slice(a);
     }
 
+    /// Algorithmic accelerations of the accepted state.
+    pub(crate) fn carried(&self) -> &[f64] {
+        &self.accepted
+    }
+
     /// Takes the candidate's algorithmic accelerations for those of the accepted state.
     pub(crate) fn accept(&mut self) {
         swap(&mut self.accepted, &mut self.trial);

@@ -61,6 +61,7 @@ mod error;
 mod finite;
 mod generalized_alpha;
 mod implicit_damping;
+mod memory;
 mod method;
 mod registers;
 mod runge_kutta;
@@ -73,6 +74,7 @@ mod tableau;
 mod verlet;
 
 pub use error::{IntegrationError, Quantity};
+pub use memory::StepperMemory;
 pub use method::Method;
 pub use state::State;
 pub use statistics::Statistics;

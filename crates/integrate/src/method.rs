@@ -3,6 +3,8 @@
 //! A Runge–Kutta method is one constant in `tableau.rs`; anything else is one file with an
 //! `attempt`. Enter it here and in `Kernel`; the compiler asks for the arms.
 
+use serde::{Deserialize, Serialize};
+
 use crate::dense::Interpolation;
 use crate::generalized_alpha::GeneralizedAlpha;
 use crate::implicit_damping;
@@ -15,7 +17,7 @@ use crate::verlet::{self, Verlet};
 use crate::{IntegrationError, SecondOrderSystem};
 
 /// A method of time stepping with its parameters.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Method {
     /// Velocity Verlet: second order, one evaluation per step.
     Verlet {
@@ -103,6 +105,19 @@ impl Kernel {
         if let Self::GeneralizedAlpha(kernel) = self {
             kernel.restart(a);
         }
+    }
+
+    /// Accelerations that it carries from one step to the next, beside those of the state.
+    pub(crate) fn carried(&self) -> &[f64] {
+        match self {
+            Self::GeneralizedAlpha(kernel) => kernel.carried(),
+            Self::Verlet(_) | Self::RungeKutta(_) | Self::ImplicitDamping => &[],
+        }
+    }
+
+    /// Whether a step begins with the record that the last one left.
+    pub(crate) fn needs_record(&self) -> bool {
+        matches!(self, Self::ImplicitDamping)
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::mem::swap;
 
+use serde::{Deserialize, Serialize};
+
 use crate::dense::{Interpolation, Interval};
 use crate::{IntegrationError, SecondOrderSystem};
 
@@ -9,7 +11,7 @@ use crate::{IntegrationError, SecondOrderSystem};
 ///
 /// Fields are open for reading and for setting up a run. [`Method::start`](crate::Method::start) fills in the rest;
 /// change a state between steps and it has to be started again.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Time t \[s\].
     pub t: f64,
@@ -34,7 +36,7 @@ pub struct State {
 }
 
 /// Buffers of one state: a candidate, or the accepted state before the present one.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Snapshot {
     pub(crate) t: f64,
     pub(crate) q: Vec<f64>,
@@ -136,6 +138,17 @@ impl State {
         if self.quadratures.is_empty() {
             self.quadratures.resize(quadratures, 0.0);
         }
+        self.check(system)?;
+        self.a.resize(dofs, 0.0);
+        self.rates.resize(quadratures, 0.0);
+        self.before_jump = (vec![0.0; dofs], vec![0.0; quadratures]);
+        self.jumped = false;
+        Ok(())
+    }
+
+    /// Refuses a state that is not of the system's size.
+    pub(crate) fn check<S: SecondOrderSystem>(&self, system: &S) -> Result<(), IntegrationError> {
+        let (dofs, quadratures) = (system.dofs(), system.quadratures());
         for (what, found, expected) in [
             ("positions", self.q.len(), dofs),
             ("velocities", self.v.len(), dofs),
@@ -149,10 +162,6 @@ impl State {
                 });
             }
         }
-        self.a.resize(dofs, 0.0);
-        self.rates.resize(quadratures, 0.0);
-        self.before_jump = (vec![0.0; dofs], vec![0.0; quadratures]);
-        self.jumped = false;
         Ok(())
     }
 

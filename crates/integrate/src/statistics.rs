@@ -1,7 +1,9 @@
 //! What a run cost.
 
+use serde::{Deserialize, Serialize};
+
 /// Counts of a run so far.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Statistics {
     /// Accepted steps.
     pub steps: u64,

@@ -1,5 +1,7 @@
 //! How long the next step may be: stability, error, and the system's own verdict.
 
+use serde::{Deserialize, Serialize};
+
 use crate::method::Method;
 
 /// Share of the stability limit a fixed step may use.
@@ -25,7 +27,7 @@ pub(crate) fn shortened(h: f64, at_most: f64, n: u32, floor: f64) -> f64 {
 }
 
 /// A fixed step, halved while stability asks for it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Fixed {
     /// The step asked for \[s\].
     pub(crate) nominal: f64,
@@ -64,7 +66,7 @@ impl Fixed {
 }
 
 /// Allowed error of a step.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Tolerance {
     pub(crate) relative: f64,
     pub(crate) absolute: f64,
@@ -95,7 +97,7 @@ impl Tolerance {
 ///
 /// # Source
 /// E. Hairer and G. Wanner, *Solving Ordinary Differential Equations II*, Springer, 1996, section IV.2.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Controller {
     pub(crate) tolerance: Tolerance,
     pub(crate) max_step: f64,

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use crate::finite::Watch;
 use crate::implicit_damping;
 use crate::method::{Kernel, Outcome};
@@ -25,13 +27,13 @@ pub struct Step {
 /// Carries a state of one system forward. Made by [`Method::start`].
 pub struct Stepper<S: SecondOrderSystem> {
     method: Method,
-    kernel: Kernel,
-    pace: Pace,
+    pub(crate) kernel: Kernel,
+    pub(crate) pace: Pace,
     candidate: Snapshot,
-    record: S::Record,
-    statistics: Statistics,
+    pub(crate) record: S::Record,
+    pub(crate) statistics: Statistics,
     /// Time of the next event \[s\]: no step goes beyond.
-    event: f64,
+    pub(crate) event: f64,
 }
 
 impl<S: SecondOrderSystem<Record: Clone>> Clone for Stepper<S> {
@@ -56,8 +58,8 @@ impl<S: SecondOrderSystem> fmt::Debug for Stepper<S> {
 }
 
 /// Who decides on the length of a step.
-#[derive(Clone, Copy, Debug)]
-enum Pace {
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(crate) enum Pace {
     Fixed(Fixed),
     Controlled(Controller),
 }

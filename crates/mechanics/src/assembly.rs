@@ -26,6 +26,8 @@ pub(crate) use relax::{Curvature, curvature};
 /// A drive ready to move.
 #[derive(Clone, Debug)]
 pub struct Assembled {
+    /// What was assembled.
+    pub drive: Drive,
     /// The compiled drive.
     pub system: System,
     /// Coordinates at t = 0.
@@ -77,6 +79,8 @@ impl Drive {
         } else {
             self.assemble_apart(&groups)
         }?;
+        // Hard links are laid as those of other drives.
+        assembled.drive = self.clone();
         assembled.warnings = assembled.clashes()?;
         Ok(assembled)
     }
@@ -104,6 +108,7 @@ impl Drive {
         self.put_in_place(&mut system, &laid.parts, &mut q, &mut v)?;
         system.start(0.0, &mut q, &mut v);
         Ok(Assembled {
+            drive: self.clone(),
             system,
             q,
             v,

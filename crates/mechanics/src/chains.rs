@@ -15,6 +15,7 @@ use std::ops::Range;
 
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Moment, Weights};
+use serde::{Deserialize, Serialize};
 
 pub(crate) use balance::{Balance, Load, Moving, Sum, Unknown, Way};
 use links::Linkage;
@@ -26,7 +27,7 @@ use crate::contact::{Frame, PlateContact};
 use crate::energy::Energy;
 use crate::observe::Observation;
 use crate::system::{Bodies, BodyContacts, GroupBodies, HeldEnd};
-use crate::{End, Ends};
+use crate::{End, Ends, MemoryError};
 
 /// A chain ready to move.
 #[derive(Clone, Debug)]
@@ -35,6 +36,15 @@ pub(crate) enum Chain {
     Particles(Box<Particles>),
     /// Rigid links.
     Links(Box<Linkage>),
+}
+
+/// What a chain remembers beside its contacts with bodies.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) enum ChainMemory {
+    /// Nothing.
+    Particles,
+    /// The contacts in its joints.
+    Links(links::Memory),
 }
 
 /// What a chain is evaluated among.
@@ -246,6 +256,27 @@ impl Chain {
     /// Moves every roller or body along x and y by what `shift` says.
     pub(crate) fn nudge(&self, q: &mut [f64], shift: impl FnMut() -> f64) {
         ask!(self, chain => chain.nudge(q, shift));
+    }
+}
+
+/// What it remembers.
+impl Chain {
+    /// See [`System::memory`](crate::System::memory).
+    pub(crate) fn memory(&self) -> ChainMemory {
+        match self {
+            Self::Particles(_) => ChainMemory::Particles,
+            Self::Links(chain) => ChainMemory::Links(chain.memory.clone()),
+        }
+    }
+
+    /// See [`System::remember`](crate::System::remember).
+    pub(crate) fn remember(&mut self, memory: ChainMemory) -> Result<(), MemoryError> {
+        match (self, memory) {
+            (Self::Particles(_), ChainMemory::Particles) => Ok(()),
+            (Self::Links(chain), ChainMemory::Links(memory)) => chain.remember(memory),
+            (Self::Particles(_), ChainMemory::Links(_))
+            | (Self::Links(_), ChainMemory::Particles) => Err(MemoryError::Model),
+        }
     }
 }
 

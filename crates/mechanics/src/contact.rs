@@ -16,23 +16,26 @@ mod slots;
 #[cfg(test)]
 mod tests;
 mod window;
+mod windows;
 mod wrench;
 
 use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_geometry::{Point, Vector};
+use serde::{Deserialize, Serialize};
 
 pub(crate) use law::SurfaceLaw;
 pub(crate) use memory::{ContactMemory, MemoryLanes};
 pub(crate) use plates::{PlateContact, PlatePins, PlatePlaces};
 pub(crate) use rollers::Rollers;
 pub(crate) use window::{FAR, Places, Run};
+pub(crate) use windows::{PlateMemory, Windows};
 pub(crate) use wrench::{LaneTally, Wrench};
 
 use crate::drive::{Flank, Surface};
 use crate::profile::{GapFace, Profile};
 
 /// The position and motion of the frame in which a profile is given.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Frame {
     /// Origin: wheel centre, pivot of an arm, or displaced origin of a rail \[m\].
     pub(crate) origin: Point,
@@ -101,7 +104,7 @@ pub(crate) struct Contacts {
 
 /// Contact state per slot; where a gap has several stretches, each is a side, and the slots of one stand behind those of the
 /// other.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Touch {
     pub(crate) state: ContactMemory,
     /// Until when \[s\] nothing can touch in the lane that begins with this slot.
@@ -111,7 +114,7 @@ pub(crate) struct Touch {
 }
 
 /// The surfaces that closed contacts press on, per slot.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Faces {
     /// Outward normal of the surface.
     pub(crate) normal_x: Vec<f64>,

@@ -7,6 +7,8 @@
 //! Stores are functions of the state; flows are powers that the time stepping integrates along
 //! with the motion, each from the force element's own law, so that the residual tests both.
 
+use serde::{Deserialize, Serialize};
+
 /// Forms of energy that a state holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Store {
@@ -145,7 +147,7 @@ impl Flow {
 }
 
 /// The ledger at one instant.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energy {
     /// Energies \[J\] in the order of [`Store::ALL`].
     pub stores: [f64; Store::ALL.len()],

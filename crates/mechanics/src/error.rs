@@ -91,6 +91,58 @@ impl DriveError {
     }
 }
 
+/// Why a system cannot go on from what another one remembered: it is not of the same drive.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "each message names its fields")]
+pub enum MemoryError {
+    /// Another number of something.
+    #[error("it remembers {found} {what}, and this drive has {expected}")]
+    Count {
+        what: &'static str,
+        found: usize,
+        expected: usize,
+    },
+
+    /// Something that there is not.
+    #[error("it remembers {what} {found}, and this drive has {count}")]
+    Beyond {
+        what: &'static str,
+        found: usize,
+        count: usize,
+    },
+
+    /// Another kind of chain.
+    #[error("it remembers another chain model")]
+    Model,
+}
+
+impl MemoryError {
+    /// `Ok` where the number is as expected.
+    pub(crate) fn unless(what: &'static str, found: usize, expected: usize) -> Result<(), Self> {
+        if found == expected {
+            return Ok(());
+        }
+        Err(Self::Count {
+            what,
+            found,
+            expected,
+        })
+    }
+
+    /// `Ok` where there are that many.
+    pub(crate) fn unless_within(
+        what: &'static str,
+        found: usize,
+        count: usize,
+    ) -> Result<(), Self> {
+        if found <= count {
+            return Ok(());
+        }
+        Err(Self::Beyond { what, found, count })
+    }
+}
+
 /// Why a valid drive could not be brought into its initial state.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]

@@ -3,11 +3,13 @@
 //! Kept on accepted states only. A contact that is lost and found again within one step was never
 //! seen to end; starts and ends are exact to the step.
 
+use serde::{Deserialize, Serialize};
+
 use crate::contact::Contacts;
 use crate::system::{RailContact, System};
 
 /// What touched what.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum ContactPair {
     /// A roller and the teeth of a sprocket.
     Tooth {
@@ -36,7 +38,7 @@ pub enum ContactPair {
 }
 
 /// One contact from touch to parting.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactEvent {
     /// What touched what.
     pub pair: ContactPair,
@@ -53,7 +55,7 @@ pub struct ContactEvent {
 }
 
 /// Which contacts are logged.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EventKinds {
     /// Rollers on teeth.
     pub teeth: bool,
@@ -64,7 +66,7 @@ pub struct EventKinds {
 }
 
 /// The log, and the contacts that last.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct EventLog {
     kinds: EventKinds,
     /// Contacts that last, by place: wheels, rails, joints, bushes, each times the rollers.
@@ -74,6 +76,11 @@ pub(crate) struct EventLog {
 }
 
 impl EventLog {
+    /// Places where a contact can be.
+    pub(crate) fn places(&self) -> usize {
+        self.lasting.len()
+    }
+
     fn see(&mut self, place: usize, pair: ContactPair, t: f64, seen: Option<(f64, f64)>) {
         let dt = t - self.time;
         let entry = &mut self.lasting[place];

@@ -48,11 +48,11 @@ pub use drive::{
     Rotation, Shaft, Sprocket, Stop, Support, Surface, Tighten, Touches,
 };
 pub use energy::{Energy, Flow, Store};
-pub use error::{AssemblyError, Clash, DriveError};
+pub use error::{AssemblyError, Clash, DriveError, MemoryError};
 pub use events::{ContactEvent, ContactPair, EventKinds};
 pub use modes::{Mode, Modes};
 pub use motion::{Course, Harmonic, Motion, Table};
 pub use observe::{ChainSize, Observation};
-pub use system::{Input, Record, System};
+pub use system::{Input, Record, System, SystemMemory};
 pub use tensioner::{Carrier, Hydraulic, Push, PushForce, Spring, Tensioner, carriers};
 pub use torque::{Argument, Torque};

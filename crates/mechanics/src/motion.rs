@@ -1,9 +1,11 @@
 //! Motions prescribed in time: a scalar position with its rate and acceleration.
 
+use serde::{Deserialize, Serialize};
+
 use crate::DriveError;
 
 /// Position, rate and acceleration of a prescribed coordinate at one instant.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct Course {
     /// Position x \[m or rad\].
     pub position: f64,

@@ -2,6 +2,7 @@
 
 use chaindrive_geometry::Point;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
+use serde::{Deserialize, Serialize};
 
 use crate::System;
 use crate::energy::{Energy, Flow, Store};
@@ -9,7 +10,7 @@ use crate::system::{Member, OnWheel, RailContact, Record, WheelSupport};
 use crate::tensioner::{Extension, Reduced};
 
 /// Everything that can be read off one state. SI units; arrays in the order of the drive.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Observation {
     /// Time \[s\].
     pub time: f64,

@@ -12,12 +12,14 @@ mod equations;
 mod group;
 mod inputs;
 mod member;
+mod memory;
 mod shafts;
 mod slide;
 mod solve;
 
 use chaindrive_geometry::Point;
 use chaindrive_integrate::{Continuity, Moment, SecondOrderSystem, Verdict, Weights};
+use serde::{Deserialize, Serialize};
 
 pub(crate) use bodies::{Bodies, RailSupport, Wheel, WheelSupport};
 pub(crate) use build::{Laid, LaidChain};
@@ -25,6 +27,7 @@ pub(crate) use contacts::{BodyContacts, OnRail, OnWheel, RailContact};
 pub(crate) use group::{Group, GroupBodies};
 pub use inputs::Input;
 pub(crate) use member::Member;
+pub use memory::SystemMemory;
 pub(crate) use shafts::{Shaft, Turn, TurnedBy};
 pub(crate) use slide::Slide;
 
@@ -60,7 +63,7 @@ pub(crate) struct HeldEnd {
 }
 
 /// What one evaluation leaves behind: contact states, work space and what the bodies feel.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Record {
     pub(crate) chains: Vec<chains::Record>,
     /// What all chains together do to every wheel and rail.

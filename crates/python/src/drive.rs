@@ -16,6 +16,7 @@ use crate::drawing;
 use crate::errors::{OrRaise, parameter};
 use crate::law::Law;
 use crate::profile::Profile;
+use crate::run::patiently;
 
 /// Name, link tensions, span tensions and closed contacts of a static stage.
 type StaticStage<'py> = (
@@ -49,8 +50,9 @@ impl Drive {
 impl Drive {
     /// Reads a scene file.
     #[staticmethod]
-    fn read(path: PathBuf) -> PyResult<Self> {
-        Self::new(Scene::read(path).or_raise()?)
+    fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        // A pipe may be a long time in coming.
+        Self::new(patiently(py, || Scene::read(path))?.or_raise()?)
     }
 
     /// Reads TOML, or JSON when the text begins with a brace.
@@ -244,8 +246,8 @@ impl Drive {
 
     /// What the drive will be simulated as: as a text, and as JSON.
     fn describe(&self, py: Python<'_>) -> PyResult<(String, String)> {
-        let description = py
-            .detach(|| Description::of(&self.drive, &self.run()))
+        let (drive, run) = (self.drive.clone(), self.run());
+        let description = patiently(py, move || Description::of(&drive, &run))?
             .or_raise()?
             .unless_chosen_for(self.scene.run_defaults().chosen_accuracy());
         let json = serde_json::to_string(&description)
@@ -255,14 +257,10 @@ impl Drive {
 
     /// Names of the spans; link tensions, span tensions and closed contacts after every static stage.
     fn statics<'py>(&self, py: Python<'py>) -> PyResult<(Vec<String>, Vec<StaticStage<'py>>)> {
-        let (spans, told, assembled) = py
-            .detach(|| {
-                let assembled = self.drive.assemble()?;
-                let spans = spans_at_rest(&self.drive, &assembled);
-                let told = static_stages(&self.drive, &assembled);
-                Ok::<_, chaindrive_mechanics::AssemblyError>((spans, told, assembled))
-            })
-            .or_raise()?;
+        let drive = self.drive.clone();
+        let assembled = patiently(py, move || drive.assemble())?.or_raise()?;
+        let spans = spans_at_rest(&self.drive, &assembled);
+        let told = static_stages(&self.drive, &assembled);
         let stages = assembled.statics.into_iter().zip(told);
         let stages = stages.map(|(stage, told)| {
             let tensions = PyArray1::from_vec(py, stage.tensions);
@@ -275,11 +273,8 @@ impl Drive {
 
     /// Natural frequencies and mode shapes about the static state.
     fn modes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let found = py.detach(|| {
-            self.drive
-                .assemble()
-                .and_then(|assembled| assembled.modes())
-        });
+        let drive = self.drive.clone();
+        let found = patiently(py, move || drive.assemble().and_then(|it| it.modes()))?;
         let modes = found.or_raise()?.modes;
         let count = modes.len();
         let answer = PyDict::new(py);

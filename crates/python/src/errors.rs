@@ -1,9 +1,9 @@
 //! Errors of the library as exceptions of `chaindrive.errors`.
 
-use chaindrive::record::WriteError;
+use chaindrive::record::{ResumeError, WriteError};
 use chaindrive::scene::SceneError;
 use chaindrive::sweep::SweepError;
-use chaindrive::{RequestError, RunError, SimulationError};
+use chaindrive::{RequestError, RunError, SealError, SimulationError, SnapshotError};
 use chaindrive_contact::ParameterError;
 use chaindrive_geometry::GeometryError;
 use chaindrive_integrate::IntegrationError;
@@ -15,6 +15,7 @@ mod python {
     pyo3::import_exception!(chaindrive.errors, AssemblyError);
     pyo3::import_exception!(chaindrive.errors, IntegrationError);
     pyo3::import_exception!(chaindrive.errors, ParameterError);
+    pyo3::import_exception!(chaindrive.errors, ResumeError);
     pyo3::import_exception!(chaindrive.errors, SceneError);
     pyo3::import_exception!(chaindrive.errors, SimulationError);
     pyo3::import_exception!(chaindrive.errors, WriteError);
@@ -130,6 +131,9 @@ impl IntoException for SimulationError {
                 "accuracy",
                 format!("leave out `accuracy` or `{given}`"),
             )),
+            Self::Ended { reached, .. } => {
+                parameter(message, "until", &format!("{reached} s or later"))
+            }
             Self::Past { read, .. } => parameter(message, "time", &format!("{read} s or later")),
             Self::Control { name, .. } => python::ParameterError::new_err((message, name)),
             Self::AbsentChannel { .. } => python::ParameterError::new_err((
@@ -163,7 +167,41 @@ impl<E: IntoException + std::error::Error> IntoException for RunError<E> {
             Self::Scene(error) => error.exception(),
             Self::Start(error) => error.exception(),
             Self::Sink(error) => error.exception(),
+            Self::Snapshot(error) => error.exception(),
             Self::Interrupted => SimulationError::Interrupted.exception(),
+        }
+    }
+}
+
+impl IntoException for SealError {
+    fn exception(self) -> PyErr {
+        python::ParameterError::new_err((self.to_string(), "data"))
+    }
+}
+
+impl IntoException for SnapshotError {
+    fn exception(self) -> PyErr {
+        python::ParameterError::new_err((
+            self.to_string(),
+            "snapshot",
+            "one of the same drive, method, step and interval",
+        ))
+    }
+}
+
+impl IntoException for ResumeError {
+    fn exception(self) -> PyErr {
+        let message = self.to_string();
+        match self {
+            Self::Store(error) => error.exception(),
+            Self::Until { source, .. } => source.exception(),
+            Self::Complete { path, .. } => {
+                python::ResumeError::new_err((message, path, "a later `until`"))
+            }
+            Self::NoCheckpoint { path, .. }
+            | Self::Checkpoint { path, .. }
+            | Self::OtherScene { path } => python::ResumeError::new_err((message, path)),
+            _ => python::ResumeError::new_err((message,)),
         }
     }
 }

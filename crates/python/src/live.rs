@@ -3,6 +3,7 @@
 use chaindrive::{Axis, Channel, Control, Onlooker, Request, Settings, SimulationError};
 use numpy::PyArray1;
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 
 use crate::drive::Drive;
 use crate::errors::{IntoException, OrRaise, parameter};
@@ -17,6 +18,24 @@ pub(crate) struct Simulation(chaindrive::Simulation);
 #[pyclass(frozen, module = "chaindrive._core")]
 #[derive(Debug)]
 pub(crate) struct Snapshot(chaindrive::Snapshot);
+
+#[pymethods]
+impl Snapshot {
+    /// The snapshot that was written down.
+    #[new]
+    fn new(data: &[u8]) -> PyResult<Self> {
+        chaindrive::Snapshot::from_bytes(data).or_raise().map(Self)
+    }
+
+    fn __bytes__<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, &self.0.to_bytes())
+    }
+
+    /// For `pickle`.
+    fn __getnewargs__<'py>(&self, py: Python<'py>) -> (Bound<'py, PyBytes>,) {
+        (self.__bytes__(py),)
+    }
+}
 
 /// What can be set, by its name in Python.
 fn control(kind: &str, name: String) -> PyResult<Control> {
@@ -121,8 +140,8 @@ impl Simulation {
     }
 
     /// Goes back, or on, to a snapshot.
-    fn restore(&mut self, snapshot: &Snapshot) {
-        self.0.restore(&snapshot.0);
+    fn restore(&mut self, snapshot: &Snapshot) -> PyResult<()> {
+        self.0.restore(&snapshot.0).or_raise()
     }
 
     /// Name of the method, and number of steps taken.

@@ -4,7 +4,7 @@ use std::cell::{Cell, RefCell};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use chaindrive::record::{self, EventColumn, EventTable, Existing, InStore};
+use chaindrive::record::{self, EventColumn, EventTable, Existing, InStore, Stopped};
 use chaindrive::{
     Axis, Channel, EventKinds, Given, Memory, Onlooker, Report, Request, Settings, Simulation,
     Stepping, Stop, execute,
@@ -23,17 +23,22 @@ pub(crate) const PATIENCE: Duration = Duration::from_millis(50);
 ///
 /// Ctrl-C under way is not raised: it is the entry `stop` of the answer, beside what there is.
 #[pyfunction]
-#[pyo3(signature = (drive, settings, *, output, overwrite, error, progress))]
+#[pyo3(signature = (drive, settings, *, output, overwrite, checkpoint_every, error, progress))]
+#[expect(clippy::too_many_arguments, reason = "Python names them")]
 pub(crate) fn simulate<'py>(
     py: Python<'py>,
     drive: &Drive,
     settings: Vec<(String, Setting)>,
     output: Option<PathBuf>,
     overwrite: bool,
+    checkpoint_every: Option<Setting>,
     error: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let mut request = Request::new(&drive.scene, &merged(settings)).or_raise()?;
+    if let Some(every) = checkpoint_every {
+        request = request.with_checkpoints(&every.into()).or_raise()?;
+    }
     if !error {
         request = request.without_estimate();
     }
@@ -54,6 +59,36 @@ pub(crate) fn simulate<'py>(
         };
         (report, interpreter.raised.into_inner())
     });
+    answer(py, report, raised, memory)
+}
+
+/// Carries on the run of a result that was stopped or killed; the answer is that of `simulate` into a store.
+#[pyfunction]
+#[pyo3(signature = (path, *, until, progress))]
+pub(crate) fn resume(
+    py: Python<'_>,
+    path: PathBuf,
+    until: Option<Setting>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'_, PyDict>> {
+    let until = until.map(Given::from);
+    let stopped = Stopped::open(&path, until.as_ref()).or_raise()?;
+    let (report, raised) = py.detach(|| {
+        let interpreter = Interpreter::new(progress.as_ref());
+        let report = stopped.resume(&interpreter);
+        let report = report.map_err(IntoException::exception);
+        (report, interpreter.raised.into_inner())
+    });
+    answer(py, report, raised, Memory::default())
+}
+
+/// What came of a run.
+fn answer(
+    py: Python<'_>,
+    report: PyResult<Report>,
+    raised: Option<PyErr>,
+    memory: Memory,
+) -> PyResult<Bound<'_, PyDict>> {
     // Stopped before it began.
     let report = match (report, &raised) {
         (Err(_), Some(raised)) => return Err(raised.clone_ref(py)),
@@ -62,7 +97,7 @@ pub(crate) fn simulate<'py>(
     if let Stop::Failed(error) = report.stop {
         return Err(error.exception());
     }
-    let answer = told(py, &request, &report, memory)?;
+    let answer = told(py, &report, memory)?;
     answer.set_item("stop", raised)?;
     Ok(answer)
 }
@@ -75,26 +110,26 @@ pub(crate) enum Setting {
     Names(Vec<String>),
 }
 
+impl From<Setting> for Given {
+    fn from(setting: Setting) -> Self {
+        match setting {
+            Setting::Text(text) => Self::Text(text),
+            Setting::Number(number) => Self::Number(number),
+            Setting::Names(names) => Self::Names(names),
+        }
+    }
+}
+
 /// Settings of Python as settings of a run.
 pub(crate) fn merged(settings: Vec<(String, Setting)>) -> Settings {
     let settings = settings.into_iter();
     settings.fold(Settings::default(), |all, (key, value)| {
-        let value = match value {
-            Setting::Text(text) => Given::Text(text),
-            Setting::Number(number) => Given::Number(number),
-            Setting::Names(names) => Given::Names(names),
-        };
-        all.with(&key, value)
+        all.with(&key, value.into())
     })
 }
 
 /// What a run leaves, as Python takes it.
-fn told<'py>(
-    py: Python<'py>,
-    request: &Request,
-    report: &Report,
-    memory: Memory,
-) -> PyResult<Bound<'py, PyDict>> {
+fn told<'py>(py: Python<'py>, report: &Report, memory: Memory) -> PyResult<Bound<'py, PyDict>> {
     let answer = PyDict::new(py);
     let recording = memory.recording;
     let recorded = recording.columns.iter().map(|column| column.channel);
@@ -130,7 +165,7 @@ fn told<'py>(
         columns.set_item(column.channel.name(), values)?;
     }
     answer.set_item("columns", columns)?;
-    if request.run.events != EventKinds::default() {
+    if report.run.events != EventKinds::default() {
         answer.set_item("events", event_columns(py, memory.events)?)?;
     }
     Ok(answer)
@@ -204,6 +239,16 @@ impl Onlooker for Interpreter<'_> {
             self.look(self.progress);
         }
     }
+}
+
+/// Does something that nobody can interrupt, while Python looks at its signals.
+pub(crate) fn patiently<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> PyResult<T> {
+    let (done, raised) = py.detach(|| watched(|stop| chaindrive::patiently(work, stop)));
+    raised?;
+    done.or_raise()
 }
 
 /// Lets `work` look at Python's signals, and raises what it found there.

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use chaindrive_mechanics::Assembled;
+use serde::{Deserialize, Serialize};
 
 use super::Watch;
 use super::attribute::Attribute;
@@ -19,7 +20,7 @@ use crate::{Run, SimulationError, Stepping};
 pub const ACCURACY: f64 = 0.01;
 
 /// What is kept within the accuracy.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Promise {
     /// The tension of the tight span, or of the tightest link where [`Choice::gap`] leaves a span without a
     /// tension, at every moment of the window, root mean square.
@@ -32,7 +33,7 @@ pub enum Promise {
 }
 
 /// A candidate that was tried.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Trial {
     /// Method.
     pub stepping: Stepping,
@@ -47,7 +48,7 @@ pub struct Trial {
 }
 
 /// Method and step for a drive, and why.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Choice {
     /// The run with method, step and onset depth.
     pub run: Run,

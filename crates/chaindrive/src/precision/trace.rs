@@ -4,6 +4,7 @@ use std::fmt;
 
 use chaindrive_integrate::Statistics;
 use chaindrive_mechanics::Assembled;
+use serde::{Deserialize, Serialize};
 
 use super::Watch;
 use super::window::Window;
@@ -51,7 +52,7 @@ pub enum Strands {
 }
 
 /// A span whose tension is not defined for some time.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Gap {
     /// Name of the span.
     pub span: String,

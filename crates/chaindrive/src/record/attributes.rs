@@ -4,7 +4,7 @@
 //! knows neither truth values nor tables.
 
 use chaindrive_integrate::Method;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use serde_json::{Map, Value};
 
@@ -31,8 +31,10 @@ pub struct Provenance {
     pub run: Run,
     /// How method and step were chosen, if they were.
     pub choice: Option<Choice>,
-    /// When somebody asked for it.
+    /// When somebody asked for it, or for it to go on.
     pub began: Instant,
+    /// Wall time spent before it was stopped, if it was.
+    pub earlier: Duration,
 }
 
 impl Provenance {
@@ -46,7 +48,13 @@ impl Provenance {
             run: run.clone(),
             choice: None,
             began: Instant::now(),
+            earlier: Duration::ZERO,
         }
+    }
+
+    /// Wall time since somebody asked for it, times at which it was stopped not counted.
+    pub(crate) fn wall_time(&self) -> Duration {
+        self.earlier + self.began.elapsed()
     }
 }
 
@@ -142,7 +150,7 @@ pub fn attributes(
         story.number("contact_force_largest", summary.forces().max);
     }
     assembly(&mut story, simulation);
-    speed(&mut story, simulation, provenance.began);
+    speed(&mut story, simulation, provenance.wall_time());
     let choice = provenance.choice.as_ref();
     let verdict = summary.map(|summary| {
         let verdict = Verdict::of(summary, simulation, choice, judgement);
@@ -179,14 +187,14 @@ pub fn figures(
 }
 
 /// What the run cost.
-fn speed(story: &mut Story, simulation: &Simulation, began: Instant) {
+fn speed(story: &mut Story, simulation: &Simulation, wall_time: Duration) {
     let wall = simulation.stepping_time();
     let steps = simulation.statistics().steps.max(1) as f64;
     let link_steps = steps * simulation.system().links() as f64;
     story.number("stepping_time", wall);
     story.number("real_time_factor", simulation.time() / wall);
     story.number("ns_per_link_step", wall * 1e9 / link_steps);
-    story.number("wall_time", began.elapsed().as_secs_f64());
+    story.number("wall_time", wall_time.as_secs_f64());
 }
 
 fn method(story: &mut Story, method: Method) {

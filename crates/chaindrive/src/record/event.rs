@@ -153,6 +153,18 @@ impl EventTable {
         };
     }
 
+    /// As [`numbers`](Self::numbers), to be filled.
+    pub(crate) fn numbers_mut(&mut self, column: EventColumn) -> Option<&mut Vec<f64>> {
+        match column {
+            EventColumn::Kind | EventColumn::Body | EventColumn::Roller => None,
+            EventColumn::Start => Some(&mut self.start),
+            EventColumn::End => Some(&mut self.end),
+            EventColumn::OnsetSpeed => Some(&mut self.onset_speed),
+            EventColumn::PeakForce => Some(&mut self.peak_force),
+            EventColumn::Impulse => Some(&mut self.impulse),
+        }
+    }
+
     /// A column of numbers; none for kind, body and roller.
     pub fn numbers(&self, column: EventColumn) -> Option<&[f64]> {
         match column {

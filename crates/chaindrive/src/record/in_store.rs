@@ -2,24 +2,51 @@
 
 use std::path::PathBuf;
 
+use super::zarr::Store;
 use super::{Existing, Provenance, WriteError, ZarrWriter};
-use crate::run::{End, Sink};
+use crate::run::{Checkpoint, End, Sink};
 use crate::{Channel, Simulation};
 
 /// Streams samples and contacts into a Zarr store.
 #[derive(Debug)]
 pub struct InStore {
-    path: PathBuf,
-    existing: Existing,
+    place: Place,
     writer: Option<ZarrWriter>,
+}
+
+/// Where the samples go.
+enum Place {
+    /// Into a store that is made when the run begins.
+    New(PathBuf, Existing),
+    /// Into one that was left, behind its checkpoint.
+    Left(Box<(Store, Checkpoint)>),
+    /// The writer knows.
+    Begun,
+}
+
+impl std::fmt::Debug for Place {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::New(path, existing) => f.debug_tuple("New").field(path).field(existing).finish(),
+            Self::Left(left) => f.debug_tuple("Left").field(&left.0.path()).finish(),
+            Self::Begun => f.write_str("Begun"),
+        }
+    }
 }
 
 impl InStore {
     /// A store at a path, made when the run begins.
     pub fn new(path: PathBuf, existing: Existing) -> Self {
         Self {
-            path,
-            existing,
+            place: Place::New(path, existing),
+            writer: None,
+        }
+    }
+
+    /// A store that was left, gone on with when the run does.
+    pub(super) fn left(store: Store, checkpoint: Checkpoint) -> Self {
+        Self {
+            place: Place::Left(Box::new((store, checkpoint))),
             writer: None,
         }
     }
@@ -35,14 +62,32 @@ impl Sink for InStore {
         provenance: &Provenance,
     ) -> Result<(), WriteError> {
         let provenance = provenance.clone();
-        let made = ZarrWriter::create(&self.path, simulation, channels, provenance, self.existing)?;
-        self.writer = Some(made);
+        self.writer = match std::mem::replace(&mut self.place, Place::Begun) {
+            Place::New(path, existing) => {
+                let made = ZarrWriter::create(&path, simulation, channels, provenance, existing);
+                Some(made?)
+            }
+            Place::Left(left) => {
+                let (store, checkpoint) = *left;
+                let writer =
+                    ZarrWriter::go_on(store, &checkpoint, simulation, channels, provenance);
+                Some(writer?)
+            }
+            Place::Begun => None,
+        };
         Ok(())
     }
 
     fn push(&mut self, simulation: &Simulation) -> Result<(), WriteError> {
         match &mut self.writer {
             Some(writer) => writer.push(simulation),
+            None => Ok(()),
+        }
+    }
+
+    fn keep(&mut self, simulation: &Simulation, checkpoint: &Checkpoint) -> Result<(), WriteError> {
+        match &mut self.writer {
+            Some(writer) => writer.keep(simulation, checkpoint),
             None => Ok(()),
         }
     }

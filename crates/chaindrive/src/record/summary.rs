@@ -1,18 +1,22 @@
 //! The short account that ends every run.
 
+mod counted;
+
 use std::fmt;
 
 use chaindrive_mechanics::{ContactEvent, Energy, Flow, Observation};
 use hdrhistogram::Histogram;
+use serde::{Deserialize, Serialize};
 
 use super::event::{EventTable, kind};
 use crate::Simulation;
 
 /// Collects statistics sample by sample, in bounded memory.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Summary {
     /// Spans of the route.
     pub spans: Vec<SpanStatistics>,
+    #[serde(with = "counted")]
     forces: Histogram<u64>,
     largest_force: f64,
     contacts: [ContactStatistics; EventTable::KINDS.len()],
@@ -28,7 +32,7 @@ pub struct Summary {
 }
 
 /// Tension of one span over the run.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SpanStatistics {
     /// Name, "from-to".
     pub name: String,
@@ -71,7 +75,7 @@ pub struct ForceStatistics {
 }
 
 /// Contacts of one kind over the run, those that last included.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactStatistics {
     /// Their number.
     pub count: u64,
@@ -120,7 +124,7 @@ pub struct Ledger {
 ///
 /// Net work is no measure for that: a driver that reverses takes back what it gave, and a chain that
 /// swings or spins freely is given nothing at all.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Turnover {
     /// Σ |ΔW| over all flows and samples \[J\].
     flowed: f64,
@@ -172,11 +176,13 @@ impl Turnover {
 /// Forces are counted in millinewtons, to three digits.
 const COUNTS_PER_NEWTON: f64 = 1e3;
 
+/// No force yet.
+fn forces() -> Histogram<u64> {
+    Histogram::new(3).expect("three digits are between one and five")
+}
+
 impl Summary {
     /// An empty summary for a run.
-    ///
-    /// # Panics
-    /// Never: three significant digits is a resolution that the histogram accepts.
     pub fn new(simulation: &Simulation) -> Self {
         let span = |name| SpanStatistics {
             name,
@@ -194,7 +200,7 @@ impl Summary {
                 .into_iter()
                 .map(span)
                 .collect(),
-            forces: Histogram::new(3).expect("three digits are between one and five"),
+            forces: forces(),
             largest_force: 0.0,
             contacts: Default::default(),
             start: None,
@@ -249,6 +255,11 @@ impl Summary {
         for event in events {
             self.contacts[kind(event.pair)].push(event, f64::INFINITY);
         }
+    }
+
+    /// Contacts that have ended.
+    pub(crate) fn ended(&self) -> u64 {
+        self.contacts.iter().map(|contacts| contacts.count).sum()
     }
 
     /// Contacts by kind, see [`EventTable::KINDS`], with those that last.

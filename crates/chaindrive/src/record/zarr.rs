@@ -7,6 +7,7 @@
 //!   span/, roller/, …      labels of the other dimensions
 //!   span_tension/          (time, span) [N]: zarr.json, c/0/0, c/1/0, …
 //!   event_start/, …        (event,) contacts from touch to parting, where they are logged
+//!   checkpoint             what the run goes on from, where it can: no array, and not listed
 //! ```
 //!
 //! `zarrs` makes the arrays and their chunks; every file is put in place by renaming it, whole or not at
@@ -27,6 +28,7 @@ mod content;
 mod error;
 mod events;
 mod folder;
+mod stopped;
 mod store;
 mod sweep;
 mod target;
@@ -43,10 +45,12 @@ pub use sweep::SweepWriter;
 use super::Channel;
 use super::attributes::{Ending, Provenance, attributes};
 use super::error::WriteError;
-use crate::Simulation;
 use crate::precision::Judgement;
+use crate::{Checkpoint, Simulation};
 use content::Content;
-use store::Store;
+pub use stopped::{ResumeError, Stopped};
+pub(super) use store::Store;
+use target::CHECKPOINT;
 
 /// Wall time between two commits.
 const COMMIT_EVERY: Duration = Duration::from_secs(1);
@@ -90,6 +94,8 @@ pub struct ZarrWriter {
     /// What the result says about itself in the end.
     told: Option<Map<String, Value>>,
     samples: u64,
+    /// Whether the checkpoint in the store is of the last sample.
+    kept: bool,
     committed: Instant,
     store: Store,
 }
@@ -132,12 +138,69 @@ impl ZarrWriter {
             judgement: None,
             told: None,
             samples: 0,
+            kept: false,
             committed: Instant::now(),
             store,
         };
         writer.commit(simulation, &Ending::None)?;
         writer.store.publish()?;
         Ok(writer)
+    }
+
+    /// Goes on with a store that was left: what it holds behind the checkpoint is forgotten.
+    pub(super) fn go_on(
+        mut store: Store,
+        checkpoint: &Checkpoint,
+        simulation: &Simulation,
+        channels: &[Channel],
+        provenance: Provenance,
+    ) -> Result<Self, WriteError> {
+        store.go_on()?;
+        let (samples, contacts) = (checkpoint.samples(), checkpoint.contacts());
+        let content = Content::new(store.storage(), simulation, channels, &provenance);
+        let content = content.and_then(|mut content| {
+            content.go_on(samples, contacts, simulation.start_energy())?;
+            Ok(content)
+        });
+        let mut writer = Self {
+            content: content.map_err(|fault| store.fault(fault))?,
+            provenance,
+            judgement: None,
+            told: None,
+            samples,
+            kept: false,
+            committed: Instant::now(),
+            store,
+        };
+        // It may have another end by now, which a second interruption is not to forget.
+        let kept = writer.store.put(CHECKPOINT, checkpoint.to_bytes());
+        kept.map_err(|fault| writer.store.fault(fault))?;
+        writer.commit(simulation, &Ending::None)?;
+        // Readers see the checkpoint's samples alone from here on.
+        for (array, last) in writer.content.last_chunks() {
+            let cleared = writer.store.clear_behind(array, last);
+            cleared.map_err(|fault| writer.store.fault(fault))?;
+        }
+        Ok(writer)
+    }
+
+    /// Keeps what the run goes on from when it is stopped or killed, with all samples before it.
+    ///
+    /// # Errors
+    /// As [`push`](Self::push).
+    pub fn keep(
+        &mut self,
+        simulation: &Simulation,
+        checkpoint: &Checkpoint,
+    ) -> Result<(), WriteError> {
+        self.flush(simulation)?;
+        let bytes = checkpoint.to_bytes();
+        self.or_give_up(|writer| {
+            let kept = writer.store.put(CHECKPOINT, bytes);
+            kept.map_err(|fault| writer.store.fault(fault))
+        })?;
+        self.kept = true;
+        Ok(())
     }
 
     /// Takes the last sample of the simulation, and commits if the last commit was a while ago.
@@ -149,6 +212,7 @@ impl ZarrWriter {
         let pushed = self.content.push(simulation);
         self.or_give_up(|writer| pushed.map_err(|fault| writer.store.fault(fault)))?;
         self.samples += 1;
+        self.kept = false;
         if self.committed.elapsed() >= COMMIT_EVERY {
             self.flush(simulation)?;
         }
@@ -177,7 +241,7 @@ impl ZarrWriter {
         self.told = Some(attributes.clone());
     }
 
-    /// Commits for the last time and says how the run ended.
+    /// Commits for the last time and says how the run ended. A checkpoint that is not of the last sample goes.
     ///
     /// A writer that is dropped without this leaves a result that says so.
     ///
@@ -187,7 +251,12 @@ impl ZarrWriter {
         let pushed = self.content.push_outstanding(simulation);
         self.or_give_up(|writer| {
             pushed.map_err(|fault| writer.store.fault(fault))?;
-            writer.commit(simulation, ending)
+            writer.commit(simulation, ending)?;
+            if writer.kept {
+                return Ok(());
+            }
+            let removed = writer.store.remove(CHECKPOINT);
+            removed.map_err(|fault| writer.store.fault(fault))
         })
     }
 

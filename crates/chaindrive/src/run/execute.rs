@@ -1,16 +1,16 @@
 //! One run, whoever asks for it: assemble, choose, step, sample, judge.
 
 use std::convert::Infallible;
-use std::time::Duration;
 
 use chaindrive_mechanics::{Assembled, Drive};
 use serde_json::{Map, Value};
 
-use super::Request;
+use super::patience::{LOOK, patiently};
+use super::{Checkpoint, Request};
 use crate::precision::{Choice, Judgement, choose};
 use crate::record::{Ending, Provenance, Summary, attributes};
 use crate::scene::SceneError;
-use crate::{Channel, Run, Simulation, SimulationError, Verdict};
+use crate::{Channel, Run, Simulation, SimulationError, SnapshotError, Verdict};
 
 /// Where samples go: memory, a store, a table.
 pub trait Sink {
@@ -33,6 +33,21 @@ pub trait Sink {
     /// # Errors
     /// It cannot be written.
     fn push(&mut self, simulation: &Simulation) -> Result<(), Self::Error>;
+
+    /// Keeps what the run goes on from if it is stopped or killed, until the next one takes its place or the result is
+    /// closed with no sample more. Called for every checkpoint that is asked for, and when the user stops the run;
+    /// places that cannot be carried on have nothing to do.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    fn keep(
+        &mut self,
+        simulation: &Simulation,
+        checkpoint: &Checkpoint,
+    ) -> Result<(), Self::Error> {
+        let _ = (simulation, checkpoint);
+        Ok(())
+    }
 
     /// Closes the result, however the run ended.
     ///
@@ -83,6 +98,10 @@ pub enum RunError<E: std::error::Error> {
     /// The run could not begin.
     #[error(transparent)]
     Start(SimulationError),
+
+    /// The checkpoint is not of this scene.
+    #[error(transparent)]
+    Snapshot(SnapshotError),
 
     /// The user stopped it before it began.
     #[error("interrupted")]
@@ -138,9 +157,6 @@ impl Stop {
     }
 }
 
-/// Wall time between two looks at the onlooker while no sample is due.
-const LOOK: Duration = Duration::from_millis(50);
-
 /// Carries out a request: assembles the drive, chooses method and step where an accuracy is asked for, hands every
 /// sample to the sink, and judges the result.
 ///
@@ -168,12 +184,46 @@ pub fn execute<S: Sink>(
     sink: &mut S,
     onlooker: &dyn Onlooker,
 ) -> Result<Report, RunError<S::Error>> {
-    let watch = || onlooker.stop();
+    let begun = begin(request, &|| onlooker.stop())?;
+    complete(request, begun, sink, onlooker)
+}
+
+/// Carries a run on from a checkpoint: the report is that of the run that was never stopped, but for the wall times.
+///
+/// The sink must hold the samples and contacts up to the checkpoint, and nothing else: see
+/// [`Stopped`](crate::record::Stopped), which opens the store of a run that was stopped or killed.
+pub(crate) fn resume<S: Sink>(
+    checkpoint: &Checkpoint,
+    sink: &mut S,
+    onlooker: &dyn Onlooker,
+) -> Result<Report, RunError<S::Error>> {
+    let request = checkpoint.request().map_err(RunError::Scene)?;
+    let mut begun = begin(&request, &|| onlooker.stop())?;
+    let simulation = &mut begun.simulation;
+    let restored = simulation.restore(&checkpoint.snapshot);
+    restored.map_err(RunError::Snapshot)?;
+    let [wall, stepping] = checkpoint.spent();
+    simulation.has_spent(stepping);
+    begun.provenance.earlier = wall;
+    begun.provenance.choice = checkpoint.choice().cloned();
+    begun.summary = checkpoint.summary.clone();
+    complete(&request, begun, sink, onlooker)
+}
+
+/// Takes a run to its end.
+fn complete<S: Sink>(
+    request: &Request,
+    begun: Begun,
+    sink: &mut S,
+    onlooker: &dyn Onlooker,
+) -> Result<Report, RunError<S::Error>> {
     let Begun {
         drive,
         mut simulation,
         mut provenance,
-    } = begin(request, &watch)?;
+        mut summary,
+    } = begun;
+    let watch = || onlooker.stop();
     let run = provenance.run.clone();
     let full = request.scene.resolved_for(&run, simulation.method());
     provenance.resolved_scene = Some(full.map_err(RunError::Scene)?.text().to_owned());
@@ -182,11 +232,32 @@ pub fn execute<S: Sink>(
     sink.begin(&simulation, &channels, &provenance)
         .map_err(RunError::Sink)?;
 
-    let mut summary = Summary::new(&simulation);
-    let carried = carry_out(&mut simulation, onlooker, |simulation| {
-        summary.push(simulation.observation());
-        summary.count(simulation.events());
-        sink.push(simulation)
+    let mut marks = Marks::after(request.checkpoint_every, &simulation, &summary);
+    let carried = carry_out(
+        &mut simulation,
+        onlooker,
+        |simulation| -> Result<(), S::Error> {
+            summary.push(simulation.observation());
+            summary.count(simulation.events());
+            sink.push(simulation)?;
+            if marks.pass(simulation) {
+                let checkpoint = Checkpoint::of(request, &provenance, simulation, &summary);
+                sink.keep(simulation, &checkpoint)?;
+            }
+            Ok(())
+        },
+    );
+    let carried = carried.and_then(|stop| -> Result<Stop, S::Error> {
+        let goes_on = match &stop {
+            Stop::End => request.checkpoint_every.is_some(),
+            Stop::Interrupted => true,
+            Stop::Failed(_) => false,
+        };
+        if goes_on {
+            let checkpoint = Checkpoint::of(request, &provenance, &simulation, &summary);
+            sink.keep(&simulation, &checkpoint)?;
+        }
+        Ok(stop)
     });
     let mut stop = match carried {
         Ok(stop) => stop,
@@ -261,6 +332,7 @@ struct Begun {
     drive: Drive,
     simulation: Simulation,
     provenance: Provenance,
+    summary: Summary,
 }
 
 /// Assembles the drive, chooses method and step where an accuracy is asked for, and starts the clock.
@@ -282,10 +354,40 @@ fn begin<E: std::error::Error>(
     }
     let simulation = Simulation::from_assembled(start, &provenance.run).map_err(failed)?;
     Ok(Begun {
+        summary: Summary::new(&simulation),
         drive,
         simulation,
         provenance,
     })
+}
+
+/// Simulated times at which checkpoints are due: counted, so that a run that is carried on has the same.
+struct Marks {
+    every: Option<f64>,
+    /// The last one passed; none before the first sample, which is one.
+    passed: Option<f64>,
+}
+
+impl Marks {
+    fn after(every: Option<f64>, simulation: &Simulation, summary: &Summary) -> Self {
+        let mut marks = Self {
+            every,
+            passed: None,
+        };
+        if summary.samples > 0 {
+            marks.pass(simulation);
+        }
+        marks
+    }
+
+    /// Whether the last sample lies behind a time that no sample before it did.
+    fn pass(&mut self, simulation: &Simulation) -> bool {
+        let count = |every: f64| (simulation.read_at() / every).floor();
+        let Some(now) = self.every.map(count) else {
+            return false;
+        };
+        self.passed.replace(now).is_none_or(|before| now > before)
+    }
 }
 
 impl Simulation {
@@ -325,30 +427,10 @@ pub(crate) fn carry_out<E>(
 }
 
 /// Assembles a drive on a thread of its own, so that the user need not wait for a chain that settles.
-pub(crate) fn assemble(
-    drive: &Drive,
-    stop: &dyn Fn() -> bool,
-) -> Result<Assembled, SimulationError> {
-    let (sender, receiver) = std::sync::mpsc::channel();
+///
+/// # Errors
+/// [`SimulationError`] when the drive does not assemble, or somebody wants to stop.
+pub fn assemble(drive: &Drive, stop: &dyn Fn() -> bool) -> Result<Assembled, SimulationError> {
     let drive = drive.clone();
-    let thread = std::thread::Builder::new().spawn(move || {
-        // Nobody listens any more after an interrupt.
-        sender.send(drive.assemble()).ok();
-    });
-    let thread = thread.map_err(|error| SimulationError::Thread {
-        reason: error.to_string(),
-    })?;
-    loop {
-        match receiver.recv_timeout(LOOK) {
-            Ok(assembled) => return Ok(assembled?),
-            Err(std::sync::mpsc::RecvTimeoutError::Timeout) if stop() => {
-                return Err(SimulationError::Interrupted);
-            }
-            Err(std::sync::mpsc::RecvTimeoutError::Timeout) => {}
-            Err(std::sync::mpsc::RecvTimeoutError::Disconnected) => match thread.join() {
-                Err(panic) => std::panic::resume_unwind(panic),
-                Ok(()) => return Err(SimulationError::Interrupted),
-            },
-        }
-    }
+    Ok(patiently(move || drive.assemble(), stop)??)
 }

@@ -1,6 +1,6 @@
 //! What somebody wants to have run.
 
-use super::{Run, Settings};
+use super::{Given, Run, Settings};
 use crate::scene::SceneError;
 use crate::{Channel, Scene, SimulationError};
 
@@ -17,6 +17,8 @@ pub struct Request {
     pub accuracy: Option<f64>,
     /// Whether the run ends with an estimate of its numerical error.
     pub estimate: bool,
+    /// Simulated time \[s\] between two checkpoints, for results that can be carried on; none without.
+    pub checkpoint_every: Option<f64>,
 }
 
 /// Why there is nothing that could be run.
@@ -53,6 +55,7 @@ impl Request {
             record: wanted.record,
             accuracy,
             estimate: true,
+            checkpoint_every: None,
         })
     }
 
@@ -73,5 +76,26 @@ impl Request {
             estimate: false,
             ..self
         }
+    }
+
+    /// The request with a checkpoint at the first sample after every so much simulated time: a run that is killed goes
+    /// on from the last one. What is simulated stays the same to the last bit.
+    ///
+    /// # Errors
+    /// A text that is no time, or a time that is not positive.
+    pub fn with_checkpoints(self, every: &Given) -> Result<Self, RequestError> {
+        let name = "checkpoint_every";
+        let time = every.time(&self.scene, name)?;
+        if !(time > 0.0 && time.is_finite()) {
+            return Err(RequestError::Setting(SimulationError::Setting {
+                name,
+                value: time,
+                allowed: "positive",
+            }));
+        }
+        Ok(Self {
+            checkpoint_every: Some(time),
+            ..self
+        })
     }
 }

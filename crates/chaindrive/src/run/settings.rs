@@ -157,7 +157,21 @@ fn unknown(setting: &'static str, name: &str, known: &[&'static str]) -> Simulat
 }
 
 impl Given {
-    fn put(&self, scene: &Scene, path: &str) -> Result<Scene, SceneError> {
+    /// A time \[s\] that is no setting of the scene, but written as one; `name` is what messages call it.
+    pub(super) fn time(&self, scene: &Scene, name: &str) -> Result<f64, SceneError> {
+        if let Self::Number(time) = self {
+            return Ok(*time);
+        }
+        let read = self.put(scene, "run.every").map_err(|mut error| {
+            for problem in &mut error.problems {
+                (problem.path, problem.line) = (name.to_owned(), None);
+            }
+            error
+        })?;
+        Ok(read.run_defaults().every.unwrap_or(f64::NAN))
+    }
+
+    pub(super) fn put(&self, scene: &Scene, path: &str) -> Result<Scene, SceneError> {
         match self {
             Self::Text(text) => scene.replace(path, text),
             Self::Number(number) => scene.replace_json(path, &Json::from(*number)),

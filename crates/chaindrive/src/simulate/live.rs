@@ -32,10 +32,6 @@ pub(super) enum Changes {
     None,
 }
 
-/// A simulation as it was at a moment, to the last bit: contacts, windows and the time stepping with its memory.
-#[derive(Clone, Debug)]
-pub struct Snapshot(Box<Simulation>);
-
 impl Simulation {
     /// Moves on to a time \[s\] and reads everything off the drive there.
     ///
@@ -173,18 +169,6 @@ impl Simulation {
     /// Time of the last reading \[s\].
     pub fn read_at(&self) -> f64 {
         self.read
-    }
-
-    /// The simulation as it is now.
-    pub fn snapshot(&self) -> Snapshot {
-        Snapshot(Box::new(self.clone()))
-    }
-
-    /// Goes back, or on, to what a snapshot holds; wall time spent is not taken back.
-    pub fn restore(&mut self, snapshot: &Snapshot) {
-        let spent = self.stepping_time;
-        self.clone_from(&snapshot.0);
-        self.stepping_time = spent;
     }
 }
 

@@ -1,7 +1,7 @@
 //! Descriptions agree with closed forms.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
-use chaindrive::{Description, Run, Scene};
+use chaindrive::{Description, Run, Scene, Stepping};
 
 fn describe(preset: &str) -> Description {
     let scene = Scene::preset(preset).unwrap();
@@ -74,4 +74,21 @@ fn a_drive_without_a_route() {
         text.contains("absent                 sprockets, guides"),
         "{text}"
     );
+}
+
+/// A step of a thousand links with play takes a tenth of a second: nobody waits for four hundred of them to learn the cost.
+#[test]
+fn the_cost_of_large_chains_is_measured_in_bounded_time() {
+    let scene = Scene::preset("bicycle").unwrap();
+    let scene = scene.replace("chain.links", "1000").unwrap();
+    let away = "['-6.150144624366 m', '0 m']";
+    let scene = scene.replace("sprockets.rear.centre", away).unwrap();
+    let drive = scene.replace("settle", "false").unwrap().drive().unwrap();
+    let run = Run {
+        stepping: Stepping::GeneralizedAlpha,
+        ..Run::default()
+    };
+    let cost = Description::of(&drive, &run).unwrap().cost;
+    assert!((1..400).contains(&cost.measured), "{}", cost.measured);
+    assert!(cost.time_per_step > 0.0 && cost.run_time > 1.0);
 }

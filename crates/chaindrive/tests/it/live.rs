@@ -1,7 +1,7 @@
 //! Stepping from outside: pieces, inputs and snapshots, to the bit.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
-use chaindrive::{Control, Flow, Observation, Run, Scene, Simulation, Stepping};
+use chaindrive::{Control, Flow, Observation, Run, Scene, Simulation, Snapshot, Stepping};
 
 fn start(scene: &Scene, stepping: Stepping) -> Simulation {
     let run = Run {
@@ -94,13 +94,104 @@ fn a_snapshot_brings_back_every_bit() {
             simulation.advance_to(4.2e-4).unwrap();
             let kept = simulation.snapshot();
             let end = bits(simulation.advance_to(1e-3).unwrap());
-            simulation.restore(&kept);
+            simulation.restore(&kept).unwrap();
             assert_eq!(bits(simulation.advance_to(1e-3).unwrap()), end);
-            // Another simulation of the drive takes it as well.
-            let mut other = start(&scene, stepping);
-            other.restore(&kept);
-            assert_eq!(bits(other.advance_to(1e-3).unwrap()), end);
+            // Another simulation of the drive takes it as well, from memory or from bytes.
+            let written = Snapshot::from_bytes(&kept.to_bytes()).unwrap();
+            for kept in [&kept, &written] {
+                let mut other = start(&scene, stepping);
+                other.restore(kept).unwrap();
+                assert_eq!(bits(other.advance_to(1e-3).unwrap()), end);
+                assert_eq!(other.statistics(), simulation.statistics());
+            }
         }
+    }
+}
+
+/// Rigid links, pins that rub, tensioners, guides, and a chain of each kind: in a hundred pieces, each on a new
+/// simulation that knows nothing but the bytes of the last.
+#[test]
+fn a_run_by_snapshots_is_the_run_in_one() {
+    let ideal = preset("bicycle").replace("chain.model", "ideal-joints");
+    for scene in [preset("marine_engine"), rubbing(), ideal.unwrap()] {
+        for stepping in [METHODS.as_slice(), &[Stepping::GeneralizedAlpha]].concat() {
+            if stepping.is_implicit() && scene.name() == "marine_engine" {
+                continue;
+            }
+            let fresh = start(&scene, stepping);
+            let mut whole = fresh.clone();
+            let end = bits(whole.advance_to(4e-4).unwrap());
+            let mut bytes = fresh.snapshot().to_bytes();
+            for k in 1..=100 {
+                let mut piece = fresh.clone();
+                piece
+                    .restore(&Snapshot::from_bytes(&bytes).unwrap())
+                    .unwrap();
+                piece.advance_to(4e-4 * f64::from(k) / 100.0).unwrap();
+                bytes = piece.snapshot().to_bytes();
+                if k == 100 {
+                    assert_eq!(
+                        bits(piece.observation()),
+                        end,
+                        "{} {stepping:?}",
+                        scene.name()
+                    );
+                    assert_eq!(piece.statistics(), whole.statistics());
+                }
+            }
+        }
+    }
+}
+
+/// What was set before a snapshot, and what was planned, goes on from it; what was set after it is gone.
+#[test]
+fn a_snapshot_knows_what_is_set() {
+    let scene = preset("marine_engine");
+    let torque = Control::Torque("camshaft".into());
+    let force = Control::Force("tightener".into());
+    let [centre_x, centre_y] = [Control::CentreX, Control::CentreY].map(|on| on("idler".into()));
+    let fresh = start(&scene, Stepping::Verlet);
+    let mut simulation = fresh.clone();
+    simulation.set(&centre_x, -15.0).unwrap();
+    simulation.set(&torque, 3e4).unwrap();
+    simulation.advance_to(3e-4).unwrap();
+    simulation.set_at(6e-4, &force, 2e3).unwrap();
+    let kept = simulation.snapshot().to_bytes();
+    let end = bits(simulation.advance_to(9e-4).unwrap());
+    let kept = Snapshot::from_bytes(&kept).unwrap();
+    let mut other = fresh.clone();
+    other.set(&centre_y, 40.0).unwrap();
+    other.advance_to(1e-4).unwrap();
+    other.restore(&kept).unwrap();
+    assert_eq!(bits(other.advance_to(9e-4).unwrap()), end);
+    // A change behind the last reading, where the step before it was beyond.
+    let mut first = fresh.clone();
+    first.advance_to(3.3e-4).unwrap();
+    let kept = Snapshot::from_bytes(&first.snapshot().to_bytes()).unwrap();
+    let mut second = fresh.clone();
+    second.restore(&kept).unwrap();
+    let ends = [&mut first, &mut second].map(|run| {
+        run.set(&torque, 5e4).unwrap();
+        bits(run.advance_to(9e-4).unwrap())
+    });
+    assert_eq!(ends[0], ends[1]);
+    assert_ne!(ends[0], end);
+}
+
+#[test]
+fn a_snapshot_of_something_else_is_refused() {
+    let scene = preset("marine_engine");
+    let mut simulation = start(&scene, Stepping::Verlet);
+    let before = bits(simulation.advance_to(1e-4).unwrap());
+    let heavier = scene.replace("sprockets.camshaft.inertia", "2001 kg m^2");
+    for other in [
+        start(&heavier.unwrap(), Stepping::Verlet),
+        start(&scene, Stepping::Rk4),
+        start(&preset("bicycle"), Stepping::Auto),
+    ] {
+        let refused = simulation.restore(&other.snapshot()).unwrap_err();
+        assert!(refused.to_string().contains("another drive"), "{refused}");
+        assert_eq!(bits(simulation.advance_to(1e-4).unwrap()), before);
     }
 }
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use chaindrive::precision::{Study, Table, Variant, work_precision};
 use chaindrive::scene::RunDefaults;
-use chaindrive::{Request, Scene, SimulationError, Stepping};
+use chaindrive::{Request, Scene, Stepping, assemble};
 use clap::Args;
 
 use crate::failure::Failure;
@@ -59,18 +59,9 @@ pub(crate) struct Arguments {
 
 pub(crate) fn bench(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
     let settings = RunArguments::until(arguments.until.as_deref());
-    let Request { scene, run, .. } = settings.apply(&arguments.scene.load()?)?;
-    let failed = |source| match source {
-        SimulationError::Interrupted => Failure::Interrupted,
-        source => Failure::Start {
-            scene: scene.name().to_owned(),
-            source,
-        },
-    };
-    let start = scene
-        .drive()?
-        .assemble()
-        .map_err(|error| failed(error.into()))?;
+    let Request { scene, run, .. } = settings.apply(&arguments.scene.load(interrupted)?)?;
+    let start = assemble(&scene.drive()?, interrupted);
+    let start = Failure::or_interrupted(start, scene.name())?;
     let study = Study {
         variants: variants(arguments, &scene)?,
         until: arguments.until.is_some().then_some(run.until),
@@ -79,7 +70,8 @@ pub(crate) fn bench(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
     };
     let files = ["csv", "svg"].map(|extension| named(&arguments.output, extension));
     free(&files, arguments.overwrite)?;
-    let table = work_precision(&start, &run, &study, interrupted).map_err(failed)?;
+    let table = work_precision(&start, &run, &study, interrupted);
+    let table = Failure::or_interrupted(table, scene.name())?;
     print(&table)?;
     save(&table, &files, &scene_title(scene.name(), scene.title()))
 }

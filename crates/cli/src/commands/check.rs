@@ -1,5 +1,6 @@
 //! `chaindrive check`: are these scenes sound?
 
+use chaindrive::assemble;
 use clap::Args;
 
 use crate::failure::Failure;
@@ -14,11 +15,12 @@ pub(crate) struct Arguments {
     scenes: Vec<String>,
 }
 
-pub(crate) fn check(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn check(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
     let mut wrong = 0;
     for name in &arguments.scenes {
-        match sound(name) {
+        match sound(name, interrupted) {
             Ok(what) => print(format_args!("{name}: {what}"))?,
+            Err(Failure::Interrupted) => return Err(Failure::Interrupted),
             Err(failure) => {
                 eprintln!("{failure}");
                 wrong += 1;
@@ -34,13 +36,11 @@ pub(crate) fn check(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// What a sound scene holds.
-fn sound(name: &str) -> Result<String, Failure> {
-    let scene = load(name)?;
+fn sound(name: &str, interrupted: &dyn Fn() -> bool) -> Result<String, Failure> {
+    let scene = load(name, interrupted)?;
     let drive = scene.drive()?;
-    let assembled = drive.assemble().map_err(|error| Failure::Start {
-        scene: scene.name().to_owned(),
-        source: error.into(),
-    })?;
+    let assembled = assemble(&drive, interrupted);
+    let assembled = Failure::or_interrupted(assembled, scene.name())?;
     for warning in &assembled.warnings {
         eprintln!("warning: {name}: {warning}");
     }

@@ -1,7 +1,7 @@
 //! `chaindrive describe`: what would be simulated?
 
 use chaindrive::precision::choose;
-use chaindrive::{Description, Request, SimulationError};
+use chaindrive::{Description, Request, assemble, patiently};
 use clap::Args;
 
 use crate::failure::Failure;
@@ -31,23 +31,18 @@ pub(crate) fn describe(
         run,
         accuracy,
         ..
-    } = arguments.run.apply(&arguments.scene.load()?)?;
-    let failed = |source| match source {
-        SimulationError::Interrupted => Failure::Interrupted,
-        source => Failure::Start {
-            scene: scene.name().to_owned(),
-            source,
-        },
-    };
+    } = arguments.run.apply(&arguments.scene.load(interrupted)?)?;
     let drive = scene.drive()?;
     // What a run would do, it would do by the method that it would choose.
     let choice = accuracy.map(|accuracy| {
-        let start = drive.assemble()?;
+        let start = assemble(&drive, interrupted)?;
         choose(&start, &run, accuracy, interrupted)
     });
-    let choice = choice.transpose().map_err(failed)?;
+    let choice = Failure::or_interrupted(choice.transpose(), scene.name())?;
     let run = choice.as_ref().map_or(run, |choice| choice.run.clone());
-    let description = Description::of(&drive, &run).map_err(failed)?;
+    let described = patiently(move || Description::of(&drive, &run), interrupted);
+    let described = described.and_then(|described| described);
+    let description = Failure::or_interrupted(described, scene.name())?;
     if arguments.json {
         let json = serde_json::to_string_pretty(&description);
         print(json.map_err(|error| Failure::Argument(error.to_string()))?)

@@ -2,9 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use chaindrive::record::{Ending, Existing, Provenance, ZarrWriter};
-use chaindrive::{Channel, Judgement, Simulation};
-use serde_json::{Map, Value};
+use chaindrive::record::{Existing, InStore, Provenance};
+use chaindrive::{Channel, Checkpoint, End, Simulation, Sink};
 
 use crate::csv::CsvWriter;
 use crate::failure::Failure;
@@ -33,26 +32,25 @@ impl Target {
         }
     }
 
-    /// Begins the result.
-    pub(crate) fn begin(
-        self,
-        simulation: &Simulation,
-        channels: &[Channel],
-        provenance: Provenance,
-        existing: Existing,
-    ) -> Result<Output, Failure> {
-        Ok(match self {
+    /// Refuses a place that could not be carried on.
+    pub(crate) fn for_checkpoints(&self) -> Result<(), Failure> {
+        let found = match self {
+            Self::Zarr(_) => return Ok(()),
+            Self::Nowhere => "nothing is written".to_owned(),
+            Self::Csv(path) => format!("{}: a table cannot be carried on", path.display()),
+        };
+        Err(Failure::Argument(format!(
+            "--checkpoint-every: {found}; give a Zarr store, such as -o run.zarr"
+        )))
+    }
+
+    /// The place, still to be begun.
+    pub(crate) fn output(self, existing: Existing) -> Output {
+        match self {
             Self::Nowhere => Output::Nowhere,
-            Self::Zarr(path) => {
-                let writer = ZarrWriter::create(&path, simulation, channels, provenance, existing)?;
-                Output::Zarr(Box::new(writer))
-            }
-            Self::Csv(path) => {
-                let events = provenance.run.events;
-                let writer = CsvWriter::create(&path, simulation, channels, events, existing)?;
-                Output::Csv(Box::new(writer))
-            }
-        })
+            Self::Zarr(path) => Output::Zarr(Box::new(InStore::new(path, existing))),
+            Self::Csv(path) => Output::NewCsv(path, existing),
+        }
     }
 }
 
@@ -60,40 +58,54 @@ impl Target {
 #[derive(Debug)]
 pub(crate) enum Output {
     Nowhere,
-    Zarr(Box<ZarrWriter>),
+    Zarr(Box<InStore>),
+    /// A table that is begun when the run is.
+    NewCsv(PathBuf, Existing),
     Csv(Box<CsvWriter>),
 }
 
-impl Output {
-    /// Takes the last sample of the simulation.
-    pub(crate) fn push(&mut self, simulation: &Simulation) -> Result<(), Failure> {
+impl Sink for Output {
+    type Error = Failure;
+
+    fn begin(
+        &mut self,
+        simulation: &Simulation,
+        channels: &[Channel],
+        provenance: &Provenance,
+    ) -> Result<(), Failure> {
         match self {
-            Self::Nowhere => Ok(()),
-            Self::Zarr(writer) => Ok(writer.push(simulation)?),
+            Self::Nowhere | Self::Csv(_) => {}
+            Self::Zarr(store) => store.begin(simulation, channels, provenance)?,
+            Self::NewCsv(path, existing) => {
+                let events = provenance.run.events;
+                let writer = CsvWriter::create(path, simulation, channels, events, *existing)?;
+                *self = Self::Csv(Box::new(writer));
+            }
+        }
+        Ok(())
+    }
+
+    fn push(&mut self, simulation: &Simulation) -> Result<(), Failure> {
+        match self {
+            Self::Nowhere | Self::NewCsv(..) => Ok(()),
+            Self::Zarr(store) => Ok(store.push(simulation)?),
             Self::Csv(writer) => writer.push(simulation),
         }
     }
 
-    /// Tells the result how exact it is; a table of numbers has no place for it.
-    pub(crate) fn judge(&mut self, judgement: &Judgement) {
-        if let Self::Zarr(writer) = self {
-            writer.judge(judgement);
-        }
-    }
-
-    /// Tells the result what it is to say about itself.
-    pub(crate) fn tell(&mut self, attributes: &Map<String, Value>) {
-        if let Self::Zarr(writer) = self {
-            writer.tell(attributes);
-        }
-    }
-
-    /// Ends the result, and says in it how the run ended.
-    pub(crate) fn finish(self, simulation: &Simulation, ending: &Ending) -> Result<(), Failure> {
+    fn keep(&mut self, simulation: &Simulation, checkpoint: &Checkpoint) -> Result<(), Failure> {
         match self {
-            Self::Nowhere => Ok(()),
-            Self::Zarr(writer) => Ok(writer.finish(simulation, ending)?),
-            Self::Csv(writer) => writer.finish(simulation, ending),
+            Self::Nowhere | Self::NewCsv(..) | Self::Csv(_) => Ok(()),
+            Self::Zarr(store) => Ok(store.keep(simulation, checkpoint)?),
+        }
+    }
+
+    /// A table of numbers has no place for what the result says about itself.
+    fn end(&mut self, end: &End<'_>) -> Result<(), Failure> {
+        match std::mem::replace(self, Self::Nowhere) {
+            Self::Nowhere | Self::NewCsv(..) => Ok(()),
+            Self::Zarr(mut store) => Ok(store.end(end)?),
+            Self::Csv(writer) => writer.finish(end.simulation, end.ending),
         }
     }
 }

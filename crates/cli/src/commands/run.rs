@@ -4,11 +4,11 @@ use std::cell::RefCell;
 use std::path::PathBuf;
 
 use chaindrive::describe::spans_at_rest;
-use chaindrive::record::{Existing, Provenance, figures};
-use chaindrive::{Channel, End, Onlooker, Report, RunError, Simulation, Sink, Stop, execute};
+use chaindrive::record::{Existing, figures};
+use chaindrive::{Given, Onlooker, Report, RunError, Simulation, Stop, execute};
 use clap::Args;
 
-use super::output::{Output, Target};
+use super::output::Target;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::request::{RunArguments, SceneArguments};
@@ -31,6 +31,11 @@ pub(crate) struct Arguments {
     #[arg(long)]
     overwrite: bool,
 
+    /// Simulated time between two checkpoints in a Zarr result, such as "10 ms": killed at any moment, the run goes on
+    /// from the last one by `chaindrive resume`. The samples are the same as without, to the last bit
+    #[arg(long, value_name = "TIME")]
+    checkpoint_every: Option<String>,
+
     /// Leaves out the estimate of the numerical error that ends the run; it takes the time of some
     /// 32 000 steps of the default length, whatever the length of the run
     #[arg(long)]
@@ -43,7 +48,14 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
     let target = Target::of(arguments.output.as_deref())?;
-    let mut request = arguments.run.apply(&arguments.scene.load()?)?;
+    let mut request = arguments.run.apply(&arguments.scene.load(interrupted)?)?;
+    let scene = request.scene.name().to_owned();
+    if let Some(every) = &arguments.checkpoint_every {
+        target.for_checkpoints()?;
+        let every = Given::Text(every.clone());
+        let wanted = request.with_checkpoints(&every);
+        request = wanted.map_err(|error| Failure::request(error, &scene))?;
+    }
     if arguments.no_error {
         request = request.without_estimate();
     }
@@ -52,42 +64,62 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
     } else {
         Existing::Keep
     };
-    let mut result = Written::Asked(target, existing);
-    let terminal = Terminal {
-        progress: RefCell::new(Progress::new(arguments.quiet)),
-        interrupted,
-    };
-    let scene = || request.scene.name().to_owned();
-    let report = execute(&request, &mut result, &terminal).map_err(|error| match error {
+    let mut result = target.output(existing);
+    let terminal = Terminal::new(arguments.quiet, interrupted);
+    let report = execute(&request, &mut result, &terminal);
+    let report = report.map_err(|error| not_run(error, &scene))?;
+    drop(terminal);
+    concluded(report, &scene, arguments.quiet)
+}
+
+/// Why there is no report.
+pub(super) fn not_run<E: std::error::Error + Into<Failure>>(
+    error: RunError<E>,
+    scene: &str,
+) -> Failure {
+    match error {
         RunError::Scene(error) => error.into(),
         RunError::Interrupted => Failure::Interrupted,
-        RunError::Sink(failure) => failure,
+        RunError::Sink(failure) => failure.into(),
+        RunError::Snapshot(error) => Failure::Argument(format!("{scene}: {error}")),
         RunError::Start(source) => Failure::Start {
-            scene: scene(),
+            scene: scene.to_owned(),
             source,
         },
-    })?;
-    drop(terminal);
-    if let Some(warning) = report.verdict.warning() {
-        eprintln!("{}: {warning}", scene());
     }
-    if !arguments.quiet && report.summary.samples > 0 {
+}
+
+/// Says what came of a run.
+pub(super) fn concluded(report: Report, scene: &str, quiet: bool) -> Result<(), Failure> {
+    if let Some(warning) = report.verdict.warning() {
+        eprintln!("{scene}: {warning}");
+    }
+    if !quiet && report.summary.samples > 0 {
         print(told(&report))?;
     }
     match report.stop {
         Stop::End => Ok(()),
         Stop::Interrupted => Err(Failure::Interrupted),
         Stop::Failed(source) => Err(Failure::Simulation {
-            scene: scene(),
+            scene: scene.to_owned(),
             source,
         }),
     }
 }
 
 /// Somebody at a terminal: sees the bar, may press Ctrl-C.
-struct Terminal<'a> {
+pub(super) struct Terminal<'a> {
     progress: RefCell<Progress>,
     interrupted: &'a dyn Fn() -> bool,
+}
+
+impl<'a> Terminal<'a> {
+    pub(super) fn new(quiet: bool, interrupted: &'a dyn Fn() -> bool) -> Self {
+        Self {
+            progress: RefCell::new(Progress::new(quiet)),
+            interrupted,
+        }
+    }
 }
 
 impl Onlooker for Terminal<'_> {
@@ -97,48 +129,6 @@ impl Onlooker for Terminal<'_> {
 
     fn see(&self, simulation: &Simulation) {
         self.progress.borrow_mut().show(simulation);
-    }
-}
-
-/// The result: a place, and once the run has begun what is written there.
-enum Written {
-    Asked(Target, Existing),
-    Begun(Output),
-    Closed,
-}
-
-impl Sink for Written {
-    type Error = Failure;
-
-    fn begin(
-        &mut self,
-        simulation: &Simulation,
-        channels: &[Channel],
-        provenance: &Provenance,
-    ) -> Result<(), Failure> {
-        if let Self::Asked(target, existing) = std::mem::replace(self, Self::Closed) {
-            let output = target.begin(simulation, channels, provenance.clone(), existing)?;
-            *self = Self::Begun(output);
-        }
-        Ok(())
-    }
-
-    fn push(&mut self, simulation: &Simulation) -> Result<(), Failure> {
-        match self {
-            Self::Begun(output) => output.push(simulation),
-            Self::Asked(..) | Self::Closed => Ok(()),
-        }
-    }
-
-    fn end(&mut self, end: &End<'_>) -> Result<(), Failure> {
-        let Self::Begun(mut output) = std::mem::replace(self, Self::Closed) else {
-            return Ok(());
-        };
-        if let Some(judgement) = end.judgement {
-            output.judge(judgement);
-        }
-        output.tell(end.attributes);
-        output.finish(end.simulation, end.ending)
     }
 }
 

@@ -16,8 +16,8 @@ pub(crate) struct Resolve {
     scene: SceneArguments,
 }
 
-pub(crate) fn resolve(arguments: &Resolve) -> Result<(), Failure> {
-    let full = arguments.scene.load()?.resolved()?;
+pub(crate) fn resolve(arguments: &Resolve, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
+    let full = arguments.scene.load(interrupted)?.resolved()?;
     print(full.text().trim_end())
 }
 
@@ -33,8 +33,9 @@ pub(crate) struct Diff {
     second: String,
 }
 
-pub(crate) fn diff(arguments: &Diff) -> Result<(), Failure> {
-    let (first, second) = (load(&arguments.first)?, load(&arguments.second)?);
+pub(crate) fn diff(arguments: &Diff, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
+    let read = |name: &str| load(name, interrupted);
+    let (first, second) = (read(&arguments.first)?, read(&arguments.second)?);
     let found = differences(&first, &second)?;
     for difference in &found {
         print(difference)?;

@@ -81,7 +81,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
     let target = Target::of(arguments.output.as_deref())?;
-    let Request { scene, record, .. } = arguments.run.apply(&arguments.scene.load()?)?;
+    let Request { scene, record, .. } = arguments.run.apply(&arguments.scene.load(interrupted)?)?;
     // A scene suggests channels for a run; times the number of variants they are only kept on demand.
     let asked = arguments.run.asks_for_channels();
     let record = if asked { record } else { Vec::new() };

@@ -3,6 +3,7 @@
 mod bench;
 mod command;
 mod interrupt;
+mod resume;
 mod same_run;
 mod store_faults;
 mod sweep;

@@ -48,8 +48,8 @@ fn request(preset: &str, case: &[Choice]) -> Request {
     Request::new(&Scene::preset(preset).unwrap(), &settings).unwrap()
 }
 
-/// Every file of a store; of the group document the attributes, without wall times.
-fn files(store: &Path) -> BTreeMap<String, Vec<u8>> {
+/// Every file of a store, but for the group document and what a run goes on from.
+pub(crate) fn files(store: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut folders = vec![store.to_owned()];
     while let Some(folder) = folders.pop() {
@@ -59,7 +59,7 @@ fn files(store: &Path) -> BTreeMap<String, Vec<u8>> {
                 folders.push(path);
             } else {
                 let name = path.strip_prefix(store).unwrap().display().to_string();
-                if name != "zarr.json" {
+                if name != "zarr.json" && name != "checkpoint" {
                     found.insert(name, fs::read(&path).unwrap());
                 }
             }
@@ -69,7 +69,7 @@ fn files(store: &Path) -> BTreeMap<String, Vec<u8>> {
 }
 
 /// Attributes without what a clock had a say in.
-fn timeless(attributes: &Value) -> serde_json::Map<String, Value> {
+pub(crate) fn timeless(attributes: &Value) -> serde_json::Map<String, Value> {
     let mut attributes = attributes.as_object().unwrap().clone();
     for name in WALL {
         assert!(attributes.remove(name).is_some(), "{name}");

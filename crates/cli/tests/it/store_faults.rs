@@ -31,7 +31,7 @@ const LONG: [&str; 8] = [
     "-q",
 ];
 
-fn chaindrive(at: &Path, arguments: &[&str]) -> Command {
+pub(crate) fn chaindrive(at: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::cargo_bin("chaindrive").unwrap();
     command.current_dir(at).args(arguments);
     command.stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -39,22 +39,22 @@ fn chaindrive(at: &Path, arguments: &[&str]) -> Command {
 }
 
 /// Exit code and what was said on stderr.
-fn run(at: &Path, arguments: &[&str]) -> (Option<i32>, String) {
+pub(crate) fn run(at: &Path, arguments: &[&str]) -> (Option<i32>, String) {
     told(chaindrive(at, arguments).output().unwrap())
 }
 
-fn told(output: Output) -> (Option<i32>, String) {
+pub(crate) fn told(output: Output) -> (Option<i32>, String) {
     (
         output.status.code(),
         String::from_utf8(output.stderr).unwrap(),
     )
 }
 
-fn start(at: &Path, arguments: &[&str]) -> Child {
+pub(crate) fn start(at: &Path, arguments: &[&str]) -> Child {
     chaindrive(at, arguments).spawn().unwrap()
 }
 
-fn signal(child: &Child, name: &str) {
+pub(crate) fn signal(child: &Child, name: &str) {
     let sent = Command::new("kill")
         .args([name, &child.id().to_string()])
         .status()
@@ -62,7 +62,7 @@ fn signal(child: &Child, name: &str) {
     assert!(sent.success());
 }
 
-fn wait_for(what: &str, done: impl Fn() -> bool) {
+pub(crate) fn wait_for(what: &str, done: impl Fn() -> bool) {
     let begin = Instant::now();
     while !done() {
         assert!(begin.elapsed() < Duration::from_mins(1), "{what}");
@@ -70,18 +70,18 @@ fn wait_for(what: &str, done: impl Fn() -> bool) {
     }
 }
 
-fn group(store: &Path) -> Option<serde_json::Value> {
+pub(crate) fn group(store: &Path) -> Option<serde_json::Value> {
     let text = fs::read(store.join("zarr.json")).ok()?;
     // Whenever one looks, the document is whole.
     Some(serde_json::from_slice(&text).unwrap())
 }
 
-fn status(store: &Path) -> String {
+pub(crate) fn status(store: &Path) -> String {
     let group = group(store).unwrap();
     group["attributes"]["status"].as_str().unwrap().to_owned()
 }
 
-fn samples(store: &Path) -> u64 {
+pub(crate) fn samples(store: &Path) -> u64 {
     let held = |group: serde_json::Value| group["attributes"]["samples"].as_u64();
     group(store).and_then(held).unwrap_or(0)
 }
@@ -106,7 +106,7 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     found
 }
 
-fn names(folder: &Path) -> Vec<String> {
+pub(crate) fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
     let name = |entry: fs::DirEntry| entry.file_name().into_string().unwrap();
     let mut names: Vec<String> = entries.map(|entry| name(entry.unwrap())).collect();
@@ -248,7 +248,7 @@ fn a_run_that_is_not_to_hear_the_terminal_close_goes_on() {
 }
 
 /// A command in a shell that has made some settings first.
-fn wrapped(settings: &str, plain: &Command) -> Command {
+pub(crate) fn wrapped(settings: &str, plain: &Command) -> Command {
     let mut command = Command::new("sh");
     command
         .current_dir(plain.get_current_dir().unwrap())
@@ -306,7 +306,7 @@ fn with_a_part_removed_it_says_that_it_failed() {
 }
 
 /// A limit on the size of files stands for a disk that is full; its signal would kill the program.
-fn on_a_full_disk(blocks: u32, at: &Path, arguments: &[&str]) -> (Option<i32>, String) {
+pub(crate) fn on_a_full_disk(blocks: u32, at: &Path, arguments: &[&str]) -> (Option<i32>, String) {
     let settings = format!("trap '' XFSZ; ulimit -f {blocks}");
     let plain = chaindrive(at, arguments);
     told(wrapped(&settings, &plain).output().unwrap())

@@ -2,6 +2,7 @@
 
 use chaindrive_geometry::{Point, Vector};
 use nalgebra::{DVector, Matrix2};
+use serde::{Deserialize, Serialize};
 
 /// A coordinate that is unknown in equilibrium.
 #[derive(Clone, Copy, Debug)]
@@ -13,7 +14,7 @@ pub(crate) struct Unknown {
 }
 
 /// How far a point goes with one coordinate: entry, first and second derivative.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Way {
     pub(crate) entry: usize,
     pub(crate) first: Vector,

@@ -34,6 +34,7 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
 use nalgebra::Vector3;
 use pulp::Arch;
+use serde::{Deserialize, Serialize};
 
 pub(crate) use bearing::{Bearing, Part, Tally};
 pub(crate) use blocks::Blocks;
@@ -122,7 +123,7 @@ pub(crate) struct Linkage {
 }
 
 /// State of all joints at an accepted moment.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Memory {
     pub(crate) time: f64,
     pub(crate) joints: ContactMemory,
@@ -142,7 +143,7 @@ pub(crate) struct Idle {
 }
 
 /// What one evaluation of a linkage leaves behind.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Play {
     pub(crate) posture: Posture,
     /// Force and moment on every body \[N, N, N m\].
@@ -156,9 +157,13 @@ pub(crate) struct Play {
     pub(crate) elements: Vec<Element>,
     pub(crate) mounts: Vec<Mount>,
     pub(crate) tally: Tally,
+    // Work space, filled anew before it is read.
+    #[serde(skip)]
     pub(crate) blocks: Blocks,
+    #[serde(skip)]
     pub(crate) loose: Vec<loose::Loose>,
     /// Accelerations and inverse masses of particles, which the kernel of the teeth asks for and links have no use for.
+    #[serde(skip)]
     pub(crate) idle: Idle,
 }
 

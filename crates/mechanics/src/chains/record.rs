@@ -1,12 +1,14 @@
 //! What one evaluation of a chain leaves behind.
 
+use serde::{Deserialize, Serialize};
+
 use super::Way;
 use super::links::{Impulses, Play};
 use crate::contact::{ContactMemory, Frame, Touch, Wrench};
 use crate::system::BodyContacts;
 
 /// What the bodies that a chain touches feel of it, by contact.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[expect(
     clippy::vec_box,
     reason = "what changes hands at every step is a pointer, not seven vectors"
@@ -24,11 +26,12 @@ pub(crate) struct Loads {
 }
 
 /// Contact states, and the work space of the member.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Record {
     pub(crate) loads: Loads,
     /// What joints leave behind; empty where links are springs.
     pub(super) play: Play,
+    #[serde(skip)]
     pub(super) impulses: Impulses,
 }
 

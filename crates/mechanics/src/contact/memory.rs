@@ -8,6 +8,7 @@ use pulp::Simd;
 use serde::{Deserialize, Serialize};
 
 use super::window::FAR;
+use crate::MemoryError;
 use crate::lanes::{Lane, Lanes, LanesMut, Mask, Wide};
 
 /// State of contacts at one instant, one number a contact, whole lanes.
@@ -68,6 +69,21 @@ impl ContactMemory {
     pub(crate) fn closed(&self, index: usize) -> Option<(f64, f64)> {
         let inverse = self.inverse_onset[index];
         (inverse > 0.0).then(|| (1.0 / inverse, self.force[index]))
+    }
+
+    /// Refuses a memory of another number of contacts.
+    pub(crate) fn check(&self, count: usize) -> Result<(), MemoryError> {
+        for values in [
+            &self.inverse_onset,
+            &self.gap,
+            &self.closing,
+            &self.force,
+            &self.stick,
+            &self.share,
+        ] {
+            MemoryError::unless("contacts", values.len(), count)?;
+        }
+        Ok(())
     }
 
     fn all(&mut self) -> [&mut Vec<f64>; 6] {

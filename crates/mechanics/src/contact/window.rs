@@ -1,12 +1,13 @@
 //! Which rollers can touch a body before the windows are renewed.
 
 use chaindrive_geometry::{Point, Vector};
+use serde::{Deserialize, Serialize};
 
 use super::{Contacts, Frame, Shape, Teeth, Touch};
 use crate::lanes::LANES;
 
 /// A run of consecutive rollers, no more than one lane of eight holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Run {
     /// First roller.
     pub(crate) start: usize,

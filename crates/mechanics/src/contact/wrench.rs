@@ -1,11 +1,12 @@
 //! What contacts cost, how they began, and what rollers do to a body, all together.
 
 use pulp::Simd;
+use serde::{Deserialize, Serialize};
 
 use crate::lanes::{Lane, Mask, Wide};
 
 /// What the rollers do to a body, and what the step control wants to know.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Wrench {
     /// Force on the body \[N\].
     pub(crate) force: [f64; 2],

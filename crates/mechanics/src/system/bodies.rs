@@ -2,6 +2,7 @@
 
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
+use serde::{Deserialize, Serialize};
 
 use super::Slide;
 use super::inputs::Inputs;
@@ -82,7 +83,7 @@ pub(crate) enum RailSupport {
 }
 
 /// An angle whose cosine and sine are known.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Anchor {
     angle: f64,
     turn: [f64; 2],

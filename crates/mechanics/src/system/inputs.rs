@@ -4,13 +4,14 @@
 //! time, and the next one begins with the new forces.
 
 use chaindrive_integrate::slack;
+use serde::{Deserialize, Serialize};
 
 use super::{System, TurnedBy, WheelSupport};
-use crate::Motion;
 use crate::motion::Course;
+use crate::{MemoryError, Motion};
 
 /// What can be set from outside.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Input {
     /// Torque on a free shaft \[N m\], counter-clockwise positive, beside those of the scene.
     Torque {
@@ -33,7 +34,7 @@ pub enum Input {
 }
 
 /// The values at present, and the changes to come.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Inputs {
     torques: Vec<f64>,
     forces: Vec<f64>,
@@ -57,6 +58,15 @@ impl Inputs {
         let mut times = self.planned.iter().map(|(time, ..)| *time);
         times.find(|time| *time > t)
     }
+}
+
+/// A centre that goes on along an axis from where it was at a moment, as somebody has set it.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) struct OnwardCentre {
+    sprocket: usize,
+    axis: usize,
+    from: Course,
+    since: f64,
 }
 
 fn set(values: &mut Vec<f64>, index: usize, value: f64) {
@@ -118,6 +128,17 @@ impl System {
     }
 
     fn accelerate(&mut self, sprocket: usize, axis: usize, time: f64, acceleration: f64) {
+        if let Some(motion) = self.centre_motion(sprocket, axis) {
+            let from = Course {
+                acceleration,
+                ..motion.at(time)
+            };
+            *motion = Motion::Onward { from, since: time };
+        }
+    }
+
+    /// Motion of a centre along an axis, which a fixed one begins at rest; none where it moves by itself.
+    fn centre_motion(&mut self, sprocket: usize, axis: usize) -> Option<&mut Motion> {
         let support = &mut self.bodies.wheels[sprocket].support;
         if let WheelSupport::Fixed = support {
             *support = WheelSupport::Prescribed {
@@ -125,14 +146,46 @@ impl System {
                 y: Motion::Held,
             };
         }
-        if let WheelSupport::Prescribed { x, y } = support {
-            let motion = if axis == 0 { x } else { y };
-            let from = Course {
-                acceleration,
-                ..motion.at(time)
-            };
-            *motion = Motion::Onward { from, since: time };
+        match support {
+            WheelSupport::Prescribed { x, y } => Some(if axis == 0 { x } else { y }),
+            WheelSupport::Fixed | WheelSupport::Springs { .. } | WheelSupport::Carried(_) => None,
         }
+    }
+
+    /// Centres that go on as somebody has set them.
+    pub(super) fn centres_set(&self) -> Vec<OnwardCentre> {
+        let mut found = Vec::new();
+        for (sprocket, wheel) in self.bodies.wheels.iter().enumerate() {
+            let WheelSupport::Prescribed { x, y } = &wheel.support else {
+                continue;
+            };
+            for (axis, motion) in [x, y].into_iter().enumerate() {
+                if let Motion::Onward { from, since } = motion {
+                    found.push(OnwardCentre {
+                        sprocket,
+                        axis,
+                        from: *from,
+                        since: *since,
+                    });
+                }
+            }
+        }
+        found
+    }
+
+    /// Sets them again.
+    pub(super) fn set_centres(&mut self, centres: &[OnwardCentre]) -> Result<(), MemoryError> {
+        let sprockets = self.bodies.wheels.len();
+        for centre in centres {
+            let &OnwardCentre { sprocket, axis, .. } = centre;
+            MemoryError::unless_within("a motion of sprocket", sprocket + 1, sprockets)?;
+            let motion = self.centre_motion(sprocket, axis);
+            *motion.ok_or(MemoryError::Model)? = Motion::Onward {
+                from: centre.from,
+                since: centre.since,
+            };
+        }
+        Ok(())
     }
 
     /// Time \[s\] of the first event after t: a change of an input, or a knot of a table over time.

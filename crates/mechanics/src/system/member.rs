@@ -21,7 +21,7 @@ pub(crate) struct Member {
     /// Sprockets in path order, for the naming of spans.
     pub(crate) route: Vec<usize>,
     /// When the windows are renewed: latest time, and accepted steps to go.
-    renew: (f64, u32),
+    pub(super) renew: (f64, u32),
     /// ω² and damping rate of the stiffest mode.
     pub(crate) rates: [f64; 2],
 }

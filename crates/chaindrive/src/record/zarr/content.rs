@@ -74,6 +74,36 @@ impl Content {
         })
     }
 
+    /// Goes on behind the samples and contacts that are in the store, with the energy at the start of the run.
+    pub(super) fn go_on(
+        &mut self,
+        samples: u64,
+        contacts: u64,
+        start: Option<Energy>,
+    ) -> Result<(), Fault> {
+        self.start = start;
+        self.time.go_on(samples)?;
+        for (_, track) in &mut self.tracks {
+            track.go_on(samples)?;
+        }
+        match &mut self.events {
+            Some(events) => events.go_on(contacts),
+            None => Ok(()),
+        }
+    }
+
+    /// Every array that grows, with its last chunk in use.
+    pub(super) fn last_chunks(&self) -> Vec<(&'static str, u64)> {
+        let tracks = self.tracks.iter().map(|(_, track)| track);
+        let tracks = std::iter::once(&self.time).chain(tracks);
+        let mut all: Vec<_> = tracks.map(|it| (it.name, it.last_chunk())).collect();
+        if let Some(events) = &self.events {
+            let (last, names) = events.last_chunk();
+            all.extend(names.map(|name| (name, last)));
+        }
+        all
+    }
+
     /// Takes the last sample of the simulation, and the contacts that have ended.
     pub(super) fn push(&mut self, simulation: &Simulation) -> Result<(), Fault> {
         let sample = simulation.observation();

@@ -2,12 +2,16 @@
 
 use zarrs::array::{ArrayCreateError, ArrayError};
 use zarrs::group::GroupCreateError;
-use zarrs::storage::StorageError;
+use zarrs::storage::{StorageError, StoreKeyError};
 
 #[derive(Debug, thiserror::Error)]
 pub(super) enum Fault {
     #[error(transparent)]
     Storage(#[from] StorageError),
+    #[error(transparent)]
+    Key(#[from] StoreKeyError),
+    #[error("`{name}` does not hold the samples up to the checkpoint")]
+    Short { name: String },
     #[error(transparent)]
     Array(#[from] ArrayError),
     #[error(transparent)]

@@ -56,6 +56,61 @@ impl EventTracks {
         })
     }
 
+    /// Goes on behind the contacts that are in the store; what there is more of them is forgotten.
+    pub(super) fn go_on(&mut self, contacts: u64) -> Result<(), Fault> {
+        self.chunk = contacts / EVENTS_PER_CHUNK as u64;
+        let held = (contacts % EVENTS_PER_CHUNK as u64) as usize;
+        let place = [self.chunk];
+        for (column, array) in &mut self.arrays {
+            array.set_shape(vec![contacts])?;
+            if held == 0 {
+                continue;
+            }
+            let column = *column;
+            let short = || Fault::Short {
+                name: column.name().to_owned(),
+            };
+            let table = &mut self.pending;
+            let whole = match column {
+                EventColumn::Kind => {
+                    let names: Vec<String> = array.retrieve_chunk(&place)?;
+                    table.kind = known_kinds(&names[..held.min(names.len())]).ok_or_else(short)?;
+                    table.kind.len()
+                }
+                EventColumn::Body => {
+                    table.body = array.retrieve_chunk(&place)?;
+                    table.body.truncate(held);
+                    table.body.len()
+                }
+                EventColumn::Roller => {
+                    table.roller = array.retrieve_chunk(&place)?;
+                    table.roller.truncate(held);
+                    table.roller.len()
+                }
+                numbers => {
+                    let mut values: Vec<f64> = array.retrieve_chunk(&place)?;
+                    values.truncate(held);
+                    let count = values.len();
+                    if let Some(column) = table.numbers_mut(numbers) {
+                        *column = values;
+                    }
+                    count
+                }
+            };
+            if whole != held {
+                return Err(short());
+            }
+        }
+        self.stored = held;
+        Ok(())
+    }
+
+    /// The last chunk in use, and the names of the columns.
+    pub(super) fn last_chunk(&self) -> (u64, impl Iterator<Item = &'static str>) {
+        let names = self.arrays.iter().map(|(column, _)| column.name());
+        (self.chunk, names)
+    }
+
     /// Takes contacts; stores every chunk that is full.
     pub(super) fn push(&mut self, events: &[ContactEvent]) -> Result<(), Fault> {
         for event in events {
@@ -119,6 +174,12 @@ impl EventTracks {
             .iter()
             .try_for_each(|(_, array)| store_metadata(array))
     }
+}
+
+/// Kinds of contact by their names; none if there is another one.
+fn known_kinds(names: &[String]) -> Option<Vec<&'static str>> {
+    let known = |name: &String| EventTable::KINDS.into_iter().find(|kind| kind == name);
+    names.iter().map(known).collect()
 }
 
 fn filled<T: Clone>(mut values: Vec<T>, with: T) -> Vec<T> {

@@ -16,6 +16,9 @@ use zarrs::storage::{
     StorageError, StoreKey, StorePrefix, WritableStorageTraits, store_set_partial_many,
 };
 
+/// What the name of a file on its way ends in; readers of the store know no such key.
+const STAGED: &str = "#1";
+
 /// A folder with a store in the making.
 #[derive(Debug)]
 pub(super) struct Folder {
@@ -44,6 +47,32 @@ impl Folder {
                 files: HashSet::new(),
             }),
         })
+    }
+
+    /// Opens a folder with a store that was left, and clears away what was on its way when its writer died.
+    pub(super) fn open(root: &Path) -> io::Result<Self> {
+        let mut state = State {
+            root: root.to_owned(),
+            folders: HashSet::new(),
+            files: HashSet::new(),
+        };
+        state.take_in(Path::new(""))?;
+        Ok(Self {
+            itself: Handle::from_path(root)?,
+            state: Mutex::new(state),
+        })
+    }
+
+    /// Removes the chunks of an array whose index along the first dimension is beyond `last`.
+    pub(super) fn clear_behind(&self, array: &str, last: u64) -> Result<(), StorageError> {
+        let chunks = format!("{array}/c/");
+        let behind = |key: &StoreKey| {
+            let place = key.as_str().strip_prefix(&chunks)?;
+            let index: u64 = place.split('/').next()?.parse().ok()?;
+            (index > last).then(|| key.clone())
+        };
+        let keys: Vec<StoreKey> = self.state().files.iter().filter_map(behind).collect();
+        keys.iter().try_for_each(|key| self.erase(key))
     }
 
     /// Takes note that the folder was moved.
@@ -90,8 +119,7 @@ impl Folder {
             }
         }
         let path = state.root.join(key.as_str());
-        // The name of a file on its way; readers of the store know no such key.
-        let staged = state.root.join(format!("{key}#1"));
+        let staged = state.root.join(format!("{key}{STAGED}"));
         let written = fs::write(&staged, value).and_then(|()| fs::rename(&staged, &path));
         if written.is_err() {
             // Of the two errors the first says more.
@@ -99,6 +127,26 @@ impl Folder {
         }
         written?;
         state.files.insert(key.clone());
+        Ok(())
+    }
+}
+
+impl State {
+    /// Takes note of what is in a folder, given from the root.
+    fn take_in(&mut self, within: &Path) -> io::Result<()> {
+        for entry in fs::read_dir(self.root.join(within))? {
+            let entry = entry?;
+            let place = within.join(entry.file_name());
+            let name = place.to_string_lossy();
+            if entry.file_type()?.is_dir() {
+                self.take_in(&place)?;
+                self.folders.insert(place);
+            } else if name.ends_with(STAGED) {
+                fs::remove_file(entry.path())?;
+            } else if let Ok(key) = StoreKey::new(name) {
+                self.files.insert(key);
+            }
+        }
         Ok(())
     }
 }

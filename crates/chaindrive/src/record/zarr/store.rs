@@ -7,7 +7,9 @@ use std::sync::Arc;
 use serde_json::{Map, Value, json};
 use zarrs::group::Group;
 use zarrs::metadata::v3::{AdditionalFieldV3, GroupMetadataV3};
-use zarrs::storage::ReadableWritableStorageTraits;
+use zarrs::storage::{
+    ReadableStorageTraits, ReadableWritableStorageTraits, StoreKey, WritableStorageTraits,
+};
 
 use super::error::Fault;
 use super::folder::Folder;
@@ -22,7 +24,7 @@ pub(super) type Storage = Arc<dyn ReadableWritableStorageTraits>;
 const RESERVE: usize = 1 << 16;
 
 /// A store with its claim, its files, and the last group document.
-pub(super) struct Store {
+pub(in crate::record) struct Store {
     path: PathBuf,
     claim: Claim,
     folder: Arc<Folder>,
@@ -68,7 +70,63 @@ impl Store {
         })
     }
 
-    pub(super) fn path(&self) -> &Path {
+    /// Claims a store that was left, to go on with it. It says what it said until the next [`tell`](Self::tell).
+    pub(super) fn reopen(path: &Path) -> Result<Self, WriteError> {
+        let io = |source| WriteError::Io {
+            path: path.to_owned(),
+            source,
+        };
+        let claim = Claim::take(path)?;
+        let group = target::group(path, claim.place())?;
+        let folder = Arc::new(Folder::open(claim.place()).map_err(io)?);
+        let entries = |value: &Value| value.as_object().cloned().unwrap_or_default();
+        Ok(Self {
+            path: path.to_owned(),
+            claim,
+            storage: folder.clone(),
+            folder,
+            last: Document {
+                attributes: entries(&group["attributes"]),
+                arrays: entries(&group["consolidated_metadata"]["metadata"]),
+            },
+            // Nothing new has been said that could be broken off.
+            ended: true,
+        })
+    }
+
+    /// Goes on: from here on the store is being written.
+    pub(super) fn go_on(&mut self) -> Result<(), WriteError> {
+        self.ended = false;
+        self.set_aside()
+    }
+
+    /// What the store says about itself.
+    pub(super) fn attributes(&self) -> &Map<String, Value> {
+        &self.last.attributes
+    }
+
+    /// A file of its own, beside the arrays.
+    pub(super) fn read(&self, key: &str) -> Result<Option<Vec<u8>>, Fault> {
+        let bytes = self.folder.get(&StoreKey::new(key)?)?;
+        Ok(bytes.map(Vec::from))
+    }
+
+    /// Puts such a file in place, whole or not at all.
+    pub(super) fn put(&self, key: &str, bytes: Vec<u8>) -> Result<(), Fault> {
+        Ok(self.folder.set(&StoreKey::new(key)?, bytes.into())?)
+    }
+
+    /// Removes it, if it is there.
+    pub(super) fn remove(&self, key: &str) -> Result<(), Fault> {
+        Ok(self.folder.erase(&StoreKey::new(key)?)?)
+    }
+
+    /// Removes the chunks of an array behind the last that is used.
+    pub(super) fn clear_behind(&self, array: &str, last: u64) -> Result<(), Fault> {
+        Ok(self.folder.clear_behind(array, last)?)
+    }
+
+    pub(in crate::record) fn path(&self) -> &Path {
         &self.path
     }
 
@@ -78,15 +136,20 @@ impl Store {
 
     /// Puts the store in place, with space set aside for its last words.
     pub(super) fn publish(&self) -> Result<(), WriteError> {
+        self.set_aside()?;
+        self.claim.put_in_place()?;
+        self.folder.moved_to(self.claim.place());
+        Ok(())
+    }
+
+    /// Sets space aside for the last words.
+    fn set_aside(&self) -> Result<(), WriteError> {
         let document = json!([self.last.attributes, self.last.arrays]).to_string();
         let reserved = self.claim.reserve(2 * document.len() + RESERVE);
         reserved.map_err(|source| WriteError::Io {
             path: self.path.clone(),
             source,
-        })?;
-        self.claim.put_in_place()?;
-        self.folder.moved_to(self.claim.place());
-        Ok(())
+        })
     }
 
     /// Writes the group document: from here on readers see what it lists.

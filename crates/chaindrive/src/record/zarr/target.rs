@@ -10,6 +10,9 @@ use super::Existing;
 use crate::record::attributes::FORMAT;
 use crate::record::error::WriteError;
 
+/// What a run goes on from, beside the arrays.
+pub(super) const CHECKPOINT: &str = "checkpoint";
+
 /// The document that makes a folder a Zarr group.
 const GROUP: &str = "zarr.json";
 
@@ -41,7 +44,11 @@ pub(super) fn check(asked: &Path, place: &Path, existing: Existing) -> Result<()
     let known = |name: &str| {
         // What a killed run leaves of a file it was about to put in place: `zarr.json#1`.
         let staged = name.starts_with(&format!("{GROUP}#"));
-        name == GROUP || staged || arrays.is_some_and(|arrays| arrays.contains_key(name))
+        let checkpoint = name == CHECKPOINT || name == format!("{CHECKPOINT}#1");
+        name == GROUP
+            || staged
+            || checkpoint
+            || arrays.is_some_and(|arrays| arrays.contains_key(name))
     };
     let names = entries
         .iter()
@@ -56,7 +63,7 @@ pub(super) fn check(asked: &Path, place: &Path, existing: Existing) -> Result<()
 }
 
 /// The group document of an earlier result; an error if the folder is anything else.
-fn group(asked: &Path, place: &Path) -> Result<Value, WriteError> {
+pub(super) fn group(asked: &Path, place: &Path) -> Result<Value, WriteError> {
     let not_ours = || foreign(asked, "this folder is not a result of chaindrive".into());
     let text = fs::read(place.join(GROUP)).map_err(|_| not_ours())?;
     let group: Value = serde_json::from_slice(&text).map_err(|_| not_ours())?;

@@ -76,6 +76,35 @@ impl Track {
         })
     }
 
+    /// Goes on behind the samples that are in the store; what there is more of them is forgotten.
+    pub(super) fn go_on(&mut self, samples: u64) -> Result<(), Fault> {
+        self.set_length(samples)?;
+        self.chunk = samples / self.samples as u64;
+        let held = (samples % self.samples as u64) as usize * self.width;
+        if held > 0 {
+            let stored: Vec<f64> = self.array.retrieve_chunk(&self.place())?;
+            let kept = stored.get(..held).ok_or_else(|| Fault::Short {
+                name: self.name.to_owned(),
+            })?;
+            self.pending.extend_from_slice(kept);
+        }
+        self.stored = held;
+        Ok(())
+    }
+
+    /// The last chunk in use.
+    pub(super) fn last_chunk(&self) -> u64 {
+        self.chunk
+    }
+
+    fn place(&self) -> Vec<u64> {
+        let mut place = vec![self.chunk];
+        if self.array.dimensionality() > 1 {
+            place.push(0);
+        }
+        place
+    }
+
     /// Takes one sample, written by `read`; stores the chunk when it is full.
     pub(super) fn push(&mut self, read: impl FnOnce(&mut Vec<f64>)) -> Result<(), Fault> {
         read(&mut self.pending);
@@ -94,10 +123,7 @@ impl Track {
         if held == self.stored {
             return Ok(());
         }
-        let mut place = vec![self.chunk];
-        if self.array.dimensionality() > 1 {
-            place.push(0);
-        }
+        let place = self.place();
         self.pending.resize(self.samples * self.width, f64::NAN);
         // A chunk of nothing but NaN is stored as well: the readers need not know why it is missing.
         let options = CodecOptions::default().with_store_empty_chunks(true);

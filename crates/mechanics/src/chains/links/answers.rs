@@ -2,9 +2,10 @@
 
 use chaindrive_integrate::Moment;
 
-use super::{Joining, Linkage, Shapes};
+use super::{Joining, Linkage, Memory, Shapes};
 use crate::chains::{Pose, Record};
-use crate::{End, Motion};
+use crate::lanes::padded;
+use crate::{End, MemoryError, Motion};
 
 impl Linkage {
     /// Coordinates of the chain.
@@ -66,6 +67,18 @@ impl Linkage {
 
     pub(crate) fn commit(&mut self, _t: f64, _q: &mut [f64], _v: &mut [f64], record: &mut Record) {
         std::mem::swap(&mut self.memory, &mut record.play.memory);
+    }
+
+    /// Goes on from what the joints remembered.
+    pub(crate) fn remember(&mut self, memory: Memory) -> Result<(), MemoryError> {
+        if self.has_play() {
+            memory.joints.check(padded(self.joints.len()))?;
+        }
+        if self.free_rollers.is_some() {
+            memory.bushes.check(self.joints.len())?;
+        }
+        self.memory = memory;
+        Ok(())
     }
 
     /// Moves every body, and turns none.

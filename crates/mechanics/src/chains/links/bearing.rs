@@ -7,6 +7,7 @@
 use chaindrive_contact::{Approach, Prepared, Response};
 use chaindrive_geometry::{Point, Vector};
 use pulp::Simd;
+use serde::{Deserialize, Serialize};
 
 use super::element::{Element, Partner};
 use crate::contact::{FAR, LaneTally, MemoryLanes, SurfaceLaw};
@@ -41,7 +42,7 @@ pub(crate) struct Part {
 }
 
 /// What a contact costs, and how it began.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Tally {
     /// Power lost along the normal \[W\].
     pub(crate) normal_loss: f64,

@@ -1,9 +1,10 @@
 //! One closed contact, as the forces it exerts and as rows of the implicit system.
 
 use chaindrive_geometry::Vector;
+use serde::{Deserialize, Serialize};
 
 /// The other side of a contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Partner {
     /// Something that does not answer: the frame, or a bush whose motion is given.
     Ground,
@@ -14,7 +15,7 @@ pub(crate) enum Partner {
 }
 
 /// How a wheel or rail can move: which border unknowns shift its frame, and which one turns it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Mount {
     /// (border unknown, shift of the frame's origin per unit); unused ones have no unknown.
     pub(crate) shifts: [Option<(usize, Vector)>; 2],
@@ -32,7 +33,7 @@ pub(crate) struct Mount {
 ///
 /// v is the velocity of the circles' centres, arm leads from a body's centre of mass to it, and ℓ
 /// from there along n to the touching point, which is the same for both.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Element {
     /// Joint that it stands at.
     pub(crate) joint: usize,

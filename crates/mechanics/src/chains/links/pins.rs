@@ -9,6 +9,7 @@
 
 use chaindrive_geometry::Vector;
 use pulp::{Simd, WithSimd};
+use serde::{Deserialize, Serialize};
 
 use super::bearing::Apart;
 use super::{Bearing, Element, JointMates, Linkage, Mate, Partner, Posture, Tally};
@@ -16,7 +17,7 @@ use crate::contact::{ContactMemory, LaneTally, MemoryLanes};
 use crate::lanes::{LANES, Wide, padded};
 
 /// What the joints exert, whole lanes.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Pins {
     /// Gap \[m\] and normal force \[N\]. The memory has them too, but changes hands when a step is accepted.
     pub(crate) gap: Vec<f64>,

@@ -3,6 +3,7 @@
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 use pulp::{Simd, WithSimd};
+use serde::{Deserialize, Serialize};
 
 use super::bearing::Part;
 use super::{Linkage, Mate};
@@ -21,7 +22,7 @@ pub(crate) struct Tip {
 }
 
 /// One side of every joint, whole lanes: places, velocities, arms from the centre of mass, angular speeds.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Sides {
     pub(crate) x: Vec<f64>,
     pub(crate) y: Vec<f64>,
@@ -36,7 +37,7 @@ pub(crate) struct Sides {
 ///
 /// Link i lies between the joints i and i + 1; behind the last link of a closed chain comes joint 0 again, once more
 /// under the number after the last.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Posture {
     /// At every joint the end of the link before it.
     pub(crate) before: Sides,

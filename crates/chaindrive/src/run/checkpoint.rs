@@ -1,0 +1,154 @@
+//! What a run goes on from when it was stopped or killed.
+
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Given, Request, Run};
+use crate::precision::Choice;
+use crate::record::{Provenance, Summary};
+use crate::scene::SceneError;
+use crate::seal::{Sealed, opened, sealed};
+use crate::{RequestError, Scene, SealError, Simulation, SimulationError, Snapshot};
+
+/// A run at one of its moments, with everything that does not follow from the scene: a run that goes on from here is
+/// the run that was never stopped, to the last bit.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Checkpoint {
+    scene: String,
+    scene_name: String,
+    run: Run,
+    record: Vec<String>,
+    estimate: bool,
+    every: Option<f64>,
+    choice: Option<Choice>,
+    /// Wall time of the run so far, and that of its stepping \[s\].
+    spent: [f64; 2],
+    pub(super) summary: Summary,
+    pub(super) snapshot: Snapshot,
+}
+
+impl Sealed for Checkpoint {
+    const KIND: &'static str = "checkpoint";
+}
+
+impl Checkpoint {
+    /// A run as it is now.
+    pub(super) fn of(
+        request: &Request,
+        provenance: &Provenance,
+        simulation: &Simulation,
+        summary: &Summary,
+    ) -> Self {
+        Self {
+            scene: provenance.scene.clone(),
+            scene_name: provenance.scene_name.clone(),
+            run: provenance.run.clone(),
+            record: request.record.clone(),
+            estimate: request.estimate,
+            every: request.checkpoint_every,
+            choice: provenance.choice.clone(),
+            spent: [
+                provenance.wall_time().as_secs_f64(),
+                simulation.stepping_time(),
+            ],
+            summary: summary.clone(),
+            snapshot: simulation.snapshot(),
+        }
+    }
+
+    /// The checkpoint as bytes.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        sealed(self)
+    }
+
+    /// The checkpoint that was written down.
+    ///
+    /// # Errors
+    /// [`SealError`]: something else, damaged, or of another version.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, SealError> {
+        opened(bytes)
+    }
+
+    /// Whether a scene is that of the run, whatever its end: one that is carried on farther is still the same.
+    pub(crate) fn is_of(&self, scene: &str) -> bool {
+        let endless = |text: &str| {
+            let scene = Scene::from_text(text, &self.scene_name)?;
+            scene.replace_json("run.until", &self.run.until.into())
+        };
+        match (endless(scene), endless(&self.scene)) {
+            (Ok(scene), Ok(own)) => scene.text() == own.text(),
+            _ => false,
+        }
+    }
+
+    /// File or preset that the scene was read from.
+    pub fn scene_name(&self) -> &str {
+        &self.scene_name
+    }
+
+    /// Samples taken so far.
+    pub fn samples(&self) -> u64 {
+        self.summary.samples
+    }
+
+    /// Logged contacts that have ended so far.
+    pub fn contacts(&self) -> u64 {
+        self.summary.ended()
+    }
+
+    /// Time that the simulation has reached \[s\].
+    pub fn time(&self) -> f64 {
+        self.snapshot.time()
+    }
+
+    /// End of the run \[s\].
+    pub fn until(&self) -> f64 {
+        self.run.until
+    }
+
+    /// Another end, not before the last sample.
+    ///
+    /// # Errors
+    /// A text that is no time, an end that lies behind or leaves too many samples.
+    pub(crate) fn extend(&mut self, until: &Given) -> Result<(), RequestError> {
+        let scene = Scene::from_text(&self.scene, &self.scene_name)?;
+        let time = until.time(&scene, "until")?;
+        let reached = self.summary.samples.saturating_sub(1) as f64 * self.run.every;
+        if time.is_nan() || time < reached {
+            let until = time;
+            return Err(SimulationError::Ended { until, reached }.into());
+        }
+        let run = Run {
+            until: time,
+            ..self.run.clone()
+        };
+        run.check()?;
+        self.scene = until.put(&scene, "run.until")?.text().to_owned();
+        self.run = run;
+        Ok(())
+    }
+
+    /// What was asked for, with method and step as they were chosen.
+    pub(super) fn request(&self) -> Result<Request, SceneError> {
+        Ok(Request {
+            scene: Scene::from_text(&self.scene, &self.scene_name)?,
+            run: self.run.clone(),
+            record: self.record.clone(),
+            accuracy: None,
+            estimate: self.estimate,
+            checkpoint_every: self.every,
+        })
+    }
+
+    /// How method and step were chosen.
+    pub(super) fn choice(&self) -> Option<&Choice> {
+        self.choice.as_ref()
+    }
+
+    /// Wall time spent on the run and on its stepping before it was stopped.
+    pub(super) fn spent(&self) -> [Duration; 2] {
+        let time = |seconds: f64| Duration::try_from_secs_f64(seconds).unwrap_or_default();
+        self.spent.map(time)
+    }
+}

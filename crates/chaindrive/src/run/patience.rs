@@ -1,0 +1,56 @@
+//! Work that nobody can interrupt, without having to wait for its end.
+
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
+
+use crate::SimulationError;
+
+/// Wall time between two looks at whoever may want to stop.
+pub(crate) const LOOK: Duration = Duration::from_millis(50);
+
+/// Does something on a thread of its own, and gives it up when somebody wants to stop: reading from a pipe, or a chain
+/// that settles. The thread is left to itself then.
+///
+/// # Errors
+/// [`SimulationError::Interrupted`], or [`SimulationError::Thread`] where the system has none.
+pub fn patiently<T: Send + 'static>(
+    work: impl FnOnce() -> T + Send + 'static,
+    stop: &dyn Fn() -> bool,
+) -> Result<T, SimulationError> {
+    let (sender, receiver) = channel();
+    let thread = std::thread::Builder::new().spawn(move || {
+        // Nobody listens any more after an interrupt.
+        sender.send(work()).ok();
+    });
+    let thread = thread.map_err(|error| SimulationError::Thread {
+        reason: error.to_string(),
+    })?;
+    loop {
+        match receiver.recv_timeout(LOOK) {
+            Ok(done) => return Ok(done),
+            Err(RecvTimeoutError::Timeout) if stop() => return Err(SimulationError::Interrupted),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => match thread.join() {
+                Err(panic) => std::panic::resume_unwind(panic),
+                Ok(()) => return Err(SimulationError::Interrupted),
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Instant;
+
+    use super::*;
+
+    #[test]
+    fn what_takes_for_ever_is_given_up() {
+        let begin = Instant::now();
+        let asleep = || std::thread::sleep(Duration::from_secs(60));
+        let given_up = patiently(asleep, &|| begin.elapsed() > Duration::from_millis(10));
+        assert!(matches!(given_up, Err(SimulationError::Interrupted)));
+        assert!(begin.elapsed() < Duration::from_secs(30));
+        assert_eq!(patiently(|| 7, &|| false).unwrap(), 7);
+    }
+}

@@ -1,0 +1,136 @@
+//! Values as bytes that say what they are, by which version, and whether they are whole.
+//!
+//! ```text
+//! chaindrive checkpoint, layout 1, version 0.1.0, checksum 5f3a9c01↵
+//! the value, by postcard: every number to its last bit
+//! ```
+//!
+//! The layout of a value changes with the program, so that only the version that wrote it reads it.
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+/// Counts up when the form of the bytes changes within a version of the program.
+const LAYOUT: u32 = 1;
+
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// What can be written down.
+pub(crate) trait Sealed: Serialize + DeserializeOwned {
+    /// Its name in messages and in the first line.
+    const KIND: &'static str;
+}
+
+/// Why bytes cannot be read back.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "each message names its fields")]
+pub enum SealError {
+    /// They are something else.
+    #[error("this is no {kind} of chaindrive")]
+    Foreign { kind: &'static str },
+
+    /// Another version has written them.
+    #[error(
+        "the {kind} was written by chaindrive {found}, and this is {VERSION} with another layout; go on with the \
+         program that wrote it, or begin anew"
+    )]
+    Version { kind: &'static str, found: String },
+
+    /// They are not all there, or not what was written.
+    #[error("the {kind} is damaged: its content is not what was written")]
+    Damaged { kind: &'static str },
+}
+
+/// A value as bytes.
+///
+/// # Panics
+/// Never: the values are plain data, and the memory takes them.
+pub(crate) fn sealed<T: Sealed>(value: &T) -> Vec<u8> {
+    let content = postcard::to_stdvec(value).expect("plain data has a length known beforehand");
+    let mut bytes = heading::<T>(&content).into_bytes();
+    bytes.extend(content);
+    bytes
+}
+
+/// The value that bytes were made of.
+pub(crate) fn opened<T: Sealed>(bytes: &[u8]) -> Result<T, SealError> {
+    let kind = T::KIND;
+    let foreign = || SealError::Foreign { kind };
+    let end = bytes.iter().position(|byte| *byte == b'\n');
+    let (line, content) = bytes.split_at(end.ok_or_else(foreign)?);
+    let content = &content[1..];
+    let line = str::from_utf8(line).map_err(|_| foreign())?;
+    let parts: Vec<&str> = line.split(", ").collect();
+    let &[what, layout, version, _] = parts.as_slice() else {
+        return Err(foreign());
+    };
+    if what != format!("chaindrive {kind}") {
+        return Err(foreign());
+    }
+    if layout != format!("layout {LAYOUT}") || version != format!("version {VERSION}") {
+        return Err(SealError::Version {
+            kind,
+            found: version.trim_start_matches("version ").to_owned(),
+        });
+    }
+    if format!("{line}\n") != heading::<T>(content) {
+        return Err(SealError::Damaged { kind });
+    }
+    postcard::from_bytes(content).map_err(|_| SealError::Damaged { kind })
+}
+
+fn heading<T: Sealed>(content: &[u8]) -> String {
+    let (kind, checksum) = (T::KIND, crc32fast::hash(content));
+    format!("chaindrive {kind}, layout {LAYOUT}, version {VERSION}, checksum {checksum:08x}\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use serde::Deserialize;
+
+    use super::*;
+
+    #[derive(Debug, Serialize, Deserialize)]
+    struct Numbers(Vec<f64>);
+
+    impl Sealed for Numbers {
+        const KIND: &'static str = "list";
+    }
+
+    #[derive(Debug, Serialize, Deserialize)]
+    struct Others(Vec<f64>);
+
+    impl Sealed for Others {
+        const KIND: &'static str = "table";
+    }
+
+    #[test]
+    fn every_bit_comes_back() {
+        let odd = [f64::NAN, -0.0, f64::NEG_INFINITY, 0.1, f64::from_bits(1)];
+        let numbers = Numbers([&odd[..], &[f64::from_bits(0x7ff8_dead_beef_0001)]].concat());
+        let Numbers(back) = opened(&sealed(&numbers)).unwrap();
+        let bits = |values: &[f64]| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&back), bits(&numbers.0));
+    }
+
+    /// Any byte changed and any length cut is noticed, and nothing else is taken for it.
+    #[test]
+    fn what_is_not_whole_is_refused() {
+        let bytes = sealed(&Numbers(vec![1.0, 2.0]));
+        for place in 0..bytes.len() {
+            let mut wrong = bytes.clone();
+            wrong[place] ^= 1;
+            opened::<Numbers>(&wrong).unwrap_err();
+            opened::<Numbers>(&bytes[..place]).unwrap_err();
+        }
+        let kind = "table";
+        assert_eq!(
+            opened::<Others>(&bytes).unwrap_err(),
+            SealError::Foreign { kind }
+        );
+        let text = String::from_utf8_lossy(&bytes).replace("version 0", "version 9");
+        let error = opened::<Numbers>(text.as_bytes()).unwrap_err();
+        assert!(matches!(error, SealError::Version { .. }), "{error}");
+    }
+}

@@ -1,0 +1,185 @@
+//! A simulation as it was at a moment: in memory, or as bytes for a file or another process.
+
+use std::fmt::{self, Write};
+use std::sync::Arc;
+
+use chaindrive_integrate::{IntegrationError, State, StepperMemory};
+use chaindrive_mechanics::{ContactEvent, Energy, MemoryError, Observation, Record, SystemMemory};
+use serde::{Deserialize, Serialize};
+
+use super::{Moving, Simulation};
+use crate::SealError;
+use crate::seal::{Sealed, opened, sealed};
+
+/// A simulation as it was at a moment, to the last bit: contacts, windows and the time stepping with its memory.
+///
+/// What follows from the drive is not in it: a snapshot is put back into a simulation of the same drive that was begun
+/// in the same way.
+///
+/// # Example
+///
+/// ```
+/// use chaindrive::{Run, Scene, Simulation, Snapshot};
+///
+/// let drive = Scene::preset("spinning_ring")?.drive()?;
+/// let mut simulation = Simulation::start(&drive, &Run::default())?;
+/// simulation.advance_to(1e-3)?;
+/// let bytes = simulation.snapshot().to_bytes();
+/// let tension = simulation.advance_to(2e-3)?.link_tension[0];
+///
+/// let mut another = Simulation::start(&drive, &Run::default())?;
+/// another.restore(&Snapshot::from_bytes(&bytes)?)?;
+/// assert_eq!(another.advance_to(2e-3)?.link_tension[0].to_bits(), tension.to_bits());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Snapshot {
+    /// Of the simulation, see [`Simulation::fingerprint`].
+    fingerprint: u32,
+    moving: Remembered,
+    before: Option<Remembered>,
+    read: f64,
+    next: u64,
+    observation: Box<Observation>,
+    start_energy: Option<Energy>,
+}
+
+/// What of a drive in motion does not follow from the drive.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Remembered {
+    system: SystemMemory,
+    state: State,
+    stepper: StepperMemory<Record>,
+    ended: [Vec<ContactEvent>; 2],
+}
+
+/// Why a simulation cannot go back to a snapshot.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SnapshotError {
+    /// It is of something else.
+    #[error(
+        "the snapshot is of another drive, or of a simulation that was begun with another method, step or interval"
+    )]
+    Other,
+
+    /// Its parts are not those of the drive.
+    #[error("the snapshot does not fit: {0}")]
+    Memory(#[from] MemoryError),
+
+    /// Its state is not that of the drive.
+    #[error("the snapshot does not fit: {0}")]
+    State(#[from] IntegrationError),
+}
+
+impl Sealed for Snapshot {
+    const KIND: &'static str = "snapshot";
+}
+
+impl Snapshot {
+    /// Time that the simulation had reached \[s\].
+    pub(crate) fn time(&self) -> f64 {
+        self.moving.state.t
+    }
+
+    /// The snapshot as bytes, for this version of the program to read back.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        sealed(self)
+    }
+
+    /// The snapshot that was written down.
+    ///
+    /// # Errors
+    /// [`SealError`]: something else, damaged, or of another version.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, SealError> {
+        opened(bytes)
+    }
+}
+
+impl Simulation {
+    /// The simulation as it is now.
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot {
+            fingerprint: self.fingerprint(),
+            moving: self.moving.remembered(),
+            before: self.before.as_ref().map(|before| before.remembered()),
+            read: self.read,
+            next: self.next,
+            observation: Box::new(self.observation.clone()),
+            start_energy: self.start_energy,
+        }
+    }
+
+    /// Goes back, or on, to what a snapshot holds; wall time spent is not taken back.
+    ///
+    /// # Errors
+    /// [`SnapshotError`] for a snapshot of something else. Nothing is changed then.
+    pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), SnapshotError> {
+        if snapshot.fingerprint != self.fingerprint() {
+            return Err(SnapshotError::Other);
+        }
+        let moving = self.recalled(&snapshot.moving)?;
+        let before = snapshot.before.as_ref();
+        let before = before.map(|before| self.recalled(before).map(Box::new));
+        self.before = before.transpose()?;
+        self.moving = moving;
+        self.read = snapshot.read;
+        self.next = snapshot.next;
+        self.observation.clone_from(&snapshot.observation);
+        self.start_energy = snapshot.start_energy;
+        Ok(())
+    }
+
+    /// The drive in motion that remembers what it did then.
+    fn recalled(&self, then: &Remembered) -> Result<Moving, SnapshotError> {
+        let mut system = self.assembled.system.clone();
+        system.set_onset_depth(self.moving.system.onset_depth());
+        system.log_events(self.events);
+        system.remember(then.system.clone())?;
+        if let Some(record) = then.stepper.record() {
+            system.check_record(record)?;
+        }
+        let mut stepper = self.moving.stepper.clone();
+        stepper.remember(&system, &then.state, then.stepper.clone())?;
+        Ok(Moving {
+            system,
+            state: then.state.clone(),
+            stepper,
+            ended: then.ended.clone(),
+        })
+    }
+
+    /// A number that tells simulations apart whose snapshots do not go together: the drive in full, the method with its step,
+    /// the interval between samples, and what is logged.
+    fn fingerprint(&self) -> u32 {
+        let mut print = Fingerprint::default();
+        let assembled = Arc::as_ref(&self.assembled);
+        let depth = self.moving.system.onset_depth();
+        let begun = (self.moving.stepper.method(), self.every, depth, self.events);
+        // Nothing is written anywhere that could refuse.
+        let _ = write!(print, "{:?} {begun:?}", assembled.drive);
+        print.0.finalize()
+    }
+}
+
+impl Moving {
+    fn remembered(&self) -> Remembered {
+        Remembered {
+            system: self.system.memory(),
+            state: self.state.clone(),
+            stepper: self.stepper.memory(),
+            ended: self.ended.clone(),
+        }
+    }
+}
+
+/// The checksum of a text that is never put together.
+#[derive(Default)]
+struct Fingerprint(crc32fast::Hasher);
+
+impl Write for Fingerprint {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.0.update(text.as_bytes());
+        Ok(())
+    }
+}

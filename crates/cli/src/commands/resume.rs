@@ -1,0 +1,51 @@
+//! `chaindrive resume`: carry a run on that was stopped or killed.
+
+use std::path::PathBuf;
+
+use chaindrive::Given;
+use chaindrive::record::Stopped;
+use clap::Args;
+
+use super::run::{Terminal, concluded, not_run};
+use crate::failure::Failure;
+
+const CHECKPOINTS: &str = "\
+What there is to go on from:
+  Ctrl-C and SIGTERM leave a checkpoint in a Zarr result, and a run with --checkpoint-every leaves one at
+  its beginning, under way and at its end. What the result holds behind the checkpoint is simulated again:
+  in the end it is that of a run that was never stopped, to the last bit, but for the wall times.
+  Only the version that wrote a checkpoint reads it.";
+
+/// Carries on a run that was stopped or killed, or a complete one to a later end.
+#[derive(Debug, Args)]
+#[command(after_help = CHECKPOINTS)]
+pub(crate) struct Arguments {
+    /// The Zarr result of the run
+    #[arg(value_name = "RESULT")]
+    result: PathBuf,
+
+    /// Another end of the run than was asked for, such as "2 s"
+    #[arg(long, value_name = "TIME")]
+    until: Option<String>,
+
+    /// Prints errors only, and a line if the result is not to be trusted
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+pub(crate) fn resume(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
+    let until = arguments.until.clone().map(Given::Text);
+    let stopped = Stopped::open(&arguments.result, until.as_ref())?;
+    let checkpoint = stopped.checkpoint();
+    if !arguments.quiet {
+        let (time, until) = (checkpoint.time(), checkpoint.until());
+        let samples = checkpoint.samples();
+        eprintln!("going on from t = {time:.6} s of {until} s, behind {samples} samples");
+    }
+    let scene = checkpoint.scene_name().to_owned();
+    let terminal = Terminal::new(arguments.quiet, interrupted);
+    let report = stopped.resume(&terminal);
+    let report = report.map_err(|error| not_run(error, &scene))?;
+    drop(terminal);
+    concluded(report, &scene, arguments.quiet)
+}

@@ -1,0 +1,550 @@
+//! Runs that are killed, stopped and carried on are the runs that were not, to the last bit.
+#![cfg(unix)]
+#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
+
+use std::fs;
+use std::path::Path;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use crate::same_run::{files, timeless};
+use crate::store_faults::{
+    chaindrive, group, names, on_a_full_disk, run, signal, start, status, wait_for,
+};
+
+/// What is run, how it is changed, and the simulated time between two checkpoints.
+struct Case {
+    name: &'static str,
+    scene: &'static [&'static str],
+    checkpoint_every: &'static str,
+}
+
+const LUGRE: &str = "contact.joints.friction={ kind = \"lugre\", static_coefficient = 0.15, coefficient = 0.1, \
+                     slip_speed = 0.01, stiffness = 1e5 }";
+
+/// Particles with guides and a tensioner, pins with play and without, bristles, and error control.
+const CASES: [Case; 6] = [
+    Case {
+        name: "particles",
+        scene: &["marine_engine", "--until", "40 ms", "--method", "verlet"],
+        checkpoint_every: "1 ms",
+    },
+    Case {
+        name: "a hydraulic arm",
+        scene: &[
+            "timing_drive",
+            "--until",
+            "2 ms",
+            "--method",
+            "dormand-prince",
+        ],
+        checkpoint_every: "50 us",
+    },
+    Case {
+        name: "clearance joints",
+        scene: &[
+            "bicycle",
+            "--until",
+            "10 ms",
+            "--method",
+            "implicit-damping",
+        ],
+        checkpoint_every: "0.3 ms",
+    },
+    Case {
+        name: "ideal joints",
+        scene: &[
+            "bicycle",
+            "--set",
+            "chain.model=ideal-joints",
+            "--until",
+            "1 ms",
+            "--method",
+            "auto",
+        ],
+        checkpoint_every: "30 us",
+    },
+    Case {
+        name: "bristles",
+        scene: &[
+            "bicycle",
+            "--set",
+            LUGRE,
+            "--until",
+            "10 ms",
+            "--method",
+            "implicit-damping",
+        ],
+        checkpoint_every: "0.3 ms",
+    },
+    Case {
+        name: "generalized alpha",
+        scene: &[
+            "bicycle",
+            "--until",
+            "1 ms",
+            "--method",
+            "generalized-alpha",
+        ],
+        checkpoint_every: "20 us",
+    },
+];
+
+impl Case {
+    fn arguments(&self) -> Vec<&'static str> {
+        let recorded = [
+            "--every",
+            "10 us",
+            "--record",
+            "all",
+            "--events",
+            "teeth,guides,joints",
+        ];
+        let quiet = ["--no-error", "-q", "-o"];
+        [&["run"], self.scene, &recorded, &quiet].concat()
+    }
+
+    /// Whole and never stopped, without checkpoints; and how long it took.
+    fn whole(&self, at: &Path) -> Duration {
+        let begin = Instant::now();
+        let (code, err) = run(at, &[&self.arguments()[..], &["whole.zarr"]].concat());
+        assert_eq!(code, Some(0), "{}: {err}", self.name);
+        begin.elapsed()
+    }
+
+    fn with_checkpoints(&self) -> Vec<&'static str> {
+        let checkpoints = ["run.zarr", "--checkpoint-every", self.checkpoint_every];
+        [&self.arguments()[..], &checkpoints].concat()
+    }
+
+    /// Carries the run on until it is complete, and compares it with the one that was never stopped.
+    fn holds(&self, at: &Path) {
+        if status(&at.join("run.zarr")) != "complete" {
+            let (code, err) = run(at, &["resume", "run.zarr", "-q"]);
+            assert_eq!(code, Some(0), "{}: {err}", self.name);
+        }
+        let [whole, carried] = ["whole.zarr", "run.zarr"].map(|name| at.join(name));
+        let stories = [&whole, &carried].map(|store| group(store).unwrap());
+        let told = [&stories[0], &stories[1]].map(|story| timeless(&story["attributes"]));
+        assert_eq!(told[0], told[1], "{}", self.name);
+        let key = "consolidated_metadata";
+        assert_eq!(stories[0][key], stories[1][key], "{}", self.name);
+        let (whole, carried) = (files(&whole), files(&carried));
+        let all: Vec<_> = whole.keys().collect();
+        assert_eq!(all, carried.keys().collect::<Vec<_>>(), "{}", self.name);
+        for (name, bytes) in &whole {
+            assert!(carried[name] == *bytes, "{}: {name} differs", self.name);
+        }
+    }
+}
+
+/// The same moments whenever the test runs: Weyl's sequence, between 0 and 1.
+fn moments(count: u32) -> impl Iterator<Item = f64> {
+    let golden = 0.618_033_988_749_894_9;
+    (1..=count).map(move |k| (f64::from(k) * golden).fract())
+}
+
+/// Kills a process some time after it was started, and after it has begun a result.
+fn kill_after(at: &Path, arguments: &[&str], delay: Duration) {
+    let mut child = start(at, arguments);
+    sleep(delay);
+    // It may be through.
+    child.kill().ok();
+    child.wait().unwrap();
+}
+
+/// Killed at 20 moments from the first milliseconds to the end, every third time once more while it goes on.
+#[test]
+fn killed_at_any_moment_a_run_goes_on_as_if_nothing_had_happened() {
+    let (mut carried, mut anew) = (0, 0);
+    for case in CASES {
+        let folder = tempfile::tempdir().unwrap();
+        let at = folder.path();
+        let takes = case.whole(at);
+        for (k, moment) in moments(20).enumerate() {
+            kill_after(at, &case.with_checkpoints(), takes.mul_f64(moment));
+            let store = at.join("run.zarr");
+            if k % 3 == 0 && store.join("checkpoint").exists() {
+                kill_after(
+                    at,
+                    &["resume", "run.zarr", "-q"],
+                    takes.mul_f64(0.3 * moment),
+                );
+            }
+            if store.join("checkpoint").exists() {
+                carried += 1;
+                case.holds(at);
+            } else {
+                // Killed before its first sample: there is nothing to go on from, and nothing in the way.
+                anew += 1;
+                let (code, err) = run(at, &case.with_checkpoints());
+                assert_eq!(code, Some(0), "{}: {err}", case.name);
+                case.holds(at);
+            }
+            fs::remove_dir_all(store).unwrap();
+        }
+        assert_eq!(names(at), ["whole.zarr"], "{}", case.name);
+    }
+    assert!(carried > 60, "{carried} carried on, {anew} begun anew");
+}
+
+/// Checkpoints at every sample: most of the time one is being written.
+#[test]
+fn killed_while_a_checkpoint_is_written_the_one_before_holds() {
+    let case = &CASES[0];
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let takes = case.whole(at);
+    let often = [
+        &case.arguments()[..],
+        &["run.zarr", "--checkpoint-every", "10 us"],
+    ]
+    .concat();
+    let mut carried = 0;
+    for moment in moments(10) {
+        kill_after(at, &often, takes.mul_f64(0.2 + 2.0 * moment));
+        let store = at.join("run.zarr");
+        if store.join("checkpoint").exists() && status(&store) == "running" {
+            carried += 1;
+            case.holds(at);
+        }
+        fs::remove_dir_all(store).ok();
+    }
+    assert!(carried > 4, "{carried}");
+}
+
+#[test]
+fn stopped_by_a_signal_it_goes_on_and_leaves_no_checkpoint_behind() {
+    for name in ["-INT", "-TERM"] {
+        let case = &CASES[2];
+        let folder = tempfile::tempdir().unwrap();
+        let at = folder.path();
+        let store = at.join("run.zarr");
+        case.whole(at);
+        let to = [&case.arguments()[..], &["run.zarr"]].concat();
+        let child = start(at, &to);
+        wait_for("nothing was begun", || store.exists());
+        signal(&child, name);
+        assert_eq!(child.wait_with_output().unwrap().status.code(), Some(130));
+        assert_eq!(status(&store), "interrupted");
+        case.holds(at);
+        assert!(!store.join("checkpoint").exists());
+    }
+}
+
+/// To a later end, and once more after a kill on the way there.
+#[test]
+fn a_complete_run_goes_on_to_a_later_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let short = ["--method", "verlet", "--every", "20 us", "--no-error", "-q"];
+    let of = |until: &'static str, more: &[&'static str]| {
+        let run = ["run", "marine_two_sprockets", "--until", until];
+        [&run[..], &short, more].concat()
+    };
+    assert_eq!(run(at, &of("30 ms", &["-o", "whole.zarr"])).0, Some(0));
+    let to = of("1 ms", &["-o", "run.zarr", "--checkpoint-every", "1 ms"]);
+    assert_eq!(run(at, &to).0, Some(0));
+    let on = ["resume", "run.zarr", "-q", "--until", "30 ms"];
+    let store = at.join("run.zarr");
+    let child = start(at, &on);
+    wait_for("it does not go on", || status(&store) == "running");
+    signal(&child, "-KILL");
+    child.wait_with_output().unwrap();
+    let (code, err) = run(at, &["resume", "run.zarr", "-q"]);
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    let [whole, carried] = ["whole.zarr", "run.zarr"].map(|name| files(&at.join(name)));
+    assert!(whole == carried);
+    let (code, err) = run(at, &["resume", "run.zarr", "--until", "29 ms"]);
+    assert_eq!(code, Some(2));
+    assert!(err.contains("until = 0.029 s is past"), "{err}");
+}
+
+#[test]
+fn what_cannot_go_on_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let store = at.join("run.zarr");
+    let plain = ["run", "spinning_ring", "--no-error", "-q", "-o", "run.zarr"];
+    let refused = |code: i32, said: &str| {
+        let (found, err) = run(at, &["resume", "run.zarr"]);
+        assert_eq!(found, Some(code), "{err}");
+        assert!(
+            err.starts_with("run.zarr: ") && err.contains(said),
+            "{said}: {err}"
+        );
+    };
+    refused(2, "nothing of this name");
+    fs::create_dir(&store).unwrap();
+    refused(3, "not a result of chaindrive");
+    fs::remove_dir(&store).unwrap();
+
+    let (code, err) = run(at, &[&plain[..], &["--until", "2 ms"]].concat());
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    refused(
+        2,
+        "the run is complete, and was not asked to keep checkpoints",
+    );
+
+    let often = [
+        "--overwrite",
+        "--until",
+        "2 ms",
+        "--checkpoint-every",
+        "1 ms",
+    ];
+    assert_eq!(run(at, &[&plain[..], &often].concat()).0, Some(0));
+    refused(2, "the run is complete, up to 0.002 s");
+
+    // Damaged, cut off, of another version, of another scene, of something else.
+    let document = fs::read_to_string(store.join("zarr.json")).unwrap();
+    fs::write(
+        store.join("zarr.json"),
+        document.replace("\"complete\"", "\"running\""),
+    )
+    .unwrap();
+    let file = store.join("checkpoint");
+    let whole = fs::read(&file).unwrap();
+    let mut damaged = whole.clone();
+    *damaged.last_mut().unwrap() ^= 1;
+    let line = whole.iter().position(|byte| *byte == b'\n').unwrap();
+    let heading = String::from_utf8(whole[..line].to_vec()).unwrap();
+    let other = heading.replace("version ", "version 9");
+    let other = [other.as_bytes(), &whole[line..]].concat();
+    for (bytes, said) in [
+        (damaged.as_slice(), "the checkpoint is damaged"),
+        (&whole[..whole.len() / 2], "the checkpoint is damaged"),
+        (&other, "was written by chaindrive 9"),
+        (b"nothing", "this is no checkpoint of chaindrive"),
+        (b"", "this is no checkpoint of chaindrive"),
+    ] {
+        fs::write(&file, bytes).unwrap();
+        refused(2, said);
+    }
+    fs::write(&file, &whole).unwrap();
+    let scene = document.replace("\"complete\"", "\"running\"");
+    let scene = scene.replace("pitch = ", "pitch  = ");
+    let kept = fs::read(store.join("zarr.json")).unwrap();
+    fs::write(store.join("zarr.json"), scene).unwrap();
+    refused(2, "of another scene");
+    fs::write(store.join("zarr.json"), kept).unwrap();
+    assert_eq!(run(at, &["resume", "run.zarr", "-q"]).0, Some(0));
+
+    // While somebody writes there.
+    let long = [
+        "--overwrite",
+        "--until",
+        "1e4",
+        "--checkpoint-every",
+        "1 ms",
+    ];
+    let child = start(at, &[&plain[..], &long].concat());
+    wait_for("nothing was begun", || status(&store) == "running");
+    refused(3, "is writing a result here");
+    signal(&child, "-KILL");
+    child.wait_with_output().unwrap();
+
+    // A run that has failed would fail again.
+    let load = "sprockets.camshaft.load=[{ kind = 'constant', torque = '1e200 N m' }]";
+    let hopeless = [
+        "run",
+        "marine_two_sprockets",
+        "--until",
+        "1 ms",
+        "--set",
+        "settle=false",
+        "--set",
+        load,
+    ];
+    let to = [
+        "-q",
+        "-o",
+        "run.zarr",
+        "--overwrite",
+        "--checkpoint-every",
+        "10 us",
+    ];
+    assert_eq!(run(at, &[&hopeless[..], &to].concat()).0, Some(1));
+    refused(2, "the run failed, and was left without one: at t = ");
+}
+
+#[test]
+fn places_that_cannot_be_carried_on_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let every = [
+        "run",
+        "spinning_ring",
+        "--until",
+        "1 ms",
+        "--checkpoint-every",
+    ];
+    for (more, said) in [
+        (
+            &["1 ms", "-o", "run.csv"][..],
+            "run.csv: a table cannot be carried on; give a Zarr store",
+        ),
+        (&["1 ms"], "nothing is written; give a Zarr store"),
+        (
+            &["1 mm", "-o", "run.zarr"],
+            "checkpoint_every: `1 mm` is a length",
+        ),
+        (
+            &["0", "-o", "run.zarr"],
+            "checkpoint_every = 0, must be positive",
+        ),
+    ] {
+        let (code, err) = run(at, &[&every[..], more].concat());
+        assert_eq!(code, Some(2), "{err}");
+        assert!(err.contains(said), "{err}");
+    }
+    assert!(names(at).is_empty());
+}
+
+/// The limit on the size of files refuses a chunk after some checkpoints: the run says why it stopped, and goes on where
+/// there is space.
+#[test]
+fn on_a_full_disk_the_last_checkpoint_holds() {
+    let case = &CASES[0];
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let whole = [&case.arguments()[..], &["whole.zarr"]].concat();
+    assert_eq!(run(at, &whole).0, Some(0));
+    let (code, err) = on_a_full_disk(800, at, &case.with_checkpoints());
+    assert_eq!(code, Some(3), "{err}");
+    let store = at.join("run.zarr");
+    assert_eq!(status(&store), "failed");
+    let failure = group(&store).unwrap()["attributes"]["failure"].clone();
+    assert!(
+        failure.as_str().unwrap().contains("File too large"),
+        "{failure}"
+    );
+    let left: Vec<_> = names(&store);
+    assert!(left.iter().all(|name| !name.contains('#')), "{left:?}");
+    case.holds(at);
+    assert_eq!(names(at), ["run.zarr", "whole.zarr"]);
+}
+
+/// Here it refuses the checkpoint itself, which for two hundred links with play is longer than all else.
+#[test]
+fn a_checkpoint_that_does_not_fit_ends_the_run_and_leaves_nothing_half_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let scene = [
+        "run",
+        "bicycle",
+        "--until",
+        "0.2 ms",
+        "--method",
+        "implicit-damping",
+    ];
+    let longer = [
+        "--set",
+        "chain.links=200",
+        "--set",
+        "sprockets.rear.centre=['-1.070144624366 m', '0 m']",
+    ];
+    let to = [
+        "--no-error",
+        "-q",
+        "--record",
+        "span_tension",
+        "-o",
+        "run.zarr",
+        "--checkpoint-every",
+        "50 us",
+    ];
+    let (code, err) = on_a_full_disk(300, at, &[&scene[..], &longer, &to].concat());
+    assert_eq!(code, Some(3), "{err}");
+    let store = at.join("run.zarr");
+    assert_eq!(status(&store), "failed");
+    let left = names(&store);
+    assert!(
+        left.iter().all(|name| !name.starts_with("checkpoint")),
+        "{left:?}"
+    );
+    let (code, err) = run(at, &["resume", "run.zarr"]);
+    assert_eq!(code, Some(2), "{err}");
+    assert!(err.contains("File too large"), "{err}");
+}
+
+/// Every verb lets go of a pipe that nobody writes into, and of standard input that never ends.
+#[cfg(target_os = "linux")]
+#[test]
+fn waiting_for_a_scene_it_hears_the_signal() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let made = std::process::Command::new("mkfifo")
+        .arg(at.join("pipe.toml"))
+        .status();
+    assert!(made.unwrap().success());
+    for verb in [
+        &["run"][..],
+        &["check"],
+        &["describe"],
+        &["resolve"],
+        &["bench"],
+        &["sweep", "--vary", "chain.mass=8 g,9 g"],
+        &["diff", "spinning_ring"],
+    ] {
+        for scene in ["pipe.toml", "-"] {
+            let mut command = chaindrive(at, &[verb, &[scene]].concat());
+            let child = command.stdin(std::process::Stdio::piped()).spawn().unwrap();
+            stops(child, &format!("{verb:?} {scene}"));
+        }
+    }
+}
+
+/// Thousands of links whose pins have play settle for a long time.
+#[cfg(target_os = "linux")]
+#[test]
+fn settling_it_hears_the_signal() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let scene = [
+        "bicycle",
+        "--set",
+        "chain.links=4000",
+        "--set",
+        "sprockets.rear.centre=['-25.200144624366 m', '0 m']",
+    ];
+    for verb in [
+        &["run"][..],
+        &["describe"],
+        &["bench"],
+        &["sweep", "--vary", "gravity=[0, 0],[0, -9.81]"],
+    ] {
+        stops(start(at, &[verb, &scene].concat()), &format!("{verb:?}"));
+    }
+}
+
+/// Waits until a process listens, lets it begin, and sees that it stops when it is told to.
+#[cfg(target_os = "linux")]
+fn stops(mut child: std::process::Child, what: &str) {
+    let listens = || {
+        let path = format!("/proc/{}/status", child.id());
+        let status = fs::read_to_string(path).unwrap_or_default();
+        let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+        let mask = caught.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+        mask.is_some_and(|mask| mask >> 1 & 1 == 1)
+    };
+    wait_for(what, listens);
+    sleep(Duration::from_millis(200));
+    assert!(child.try_wait().unwrap().is_none(), "{what} is through");
+    signal(&child, "-INT");
+    let begin = Instant::now();
+    // With its input still open.
+    let input = child.stdin.take();
+    let code = loop {
+        if let Some(status) = child.try_wait().unwrap() {
+            break status.code();
+        }
+        if begin.elapsed() > Duration::from_secs(20) {
+            child.kill().unwrap();
+            panic!("{what} does not stop");
+        }
+        sleep(Duration::from_millis(5));
+    };
+    drop(input);
+    assert_eq!(code, Some(130), "{what}");
+}

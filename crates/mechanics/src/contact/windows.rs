@@ -1,0 +1,74 @@
+//! What the contacts with one body remember, as plain data.
+
+use serde::{Deserialize, Serialize};
+
+use super::{ContactMemory, Contacts, PlateContact, Run, Touch};
+use crate::MemoryError;
+use crate::lanes::LANES;
+
+/// Windows of rollers near a body, and the states of the contacts in them.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Windows {
+    runs: Vec<Run>,
+    axes: [Vec<f64>; 2],
+    memory: Box<Touch>,
+    accepted: f64,
+}
+
+/// States of the contacts of link plates.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct PlateMemory {
+    memory: ContactMemory,
+    accepted: f64,
+}
+
+impl Contacts {
+    /// What they remember.
+    pub(crate) fn windows(&self) -> Windows {
+        Windows {
+            runs: self.runs.clone(),
+            axes: [self.axis_x.clone(), self.axis_y.clone()],
+            memory: self.memory.clone(),
+            accepted: self.accepted,
+        }
+    }
+
+    /// Goes on from there; `rollers` are those of the chain, its copies not counted.
+    pub(crate) fn remember(&mut self, windows: Windows, rollers: usize) -> Result<(), MemoryError> {
+        let slots = windows.runs.len() * LANES;
+        let last = windows.runs.iter().map(|run| run.start + run.count).max();
+        MemoryError::unless_within("roller", last.unwrap_or(0), rollers)?;
+        let widest = windows.runs.iter().map(|run| run.count).max();
+        MemoryError::unless_within("roller of a lane", widest.unwrap_or(0), LANES)?;
+        for axis in &windows.axes {
+            MemoryError::unless("gap axes", axis.len(), slots)?;
+        }
+        let contacts = slots * self.sides();
+        MemoryError::unless("lanes at rest", windows.memory.wake.len(), contacts)?;
+        windows.memory.state.check(contacts)?;
+        self.runs = windows.runs;
+        self.slots = slots;
+        [self.axis_x, self.axis_y] = windows.axes;
+        self.memory = windows.memory;
+        self.accepted = windows.accepted;
+        Ok(())
+    }
+}
+
+impl PlateContact {
+    /// What it remembers.
+    pub(crate) fn remembered(&self) -> PlateMemory {
+        PlateMemory {
+            memory: self.memory.clone(),
+            accepted: self.accepted,
+        }
+    }
+
+    /// Goes on from there.
+    pub(crate) fn remember(&mut self, memory: PlateMemory) -> Result<(), MemoryError> {
+        memory.memory.check(self.memory.gap.len())?;
+        self.memory = memory.memory;
+        self.accepted = memory.accepted;
+        Ok(())
+    }
+}

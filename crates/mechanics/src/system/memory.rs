@@ -1,0 +1,146 @@
+//! What a system remembers from one accepted state to the next, as plain data.
+//!
+//! With it, the state and the memory of the time stepping a run goes on to the last bit. What follows from the drive is not
+//! in it.
+
+use chaindrive_integrate::SecondOrderSystem;
+use serde::{Deserialize, Serialize};
+
+use super::bodies::Anchor;
+use super::inputs::{Inputs, OnwardCentre};
+use super::{BodyContacts, Member, RailContact, Record, System};
+use crate::MemoryError;
+use crate::chains::ChainMemory;
+use crate::contact::{PlateMemory, Windows};
+use crate::events::EventLog;
+
+/// Contacts, windows, inputs and the log of a [`System`].
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SystemMemory {
+    chains: Vec<MemberMemory>,
+    inputs: Inputs,
+    centres: Vec<OnwardCentre>,
+    events: Option<EventLog>,
+    time_scales: [f64; 2],
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct MemberMemory {
+    chain: ChainMemory,
+    teeth: Vec<(Anchor, Windows)>,
+    rails: Vec<RailMemory>,
+    renew: (f64, u32),
+    rates: [f64; 2],
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+enum RailMemory {
+    Circles(Windows),
+    Plates(PlateMemory),
+}
+
+impl System {
+    /// What it remembers.
+    pub fn memory(&self) -> SystemMemory {
+        SystemMemory {
+            chains: self.chains.iter().map(Member::memory).collect(),
+            inputs: self.bodies.inputs.clone(),
+            centres: self.centres_set(),
+            events: self.events.clone(),
+            time_scales: self.time_scales,
+        }
+    }
+
+    /// Goes on from what another system of the same drive remembered.
+    ///
+    /// # Errors
+    /// [`MemoryError`] where the drive is seen to be another one; the system is not to be used any more then.
+    pub fn remember(&mut self, memory: SystemMemory) -> Result<(), MemoryError> {
+        MemoryError::unless("chains", memory.chains.len(), self.chains.len())?;
+        for (member, memory) in self.chains.iter_mut().zip(memory.chains) {
+            member.remember(memory)?;
+        }
+        let places = memory.events.as_ref().map_or(0, EventLog::places);
+        MemoryError::unless(
+            "places of contacts",
+            places,
+            self.events.as_ref().map_or(0, EventLog::places),
+        )?;
+        self.set_centres(&memory.centres)?;
+        self.bodies.inputs = memory.inputs;
+        self.events = memory.events;
+        self.time_scales = memory.time_scales;
+        Ok(())
+    }
+
+    /// Refuses a record that is not of this system.
+    ///
+    /// # Errors
+    /// [`MemoryError`].
+    pub fn check_record(&self, record: &Record) -> Result<(), MemoryError> {
+        let own = self.new_record();
+        let lengths = |record: &Record| {
+            let bodies = [record.wheel_wrenches.len(), record.rail_wrenches.len()];
+            let chains = record.chains.iter().map(|chain| {
+                let loads = &chain.loads;
+                let plates = [loads.plates.len(), loads.wheel_wrenches.len()];
+                let circles = [loads.teeth.len(), loads.circles.len()];
+                let rest = [loads.rail_wrenches.len(), loads.frames.len()];
+                ([plates, circles, rest], loads.ways.len())
+            });
+            (bodies, chains.collect::<Vec<_>>())
+        };
+        if lengths(record) == lengths(&own) {
+            Ok(())
+        } else {
+            Err(MemoryError::Model)
+        }
+    }
+}
+
+impl Member {
+    fn memory(&self) -> MemberMemory {
+        let BodyContacts { teeth, rails } = &self.contacts;
+        let teeth = teeth.iter().map(|on| (on.anchor, on.contacts.windows()));
+        let rails = rails.iter().map(|on| match &on.contact {
+            RailContact::Circles(contacts) => RailMemory::Circles(contacts.windows()),
+            RailContact::Plates(plates) => RailMemory::Plates(plates.remembered()),
+        });
+        MemberMemory {
+            chain: self.chain.memory(),
+            teeth: teeth.collect(),
+            rails: rails.collect(),
+            renew: self.renew,
+            rates: self.rates,
+        }
+    }
+
+    fn remember(&mut self, memory: MemberMemory) -> Result<(), MemoryError> {
+        let rollers = self.chain.rollers();
+        self.chain.remember(memory.chain)?;
+        let BodyContacts { teeth, rails } = &mut self.contacts;
+        MemoryError::unless("sprockets of a chain", memory.teeth.len(), teeth.len())?;
+        for (on, (anchor, windows)) in teeth.iter_mut().zip(memory.teeth) {
+            on.contacts.remember(windows, rollers)?;
+            on.anchor = anchor;
+        }
+        MemoryError::unless("guides of a chain", memory.rails.len(), rails.len())?;
+        for (on, memory) in rails.iter_mut().zip(memory.rails) {
+            match (&mut on.contact, memory) {
+                (RailContact::Circles(contacts), RailMemory::Circles(windows)) => {
+                    contacts.remember(windows, rollers)?;
+                }
+                (RailContact::Plates(plates), RailMemory::Plates(memory)) => {
+                    plates.remember(memory)?;
+                }
+                (RailContact::Circles(_), RailMemory::Plates(_))
+                | (RailContact::Plates(_), RailMemory::Circles(_)) => {
+                    return Err(MemoryError::Model);
+                }
+            }
+        }
+        self.renew = memory.renew;
+        self.rates = memory.rates;
+        Ok(())
+    }
+}
