@@ -24,7 +24,7 @@ use particles::Particles;
 pub(crate) use record::{Loads, Record};
 pub(crate) use rollers::Rollers;
 
-use crate::contact::{Frame, PlateContact};
+use crate::contact::{ContactState, Frame, PlateContact};
 use crate::energy::Energy;
 use crate::observe::Observation;
 use crate::system::{Bodies, BodyContacts, HeldEnd};
@@ -276,11 +276,11 @@ impl Chain {
         ask!(self, chain => chain.plate_energy(at, plates, frame, record))
     }
 
-    /// Speed at touch \[m/s\] and force \[N\] of a closed joint, and of a closed bush in its roller.
-    pub(crate) fn touching(&self, joint: usize) -> [Option<(f64, f64)>; 2] {
+    /// How a pin stands to its bush, and a bush to its roller, where they have play.
+    pub(crate) fn contacts_of(&self, joint: usize) -> [Option<ContactState>; 2] {
         match self {
             Self::Particles(_) => [None; 2],
-            Self::Links(chain) => chain.touching(joint),
+            Self::Links(chain) => chain.contacts_of(joint),
         }
     }
 }

@@ -21,7 +21,7 @@ use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_geometry::{Point, Vector};
 
 pub(crate) use law::SurfaceLaw;
-pub(crate) use memory::{ContactMemory, MemoryLanes};
+pub(crate) use memory::{ContactMemory, ContactState, MemoryLanes};
 pub(crate) use plates::{PlateContact, PlatePins, PlatePlaces};
 pub(crate) use window::{FAR, Places, Run};
 pub(crate) use wrench::{LaneTally, Wrench};
