@@ -102,7 +102,8 @@ def sweep(
           and its verdict is empty.
 
         Attributes tell the ``scene`` that is varied, ``chaindrive_version``, ``method``, the number
-        of ``variants`` and of those ``finished``, ``failed`` and ``distrusted``, ``status`` (``"complete"``,
+        of ``variants`` and of those ``finished``, ``failed`` and ``distrusted``, ``status``
+        (``"complete"``,
         ``"interrupted"``, or ``"failed"`` with the number of failed variants as ``failure``),
         ``wall_time`` [s] and a ``summary`` to print.
 
