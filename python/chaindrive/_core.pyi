@@ -116,7 +116,12 @@ class Profile:
     def outline(self, tolerance: float) -> _Floats: ...
 
 _Outcome: TypeAlias = tuple[
-    str | None, str, _Floats, list[tuple[str, list[str]]], list[tuple[str, _Floats]]
+    str | None,
+    str,
+    _Floats,
+    list[tuple[str, list[str]]],
+    list[tuple[str, str, _Floats]],
+    tuple[str, str, str],
 ]
 
 @final

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+import warnings
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Executor, Future, as_completed
 from functools import lru_cache
@@ -13,7 +14,7 @@ import xarray as xr
 
 from chaindrive import _core
 from chaindrive.drive import Drive, _json, _needed
-from chaindrive.errors import ParameterError, SimulationError
+from chaindrive.errors import DistrustedResultWarning, ParameterError, SimulationError
 from chaindrive.simulation import _Line, _listed
 
 __all__ = ["sweep"]
@@ -94,10 +95,15 @@ def sweep(
           ``real_time_factor`` are measured, all others are the same with every sweep;
         - channels, (…, time) or (…, time, labels), NaN where a variant has fewer samples or labels
           than others;
-        - ``error`` (…), a text: why a variant failed, empty when it did not. Its numbers are NaN.
+        - ``verdict`` (…), a text: ``"trusted"``, ``"caution"`` or ``"distrusted"``, with the names
+          of the ``reasons`` and a ``verdict_note`` in words, as the attributes of a run have them;
+          no variant is better than ``"caution"``, since a sweep does not estimate errors;
+        - ``error`` (…), a text: why a variant failed, empty when it did not. Its numbers are NaN
+          and its verdict is empty.
 
         Attributes tell the ``scene`` that is varied, ``chaindrive_version``, ``method``, the number
-        of ``variants`` and of those ``finished`` and ``failed``, ``status`` (``"complete"``,
+        of ``variants`` and of those ``finished``, ``failed`` and ``distrusted``, ``status``
+        (``"complete"``,
         ``"interrupted"``, or ``"failed"`` with the number of failed variants as ``failure``),
         ``wall_time`` [s] and a ``summary`` to print.
 
@@ -114,6 +120,11 @@ def sweep(
         Ctrl-C. Its attribute `result` is the dataset as it would have been returned, with the
         variants that were finished; ``error`` of the others says that they were not carried out.
         Of an executor the chunks count that had come back.
+
+    Warns
+    -----
+    DistrustedResultWarning
+        The numbers of some variants contradict themselves; ``verdict`` says which.
 
     Examples
     --------
@@ -170,11 +181,14 @@ def sweep(
         "variants": len(core),
         "finished": result["finished"],
         "failed": result["failed"],
+        "distrusted": result["distrusted"],
         **_status(stop, result["failed"], len(core)),
         "wall_time": time.perf_counter() - start,
         "summary": result["summary"],
     }
     dataset = _dataset(result, attributes)
+    if result["warning"]:
+        warnings.warn(result["warning"], DistrustedResultWarning, stacklevel=2)
     if stop is not None:
         # The very exception, for a class of its own would change the exit code of a script.
         stop.result = dataset
@@ -238,7 +252,7 @@ def _spread(
                 # A worker that died, or that has no chaindrive: the other chunks are not its fault.
                 lost.append(error)
                 message = f"the executor lost this variant: {type(error).__name__}: {error}"
-                nothing: Any = (message, "", np.empty(0), [], [])
+                nothing: Any = (message, "", np.empty(0), [], [], ("", "", ""))
                 outcomes[chunk.start : chunk.stop] = [nothing] * len(chunk)
             finished += len(chunk)
             if tell is not None:
@@ -281,9 +295,9 @@ def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:
     for name, dims, values, unit, text in result["quantities"]:
         variables[name] = (dims, values, {"units": unit, "long_name": text})
     shape = [len(coordinates[name][1]) for name in swept]
-    errors = np.asarray(result["errors"], dtype=np.str_).reshape(shape)
-    about = {"long_name": "what went wrong; empty where nothing did"}
-    variables["error"] = (swept, errors, about)
+    for name, texts, text in result["texts"]:
+        entries = np.asarray(texts, dtype=np.str_).reshape(shape)
+        variables[name] = (swept, entries, {"long_name": text})
     return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 
 

@@ -136,6 +136,15 @@ def test_a_drive_that_is_not_at_rest_has_no_modes():
         cd.scenes.spinning_ring().modes()
 
 
+def test_chains_of_rigid_links_have_modes():
+    """Defect A9: their state was read as that of particles; one link made the program panic."""
+    frequency = cd.scenes.bicycle().natural_frequencies()
+    assert frequency.size == 3 * 104 + 1
+    assert (frequency > 0.0).all()
+    with pytest.raises(cd.AssemblyError, match="let the drive settle"):
+        cd.scenes.pin_in_bush().modes()
+
+
 def test_a_drive_that_does_not_settle_has_no_statics():
     assert cd.scenes.spinning_ring().statics().sizes["stage"] == 0
 

@@ -14,10 +14,10 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread::available_parallelism;
 use std::time::Duration;
 
-pub use account::{Account, Quantity, Statistic};
+pub use account::{Account, Entry, Quantity, Statistic};
 pub use dimension::{Coordinate, Dimension, Setting};
 pub use report::Report;
-pub use stack::{Stacked, StackedQuantity};
+pub use stack::{Stacked, StackedQuantity, StackedText};
 
 use crate::scene::SceneError;
 use crate::{Channel, Scene, SimulationError};

@@ -49,6 +49,24 @@ pub struct Verdict {
     pub reasons: Vec<Reason>,
 }
 
+/// A verdict in the words of results.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct WrittenVerdict {
+    /// The attribute `verdict`: trusted, caution or distrusted; empty where there is no result.
+    pub verdict: String,
+    /// The attribute `reasons`: names, with blanks between them.
+    pub reasons: String,
+    /// The attribute `verdict_note`: the reasons in words.
+    pub note: String,
+}
+
+impl WrittenVerdict {
+    /// Whether the result contradicts itself.
+    pub fn is_distrusted(&self) -> bool {
+        self.verdict == Trust::Distrusted.name()
+    }
+}
+
 /// Share of the energy moved that may be missing before the run is distrusted.
 const OPEN_LEDGER: f64 = 0.1;
 /// Share of the kinetic energy that may be missing of a free motion: a ring that spins in balance moves no energy.
@@ -98,15 +116,28 @@ impl Verdict {
         self.trust == Trust::Distrusted
     }
 
-    /// Attributes of a result: `verdict`, the names of its `reasons` with blanks between them, and the reasons in
-    /// words.
-    pub fn attributes(&self) -> Vec<(String, Attribute)> {
+    /// The verdict as results have it.
+    pub fn written(&self) -> WrittenVerdict {
         let names: Vec<&str> = self.reasons.iter().map(Reason::name).collect();
+        WrittenVerdict {
+            verdict: self.trust.name().to_owned(),
+            reasons: names.join(" "),
+            note: self.note(),
+        }
+    }
+
+    /// Attributes of a result.
+    pub fn attributes(&self) -> Vec<(String, Attribute)> {
+        let WrittenVerdict {
+            verdict,
+            reasons,
+            note,
+        } = self.written();
         let text = |name: &str, text: String| (name.to_owned(), Attribute::Text(text));
         vec![
-            text("verdict", self.trust.name().to_owned()),
-            text("reasons", names.join(" ")),
-            text("verdict_note", self.note()),
+            text("verdict", verdict),
+            text("reasons", reasons),
+            text("verdict_note", note),
         ]
     }
 

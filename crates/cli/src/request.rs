@@ -56,7 +56,7 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "CHANNELS", value_delimiter = ',')]
     record: Vec<String>,
 
-    /// Contacts to log, separated by commas: teeth, guides, joints; they go into Zarr results and the summary
+    /// Contacts to log, separated by commas: teeth, guides, joints; they go into the result and the summary
     #[arg(long, value_name = "KINDS", value_delimiter = ',')]
     events: Vec<String>,
 }

@@ -23,7 +23,7 @@ pub use model::ChainModel;
 use particles::Particles;
 pub(crate) use record::{Loads, Record};
 
-use crate::contact::{Frame, PlateContact};
+use crate::contact::{ContactState, Frame, PlateContact};
 use crate::energy::Energy;
 use crate::observe::Observation;
 use crate::system::{Bodies, BodyContacts, GroupBodies, HeldEnd};
@@ -309,11 +309,11 @@ impl Chain {
         ask!(self, chain => chain.plate_energy(at, plates, frame, record))
     }
 
-    /// Speed at touch \[m/s\] and force \[N\] of a closed joint, and of a closed bush in its roller.
-    pub(crate) fn touching(&self, joint: usize) -> [Option<(f64, f64)>; 2] {
+    /// How a pin stands to its bush, and a bush to its roller, where they have play.
+    pub(crate) fn contacts_of(&self, joint: usize) -> [Option<ContactState>; 2] {
         match self {
             Self::Particles(_) => [None; 2],
-            Self::Links(chain) => chain.touching(joint),
+            Self::Links(chain) => chain.contacts_of(joint),
         }
     }
 }

@@ -24,7 +24,7 @@ use chaindrive_geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
 
 pub(crate) use law::SurfaceLaw;
-pub(crate) use memory::{ContactMemory, MemoryLanes};
+pub(crate) use memory::{ContactMemory, ContactState, MemoryLanes};
 pub(crate) use plates::{PlateContact, PlatePins, PlatePlaces};
 pub(crate) use rollers::Rollers;
 pub(crate) use window::{FAR, Places, Run};

@@ -1,11 +1,11 @@
 //! The log of contacts: when each began and ended, how fast it closed, and how hard it pressed.
 //!
-//! Kept on accepted states only. A contact that is lost and found again within one step was never
-//! seen to end; starts and ends are exact to the step.
+//! Kept on accepted states only. A contact that is lost and found again within one step was never seen to end. Starts,
+//! ends and closing speeds are those of the moment in which the gap is zero, between two accepted states.
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::Contacts;
+use crate::contact::{ContactState, Contacts};
 use crate::system::{RailContact, System};
 
 /// What touched what.
@@ -46,7 +46,7 @@ pub struct ContactEvent {
     pub start: f64,
     /// When it ended \[s\]; infinite while it lasts.
     pub end: f64,
-    /// Closing speed at touch \[m/s\], not below the floor of the law.
+    /// Closing speed at touch \[m/s\], also where it lies below the floor of the law.
     pub onset_speed: f64,
     /// Largest normal force \[N\].
     pub peak_force: f64,
@@ -69,43 +69,74 @@ pub struct EventKinds {
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct EventLog {
     kinds: EventKinds,
-    /// Contacts that last, by place: wheels, rails, joints, bushes, each times the rollers.
-    lasting: Vec<Option<ContactEvent>>,
+    /// Wheels, rails, joints, bushes, each times the rollers.
+    places: Vec<Place>,
     ended: Vec<ContactEvent>,
     time: f64,
+}
+
+/// Where two things can touch.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+struct Place {
+    /// As the last accepted state left the surfaces, if they have been near each other.
+    before: Option<ContactState>,
+    /// The contact, while it lasts.
+    lasting: Option<ContactEvent>,
 }
 
 impl EventLog {
     /// Places where a contact can be.
     pub(crate) fn places(&self) -> usize {
-        self.lasting.len()
+        self.places.len()
     }
 
-    fn see(&mut self, place: usize, pair: ContactPair, t: f64, seen: Option<(f64, f64)>) {
+    fn see(&mut self, place: usize, pair: ContactPair, t: f64, now: ContactState) {
         let dt = t - self.time;
-        let entry = &mut self.lasting[place];
-        match (entry.as_mut(), seen) {
-            (Some(event), Some((_, force))) => {
+        let place = &mut self.places[place];
+        let before = place.before.replace(now);
+        // Without a state before, the contact was there from the start.
+        let share = before.map_or(1.0, |before| share_to_zero(before.gap, now.gap));
+        let touching = self.time + share * dt;
+        match (place.lasting.as_mut(), now.force) {
+            (Some(event), Some(force)) => {
                 event.peak_force = event.peak_force.max(force);
                 event.impulse += force * dt;
             }
-            (None, Some((onset_speed, force))) => {
-                *entry = Some(ContactEvent {
+            (None, Some(force)) => {
+                // v = v_a + s (v_b − v_a)
+                let closing = before.map_or(now.closing, |before| before.closing);
+                let onset_speed = closing + share * (now.closing - closing);
+                place.lasting = Some(ContactEvent {
                     pair,
-                    start: t,
+                    start: touching,
                     end: f64::INFINITY,
-                    onset_speed,
+                    onset_speed: onset_speed.max(0.0),
                     peak_force: force,
                     impulse: force * dt,
                 });
             }
             (Some(event), None) => {
-                event.end = t;
+                event.end = touching;
                 self.ended.push(*event);
-                *entry = None;
+                place.lasting = None;
             }
             (None, None) => {}
         }
+    }
+}
+
+/// Share of a step after which a gap that changes its sign is zero.
+///
+/// ```text
+/// s = g_a/(g_a − g_b)
+/// ```
+fn share_to_zero(before: f64, now: f64) -> f64 {
+    let share = before / (before - now);
+    // Not a number where nothing has moved.
+    if share.is_finite() {
+        share.clamp(0.0, 1.0)
+    } else {
+        1.0
     }
 }
 
@@ -116,7 +147,7 @@ impl System {
         let any = kinds != EventKinds::default();
         self.events = any.then(|| EventLog {
             kinds,
-            lasting: vec![None; places],
+            places: vec![Place::default(); places],
             ..EventLog::default()
         });
     }
@@ -130,8 +161,8 @@ impl System {
 
     /// Contacts that last, with an infinite end.
     pub fn lasting_events(&self) -> Vec<ContactEvent> {
-        let lasting = self.events.iter().flat_map(|log| &log.lasting);
-        lasting.flatten().copied().collect()
+        let places = self.events.iter().flat_map(|log| &log.places);
+        places.filter_map(|place| place.lasting).collect()
     }
 
     /// Compares the accepted state at `t` with the log.
@@ -140,34 +171,35 @@ impl System {
             return;
         };
         let kinds = log.kinds;
+        let known = log.ended.len();
         let rollers = self.rollers();
         let (mut first, mut first_joint) = (0, 0);
         for member in &self.chains {
             for on in member.contacts.teeth.iter().filter(|_| kinds.teeth) {
-                on.contacts.each_candidate(|roller, seen| {
+                on.contacts.each_candidate(|roller, now| {
                     let roller = first + roller;
                     let pair = ContactPair::Tooth {
                         sprocket: on.wheel,
                         roller,
                     };
-                    log.see(on.wheel * rollers + roller, pair, t, seen);
+                    log.see(on.wheel * rollers + roller, pair, t, now);
                 });
             }
             let base = self.bodies.wheels.len();
             for on in member.contacts.rails.iter().filter(|_| kinds.guides) {
-                let mut see = |roller: usize, seen| {
+                let mut see = |roller: usize, now| {
                     let roller = first + roller;
                     let pair = ContactPair::Guide {
                         guide: on.rail,
                         roller,
                     };
-                    log.see((base + on.rail) * rollers + roller, pair, t, seen);
+                    log.see((base + on.rail) * rollers + roller, pair, t, now);
                 };
                 match &on.contact {
                     RailContact::Circles(contacts) => contacts.each_candidate(see),
                     RailContact::Plates(plates) => {
                         for link in 0..member.chain.links() {
-                            see(link, plates.memory.closed(link));
+                            see(link, plates.memory.at(link));
                         }
                     }
                 }
@@ -181,36 +213,34 @@ impl System {
             for index in 0..joints {
                 let joint = first_joint + index;
                 let pairs = [ContactPair::Joint { joint }, ContactPair::Roller { joint }];
-                let touching = member.chain.touching(index);
-                for (kind, (pair, seen)) in pairs.into_iter().zip(touching).enumerate() {
-                    log.see((base + kind) * rollers + joint, pair, t, seen);
+                let contacts = member.chain.contacts_of(index);
+                for (kind, (pair, now)) in pairs.into_iter().zip(contacts).enumerate() {
+                    if let Some(now) = now {
+                        log.see((base + kind) * rollers + joint, pair, t, now);
+                    }
                 }
             }
             first += member.chain.rollers();
             first_joint += member.chain.joints();
         }
+        // Several may have ended within the step.
+        log.ended[known..].sort_by(|a, b| a.end.total_cmp(&b.end));
         log.time = t;
         self.events = Some(log);
     }
 }
 
 impl Contacts {
-    /// Calls `visit` with every roller near this body, and the speed at touch and the force of its contact, if it has one.
+    /// Calls `visit` with every roller near this body, and how it stands to it.
     ///
     /// A roller is open long before it ceases to be near.
-    fn each_candidate(&self, mut visit: impl FnMut(usize, Option<(f64, f64)>)) {
+    fn each_candidate(&self, mut visit: impl FnMut(usize, ContactState)) {
         let sides = self.sides();
         self.for_each_slot(|slot, roller| {
-            // Both flanks of a gap count as one contact.
-            let mut seen: Option<(f64, f64)> = None;
-            for side in 0..sides {
-                let index = side * self.slots + slot;
-                if let Some((touch, push)) = self.memory.state.closed(index) {
-                    let (speed, force) = seen.unwrap_or((0.0, 0.0));
-                    seen = Some((speed.max(touch), force + push));
-                }
-            }
-            visit(roller, seen);
+            // Both flanks of a gap count as one contact: their forces add up, the nearer one tells when it begins.
+            let state = |side| self.memory.state.at(side * self.slots + slot);
+            let both = (1..sides).map(state).fold(state(0), ContactState::with);
+            visit(roller, both);
         });
     }
 }

@@ -3,7 +3,10 @@
 use std::time::Instant;
 
 use chaindrive::Scene;
-use chaindrive::sweep::{self, Account, Coordinate, Go, Outcome, Progress, Quantity, Setting};
+use chaindrive::sweep::{
+    self, Account, Coordinate, Entry, Go, Outcome, Progress, Quantity, Setting,
+};
+use chaindrive::verdict::WrittenVerdict;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
@@ -18,14 +21,15 @@ use crate::run::{PATIENCE, look};
 pub(crate) struct Sweep(sweep::Sweep);
 
 /// An outcome in types that Python can pickle, bit by bit: what went wrong, or the method, sample times,
-/// labels and values.
+/// labels, entries with their units, and verdict.
 #[derive(IntoPyObject, FromPyObject)]
 struct Parts<'py>(
     Option<String>,
     String,
     Bound<'py, PyArray1<f64>>,
     Vec<(String, Vec<String>)>,
-    Vec<(String, Bound<'py, PyArray1<f64>>)>,
+    Vec<(String, String, Bound<'py, PyArray1<f64>>)>,
+    (String, String, String),
 );
 
 #[pymethods]
@@ -160,14 +164,20 @@ impl Sweep {
         for it in stacked.quantities {
             let values = PyArray1::from_vec(py, it.values).reshape(it.shape)?;
             let quantity = it.quantity;
-            let (unit, text) = (quantity.unit(), quantity.description());
-            quantities.append((quantity.name(), it.dims, values, unit, text))?;
+            let text = quantity.description();
+            quantities.append((quantity.name(), it.dims, values, it.unit, text))?;
         }
         answer.set_item("quantities", quantities)?;
-        answer.set_item("errors", stacked.errors)?;
+        let texts = stacked.texts.into_iter();
+        let texts = texts.map(|it| (it.name, it.texts, it.description));
+        answer.set_item("texts", PyList::new(py, texts.collect::<Vec<_>>())?)?;
         let count = |of: fn(&Outcome) -> bool| outcomes.iter().filter(|it| of(it)).count();
         answer.set_item("finished", count(|it| matches!(it, Outcome::Done(_))))?;
         answer.set_item("failed", count(|it| matches!(it, Outcome::Failed(_))))?;
+        let distrusts =
+            |it: &Outcome| matches!(it, Outcome::Done(done) if done.verdict.is_distrusted());
+        answer.set_item("distrusted", count(distrusts))?;
+        answer.set_item("warning", self.0.warning(outcomes))?;
         answer.set_item("methods", stacked.methods)?;
         answer.set_item("summary", self.0.report(outcomes).to_string())?;
         Ok(answer)
@@ -189,21 +199,23 @@ fn parts(py: Python<'_>, outcome: Outcome) -> Parts<'_> {
         Outcome::Failed(message) => (Some(message), Account::default()),
         Outcome::Open => (Some("stopped".to_owned()), Account::default()),
     };
-    let values = account
-        .values
-        .into_iter()
-        .map(|(quantity, values)| (quantity.name().to_owned(), PyArray1::from_vec(py, values)));
+    let entries = account.entries.into_iter().map(|it| {
+        let name = it.quantity.name().to_owned();
+        (name, it.unit, PyArray1::from_vec(py, it.values))
+    });
+    let verdict = account.verdict;
     Parts(
         error,
         account.method,
         PyArray1::from_vec(py, account.time),
         account.labels,
-        values.collect(),
+        entries.collect(),
+        (verdict.verdict, verdict.reasons, verdict.note),
     )
 }
 
 fn whole(parts: Parts<'_>) -> PyResult<Outcome> {
-    let Parts(error, method, time, labels, values) = parts;
+    let Parts(error, method, time, labels, entries, verdict) = parts;
     if let Some(message) = error {
         return Ok(Outcome::Failed(message));
     }
@@ -211,16 +223,26 @@ fn whole(parts: Parts<'_>) -> PyResult<Outcome> {
         let array: PyReadonlyArray1<'_, f64> = array.try_readonly()?;
         Ok(array.as_slice()?.to_vec())
     };
-    let values = values.iter().map(|(name, values)| {
-        let quantity = Quantity::from_name(name);
+    let entries = entries.into_iter().map(|(name, unit, values)| {
+        let quantity = Quantity::from_name(&name);
         let quantity = quantity
             .ok_or_else(|| PyValueError::new_err(format!("no quantity is named `{name}`")))?;
-        Ok((quantity, numbers(values)?))
+        Ok(Entry {
+            quantity,
+            unit,
+            values: numbers(&values)?,
+        })
     });
+    let (verdict, reasons, note) = verdict;
     Ok(Outcome::Done(Account {
         method,
         time: numbers(&time)?,
         labels,
-        values: values.collect::<PyResult<_>>()?,
+        entries: entries.collect::<PyResult<_>>()?,
+        verdict: WrittenVerdict {
+            verdict,
+            reasons,
+            note,
+        },
     }))
 }

@@ -186,7 +186,10 @@ fn sharper(start: &Assembled, run: &Run) -> (Run, &'static str) {
             onset_depth,
             ..run.clone()
         };
-        return (better, "a tenth of the tolerance");
+        return match onset_depth {
+            Some(_) => (better, "a tenth of the tolerance and of the onset depth"),
+            None => (better, "a tenth of the tolerance"),
+        };
     }
     let better = Run {
         step: run.step.map(|step| 0.5 * step),

@@ -69,7 +69,7 @@ impl EventColumn {
             Self::Roller => "number of the roller or joint",
             Self::Start => "when the contact began",
             Self::End => "when it ended; infinite where it lasts beyond the run",
-            Self::OnsetSpeed => "closing speed at touch, not below the floor of the law",
+            Self::OnsetSpeed => "closing speed at touch, also below the floor of the law",
             Self::PeakForce => "largest normal force",
             Self::Impulse => "normal force integrated over the contact",
         }

@@ -8,6 +8,7 @@ use chaindrive_mechanics::EventKinds;
 use super::Outcome;
 use crate::precision::{Choice, Promise};
 use crate::record::{ContactStatistics, EventTable, Provenance, SpanStatistics, labels};
+use crate::verdict::WrittenVerdict;
 use crate::{
     Channel, End, Recording, Report, Request, RunError, Scene, Settings, Simulation,
     SimulationError, Sink, Stepping, Stop, Summary, execute,
@@ -168,7 +169,7 @@ impl Quantity {
         }
     }
 
-    /// SI unit.
+    /// SI unit; of a channel whose unit depends on the drive, all that it may be.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Statistic(statistic) => statistic.unit(),
@@ -205,10 +206,23 @@ pub struct Account {
     pub method: String,
     /// Sample times of the channels \[s\]; empty without channels.
     pub time: Vec<f64>,
-    /// Labels of every dimension that the values have beside time.
+    /// Labels of every dimension that the entries have beside time.
     pub labels: Vec<(String, Vec<String>)>,
+    /// What is kept.
+    pub entries: Vec<Entry>,
+    /// Whether the numbers can be trusted.
+    pub verdict: WrittenVerdict,
+}
+
+/// A quantity of one variant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// Which.
+    pub quantity: Quantity,
+    /// SI unit in the drive of the variant.
+    pub unit: String,
     /// Values, (time, labels) or less, flat.
-    pub values: Vec<(Quantity, Vec<f64>)>,
+    pub values: Vec<f64>,
 }
 
 /// The channels that are kept beside the statistics, if any.
@@ -302,7 +316,8 @@ impl Account {
             method: Stepping::from(simulation.method()).name().to_owned(),
             time: recording.time,
             labels: vec![("span".into(), names.collect())],
-            values: Vec::new(),
+            entries: Vec::new(),
+            verdict: report.verdict.written(),
         };
         let logged = run.events != EventKinds::default();
         if logged {
@@ -313,10 +328,11 @@ impl Account {
             let wanted = (logged || !statistic.is_of_logged_contacts())
                 && (choice.is_some() || !statistic.is_of_a_choice());
             if wanted {
-                let values = statistic.read(simulation, summary, choice);
-                account
-                    .values
-                    .push((Quantity::Statistic(statistic), values));
+                account.entries.push(Entry {
+                    quantity: Quantity::Statistic(statistic),
+                    unit: statistic.unit().to_owned(),
+                    values: statistic.read(simulation, summary, choice),
+                });
             }
         }
         for column in recording.columns {
@@ -326,8 +342,11 @@ impl Account {
             {
                 account.labels.push((name.into(), labels));
             }
-            let channel = Quantity::Channel(column.channel);
-            account.values.push((channel, column.values));
+            account.entries.push(Entry {
+                quantity: Quantity::Channel(column.channel),
+                unit: column.channel.unit_in(simulation.system()),
+                values: column.values,
+            });
         }
         account
     }

@@ -3,6 +3,7 @@
 use serde_json::Value as Json;
 
 use super::report::short;
+use super::stack::TEXTS;
 use super::{MOST, Quantity, Statistic, SweepError};
 use crate::Channel;
 use crate::record::Axis;
@@ -245,7 +246,9 @@ fn is_taken(name: &str) -> bool {
     let along = Statistic::ALL
         .iter()
         .filter_map(|it| Quantity::Statistic(*it).along());
-    let own = ["time", "error", "event"].into_iter();
+    let own = ["time", "event"]
+        .into_iter()
+        .chain(TEXTS.map(|(name, _)| name));
     axes.chain(channels)
         .chain(statistics)
         .chain(along)

@@ -52,9 +52,9 @@ impl Account {
 
     /// The largest entry of a statistic; NaN when there is none.
     fn largest(&self, statistic: Statistic) -> f64 {
-        let found = self.values.iter();
-        let mut found = found.filter(|(it, _)| *it == Quantity::Statistic(statistic));
-        let values = found.next().map_or(&[] as &[f64], |(_, values)| values);
+        let quantity = Quantity::Statistic(statistic);
+        let found = self.entries.iter().find(|it| it.quantity == quantity);
+        let values = found.map_or(&[] as &[f64], |entry| &entry.values);
         values.iter().copied().fold(f64::NAN, f64::max)
     }
 }
@@ -74,6 +74,19 @@ impl Sweep {
             sweep: self,
             outcomes,
         }
+    }
+
+    /// One line for whoever asked to hear of errors only; none unless a variant is distrusted.
+    pub fn warning(&self, outcomes: &[Outcome]) -> Option<String> {
+        let report = self.report(outcomes);
+        let (first, account) = report.distrusted().next()?;
+        Some(format!(
+            "do not trust {} of {} variants, see `verdict_note`; the first is {}: {}",
+            report.distrusted().count(),
+            outcomes.len(),
+            self.label(first),
+            account.verdict.note
+        ))
     }
 
     /// A line a variant that failed, with the reason; all but the first ones are only counted.
@@ -115,6 +128,10 @@ impl fmt::Display for Report<'_> {
         if missed > 0 {
             write!(f, ", {missed} without the accuracy asked for")?;
         }
+        let distrusted = self.distrusted().count();
+        if distrusted > 0 {
+            write!(f, ", {distrusted} distrusted")?;
+        }
         if finished + failed < all {
             write!(f, ", {} not carried out", all - finished - failed)?;
         }
@@ -129,6 +146,11 @@ impl Report<'_> {
             Outcome::Done(account) => Some((index, account)),
             Outcome::Open | Outcome::Failed(_) => None,
         })
+    }
+
+    fn distrusted(&self) -> impl Iterator<Item = (usize, &Account)> {
+        self.done()
+            .filter(|(_, account)| account.verdict.is_distrusted())
     }
 
     /// A line a variant.
@@ -153,6 +175,9 @@ impl Report<'_> {
                 Outcome::Done(account) => {
                     for column in &COLUMNS {
                         write!(line, "{:>15}  ", short((column.read)(account)))?;
+                    }
+                    if account.verdict.is_distrusted() {
+                        line.push_str("distrusted");
                     }
                 }
                 Outcome::Failed(_) => line.push_str("failed"),

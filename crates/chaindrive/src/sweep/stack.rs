@@ -1,16 +1,40 @@
 //! Stacks the accounts of all variants: one array a quantity, the swept dimensions first.
 
-use super::{Account, Coordinate, Outcome, Quantity, Statistic, Sweep};
+use super::{Account, Coordinate, Entry, Outcome, Quantity, Statistic, Sweep};
 use crate::record::Axis;
 
 /// What is said of a variant that was not carried out.
 const OPEN: &str = "not carried out: the sweep was stopped";
+
+/// Names and descriptions of the texts that results have of every variant.
+pub(super) const TEXTS: [(&str, &str); 4] = [
+    (
+        "verdict",
+        "whether the numbers can be trusted: trusted, caution or distrusted",
+    ),
+    ("reasons", "names of what speaks against the numbers"),
+    ("verdict_note", "what speaks against the numbers, in words"),
+    ("error", "what went wrong; empty where nothing did"),
+];
+
+/// One text of all variants.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StackedText {
+    /// Name in results.
+    pub name: &'static str,
+    /// One line of description.
+    pub description: &'static str,
+    /// The text of each variant, perhaps empty.
+    pub texts: Vec<String>,
+}
 
 /// One quantity of all variants.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StackedQuantity {
     /// Which.
     pub quantity: Quantity,
+    /// SI unit; of several, where variants differ in it, all of them.
+    pub unit: String,
     /// Names of all dimensions, the swept ones first.
     pub dims: Vec<String>,
     /// Entries along each.
@@ -30,8 +54,8 @@ pub struct Stacked {
     pub labels: Vec<(String, Coordinate)>,
     /// The quantities.
     pub quantities: Vec<StackedQuantity>,
-    /// What went wrong, a variant; empty where nothing did.
-    pub errors: Vec<String>,
+    /// The verdict on every variant, and what went wrong.
+    pub texts: Vec<StackedText>,
     /// Methods of time stepping that were used.
     pub methods: Vec<String>,
 }
@@ -75,6 +99,7 @@ impl Sweep {
             }
             StackedQuantity {
                 quantity,
+                unit: unit(&accounts, quantity),
                 dims,
                 shape: sizes,
                 values,
@@ -82,19 +107,48 @@ impl Sweep {
         };
         let quantities: Vec<_> = quantities(&accounts).into_iter().map(stack).collect();
         let sampled = quantities.iter().any(|it| it.quantity.is_sampled());
-        let error = |outcome: &Outcome| match outcome {
-            Outcome::Done(_) => String::new(),
-            Outcome::Failed(message) => message.clone(),
-            Outcome::Open => OPEN.to_owned(),
-        };
+        let of_variants = outcomes.iter().map(texts);
+        let texts = TEXTS.iter().enumerate();
+        let texts = texts.map(|(index, &(name, description))| StackedText {
+            name,
+            description,
+            texts: of_variants.clone().map(|of| of[index].to_owned()).collect(),
+        });
         Stacked {
             shape,
             time: sampled.then(|| time.to_vec()),
             labels: labels.into_iter().map(coordinate).collect(),
             quantities,
-            errors: outcomes.iter().map(error).collect(),
+            texts: texts.collect(),
             methods: methods(&accounts),
         }
+    }
+}
+
+/// The texts of one variant, in the order of [`TEXTS`].
+fn texts(outcome: &Outcome) -> [&str; TEXTS.len()] {
+    match outcome {
+        Outcome::Done(Account { verdict, .. }) => {
+            [&verdict.verdict, &verdict.reasons, &verdict.note, ""]
+        }
+        Outcome::Failed(message) => ["", "", "", message],
+        Outcome::Open => ["", "", "", OPEN],
+    }
+}
+
+/// The unit of a quantity in all accounts; where they differ, every one of them.
+fn unit(accounts: &[Option<&Account>], quantity: Quantity) -> String {
+    let mut units: Vec<&str> = Vec::new();
+    let entries = accounts.iter().flatten().flat_map(|it| &it.entries);
+    for entry in entries.filter(|entry| entry.quantity == quantity) {
+        if !units.contains(&entry.unit.as_str()) {
+            units.push(&entry.unit);
+        }
+    }
+    if units.is_empty() {
+        quantity.unit().to_owned()
+    } else {
+        units.join(" or ")
     }
 }
 
@@ -158,13 +212,13 @@ fn quantities(accounts: &[Option<&Account>]) -> Vec<Quantity> {
         .iter()
         .filter(|it| !it.is_of_logged_contacts() && !it.is_of_a_choice());
     let mut all: Vec<Quantity> = always.map(|&it| Quantity::Statistic(it)).collect();
-    for (quantity, _) in accounts
+    for entry in accounts
         .iter()
         .flatten()
-        .flat_map(|account| &account.values)
+        .flat_map(|account| &account.entries)
     {
-        if !all.contains(quantity) {
-            all.push(*quantity);
+        if !all.contains(&entry.quantity) {
+            all.push(entry.quantity);
         }
     }
     all
@@ -172,7 +226,8 @@ fn quantities(accounts: &[Option<&Account>]) -> Vec<Quantity> {
 
 /// Puts the entries of one account where their labels are in the stack.
 fn fill(account: &Account, quantity: Quantity, width: Option<&[String]>, to: &mut [f64]) {
-    let Some((_, values)) = account.values.iter().find(|(it, _)| *it == quantity) else {
+    let mut entries = account.entries.iter();
+    let Some(Entry { values, .. }) = entries.find(|entry| entry.quantity == quantity) else {
         return;
     };
     let (Some(along), Some(labels)) = (quantity.along(), width) else {

@@ -352,6 +352,43 @@ fn a_dropped_pin_bounces_as_it_should() {
     assert!((bounces[0].start - (4.0 * 0.1e-3 / 9.81_f64).sqrt()).abs() < 1e-5);
 }
 
+/// Defect D: contacts were logged with the floor of the law in place of their speed, and with times rounded to steps. The
+/// pin of above touches at √(4c/g), between two steps, at a sixteenth of this floor.
+#[test]
+fn a_touch_is_logged_as_it_was() {
+    let scene = preset("pin_in_bush");
+    let scene = scene
+        .replace("contact.joints.onset_floor", "1 m/s")
+        .unwrap();
+    let step = 1e-6;
+    let run = Run {
+        until: 8e-3,
+        stepping: Stepping::Rk4,
+        step: Some(step),
+        ..Run::suggested(&scene.run_defaults())
+    };
+    let mut simulation = Simulation::start(&scene.drive().unwrap(), &run).unwrap();
+    let mut bounces = Vec::new();
+    while simulation.next_sample().unwrap().is_some() {
+        bounces.extend_from_slice(simulation.events());
+    }
+    let exact = (4.0 * 0.1e-3 / 9.81_f64).sqrt();
+    let late = |time: f64| (time / step).fract() * step;
+    assert!(late(exact) > 0.1 * step && late(exact) < 0.9 * step);
+    let found = &bounces[0];
+    assert!((found.start - exact).abs() < 1e-3 * step, "{found:?}");
+    // Half a step after the touch the contact has taken 0.9 ‰ of the speed, of which the interpolation sees a half.
+    assert!(
+        (found.onset_speed / (9.81 * exact) - 1.0).abs() < 1e-3,
+        "{found:?}"
+    );
+    // The bounce lasts some steps, and ends within one.
+    assert!(
+        found.end > found.start + step && late(found.end) > 1e-3 * step,
+        "{found:?}"
+    );
+}
+
 #[test]
 fn a_description_says_what_the_chain_is() {
     let describe = |name: &str| {

@@ -11,6 +11,7 @@ mod linkage;
 mod linkages;
 mod links;
 mod live;
+mod mistakes;
 mod precision;
 mod reference;
 mod reproducible;

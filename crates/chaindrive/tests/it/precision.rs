@@ -154,6 +154,15 @@ fn methods_with_error_control_are_compared_with_a_tenth_of_the_tolerance() {
     let estimate = judged("spinning_ring", &run);
     assert_eq!(estimate.shadow, "a tenth of the tolerance");
     assert!(estimate.tension > 0.0);
+    let run = Run {
+        onset_depth: Some(1e-6),
+        ..run
+    };
+    let estimate = judged("spinning_ring", &run);
+    assert_eq!(
+        estimate.shadow,
+        "a tenth of the tolerance and of the onset depth"
+    );
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use chaindrive::record::SpanStatistics;
 use chaindrive::scene::{Datum, Scene};
 use chaindrive::sweep::{Account, Coordinate, Go, Outcome, Quantity, Setting, Statistic};
-use chaindrive::sweep::{Sweep, SweepError};
+use chaindrive::sweep::{Stacked, Sweep, SweepError};
 use chaindrive::{Channel, Run, Simulation, Summary};
 
 type Checked = Result<(), Box<dyn Error>>;
@@ -38,10 +38,10 @@ fn bits(outcome: &Outcome) -> Vec<(&'static str, Vec<u64>)> {
     };
     let same =
         |quantity: Quantity| !matches!(quantity, Quantity::Statistic(it) if it.is_measured());
-    let values = account.values.iter().filter(|(it, _)| same(*it));
+    let entries = account.entries.iter().filter(|it| same(it.quantity));
     let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect();
-    values
-        .map(|(quantity, values)| (quantity.name(), bits(values)))
+    entries
+        .map(|it| (it.quantity.name(), bits(&it.values)))
         .collect()
 }
 
@@ -164,6 +164,11 @@ fn dimensions_are_named_by_the_end_of_their_path_and_keep_si_values() -> Checked
     Ok(())
 }
 
+fn texts_of(stacked: &Stacked, name: &str) -> Vec<String> {
+    let found = stacked.texts.iter().find(|it| it.name == name);
+    found.map(|it| it.texts.clone()).unwrap_or_default()
+}
+
 /// 111 links are too few for two sprockets at this distance; a torque that no machine has ends a run.
 #[test]
 fn a_variant_that_fails_leaves_a_message_and_the_others() -> Checked {
@@ -175,15 +180,15 @@ fn a_variant_that_fails_leaves_a_message_and_the_others() -> Checked {
     let sweep = Sweep::new(&scene, &vary, &["link_tension".to_owned()])?;
     let outcomes = sweep.run(None, |_| Go::On)?;
     let stacked = sweep.stack(&outcomes);
-    assert_eq!(stacked.errors[0], "");
-    assert!(
-        stacked.errors[1].contains("no longer finite"),
-        "{:?}",
-        stacked.errors
-    );
-    for error in &stacked.errors[2..] {
+    let texts = |name| texts_of(&stacked, name);
+    let errors = texts("error");
+    assert_eq!(errors[0], "");
+    assert!(errors[1].contains("no longer finite"), "{errors:?}");
+    for error in &errors[2..] {
         assert!(error.contains("links"), "{error}");
     }
+    assert_eq!(texts("verdict"), ["caution", "", "", ""]);
+    assert_eq!(texts("reasons"), ["not-estimated", "", "", ""]);
     for it in &stacked.quantities {
         let mut blocks = it.values.chunks(it.values.len() / 4);
         let good = blocks.next().unwrap_or_default();
@@ -243,7 +248,7 @@ fn stopped_it_keeps_what_is_finished() -> Checked {
             .all(|it| matches!(it, Outcome::Done(_)))
     );
     assert!(outcomes[2..].iter().all(|it| *it == Outcome::Open));
-    let errors = sweep.stack(&outcomes).errors;
+    let errors = texts_of(&sweep.stack(&outcomes), "error");
     assert!(
         errors[1].is_empty() && errors[4].contains("stopped"),
         "{errors:?}"

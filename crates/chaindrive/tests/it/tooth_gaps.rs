@@ -1,45 +1,17 @@
 //! Tooth gaps whose halves differ, or whose seat is as wide as the roller: they neither make nor lose energy (defect A1).
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use chaindrive::Observation;
 
-use crate::dynamics::{pairs, run};
+use crate::dynamics::{self, pairs, run};
 
 const PITCH: f64 = 0.0127;
 const ROLLER: f64 = 0.00762;
 
 /// A gap with a seat and straight flanks at these angles \[deg\], right and left.
-fn gap(teeth: f64, seat: f64, [right, left]: [f64; 2]) -> String {
-    let alpha = PI / teeth;
-    let radius = 0.5 * PITCH / alpha.sin();
-    let (bottom, tip) = (radius - 0.5 * ROLLER + seat, radius + 0.15 * PITCH);
-    let side = |degrees: f64| {
-        let (sine, cosine) = (FRAC_PI_2 - alpha - degrees.to_radians()).sin_cos();
-        let foot = [seat * sine, bottom - seat * cosine];
-        let along = foot[0] * cosine + foot[1] * sine;
-        let rise = (along * along + tip * tip - foot[0].powi(2) - foot[1].powi(2)).sqrt() - along;
-        [foot, [foot[0] + rise * cosine, foot[1] + rise * sine]]
-    };
-    let ([foot_right, head_right], [foot_left, head_left]) = (side(right), side(left));
-    let middle = [tip * alpha.sin(), tip * alpha.cos()];
-    let place = |[x, y]: [f64; 2], side: f64| format!("[{:?}, {y:?}]", side * x);
-    format!(
-        r#"{{ kind = "path", from = {}, pieces = [
-            {{ kind = "line", to = {} }},
-            {{ kind = "line", to = {} }},
-            {{ kind = "arc", to = {}, radius = {:?} }},
-            {{ kind = "line", to = {} }},
-            {{ kind = "line", to = {} }},
-        ] }}"#,
-        place(middle, 1.0),
-        place(head_right, 1.0),
-        place(foot_right, 1.0),
-        place(foot_left, -1.0),
-        -seat,
-        place(head_left, -1.0),
-        place(middle, -1.0),
-    )
+fn gap(teeth: f64, seat: f64, flanks: [f64; 2]) -> String {
+    dynamics::gap(teeth, PITCH, [0.5 * ROLLER, seat], flanks, 0.15)
 }
 
 fn circular(seat: f64) -> String {

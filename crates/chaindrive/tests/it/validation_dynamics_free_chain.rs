@@ -226,7 +226,7 @@ fn a_ring_keeps_its_energy_for_a_hundred_thousand_steps() {
     long_flight(100_000);
 }
 
-/// `cargo test --release -p chaindrive --test validation_dynamics_free_chain -- --ignored`
+/// `cargo test --release -p chaindrive --test it -- --ignored validation_dynamics_free_chain`
 #[test]
 #[ignore = "ten million steps"]
 fn a_ring_keeps_its_energy_for_ten_million_steps() {

@@ -462,7 +462,7 @@ fn k14_a_slow_drive_with_a_quarter_of_a_pitch_more() {
     judge_fractions(|teeth, fraction| teeth == 17 && quarter(fraction));
 }
 
-/// `cargo test --release -p chaindrive --test validation_dynamics_kinematics -- --ignored`
+/// `cargo test --release -p chaindrive --test it -- --ignored validation_dynamics_kinematics`
 #[test]
 #[ignore = "eleven slow runs"]
 fn k14_slow_drives_against_the_fraction_of_a_pitch() {

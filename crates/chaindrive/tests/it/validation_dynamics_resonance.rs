@@ -6,9 +6,19 @@ use crate::reference;
 
 use std::f64::consts::{PI, TAU};
 
+use chaindrive::Observation;
 use chaindrive_geometry::TwoWheels;
 use dynamics::{amplitude, holding_gap, mean, range, run, spreading_rod};
 use reference::Reference;
+
+/// Σ y sin(k π x/L) over the rollers of a span of length L that lies at y = `level`; 2/n of it is the coordinate a_k of mode k.
+fn of_mode(sample: &Observation, k: f64, length: f64, level: f64) -> f64 {
+    let rollers = sample.roller_x.iter().zip(&sample.roller_y);
+    let upper = rollers.filter(|(x, y)| **y > 0.0 && **x > 0.0 && **x < length);
+    upper
+        .map(|(x, y)| (y - level) * (k * PI * x / length).sin())
+        .sum()
+}
 
 /// Root of the mean square of the sway of the tight span in one of its modes.
 fn sway(row: &[f64], rpm: f64) -> f64 {
@@ -62,18 +72,14 @@ fn sway(row: &[f64], rpm: f64) -> f64 {
     );
     let mut heights = Vec::new();
     run(&text, |sample| {
-        // a_k = 2/n Σ y sin(k π x/L) over the rollers of the upper span
-        let rollers = sample.roller_x.iter().zip(&sample.roller_y);
-        let upper = rollers.filter(|(x, y)| **y > 0.0 && **x > 0.0 && **x < distance);
-        let share = |(x, y): (&f64, &f64)| (y - radius) * (mode * PI * x / distance).sin();
-        heights.push(2.0 / span * upper.map(share).sum::<f64>());
+        heights.push(2.0 / span * of_mode(sample, mode, distance, radius));
     });
     let average = mean(&heights);
     let squares: Vec<f64> = heights.iter().map(|y| (y - average).powi(2)).collect();
     mean(&squares).sqrt()
 }
 
-/// `cargo test --release -p chaindrive --test validation_dynamics_resonance -- --ignored`
+/// `cargo test --release -p chaindrive --test it -- --ignored validation_dynamics_resonance`
 #[test]
 #[ignore = "a hundred and fifty runs"]
 fn v14_speeds_of_direct_resonance() {
@@ -181,17 +187,14 @@ fn subharmonic(row: &[f64], rpm: f64) -> [f64; 2] {
     );
     let mut heights = Vec::new();
     run(&text, |sample| {
-        let rollers = sample.roller_x.iter().zip(&sample.roller_y);
-        let upper = rollers.filter(|(x, y)| **y > 0.0 && **x > 0.0 && **x < length);
-        let share = |(x, y): (&f64, &f64)| (y - radius) * (mode * PI * x / length).sin();
-        heights.push(2.0 / span * upper.map(share).sum::<f64>());
+        heights.push(2.0 / span * of_mode(sample, mode, length, radius));
     });
     // Whole pairs of teeth: what the teeth force, at their own frequency, is not seen.
     let quarter = |i: usize| &heights[i * 150 * SAMPLES..(i + 1) * 150 * SAMPLES];
     [0, 3].map(|i| amplitude(quarter(i), 1.0, 0.5 / SAMPLES as f64))
 }
 
-/// `cargo test --release -p chaindrive --test validation_dynamics_resonance -- --ignored`
+/// `cargo test --release -p chaindrive --test it -- --ignored validation_dynamics_resonance`
 #[test]
 #[ignore = "a hundred and twenty runs"]
 fn v14_speeds_of_parametric_resonance() {
@@ -378,7 +381,7 @@ fn forced(case: &Reference, stiffness: f64, rpm: f64, tension: f64) -> (f64, f64
     (cycle(&motion), cycle(&pull))
 }
 
-/// `cargo test --release -p chaindrive --test validation_dynamics_resonance -- --ignored`
+/// `cargo test --release -p chaindrive --test it -- --ignored validation_dynamics_resonance`
 #[test]
 #[ignore = "slow runs"]
 fn v15_forced_vibration_of_the_driven_wheel() {

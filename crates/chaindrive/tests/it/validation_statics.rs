@@ -360,18 +360,20 @@ fn a_worn_chain_settles() {
     }
 }
 
+/// The 16B drive at rest with a worn chain, its driven sprocket moved out as far as it takes.
+fn worn(elongation: &str) -> Observation {
+    let adjust = r#"{ kind = "sprocket", name = "driven", direction = [1, 0], within = 0.1 }"#;
+    let scene = Scene::preset("industrial_16b")
+        .and_then(|scene| scene.replace("chain.elongation", elongation))
+        .and_then(|scene| scene.replace("route.adjust", adjust))
+        .unwrap_or_else(|error| panic!("{error}"));
+    settled(scene.text())
+}
+
 /// A chain worn by 4 % rides 9 mm outside the pitch circle of 57 teeth, and its spans still have a tension.
 #[test]
 fn spans_of_a_heavily_worn_chain_have_a_tension() {
-    let scene = Scene::preset("industrial_16b")
-        .and_then(|scene| scene.replace("chain.elongation", "0.04"))
-        .and_then(|scene| {
-            let adjust =
-                r#"{ kind = "sprocket", name = "driven", direction = [1, 0], within = 0.1 }"#;
-            scene.replace("route.adjust", adjust)
-        })
-        .unwrap_or_else(|error| panic!("{error}"));
-    let state = settled(scene.text());
+    let state = worn("0.04");
     assert!(
         state.span_tension.iter().all(|tension| *tension > 0.0),
         "{:?}",
@@ -383,15 +385,7 @@ fn spans_of_a_heavily_worn_chain_have_a_tension() {
 /// velocity of the wheel at its place, ω ẑ × d.
 #[test]
 fn a_worn_chain_sets_off_with_its_wheels() {
-    let scene = Scene::preset("industrial_16b")
-        .and_then(|scene| scene.replace("chain.elongation", "0.03"))
-        .and_then(|scene| {
-            let adjust =
-                r#"{ kind = "sprocket", name = "driven", direction = [1, 0], within = 0.1 }"#;
-            scene.replace("route.adjust", adjust)
-        })
-        .unwrap_or_else(|error| panic!("{error}"));
-    let state = settled(scene.text());
+    let state = worn("0.03");
     let mut touching = 0;
     for i in 0..state.roller_x.len() {
         if state.contact_force[i] <= 0.0 {

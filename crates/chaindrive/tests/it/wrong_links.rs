@@ -1,6 +1,8 @@
 //! Scenes of rigid links and contact laws with mistakes: every one is found in its place, with a hint.
 
-use chaindrive::scene::{Scene, SceneError};
+use chaindrive::scene::Scene;
+
+use crate::mistakes::{Mistake, all_found, fails};
 
 /// A scene without mistakes. The cases below change it and name the line of the mistake.
 const GOOD: &str = r#"title = "Free rollers"
@@ -45,17 +47,8 @@ pretension = "60 N"
 /// A chain of the catalogue; replaces the tables of the chain above.
 const NAMED: &str = "[chain]\ntype = \"081\"\nlinks = 78\nmodel = \"clearance-joints\"\n";
 
-/// What is replaced, by what, and the path, line and message of the problem that must follow.
-type Case = (
-    &'static str,
-    &'static str,
-    &'static str,
-    usize,
-    &'static str,
-);
-
 #[rustfmt::skip]
-const CASES: &[Case] = &[
+const CASES: &[Mistake] = &[
     // Dimensions.
     ("clearance = \"0.025 mm\"", "clearance = \"-0.025 mm\"", "chain.joint.clearance", 12, "must be positive [m]"),
     ("clearance = \"0.025 mm\"", "clearance = \"1 µm\"", "contact.joints.law.clearance", 23, "in [5e-6, 0.01] [m] for the internal cylindrical law"),
@@ -108,13 +101,6 @@ const CASES: &[Case] = &[
     ("[route]", "[run]\nevents = [\"tooth\"]\n[route]", "run.events[0]", 37, "did you mean `teeth`?"),
 ];
 
-fn fails(text: &str) -> SceneError {
-    match Scene::from_text(text, "test.toml").and_then(|scene| scene.drive()) {
-        Ok(_) => panic!("accepted:\n{text}"),
-        Err(error) => error,
-    }
-}
-
 fn named(change: &str) -> String {
     let (_, rest) = GOOD.split_once("[contact.teeth]").expect("it is there");
     format!("{NAMED}{change}[contact.teeth]{rest}")
@@ -130,22 +116,12 @@ fn the_scene_without_mistakes_is_accepted() {
 
 #[test]
 fn every_mistake_is_found_in_its_place() {
-    let mut wrong = Vec::new();
-    for (old, new, path, line, fragment) in CASES {
-        assert!(GOOD.contains(old), "{old} is not in the scene");
-        let error = fails(&GOOD.replacen(old, new, 1));
-        let found = error.problems.iter().any(|problem| {
-            problem.path.starts_with(path)
-                && problem.line == Some(*line)
-                && problem.to_string().contains(fragment)
-        });
-        if !found || error.problems.len() > 7 {
-            wrong.push(format!(
-                "{new}: expected {line}: {path}: {fragment}\n{error}"
-            ));
-        }
-    }
-    assert!(wrong.is_empty(), "{}:\n{}", wrong.len(), wrong.join("\n\n"));
+    all_found(
+        GOOD,
+        CASES,
+        |found, expected| found.starts_with(expected),
+        7,
+    );
 }
 
 #[test]

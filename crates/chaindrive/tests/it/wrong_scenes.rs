@@ -1,7 +1,9 @@
 //! Scenes with mistakes: every one is found, in its place, with a hint, and none makes the program panic.
 
-use chaindrive::scene::{Problem, Scene, SceneError, presets};
+use chaindrive::scene::{Scene, presets};
 use chaindrive::{Run, Simulation};
+
+use crate::mistakes::{Mistake, all_found, fails};
 
 /// A scene without mistakes. The cases below change it and name the line of the mistake.
 const GOOD: &str = r#"title = "Two sprockets"
@@ -41,17 +43,8 @@ stops = ["driver", "driven"]
 pretension = "1 kN"
 "#;
 
-/// What is replaced, by what, and the path, line and message of the problem that must follow.
-type Case = (
-    &'static str,
-    &'static str,
-    &'static str,
-    usize,
-    &'static str,
-);
-
 #[rustfmt::skip]
-const CASES: &[Case] = &[
+const CASES: &[Mistake] = &[
     // Keys.
     ("links = 78", "link = 78", "chain.link", 5, "unknown key; did you mean `links`?"),
     ("teeth = 19\ncentre = [\"0 mm\"", "teath = 19\ncentre = [\"0 mm\"", "sprockets[0].teath", 15, "did you mean `teeth`?"),
@@ -157,13 +150,6 @@ const CASES: &[Case] = &[
     ("[chain]", "[chain", "", 3, "not TOML"),
 ];
 
-fn fails(text: &str) -> SceneError {
-    match Scene::from_text(text, "test.toml").and_then(|scene| scene.drive()) {
-        Ok(_) => panic!("accepted:\n{text}"),
-        Err(error) => error,
-    }
-}
-
 #[test]
 fn the_scene_without_mistakes_is_accepted() {
     let scene = Scene::from_text(GOOD, "test.toml").unwrap_or_else(|error| panic!("{error}"));
@@ -172,28 +158,7 @@ fn the_scene_without_mistakes_is_accepted() {
 
 #[test]
 fn every_mistake_is_found_in_its_place() {
-    let mut wrong = Vec::new();
-    for (old, new, path, line, fragment) in CASES {
-        assert!(GOOD.contains(old), "{old} is not in the scene");
-        let error = fails(&GOOD.replacen(old, new, 1));
-        let hit = |problem: &Problem| {
-            problem.path == *path
-                && problem.line == Some(*line)
-                && problem.to_string().contains(fragment)
-        };
-        if !error.problems.iter().any(hit) {
-            wrong.push(format!(
-                "{new}: expected {line}: {path}: {fragment}\n{error}"
-            ));
-        }
-    }
-    assert!(
-        wrong.is_empty(),
-        "{} of {}:\n{}",
-        wrong.len(),
-        CASES.len(),
-        wrong.join("\n\n")
-    );
+    all_found(GOOD, CASES, |found, expected| found == expected, usize::MAX);
 }
 
 #[test]

@@ -74,7 +74,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     overwrite: bool,
 
-    /// Prints errors only
+    /// Prints errors only, and a line if variants are not to be trusted
     #[arg(short, long)]
     quiet: bool,
 }
@@ -119,6 +119,9 @@ pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
     output.write(&sweep, &outcomes, &Ending::of(&outcomes))?;
     if !arguments.quiet {
         print(sweep.report(&outcomes))?;
+    }
+    if let Some(warning) = sweep.warning(&outcomes) {
+        eprintln!("{warning}");
     }
     for failure in sweep.failures(&outcomes) {
         eprintln!("{failure}");

@@ -29,6 +29,7 @@ impl Drive {
         let systems = alone.into_iter().map(|it| (it.system, [it.q, it.v]));
         let (system, [q, v]) = System::beside(groups, systems.collect());
         Ok(Assembled {
+            drive: self.clone(),
             system,
             q,
             v,

@@ -28,6 +28,29 @@ pub(crate) struct ContactMemory {
     pub(crate) share: Vec<f64>,
 }
 
+/// One contact at one instant.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ContactState {
+    /// Gap \[m\], negative in contact.
+    pub(crate) gap: f64,
+    /// Closing speed \[m/s\].
+    pub(crate) closing: f64,
+    /// Normal force \[N\], if it is closed.
+    pub(crate) force: Option<f64>,
+}
+
+impl ContactState {
+    /// Two contacts of one roller with one body, taken for one.
+    pub(crate) fn with(self, other: Self) -> Self {
+        let nearer = if other.gap < self.gap { other } else { self };
+        let force = match (self.force, other.force) {
+            (Some(one), Some(more)) => Some(one + more),
+            (one, more) => one.or(more),
+        };
+        Self { force, ..nearer }
+    }
+}
+
 impl ContactMemory {
     /// As many contacts, all open.
     pub(crate) fn open(count: usize) -> Self {
@@ -84,6 +107,15 @@ impl ContactMemory {
             MemoryError::unless("contacts", values.len(), count)?;
         }
         Ok(())
+    }
+
+    /// A contact as it is.
+    pub(crate) fn at(&self, index: usize) -> ContactState {
+        ContactState {
+            gap: self.gap[index],
+            closing: self.closing[index],
+            force: self.closed(index).map(|(_, force)| force),
+        }
     }
 
     fn all(&mut self) -> [&mut Vec<f64>; 6] {

@@ -67,7 +67,8 @@ impl SweepWriter {
         ending: &Ending,
     ) -> Result<(), WriteError> {
         let stacked = sweep.stack(outcomes);
-        let arrays = self.put(sweep, &stacked);
+        let cuts = Cuts::of(&stacked);
+        let arrays = self.put(sweep, &stacked, &cuts);
         let written = arrays.map_err(|fault| self.store.fault(fault));
         let attributes = attributes(sweep, &stacked, outcomes, ending);
         let told = written.and_then(|arrays| self.store.tell(attributes, arrays, ending));
@@ -77,7 +78,12 @@ impl SweepWriter {
         told
     }
 
-    fn put(&self, sweep: &Sweep, stacked: &Stacked) -> Result<Map<String, Value>, Fault> {
+    fn put(
+        &self,
+        sweep: &Sweep,
+        stacked: &Stacked,
+        cuts: &Cuts,
+    ) -> Result<Map<String, Value>, Fault> {
         let mut arrays = Map::new();
         for dimension in sweep.dimensions() {
             let mut about = Map::new();
@@ -90,14 +96,8 @@ impl SweepWriter {
             arrays.insert(dimension.name.clone(), array);
         }
         if let Some(time) = &stacked.time {
-            let array = self.numbers(
-                "time",
-                &["time"],
-                &[time.len()],
-                1,
-                time,
-                about("s", "time"),
-            );
+            let shape = [time.len()];
+            let array = self.numbers("time", &["time"], &shape, &shape, time, about("s", "time"));
             arrays.insert("time".into(), array?);
         }
         for (name, labels) in &stacked.labels {
@@ -108,16 +108,19 @@ impl SweepWriter {
         for it in &stacked.quantities {
             let quantity = it.quantity;
             let dims: Vec<&str> = it.dims.iter().map(String::as_str).collect();
-            let about = about(quantity.unit(), quantity.description());
+            let about = about(&it.unit, quantity.description());
             let name = quantity.name();
-            let array = self.numbers(name, &dims, &it.shape, swept.len(), &it.values, about)?;
+            let cuts = cuts.along(&it.shape, quantity.is_sampled());
+            let array = self.numbers(name, &dims, &it.shape, &cuts, &it.values, about)?;
             arrays.insert(name.into(), array);
         }
-        let mut about = Map::new();
-        let text = "what went wrong; empty where nothing did";
-        about.insert("long_name".into(), text.into());
-        let errors = self.texts("error", &swept, &stacked.shape, &stacked.errors, about)?;
-        arrays.insert("error".into(), errors);
+        for it in &stacked.texts {
+            let mut about = Map::new();
+            about.insert("long_name".into(), it.description.into());
+            let shape = &stacked.shape;
+            let array = self.texts(it.name, &swept, shape, &cuts.swept, &it.texts, about)?;
+            arrays.insert(it.name.into(), array);
+        }
         Ok(arrays)
     }
 
@@ -129,8 +132,10 @@ impl SweepWriter {
     ) -> Result<Value, Fault> {
         let shape = [values.len()];
         match values {
-            Coordinate::Numbers(numbers) => self.numbers(name, &[name], &shape, 1, numbers, about),
-            Coordinate::Texts(texts) => self.texts(name, &[name], &shape, texts, about),
+            Coordinate::Numbers(numbers) => {
+                self.numbers(name, &[name], &shape, &shape, numbers, about)
+            }
+            Coordinate::Texts(texts) => self.texts(name, &[name], &shape, &shape, texts, about),
             Coordinate::Whole(numbers) => {
                 let array = self.array(
                     name,
@@ -154,45 +159,29 @@ impl SweepWriter {
         name: &str,
         dims: &[&str],
         shape: &[usize],
+        chunk: &[usize],
         texts: &[String],
         about: Map<String, Value>,
     ) -> Result<Value, Fault> {
-        let array = self.array(name, dims, shape, shape, &data_type::string(), "", about)?;
+        let array = self.array(name, dims, shape, chunk, &data_type::string(), "", about)?;
         if !texts.is_empty() {
-            array.store_chunk_opt(&vec![0; shape.len()], texts.to_vec(), &every_chunk())?;
+            array.store_array_subset_opt(&array.subset_all(), texts.to_vec(), &every_chunk())?;
         }
         finish(&array)
     }
 
-    /// `outer` is the number of swept dimensions among `dims`.
     fn numbers(
         &self,
         name: &str,
         dims: &[&str],
         shape: &[usize],
-        outer: usize,
+        chunk: &[usize],
         numbers: &[f64],
         about: Map<String, Value>,
     ) -> Result<Value, Fault> {
-        let mut chunk = shape.to_vec();
-        if numbers.len() > NUMBERS_PER_CHUNK {
-            // One variant after the other, and long ones in stretches of time.
-            chunk[..outer].fill(1);
-            let sample: usize = chunk[outer..].iter().skip(1).product();
-            if let Some(time) = chunk.get_mut(outer) {
-                *time = (NUMBERS_PER_CHUNK / sample.max(1)).clamp(1, (*time).max(1));
-            }
-        }
         let fill = f64::NAN;
-        let array = self.array(
-            name,
-            dims,
-            shape,
-            &chunk,
-            &data_type::float64(),
-            fill,
-            about,
-        )?;
+        let kind = data_type::float64();
+        let array = self.array(name, dims, shape, chunk, &kind, fill, about)?;
         if !numbers.is_empty() {
             array.store_array_subset_opt(&array.subset_all(), numbers, &every_chunk())?;
         }
@@ -218,6 +207,49 @@ impl SweepWriter {
             .bytes_to_bytes_codecs(vec![Arc::new(ZstdCodec::new(ZSTD_LEVEL, true))])
             .build(self.store.storage().clone(), &format!("/{name}"))?;
         Ok(array)
+    }
+}
+
+/// Where all arrays of a store are cut: `dask` asks that those which share a dimension are cut at the same places.
+struct Cuts {
+    /// Entries in a chunk along each swept dimension.
+    swept: Vec<usize>,
+    /// Samples in a chunk.
+    samples: usize,
+}
+
+impl Cuts {
+    /// As many variants in a chunk as the widest array allows; of long recordings a stretch of one variant.
+    fn of(stacked: &Stacked) -> Self {
+        let swept = stacked.shape.len();
+        let widest = |skipped: usize, sampled: bool| {
+            let quantities = stacked.quantities.iter();
+            let quantities = quantities.filter(|it| !sampled || it.quantity.is_sampled());
+            let sizes = quantities.map(|it| it.shape[skipped..].iter().product());
+            sizes.fold(1, usize::max)
+        };
+        let mut left = (NUMBERS_PER_CHUNK / widest(swept, false)).max(1);
+        let mut cuts = vec![1; swept];
+        // The last dimension varies fastest.
+        for (cut, &size) in cuts.iter_mut().zip(&stacked.shape).rev() {
+            *cut = size.clamp(1, left);
+            left = if *cut < size { 1 } else { left / *cut };
+        }
+        Self {
+            swept: cuts,
+            samples: NUMBERS_PER_CHUNK / widest(swept + 1, true),
+        }
+    }
+
+    /// The chunk of an array with the swept dimensions first.
+    fn along(&self, shape: &[usize], sampled: bool) -> Vec<usize> {
+        let mut chunk = shape.to_vec();
+        chunk[..self.swept.len()].copy_from_slice(&self.swept);
+        if sampled {
+            let time = &mut chunk[self.swept.len()];
+            *time = self.samples.clamp(1, (*time).max(1));
+        }
+        chunk
     }
 }
 
@@ -255,5 +287,8 @@ fn attributes(
     story.count("variants", sweep.len() as u64);
     story.count("finished", count(|it| matches!(it, Outcome::Done(_))));
     story.count("failed", count(|it| matches!(it, Outcome::Failed(_))));
+    let distrusts =
+        |it: &Outcome| matches!(it, Outcome::Done(done) if done.verdict.is_distrusted());
+    story.count("distrusted", count(distrusts));
     story.0
 }

@@ -44,18 +44,36 @@ pub(crate) fn numbers(values: impl IntoIterator<Item = f64>) -> String {
 /// A tooth gap whose seat has the roller's own radius, 0.3 p, and holds it without a pull from the
 /// slack side: flanks 10° from the pull of a seated link, T' = T sin 10°/sin(10° + 2π/z) behind it.
 ///
-/// The teeth end `tip` pitches above the pitch circle.
+/// The teeth end `tip` pitches above the pitch circle. The flank still opens by more than a link swings while its roller
+/// rises to the tip.
 pub(crate) fn holding_gap(teeth: f64, pitch: f64, tip: f64) -> String {
+    let roller = 0.3 * pitch;
+    gap(teeth, pitch, [roller, roller], [10.0, 10.0], tip)
+}
+
+/// A tooth gap for rollers of one radius, with a seat of another and straight flanks that lie at these angles \[deg\] to the
+/// pull of a seated link, right and left.
+///
+/// The teeth end `tip` pitches above the pitch circle.
+pub(crate) fn gap(
+    teeth: f64,
+    pitch: f64,
+    [roller, seat]: [f64; 2],
+    [right, left]: [f64; 2],
+    tip: f64,
+) -> String {
     let alpha = PI / teeth;
     let radius = 0.5 * pitch / alpha.sin();
-    let (seat, tip) = (0.3 * pitch, radius + tip * pitch);
-    // The flank still opens by more than a link swings while its roller rises to the tip.
-    let (sine, cosine) = (FRAC_PI_2 - alpha - 10_f64.to_radians()).sin_cos();
-    let foot = [seat * sine, radius - seat * cosine];
-    let along = foot[0] * cosine + foot[1] * sine;
-    let rise = (along * along + tip * tip - foot[0].powi(2) - foot[1].powi(2)).sqrt() - along;
-    let head = [foot[0] + rise * cosine, foot[1] + rise * sine];
-    let middle = [tip * alpha.sin(), tip * alpha.cos()];
+    let (middle, tip) = (radius + (seat - roller), radius + tip * pitch);
+    let side = |degrees: f64| {
+        let (sine, cosine) = (FRAC_PI_2 - alpha - degrees.to_radians()).sin_cos();
+        let foot = [seat * sine, middle - seat * cosine];
+        let along = foot[0] * cosine + foot[1] * sine;
+        let rise = (along * along + tip * tip - foot[0].powi(2) - foot[1].powi(2)).sqrt() - along;
+        [foot, [foot[0] + rise * cosine, foot[1] + rise * sine]]
+    };
+    let ([foot_right, head_right], [foot_left, head_left]) = (side(right), side(left));
+    let between = [tip * alpha.sin(), tip * alpha.cos()];
     let place = |[x, y]: [f64; 2], side: f64| format!("[{:?}, {y:?}]", side * x);
     format!(
         r#"{{ kind = "path", from = {}, pieces = [
@@ -65,13 +83,13 @@ pub(crate) fn holding_gap(teeth: f64, pitch: f64, tip: f64) -> String {
             {{ kind = "line", to = {} }},
             {{ kind = "line", to = {} }},
         ] }}"#,
-        place(middle, 1.0),
-        place(head, 1.0),
-        place(foot, 1.0),
-        place(foot, -1.0),
+        place(between, 1.0),
+        place(head_right, 1.0),
+        place(foot_right, 1.0),
+        place(foot_left, -1.0),
         -seat,
-        place(head, -1.0),
-        place(middle, -1.0),
+        place(head_left, -1.0),
+        place(between, -1.0),
     )
 }
 

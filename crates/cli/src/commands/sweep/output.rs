@@ -149,7 +149,7 @@ fn fill(file: File, sweep: &Sweep, stacked: &Stacked, ending: &Ending) -> io::Re
     let swept = sweep.dimensions().iter();
     heading.extend(swept.map(|it| named(&it.name, it.unit)));
     for it in &stacked.quantities {
-        let (name, unit) = (it.quantity.name(), it.quantity.unit());
+        let (name, unit) = (it.quantity.name(), it.unit.as_str());
         let labels = it.quantity.along().and_then(|along| {
             let mut labels = stacked.labels.iter();
             labels.find(|(known, _)| known == along)
@@ -162,9 +162,9 @@ fn fill(file: File, sweep: &Sweep, stacked: &Stacked, ending: &Ending) -> io::Re
             }
         }
     }
-    heading.push("error".to_owned());
+    heading.extend(stacked.texts.iter().map(|it| it.name.to_owned()));
     writeln!(file, "{}", heading.join(","))?;
-    for (index, error) in stacked.errors.iter().enumerate() {
+    for index in 0..sweep.len() {
         let mut row = vec![index.to_string()];
         let places = sweep.dimensions().iter().zip(sweep.indices(index));
         row.extend(places.map(|(dimension, at)| quoted(&dimension.values.text(at))));
@@ -174,7 +174,7 @@ fn fill(file: File, sweep: &Sweep, stacked: &Stacked, ending: &Ending) -> io::Re
             // The shortest digits that read back to the same number.
             row.extend(values.iter().map(|value| format!("{value:?}")));
         }
-        row.push(quoted(error));
+        row.extend(stacked.texts.iter().map(|it| quoted(&it.texts[index])));
         writeln!(file, "{}", row.join(","))?;
     }
     write!(file, "{}", incomplete(ending).unwrap_or_default())?;

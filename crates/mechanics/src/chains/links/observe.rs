@@ -6,7 +6,7 @@ use chaindrive_integrate::Moment;
 use super::rates::LinkPlaces;
 use super::{Joining, Linkage, Mate, Play};
 use crate::chains::Record;
-use crate::contact::{Frame, PlateContact};
+use crate::contact::{ContactState, Frame, PlateContact};
 use crate::energy::{Energy, Store};
 use crate::observe::Observation;
 
@@ -81,15 +81,12 @@ impl Linkage {
         plates.stored(&LinkPlaces(&record.play), frame, self.links)
     }
 
-    /// Speed at touch \[m/s\] and force \[N\] of a closed joint, and of a closed bush in its roller, for those
-    /// who count impacts.
-    pub(crate) fn touching(&self, joint: usize) -> [Option<(f64, f64)>; 2] {
-        let pin = matches!(self.joining, Joining::Clearance(_))
-            .then(|| self.memory.joints.closed(joint))
-            .flatten();
+    /// How a pin stands to its bush, and a bush to its roller, for those who count impacts.
+    pub(crate) fn contacts_of(&self, joint: usize) -> [Option<ContactState>; 2] {
+        let pin = matches!(self.joining, Joining::Clearance(_));
+        let pin = pin.then(|| self.memory.joints.at(joint));
         let bush = self.free_rollers.is_some();
-        let bush = bush.then(|| self.memory.bushes.closed(joint)).flatten();
-        [pin, bush]
+        [pin, bush.then(|| self.memory.bushes.at(joint))]
     }
 }
 
