@@ -13,7 +13,7 @@ use chaindrive_geometry::mesh_frequency;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 use chaindrive_mechanics::{
     Assembled, ChainModel, Clash, Drive, Fitting, Flow, GuideSupport, Observation, PlacedChain,
-    Rotation, Statics,
+    Statics,
 };
 use serde::Serialize;
 
@@ -291,15 +291,12 @@ fn chain_facts(
 }
 
 fn model(drive: &Drive, assembled: &Assembled) -> Model {
-    let free = drive
-        .sprockets
-        .iter()
-        .filter(|s| matches!(drive.shafts[s.shaft].rotation, Rotation::Free { .. }));
     let fixed = drive
         .guides
         .iter()
         .filter(|guide| guide.support == GuideSupport::Fixed);
-    let (free, fixed) = (free.count(), fixed.count());
+    let [free, driven] = assembled.system.turning_sprockets();
+    let fixed = fixed.count();
     let contacts = links::contacts(drive);
     let mut chains = drive.chains.iter();
     let undamped = chains.all(|placed| {
@@ -323,7 +320,7 @@ fn model(drive: &Drive, assembled: &Assembled) -> Model {
         rollers: assembled.system.rollers(),
         candidates: assembled.system.candidates(),
         free_sprockets: free,
-        driven_sprockets: drive.sprockets.len() - free,
+        driven_sprockets: driven,
         fixed_guides: fixed,
         moving_guides: drive.guides.len() - fixed,
         tensioners: drive.tensioners.len(),

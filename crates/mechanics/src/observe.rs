@@ -106,6 +106,14 @@ impl System {
             .collect()
     }
 
+    /// Number of sprockets that turn by themselves, and of those whose rotation is given, directly or through gears.
+    pub fn turning_sprockets(&self) -> [usize; 2] {
+        let wheels = &self.bodies.wheels;
+        let free = wheels.iter().filter(|it| it.turn.turned_by().is_some());
+        let free = free.count();
+        [free, wheels.len() - free]
+    }
+
     /// Names of the chains, empty where there is one only; and how many rollers, links, joints and spans each has.
     pub fn chain_sizes(&self) -> Vec<(String, ChainSize)> {
         let size = |member: &Member| ChainSize {
