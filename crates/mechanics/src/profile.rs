@@ -79,6 +79,7 @@ pub(crate) struct Nearest<S: Simd> {
 }
 
 /// The features that the circles of a lane belong to.
+#[derive(Clone, Copy)]
 struct Chosen<S: Simd> {
     centre: [Lane<S>; 2],
     radius: Lane<S>,

@@ -48,7 +48,7 @@ impl Tree {
 
     /// Calls `visit` with every pair of pieces, one of each curve, whose boxes overlap.
     pub(crate) fn pairs(&self, other: &Self, mut visit: impl FnMut(usize, usize)) {
-        let pairs = self.0.leaf_pairs(&other.0, |a, b| a.intersects(b));
+        let pairs = self.0.leaf_pairs(&other.0, BvhNode::intersects);
         for (first, second) in pairs {
             visit(first as usize, second as usize);
         }

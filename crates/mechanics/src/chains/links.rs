@@ -142,9 +142,9 @@ pub(crate) struct Idle {
     pub(crate) spin: Vec<f64>,
 }
 
-/// What one evaluation of a linkage leaves behind.
+/// Joints, contacts and work space after one evaluation of a linkage.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(crate) struct Play {
+pub(crate) struct JointState {
     pub(crate) posture: Posture,
     /// Force and moment on every body \[N, N, N m\].
     pub(crate) forces: Vec<Vector3<f64>>,
@@ -177,19 +177,21 @@ impl Linkage {
         rates: &mut [f64],
         record: &mut Record,
     ) {
-        let Record { play, loads, .. } = record;
-        self.pose_links(at, &mut play.posture);
-        play.elements.clear();
-        play.memory.time = at.t;
-        play.tally = self.joint_forces(at, rates, play);
-        self.body_forces(around.bodies.gravity, play);
-        self.roller_forces(at, rates, play);
-        self.end_loads(rates, play);
-        self.mesh(around, at, rates, loads, play);
+        let Record {
+            joint_state, loads, ..
+        } = record;
+        self.pose_links(at, &mut joint_state.posture);
+        joint_state.elements.clear();
+        joint_state.memory.time = at.t;
+        joint_state.tally = self.joint_forces(at, rates, joint_state);
+        self.body_forces(around.bodies.gravity, joint_state);
+        self.roller_forces(at, rates, joint_state);
+        self.end_loads(rates, joint_state);
+        self.mesh(around, at, rates, loads, joint_state);
         if let Joining::Hinges(hinges) = &self.joining {
-            hinges.hold(self, at, rates, play);
+            hinges.hold(self, at, rates, joint_state);
         }
-        let chain = a.chunks_exact_mut(3).zip(&play.forces);
+        let chain = a.chunks_exact_mut(3).zip(&joint_state.forces);
         for ((a, force), [mobility, turning]) in chain.zip(&self.shapes.mobilities) {
             a[0] = force.x * mobility;
             a[1] = force.y * mobility;
@@ -198,7 +200,12 @@ impl Linkage {
     }
 
     /// Pins in their bushes; how contacts began.
-    fn joint_forces(&self, at: Moment<'_>, rates: &mut [f64], play: &mut Play) -> Tally {
+    fn joint_forces(
+        &self,
+        at: Moment<'_>,
+        rates: &mut [f64],
+        joint_state: &mut JointState,
+    ) -> Tally {
         let Joining::Clearance(bearing) = &self.joining else {
             return Tally::new();
         };
@@ -208,16 +215,16 @@ impl Linkage {
             pins::Contacts {
                 linkage: self,
                 bearing,
-                posture: &play.posture,
-                memory: &mut play.memory.joints,
-                pins: &mut play.pins,
+                posture: &joint_state.posture,
+                memory: &mut joint_state.memory.joints,
+                pins: &mut joint_state.pins,
                 dt,
             },
         );
         if self.closed {
-            play.pins.close(self.links);
+            joint_state.pins.close(self.links);
         } else {
-            let push = |joint| play.pins.push(joint);
+            let push = |joint| joint_state.pins.push(joint);
             let part = |end| self.ground(end, at);
             // The side before the first joint feels the opposite of the push.
             rates[Flow::Motions as usize] +=
@@ -233,18 +240,18 @@ impl Linkage {
     }
 
     /// Weight of all bodies, and what the pins do to the links.
-    fn body_forces(&self, gravity: Vector, play: &mut Play) {
-        play.forces.clear();
-        play.forces.extend(
+    fn body_forces(&self, gravity: Vector, joint_state: &mut JointState) {
+        joint_state.forces.clear();
+        joint_state.forces.extend(
             self.bodies
                 .iter()
                 .map(|body| Vector3::new(body.mass * gravity.x, body.mass * gravity.y, 0.0)),
         );
         if matches!(self.joining, Joining::Clearance(_)) {
-            let pins = &play.pins;
+            let pins = &joint_state.pins;
             let pushes = pins.push_x.windows(2).zip(pins.push_y.windows(2));
             let moments = pins.moment_after.iter().zip(&pins.moment_before[1..]);
-            let links = play.forces[..self.links].iter_mut();
+            let links = joint_state.forces[..self.links].iter_mut();
             for (force, ((x, y), (after, before))) in links.zip(pushes.zip(moments)) {
                 force.x += x[0] - x[1];
                 force.y += y[0] - y[1];
@@ -254,13 +261,13 @@ impl Linkage {
     }
 
     /// Bushes in their rollers.
-    fn roller_forces(&self, at: Moment<'_>, rates: &mut [f64], play: &mut Play) {
+    fn roller_forces(&self, at: Moment<'_>, rates: &mut [f64], joint_state: &mut JointState) {
         let Some(free) = &self.free_rollers else {
             return;
         };
         let joints = self.joints.len();
         let (w, dt) = (Wide(pulp::Scalar), at.t - self.memory.time);
-        let mut bushes = std::mem::take(&mut play.memory.bushes);
+        let mut bushes = std::mem::take(&mut joint_state.memory.bushes);
         bushes.resize(joints);
         let mut memory = MemoryLanes::new(w, &self.memory.bushes, &mut bushes, joints);
         let mut tally = LaneTally::new(w);
@@ -268,31 +275,31 @@ impl Linkage {
             let Some(body) = free.body[index] else {
                 continue;
             };
-            let bush = self.part(joint.carrier, at, &play.posture);
+            let bush = self.part(joint.carrier, at, &joint_state.posture);
             let roller = free_part(body, at);
             let parts = [&roller, &bush];
             let bearing = &free.bearing;
             let element = bearing.touch(index, parts, &mut memory, index, dt, &mut tally);
             if let Some(element) = element {
-                play.apply(&element, element.push());
+                joint_state.apply(&element, element.push());
             }
         }
-        play.memory.bushes = bushes;
+        joint_state.memory.bushes = bushes;
         let tally = Tally::of(&tally);
         rates[Flow::JointLoss as usize] += tally.normal_loss;
         rates[Flow::FrictionLoss as usize] += tally.friction_loss;
-        play.tally.began(&tally);
+        joint_state.tally.began(&tally);
     }
 
     /// Forces that pull at the ends of a strand.
-    fn end_loads(&self, rates: &mut [f64], play: &mut Play) {
+    fn end_loads(&self, rates: &mut [f64], joint_state: &mut JointState) {
         for (index, held) in self.ends.iter().enumerate() {
             let End::Pulled { force } = &held.end else {
                 continue;
             };
             let link = if index == 0 { 0 } else { self.links - 1 };
-            let tip = play.posture.tip(link, index);
-            play.forces[link] += Vector3::new(force.x, force.y, cross(tip.arm, *force));
+            let tip = joint_state.posture.tip(link, index);
+            joint_state.forces[link] += Vector3::new(force.x, force.y, cross(tip.arm, *force));
             rates[Flow::DriveTorque as usize] += force.dot(&tip.velocity);
         }
     }
@@ -313,29 +320,33 @@ impl Linkage {
     }
 
     /// All closed contacts, those of pins in bushes first.
-    pub(crate) fn each_element(&self, play: &Play, mut visit: impl FnMut(&Element)) {
+    pub(crate) fn each_element(&self, joint_state: &JointState, mut visit: impl FnMut(&Element)) {
         if let Joining::Clearance(bearing) = &self.joining {
             for joint in 0..self.joints.len() {
-                if let Some(element) = play.pins.element(joint, self, bearing, &play.posture) {
+                if let Some(element) =
+                    joint_state
+                        .pins
+                        .element(joint, self, bearing, &joint_state.posture)
+                {
                     visit(&element);
                 }
             }
         }
-        play.elements.iter().for_each(visit);
+        joint_state.elements.iter().for_each(visit);
     }
 
     /// Force on the pin of a joint \[N\].
-    pub(crate) fn pin_force(&self, play: &Play, joint: usize) -> Vector {
+    pub(crate) fn pin_force(&self, joint_state: &JointState, joint: usize) -> Vector {
         match &self.joining {
-            Joining::Hinges(_) => play.hinge_forces[joint],
-            Joining::Clearance(_) if self.pairs.pin_after(joint) => play.pins.push(joint),
-            Joining::Clearance(_) => -play.pins.push(joint),
+            Joining::Hinges(_) => joint_state.hinge_forces[joint],
+            Joining::Clearance(_) if self.pairs.pin_after(joint) => joint_state.pins.push(joint),
+            Joining::Clearance(_) => -joint_state.pins.push(joint),
         }
     }
 
     /// Tension of all links \[N\]: half of what stretches them from both ends, joints, teeth and given loads together.
     pub(crate) fn tensions(&self, _at: Moment<'_>, record: &Record) -> Vec<f64> {
-        let play = &record.play;
+        let joint_state = &record.joint_state;
         let mut stretch = vec![[Vector::zeros(); 2]; self.links];
         let mut load = |body: Option<usize>, joint: usize, force: Vector| {
             // Rollers have no ends.
@@ -347,14 +358,14 @@ impl Linkage {
             let Some(mates) = self.joints[joint].pair else {
                 continue;
             };
-            let force = self.pin_force(play, joint);
+            let force = self.pin_force(joint_state, joint);
             for (mate, force) in mates.into_iter().zip([-force, force]) {
                 if let Mate::Link { link, .. } = mate {
                     load(Some(link), joint, force);
                 }
             }
         }
-        for element in &play.elements {
+        for element in &joint_state.elements {
             load(element.a, element.joint, element.push());
             if let Partner::Body(body) = element.b {
                 load(Some(body), element.joint, -element.push());
@@ -369,7 +380,7 @@ impl Linkage {
         let links = stretch.iter().enumerate();
         links
             .map(|(link, [at_first, at_second])| {
-                let [first, second] = [0, 1].map(|end| play.posture.tip(link, end).place);
+                let [first, second] = [0, 1].map(|end| joint_state.posture.tip(link, end).place);
                 0.5 * (second - first).normalize().dot(&(at_second - at_first))
             })
             .collect()
@@ -386,7 +397,7 @@ fn supplied(mates: &[Mate; 2], push: Vector, hole: &Part, pin: &Part) -> f64 {
     by(mates[0], hole, push) + by(mates[1], pin, -push)
 }
 
-impl Play {
+impl JointState {
     /// Applies a contact to the bodies it joins and keeps it for the implicit system.
     #[inline]
     pub(crate) fn apply(&mut self, element: &Element, push: Vector) {

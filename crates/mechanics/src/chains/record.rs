@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Way;
-use super::links::{Impulses, Play};
+use super::links::{Impulses, JointState};
 use crate::contact::{ContactMemory, Frame, Touch, Wrench};
 use crate::system::BodyContacts;
 
@@ -30,7 +30,7 @@ pub(crate) struct Loads {
 pub(crate) struct Record {
     pub(crate) loads: Loads,
     /// What joints leave behind; empty where links are springs.
-    pub(super) play: Play,
+    pub(super) joint_state: JointState,
     #[serde(skip)]
     pub(super) impulses: Impulses,
 }
@@ -61,7 +61,7 @@ impl Record {
             rail_wrenches,
             ..
         } = &self.loads;
-        let joints = &self.play.tally;
+        let joints = &self.joint_state.tally;
         let wrenches = wheel_wrenches.iter().chain(rail_wrenches);
         wrenches
             .map(|wrench| (wrench.first_depth, wrench.first_share))

@@ -2,7 +2,7 @@
 
 use pulp::Simd;
 
-use super::look::{Hit, Place, View};
+use super::look::{FacedSurface, Place, View};
 use super::rest::{CLOSE, Clear};
 use super::slots::Slots;
 use super::window::FAR;
@@ -42,14 +42,14 @@ impl Contacts {
                         slots.leave_open(w, lane, wake);
                         continue;
                     }
-                    let here = Here {
+                    let slot = RollerSlot {
                         lane,
                         axis: place,
                         roller: run.start + offset,
                         valid: w.first(run.count - offset),
                     };
                     let (slots, sums) = (&mut slots, &mut sums);
-                    touching |= self.lane(w, dt, &frame, view, here, rollers, slots, sums);
+                    touching |= self.lane(w, dt, &frame, view, slot, rollers, slots, sums);
                 }
             }
         }
@@ -75,12 +75,12 @@ impl Contacts {
         dt: f64,
         frame: &Frame,
         view: View<'_>,
-        here: Here<S>,
+        slot: RollerSlot<S>,
         rollers: &mut Rollers<'_>,
         slots: &mut Slots<'_, S>,
         sums: &mut Sums<S>,
     ) -> bool {
-        let i = here.roller;
+        let i = slot.roller;
         // d = q − o,   u = v − v_o − ω ẑ × d
         let dx = w.load(rollers.x, i) - w.splat(frame.origin.x);
         let dy = w.load(rollers.y, i) - w.splat(frame.origin.y);
@@ -92,41 +92,41 @@ impl Contacts {
             dy,
             spin,
         };
-        let mut near = here.valid;
+        let mut near = slot.valid;
         let place = match &self.shape {
             Shape::Teeth(teeth) => {
                 let reach = teeth.tip_radius + self.radius;
                 let away = dx * dx + dy * dy - w.splat(reach * reach);
                 near = w.splat(0.0).greater(away) & near;
                 if !near.any() && self.writes_faces {
-                    slots.leave_open(w, here.lane, 0.0);
+                    slots.leave_open(w, slot.lane, 0.0);
                     return false;
                 }
                 if !near.any() {
                     // |d| − R ≥ (d² − R²)/(3 R) up to |d| = 2 R
                     let gap = away * w.splat(1.0 / (3.0 * reach));
-                    let clear = here.clear(w, gap, None, &motion, rollers);
+                    let clear = slot.clear(w, gap, None, &motion, rollers);
                     let rest = clear.rest(w, dt, 0.0);
-                    slots.leave_open(w, here.lane, self.accepted + dt + rest);
+                    slots.leave_open(w, slot.lane, self.accepted + dt + rest);
                     return false;
                 }
-                Place::in_gap(w, teeth, frame, slots.axis(here.axis), [dx, dy])
+                Place::in_gap(w, teeth, frame, slots.axis(slot.axis), [dx, dy])
             }
             Shape::Rail { reference, .. } => Place::at_rail(w, *reference, frame, [dx, dy]),
         };
-        let hit = view.hit(w, &place, self.radius, self.law.flank.is_some());
-        let Some(closing) = self.respond(w, dt, &motion, &hit, near, here, rollers, slots, sums)
+        let faced = view.faced(w, &place, self.radius, self.law.flank.is_some());
+        let Some(closing) = self.respond(w, dt, &motion, &faced, near, slot, rollers, slots, sums)
         else {
-            slots.set_wake(here.lane, 0.0);
+            slots.set_wake(slot.lane, 0.0);
             return true;
         };
         if self.writes_faces {
-            slots.set_wake(here.lane, 0.0);
+            slots.set_wake(slot.lane, 0.0);
             return false;
         }
         let (close, convex) = match &self.shape {
             Shape::Teeth(_) => {
-                let close = w.splat(CLOSE * self.radius).greater(hit.gap) & here.valid;
+                let close = w.splat(CLOSE * self.radius).greater(faced.gap) & slot.valid;
                 (close.any(), false)
             }
             Shape::Rail { profile, .. } => (false, profile.bulges && frame.spin == 0.0),
@@ -134,10 +134,10 @@ impl Contacts {
         let rest = if close {
             0.0
         } else {
-            let clear = here.clear(w, hit.gap, convex.then_some(closing), &motion, rollers);
+            let clear = slot.clear(w, faced.gap, convex.then_some(closing), &motion, rollers);
             clear.rest(w, dt, frame.spin)
         };
-        slots.set_wake(here.lane, self.accepted + dt + rest);
+        slots.set_wake(slot.lane, self.accepted + dt + rest);
         false
     }
 
@@ -152,26 +152,26 @@ impl Contacts {
         w: Wide<S>,
         dt: f64,
         motion: &Motion<S>,
-        hit: &Hit<S>,
+        faced: &FacedSurface<S>,
         near: Mask<S>,
-        here: Here<S>,
+        slot: RollerSlot<S>,
         rollers: &mut Rollers<'_>,
         slots: &mut Slots<'_, S>,
         sums: &mut Sums<S>,
     ) -> Option<Lane<S>> {
-        let Here { lane, roller, .. } = here;
+        let RollerSlot { lane, roller, .. } = slot;
         let law = &self.law;
-        let gap = near.select(hit.gap, w.splat(FAR));
+        let gap = near.select(faced.gap, w.splat(FAR));
         // δ̇ = −n·u
-        let closing = -(hit.nx * motion.ux + hit.ny * motion.uy);
-        let share = law.share(w, hit.beyond);
+        let closing = -(faced.nx * motion.ux + faced.ny * motion.uy);
+        let share = law.share(w, faced.beyond);
         let (memory, tally) = (&mut slots.memory, &mut sums.tally);
         let Some(pressed) = law.press(w, memory, lane, [gap, closing], share, None, tally) else {
             return Some(closing);
         };
         let force = pressed.force;
-        let (tx, ty) = (-hit.ny, hit.nx);
-        let (mut fx, mut fy) = (force * hit.nx, force * hit.ny);
+        let (tx, ty) = (-faced.ny, faced.nx);
+        let (mut fx, mut fy) = (force * faced.nx, force * faced.ny);
         // M = −d × F
         let mut moment = motion.dy * fx - motion.dx * fy;
         let mut damping = law.steepest(w, &pressed);
@@ -207,10 +207,12 @@ impl Contacts {
             let [stiffness, damping] = law.slopes(w, &pressed, share);
             faces.stiffness.set(lane, stiffness);
             faces.damping.set(lane, damping);
-            faces.normal_x.set(lane, hit.nx);
-            faces.normal_y.set(lane, hit.ny);
+            faces.normal_x.set(lane, faced.nx);
+            faces.normal_y.set(lane, faced.ny);
             let sharpest = w.splat(SHARPEST);
-            faces.bend.set(lane, hit.bend.min(sharpest).max(-sharpest));
+            faces
+                .bend
+                .set(lane, faced.bend.min(sharpest).max(-sharpest));
         }
         None
     }
@@ -218,7 +220,7 @@ impl Contacts {
 
 /// Where a lane of slots stands.
 #[derive(Clone, Copy)]
-struct Here<S: Simd> {
+struct RollerSlot<S: Simd> {
     /// Among all lanes, and among those of one side.
     lane: usize,
     axis: usize,
@@ -226,7 +228,7 @@ struct Here<S: Simd> {
     valid: Mask<S>,
 }
 
-impl<S: Simd> Here<S> {
+impl<S: Simd> RollerSlot<S> {
     /// What open contacts with these gaps want to know before they rest.
     #[inline(always)]
     fn clear(

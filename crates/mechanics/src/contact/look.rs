@@ -38,7 +38,7 @@ pub(super) enum View<'a> {
 
 /// The surface that rollers face, in the world.
 #[derive(Clone, Copy)]
-pub(super) struct Hit<S: Simd> {
+pub(super) struct FacedSurface<S: Simd> {
     pub(super) gap: Lane<S>,
     pub(super) nx: Lane<S>,
     pub(super) ny: Lane<S>,
@@ -114,41 +114,41 @@ impl<S: Simd> Place<S> {
 impl View<'_> {
     /// The surfaces that circles of some radius face; how far beyond the hollow they are only if `measured`.
     #[inline(always)]
-    pub(super) fn hit<S: Simd>(
+    pub(super) fn faced<S: Simd>(
         self,
         w: Wide<S>,
         place: &Place<S>,
         radius: f64,
         measured: bool,
-    ) -> Hit<S> {
-        let hit = match self {
+    ) -> FacedSurface<S> {
+        let faced = match self {
             View::Rail(profile) => {
                 let sign = w.splat(1.0);
                 face(w, profile, place.at, sign, radius, measured)
             }
             View::Gap(stretches, side) => {
                 let all = w.first(Wide::<S>::COUNT);
-                let mut hit = stretches[side].face(w, place.at, radius, measured);
-                hit = stretches[side].other_way(w, all, hit, place.at, radius, measured);
+                let mut faced = stretches[side].face(w, place.at, radius, measured);
+                faced = stretches[side].other_way(w, all, faced, place.at, radius, measured);
                 if let (Some([right, left]), true) = (place.over, stretches.len() > 1) {
                     let count = stretches.len();
                     for (over, neighbour) in [(right, count - 1), (left, 1)] {
                         if over.any() {
                             let stretch = &stretches[(side + neighbour) % count];
                             let there = stretch.face(w, place.at, radius, measured);
-                            hit = there.where_of(over, hit);
-                            hit = stretch.other_way(w, over, hit, place.at, radius, measured);
+                            faced = there.where_of(over, faced);
+                            faced = stretch.other_way(w, over, faced, place.at, radius, measured);
                         }
                     }
                 }
-                hit
+                faced
             }
         };
         // The gap's x axis is its y axis turned by −90°.
-        Hit {
-            nx: hit.nx * place.ay + hit.ny * place.ax,
-            ny: hit.ny * place.ay - hit.nx * place.ax,
-            ..hit
+        FacedSurface {
+            nx: faced.nx * place.ay + faced.ny * place.ax,
+            ny: faced.ny * place.ay - faced.nx * place.ax,
+            ..faced
         }
     }
 }
@@ -162,7 +162,7 @@ impl Stretch {
         [x, y]: [Lane<S>; 2],
         radius: f64,
         measured: bool,
-    ) -> Hit<S> {
+    ) -> FacedSurface<S> {
         let one = w.splat(1.0);
         let (x, sign) = match self.extent {
             Extent::Folded => (x.abs(), x.greater(w.splat(0.0)).select(one, -one)),
@@ -177,20 +177,20 @@ impl Stretch {
         &self,
         w: Wide<S>,
         some: Mask<S>,
-        hit: Hit<S>,
+        faced: FacedSurface<S>,
         [x, y]: [Lane<S>; 2],
         radius: f64,
         measured: bool,
-    ) -> Hit<S> {
+    ) -> FacedSurface<S> {
         let Extent::Divided(divide) = &self.extent else {
-            return hit;
+            return faced;
         };
         let to_the_left = w.splat(divide.at).greater(x) & some;
         if !to_the_left.any() {
-            return hit;
+            return faced;
         }
         let left = face(w, &divide.left, [x, y], w.splat(1.0), radius, measured);
-        left.where_of(to_the_left, hit)
+        left.where_of(to_the_left, faced)
     }
 }
 
@@ -203,14 +203,14 @@ fn face<S: Simd>(
     sign: Lane<S>,
     radius: f64,
     measured: bool,
-) -> Hit<S> {
+) -> FacedSurface<S> {
     let Nearest { gap, nx, ny, bend } = profile.nearest(w, at, radius);
     let beyond = if measured {
         profile.beyond_hollow(w, at)
     } else {
         w.splat(0.0)
     };
-    Hit {
+    FacedSurface {
         gap,
         nx: sign * nx,
         ny,
@@ -219,7 +219,7 @@ fn face<S: Simd>(
     }
 }
 
-impl<S: Simd> Hit<S> {
+impl<S: Simd> FacedSurface<S> {
     /// This in some lanes, another in the rest.
     #[inline(always)]
     fn where_of(self, some: Mask<S>, other: Self) -> Self {
@@ -260,8 +260,8 @@ impl Contacts {
         };
         let sides = 0..self.sides();
         let probe = |side| {
-            let hit = self.view(side).hit(w, &place, self.radius, true);
-            Probe::of([hit.gap, hit.nx, hit.ny, hit.bend, hit.beyond])
+            let faced = self.view(side).faced(w, &place, self.radius, true);
+            Probe::of([faced.gap, faced.nx, faced.ny, faced.bend, faced.beyond])
         };
         sides.map(probe).collect()
     }

@@ -320,7 +320,6 @@ mod tests {
     /// Nanoseconds a roller on rows of more and more features, passed and looked up. Rollers lie side by side along the whole face.
     #[test]
     #[ignore = "a measurement: cargo test -p chaindrive-mechanics --lib rows_and -- --ignored --nocapture"]
-    #[expect(clippy::print_stdout, reason = "a measurement shows its numbers")]
     fn rows_and_lookups_take_their_time() {
         let mut dice = Dice(1);
         let mut last = [0.0; 2];

@@ -55,7 +55,7 @@ impl Linkage {
     }
 
     pub(crate) fn pose<'a>(&self, at: Moment<'a>, record: &'a mut Record) -> Pose<'a> {
-        let posture = &mut record.play.posture;
+        let posture = &mut record.joint_state.posture;
         self.pose_links(at, posture);
         Pose {
             x: &posture.x,
@@ -66,7 +66,7 @@ impl Linkage {
     }
 
     pub(crate) fn commit(&mut self, _t: f64, _q: &mut [f64], _v: &mut [f64], record: &mut Record) {
-        std::mem::swap(&mut self.memory, &mut record.play.memory);
+        std::mem::swap(&mut self.memory, &mut record.joint_state.memory);
     }
 
     /// Goes on from what the joints remembered.
@@ -128,7 +128,9 @@ impl Linkage {
     /// Largest force of a contact \[N\].
     pub(crate) fn pressed(&self, _at: Moment<'_>, record: &Record) -> f64 {
         let mut pressed = 0.0_f64;
-        self.each_element(&record.play, |element| pressed = pressed.max(element.force));
+        self.each_element(&record.joint_state, |element| {
+            pressed = pressed.max(element.force);
+        });
         pressed
     }
 

@@ -8,8 +8,8 @@ use pulp::Arch;
 
 use super::model::{Joint, RigidLinks, RollerModel};
 use super::{
-    Bearing, Body, FreeRollers, Hinges, Joining, JointMates, Linkage, Mate, Memory, Pairs, Play,
-    Shapes, turned,
+    Bearing, Body, FreeRollers, Hinges, Joining, JointMates, JointState, Linkage, Mate, Memory,
+    Pairs, Shapes, turned,
 };
 use crate::chains::LaidAs;
 use crate::chains::particles::Particles;
@@ -121,7 +121,7 @@ impl Linkage {
             return;
         }
         let still = vec![0.0; q.len()];
-        let mut play = Play::default();
+        let mut joint_state = JointState::default();
         // Newton's method, from a few thousandths of a pitch at most: three passes leave rounding.
         for _ in 0..PASSES {
             let at = Moment {
@@ -129,16 +129,17 @@ impl Linkage {
                 q,
                 v: &still,
             };
-            self.pose_links(at, &mut play.posture);
-            play.hinge_forces = vec![Vector::zeros(); self.joints.len()];
+            self.pose_links(at, &mut joint_state.posture);
+            joint_state.hinge_forces = vec![Vector::zeros(); self.joints.len()];
             let apart = self.joints.iter().map(|joint| {
                 joint.pair.map_or_else(Vector::zeros, |mates| {
-                    let [hole, pin] = mates.map(|mate| self.part(mate, at, &play.posture).place);
+                    let [hole, pin] =
+                        mates.map(|mate| self.part(mate, at, &joint_state.posture).place);
                     hole - pin
                 })
             });
             let apart: Vec<Vector> = apart.collect();
-            let Some(change) = self.nearest(bodies, &mut play, &apart, q.len()) else {
+            let Some(change) = self.nearest(bodies, &mut joint_state, &apart, q.len()) else {
                 return;
             };
             for (q, change) in q.iter_mut().zip(&change) {
@@ -153,18 +154,19 @@ impl Linkage {
         if matches!(self.joining, Joining::Clearance(_)) {
             return;
         }
-        let mut play = Play::default();
+        let mut joint_state = JointState::default();
         let at = Moment { t: 0.0, q, v };
-        self.pose_links(at, &mut play.posture);
-        play.hinge_forces = vec![Vector::zeros(); self.joints.len()];
+        self.pose_links(at, &mut joint_state.posture);
+        joint_state.hinge_forces = vec![Vector::zeros(); self.joints.len()];
         let opening = self.joints.iter().map(|joint| {
             joint.pair.map_or_else(Vector::zeros, |mates| {
-                let [hole, pin] = mates.map(|mate| self.part(mate, at, &play.posture).velocity);
+                let [hole, pin] =
+                    mates.map(|mate| self.part(mate, at, &joint_state.posture).velocity);
                 hole - pin
             })
         });
         let opening: Vec<Vector> = opening.collect();
-        if let Some(change) = self.nearest(bodies, &mut play, &opening, v.len()) {
+        if let Some(change) = self.nearest(bodies, &mut joint_state, &opening, v.len()) {
             for (v, change) in v.iter_mut().zip(&change) {
                 *v += change;
             }
@@ -234,7 +236,7 @@ fn compile(particles: &Particles, laid: &LaidAs<'_>, links: &RigidLinks) -> Link
             joint.pin_radius,
         ))),
     };
-    let play = match &joining {
+    let joint_state = match &joining {
         Joining::Hinges(_) => 0.0,
         // c + δ(T₀)
         Joining::Clearance(bearing) => bearing.clearance + bearing.indentation(pretension),
@@ -243,7 +245,7 @@ fn compile(particles: &Particles, laid: &LaidAs<'_>, links: &RigidLinks) -> Link
         .map(|link| {
             // p (1 + ε₀) under T₀
             let spacing = particles.links.rest[link] + pretension / particles.links.stiffness[link];
-            body(links, link, spacing, play)
+            body(links, link, spacing, joint_state)
         })
         .collect();
     let joints: Vec<JointMates> = (0..chain.rollers())
@@ -308,12 +310,12 @@ fn stabilisation(gravity: Vector, pitch: f64) -> f64 {
 }
 
 /// One link of given roller spacing.
-fn body(links: &RigidLinks, link: usize, spacing: f64, play: f64) -> Body {
+fn body(links: &RigidLinks, link: usize, spacing: f64, joint_state: f64) -> Body {
     let inner = links.is_inner(link);
     let (own, length) = if inner {
         (&links.inner, spacing)
     } else {
-        (&links.outer, spacing - 2.0 * play)
+        (&links.outer, spacing - 2.0 * joint_state)
     };
     let half = Vector::new(0.5 * length, 0.0);
     let roller = match links.rollers {

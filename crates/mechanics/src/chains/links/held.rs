@@ -12,12 +12,12 @@ use chaindrive_integrate::Weights;
 use nalgebra::{DVector, Vector3};
 
 use super::implicit::{Row, Sum};
-use super::{Mate, Play, cross};
+use super::{JointState, Mate, cross};
 
-/// What J x is to be at the hinges.
+/// Prescribed value of J x at the hinges.
 #[derive(Clone, Copy)]
-pub(super) enum Asked<'a> {
-    /// What J b is.
+pub(super) enum Prescribed<'a> {
+    /// That of J b.
     Kept,
     /// These values, by joint.
     Given(&'a [Vector]),
@@ -33,24 +33,24 @@ impl Sum<'_> {
     /// Adds W Jᵀ J, and W Jᵀ (s − J b) on the right.
     pub(super) fn add_hinges(
         &mut self,
-        play: &Play,
+        joint_state: &JointState,
         weights: Weights,
         b: &[f64],
-        asked: Asked<'_>,
+        asked: Prescribed<'_>,
     ) {
         let linkage = self.linkage;
         let heaviest = linkage
             .bodies
             .iter()
             .fold(0.0_f64, |m, body| m.max(body.mass));
-        let stiffest = play.elements.iter().fold(0.0_f64, |m, element| {
+        let stiffest = joint_state.elements.iter().fold(0.0_f64, |m, element| {
             m.max(weights.damping * element.damping + weights.stiffness * element.stiffness)
         });
         let weight = HINGE * (heaviest + stiffest);
         for (index, joint) in linkage.joints.iter().enumerate() {
             let Some(mates) = joint.pair else { continue };
             let sides = mates.map(|mate| match mate {
-                Mate::Link { link, end } => Some((link, play.posture.arm(link, end))),
+                Mate::Link { link, end } => Some((link, joint_state.posture.arm(link, end))),
                 Mate::Ground(_) => None,
             });
             for direction in [Vector::x(), Vector::y()] {
@@ -61,7 +61,7 @@ impl Sum<'_> {
                         (body, row, row.dot(&known))
                     })
                 });
-                if let Asked::Given(values) = asked {
+                if let Prescribed::Given(values) = asked {
                     let there = pin.map_or(0.0, |p| p.2) - hole.map_or(0.0, |h| h.2);
                     let missing = direction.dot(&values[index]) - there;
                     for (side, sign) in [(pin, 1.0), (hole, -1.0)] {
@@ -84,12 +84,12 @@ impl Sum<'_> {
     }
 
     /// What the joint forces add to the rotation of the links: λ·arm, where it holds them.
-    pub(super) fn add_hinge_turns(&mut self, play: &Play, weight: f64) {
-        for (joint, force) in self.linkage.joints.iter().zip(&play.hinge_forces) {
+    pub(super) fn add_hinge_turns(&mut self, joint_state: &JointState, weight: f64) {
+        for (joint, force) in self.linkage.joints.iter().zip(&joint_state.hinge_forces) {
             let Some(mates) = joint.pair else { continue };
             for (mate, force) in mates.into_iter().zip([-force, *force]) {
                 if let Mate::Link { link, end } = mate {
-                    let arm = play.posture.arm(link, end);
+                    let arm = joint_state.posture.arm(link, end);
                     self.add_turn(link, weight * force.dot(&arm).max(0.0));
                 }
             }

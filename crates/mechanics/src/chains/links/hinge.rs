@@ -16,7 +16,7 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
 use nalgebra::{Matrix2, Vector2, Vector3};
 
-use super::{Linkage, Mate, Play, cross, supplied, turned};
+use super::{JointState, Linkage, Mate, cross, supplied, turned};
 use crate::End;
 use crate::energy::Flow;
 
@@ -41,13 +41,14 @@ impl Hinges {
         linkage: &Linkage,
         at: Moment<'_>,
         rates: &mut [f64],
-        play: &mut Play,
+        joint_state: &mut JointState,
     ) {
         let held: Vec<usize> = (0..linkage.joints.len())
             .filter(|&joint| linkage.joints[joint].pair.is_some())
             .collect();
-        play.hinge_forces.clear();
-        play.hinge_forces
+        joint_state.hinge_forces.clear();
+        joint_state
+            .hinge_forces
             .resize(linkage.joints.len(), Vector::zeros());
         let count = held.len();
         if count == 0 {
@@ -60,7 +61,7 @@ impl Hinges {
             let Some(mates) = linkage.joints[joint].pair else {
                 continue;
             };
-            let [hole, pin] = mates.map(|mate| linkage.part(mate, at, &play.posture));
+            let [hole, pin] = mates.map(|mate| linkage.part(mate, at, &joint_state.posture));
             // 2 α ċ + α² c
             let mut drift = (pin.velocity - hole.velocity) * (2.0 * self.rate)
                 + (pin.place - hole.place) * (self.rate * self.rate);
@@ -71,7 +72,7 @@ impl Hinges {
                         let across = turned(part.arm);
                         diagonal[row] +=
                             Matrix2::identity() / b.mass + across * across.transpose() / b.inertia;
-                        let f = &play.forces[body];
+                        let f = &joint_state.forces[body];
                         // J a + J̇ v = F/m + α ẑ × r − ω² r
                         let acceleration = Vector::new(f.x, f.y) / b.mass
                             + across * (f.z / b.inertia)
@@ -85,7 +86,7 @@ impl Hinges {
             // The next joint in the row, where one link joins the two.
             let next = (row + 1) % count;
             if count > 1
-                && let Some(coupling) = coupling(linkage, play, joint, held[next])
+                && let Some(coupling) = coupling(linkage, joint_state, joint, held[next])
             {
                 below[row] = coupling;
             }
@@ -98,14 +99,14 @@ impl Hinges {
             let Some(mates) = linkage.joints[joint].pair else {
                 continue;
             };
-            play.hinge_forces[joint] = *force;
-            for limb in limbs(&mates, play) {
+            joint_state.hinge_forces[joint] = *force;
+            for limb in limbs(&mates, joint_state) {
                 if let Some(body) = limb.body {
                     let push = force * limb.sign;
-                    play.forces[body] += Vector3::new(push.x, push.y, cross(limb.arm, push));
+                    joint_state.forces[body] += Vector3::new(push.x, push.y, cross(limb.arm, push));
                 }
             }
-            let [hole, pin] = mates.map(|mate| linkage.part(mate, at, &play.posture));
+            let [hole, pin] = mates.map(|mate| linkage.part(mate, at, &joint_state.posture));
             rates[Flow::Motions as usize] += supplied(&mates, *force, &hole, &pin);
         }
     }
@@ -123,11 +124,11 @@ fn ground_acceleration(linkage: &Linkage, mate: Mate, at: Moment<'_>) -> Vector 
 
 /// Hole and pin of a joint, with the sign of the joint force on them.
 #[inline(always)]
-fn limbs(mates: &[Mate; 2], play: &Play) -> [Limb; 2] {
+fn limbs(mates: &[Mate; 2], joint_state: &JointState) -> [Limb; 2] {
     [(mates[0], -1.0), (mates[1], 1.0)].map(|(mate, sign)| match mate {
         Mate::Link { link, end } => Limb {
             body: Some(link),
-            arm: play.posture.arm(link, end),
+            arm: joint_state.posture.arm(link, end),
             sign,
         },
         Mate::Ground(_) => Limb {
@@ -139,12 +140,17 @@ fn limbs(mates: &[Mate; 2], play: &Play) -> [Limb; 2] {
 }
 
 /// Block (second, first) of J M⁻¹ Jᵀ: through the link that has both joints.
-fn coupling(linkage: &Linkage, play: &Play, first: usize, second: usize) -> Option<Matrix2<f64>> {
+fn coupling(
+    linkage: &Linkage,
+    joint_state: &JointState,
+    first: usize,
+    second: usize,
+) -> Option<Matrix2<f64>> {
     let (a, b) = (linkage.joints[first].pair?, linkage.joints[second].pair?);
     let mut sum = None;
     // The link between joint k and the next one is link k.
-    for from in limbs(&a, play) {
-        for to in limbs(&b, play) {
+    for from in limbs(&a, joint_state) {
+        for to in limbs(&b, joint_state) {
             if from.body == Some(first) && to.body == Some(first) {
                 let body = &linkage.bodies[first];
                 let block = Matrix2::identity() / body.mass

@@ -12,10 +12,10 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::Weights;
 use nalgebra::{Matrix3, Vector3};
 
-use super::held::Asked;
+use super::held::Prescribed;
 use super::impulses::MOST_WHEELS;
 use super::loose::Loose;
-use super::{Blocks, Element, Joining, Linkage, Mount, Partner, Play, cross, turned};
+use super::{Blocks, Element, Joining, JointState, Linkage, Mount, Partner, cross, turned};
 use crate::chains::Record;
 use crate::system::GroupBodies;
 
@@ -60,12 +60,16 @@ impl Linkage {
         record: &mut Record,
         x: &mut [f64],
     ) -> bool {
-        let Record { play, impulses, .. } = record;
+        let Record {
+            joint_state,
+            impulses,
+            ..
+        } = record;
         let few = x.len() - self.coordinates() <= MOST_WHEELS;
         if weights.stiffness <= 0.0 && few && matches!(self.joining, Joining::Clearance(_)) {
-            return self.damp(bodies, weights.damping, play, impulses, x);
+            return self.damp(bodies, weights.damping, joint_state, impulses, x);
         }
-        self.eliminate(bodies, weights, play, x, Asked::Kept)
+        self.eliminate(bodies, weights, joint_state, x, Prescribed::Kept)
     }
 
     /// The least change of coordinates or velocities, of which there are `count`, that moves every pin towards its hole by what is
@@ -73,7 +77,7 @@ impl Linkage {
     pub(crate) fn nearest(
         &self,
         bodies: GroupBodies<'_>,
-        play: &mut Play,
+        joint_state: &mut JointState,
         towards: &[Vector],
         count: usize,
     ) -> Option<Vec<f64>> {
@@ -84,8 +88,15 @@ impl Linkage {
         // Solved for the change, which is nothing where no hinge opens.
         let mut change = vec![0.0; count];
         // Every pass leaves 1e-5 of what was missing.
-        let solved =
-            (0..3).all(|_| self.eliminate(bodies, none, play, &mut change, Asked::Given(towards)));
+        let solved = (0..3).all(|_| {
+            self.eliminate(
+                bodies,
+                none,
+                joint_state,
+                &mut change,
+                Prescribed::Given(towards),
+            )
+        });
         solved.then_some(change)
     }
 
@@ -93,16 +104,16 @@ impl Linkage {
         &self,
         bodies: GroupBodies<'_>,
         weights: Weights,
-        play: &mut Play,
+        joint_state: &mut JointState,
         x: &mut [f64],
-        asked: Asked<'_>,
+        asked: Prescribed<'_>,
     ) -> bool {
         let border = x.len() - self.coordinates() + if self.closed { 3 } else { 0 };
         let row = self.links - usize::from(self.closed);
         let rollers = self.bodies.len() - self.links;
-        let mut blocks = std::mem::take(&mut play.blocks);
+        let mut blocks = std::mem::take(&mut joint_state.blocks);
         blocks.clear(row, border);
-        let mut loose = std::mem::take(&mut play.loose);
+        let mut loose = std::mem::take(&mut joint_state.loose);
         loose.resize_with(rollers, Loose::default);
         for roller in &mut loose {
             roller.clear();
@@ -122,14 +133,16 @@ impl Linkage {
             loose: &mut loose,
             border,
         };
-        self.each_element(play, |element| sum.add(element, &play.mounts, weights));
+        self.each_element(joint_state, |element| {
+            sum.add(element, &joint_state.mounts, weights);
+        });
         let known = matches!(self.joining, Joining::Hinges(_)).then(|| x.to_vec());
         if let Some(b) = &known {
             if weights.stiffness > 0.0 {
-                sum.add_hinge_turns(play, weights.stiffness);
+                sum.add_hinge_turns(joint_state, weights.stiffness);
             }
             sum.subtract_known(b);
-            sum.add_hinges(play, weights, b, asked);
+            sum.add_hinges(joint_state, weights, b, asked);
         }
         let solved = sum.eliminate_rollers() && blocks.solve();
         if solved {
@@ -138,8 +151,8 @@ impl Linkage {
                 *x += b;
             }
         }
-        play.blocks = blocks;
-        play.loose = loose;
+        joint_state.blocks = blocks;
+        joint_state.loose = loose;
         solved
     }
 

@@ -18,7 +18,7 @@ mod tridiagonal;
 
 use pulp::{Simd, WithSimd};
 
-use super::{Bearing, Joining, Linkage, Play};
+use super::{Bearing, Joining, JointState, Linkage};
 use crate::lanes::{Wide, dispatch};
 use crate::system::GroupBodies;
 use local::Local;
@@ -45,7 +45,7 @@ impl Linkage {
         &self,
         bodies: GroupBodies<'_>,
         c: f64,
-        play: &Play,
+        joint_state: &JointState,
         work: &mut Impulses,
         x: &mut [f64],
     ) -> bool {
@@ -58,7 +58,7 @@ impl Linkage {
             bearing,
             bodies,
             c,
-            play,
+            joint_state,
         };
         // Around a link there are its two joints, the wheels, and the right-hand side.
         match (bearing.rubs(), wheels) {
@@ -78,7 +78,7 @@ struct Step<'a> {
     bearing: &'a Bearing,
     bodies: GroupBodies<'a>,
     c: f64,
-    play: &'a Play,
+    joint_state: &'a JointState,
 }
 
 impl Impulses {
@@ -106,18 +106,18 @@ impl Impulses {
             bearing,
             bodies,
             c,
-            play,
+            joint_state,
         } = step;
         let wheels = x.len() - linkage.coordinates();
-        self.rows[0].set_normals(w, play, c);
+        self.rows[0].set_normals(w, joint_state, c);
         if R == 2 {
-            self.rows[1].set_tangents(linkage, bearing, play, c);
+            self.rows[1].set_tangents(linkage, bearing, joint_state, c);
         }
         self.joints.clear::<R, C>(linkage, wheels);
         self.know(linkage, x);
         self.fill::<S, R, C>(w, linkage);
         self.fill_wheels::<R, C>(linkage, bodies, c, x);
-        self.local.gather(linkage, c, play);
+        self.local.gather(linkage, c, joint_state);
         let condensed = self
             .local
             .condense::<R, C>(linkage, &self.rows, &mut self.joints, x);
@@ -278,7 +278,7 @@ mod tests {
     use chaindrive_integrate::Weights;
 
     use super::{Impulses, Joining, Step};
-    use crate::chains::links::held::Asked;
+    use crate::chains::links::held::Prescribed;
     use crate::chains::links::tests::{kinds, of, started, whole};
 
     /// The bodies' own equations, block by block, give the same answer: two independent eliminations.
@@ -293,7 +293,7 @@ mod tests {
             assert!(linkage.damp(
                 whole(&system),
                 c,
-                &record.chains[0].play,
+                &record.chains[0].joint_state,
                 &mut work,
                 &mut impulses
             ));
@@ -306,7 +306,7 @@ mod tests {
                 bearing,
                 bodies: whole(&system),
                 c,
-                play: &record.chains[0].play,
+                joint_state: &record.chains[0].joint_state,
             };
             let mut roomy = b.clone();
             assert!(work.solve::<2, 24>(step, &mut roomy));
@@ -318,9 +318,9 @@ mod tests {
             assert!(linkage.eliminate(
                 whole(&system),
                 weights,
-                &mut record.chains[0].play,
+                &mut record.chains[0].joint_state,
                 &mut blocks,
-                Asked::Kept
+                Prescribed::Kept
             ));
             let size = b.iter().fold(0.0_f64, |m, b| m.max(b.abs()));
             for found in [&impulses, &roomy] {

@@ -5,7 +5,7 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 use pulp::{Simd, WithSimd};
 
-use super::{Element, Linkage, Mount, Partner, Play, Posture};
+use super::{Element, JointState, Linkage, Mount, Partner, Posture};
 use crate::chains::{Loads, Surroundings, Way};
 use crate::contact::Rollers;
 use crate::contact::{Contacts, Frame, Touch, Wrench};
@@ -21,21 +21,21 @@ impl Linkage {
         at: Moment<'_>,
         rates: &mut [f64],
         loads: &mut Loads,
-        play: &mut Play,
+        joint_state: &mut JointState,
     ) {
         let Surroundings {
             bodies,
             first,
             contacts,
         } = around;
-        play.mounts.clear();
+        joint_state.mounts.clear();
         for (i, on) in contacts.teeth.iter().enumerate() {
             let frame = loads.frames[i];
             let wheel = &bodies.wheels[on.wheel];
             let mount = self.wheel_mount(first, wheel, loads.ways[i]);
-            play.mounts.push(mount);
+            joint_state.mounts.push(mount);
             let touch = &mut loads.teeth[i];
-            let wrench = self.roll(&on.contacts, &frame, i, at, touch, play);
+            let wrench = self.roll(&on.contacts, &frame, i, at, touch, joint_state);
             rates[Flow::ToothLoss as usize] += wrench.normal_loss;
             rates[Flow::FrictionLoss as usize] += wrench.friction_loss;
             loads.wheel_wrenches[i] = wrench;
@@ -45,14 +45,14 @@ impl Linkage {
             let frame = loads.frames[number];
             let support = &bodies.rails[on.rail].support;
             let mount = self.rail_mount((bodies, first), support, loads.ways[number]);
-            play.mounts.push(mount);
+            joint_state.mounts.push(mount);
             let wrench = match &on.contact {
                 RailContact::Circles(contacts) => {
                     let touch = &mut loads.circles[i];
-                    self.roll(contacts, &frame, number, at, touch, play)
+                    self.roll(contacts, &frame, number, at, touch, joint_state)
                 }
                 RailContact::Plates(plates) => {
-                    let mut pins = super::rates::LinkPins(play);
+                    let mut pins = super::rates::LinkPins(joint_state);
                     plates.act(at.t, &frame, &mut pins, self.links, &mut loads.plates[i])
                 }
             };
@@ -128,11 +128,11 @@ impl Linkage {
         mount: usize,
         at: Moment<'_>,
         touch: &mut Touch,
-        play: &mut Play,
+        joint_state: &mut JointState,
     ) -> Wrench {
         let rubs = contacts.surface.friction != Friction::None;
-        let posture = &play.posture;
-        let idle = &mut play.idle;
+        let posture = &joint_state.posture;
+        let idle = &mut joint_state.idle;
         for values in [&mut idle.ax, &mut idle.ay, &mut idle.inverse_mass] {
             values.resize(posture.x.len(), 0.0);
         }
@@ -167,8 +167,9 @@ impl Linkage {
                     continue;
                 }
                 let faces = &touch.faces;
-                let d = Point::new(play.posture.x[joint], play.posture.y[joint]) - frame.origin;
-                let (body, arm) = self.bearer(joint, &play.posture);
+                let d = Point::new(joint_state.posture.x[joint], joint_state.posture.y[joint])
+                    - frame.origin;
+                let (body, arm) = self.bearer(joint, &joint_state.posture);
                 // Elements look from the surface's material outward through the roller: n = −n_surface.
                 let normal = -Vector::new(faces.normal_x[index], faces.normal_y[index]);
                 let (force, bend) = (touch.state.force[index], faces.bend[index]);
@@ -198,7 +199,7 @@ impl Linkage {
                     element.drag = faces.drag[index];
                     element.secant = faces.secant[index];
                 }
-                play.apply(&element, element.push());
+                joint_state.apply(&element, element.push());
             }
         });
         wrench

@@ -4,7 +4,7 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
 
 use super::rates::LinkPlaces;
-use super::{Joining, Linkage, Mate, Play};
+use super::{Joining, JointState, Linkage, Mate};
 use crate::chains::Record;
 use crate::contact::{ContactState, Frame, PlateContact};
 use crate::energy::{Energy, Store};
@@ -13,25 +13,29 @@ use crate::observe::Observation;
 impl Linkage {
     /// Appends what belongs to the chain.
     pub(crate) fn observe(&self, at: Moment<'_>, record: &Record, out: &mut Observation) {
-        let play = &record.play;
+        let joint_state = &record.joint_state;
         let count = self.joints.len();
-        out.roller_x.extend_from_slice(&play.posture.x[..count]);
-        out.roller_y.extend_from_slice(&play.posture.y[..count]);
-        out.roller_vx.extend_from_slice(&play.posture.vx[..count]);
-        out.roller_vy.extend_from_slice(&play.posture.vy[..count]);
+        out.roller_x
+            .extend_from_slice(&joint_state.posture.x[..count]);
+        out.roller_y
+            .extend_from_slice(&joint_state.posture.y[..count]);
+        out.roller_vx
+            .extend_from_slice(&joint_state.posture.vx[..count]);
+        out.roller_vy
+            .extend_from_slice(&joint_state.posture.vy[..count]);
         out.link_tension.extend(self.tensions(at, record));
         out.link_angle
             .extend((0..self.links).map(|link| at.q[3 * link + 2]));
         for (index, joint) in self.joints.iter().enumerate() {
-            let offset = self.offset(index, at, play);
-            let force = self.pin_force(play, index);
+            let offset = self.offset(index, at, joint_state);
+            let force = self.pin_force(joint_state, index);
             out.joint_offset_x.push(offset.x);
             out.joint_offset_y.push(offset.y);
             out.joint_force_x.push(force.x);
             out.joint_force_y.push(force.y);
             out.joint_force.push(force.norm());
             out.joint_depth.push(match &self.joining {
-                Joining::Clearance(_) => (-play.memory.joints.gap[index]).max(0.0),
+                Joining::Clearance(_) => (-joint_state.memory.joints.gap[index]).max(0.0),
                 Joining::Hinges(_) => 0.0,
             });
             out.joint_angle.push(match joint.pair {
@@ -42,10 +46,10 @@ impl Linkage {
     }
 
     /// Centre of the pin seen from the centre of its bush \[m\].
-    fn offset(&self, joint: usize, at: Moment<'_>, play: &Play) -> Vector {
+    fn offset(&self, joint: usize, at: Moment<'_>, joint_state: &JointState) -> Vector {
         match self.joints[joint].pair {
             Some(mates) => {
-                let [hole, pin] = mates.map(|mate| self.part(mate, at, &play.posture).place);
+                let [hole, pin] = mates.map(|mate| self.part(mate, at, &joint_state.posture).place);
                 pin - hole
             }
             None => Vector::new(f64::NAN, f64::NAN),
@@ -67,7 +71,7 @@ impl Linkage {
                 0.5 * (body.mass * (vx * vx + vy * vy) + body.inertia * spin * spin);
             out.stores[Store::Gravity as usize] -= body.mass * (gravity.x * x + gravity.y * y);
         }
-        out.stores[Store::Joints as usize] += self.stored(&record.play.memory);
+        out.stores[Store::Joints as usize] += self.stored(&record.joint_state.memory);
     }
 
     /// What the contacts of the plates with a guide store \[J\].
@@ -78,7 +82,7 @@ impl Linkage {
         frame: &Frame,
         record: &Record,
     ) -> f64 {
-        plates.stored(&LinkPlaces(&record.play), frame, self.links)
+        plates.stored(&LinkPlaces(&record.joint_state), frame, self.links)
     }
 
     /// How a pin stands to its bush, and a bush to its roller, for those who count impacts.

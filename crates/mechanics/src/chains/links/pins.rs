@@ -286,7 +286,7 @@ mod tests {
                 q: &q,
                 v: &v,
             };
-            let posture = &record.chains[0].play.posture;
+            let posture = &record.chains[0].joint_state.posture;
             let widths: [fn(Contacts<'_>) -> Tally; 3] = [
                 |contacts| contacts.act(Wide(pulp::Scalar)),
                 |contacts| contacts.act(Wide(Scalar128b)),

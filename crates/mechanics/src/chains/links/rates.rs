@@ -3,7 +3,7 @@
 use chaindrive_geometry::{Point, Vector};
 use nalgebra::Vector3;
 
-use super::{Joining, Linkage, Partner, Play, cross, turned};
+use super::{Joining, JointState, Linkage, Partner, cross, turned};
 use crate::chains::{Record, Surroundings};
 use crate::contact::{PlatePins, PlatePlaces};
 
@@ -24,10 +24,10 @@ impl Linkage {
     /// λ is the largest eigenvalue of a three-by-three matrix. Against a wheel the contact is shared unevenly:
     /// 1.1 for the chain, 11 for the wheel, and 1 where the wheel does not answer. Friction counts as damping.
     pub(crate) fn rates(&self, around: Surroundings<'_>, record: &Record) -> [f64; 2] {
-        let play = &record.play;
+        let joint_state = &record.joint_state;
         let mut sums = vec![[Packed::default(); 2]; self.bodies.len()];
-        self.add_joints(play, &mut sums);
-        for element in &play.elements {
+        self.add_joints(joint_state, &mut sums);
+        for element in &joint_state.elements {
             let share = match element.b {
                 Partner::Ground => 1.0,
                 Partner::Body(_) => 2.0,
@@ -60,13 +60,13 @@ impl Linkage {
             [k.max(largest(&sum[0])), d.max(largest(&sum[1]))]
         });
         squared = squared.max(self.resting());
-        for [rim, drag] in play.wheel_rates(around) {
+        for [rim, drag] in joint_state.wheel_rates(around) {
             squared = squared.max(RIM_SHARE * rim);
             damping = damping.max(RIM_SHARE * drag);
         }
         if let Joining::Hinges(hinges) = &self.joining {
             damping = damping.max(hinges.rate);
-            squared = squared.max(self.pulled(play));
+            squared = squared.max(self.pulled(joint_state));
         }
         [squared, damping]
     }
@@ -87,9 +87,9 @@ impl Linkage {
     /// ```text
     /// ω² ≤ T p/I    every link turns about its centre of mass, against its neighbours
     /// ```
-    fn pulled(&self, play: &Play) -> f64 {
+    fn pulled(&self, joint_state: &JointState) -> f64 {
         let force = |joint: usize| {
-            let force = play.hinge_forces.get(joint % self.joints.len());
+            let force = joint_state.hinge_forces.get(joint % self.joints.len());
             force.map_or(0.0, Vector::norm)
         };
         let links = self.bodies[..self.links].iter().enumerate();
@@ -125,11 +125,11 @@ impl Linkage {
     }
 
     /// Pins in bushes, straight from their arrays.
-    fn add_joints(&self, play: &Play, sums: &mut [[Packed; 2]]) {
+    fn add_joints(&self, joint_state: &JointState, sums: &mut [[Packed; 2]]) {
         let Joining::Clearance(bearing) = &self.joining else {
             return;
         };
-        let (pins, posture) = (&play.pins, &play.posture);
+        let (pins, posture) = (&joint_state.pins, &joint_state.posture);
         for joint in 0..self.joints.len() {
             let stiffness = pins.stiffness[joint];
             let drag = pins.drag[joint];
@@ -208,7 +208,7 @@ fn largest(matrix: &Packed) -> f64 {
     mean + 2.0 * (squared / 6.0).sqrt()
 }
 
-impl Play {
+impl JointState {
     /// Sums of stiffness and damping at the rims, times the mobility of the wheels.
     fn wheel_rates(&self, around: Surroundings<'_>) -> Vec<[f64; 2]> {
         let Surroundings {
@@ -233,10 +233,10 @@ impl Play {
 }
 
 /// The link plates of a linkage.
-pub(crate) struct LinkPins<'a>(pub(crate) &'a mut Play);
+pub(crate) struct LinkPins<'a>(pub(crate) &'a mut JointState);
 
 /// Where they are.
-pub(crate) struct LinkPlaces<'a>(pub(crate) &'a Play);
+pub(crate) struct LinkPlaces<'a>(pub(crate) &'a JointState);
 
 impl PlatePlaces for LinkPlaces<'_> {
     fn place(&self, link: usize, end: usize) -> Point {

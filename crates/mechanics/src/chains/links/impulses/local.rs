@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 
 use super::rows::Rows;
 use super::tridiagonal::Tridiagonal;
-use super::{Linkage, Play};
+use super::{JointState, Linkage};
 use crate::chains::links::implicit::{Row, partner_row};
 use crate::chains::links::{Element, Partner, cross};
 
@@ -45,11 +45,11 @@ pub(super) struct Local {
 
 impl Local {
     /// Collects the rows and sorts them by link.
-    pub(super) fn gather(&mut self, linkage: &Linkage, c: f64, play: &Play) {
+    pub(super) fn gather(&mut self, linkage: &Linkage, c: f64, joint_state: &JointState) {
         // Counting sort by link.
         self.starts.clear();
         self.starts.resize(linkage.links + 1, 0);
-        for element in &play.elements {
+        for element in &joint_state.elements {
             self.starts[linkage.home(element) + 1] +=
                 usize::from(element.damping > 0.0) + usize::from(element.secant > 0.0);
         }
@@ -59,7 +59,7 @@ impl Local {
         self.order.clear();
         self.order.extend_from_slice(&self.starts[..linkage.links]);
         self.lines.resize(self.starts[linkage.links], Line::EMPTY);
-        for element in &play.elements {
+        for element in &joint_state.elements {
             let levers = [element.lever_a, element.lever_b];
             let rows = [
                 (element.normal, [0.0; 2], element.damping),
@@ -68,7 +68,7 @@ impl Local {
             for (direction, levers, damping) in rows {
                 if damping > 0.0 {
                     let place = &mut self.order[linkage.home(element)];
-                    self.lines[*place].set(linkage, element, play, direction, levers);
+                    self.lines[*place].set(linkage, element, joint_state, direction, levers);
                     self.lines[*place].weight = c * damping;
                     *place += 1;
                 }
@@ -214,7 +214,7 @@ impl Line {
         &mut self,
         linkage: &Linkage,
         element: &Element,
-        play: &Play,
+        joint_state: &JointState,
         direction: Vector,
         levers: [f64; 2],
     ) {
@@ -224,7 +224,7 @@ impl Line {
             let turn = cross(element.arm_a, direction) + levers[0];
             self.bodies[0] = (body, Vector3::new(direction.x, direction.y, turn));
         }
-        match partner_row(element, &play.mounts, direction, levers[1]) {
+        match partner_row(element, &joint_state.mounts, direction, levers[1]) {
             Row::Nothing => {}
             Row::Body(body, row) => self.bodies[1] = (body, -row),
             Row::Border(entries) => {

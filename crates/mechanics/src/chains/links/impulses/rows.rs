@@ -5,7 +5,7 @@
 use pulp::Simd;
 
 use crate::chains::links::element::turned;
-use crate::chains::links::{Bearing, Linkage, Play};
+use crate::chains::links::{Bearing, JointState, Linkage};
 use crate::lanes::{Lane, Wide};
 
 /// One row a joint, whole lanes; all zero where there is no contact.
@@ -77,8 +77,8 @@ impl Rows {
 
     /// The normals of all joints.
     #[inline(always)]
-    pub(super) fn set_normals<S: Simd>(&mut self, w: Wide<S>, play: &Play, c: f64) {
-        let pins = &play.pins;
+    pub(super) fn set_normals<S: Simd>(&mut self, w: Wide<S>, joint_state: &JointState, c: f64) {
+        let pins = &joint_state.pins;
         let count = pins.normal_x.len();
         if self.x.len() != count {
             self.resize(count);
@@ -104,10 +104,10 @@ impl Rows {
         &mut self,
         linkage: &Linkage,
         bearing: &Bearing,
-        play: &Play,
+        joint_state: &JointState,
         c: f64,
     ) {
-        let pins = &play.pins;
+        let pins = &joint_state.pins;
         self.resize(pins.normal_x.len());
         self.all().into_iter().for_each(|values| values.fill(0.0));
         for joint in 0..linkage.joints.len() {
@@ -117,7 +117,7 @@ impl Rows {
             }
             let levers = bearing.side_levers(linkage.pairs.pin_after(joint), -pins.gap[joint]);
             let t = turned(pins.normal(joint));
-            let (before, after) = (&play.posture.before, &play.posture.after);
+            let (before, after) = (&joint_state.posture.before, &joint_state.posture.after);
             self.x[joint] = t.x;
             self.y[joint] = t.y;
             self.turn_before[joint] =
