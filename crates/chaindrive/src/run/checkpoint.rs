@@ -124,7 +124,8 @@ impl Checkpoint {
             ..self.run.clone()
         };
         run.check()?;
-        self.scene = until.put(&scene, "run.until")?.text().to_owned();
+        let extended = until.put(&scene, "run.until")?;
+        extended.text().clone_into(&mut self.scene);
         self.run = run;
         Ok(())
     }

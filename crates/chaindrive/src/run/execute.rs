@@ -264,23 +264,7 @@ fn complete<S: Sink>(
         Err(refused) => {
             // The result is to say that it is not whole, if it still can.
             let ending = Ending::Failed(refused.to_string());
-            let samples = summary.samples;
-            let told = attributes(
-                &provenance,
-                &simulation,
-                Some(&summary),
-                samples,
-                &ending,
-                None,
-            );
-            let end = End {
-                simulation: &simulation,
-                summary: &summary,
-                judgement: None,
-                ending: &ending,
-                attributes: &told,
-            };
-            sink.end(&end).ok();
+            close(sink, &provenance, &simulation, &summary, &ending, None).ok();
             return Err(RunError::Sink(refused));
         }
     };
@@ -292,23 +276,8 @@ fn complete<S: Sink>(
     };
     let ending = stop.ending();
     let judged = judgement.as_ref();
-    let samples = summary.samples;
-    let told = attributes(
-        &provenance,
-        &simulation,
-        Some(&summary),
-        samples,
-        &ending,
-        judged,
-    );
-    sink.end(&End {
-        simulation: &simulation,
-        summary: &summary,
-        judgement: judged,
-        ending: &ending,
-        attributes: &told,
-    })
-    .map_err(RunError::Sink)?;
+    let told = close(sink, &provenance, &simulation, &summary, &ending, judged);
+    let told = told.map_err(RunError::Sink)?;
     if judgement == Some(Judgement::Interrupted) {
         // The samples are complete, but the user wants to get away.
         stop = Stop::Interrupted;
@@ -325,6 +294,34 @@ fn complete<S: Sink>(
         stop,
         attributes: told,
     })
+}
+
+/// Tells the sink how the run ended; returns what the result says about itself.
+fn close<S: Sink>(
+    sink: &mut S,
+    provenance: &Provenance,
+    simulation: &Simulation,
+    summary: &Summary,
+    ending: &Ending,
+    judgement: Option<&Judgement>,
+) -> Result<Map<String, Value>, S::Error> {
+    let samples = summary.samples;
+    let attributes = attributes(
+        provenance,
+        simulation,
+        Some(summary),
+        samples,
+        ending,
+        judgement,
+    );
+    sink.end(&End {
+        simulation,
+        summary,
+        judgement,
+        ending,
+        attributes: &attributes,
+    })?;
+    Ok(attributes)
 }
 
 /// A run that is ready to move.

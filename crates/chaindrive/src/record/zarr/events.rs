@@ -59,6 +59,10 @@ impl EventTracks {
     /// Goes on behind the contacts that are in the store; what there is more of them is forgotten.
     pub(super) fn go_on(&mut self, contacts: u64) -> Result<(), Fault> {
         self.chunk = contacts / EVENTS_PER_CHUNK as u64;
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "less than the contacts of a chunk"
+        )]
         let held = (contacts % EVENTS_PER_CHUNK as u64) as usize;
         let place = [self.chunk];
         for (column, array) in &mut self.arrays {

@@ -80,6 +80,10 @@ impl Track {
     pub(super) fn go_on(&mut self, samples: u64) -> Result<(), Fault> {
         self.set_length(samples)?;
         self.chunk = samples / self.samples as u64;
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "less than the samples of a chunk"
+        )]
         let held = (samples % self.samples as u64) as usize * self.width;
         if held > 0 {
             let stored: Vec<f64> = self.array.retrieve_chunk(&self.place())?;
