@@ -32,7 +32,7 @@ use crate::{Checkpoint, Given, Onlooker, Report, RequestError, RunError, SealErr
 ///
 /// let report = Stopped::open(&path, Some(&Given::Number(6e-3)))?.resume(&|| false)?;
 /// assert_eq!(report.attributes["status"], "complete");
-/// assert_eq!(report.attributes["samples"], 7);
+/// assert_eq!(report.attributes["samples"], 61);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Stopped {
