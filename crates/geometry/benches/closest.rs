@@ -1,4 +1,4 @@
-//! One roller against a tooth outline, a rail and a spline of 200 pieces.
+//! One roller against a tooth outline, a rail and splines of up to 1000 pieces.
 
 #[path = "../tests/it/shapes/mod.rs"]
 mod shapes;
@@ -29,7 +29,9 @@ fn closest(criterion: &mut Criterion) {
         ("tooth gap, 5 pieces", shapes::iso_gap_centred_on_pitch()),
         ("wheel, 95 pieces", shapes::iso_wheel(19)),
         ("rail, 14 pieces", shapes::rounded_rail(11)),
-        ("spline, 200 pieces", shapes::long_spline(200)),
+        ("spline, 10 pieces", shapes::long_spline(10)),
+        ("spline, 100 pieces", shapes::long_spline(100)),
+        ("spline, 1000 pieces", shapes::long_spline(1000)),
     ] {
         let rollers = rollers(&curve);
         let mut group = criterion.benchmark_group(name);

@@ -19,8 +19,8 @@ const CRATES: [Storeys; 4] = [
             &["motion", "profile", "tensioner"],
             &["chain", "torque"],
             &["drive"],
-            &["contact"],
-            &["chains"],
+            &["contact", "groups"],
+            &["chains", "trains"],
             &["system"],
             &["events", "observe", "standing"],
             &["check"],
@@ -53,7 +53,7 @@ const CRATES: [Storeys; 4] = [
     Storeys {
         folder: "chaindrive",
         layers: &[
-            &["catalogue"],
+            &["catalogue", "seal"],
             &["error", "scene"],
             &["run"],
             &["simulate"],
@@ -127,7 +127,11 @@ const CRATES: [Storeys; 4] = [
             &["run"],
             &["live", "precision", "sweep"],
         ],
-        exceptions: &[],
+        exceptions: &[(
+            "drive",
+            "run",
+            "assembling a drive is waited for as patiently as a run: Ctrl-C is heard meanwhile",
+        )],
     },
 ];
 
