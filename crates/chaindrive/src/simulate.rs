@@ -86,6 +86,7 @@ fn slow_enough(system: &System, state: &State) -> Result<(), SimulationError> {
         t: state.t,
         q: &state.q,
         v: &state.v,
+        z: &[],
     });
     if fastest <= FASTEST {
         Ok(())
@@ -203,7 +204,12 @@ impl Simulation {
         let Moving { system, state, .. } = &self.moving;
         state.at(time, q, v);
         state.quadratures_at(time, flows);
-        let at = Moment { t: time, q, v };
+        let at = Moment {
+            t: time,
+            q,
+            v,
+            z: &[],
+        };
         system.observe(at, flows, &mut self.record, &mut self.observation);
         self.start_energy.get_or_insert(self.observation.energy);
         self.read = time;

@@ -136,11 +136,11 @@ impl System {
     pub(crate) fn start(&mut self, t: f64, q: &mut [f64], v: &mut [f64]) {
         let mut record = self.new_record();
         for (member, record) in self.chains.iter_mut().zip(&mut record.chains) {
-            member.renew_windows(&self.bodies, Moment { t, q, v }, record);
+            member.renew_windows(&self.bodies, Moment { t, q, v, z: &[] }, record);
         }
         let mut a = vec![0.0; self.dofs];
         let mut rates = vec![0.0; Flow::ALL.len()];
-        self.evaluate(Moment { t, q, v }, &mut a, &mut rates, &mut record);
+        self.evaluate(Moment { t, q, v, z: &[] }, &mut a, &mut rates, &mut record);
         self.commit(t, q, v, &mut record);
     }
 
@@ -201,7 +201,12 @@ impl System {
         [q, v]: [&mut Vec<f64>; 2],
     ) -> bool {
         let member = &self.chains[index];
-        let at = Moment { t: 0.0, q, v };
+        let at = Moment {
+            t: 0.0,
+            q,
+            v,
+            z: &[],
+        };
         let entries = member.entries.clone();
         let bodies = self.group_bodies(self.group_of(index));
         let placed = member.chain.put_in_place(entries, bodies, laid, at);
@@ -353,7 +358,7 @@ impl SecondOrderSystem for System {
         }
         self.note_events(t);
         for (member, record) in self.chains.iter_mut().zip(&mut end.chains) {
-            member.look_around(&self.bodies, Moment { t, q, v }, record);
+            member.look_around(&self.bodies, Moment { t, q, v, z: &[] }, record);
         }
         if self.take_due(t) {
             Continuity::Jump

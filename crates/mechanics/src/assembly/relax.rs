@@ -460,5 +460,6 @@ fn at_rest<'a>(q: &'a [f64], still: &'a [f64]) -> Moment<'a> {
         t: 0.0,
         q,
         v: still,
+        z: &[],
     }
 }

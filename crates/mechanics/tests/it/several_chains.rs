@@ -132,6 +132,7 @@ fn observed(system: &System, state: &State) -> Observation {
         t: state.t,
         q: &state.q,
         v: &state.v,
+        z: &[],
     };
     let flows = vec![0.0; system.quadratures()];
     system.observe(at, &flows, &mut system.new_record(), &mut out);
@@ -329,6 +330,7 @@ fn a_shaft_carries_sprockets_of_two_chains() {
                 t: state.t,
                 q: &state.q,
                 v: &state.v,
+                z: &[],
             };
             system.observe(at, flows, &mut system.new_record(), &mut out);
             out
@@ -408,7 +410,12 @@ fn an_implicit_step_joins_chains_of_rigid_links() {
     let accelerations = |v: &[f64]| {
         let mut record = system.new_record();
         let mut a = vec![0.0; q.len()];
-        let at = Moment { t: 0.0, q: &q, v };
+        let at = Moment {
+            t: 0.0,
+            q: &q,
+            v,
+            z: &[],
+        };
         system.evaluate(
             at,
             &mut a,

@@ -196,6 +196,7 @@ impl Bench {
             t: self.state.t,
             q: &self.state.q,
             v: &self.state.v,
+            z: &[],
         };
         let flows = &self.state.quadratures;
         self.system

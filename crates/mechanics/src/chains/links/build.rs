@@ -128,6 +128,7 @@ impl Linkage {
                 t: 0.0,
                 q,
                 v: &still,
+                z: &[],
             };
             self.pose_links(at, &mut play.posture);
             play.hinge_forces = vec![Vector::zeros(); self.joints.len()];
@@ -154,7 +155,12 @@ impl Linkage {
             return;
         }
         let mut play = Play::default();
-        let at = Moment { t: 0.0, q, v };
+        let at = Moment {
+            t: 0.0,
+            q,
+            v,
+            z: &[],
+        };
         self.pose_links(at, &mut play.posture);
         play.hinge_forces = vec![Vector::zeros(); self.joints.len()];
         let opening = self.joints.iter().map(|joint| {
