@@ -218,6 +218,10 @@ impl System {
     /// that turn as easily as the chain on them: heavy ones would hold up the iteration.
     fn at_rest(&self) -> Self {
         let mut light = self.clone();
+        for slide in &mut light.bodies.slides {
+            slide.push = slide.push.relaxed();
+        }
+        light.bodies.number_states();
         let heaviest = light.heaviest();
         for wheel in &mut light.bodies.wheels {
             if let WheelSupport::Prescribed { x, y } = &mut wheel.support {
