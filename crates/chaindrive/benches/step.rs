@@ -3,7 +3,7 @@
 //! Throughput is given in links, so that its inverse is the time per link and step.
 
 use chaindrive::{Method, Scene};
-use chaindrive_integrate::{SecondOrderSystem, State};
+use chaindrive_integrate::SecondOrderSystem;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 fn steps(criterion: &mut Criterion) {
@@ -32,7 +32,7 @@ fn steps(criterion: &mut Criterion) {
         }
         for method in methods {
             let mut system = assembled.system.clone();
-            let mut state = State::new(0.0, assembled.q.clone(), assembled.v.clone());
+            let mut state = assembled.state();
             let mut stepper = method
                 .start(&mut system, &mut state)
                 .expect("the step is stable");

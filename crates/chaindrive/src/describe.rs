@@ -218,6 +218,7 @@ fn at_start(assembled: &Assembled) -> Observation {
         t: 0.0,
         q: &assembled.q,
         v: &assembled.v,
+        z: &assembled.z,
     };
     let mut start = Observation::default();
     let flows = [0.0; Flow::ALL.len()];

@@ -165,6 +165,7 @@ pub fn labels(axis: Axis, system: &System) -> Option<Vec<String>> {
         Axis::Coupling => Some(system.coupling_names()),
         Axis::Guide => Some(system.guide_names()),
         Axis::Tensioner => Some(system.tensioner_names()),
+        Axis::OilColumn => Some(system.oil_column_names()),
         Axis::Store => Some(Store::ALL.iter().map(|s| s.name().to_owned()).collect()),
         Axis::Flow => Some(Flow::ALL.iter().map(|f| f.name().to_owned()).collect()),
     }

@@ -48,7 +48,7 @@ pub struct Simulation {
     next: u64,
     observation: Observation,
     record: Record,
-    buffers: [Vec<f64>; 3],
+    buffers: [Vec<f64>; 4],
     start_energy: Option<Energy>,
     stepping_time: f64,
 }
@@ -86,6 +86,7 @@ fn slow_enough(system: &System, state: &State) -> Result<(), SimulationError> {
         t: state.t,
         q: &state.q,
         v: &state.v,
+        z: &state.z,
     });
     if fastest <= FASTEST {
         Ok(())
@@ -118,7 +119,7 @@ impl Simulation {
     pub fn from_assembled(assembled: Assembled, run: &Run) -> Result<Self, SimulationError> {
         run.check()?;
         let mut system = assembled.system.clone();
-        let mut state = State::new(0.0, assembled.q.clone(), assembled.v.clone());
+        let mut state = assembled.state();
         slow_enough(&system, &state)?;
         let method = run.method(&system);
         system.set_onset_depth(run.onset_depth_with(&method));
@@ -133,6 +134,7 @@ impl Simulation {
                 vec![0.0; dofs],
                 vec![0.0; dofs],
                 vec![0.0; state.quadratures.len()],
+                vec![0.0; state.z.len()],
             ],
             moving: Moving {
                 system,
@@ -199,11 +201,12 @@ impl Simulation {
 
     /// Reads everything off the state at a time \[s\] within the last step.
     fn observe(&mut self, time: f64) {
-        let [q, v, flows] = &mut self.buffers;
+        let [q, v, flows, z] = &mut self.buffers;
         let Moving { system, state, .. } = &self.moving;
         state.at(time, q, v);
         state.quadratures_at(time, flows);
-        let at = Moment { t: time, q, v };
+        state.states_at(time, z);
+        let at = Moment { t: time, q, v, z };
         system.observe(at, flows, &mut self.record, &mut self.observation);
         self.start_energy.get_or_insert(self.observation.energy);
         self.read = time;

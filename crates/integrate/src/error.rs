@@ -11,6 +11,8 @@ pub enum Quantity {
     Velocity,
     /// An acceleration.
     Acceleration,
+    /// A first-order state.
+    State,
     /// A quantity integrated along with the motion, or its rate.
     Quadrature,
 }
@@ -21,6 +23,7 @@ impl fmt::Display for Quantity {
             Self::Position => "position",
             Self::Velocity => "velocity",
             Self::Acceleration => "acceleration",
+            Self::State => "first-order state",
             Self::Quadrature => "quadrature",
         })
     }

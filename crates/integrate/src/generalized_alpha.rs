@@ -4,8 +4,8 @@ use std::mem::swap;
 
 use crate::finite::Watch;
 use crate::method::Outcome;
-use crate::state::{Snapshot, State};
-use crate::{Moment, SecondOrderSystem, Statistics, Weights};
+use crate::state::{Size, Snapshot, State};
+use crate::{SecondOrderSystem, Statistics, Weights};
 
 /// Newton's iterations after which a candidate is given up; with exact derivatives three or four are usual.
 const MOST_ITERATIONS: u32 = 10;
@@ -23,11 +23,11 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 #[derive(Clone, Debug)]
 pub(crate) struct GeneralizedAlpha {
     coefficients: Coefficients,
-    /// Algorithmic accelerations A of the accepted state.
+    /// Algorithmic accelerations A of the accepted state, and rates R of its first-order states.
     accepted: Vec<f64>,
-    /// Algorithmic accelerations A⁺ of the candidate.
+    /// Algorithmic accelerations A⁺ and rates R⁺ of the candidate.
     trial: Vec<f64>,
-    /// Newton's correction of A⁺.
+    /// Newton's correction of A⁺ and R⁺.
     correction: Vec<f64>,
 }
 
@@ -73,21 +73,29 @@ impl Coefficients {
 }
 
 impl GeneralizedAlpha {
-    pub(crate) fn new(spectral_radius: f64, dofs: usize) -> Self {
+    pub(crate) fn new(spectral_radius: f64, size: Size) -> Self {
+        let unknowns = size.dofs + size.states;
         Self {
             coefficients: Coefficients::new(spectral_radius),
-            accepted: vec![0.0; dofs],
-            trial: vec![0.0; dofs],
-            correction: vec![0.0; dofs],
+            accepted: vec![0.0; unknowns],
+            trial: vec![0.0; unknowns],
+            correction: vec![0.0; unknowns],
         }
     }
 
     /// Begins afresh, after a jump or at the start: the algorithmic accelerations are the physical ones.
-    pub(crate) fn restart(&mut self, a: &[f64]) {
-        self.accepted.copy_from_slice(a);
+    pub(crate) fn restart(&mut self, state: &State) {
+        let (a, flow) = self.accepted.split_at_mut(state.a.len());
+        a.copy_from_slice(&state.a);
+        flow.copy_from_slice(state.flow());
     }
 
-    /// Algorithmic accelerations of the accepted state.
+    /// Goes on from what it carried.
+    pub(crate) fn carry_on(&mut self, carried: &[f64]) {
+        self.accepted.copy_from_slice(carried);
+    }
+
+    /// Algorithmic accelerations of the accepted state, and rates of its first-order states.
     pub(crate) fn carried(&self) -> &[f64] {
         &self.accepted
     }
@@ -102,9 +110,14 @@ impl GeneralizedAlpha {
     /// ```text
     /// q⁺ = q + h v + h² [(½ − β) A + β A⁺]
     /// v⁺ = v + h [(1 − γ) A + γ A⁺]
-    /// (1 − αm) A⁺ + αm A = (1 − αf) a⁺ + αf a,   a⁺ = a(t + h, q⁺, v⁺)
+    /// (1 − αm) A⁺ + αm A = (1 − αf) a⁺ + αf a,   a⁺ = a(t + h, q⁺, v⁺, z⁺)
+    ///
+    /// z⁺ = z + h [(1 − γ) R + γ R⁺]
+    /// (1 − αm) R⁺ + αm R = (1 − αf) ż⁺ + αf ż
     /// ```
     ///
+    /// First-order states share the coefficients, of second order there too since γ = ½ − αm + αf. Of a state that settles at once the
+    /// step leaves the shares ρ and |1 − 3ρ|/(3 − ρ).
     /// Forces are weighted between the ends rather than taken in between: the same for linear forces, and the
     /// last evaluation is the one at the end that the system judges and commits. A jump starts A afresh; A lags or
     /// leads its state by a share of the step before, so a change of the step costs a little accuracy once.
@@ -113,7 +126,8 @@ impl GeneralizedAlpha {
     /// # Source
     /// J. Chung and G. M. Hulbert, *J. Appl. Mech.* **60**, 1993, 371–375, <https://doi.org/10.1115/1.2900803>; weighted
     /// between the ends after M. Arnold and O. Brüls, *Multibody Syst. Dyn.* **18**, 2007, 185–202,
-    /// <https://doi.org/10.1007/s11044-007-9084-0>.
+    /// <https://doi.org/10.1007/s11044-007-9084-0>; states of first order after K. E. Jansen, C. H. Whiting and
+    /// G. M. Hulbert, *Comput. Methods Appl. Mech. Eng.* **190**, 2000, 305–319, <https://doi.org/10.1016/S0045-7825(00)00203-6>.
     pub(crate) fn attempt<S: SecondOrderSystem>(
         &mut self,
         system: &S,
@@ -128,17 +142,13 @@ impl GeneralizedAlpha {
         self.trial.copy_from_slice(&self.accepted);
         for iteration in 0..MOST_ITERATIONS {
             self.place(h, from, to);
-            let end = Moment {
-                t: to.t,
-                q: &to.q,
-                v: &to.v,
-            };
-            system.evaluate(end, &mut to.a, &mut to.rates, record);
+            to.evaluate(system, record);
             counts.evaluations += 1;
             let mut watch = Watch::default();
-            for part in [&to.q, &to.v, &to.a] {
+            for part in [&to.q, &to.v, &to.a, &to.z] {
                 watch.see_all(part);
             }
+            watch.see_all(to.flow());
             if !watch.all_finite() {
                 // The first guess is as good as that of an explicit method; later ones may be Newton's fault.
                 return if iteration == 0 {
@@ -147,7 +157,7 @@ impl GeneralizedAlpha {
                     Outcome::NoSolution
                 };
             }
-            self.imbalance(from, &to.a);
+            self.imbalance(from, to);
             counts.solves += 1;
             if !system.solve(weights, record, &mut self.correction) {
                 return Outcome::NoSolution;
@@ -181,15 +191,22 @@ impl GeneralizedAlpha {
             to.q[i] = q0[i] + h * (v0[i] + h * ((0.5 - beta) * a0[i] + beta * a1[i]));
             to.v[i] = v0[i] + h * ((1.0 - gamma) * a0[i] + gamma * a1[i]);
         }
+        let rates = self.accepted[n..].iter().zip(&self.trial[n..]);
+        for ((z, z0), (r0, r1)) in to.z.iter_mut().zip(&from.z).zip(rates) {
+            // z⁺ = z + h [(1 − γ) R + γ R⁺]
+            *z = z0 + h * ((1.0 - gamma) * r0 + gamma * r1);
+        }
     }
 
-    /// What the accelerations a⁺ leave open, as the right-hand side of the correction.
-    fn imbalance(&mut self, from: &State, a: &[f64]) {
+    /// What the accelerations a⁺ and the rates ż⁺ leave open, as the right-hand side of the correction.
+    fn imbalance(&mut self, from: &State, to: &Snapshot) {
         let Coefficients { inertia, force, .. } = self.coefficients;
         let share = 1.0 / (1.0 - inertia);
-        for (i, x) in self.correction.iter_mut().enumerate() {
+        let rates = from.a.iter().chain(from.flow());
+        let rates = rates.zip(to.a.iter().chain(to.flow()));
+        for (i, (x, (before, after))) in self.correction.iter_mut().zip(rates).enumerate() {
             // (1 − αm) x = (1 − αf) a⁺ + αf a − αm A − (1 − αm) A⁺
-            let weighted = (1.0 - force) * a[i] + force * from.a[i] - inertia * self.accepted[i];
+            let weighted = (1.0 - force) * after + force * before - inertia * self.accepted[i];
             *x = share * weighted - self.trial[i];
         }
     }
@@ -201,12 +218,16 @@ impl GeneralizedAlpha {
                 .iter()
                 .fold(0.0_f64, |most, value| most.max(value.abs()))
         };
-        let change = largest(&self.correction);
-        let speed = largest(&from.v)
-            .max(largest(&to.v))
-            .max(h * largest(&self.trial));
+        let (change, flow_change) = self.correction.split_at(to.q.len());
+        let (trial, flow) = self.trial.split_at(to.q.len());
+        let [change, flow_change] = [change, flow_change].map(largest);
+        let speed = largest(&from.v).max(largest(&to.v)).max(h * largest(trial));
+        let place = largest(&to.q);
         // h |ΔA| ≤ 1e-10 |v|   or   β h² |ΔA| ≤ 4ε |q|
-        h * change <= TOLERANCE * speed
-            || self.coefficients.beta * h * h * change <= ROUNDING * largest(&to.q)
+        let settled = h * change <= TOLERANCE * speed
+            || self.coefficients.beta * h * h * change <= ROUNDING * place;
+        // h |ΔR| ≤ 1e-10 |z|   or   h |ΔR| ≤ 4ε |q|
+        let state = largest(&to.z).max(h * largest(flow));
+        settled && (h * flow_change <= TOLERANCE * state || h * flow_change <= ROUNDING * place)
     }
 }

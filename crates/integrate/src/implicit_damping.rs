@@ -5,79 +5,103 @@ use pulp::{Arch, Simd, WithSimd};
 use crate::finite::Watch;
 use crate::method::Outcome;
 use crate::registers::dispatch;
-use crate::state::{Snapshot, State};
+use crate::state::{Size, Snapshot, State};
 use crate::{Moment, SecondOrderSystem, Statistics, Weights};
 
 /// Limit of ωh, whatever the damping.
 pub(crate) const LIMIT: f64 = 2.0;
 
-/// Makes a candidate h \[s\] ahead; `fresh` tells whether the record still belongs to the beginning.
-///
-/// ```text
-/// (M + h C) Δv = h f(t, q, v)
-/// v⁺ = v + Δv
-/// q⁺ = q + h v⁺
-/// ```
-///
-/// One evaluation and one solution of linear equations; a candidate after a rejected one costs an evaluation more.
-/// Of first order in the damping. Without damping it is the symplectic Euler method, which is
-/// leapfrog with velocities half a step early: bounded energy error, no drift. The characteristic
-/// polynomial of a mode, (1 + hλ)(z − 1)² + h (ω² h z + λ (z − 1)) with its damping rate λ = c/m, has its
-/// roots within the unit circle for (ωh)² < 2 (2 + λh).
-///
-/// # Source
-/// Symplectic Euler: E. Hairer, C. Lubich and G. Wanner, *Geometric Numerical Integration*, Springer, 2006, section I.1;
-/// damping by one Newton step of the implicit Euler method:
-/// U. M. Ascher, S. J. Ruuth and B. T. R. Wetton, *SIAM J. Numer. Anal.* **32**, 1995, 797–823.
-pub(crate) fn attempt<S: SecondOrderSystem>(
-    system: &S,
-    from: &State,
-    h: f64,
-    fresh: bool,
-    to: &mut Snapshot,
-    record: &mut S::Record,
-    counts: &mut Statistics,
-) -> Outcome {
-    if !fresh {
-        // C belongs to the beginning; the candidate's buffers take what is known already.
-        let begin = Moment {
-            t: from.t,
-            q: &from.q,
-            v: &from.v,
-        };
-        system.evaluate(begin, &mut to.a, &mut to.rates, record);
-        counts.evaluations += 1;
-    }
-    to.t = from.t + h;
-    // x = (M + h C)⁻¹ M (h a)
-    for (x, a) in to.v.iter_mut().zip(&from.a) {
-        *x = h * a;
-    }
-    let weights = Weights {
-        damping: h,
-        stiffness: 0.0,
-    };
-    counts.solves += 1;
-    if !system.solve(weights, record, &mut to.v) {
-        return Outcome::NoSolution;
-    }
-    let arch = Arch::new();
-    dispatch(arch, Ahead { h, from, to });
-    let end = Moment {
-        t: to.t,
-        q: &to.q,
-        v: &to.v,
-    };
-    system.evaluate(end, &mut to.a, &mut to.rates, record);
-    counts.evaluations += 1;
-    to.trapezoidal(from, h);
-    Outcome::of(dispatch(arch, Finite(to)))
+/// Work space of the method.
+#[derive(Clone, Debug)]
+pub(crate) struct ImplicitDamping {
+    /// What the equations are solved for: Δv, then Δz.
+    change: Vec<f64>,
 }
 
-/// v⁺ = v + x,   q⁺ = q + h v⁺
+impl ImplicitDamping {
+    pub(crate) fn new(size: Size) -> Self {
+        Self {
+            change: vec![0.0; size.dofs + size.states],
+        }
+    }
+
+    /// Makes a candidate h \[s\] ahead; `fresh` tells whether the record still belongs to the beginning.
+    ///
+    /// ```text
+    /// (M + h C) Δv − h ∂f/∂z Δz = h f(t, q, v, z)
+    /// Δz − h ∂ż/∂z Δz − h ∂ż/∂q̇ Δv = h ż(t, q, v, z)
+    /// v⁺ = v + Δv,   z⁺ = z + Δz
+    /// q⁺ = q + h v⁺
+    /// ```
+    ///
+    /// One evaluation and one solution of linear equations; a candidate after a rejected one costs an evaluation more.
+    /// Of first order in the damping and in the states, which may settle as fast as they like. Without damping it is the
+    /// symplectic Euler method, which is leapfrog with velocities half a step early: bounded energy error, no drift. The
+    /// characteristic polynomial of a mode, (1 + hλ)(z − 1)² + h (ω² h z + λ (z − 1)) with its damping rate λ = c/m, has its
+    /// roots within the unit circle for (ωh)² < 2 (2 + λh).
+    ///
+    /// # Source
+    /// Symplectic Euler: E. Hairer, C. Lubich and G. Wanner, *Geometric Numerical Integration*, Springer, 2006, section I.1;
+    /// damping by one Newton step of the implicit Euler method:
+    /// U. M. Ascher, S. J. Ruuth and B. T. R. Wetton, *SIAM J. Numer. Anal.* **32**, 1995, 797–823.
+    #[expect(clippy::too_many_arguments, reason = "what every attempt is given")]
+    pub(crate) fn attempt<S: SecondOrderSystem>(
+        &mut self,
+        system: &S,
+        from: &State,
+        h: f64,
+        fresh: bool,
+        to: &mut Snapshot,
+        record: &mut S::Record,
+        counts: &mut Statistics,
+    ) -> Outcome {
+        if !fresh {
+            // C belongs to the beginning; the candidate's buffers take what is known already.
+            let begin = Moment {
+                t: from.t,
+                q: &from.q,
+                v: &from.v,
+                z: &from.z,
+            };
+            system.evaluate(begin, &mut to.a, &mut to.rates, record);
+            counts.evaluations += 1;
+        }
+        to.t = from.t + h;
+        // The right-hand side of the equations, divided by the masses.
+        for (x, rate) in self.change.iter_mut().zip(from.a.iter().chain(from.flow())) {
+            *x = h * rate;
+        }
+        let weights = Weights {
+            damping: h,
+            stiffness: 0.0,
+        };
+        counts.solves += 1;
+        if !system.solve(weights, record, &mut self.change) {
+            return Outcome::NoSolution;
+        }
+        let arch = Arch::new();
+        let change = &self.change;
+        dispatch(
+            arch,
+            Ahead {
+                h,
+                from,
+                change,
+                to,
+            },
+        );
+        to.evaluate(system, record);
+        counts.evaluations += 1;
+        to.trapezoidal(from, h);
+        Outcome::of(dispatch(arch, Finite(to)))
+    }
+}
+
+/// v⁺ = v + Δv,   q⁺ = q + h v⁺,   z⁺ = z + Δz
 struct Ahead<'a> {
     h: f64,
     from: &'a State,
+    change: &'a [f64],
     to: &'a mut Snapshot,
 }
 
@@ -88,9 +112,13 @@ impl WithSimd for Ahead<'_> {
     fn with_simd<S: Simd>(self, _: S) {
         let before = self.from.q.iter().zip(&self.from.v);
         let after = self.to.q.iter_mut().zip(&mut self.to.v);
-        for ((q, v), (q0, v0)) in after.zip(before) {
-            *v += v0;
+        let (dv, dz) = self.change.split_at(self.from.q.len());
+        for (((q, v), (q0, v0)), dv) in after.zip(before).zip(dv) {
+            *v = dv + v0;
             *q = q0 + self.h * *v;
+        }
+        for ((z, z0), dz) in self.to.z.iter_mut().zip(&self.from.z).zip(dz) {
+            *z = dz + z0;
         }
     }
 }
@@ -104,7 +132,8 @@ impl WithSimd for Finite<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> bool {
         let mut watch = Watch::default();
-        for part in [&self.0.q, &self.0.v, &self.0.a, &self.0.quadratures] {
+        let to = self.0;
+        for part in [&to.q, &to.v, &to.a, &to.quadratures, &to.z] {
             for value in part {
                 watch.see(*value);
             }

@@ -12,7 +12,7 @@ use crate::{IntegrationError, Method, SecondOrderSystem, State, Statistics, Step
 pub struct StepperMemory<R> {
     method: Method,
     pace: Pace,
-    /// Accelerations that the method carries from step to step.
+    /// Accelerations and rates that the method carries from step to step.
     carried: Vec<f64>,
     statistics: Statistics,
     /// Time of the next event \[s\].
@@ -67,7 +67,7 @@ impl<S: SecondOrderSystem<Record: Clone>> Stepper<S> {
                 expected,
             });
         }
-        self.kernel.restart(&memory.carried);
+        self.kernel.carry_on(&memory.carried);
         self.pace = memory.pace;
         self.statistics = memory.statistics;
         self.event = memory.event;

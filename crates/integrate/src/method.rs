@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::dense::Interpolation;
 use crate::generalized_alpha::GeneralizedAlpha;
-use crate::implicit_damping;
+use crate::implicit_damping::{self, ImplicitDamping};
 use crate::runge_kutta::{self, RungeKutta};
-use crate::state::State;
+use crate::state::{Size, State};
 use crate::step_size::stable_step;
 use crate::stepper::Stepper;
 use crate::tableau::{DORMAND_PRINCE, RK4};
@@ -31,7 +31,7 @@ pub enum Method {
     },
     /// The pair 5(4) of Dormand and Prince: the step follows the estimated error.
     ///
-    /// A coordinate may err by `absolute + relative |q|` in a step, a velocity by
+    /// A coordinate, or a first-order state, may err by `absolute + relative |q|` in a step, a velocity by
     /// `absolute_rate + relative |v|`; the worst coordinate decides. Penetrations are small differences of large
     /// coordinates: a relative tolerance of 1e-8 on a metre is 10 nm.
     DormandPrince {
@@ -87,8 +87,7 @@ impl Outcome {
 pub(crate) enum Kernel {
     Verlet(Verlet),
     RungeKutta(RungeKutta),
-    /// The candidate is all the space it needs.
-    ImplicitDamping,
+    ImplicitDamping(ImplicitDamping),
     GeneralizedAlpha(GeneralizedAlpha),
 }
 
@@ -101,23 +100,30 @@ impl Kernel {
     }
 
     /// Takes note of accelerations that do not follow from the step before.
-    pub(crate) fn restart(&mut self, a: &[f64]) {
+    pub(crate) fn restart(&mut self, state: &State) {
         if let Self::GeneralizedAlpha(kernel) = self {
-            kernel.restart(a);
+            kernel.restart(state);
         }
     }
 
-    /// Accelerations that it carries from one step to the next, beside those of the state.
+    /// Goes on from what it carried.
+    pub(crate) fn carry_on(&mut self, carried: &[f64]) {
+        if let Self::GeneralizedAlpha(kernel) = self {
+            kernel.carry_on(carried);
+        }
+    }
+
+    /// Accelerations and rates that it carries from one step to the next, beside those of the state.
     pub(crate) fn carried(&self) -> &[f64] {
         match self {
             Self::GeneralizedAlpha(kernel) => kernel.carried(),
-            Self::Verlet(_) | Self::RungeKutta(_) | Self::ImplicitDamping => &[],
+            Self::Verlet(_) | Self::RungeKutta(_) | Self::ImplicitDamping(_) => &[],
         }
     }
 
     /// Whether a step begins with the record that the last one left.
     pub(crate) fn needs_record(&self) -> bool {
-        matches!(self, Self::ImplicitDamping)
+        matches!(self, Self::ImplicitDamping(_))
     }
 }
 
@@ -267,17 +273,17 @@ impl Method {
     }
 
     /// Work space for a system of this size.
-    pub(crate) fn kernel(&self, dofs: usize, quadratures: usize) -> Kernel {
+    pub(crate) fn kernel(&self, size: Size) -> Kernel {
         match self {
-            Self::Verlet { .. } => Kernel::Verlet(Verlet::new(dofs)),
-            Self::Rk4 { .. } => Kernel::RungeKutta(RungeKutta::new(&RK4, dofs, quadratures)),
+            Self::Verlet { .. } => Kernel::Verlet(Verlet::new(size)),
+            Self::Rk4 { .. } => Kernel::RungeKutta(RungeKutta::new(&RK4, size)),
             Self::DormandPrince { .. } => {
-                Kernel::RungeKutta(RungeKutta::new(&DORMAND_PRINCE, dofs, quadratures))
+                Kernel::RungeKutta(RungeKutta::new(&DORMAND_PRINCE, size))
             }
-            Self::ImplicitDamping { .. } => Kernel::ImplicitDamping,
+            Self::ImplicitDamping { .. } => Kernel::ImplicitDamping(ImplicitDamping::new(size)),
             Self::GeneralizedAlpha {
                 spectral_radius, ..
-            } => Kernel::GeneralizedAlpha(GeneralizedAlpha::new(*spectral_radius, dofs)),
+            } => Kernel::GeneralizedAlpha(GeneralizedAlpha::new(*spectral_radius, size)),
         }
     }
 }

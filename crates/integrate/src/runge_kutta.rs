@@ -1,7 +1,7 @@
 //! Explicit Runge–Kutta methods on any tableau, for systems of second order.
 
 use crate::finite::Watch;
-use crate::state::{Snapshot, State};
+use crate::state::{Size, Snapshot, State};
 use crate::step_size::Tolerance;
 use crate::tableau::Tableau;
 use crate::{Moment, SecondOrderSystem};
@@ -15,11 +15,13 @@ pub(crate) struct RungeKutta {
     tableau: &'static Tableau,
     /// Positions of the stage being evaluated.
     q: Vec<f64>,
+    /// First-order states there.
+    z: Vec<f64>,
     /// Velocities, accelerations and rates of stages 2, 3, …; those of stage 1 are the state's.
     stages: Vec<Stage>,
 }
 
-/// Derivatives of one stage: q̇ = v, q̇̇ = a, ẏ = rates.
+/// Derivatives of one stage: q̇ = v, q̇̇ = a, those of quadratures and states in `rates`.
 #[derive(Clone, Debug)]
 struct Stage {
     v: Vec<f64>,
@@ -28,15 +30,17 @@ struct Stage {
 }
 
 impl RungeKutta {
-    pub(crate) fn new(tableau: &'static Tableau, dofs: usize, quadratures: usize) -> Self {
+    pub(crate) fn new(tableau: &'static Tableau, size: Size) -> Self {
+        let dofs = size.dofs;
         let stage = Stage {
             v: vec![0.0; dofs],
             a: vec![0.0; dofs],
-            rates: vec![0.0; quadratures],
+            rates: vec![0.0; size.quadratures + size.states],
         };
         Self {
             tableau,
             q: vec![0.0; dofs],
+            z: vec![0.0; size.states],
             stages: vec![stage; tableau.b.len() - 1],
         }
     }
@@ -56,16 +60,20 @@ impl RungeKutta {
         record: &mut S::Record,
     ) -> bool {
         let Tableau { c, a, b, .. } = *self.tableau;
+        let first = from.quadratures.len();
         for i in 1..b.len() {
             // kᵢ = f(t + cᵢ h, y + h Σⱼ aᵢⱼ kⱼ)
             let (done, rest) = self.stages.split_at_mut(i - 1);
             let stage = &mut rest[0];
             combine(h, a[i], &from.q, &from.v, done, |k| &k.v, &mut self.q);
             combine(h, a[i], &from.v, &from.a, done, |k| &k.a, &mut stage.v);
+            let (z, flow) = (&from.z, from.flow());
+            combine(h, a[i], z, flow, done, |k| &k.rates[first..], &mut self.z);
             let at = Moment {
                 t: from.t + c[i] * h,
                 q: &self.q,
                 v: &stage.v,
+                z: &self.z,
             };
             system.evaluate(at, &mut stage.a, &mut stage.rates, record);
         }
@@ -75,15 +83,12 @@ impl RungeKutta {
         combine(h, b, &from.v, &from.a, stages, |k| &k.a, &mut to.v);
         let (y, rates) = (&from.quadratures, &from.rates);
         combine(h, b, y, rates, stages, |k| &k.rates, &mut to.quadratures);
+        let (z, flow) = (&from.z, from.flow());
+        combine(h, b, z, flow, stages, |k| &k.rates[first..], &mut to.z);
         to.t = from.t + h;
-        let end = Moment {
-            t: to.t,
-            q: &to.q,
-            v: &to.v,
-        };
-        system.evaluate(end, &mut to.a, &mut to.rates, record);
+        to.evaluate(system, record);
         let mut watch = Watch::default();
-        for part in [&to.q, &to.v, &to.a, &to.quadratures] {
+        for part in [&to.q, &to.v, &to.a, &to.quadratures, &to.z] {
             watch.see_all(part);
         }
         watch.all_finite()
@@ -106,6 +111,14 @@ impl RungeKutta {
                 .max(tolerance.position(h * position, from.q[i], to.q[i]))
                 .max(tolerance.velocity(h * velocity, from.v[i], to.v[i]));
         }
+        let first = from.quadratures.len();
+        for (i, (before, after)) in from.z.iter().zip(&to.z).enumerate() {
+            let mut change = weights[0] * from.flow()[i] + weights[last] * to.flow()[i];
+            for (weight, stage) in weights[1..last].iter().zip(stages) {
+                change += weight * stage.rates[first + i];
+            }
+            worst = worst.max(tolerance.position(h * change, *before, *after));
+        }
         worst
     }
 }
@@ -118,7 +131,7 @@ fn combine(
     base: &[f64],
     first: &[f64],
     stages: &[Stage],
-    part: impl Fn(&Stage) -> &Vec<f64>,
+    part: impl Fn(&Stage) -> &[f64],
     sum: &mut [f64],
 ) {
     let n = sum.len();

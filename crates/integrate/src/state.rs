@@ -5,7 +5,7 @@ use std::mem::swap;
 use serde::{Deserialize, Serialize};
 
 use crate::dense::{Interpolation, Interval};
-use crate::{IntegrationError, SecondOrderSystem};
+use crate::{IntegrationError, Moment, SecondOrderSystem};
 
 /// The accepted state, with the interval that led to it.
 ///
@@ -19,11 +19,13 @@ pub struct State {
     pub q: Vec<f64>,
     /// Velocities q̇ `(dofs)`.
     pub v: Vec<f64>,
+    /// First-order states z `(states)`.
+    pub z: Vec<f64>,
     /// Accelerations q̈ `(dofs)` the next step begins with; Verlet's are those at the predicted velocities.
     pub a: Vec<f64>,
     /// Quantities integrated along with the motion `(quadratures)`.
     pub quadratures: Vec<f64>,
-    /// Rates of the quadratures the next step begins with.
+    /// Rates of the quadratures, and of the states behind them, the next step begins with.
     pub(crate) rates: Vec<f64>,
     /// The accepted state before this one.
     pub(crate) previous: Snapshot,
@@ -41,21 +43,48 @@ pub(crate) struct Snapshot {
     pub(crate) t: f64,
     pub(crate) q: Vec<f64>,
     pub(crate) v: Vec<f64>,
+    pub(crate) z: Vec<f64>,
     pub(crate) a: Vec<f64>,
     pub(crate) quadratures: Vec<f64>,
     pub(crate) rates: Vec<f64>,
 }
 
 impl Snapshot {
-    pub(crate) fn new(dofs: usize, quadratures: usize) -> Self {
+    pub(crate) fn new(size: Size) -> Self {
+        let Size {
+            dofs,
+            quadratures,
+            states,
+        } = size;
         Self {
             t: 0.0,
             q: vec![0.0; dofs],
             v: vec![0.0; dofs],
+            z: vec![0.0; states],
             a: vec![0.0; dofs],
             quadratures: vec![0.0; quadratures],
-            rates: vec![0.0; quadratures],
+            rates: vec![0.0; quadratures + states],
         }
+    }
+
+    /// Evaluates the system at the candidate.
+    pub(crate) fn evaluate<S: SecondOrderSystem>(&mut self, system: &S, record: &mut S::Record) {
+        let Self {
+            t,
+            q,
+            v,
+            z,
+            a,
+            rates,
+            ..
+        } = self;
+        let at = Moment { t: *t, q, v, z };
+        system.evaluate(at, a, rates, record);
+    }
+
+    /// Rates ż of the states.
+    pub(crate) fn flow(&self) -> &[f64] {
+        &self.rates[self.quadratures.len()..]
     }
 
     /// Quadratures of a candidate h \[s\] after a state, by the trapezoidal rule.
@@ -63,6 +92,24 @@ impl Snapshot {
         for (i, y) in self.quadratures.iter_mut().enumerate() {
             // y⁺ = y + ½ h (r + r⁺)
             *y = from.quadratures[i] + 0.5 * h * (from.rates[i] + self.rates[i]);
+        }
+    }
+}
+
+/// How many there are of everything.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Size {
+    pub(crate) dofs: usize,
+    pub(crate) quadratures: usize,
+    pub(crate) states: usize,
+}
+
+impl Size {
+    pub(crate) fn of<S: SecondOrderSystem>(system: &S) -> Self {
+        Self {
+            dofs: system.dofs(),
+            quadratures: system.quadratures(),
+            states: system.states(),
         }
     }
 }
@@ -76,6 +123,17 @@ impl State {
             v,
             ..Self::default()
         }
+    }
+
+    /// The same with first-order states z `(states)`.
+    #[must_use]
+    pub fn with_states(self, z: Vec<f64>) -> Self {
+        Self { z, ..self }
+    }
+
+    /// Rates ż of the states.
+    pub(crate) fn flow(&self) -> &[f64] {
+        &self.rates[self.quadratures.len()..]
     }
 
     /// Beginning and end \[s\] of the interval [`at`](Self::at) covers: the last accepted step.
@@ -115,6 +173,18 @@ impl State {
     /// the cubic with value and rate of both ends
     /// ```
     pub fn quadratures_at(&self, t: f64, quadratures: &mut [f64]) {
+        let ends = [&self.previous.quadratures, &self.quadratures];
+        self.along(t, ends, 0, quadratures);
+    }
+
+    /// First-order states z `(states)` at a time \[s\] within the last accepted step, read as quadratures are.
+    pub fn states_at(&self, t: f64, z: &mut [f64]) {
+        let ends = [&self.previous.z, &self.z];
+        self.along(t, ends, self.quadratures.len(), z);
+    }
+
+    /// Cubics through the values at both ends; their rates stand from `first` on.
+    fn along(&self, t: f64, [from, to]: [&Vec<f64>; 2], first: usize, values: &mut [f64]) {
         let past = &self.previous;
         let rates = if self.jumped {
             &self.before_jump.1
@@ -122,37 +192,42 @@ impl State {
             &self.rates
         };
         let interval = Interval::new(past.t, self.t, t);
-        for (i, value) in quadratures.iter_mut().enumerate() {
-            *value = interval.cubic(
-                past.quadratures[i],
-                self.quadratures[i],
-                past.rates[i],
-                rates[i],
-            );
+        for (i, value) in values.iter_mut().enumerate() {
+            let [before, after] = [past.rates[first + i], rates[first + i]];
+            *value = interval.cubic(from[i], to[i], before, after);
         }
     }
 
     /// Brings all buffers to the size of the system.
     pub(crate) fn fit<S: SecondOrderSystem>(&mut self, system: &S) -> Result<(), IntegrationError> {
-        let (dofs, quadratures) = (system.dofs(), system.quadratures());
+        let Size {
+            dofs,
+            quadratures,
+            states,
+        } = Size::of(system);
         if self.quadratures.is_empty() {
             self.quadratures.resize(quadratures, 0.0);
         }
         self.check(system)?;
         self.a.resize(dofs, 0.0);
-        self.rates.resize(quadratures, 0.0);
-        self.before_jump = (vec![0.0; dofs], vec![0.0; quadratures]);
+        self.rates.resize(quadratures + states, 0.0);
+        self.before_jump = (vec![0.0; dofs], vec![0.0; quadratures + states]);
         self.jumped = false;
         Ok(())
     }
 
     /// Refuses a state that is not of the system's size.
     pub(crate) fn check<S: SecondOrderSystem>(&self, system: &S) -> Result<(), IntegrationError> {
-        let (dofs, quadratures) = (system.dofs(), system.quadratures());
+        let Size {
+            dofs,
+            quadratures,
+            states,
+        } = Size::of(system);
         for (what, found, expected) in [
             ("positions", self.q.len(), dofs),
             ("velocities", self.v.len(), dofs),
             ("quadratures", self.quadratures.len(), quadratures),
+            ("first-order states", self.z.len(), states),
         ] {
             if found != expected {
                 return Err(IntegrationError::Shape {
@@ -171,6 +246,7 @@ impl State {
             t: self.t,
             q: self.q.clone(),
             v: self.v.clone(),
+            z: self.z.clone(),
             a: self.a.clone(),
             quadratures: self.quadratures.clone(),
             rates: self.rates.clone(),
@@ -186,6 +262,7 @@ impl State {
         swap(&mut self.t, &mut past.t);
         swap(&mut self.q, &mut past.q);
         swap(&mut self.v, &mut past.v);
+        swap(&mut self.z, &mut past.z);
         swap(&mut self.a, &mut past.a);
         swap(&mut self.quadratures, &mut past.quadratures);
         swap(&mut self.rates, &mut past.rates);

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::method::Method;
+use crate::state::State;
 
 /// Share of the stability limit a fixed step may use.
 pub(crate) const SAFETY: f64 = 0.9;
@@ -74,7 +75,7 @@ pub(crate) struct Tolerance {
 }
 
 impl Tolerance {
-    /// Error of a position in units of its tolerance.
+    /// Error of a position, or of a first-order state, in units of its tolerance.
     #[inline]
     pub(crate) fn position(self, error: f64, before: f64, after: f64) -> f64 {
         error.abs() / (self.absolute + self.relative * before.abs().max(after.abs()))
@@ -148,7 +149,7 @@ impl Controller {
     }
 }
 
-/// First step \[s\] from position, velocity and acceleration alone.
+/// First step \[s\] from a state and its rates alone.
 ///
 /// ```text
 /// h = 1 % of the time in which the state would change by itself, measured in tolerances
@@ -156,13 +157,8 @@ impl Controller {
 ///
 /// Between a ten-thousandth of the longest step and the longest step itself: too short costs a few
 /// steps, too long a few rejections.
-pub(crate) fn first_step(
-    tolerance: Tolerance,
-    longest: f64,
-    q: &[f64],
-    v: &[f64],
-    a: &[f64],
-) -> f64 {
+pub(crate) fn first_step(tolerance: Tolerance, longest: f64, state: &State) -> f64 {
+    let State { q, v, a, z, .. } = state;
     let (mut size, mut rate): (f64, f64) = (1.0, 0.0);
     for i in 0..q.len() {
         size = size
@@ -171,6 +167,10 @@ pub(crate) fn first_step(
         rate = rate
             .max(tolerance.position(v[i], q[i], q[i]))
             .max(tolerance.velocity(a[i], v[i], v[i]));
+    }
+    for (z, flow) in z.iter().zip(state.flow()) {
+        size = size.max(tolerance.position(*z, *z, *z));
+        rate = rate.max(tolerance.position(*flow, *z, *z));
     }
     // Without a rate the quotient is infinite, and the longest step is taken.
     (0.01 * size / rate).clamp(1e-4 * longest, longest)

@@ -5,9 +5,8 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use crate::finite::Watch;
-use crate::implicit_damping;
 use crate::method::{Kernel, Outcome};
-use crate::state::{Snapshot, State};
+use crate::state::{Size, Snapshot, State};
 use crate::step_size::{Controller, FLOOR, Fixed, Tolerance, first_step, shortened, stable_step};
 use crate::{
     Continuity, IntegrationError, Method, Moment, Quantity, SecondOrderSystem, Statistics, Verdict,
@@ -75,12 +74,12 @@ impl<S: SecondOrderSystem> Stepper<S> {
         state: &mut State,
     ) -> Result<Self, IntegrationError> {
         state.fit(system)?;
-        let (dofs, quadratures) = (system.dofs(), system.quadratures());
+        let size = Size::of(system);
         let mut stepper = Self {
             method,
-            kernel: method.kernel(dofs, quadratures),
+            kernel: method.kernel(size),
             pace: Pace::Fixed(Fixed::new(0.0)),
-            candidate: Snapshot::new(dofs, quadratures),
+            candidate: Snapshot::new(size),
             record: system.new_record(),
             statistics: Statistics::default(),
             event: f64::INFINITY,
@@ -93,7 +92,7 @@ impl<S: SecondOrderSystem> Stepper<S> {
         }
         state.forget();
         state.interpolation = method.interpolation();
-        stepper.kernel.restart(&state.a);
+        stepper.kernel.restart(state);
         stepper.pace = first_pace(method, method.time_scale(system), state)?;
         stepper.look_ahead(system, state);
         Ok(stepper)
@@ -187,7 +186,7 @@ impl<S: SecondOrderSystem> Stepper<S> {
         self.statistics.jumps += 1;
         state.jump();
         self.evaluate(system, state)?;
-        self.kernel.restart(&state.a);
+        self.kernel.restart(state);
         if let Pace::Controlled(controller) = &mut self.pace {
             controller.jumped();
         }
@@ -224,8 +223,8 @@ impl<S: SecondOrderSystem> Stepper<S> {
                 counts.evaluations += kernel.cost();
                 Outcome::of(kernel.attempt(system, state, h, to, record))
             }
-            Kernel::ImplicitDamping => {
-                implicit_damping::attempt(system, state, h, fresh, to, record, counts)
+            Kernel::ImplicitDamping(kernel) => {
+                kernel.attempt(system, state, h, fresh, to, record, counts)
             }
             Kernel::GeneralizedAlpha(kernel) => {
                 kernel.attempt(system, state, h, to, record, counts)
@@ -281,10 +280,11 @@ impl<S: SecondOrderSystem> Stepper<S> {
             t: state.t,
             q: &state.q,
             v: &state.v,
+            z: &state.z,
         };
         system.evaluate(at, &mut state.a, &mut state.rates, &mut self.record);
         self.statistics.evaluations += 1;
-        let parts = [&state.q, &state.v, &state.a, &state.rates];
+        let parts = [&state.q, &state.v, &state.a, &state.rates, &state.z];
         let mut watch = Watch::default();
         for part in parts {
             watch.see_all(part);
@@ -333,7 +333,7 @@ fn first_pace(method: Method, time_scale: f64, state: &State) -> Result<Pace, In
                 absolute_rate,
             };
             let longest = max_step.min(time_scale);
-            let first = first_step(tolerance, longest, &state.q, &state.v, &state.a);
+            let first = first_step(tolerance, longest, state);
             let order = method.order();
             let controller = Controller::new(tolerance, max_step, first, order);
             Ok(Pace::Controlled(controller))
@@ -347,19 +347,21 @@ fn culprit(candidate: &Snapshot) -> IntegrationError {
         t,
         q,
         v,
+        z,
         a,
         quadratures,
         ..
     } = candidate;
-    first_not_finite(*t, [q, v, a, quadratures])
+    first_not_finite(*t, [q, v, a, quadratures, z])
 }
 
-/// Names the first entry that is not finite of positions, velocities, accelerations and quadratures.
-fn first_not_finite(t: f64, [q, v, a, quadratures]: [&Vec<f64>; 4]) -> IntegrationError {
+/// Names the first entry that is not finite of positions, velocities, accelerations, quadratures and states.
+fn first_not_finite(t: f64, [q, v, a, quadratures, z]: [&Vec<f64>; 5]) -> IntegrationError {
     let parts = [
         (Quantity::Acceleration, a),
         (Quantity::Position, q),
         (Quantity::Velocity, v),
+        (Quantity::State, z),
         (Quantity::Quadrature, quadratures),
     ];
     let found = parts.into_iter().find_map(|(quantity, part)| {

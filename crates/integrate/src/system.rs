@@ -9,9 +9,11 @@ pub struct Moment<'a> {
     pub q: &'a [f64],
     /// Velocities q̇ `(dofs)`.
     pub v: &'a [f64],
+    /// First-order states z `(states)`.
+    pub z: &'a [f64],
 }
 
-/// Weights of damping and stiffness in the matrix of an implicit step.
+/// Weights of damping and stiffness in the matrix of an implicit step; first-order states have the weight of the damping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weights {
     /// Weight c of the damping \[s\].
@@ -45,13 +47,13 @@ pub enum Continuity {
     Jump,
 }
 
-/// A system of second order with memory.
+/// A system of second order with memory, and with states of first order where something flows, settles or controls.
 ///
 /// ```text
-/// q̈ = a(t, q, q̇; memory)
+/// q̈ = a(t, q, q̇, z; memory),   ż = f(t, q, q̇, z; memory)
 /// ```
 ///
-/// Memory is whatever the forces depend on besides t, q and q̇: the speed at which a contact
+/// Memory is whatever the forces depend on besides t, q, q̇ and z: the speed at which a contact
 /// began, the gap a roller sits in. It is constant during a step and advances in
 /// [`commit`](Self::commit) only. Constraints, if any, are already satisfied by a.
 pub trait SecondOrderSystem {
@@ -69,10 +71,18 @@ pub trait SecondOrderSystem {
         0
     }
 
-    /// Accelerations a `(dofs)` and the rates of the quadratures `(quadratures)` at a moment.
+    /// Number of first-order states z.
+    ///
+    /// Error control holds a state to the tolerance of a position: give it in a unit for which that makes sense.
+    fn states(&self) -> usize {
+        0
+    }
+
+    /// Accelerations a `(dofs)`, and the rates of the quadratures with those of the states behind them
+    /// `(quadratures + states)`, at a moment.
     ///
     /// Pure: called several times a step, on trial states too. Must write every entry of `a` and `rates`, and may
-    /// leave anything in the record. Verlet asks with velocities predicted to first order.
+    /// leave anything in the record. Verlet asks with velocities and states predicted to first order.
     fn evaluate(&self, at: Moment<'_>, a: &mut [f64], rates: &mut [f64], record: &mut Self::Record);
 
     /// Judges a candidate step of size h \[s\] by the evaluation at its end.
@@ -115,12 +125,13 @@ pub trait SecondOrderSystem {
     /// ```
     ///
     /// h = 2τ is then the exact limit of Verlet, which lags the velocity and tolerates half the
-    /// damping other methods do, and a safe one for Runge–Kutta. Asked after each accepted step: keep it a field.
+    /// damping other methods do, and a safe one for Runge–Kutta. A state that settles as e^(−λt) counts like damping of that
+    /// rate. Asked after each accepted step: keep it a field.
     fn time_scale(&self) -> f64 {
         f64::INFINITY
     }
 
-    /// Time scale 1/ω \[s\] of the fastest mode without its damping, for methods that treat damping implicitly.
+    /// Time scale 1/ω \[s\] of the fastest mode without its damping, for methods that treat damping and states implicitly.
     ///
     /// Asked after each accepted step: keep it a field.
     fn undamped_time_scale(&self) -> f64 {
@@ -136,6 +147,10 @@ pub trait SecondOrderSystem {
     ///
     /// ```text
     /// x ← (M + c C + k K)⁻¹ M x,   C = −∂f/∂q̇,   K = −∂f/∂q,   f = M a
+    ///
+    /// with states, whose right-hand sides y stand behind those of the coordinates, x `(dofs + states)`:
+    /// ⎡ M + c C + k K   −c ∂f/∂z     ⎤ ⎡x⎤   ⎡M x⎤
+    /// ⎣ −c ∂ż/∂q̇ − k ∂ż/∂q   1 − c ∂ż/∂z ⎦ ⎣y⎦ ← ⎣ y ⎦
     /// ```
     ///
     /// C and K are those at the moment `record` was last evaluated at. Work space and factors may be

@@ -4,7 +4,7 @@ use pulp::{Arch, Simd, WithSimd};
 
 use crate::finite::Watch;
 use crate::registers::dispatch;
-use crate::state::{Snapshot, State};
+use crate::state::{Size, Snapshot, State};
 use crate::{Moment, SecondOrderSystem};
 
 /// Limit of ωh.
@@ -15,14 +15,17 @@ pub(crate) const LIMIT: f64 = 2.0;
 pub(crate) struct Verlet {
     /// Predicted velocities.
     predicted: Vec<f64>,
+    /// Predicted states.
+    states: Vec<f64>,
     /// The processor's vector unit.
     arch: Arch,
 }
 
 impl Verlet {
-    pub(crate) fn new(dofs: usize) -> Self {
+    pub(crate) fn new(size: Size) -> Self {
         Self {
-            predicted: vec![0.0; dofs],
+            predicted: vec![0.0; size.dofs],
+            states: vec![0.0; size.states],
             arch: Arch::new(),
         }
     }
@@ -31,13 +34,13 @@ impl Verlet {
     ///
     /// ```text
     /// q⁺ = q + h v + ½ h² a
-    /// v* = v + h a
-    /// a⁺ = a(t + h, q⁺, v*)
-    /// v⁺ = v + ½ h (a + a⁺)
+    /// v* = v + h a                z* = z + h ż
+    /// a⁺ = a(t + h, q⁺, v*, z*)
+    /// v⁺ = v + ½ h (a + a⁺)       z⁺ = z + ½ h (ż + ż⁺)
     /// ```
     ///
-    /// Of second order although a⁺ belongs to v*: the predicted velocity is off by O(h²). With damping
-    /// λ the scheme is stable for (ωh)²/4 + λh < 1.
+    /// Of second order although a⁺ and ż⁺ belong to v* and z*: what is predicted is off by O(h²). With damping
+    /// λ the scheme is stable for (ωh)²/4 + λh < 1, and a state that settles as e^(−λt) is for λh < 1.
     ///
     /// # Source
     /// W. C. Swope et al., *J. Chem. Phys.* **76**, 1982, 637–649,
@@ -62,10 +65,16 @@ impl Verlet {
                 predicted: &mut self.predicted,
             },
         );
+        let flow = from.flow();
+        for ((predicted, z), flow) in self.states.iter_mut().zip(&from.z).zip(flow) {
+            // z* = z + h ż
+            *predicted = z + h * flow;
+        }
         let end = Moment {
             t: to.t,
             q: &to.q,
             v: &self.predicted,
+            z: &self.states,
         };
         system.evaluate(end, &mut to.a, &mut to.rates, record);
         let mut watch = dispatch(
@@ -81,6 +90,12 @@ impl Verlet {
         for (i, y) in to.quadratures.iter_mut().enumerate() {
             *y = from.quadratures[i] + 0.5 * h * (from.rates[i] + to.rates[i]);
             watch.see(*y);
+        }
+        let flows = flow.iter().zip(&to.rates[to.quadratures.len()..]);
+        for ((z, before), (r0, r1)) in to.z.iter_mut().zip(&from.z).zip(flows) {
+            // z⁺ = z + ½ h (ż + ż⁺)
+            *z = before + 0.5 * h * (r0 + r1);
+            watch.see(*z);
         }
         watch.all_finite()
     }

@@ -9,7 +9,7 @@ mod settle;
 mod slack;
 
 use chaindrive_geometry::{ArcSpline, Point};
-use chaindrive_integrate::{Moment, SecondOrderSystem};
+use chaindrive_integrate::{Moment, SecondOrderSystem, State};
 
 use crate::chains::LaidAs;
 use crate::check::clash::clashes;
@@ -34,6 +34,8 @@ pub struct Assembled {
     pub q: Vec<f64>,
     /// Velocities at t = 0.
     pub v: Vec<f64>,
+    /// First-order states at t = 0: those of pushes with one, in the order of the tensioners.
+    pub z: Vec<f64>,
     /// Static states on the way, when the drive was settled: after pretension, gravity and load.
     pub statics: Vec<Statics>,
     /// How every chain was fitted, where it runs around sprockets.
@@ -64,6 +66,13 @@ pub struct RollerLayout {
     pub positions: Vec<Point>,
     /// How the chain was fitted, where it runs around sprockets.
     pub fitting: Option<Fitting>,
+}
+
+impl Assembled {
+    /// Where a run begins.
+    pub fn state(&self) -> State {
+        State::new(0.0, self.q.clone(), self.v.clone()).with_states(self.z.clone())
+    }
 }
 
 impl Drive {
@@ -106,12 +115,14 @@ impl Drive {
         let layouts: Vec<&Layout> = self.chains.iter().map(|placed| &placed.layout).collect();
         setting_off::set_off(&system, &layouts, &q, &mut v);
         self.put_in_place(&mut system, &laid.parts, &mut q, &mut v)?;
-        system.start(0.0, &mut q, &mut v);
+        let z = system.settled_states(&q);
+        system.start(0.0, &mut q, &mut v, &z);
         Ok(Assembled {
             drive: self.clone(),
             system,
             q,
             v,
+            z,
             statics,
             fittings,
             warnings: Vec::new(),
@@ -142,7 +153,8 @@ impl Drive {
             return Ok(());
         }
         let mut still = vec![0.0; q.len()];
-        system.start(0.0, q, &mut still);
+        let z = system.settled_states(q);
+        system.start(0.0, q, &mut still, &z);
         let loose = |index: &usize| system.chains[*index].chain.has_play();
         let tightenings: Vec<Tightening> = parts
             .chains
@@ -212,6 +224,7 @@ impl Assembled {
             t: 0.0,
             q: &self.q,
             v: &self.v,
+            z: &self.z,
         }
     }
 

@@ -54,5 +54,5 @@ pub use modes::{Mode, Modes};
 pub use motion::{Course, Harmonic, Motion, Table};
 pub use observe::{ChainSize, Observation};
 pub use system::{Input, Record, System, SystemMemory};
-pub use tensioner::{Carrier, Hydraulic, Push, PushForce, Spring, Tensioner, carriers};
+pub use tensioner::{Carrier, Push, PushForce, Tensioner, carriers, pushes};
 pub use torque::{Argument, Torque};

@@ -18,7 +18,8 @@ use crate::{Assembled, AssemblyError, assembly};
 /// inertias. Contacts count as they stand: closed ones with their tangent stiffness, open ones not
 /// at all. Damping, friction, the speed of the chain, and torques that change with the angle are
 /// left out; prescribed motions and held ends stand still. So the modes are those of the
-/// drive at rest, and near those of a slow one as long as no contact opens or closes.
+/// drive at rest, and near those of a slow one as long as no contact opens or closes. Oil in tensioners is trapped, and its
+/// column a spring.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Modes {
     /// The modes, as many as the drive has degrees of freedom.

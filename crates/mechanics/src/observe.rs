@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::System;
 use crate::energy::{Energy, Flow, Store};
 use crate::system::{Member, OnWheel, RailContact, Record, WheelSupport};
-use crate::tensioner::{Extension, Reduced};
+use crate::tensioner::Reduced;
 
 /// Everything that can be read off one state. SI units; arrays in the order of the drive.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -77,6 +77,8 @@ pub struct Observation {
     pub tensioner_position: Vec<f64>,
     /// Push of every tensioner \[N or N m\], (tensioners,).
     pub tensioner_force: Vec<f64>,
+    /// Pressure above that of the air of oil that can be compressed \[Pa\], (oil columns,).
+    pub oil_pressure: Vec<f64>,
     /// The energy ledger.
     pub energy: Energy,
 }
@@ -175,6 +177,13 @@ impl System {
             .collect()
     }
 
+    /// Names of the tensioners whose oil can be compressed.
+    pub fn oil_column_names(&self) -> Vec<String> {
+        let slides = self.bodies.slides.iter();
+        let columns = slides.filter(|slide| slide.push.pressure(0.0, 0.0).is_some());
+        columns.map(|slide| slide.name.clone()).collect()
+    }
+
     /// SI units of the position and of the push of every tensioner.
     pub fn tensioner_units(&self) -> Vec<(&'static str, &'static str)> {
         let carriers = self.bodies.slides.iter().map(|slide| &slide.carrier);
@@ -209,7 +218,7 @@ impl System {
         out: &mut Observation,
     ) {
         let mut a = vec![0.0; self.dofs];
-        let mut rates = vec![0.0; Flow::ALL.len()];
+        let mut rates = vec![0.0; Flow::ALL.len() + self.bodies.states];
         self.evaluate(at, &mut a, &mut rates, record);
         out.time = at.t;
         out.clear_chains();
@@ -374,12 +383,13 @@ impl System {
     fn observe_tensioners(&self, at: Moment<'_>, out: &mut Observation) {
         out.tensioner_position.clear();
         out.tensioner_force.clear();
+        out.oil_pressure.clear();
         for slide in &self.bodies.slides {
             let pose = slide.pose(at.q, at.v);
-            let Extension { length, lever } = slide.carrier.extension(pose.coordinate);
-            let push = slide.push.force(length, lever * pose.rate);
+            let (push, _) = slide.pushed(pose, at.z);
             out.tensioner_position.push(pose.coordinate);
             out.tensioner_force.push(push.elastic + push.damping);
+            out.oil_pressure.extend(slide.pressure(pose, at.z));
         }
     }
 
@@ -449,8 +459,7 @@ impl System {
             let pose = slide.pose(at.q, at.v);
             let Reduced { inertia, .. } = slide.reduced(pose);
             add(Store::Carriers, 0.5 * inertia * pose.rate * pose.rate);
-            let Extension { length, .. } = slide.carrier.extension(pose.coordinate);
-            add(Store::Tensioners, slide.push.energy(length));
+            add(Store::Tensioners, slide.stored(pose, at.z));
             if slide.dof.is_some() {
                 for (mass, place) in slide.weights() {
                     let (place, _) = slide.carry(pose, place);

@@ -36,6 +36,7 @@ use crate::chains::{self, Chain, LaidAs};
 use crate::contact::Wrench;
 use crate::energy::Flow;
 use crate::events::EventLog;
+use crate::tensioner::Slopes;
 
 /// A drive ready to move.
 #[derive(Clone, Debug)]
@@ -69,6 +70,8 @@ pub struct Record {
     /// What all chains together do to every wheel and rail.
     pub(crate) wheel_wrenches: Vec<Wrench>,
     pub(crate) rail_wrenches: Vec<Wrench>,
+    /// Derivatives of pushes with a state, for every tensioner.
+    pub(crate) pushes: Vec<Slopes>,
 }
 
 impl System {
@@ -133,14 +136,14 @@ impl System {
     }
 
     /// Lays the contact windows and takes the state as the first accepted one.
-    pub(crate) fn start(&mut self, t: f64, q: &mut [f64], v: &mut [f64]) {
+    pub(crate) fn start(&mut self, t: f64, q: &mut [f64], v: &mut [f64], z: &[f64]) {
         let mut record = self.new_record();
         for (member, record) in self.chains.iter_mut().zip(&mut record.chains) {
-            member.renew_windows(&self.bodies, Moment { t, q, v }, record);
+            member.renew_windows(&self.bodies, Moment { t, q, v, z }, record);
         }
         let mut a = vec![0.0; self.dofs];
-        let mut rates = vec![0.0; Flow::ALL.len()];
-        self.evaluate(Moment { t, q, v }, &mut a, &mut rates, &mut record);
+        let mut rates = vec![0.0; Flow::ALL.len() + self.bodies.states];
+        self.evaluate(Moment { t, q, v, z }, &mut a, &mut rates, &mut record);
         self.commit(t, q, v, &mut record);
     }
 
@@ -154,6 +157,15 @@ impl System {
                 let places = pose.x.iter().zip(pose.y).take(member.chain.rollers());
                 places.map(|(&x, &y)| Point::new(x, y)).collect()
             })
+            .collect()
+    }
+
+    /// First-order states that belong to a place at rest: nothing flows.
+    pub(crate) fn settled_states(&self, q: &[f64]) -> Vec<f64> {
+        let still = vec![0.0; q.len()];
+        let slides = self.bodies.slides.iter();
+        slides
+            .filter_map(|slide| slide.settled(slide.pose(q, &still)))
             .collect()
     }
 
@@ -201,7 +213,12 @@ impl System {
         [q, v]: [&mut Vec<f64>; 2],
     ) -> bool {
         let member = &self.chains[index];
-        let at = Moment { t: 0.0, q, v };
+        let at = Moment {
+            t: 0.0,
+            q,
+            v,
+            z: &[],
+        };
         let entries = member.entries.clone();
         let bodies = self.group_bodies(self.group_of(index));
         let placed = member.chain.put_in_place(entries, bodies, laid, at);
@@ -240,7 +257,7 @@ impl System {
     pub(crate) fn rates(&self, record: &Record) -> [f64; 2] {
         let chains = self.chains.iter().zip(&record.chains);
         let rates = chains.map(|(member, record)| member.rates_at(&self.bodies, record));
-        largest(rates, self.bodies.own_rates())
+        largest(rates, self.bodies.own_rates(&record.pushes))
     }
 
     /// Adds up what the chains do to the bodies.
@@ -257,8 +274,8 @@ impl System {
     }
 
     /// ω² and D of everything, as the time scales 1/(D + √(D² + ω²)) and 1/ω.
-    fn renew_time_scales(&mut self) {
-        let own = self.bodies.own_rates();
+    fn renew_time_scales(&mut self, pushes: &[Slopes]) {
+        let own = self.bodies.own_rates(pushes);
         let all = self.chains.iter().map(|member| member.rates);
         let [squared, damping] = largest(all, own);
         let explicit = self
@@ -300,6 +317,7 @@ impl SecondOrderSystem for System {
             chains: records.collect(),
             wheel_wrenches: vec![Wrench::default(); self.bodies.wheels.len()],
             rail_wrenches: vec![Wrench::default(); self.bodies.rails.len()],
+            pushes: vec![Slopes::default(); self.bodies.slides.len()],
         }
     }
 
@@ -311,6 +329,10 @@ impl SecondOrderSystem for System {
         Flow::ALL.len()
     }
 
+    fn states(&self) -> usize {
+        self.bodies.states
+    }
+
     fn evaluate(&self, at: Moment<'_>, a: &mut [f64], rates: &mut [f64], record: &mut Record) {
         rates.fill(0.0);
         a[self.bodies.first..].fill(0.0);
@@ -319,8 +341,9 @@ impl SecondOrderSystem for System {
         }
         self.gather(record);
         let wrenches = [&record.wheel_wrenches, &record.rail_wrenches];
+        let wrenches = wrenches.map(Vec::as_slice);
         self.bodies
-            .accelerate(at, a, rates, wrenches.map(Vec::as_slice));
+            .accelerate(at, a, rates, wrenches, &mut record.pushes);
     }
 
     fn inspect(&self, h: f64, end: &Record) -> Verdict {
@@ -345,7 +368,7 @@ impl SecondOrderSystem for System {
         for (member, record) in self.chains.iter_mut().zip(&mut end.chains) {
             member.commit(t, record, &self.bodies);
         }
-        self.renew_time_scales();
+        self.renew_time_scales(&end.pushes);
         for (member, record) in self.chains.iter_mut().zip(&mut end.chains) {
             let entries = member.entries.clone();
             let (q, v) = (&mut q[entries.clone()], &mut v[entries]);
@@ -353,7 +376,7 @@ impl SecondOrderSystem for System {
         }
         self.note_events(t);
         for (member, record) in self.chains.iter_mut().zip(&mut end.chains) {
-            member.look_around(&self.bodies, Moment { t, q, v }, record);
+            member.look_around(&self.bodies, Moment { t, q, v, z: &[] }, record);
         }
         if self.take_due(t) {
             Continuity::Jump

@@ -104,6 +104,7 @@ fn period(start: &Assembled) -> Option<f64> {
         t: 0.0,
         q: &start.q,
         v: &start.v,
+        z: &start.z,
     };
     let flows = vec![0.0; system.quadratures()];
     system.observe(at, &flows, &mut record, &mut observation);

@@ -27,6 +27,8 @@ pub enum Axis {
     Guide,
     /// One a tensioner.
     Tensioner,
+    /// One a tensioner whose oil can be compressed.
+    OilColumn,
     /// One a form of stored or kinetic energy.
     Store,
     /// One a flow of energy.
@@ -35,7 +37,7 @@ pub enum Axis {
 
 impl Axis {
     /// All axes with labels.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Roller,
         Self::Link,
         Self::Joint,
@@ -45,6 +47,7 @@ impl Axis {
         Self::Coupling,
         Self::Guide,
         Self::Tensioner,
+        Self::OilColumn,
         Self::Store,
         Self::Flow,
     ];
@@ -62,6 +65,7 @@ impl Axis {
             Self::Coupling => Some("coupling"),
             Self::Guide => Some("guide"),
             Self::Tensioner => Some("tensioner"),
+            Self::OilColumn => Some("oil_column"),
             Self::Store => Some("store"),
             Self::Flow => Some("flow"),
         }
@@ -135,6 +139,7 @@ channels! {
     GuideForceY, "guide_force_y", "N", Guide, "resultant of the chain on the guide, y";
     TensionerPosition, "tensioner_position", "m or rad", Tensioner, "travel of a slider in m, or angle of an arm in rad";
     TensionerForce, "tensioner_force", "N or N m", Tensioner, "push of the tensioner in N, or torque of a bare arm in N m";
+    OilPressure, "oil_pressure", "Pa", OilColumn, "pressure of compressible oil in a tensioner above that of the air";
     EnergyKinetic, "energy_kinetic", "J", None, "kinetic energy";
     EnergyStored, "energy_stored", "J", None, "potential energy of springs, contacts and weight";
     EnergyDissipated, "energy_dissipated", "J", None, "energy lost since the start";
@@ -306,6 +311,7 @@ impl Channel {
             Self::GuideForceY => to.extend(&sample.guide_force_y),
             Self::TensionerPosition => to.extend(&sample.tensioner_position),
             Self::TensionerForce => to.extend(&sample.tensioner_force),
+            Self::OilPressure => to.extend(&sample.oil_pressure),
             Self::EnergyKinetic => to.push(energy.kinetic()),
             Self::EnergyStored => to.push(energy.stored()),
             Self::EnergyDissipated => to.push(energy.dissipated()),

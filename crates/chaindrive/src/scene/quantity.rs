@@ -104,6 +104,8 @@ quantities! {
     QuadraticDamping, "a quadratic rotational damping", "N m s^2", "0.1 N m s^2", [2.0, 1.0, 0.0, -2.0], false;
     /// A pressure or an elastic modulus \[Pa\].
     Pressure, "a pressure", "Pa", "207 GPa", [-1.0, 1.0, -2.0, 0.0], true;
+    /// A volume \[m³\].
+    Volume, "a volume", "m^3", "4 cm^3", [3.0, 0.0, 0.0, 0.0], true;
     /// A dynamic viscosity \[Pa s\].
     Viscosity, "a viscosity", "Pa s", "10 mPa s", [-1.0, 1.0, -1.0, 0.0], true;
     /// The inverse of a length \[1/m\].

@@ -1,7 +1,7 @@
 //! Stepping from outside: pieces, inputs and snapshots, to the bit.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
-use chaindrive::{Control, Flow, Observation, Run, Scene, Simulation, Snapshot, Stepping};
+use chaindrive::{Channel, Control, Flow, Observation, Run, Scene, Simulation, Snapshot, Stepping};
 
 fn start(scene: &Scene, stepping: Stepping) -> Simulation {
     let run = Run {
@@ -22,6 +22,54 @@ fn rubbing() -> Scene {
     scene.replace("contact.joints.friction", friction).unwrap()
 }
 
+/// A plunger on oil that can be compressed: the pressure is a state of its own.
+fn oiled() -> Scene {
+    let push = r#"{ kind = "hydraulic", preload = "40 N", stiffness = "2 N/mm", extending = "200 N s/m", relieving = "150 N s/m",
+        oil = { diameter = "12 mm", length = "25 mm", gap = "25 µm", viscosity = "10 mPa s", supply = "0.3 MPa", relief = "3 MPa",
+        bulk_modulus = "1.2 GPa", volume = "4 cm^3", air = "1 %" } }"#.replace('\n', " ");
+    let scene = preset("timing_drive");
+    scene.replace("tensioners.arm.push", &push).unwrap()
+}
+
+/// The oil begins under the pressure of its supply, comes under more, and the energy it costs is in the ledger.
+#[test]
+fn oil_has_a_pressure_of_its_own() {
+    for stepping in METHODS {
+        let mut simulation = start(&oiled(), stepping);
+        let pressure = |simulation: &Simulation| simulation.channel(Channel::OilPressure);
+        simulation.advance_to(0.0).unwrap();
+        let supply = pressure(&simulation);
+        assert!(
+            supply.len() == 1 && (supply[0] / 0.3e6 - 1.0).abs() < 1e-6,
+            "{supply:?}"
+        );
+        let mut least = f64::INFINITY;
+        let mut most = 0.0_f64;
+        for k in 1..=40 {
+            simulation.advance_to(1e-4 * f64::from(k)).unwrap();
+            let [now] = pressure(&simulation)[..] else {
+                panic!("one tensioner has oil")
+            };
+            least = least.min(now);
+            most = most.max(now);
+        }
+        assert!(
+            least > -101_325.0 && most > 0.35e6 && most < 6e6,
+            "{least} {most}"
+        );
+        let [residual] = simulation.channel(Channel::EnergyResidual)[..] else {
+            panic!("one residual")
+        };
+        let lost = simulation.channel(Channel::EnergyDissipated)[0];
+        assert!(
+            residual.abs() < 1e-3 * lost,
+            "{stepping:?}: {residual} of {lost}"
+        );
+    }
+    let stiff = start(&preset("timing_drive"), Stepping::Auto);
+    assert!(stiff.channel(Channel::OilPressure).is_empty());
+}
+
 /// Everything that moves, bit by bit.
 fn bits(at: &Observation) -> Vec<u64> {
     let parts = [
@@ -32,6 +80,7 @@ fn bits(at: &Observation) -> Vec<u64> {
         &at.sprocket_angle,
         &at.sprocket_speed,
         &at.joint_force,
+        &at.oil_pressure,
     ];
     let all = parts.into_iter().flatten().chain(&at.energy.flows);
     all.map(|value| value.to_bits()).collect()
@@ -41,7 +90,12 @@ const METHODS: [Stepping; 3] = [Stepping::Auto, Stepping::Rk4, Stepping::Dormand
 
 #[test]
 fn a_run_in_a_hundred_pieces_is_the_run_in_one() {
-    for scene in [preset("marine_engine"), preset("bicycle"), rubbing()] {
+    for scene in [
+        preset("marine_engine"),
+        preset("bicycle"),
+        rubbing(),
+        oiled(),
+    ] {
         for stepping in METHODS {
             let mut whole = start(&scene, stepping);
             let end = bits(whole.advance_to(1e-3).unwrap());
@@ -88,7 +142,12 @@ fn equal_schedules_are_equal_runs() {
 
 #[test]
 fn a_snapshot_brings_back_every_bit() {
-    for scene in [preset("marine_engine"), preset("bicycle"), rubbing()] {
+    for scene in [
+        preset("marine_engine"),
+        preset("bicycle"),
+        rubbing(),
+        oiled(),
+    ] {
         for stepping in METHODS {
             let mut simulation = start(&scene, stepping);
             simulation.advance_to(4.2e-4).unwrap();

@@ -136,6 +136,7 @@ fn frequencies(strand: &Strand, masses: [f64; 3]) -> Vec<f64> {
             t: 0.0,
             q,
             v: &still,
+            z: &[],
         };
         system.evaluate(at, &mut a, &mut rates, &mut record);
         a

@@ -344,6 +344,7 @@ fn forces_of_whole_drives_agree_with_their_modes() {
                 t: 0.0,
                 q: &q,
                 v: &still,
+                z: &[],
             };
             let mut a = vec![0.0; dofs];
             let mut rates = vec![0.0; system.quadratures()];

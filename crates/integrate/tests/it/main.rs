@@ -7,4 +7,5 @@ mod implicit;
 mod memory;
 mod order;
 mod problems;
+mod states;
 mod validation_bounce;

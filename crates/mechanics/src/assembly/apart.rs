@@ -28,11 +28,13 @@ impl Drive {
         let fittings = in_order(groups.iter().map(|group| &group.chains).zip(fittings));
         let systems = alone.into_iter().map(|it| (it.system, [it.q, it.v]));
         let (system, [q, v]) = System::beside(groups, systems.collect());
+        let z = system.settled_states(&q);
         Ok(Assembled {
             drive: self.clone(),
             system,
             q,
             v,
+            z,
             statics,
             fittings,
             warnings: Vec::new(),

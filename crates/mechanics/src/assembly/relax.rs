@@ -127,7 +127,9 @@ fn is_taut(system: &System, q: &[f64]) -> bool {
     let still = vec![0.0; q.len()];
     let at = at_rest(q, &still);
     let mut record = system.new_record();
-    let mut rates = vec![0.0; system.quadratures()];
+    let mut rates = vec![0.0; system.quadratures() + system.states()];
+    let z = system.settled_states(q);
+    let at = Moment { z: &z, ..at };
     system.evaluate(at, &mut still.clone(), &mut rates, &mut record);
     let mut chains = system.chains.iter().zip(&record.chains);
     chains.any(|(member, record)| {
@@ -426,17 +428,14 @@ impl Newton<'_> {
             let Some(dof) = slide.dof else { continue };
             let s = q[dof];
             let Extension { length, lever } = slide.carrier.extension(s);
-            let force = slide.push.force(length, 0.0).elastic;
+            let push = slide.push.relaxed();
+            let force = push.force(length, 0.0, 0.0).elastic;
             let h = 1e-6;
             // The lever of a plunger changes slowly with the angle of its arm.
             let [behind, ahead] = [s - h, s + h].map(|s| slide.carrier.extension(s).lever);
             let bend = (ahead - behind) / (2.0 * h);
             sum.force(dof, -force * lever);
-            sum.stiffen(
-                dof,
-                dof,
-                slide.push.stiffness() * lever * lever - force * bend,
-            );
+            sum.stiffen(dof, dof, push.stiffness() * lever * lever - force * bend);
             let pose = slide.pose(q, &still);
             for (mass, at_rest) in slide.weights() {
                 let weight = bodies.gravity * (mass * load.gravity);
@@ -460,5 +459,6 @@ fn at_rest<'a>(q: &'a [f64], still: &'a [f64]) -> Moment<'a> {
         t: 0.0,
         q,
         v: still,
+        z: &[],
     }
 }

@@ -129,7 +129,12 @@ fn along_route(
     q: &[f64],
     v: &[f64],
 ) -> Vec<Vector> {
-    let at = Moment { t: 0.0, q, v };
+    let at = Moment {
+        t: 0.0,
+        q,
+        v,
+        z: &[],
+    };
     let bodies = &system.bodies;
     let mut seats: Vec<Option<usize>> = vec![None; places.len()];
     for on in &member.contacts.teeth {

@@ -130,6 +130,7 @@ fn mean_tension(system: &System, chain: usize, q: &[f64]) -> f64 {
         t: 0.0,
         q,
         v: &still,
+        z: &[],
     };
     let tensions = member.chain.tensions(member.own(at), &record.chains[chain]);
     tensions.iter().sum::<f64>() / tensions.len() as f64
@@ -142,6 +143,7 @@ fn forces(system: &System, q: &[f64], still: &[f64], record: &mut Record) -> Vec
         t: 0.0,
         q,
         v: still,
+        z: &[],
     };
     system.evaluate(at, &mut a, &mut rates, record);
     a
@@ -216,6 +218,10 @@ impl System {
     /// that turn as easily as the chain on them: heavy ones would hold up the iteration.
     fn at_rest(&self) -> Self {
         let mut light = self.clone();
+        for slide in &mut light.bodies.slides {
+            slide.push = slide.push.relaxed();
+        }
+        light.bodies.number_states();
         let heaviest = light.heaviest();
         for wheel in &mut light.bodies.wheels {
             if let WheelSupport::Prescribed { x, y } = &mut wheel.support {
@@ -254,6 +260,7 @@ impl System {
             t: 0.0,
             q,
             v: &still,
+            z: &[],
         };
         let mut worst = 0.0_f64;
         let mut pressed = 0.0_f64;

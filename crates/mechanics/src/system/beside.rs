@@ -36,6 +36,7 @@ impl System {
             };
         }
         gather!(wheels by sprockets, rails by guides, slides by tensioners, shafts by shafts, couplings by couplings);
+        whole.bodies.number_states();
         whole.bodies.first = first;
         let inertias = systems.iter().map(|system| &system.bodies.inertias);
         whole.bodies.inertias = inertias.flatten().copied().collect();

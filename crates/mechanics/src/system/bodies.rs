@@ -1,7 +1,7 @@
 //! Wheels, rails and carriers, compiled: where they are and how they move.
 
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::Moment;
+use chaindrive_integrate::{Moment, Weights};
 use serde::{Deserialize, Serialize};
 
 use super::Slide;
@@ -9,6 +9,7 @@ use super::inputs::Inputs;
 use super::shafts::{Shaft, Turn};
 use crate::contact::Frame;
 use crate::motion::Course;
+use crate::tensioner::Slopes;
 use crate::{Coupling, Motion};
 
 /// What chains touch.
@@ -22,6 +23,8 @@ pub(crate) struct Bodies {
     pub(crate) gravity: Vector,
     /// Where their coordinates begin in the state, behind those of all chains.
     pub(crate) first: usize,
+    /// Number of first-order states.
+    pub(crate) states: usize,
     /// Mass or inertia that goes with each of them \[kg or kg m²\].
     pub(crate) inertias: Vec<f64>,
     /// What somebody sets from outside.
@@ -161,8 +164,8 @@ impl Bodies {
         centre
     }
 
-    /// ω² and damping rate of every body by itself, the largest of each.
-    pub(crate) fn own_rates(&self) -> [f64; 2] {
+    /// ω² and damping rate of every body by itself, the largest of each; `pushes` of every tensioner at the last evaluation.
+    pub(crate) fn own_rates(&self, pushes: &[Slopes]) -> [f64; 2] {
         let (mut squared, mut damping) = (0.0_f64, 0.0_f64);
         for wheel in &self.wheels {
             let [own, drag] = wheel.own_rates();
@@ -184,13 +187,23 @@ impl Bodies {
             squared = squared.max(coupling.stiffness * light);
             damping = damping.max(coupling.damping * light);
         }
-        for slide in &self.slides {
+        for (slide, state) in self.slides.iter().zip(pushes) {
             let lever = slide.carrier.extension(0.0).lever;
             let light = lever * lever / slide.inertia;
-            squared = squared.max(slide.push.stiffness() * light);
-            damping = damping.max(slide.push.damping() * light);
+            let [trapped, settling] = state.largest;
+            squared = squared.max(slide.push.stiffness() * light + trapped / slide.inertia);
+            damping = damping.max(slide.push.damping() * light).max(settling);
         }
         [squared, damping]
+    }
+
+    /// Gives every push with a state its place among the first-order states, in the order of the tensioners.
+    pub(crate) fn number_states(&mut self) {
+        self.states = 0;
+        for slide in &mut self.slides {
+            slide.state = slide.push.settled(0.0).map(|_| self.states);
+            self.states += usize::from(slide.state.is_some());
+        }
     }
 
     /// Moves all coordinates to begin at `first`.
@@ -242,8 +255,20 @@ impl Bodies {
         self.inertias = inertias;
     }
 
-    /// Bearings, tensioners and shafts: visits (entry of the state, stiffness, damping) of what they have of their own.
-    pub(crate) fn each_support(&self, mut visit: impl FnMut(usize, f64, f64)) {
+    /// Bearings, tensioners and shafts: visits (entry of the state, c C + k K) of what they have of their own, with the slopes of the
+    /// pushes at the last evaluation.
+    pub(crate) fn each_support(
+        &self,
+        weights: Weights,
+        pushes: &[Slopes],
+        mut visit: impl FnMut(usize, f64),
+    ) {
+        let mut visit = |dof: usize, stiffness: f64, damping: f64| {
+            visit(
+                dof,
+                weights.stiffness * stiffness + weights.damping * damping,
+            );
+        };
         for shaft in &self.shafts {
             if let Some((dof, ratio)) = shaft.turn.turned_by() {
                 visit(dof, 0.0, ratio * ratio * shaft.drag());
@@ -261,13 +286,14 @@ impl Bodies {
                 }
             }
         }
-        for slide in &self.slides {
+        for (i, slide) in self.slides.iter().enumerate() {
             let Some(dof) = slide.dof else { continue };
             let lever = slide.carrier.extension(0.0).lever;
             let squared = lever * lever;
+            let state = pushes.get(i).copied().unwrap_or_default();
             visit(
                 dof,
-                slide.push.stiffness() * squared,
+                slide.push.stiffness() * squared + state.within(weights.damping),
                 slide.push.damping() * squared,
             );
         }

@@ -80,9 +80,11 @@ impl System {
             couplings: parts.couplings.clone(),
             gravity: parts.gravity,
             first,
+            states: 0,
             inertias: Vec::new(),
             inputs: super::inputs::Inputs::default(),
         };
+        bodies.number_states();
         bodies.weigh(dofs - first);
         let mut system = Self {
             chains,
@@ -95,7 +97,8 @@ impl System {
         };
         system.refer_to_groups();
         let mut v = vec![0.0; dofs];
-        system.start(0.0, &mut q, &mut v);
+        let z = system.settled_states(&q);
+        system.start(0.0, &mut q, &mut v, &z);
         Ok((system, q))
     }
 }
@@ -290,6 +293,8 @@ fn slides(parts: &Parts, places: &Places) -> Vec<Slide> {
                 own: tensioner.inertia,
                 inertia: carrier.reduced(0.0, tensioner.inertia, &carried).inertia,
                 dof: places.slides[index],
+                // Until all are there: see `number_states`.
+                state: None,
                 carried,
             }
         })

@@ -6,7 +6,7 @@ use chaindrive_integrate::Moment;
 use super::bodies::{Bodies, RailSupport, WheelSupport};
 use crate::contact::Wrench;
 use crate::energy::Flow;
-use crate::tensioner::Extension;
+use crate::tensioner::Slopes;
 
 impl Bodies {
     /// Accelerations of the bodies under what all chains together do to wheels and rails, and the powers that go with them.
@@ -16,7 +16,9 @@ impl Bodies {
         a: &mut [f64],
         rates: &mut [f64],
         [wheel_wrenches, rail_wrenches]: [&[Wrench]; 2],
+        pushes: &mut [Slopes],
     ) {
+        let (rates, flows) = rates.split_at_mut(Flow::ALL.len());
         self.turn_shafts(at, a, rates, wheel_wrenches);
         for (wheel, wrench) in self.wheels.iter().zip(wheel_wrenches) {
             let (centre, velocity, acceleration) =
@@ -76,9 +78,13 @@ impl Bodies {
         for (i, slide) in self.slides.iter().enumerate() {
             let Some(dof) = slide.dof else { continue };
             let pose = slide.pose(at.q, at.v);
-            let Extension { length, lever } = slide.carrier.extension(pose.coordinate);
-            let push = slide.push.force(length, lever * pose.rate);
+            let (push, lever) = slide.pushed(pose, at.z);
             rates[Flow::TensionerLoss as usize] -= push.damping * lever * pose.rate;
+            if let Some(state) = slide.state {
+                rates[Flow::TensionerLoss as usize] += push.loss;
+                flows[state] = push.flow;
+                pushes[i] = slide.slopes(pose, at.z);
+            }
             let input = self.inputs.force(i);
             rates[Flow::DriveTorque as usize] += input * pose.rate;
             let mut force = a[dof] + (push.elastic + push.damping) * lever + input;

@@ -2,7 +2,11 @@
 
 use std::ops::Range;
 
+use chaindrive_integrate::Weights;
+
 use super::{Bodies, System};
+use crate::Coupling;
+use crate::tensioner::Slopes;
 
 /// Chains, and the coordinates of the bodies that have to do with them.
 #[derive(Clone, Debug)]
@@ -19,6 +23,15 @@ pub(crate) struct GroupBodies<'a> {
     /// First coordinate in the state, and their number.
     pub(crate) first: usize,
     pub(crate) count: usize,
+    /// Slopes of the pushes of all tensioners, where an implicit step is solved.
+    pub(crate) pushes: &'a [Slopes],
+}
+
+impl<'a> GroupBodies<'a> {
+    /// The same with the slopes of the pushes at the last evaluation.
+    pub(crate) fn with(self, pushes: &'a [Slopes]) -> Self {
+        Self { pushes, ..self }
+    }
 }
 
 impl GroupBodies<'_> {
@@ -33,23 +46,29 @@ impl GroupBodies<'_> {
         &self.all.inertias[from..from + self.count]
     }
 
-    /// Visits (row and column, stiffness, damping) of what the bodies have of their own, both halves; rows are counted from the
+    /// Visits (row and column, c C + k K) of what the bodies have of their own, both halves; rows are counted from the
     /// first coordinate of the group.
-    pub(crate) fn each_own(&self, mut visit: impl FnMut([usize; 2], f64, f64)) {
+    pub(crate) fn each_own(&self, weights: Weights, mut visit: impl FnMut([usize; 2], f64)) {
         let range = self.range();
-        self.all.each_support(|dof, stiffness, damping| {
-            if range.contains(&dof) {
-                let place = dof - self.first;
-                visit([place; 2], stiffness, damping);
-            }
-        });
+        self.all
+            .each_support(weights, self.pushes, |dof, weighted| {
+                if range.contains(&dof) {
+                    let place = dof - self.first;
+                    visit([place; 2], weighted);
+                }
+            });
         for coupling in &self.all.couplings {
+            let Coupling {
+                stiffness, damping, ..
+            } = coupling;
             for (dof, share) in self.all.twisted_by(coupling) {
                 for (other, other_share) in self.all.twisted_by(coupling) {
                     if range.contains(&dof) {
                         let places = [dof, other].map(|dof| dof - self.first);
                         let both = share * other_share;
-                        visit(places, coupling.stiffness * both, coupling.damping * both);
+                        let weighted = weights.stiffness * (stiffness * both)
+                            + weights.damping * (damping * both);
+                        visit(places, weighted);
                     }
                 }
             }
@@ -65,6 +84,7 @@ impl System {
             all: &self.bodies,
             first: self.bodies.first + bodies.start,
             count: bodies.len(),
+            pushes: &[],
         }
     }
 

@@ -58,6 +58,7 @@ impl Member {
             t: at.t,
             q: &at.q[self.entries.clone()],
             v: &at.v[self.entries.clone()],
+            z: &[],
         }
     }
 

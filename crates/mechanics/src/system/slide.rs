@@ -3,8 +3,8 @@
 use chaindrive_geometry::{Point, Vector};
 
 use crate::chains::Way;
-use crate::tensioner::{Reduced, Weight};
-use crate::{Carrier, Push};
+use crate::tensioner::{Extension, Reduced, Slopes, Weight};
+use crate::{Carrier, Push, PushForce};
 
 /// A tensioner in the system.
 #[derive(Clone, Debug)]
@@ -18,6 +18,8 @@ pub(crate) struct Slide {
     pub(crate) inertia: f64,
     /// Degree of freedom; none while locked.
     pub(crate) dof: Option<usize>,
+    /// Place of its push's state among the first-order states; none without one.
+    pub(crate) state: Option<usize>,
     /// Masses that it carries.
     pub(crate) carried: Vec<Weight>,
 }
@@ -65,6 +67,53 @@ impl Slide {
         let turning = self.carrier.turning();
         let turns = turning.abs() > 0.0;
         self.dof.filter(|_| turns).map(|dof| (dof, turning))
+    }
+
+    /// State of its push; nothing without one.
+    fn state(&self, z: &[f64]) -> f64 {
+        self.state.map_or(0.0, |state| z[state])
+    }
+
+    /// The push, and the lever by which it acts on the coordinate.
+    pub(crate) fn pushed(&self, pose: Pose, z: &[f64]) -> (PushForce, f64) {
+        let Extension { length, lever } = self.carrier.extension(pose.coordinate);
+        let force = self.push.force(length, lever * pose.rate, self.state(z));
+        (force, lever)
+    }
+
+    /// What the push stores \[J\].
+    pub(crate) fn stored(&self, pose: Pose, z: &[f64]) -> f64 {
+        let Extension { length, .. } = self.carrier.extension(pose.coordinate);
+        self.push.energy(length, self.state(z))
+    }
+
+    /// Pressure in the push \[Pa\], where there is one.
+    pub(crate) fn pressure(&self, pose: Pose, z: &[f64]) -> Option<f64> {
+        let Extension { length, .. } = self.carrier.extension(pose.coordinate);
+        self.push.pressure(length, self.state(z))
+    }
+
+    /// What a state of the push adds to the derivatives by the coordinate.
+    pub(crate) fn slopes(&self, pose: Pose, z: &[f64]) -> Slopes {
+        if self.state.is_none() {
+            return Slopes::default();
+        }
+        let Extension { length, lever } = self.carrier.extension(pose.coordinate);
+        let slopes = self.push.slopes(length, self.state(z));
+        // Q = F ∂x/∂s: stiffness by the square of the lever, flows and forces by itself
+        Slopes {
+            stiffness: slopes.stiffness * lever * lever,
+            by_state: slopes.by_state * lever,
+            flow: slopes.flow * lever,
+            settling: slopes.settling,
+            largest: [slopes.largest[0] * lever * lever, slopes.largest[1]],
+        }
+    }
+
+    /// The state at which nothing flows in the push.
+    pub(crate) fn settled(&self, pose: Pose) -> Option<f64> {
+        let Extension { length, .. } = self.carrier.extension(pose.coordinate);
+        self.push.settled(length)
     }
 
     /// Inertia as it now is.

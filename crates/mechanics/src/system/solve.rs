@@ -19,28 +19,55 @@
 use chaindrive_integrate::Weights;
 use nalgebra::{DMatrix, DVector};
 
-use super::{GroupBodies, Record, System};
+use super::{Bodies, GroupBodies, Record, System};
+use crate::tensioner::Slopes;
 
 impl System {
     /// x ← (M + c C + k K)⁻¹ M x; false if there is no solution.
+    /// States stand behind the coordinates; a push has one at most, and it is eliminated first.
+    ///
+    /// ```text
+    /// y = (y₀ + k ∂ż/∂q x)/(1 − c ∂ż/∂z)
+    /// (M + c C + k K − c k ∂f/∂z ∂ż/∂q/(1 − c ∂ż/∂z)) x = M x₀ + c ∂f/∂z y₀/(1 − c ∂ż/∂z)
+    /// ```
     pub(super) fn solve_step(&self, weights: Weights, record: &mut Record, x: &mut [f64]) -> bool {
-        if let [member] = self.chains.as_slice() {
-            let bodies = self.group_bodies(0);
-            return member
-                .chain
-                .solve(bodies, weights, &mut record.chains[0], x);
+        let (x, y) = x.split_at_mut(self.dofs);
+        let c = weights.damping;
+        // Lent to the bodies, and put back below.
+        let pushes = std::mem::take(&mut record.pushes);
+        for (state, dof, slopes) in self.bodies.each_state(&pushes) {
+            let inertia = self.bodies.inertias[dof - self.bodies.first];
+            y[state] /= 1.0 + c * slopes.settling;
+            x[dof] += c * slopes.by_state * y[state] / inertia;
         }
-        (0..self.groups.len()).all(|group| self.solve_group(group, weights, record, x).is_some())
+        let solved = if let [member] = self.chains.as_slice() {
+            let bodies = self.group_bodies(0).with(&pushes);
+            member
+                .chain
+                .solve(bodies, weights, &mut record.chains[0], x)
+        } else {
+            let mut groups = 0..self.groups.len();
+            groups.all(|group| {
+                let bodies = self.group_bodies(group).with(&pushes);
+                self.solve_group(group, bodies, weights, record, x)
+                    .is_some()
+            })
+        };
+        for (state, dof, slopes) in self.bodies.each_state(&pushes) {
+            y[state] += weights.stiffness * slopes.flow * x[dof] / (1.0 + c * slopes.settling);
+        }
+        record.pushes = pushes;
+        solved
     }
 
     fn solve_group(
         &self,
         group: usize,
+        bodies: GroupBodies<'_>,
         weights: Weights,
         record: &mut Record,
         x: &mut [f64],
     ) -> Option<()> {
-        let bodies = self.group_bodies(group);
         let chains = &self.groups[group].chains;
         let right = DVector::from_column_slice(&x[bodies.range()]);
         let count = bodies.count;
@@ -114,9 +141,20 @@ impl GroupBodies<'_> {
     /// M + c C + k K of the bodies by themselves.
     fn matrix(&self, weights: Weights) -> DMatrix<f64> {
         let mut matrix = DMatrix::from_diagonal(&DVector::from_column_slice(self.inertias()));
-        self.each_own(|[i, j], stiffness, damping| {
-            matrix[(i, j)] += weights.stiffness * stiffness + weights.damping * damping;
+        self.each_own(weights, |[i, j], weighted| {
+            matrix[(i, j)] += weighted;
         });
         matrix
+    }
+}
+
+impl Bodies {
+    /// Pushes with a state: its place, the coordinate that moves with it, the slopes at the last evaluation.
+    fn each_state<'a>(
+        &'a self,
+        pushes: &'a [Slopes],
+    ) -> impl Iterator<Item = (usize, usize, Slopes)> + 'a {
+        let pushes = self.slides.iter().zip(pushes);
+        pushes.filter_map(|(slide, slopes)| Some((slide.state?, slide.dof?, *slopes)))
     }
 }

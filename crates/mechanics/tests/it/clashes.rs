@@ -296,7 +296,7 @@ fn profiles_stand_where_the_chain_meets_them() {
             direction: Vector::new(-0.17, 0.98).normalize(),
         }),
         inertia: 60.0,
-        push: Push::Spring(chaindrive_mechanics::Spring {
+        push: Push::Spring(chaindrive_mechanics::pushes::Spring {
             preload: 20e3,
             stiffness: 1e6,
             damping: 0.0,
@@ -338,7 +338,7 @@ fn faces_on_arms_turn_about_the_pivot() {
             plunger: None,
         }),
         inertia: 0.1,
-        push: Push::Spring(chaindrive_mechanics::Spring {
+        push: Push::Spring(chaindrive_mechanics::pushes::Spring {
             preload: 0.3,
             stiffness: 1.0,
             damping: 0.0,

@@ -4,4 +4,5 @@ mod clashes;
 mod marine;
 mod marine_statics;
 mod modes_of_links;
+mod oil;
 mod several_chains;

@@ -124,6 +124,7 @@ fn observed(assembled: &Assembled) -> Observation {
         t: 0.0,
         q: &assembled.q,
         v: &assembled.v,
+        z: &[],
     };
     let flows = vec![0.0; system.quadratures()];
     system.observe(at, &flows, &mut system.new_record(), &mut out);

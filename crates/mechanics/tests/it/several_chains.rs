@@ -46,7 +46,7 @@ fn sprocket(name: &str, teeth: u32, centre: [f64; 2], rotation: Rotation) -> Tur
 }
 
 /// A chain around sprockets `stops`, `links` long, with a tension of 60 N as laid.
-fn chain(links: usize, stops: [usize; 2]) -> PlacedChain {
+pub(crate) fn chain(links: usize, stops: [usize; 2]) -> PlacedChain {
     PlacedChain {
         name: None,
         chain: Chain {
@@ -81,12 +81,18 @@ fn free(load: f64) -> Rotation {
     }
 }
 
-fn driven() -> Rotation {
+pub(crate) fn driven() -> Rotation {
     Rotation::Prescribed(Motion::Constant { rate: 30.0 })
 }
 
 /// Two sprockets as far apart as a number of links needs; the second one turns freely.
-fn pair(prefix: &str, teeth: [u32; 2], x: f64, distance: f64, first: Rotation) -> [Turning; 2] {
+pub(crate) fn pair(
+    prefix: &str,
+    teeth: [u32; 2],
+    x: f64,
+    distance: f64,
+    first: Rotation,
+) -> [Turning; 2] {
     [
         sprocket(&format!("{prefix}a"), teeth[0], [x, 0.0], first),
         sprocket(&format!("{prefix}b"), teeth[1], [x, distance], free(-2.0)),
@@ -94,7 +100,7 @@ fn pair(prefix: &str, teeth: [u32; 2], x: f64, distance: f64, first: Rotation) -
 }
 
 /// Every sprocket has a shaft of its own.
-fn parts(chains: Vec<PlacedChain>, turning: Vec<Turning>) -> Parts {
+pub(crate) fn parts(chains: Vec<PlacedChain>, turning: Vec<Turning>) -> Parts {
     let (mut sprockets, mut shafts) = (Vec::new(), Vec::new());
     for (index, (sprocket, rotation)) in turning.into_iter().enumerate() {
         sprockets.push(Sprocket {
@@ -117,9 +123,9 @@ fn parts(chains: Vec<PlacedChain>, turning: Vec<Turning>) -> Parts {
 }
 
 /// Equal sprockets of 20 teeth at ten pitches: forty links.
-const EVEN: f64 = 10.0 * PITCH;
+pub(crate) const EVEN: f64 = 10.0 * PITCH;
 
-fn assembled(parts: Parts) -> Assembled {
+pub(crate) fn assembled(parts: Parts) -> Assembled {
     Drive::new(parts)
         .unwrap_or_else(|problems| panic!("{problems:?}"))
         .assemble()
@@ -132,6 +138,7 @@ fn observed(system: &System, state: &State) -> Observation {
         t: state.t,
         q: &state.q,
         v: &state.v,
+        z: &[],
     };
     let flows = vec![0.0; system.quadratures()];
     system.observe(at, &flows, &mut system.new_record(), &mut out);
@@ -329,6 +336,7 @@ fn a_shaft_carries_sprockets_of_two_chains() {
                 t: state.t,
                 q: &state.q,
                 v: &state.v,
+                z: &[],
             };
             system.observe(at, flows, &mut system.new_record(), &mut out);
             out
@@ -347,7 +355,7 @@ fn a_shaft_carries_sprockets_of_two_chains() {
 }
 
 /// Pins with play in their bushes that lose energy as they close.
-fn with_play(placed: &mut PlacedChain) {
+pub(crate) fn with_play(placed: &mut PlacedChain) {
     let body = |mass: f64, inertia: f64| LinkBody {
         mass,
         inertia,
@@ -408,7 +416,12 @@ fn an_implicit_step_joins_chains_of_rigid_links() {
     let accelerations = |v: &[f64]| {
         let mut record = system.new_record();
         let mut a = vec![0.0; q.len()];
-        let at = Moment { t: 0.0, q: &q, v };
+        let at = Moment {
+            t: 0.0,
+            q: &q,
+            v,
+            z: &[],
+        };
         system.evaluate(
             at,
             &mut a,

@@ -1,7 +1,8 @@
 //! Tensioners.
 
 use chaindrive_mechanics::carriers::{Arm, Plunger, Slider};
-use chaindrive_mechanics::{Carrier, Hydraulic, Push, Spring, Tensioner};
+use chaindrive_mechanics::pushes::{Hydraulic, OilColumn, Spring};
+use chaindrive_mechanics::{Carrier, Push, Tensioner};
 
 use super::{Findings, point};
 use crate::scene::schema::{self, GuideSupport, Oil, SceneText, Support};
@@ -121,6 +122,7 @@ fn push(
             preload,
             stiffness,
             extending,
+            relieving,
             supply,
             relief,
             leak,
@@ -130,6 +132,10 @@ fn push(
             let (supply, relief, leak) = match oil {
                 Some(oil) => from_oil(oil, direct, path, findings),
                 None => complete(direct, path, findings)?,
+            };
+            let column = match oil {
+                Some(oil) => column(oil, [extending.0, relieving.0], path, findings)?,
+                None => None,
             };
             if relief < supply {
                 let key = if oil.is_some() {
@@ -148,6 +154,8 @@ fn push(
                 relief,
                 leak,
                 extending: extending.0,
+                relieving: relieving.0,
+                column,
             }))
         }
     }
@@ -183,9 +191,50 @@ fn from_oil(
             findings.refuse_with(&format!("{path}.{key}"), "`oil` is given too", hint);
         }
     }
-    // F = p A,   A = π d²/4
-    let diameter = oil.diameter.0;
-    let area = 0.25 * std::f64::consts::PI * diameter * diameter;
+    let (diameter, area) = (oil.diameter.0, area(oil));
     let leak = Hydraulic::leak_damping(oil.viscosity.0, oil.length.0, diameter, oil.gap.0);
+    // F = p A
     (oil.supply.0 * area, oil.relief.0 * area, leak)
+}
+
+/// Cross-section of a plunger \[m²\].
+fn area(oil: &Oil) -> f64 {
+    // A = π d²/4
+    0.25 * std::f64::consts::PI * oil.diameter.0 * oil.diameter.0
+}
+
+/// Oil that can be compressed, if it can: it needs all that says how, and valves with a resistance.
+fn column(
+    oil: &Oil,
+    [extending, relieving]: [f64; 2],
+    path: &str,
+    findings: &mut Findings<'_>,
+) -> Option<Option<OilColumn>> {
+    let given = [
+        ("bulk_modulus", oil.bulk_modulus.map(|modulus| modulus.0)),
+        ("volume", oil.volume.map(|volume| volume.0)),
+        ("air", oil.air.map(|air| air.0)),
+    ];
+    if given.iter().all(|(_, value)| value.is_none()) {
+        return Some(None);
+    }
+    for (key, _) in given.iter().filter(|(_, value)| value.is_none()) {
+        let hint = "oil that can be compressed needs `bulk_modulus`, `volume` and `air`";
+        findings.refuse_with(&format!("{path}.oil.{key}"), "missing", hint);
+    }
+    for (key, value) in [("extending", extending), ("relieving", relieving)] {
+        if value <= 0.0 {
+            let hint = "give the damping by the valve, such as \"200 N s/m\"";
+            let message = "oil that can be compressed needs a valve with a resistance";
+            findings.refuse_with(&format!("{path}.{key}"), message, hint);
+        }
+    }
+    let [modulus, volume, air] = given.map(|(_, value)| value);
+    let column = OilColumn {
+        area: area(oil),
+        volume: volume?,
+        bulk_modulus: modulus?,
+        air: air?,
+    };
+    (extending > 0.0 && relieving > 0.0).then_some(Some(column))
 }

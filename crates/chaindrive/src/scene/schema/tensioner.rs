@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::quantity::{
     AngularDamping, AngularStiffness, Damping, Force, Inertia, Length, Mass, Pressure, Ratio,
-    Stiffness, Torque, Viscosity,
+    Stiffness, Torque, Viscosity, Volume,
 };
 
 /// A carrier with one degree of freedom that presses sprockets or guides on the chain.
@@ -113,6 +113,10 @@ pub(crate) enum Push {
         #[serde(default)]
         #[schemars(extend("minimum" = 0))]
         extending: Damping,
+        /// Damping by the relief valve while it is open [N s/m]; absent: 0, it holds its pressure.
+        #[serde(default)]
+        #[schemars(extend("minimum" = 0))]
+        relieving: Damping,
         /// Push of the supply pressure [N]; instead of `oil`.
         #[serde(default)]
         #[schemars(extend("minimum" = 0))]
@@ -154,4 +158,17 @@ pub(crate) struct Oil {
     /// Pressure at which the relief valve opens [Pa].
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) relief: Pressure,
+    /// Bulk modulus of the oil without air [Pa]: with it the oil can be compressed and has a pressure of its own, and
+    /// `volume`, `air`, `extending` and `relieving` are needed; absent: the oil is stiff.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) bulk_modulus: Option<Pressure>,
+    /// Volume of the chamber in the assembled position [m³].
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) volume: Option<Volume>,
+    /// Share of free air in the oil, under the pressure around the drive [–].
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 0.5))]
+    pub(crate) air: Option<Ratio>,
 }

@@ -162,8 +162,8 @@ pub(crate) struct Bench {
 
 impl Bench {
     pub(crate) fn start(assembled: Assembled, method: Method) -> Self {
+        let mut state = assembled.state();
         let mut system = assembled.system;
-        let mut state = State::new(0.0, assembled.q, assembled.v);
         let stepper = method
             .start(&mut system, &mut state)
             .unwrap_or_else(|error| panic!("{error}"));
@@ -196,6 +196,7 @@ impl Bench {
             t: self.state.t,
             q: &self.state.q,
             v: &self.state.v,
+            z: &[],
         };
         let flows = &self.state.quadratures;
         self.system

@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "every test uses some of the problems")]
 
 pub(crate) mod bounce;
+pub(crate) mod leaking;
 
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Weights};
 

@@ -37,6 +37,15 @@ pub(crate) fn curvature(system: &System, q: &[f64]) -> Curvature {
     for &(i, j, value) in &balance.entries {
         hessian[(i, j)] += value;
     }
+    let still = vec![0.0; q.len()];
+    let z = system.settled_states(q);
+    for slide in &system.bodies.slides {
+        let row = slide.dof.and_then(|dof| unknowns.row[dof]);
+        if let Some(row) = row {
+            // Vibrations leave a state, such as the oil in a chamber, no time to flow.
+            hessian[(row, row)] += slide.slopes(slide.pose(q, &still), &z).stiffness;
+        }
+    }
     let hinges = hinges(system, q);
     let mut conditions = DMatrix::zeros(2 * hinges.len(), count);
     for (index, hinge) in hinges.iter().enumerate() {

@@ -128,6 +128,7 @@ impl Linkage {
                 t: 0.0,
                 q,
                 v: &still,
+                z: &[],
             };
             self.pose_links(at, &mut joint_state.posture);
             joint_state.hinge_forces = vec![Vector::zeros(); self.joints.len()];
@@ -155,7 +156,12 @@ impl Linkage {
             return;
         }
         let mut joint_state = JointState::default();
-        let at = Moment { t: 0.0, q, v };
+        let at = Moment {
+            t: 0.0,
+            q,
+            v,
+            z: &[],
+        };
         self.pose_links(at, &mut joint_state.posture);
         joint_state.hinge_forces = vec![Vector::zeros(); self.joints.len()];
         let opening = self.joints.iter().map(|joint| {

@@ -120,11 +120,10 @@ impl Linkage {
         }
         self.add_masses(bodies, &mut blocks, &mut loose, x);
         let first = if self.closed { 3 } else { 0 };
-        bodies.each_own(|[i, j], stiffness, damping| {
+        bodies.each_own(weights, |[i, j], weighted| {
             // The lower half is kept.
             if i >= j {
-                blocks.corner[(first + i, first + j)] +=
-                    weights.stiffness * stiffness + weights.damping * damping;
+                blocks.corner[(first + i, first + j)] += weighted;
             }
         });
         let mut sum = Sum {

@@ -16,6 +16,7 @@ mod local;
 mod rows;
 mod tridiagonal;
 
+use chaindrive_integrate::Weights;
 use pulp::{Simd, WithSimd};
 
 use super::{Bearing, Joining, JointState, Linkage};
@@ -212,11 +213,15 @@ impl Impulses {
             self.joints
                 .add_right::<R, C>(place, -inertia * b[linkage.coordinates() + j]);
         }
-        bodies.each_own(|places, _, damping| {
+        let weights = Weights {
+            damping: c,
+            stiffness: 0.0,
+        };
+        bodies.each_own(weights, |places, weighted| {
             let [i, j] = places.map(|place| Place::Border(first + place));
             // Both halves are one.
             if places[0] >= places[1] {
-                self.joints.add::<R, C>(i, j, -c * damping);
+                self.joints.add::<R, C>(i, j, -weighted);
             }
         });
     }

@@ -285,6 +285,7 @@ mod tests {
                 t: 0.0,
                 q: &q,
                 v: &v,
+                z: &[],
             };
             let posture = &record.chains[0].joint_state.posture;
             let widths: [fn(Contacts<'_>) -> Tally; 3] = [

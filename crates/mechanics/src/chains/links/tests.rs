@@ -222,6 +222,7 @@ pub(super) fn set_off(parts: Parts) -> (System, Record, Vec<f64>, Vec<f64>) {
         t: 0.0,
         q: &q,
         v: &v,
+        z: &[],
     };
     system.evaluate(at, &mut a, &mut rates, &mut record);
     (system, record, q, v)
@@ -236,6 +237,7 @@ pub(super) fn started(parts: Parts) -> (System, Record, Vec<f64>) {
         t: 0.0,
         q: &q,
         v: &v,
+        z: &[],
     };
     system.evaluate(at, &mut a, &mut rates, &mut record);
     (system, record, a)
@@ -269,6 +271,7 @@ fn pretension_is_met() {
             t: 0.0,
             q: &q,
             v: &still,
+            z: &[],
         };
         system.evaluate(at, &mut a, &mut rates, &mut record);
         let linkage = of(&system);
@@ -309,6 +312,7 @@ fn lanes_and_scalar_contacts_agree() {
             t: 0.0,
             q: &q,
             v: &still,
+            z: &[],
         };
         system.evaluate(at, &mut a, &mut rates, &mut record);
         let member = &system.chains[0];
@@ -382,6 +386,7 @@ fn lanes_of_any_width_agree() {
             t: 1e-5,
             q: &q,
             v: &v,
+            z: &[],
         };
         let [wide, narrow] = [&system, &by_twos].map(|system| {
             let mut record = system.new_record();

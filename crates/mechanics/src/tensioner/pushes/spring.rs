@@ -1,6 +1,6 @@
 //! Spring and damper behind a tensioner.
 
-use super::PushForce;
+use super::{PushForce, Pushes};
 use crate::DriveError;
 
 /// A preloaded spring with a damper.
@@ -20,20 +20,29 @@ pub struct Spring {
     pub damping: f64,
 }
 
-impl Spring {
-    pub(super) fn force(&self, x: f64, rate: f64) -> PushForce {
+impl Pushes for Spring {
+    fn force(&self, x: f64, rate: f64, _: f64) -> PushForce {
         PushForce {
             elastic: self.preload - self.stiffness * x,
             damping: -self.damping * rate,
+            ..PushForce::default()
         }
     }
 
-    pub(super) fn energy(&self, x: f64) -> f64 {
+    fn energy(&self, x: f64, _: f64) -> f64 {
         // U = ½ k x² − F₀ x
         (0.5 * self.stiffness * x - self.preload) * x
     }
 
-    pub(super) fn check(&self, path: &str) -> Result<(), DriveError> {
+    fn stiffness(&self) -> f64 {
+        self.stiffness
+    }
+
+    fn damping(&self) -> f64 {
+        self.damping
+    }
+
+    fn check(&self, path: &str) -> Result<(), DriveError> {
         let range = |name: &str, value: f64, low: f64, allowed| {
             DriveError::require(
                 value.is_finite() && value >= low,

@@ -1,0 +1,177 @@
+//! Pushes as a family: this table of contents, and one file a member.
+//!
+//! A push is a force on a carrier that depends on its extension x, its rate ẋ, and on a state z of its own where it has one. What it
+//! stores is a function of x and z; what it loses is a power.
+
+mod column;
+mod hydraulic;
+mod spring;
+
+pub use column::OilColumn;
+pub use hydraulic::Hydraulic;
+pub use spring::Spring;
+
+use serde::{Deserialize, Serialize};
+
+use crate::DriveError;
+
+/// The law of the push F(x, ẋ, z), x being the extension since assembly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Push {
+    /// The carrier stays where it was assembled.
+    Locked,
+    /// Spring and damper.
+    Spring(Spring),
+    /// One-way hydraulic plunger.
+    Hydraulic(Hydraulic),
+}
+
+/// Asks the member; a locked push has nothing.
+macro_rules! ask {
+    ($push:expr, $member:ident => $answer:expr) => {
+        match $push {
+            Push::Locked => Default::default(),
+            Push::Spring($member) => $answer,
+            Push::Hydraulic($member) => $answer,
+        }
+    };
+}
+
+/// What a push has to answer; those without a state leave out the second half.
+trait Pushes: Copy {
+    /// Force at extension x and rate ẋ, with what its state z does.
+    fn force(&self, x: f64, rate: f64, z: f64) -> PushForce;
+
+    /// Stored energy \[J\] relative to x = 0 with z settled there.
+    fn energy(&self, x: f64, z: f64) -> f64;
+
+    /// Stiffness −∂F/∂x of what has no state \[N/m or N m/rad\].
+    fn stiffness(&self) -> f64;
+
+    /// Largest damping −∂F/∂ẋ \[N s/m or N m s\].
+    fn damping(&self) -> f64;
+
+    /// Names the first parameter out of range.
+    fn check(&self, path: &str) -> Result<(), DriveError>;
+
+    /// The state at which nothing flows at extension x; none without a state.
+    fn settled(&self, x: f64) -> Option<f64> {
+        let _ = x;
+        None
+    }
+
+    /// The same push with its state settled at every moment.
+    fn relaxed(&self) -> Self {
+        *self
+    }
+
+    /// What the state adds to the derivatives.
+    fn slopes(&self, x: f64, z: f64) -> Slopes {
+        let _ = (x, z);
+        Slopes::default()
+    }
+
+    /// Pressure above that of the air \[Pa\], where there is one.
+    fn pressure(&self, x: f64, z: f64) -> Option<f64> {
+        let _ = (x, z);
+        None
+    }
+}
+
+/// The force of a push, taken apart, and what goes on in it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PushForce {
+    /// Part that derives from stored energy \[N or N m\].
+    pub elastic: f64,
+    /// Part that dissipates \[N or N m\].
+    pub damping: f64,
+    /// Rate ż of its state.
+    pub flow: f64,
+    /// Power that is lost as the state flows \[W\].
+    pub loss: f64,
+}
+
+/// Derivatives of a push with a state, beside those without.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Slopes {
+    /// −∂F/∂x with the state held.
+    pub(crate) stiffness: f64,
+    /// ∂F/∂z
+    pub(crate) by_state: f64,
+    /// ∂ż/∂x
+    pub(crate) flow: f64,
+    /// −∂ż/∂z
+    pub(crate) settling: f64,
+    /// The largest that the stiffness, and the settling, can become without warning.
+    pub(crate) largest: [f64; 2],
+}
+
+impl Slopes {
+    /// Stiffness left when the state follows within a step that gives it the weight c \[s\].
+    ///
+    /// ```text
+    /// K − c ∂F/∂z ∂ż/∂x/(1 − c ∂ż/∂z)
+    /// ```
+    pub(crate) fn within(&self, c: f64) -> f64 {
+        self.stiffness - c * self.by_state * self.flow / (1.0 + c * self.settling)
+    }
+}
+
+impl Push {
+    /// Force \[N, or N m for a bare arm\] at extension x \[m or rad\], rate ẋ and state z.
+    pub fn force(&self, x: f64, rate: f64, z: f64) -> PushForce {
+        ask!(self, push => push.force(x, rate, z))
+    }
+
+    /// Stored energy \[J\] relative to x = 0.
+    pub fn energy(&self, x: f64, z: f64) -> f64 {
+        ask!(self, push => push.energy(x, z))
+    }
+
+    /// Stiffness −∂F/∂x of the elastic part, without that of a state \[N/m or N m/rad\].
+    pub fn stiffness(&self) -> f64 {
+        ask!(self, push => push.stiffness())
+    }
+
+    /// Largest damping −∂F/∂ẋ \[N s/m or N m s\].
+    pub fn damping(&self) -> f64 {
+        ask!(self, push => push.damping())
+    }
+
+    /// The state at which nothing flows at extension x; none for a push without a state.
+    pub fn settled(&self, x: f64) -> Option<f64> {
+        ask!(self, push => push.settled(x))
+    }
+
+    /// Pressure above that of the air \[Pa\], where there is one.
+    pub fn pressure(&self, x: f64, z: f64) -> Option<f64> {
+        ask!(self, push => push.pressure(x, z))
+    }
+
+    /// The same push with its state settled at every moment: what statics looks at.
+    #[must_use]
+    pub(crate) fn relaxed(self) -> Self {
+        match self {
+            Self::Locked => self,
+            Self::Spring(spring) => Self::Spring(spring.relaxed()),
+            Self::Hydraulic(hydraulic) => Self::Hydraulic(hydraulic.relaxed()),
+        }
+    }
+
+    /// What its state adds to the derivatives.
+    pub(crate) fn slopes(&self, x: f64, z: f64) -> Slopes {
+        ask!(self, push => push.slopes(x, z))
+    }
+
+    /// Names the first parameter out of range.
+    pub(crate) fn check(&self, path: &str) -> Result<(), DriveError> {
+        match self {
+            Self::Locked => Ok(()),
+            Self::Spring(push) => push.check(path),
+            Self::Hydraulic(push) => push.check(path),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,242 @@
+//! One-way hydraulic tensioner, reduced to a force law.
+
+use super::{OilColumn, PushForce, Pushes, Slopes};
+use crate::DriveError;
+
+/// A plunger behind a check valve: it follows the chain easily and yields only through a leak.
+///
+/// ```text
+/// F = F₀ − k x + F_oil,   flow u of oil into the chamber, as a speed of the plunger:
+/// F_oil > p_s A   u = −(F_oil − p_s A)/c_leak − max(F_oil − p_r A, 0)/c_rel
+/// F_oil < p_s A   u = (p_s A − F_oil)/c_ext
+/// c_leak = 12 μ L A² / (π d h³)
+/// ```
+///
+/// Without a column of oil that can be compressed, ẋ = u: the oil is stiff and has no inertia. F_oil is then a function of ẋ, and never
+/// negative; c_ext = 0 is a check valve without resistance and c_rel = 0 a relief valve that holds its pressure. That is valid while the
+/// oil's own spring K A²/V is much stiffer than the chain that it supports, and at frequencies well below K A²/(V c_leak).
+///
+/// With a [column](OilColumn), F_oil is the pressure of the oil in its chamber, z grows at the speed u, and what flows through a leak
+/// or valve is lost. A column of K → ∞ is the law without one, but for the air around, which pushes a plunger in from which the oil has
+/// torn off.
+///
+/// # Source
+/// Leakage of an annular gap is Poiseuille flow between plates; the chamber with check,
+/// leak and relief flows follows Feng et al. (2023).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hydraulic {
+    /// Spring push at x = 0, F₀ \[N\].
+    pub preload: f64,
+    /// Spring rate k \[N/m\], not negative.
+    pub stiffness: f64,
+    /// Push of the supply pressure p_s A \[N\], not negative.
+    pub supply: f64,
+    /// Push at which the relief valve opens p_r A \[N\], at least the supply.
+    pub relief: f64,
+    /// Damping by the leak c_leak \[N s/m\], not negative; positive with a column.
+    pub leak: f64,
+    /// Damping by the check valve while extending c_ext \[N s/m\], not negative; positive with a column.
+    pub extending: f64,
+    /// Damping by the open relief valve c_rel \[N s/m\], not negative; positive with a column.
+    pub relieving: f64,
+    /// Oil that can be compressed; without it the oil is stiff.
+    pub column: Option<OilColumn>,
+}
+
+impl Hydraulic {
+    /// Leak damping 12 μ L A² / (π d h³) \[N s/m\] of an annular gap, A = π d²/4.
+    ///
+    /// `viscosity` μ \[Pa s\], `length` L, `diameter` d and `gap` h \[m\].
+    pub fn leak_damping(viscosity: f64, length: f64, diameter: f64, gap: f64) -> f64 {
+        let area = 0.25 * std::f64::consts::PI * diameter * diameter;
+        // c_leak = 12 μ L A² / (π d h³)
+        12.0 * viscosity * length * area * area / (std::f64::consts::PI * diameter * gap.powi(3))
+    }
+
+    /// Push of stiff oil at a rate ẋ.
+    fn stiff(&self, rate: f64) -> f64 {
+        if rate >= 0.0 {
+            return (self.supply - self.extending * rate).max(0.0);
+        }
+        let oil = self.supply - self.leak * rate;
+        if oil <= self.relief {
+            return oil;
+        }
+        // −ẋ = (F − p_s A)/c_leak + (F − p_r A)/c_rel,   F − p_r A = (F_leak − p_r A) c_rel/(c_rel + c_leak)
+        let share = self.relieving / (self.relieving + self.leak);
+        self.relief + (oil - self.relief) * share
+    }
+
+    /// Speed u at which oil of a push comes in, and −∂u/∂F.
+    fn inflow(&self, oil: f64) -> [f64; 2] {
+        if oil < self.supply {
+            return [(self.supply - oil) / self.extending, 1.0 / self.extending];
+        }
+        let (mut flow, mut slope) = ((self.supply - oil) / self.leak, 1.0 / self.leak);
+        if oil > self.relief {
+            flow -= (oil - self.relief) / self.relieving;
+            slope += 1.0 / self.relieving;
+        }
+        [flow, slope]
+    }
+}
+
+impl Pushes for Hydraulic {
+    fn force(&self, x: f64, rate: f64, z: f64) -> PushForce {
+        let spring = self.preload - self.stiffness * x;
+        let Some(column) = &self.column else {
+            return PushForce {
+                elastic: spring + self.supply,
+                damping: self.stiff(rate) - self.supply,
+                ..PushForce::default()
+            };
+        };
+        let oil = column.at(x, z, self.supply);
+        let [flow, _] = self.inflow(oil.force);
+        PushForce {
+            elastic: spring + oil.force,
+            damping: 0.0,
+            flow,
+            // P = −∂U/∂z ż
+            loss: -oil.effort * flow,
+        }
+    }
+
+    fn energy(&self, x: f64, z: f64) -> f64 {
+        let Some(column) = &self.column else {
+            // U = ½ k x² − (F₀ + p_s A) x: the supply line holds its pressure like a weight
+            return (0.5 * self.stiffness * x - self.preload - self.supply) * x;
+        };
+        let spring = (0.5 * self.stiffness * x - self.preload) * x;
+        spring + column.at(x, z, self.supply).energy
+    }
+
+    fn stiffness(&self) -> f64 {
+        self.stiffness
+    }
+
+    fn damping(&self) -> f64 {
+        match self.column {
+            None => self.leak.max(self.extending),
+            Some(_) => 0.0,
+        }
+    }
+
+    fn settled(&self, x: f64) -> Option<f64> {
+        // The oil is under the pressure of the supply: z = x.
+        self.column.map(|_| x)
+    }
+
+    fn relaxed(&self) -> Self {
+        Self {
+            column: None,
+            ..*self
+        }
+    }
+
+    fn slopes(&self, x: f64, z: f64) -> Slopes {
+        let Some(column) = &self.column else {
+            return Slopes::default();
+        };
+        let oil = column.at(x, z, self.supply);
+        let [_, slope] = self.inflow(oil.force);
+        let [stiffness, stiffest] = oil.stiffness;
+        let widest = (1.0 / self.leak + 1.0 / self.relieving).max(1.0 / self.extending);
+        // F and u depend on x and z by the pressure: ∂F/∂z = −(V/V_s) ∂F/∂x
+        Slopes {
+            stiffness,
+            by_state: stiffness * oil.ratio,
+            flow: slope * stiffness,
+            settling: slope * stiffness * oil.ratio,
+            largest: [stiffest, stiffest * oil.ratio.max(1.0) * widest],
+        }
+    }
+
+    fn pressure(&self, x: f64, z: f64) -> Option<f64> {
+        let column = self.column.as_ref()?;
+        Some(column.at(x, z, self.supply).pressure)
+    }
+
+    fn check(&self, path: &str) -> Result<(), DriveError> {
+        let range = |name: &str, value: f64, low: f64, allowed| {
+            DriveError::require(
+                value.is_finite() && value >= low,
+                &format!("{path}.{name}"),
+                value,
+                allowed,
+            )
+        };
+        range("preload", self.preload, f64::MIN, "finite [N]")?;
+        range("stiffness", self.stiffness, 0.0, "not negative [N/m]")?;
+        range("supply", self.supply, 0.0, "not negative [N]")?;
+        range(
+            "relief",
+            self.relief,
+            self.supply,
+            "at least the supply push [N]",
+        )?;
+        let (least, allowed) = match self.column {
+            None => (0.0, "not negative [N s/m]"),
+            Some(_) => (
+                f64::MIN_POSITIVE,
+                "positive [N s/m] where oil can be compressed",
+            ),
+        };
+        range("leak", self.leak, least, allowed)?;
+        range("extending", self.extending, least, allowed)?;
+        range("relieving", self.relieving, least, allowed)?;
+        match &self.column {
+            None => Ok(()),
+            Some(column) => column.check(&format!("{path}.oil")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Published example: d = 12 mm, L = 25 mm, μ = 10 mPa s give 302, 65, 15.9 and
+    /// 4.7 kN s/m at gaps of 15, 25, 40 and 60 µm (theory: annular leak flow).
+    #[test]
+    fn leak_damping_follows_the_gap_cubed() {
+        for (gap, expected) in [
+            (15e-6, 302e3),
+            (25e-6, 65e3),
+            (40e-6, 15.9e3),
+            (60e-6, 4.7e3),
+        ] {
+            let damping = Hydraulic::leak_damping(0.01, 0.025, 0.012, gap);
+            assert!(
+                (damping / expected - 1.0).abs() < 0.01,
+                "{damping} at {gap}"
+            );
+        }
+    }
+
+    #[test]
+    fn yields_slowly_and_follows_easily() {
+        let plunger = Hydraulic {
+            preload: 40.0,
+            stiffness: 2e3,
+            supply: 34.0,
+            relief: 340.0,
+            leak: 65e3,
+            extending: 200.0,
+            relieving: 0.0,
+            column: None,
+        };
+        let total = |x, rate| {
+            let force = plunger.force(x, rate, 0.0);
+            force.elastic + force.damping
+        };
+        assert!((total(0.0, 0.0) - 74.0).abs() < 1e-12);
+        assert!((total(0.0, -1e-3) - 139.0).abs() < 1e-9);
+        assert!(
+            (total(0.0, -1.0) - 380.0).abs() < 1e-9,
+            "the relief valve caps it"
+        );
+        assert!((total(0.0, 0.1) - 54.0).abs() < 1e-9);
+        assert!((total(0.0, 1.0) - 40.0).abs() < 1e-9, "oil cannot pull");
+    }
+}
