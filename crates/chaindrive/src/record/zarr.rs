@@ -252,7 +252,8 @@ impl ZarrWriter {
         self.or_give_up(|writer| {
             pushed.map_err(|fault| writer.store.fault(fault))?;
             writer.commit(simulation, ending)?;
-            if writer.kept {
+            // What has failed would fail again.
+            if writer.kept && !matches!(ending, Ending::Failed(_)) {
                 return Ok(());
             }
             let removed = writer.store.remove(CHECKPOINT);

@@ -232,7 +232,13 @@ fn complete<S: Sink>(
     sink.begin(&simulation, &channels, &provenance)
         .map_err(RunError::Sink)?;
 
-    let mut marks = Marks::after(request.checkpoint_every, &simulation, &summary);
+    if request.checkpoint_every.is_some() && summary.samples == 0 {
+        // With no sample before it: a store that is killed here is in nobody's way.
+        let checkpoint = Checkpoint::of(request, &provenance, &simulation, &summary);
+        sink.keep(&simulation, &checkpoint)
+            .map_err(RunError::Sink)?;
+    }
+    let mut marks = Marks::after(request.checkpoint_every, &simulation);
     let carried = carry_out(
         &mut simulation,
         onlooker,
@@ -361,29 +367,24 @@ fn begin<E: std::error::Error>(
 /// Simulated times at which checkpoints are due: counted, so that a run that is carried on has the same.
 struct Marks {
     every: Option<f64>,
-    /// The last one passed; none before the first sample, which is one.
-    passed: Option<f64>,
+    /// Number of the last one passed.
+    passed: f64,
 }
 
 impl Marks {
-    fn after(every: Option<f64>, simulation: &Simulation, summary: &Summary) -> Self {
-        let mut marks = Self {
-            every,
-            passed: None,
-        };
-        if summary.samples > 0 {
-            marks.pass(simulation);
-        }
+    fn after(every: Option<f64>, simulation: &Simulation) -> Self {
+        let mut marks = Self { every, passed: 0.0 };
+        marks.pass(simulation);
         marks
     }
 
     /// Whether the last sample lies behind a time that no sample before it did.
     fn pass(&mut self, simulation: &Simulation) -> bool {
-        let count = |every: f64| (simulation.read_at() / every).floor();
-        let Some(now) = self.every.map(count) else {
+        let Some(every) = self.every else {
             return false;
         };
-        self.passed.replace(now).is_none_or(|before| now > before)
+        let now = (simulation.read_at() / every).floor();
+        now > std::mem::replace(&mut self.passed, now)
     }
 }
 
