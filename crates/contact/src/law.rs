@@ -194,7 +194,7 @@ impl Prepared {
             Curve::Linear(stiffness) => Some([stiffness, 1.0]),
             Curve::Hertz(stiffness) => Some([stiffness, 1.5]),
             Curve::Power(power) => Some([power.stiffness, power.exponent]),
-            Curve::Logarithmic(_) | Curve::Conformal(_) => None,
+            Curve::Logarithmic(_) | Curve::Plain(_) => None,
         }
     }
 

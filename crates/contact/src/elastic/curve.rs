@@ -1,7 +1,7 @@
 //! Elastic laws with their constants worked out, for loops.
 
 use super::logarithmic::Logarithmic;
-use super::{Conformal, ElasticLaw, Power};
+use super::{Elastic, ElasticLaw, Power};
 
 /// What is left of an elastic law once its member has supplied the constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,8 +14,8 @@ pub(crate) enum Curve {
     Power(Power),
     /// δ = p [ln(D/p) − 1]
     Logarithmic(Logarithmic),
-    /// The same with the term of wide contacts.
-    Conformal(Conformal),
+    /// A law without constants to work out, asked as it is.
+    Plain(Elastic),
 }
 
 impl Curve {
@@ -47,7 +47,7 @@ impl Curve {
             Self::Linear(_) | Self::Hertz(_) => (0.0, 0.0),
             Self::Power(power) => power.pair(penetration),
             Self::Logarithmic(curve) => curve.pair(penetration),
-            Self::Conformal(law) => law.pair(penetration),
+            Self::Plain(law) => law.pair(penetration),
         }
     }
 
@@ -66,7 +66,7 @@ impl Curve {
             }
             Self::Power(power) => power.energy(penetration),
             Self::Logarithmic(curve) => curve.energy(penetration),
-            Self::Conformal(law) => law.energy(penetration),
+            Self::Plain(law) => law.energy(penetration),
         }
     }
 }

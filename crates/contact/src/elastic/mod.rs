@@ -142,7 +142,7 @@ impl Elastic {
         match self {
             Self::Power(law) => Curve::of_power(*law),
             Self::Johnson(law) => Curve::Logarithmic(law.curve()),
-            Self::Conformal(law) => Curve::Conformal(*law),
+            Self::Conformal(_) => Curve::Plain(*self),
             Self::Radzimovsky(law) => Curve::Logarithmic(law.curve()),
             Self::Esdu78035(law) => Curve::Logarithmic(law.curve()),
             Self::DubowskyFreudenstein(law) => Curve::Logarithmic(law.curve()),

@@ -4,14 +4,14 @@ use chaindrive_contact::dissipation::{
     Exact, Flores, Gonthier, HerbertMcWhannell, HuGuo, HuntCrossley, LankaraniNikravesh, LeeWang,
     Viscous, ZhiyingQishao,
 };
-use chaindrive_contact::friction::{Ambrosio, BengisuAkay, BrownMcphee, Coulomb, Lugre, Threlfall};
 use chaindrive_contact::{Dissipation, Elastic, Friction, Law};
 use chaindrive_mechanics::Surface;
+use serde::Deserialize;
+use serde_json::{Error, json};
 
 use super::Findings;
 use super::law::{Pair, elastic};
 use crate::scene::defaults::{self, Default};
-use crate::scene::quantity::Speed;
 use crate::scene::schema::{self, Contact};
 
 /// What a contact falls back on.
@@ -164,7 +164,9 @@ fn dissipation(
 }
 
 fn friction(text: schema::Friction, place: &str, findings: &mut Findings<'_>) -> Option<Friction> {
-    let friction = rubbing(text, place, findings);
+    let friction = rubbing(text, place, findings)
+        .map_err(|error| findings.refuse_once(&format!("{place}.friction"), error.to_string(), ""))
+        .ok()?;
     let sound = friction.check().map_err(|error| {
         let path = format!("{place}.friction.{}", error.parameter);
         let message = format!("{}, must be {}", error.value, error.allowed);
@@ -173,78 +175,36 @@ fn friction(text: schema::Friction, place: &str, findings: &mut Findings<'_>) ->
     sound.ok().map(|()| friction)
 }
 
-fn rubbing(text: schema::Friction, place: &str, findings: &mut Findings<'_>) -> Friction {
-    let slip = |given: Option<Speed>, findings: &mut Findings<'_>| {
-        let path = format!("{place}.friction.slip_speed");
-        findings.or_default(given.map(|v| v.0), &path, &defaults::SLIP_SPEED)
-    };
-    match text {
-        schema::Friction::None => Friction::None,
-        schema::Friction::Coulomb {
-            coefficient,
-            slip_speed,
-        } => Friction::Coulomb(Coulomb {
-            coefficient: coefficient.0,
-            slip_speed: slip(slip_speed, findings),
-        }),
-        schema::Friction::Ambrosio {
-            coefficient,
-            lower_speed,
-            upper_speed,
-        } => Friction::Ambrosio(Ambrosio {
-            coefficient: coefficient.0,
-            lower_speed: lower_speed.0,
-            upper_speed: upper_speed.0,
-        }),
-        schema::Friction::Threlfall {
-            coefficient,
-            slip_speed,
-        } => Friction::Threlfall(Threlfall {
-            coefficient: coefficient.0,
-            slip_speed: slip(slip_speed, findings),
-        }),
-        schema::Friction::BengisuAkay {
-            static_coefficient,
-            coefficient,
-            slip_speed,
-            decay,
-        } => Friction::BengisuAkay(BengisuAkay {
-            static_coefficient: static_coefficient.0,
-            coefficient: coefficient.0,
-            slip_speed: slip(slip_speed, findings),
-            decay: decay.0,
-        }),
-        schema::Friction::BrownMcphee {
-            static_coefficient,
-            coefficient,
-            slip_speed,
-            viscosity,
-            transition_force,
-        } => Friction::BrownMcphee(BrownMcphee {
-            static_coefficient: static_coefficient.0,
-            coefficient: coefficient.0,
-            slip_speed: slip(slip_speed, findings),
-            viscosity: viscosity.0,
-            transition_force: findings.or_default(
-                transition_force.map(|force| force.0),
-                &format!("{place}.friction.transition_force"),
-                &defaults::TRANSITION_FORCE,
-            ),
-        }),
-        schema::Friction::Lugre {
-            static_coefficient,
-            coefficient,
-            slip_speed,
-            stiffness,
-            damping,
-            viscosity,
-        } => Friction::Lugre(Lugre {
-            static_coefficient: static_coefficient.0,
-            coefficient: coefficient.0,
-            slip_speed: slip(slip_speed, findings),
-            stiffness: stiffness.0,
-            damping: damping.0,
-            viscosity: viscosity.0,
-        }),
+/// Kinds and parameters are called the same in a scene and in the law, in SI units here: a law of its own needs nothing else.
+fn rubbing(
+    text: schema::Friction,
+    place: &str,
+    findings: &mut Findings<'_>,
+) -> Result<Friction, Error> {
+    let mut parameters = json!(text);
+    // What may stay open, whichever law has it.
+    for (key, default) in [
+        ("slip_speed", &defaults::SLIP_SPEED),
+        ("transition_force", &defaults::TRANSITION_FORCE),
+    ] {
+        if let Some(value) = parameters.get_mut(key).filter(|value| value.is_null()) {
+            let path = format!("{place}.friction.{key}");
+            *value = findings.or_default(None, &path, default).into();
+        }
+    }
+    Friction::deserialize(parameters)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A law that scenes cannot write, or write otherwise, would fail here.
+    #[test]
+    fn scenes_know_every_friction() {
+        for law in Friction::specimens() {
+            let text = schema::Friction::deserialize(json!(law)).unwrap();
+            assert_eq!(Friction::deserialize(json!(text)).unwrap(), law);
+        }
     }
 }

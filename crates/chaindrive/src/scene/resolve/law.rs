@@ -3,6 +3,7 @@
 use chaindrive_contact::elastic::{CylinderLaw, Cylinders, Johnson, Power};
 use chaindrive_contact::{Elastic, Elasticity, ParameterError};
 
+use serde::Deserialize;
 use serde_json::json;
 
 use super::Findings;
@@ -67,18 +68,9 @@ pub(super) fn elastic(
     path: &str,
     findings: &mut Findings<'_>,
 ) -> Option<Elastic> {
-    let (kind, text) = match law {
+    let mut text = match law {
         schema::Elastic::Linear { stiffness } => {
             return Some(Elastic::Power(Power::linear(stiffness.0)));
-        }
-        schema::Elastic::Power {
-            stiffness,
-            exponent,
-        } => {
-            return Some(Elastic::Power(Power {
-                stiffness: stiffness.0,
-                exponent: exponent.0,
-            }));
         }
         schema::Elastic::Hertz {
             modulus,
@@ -101,14 +93,23 @@ pub(super) fn elastic(
             let other = other.unwrap_or(f64::INFINITY);
             return Some(Elastic::Power(Power::hertz_pair(radius, other, modulus)));
         }
-        schema::Elastic::Johnson(text) => (CylinderLaw::Johnson, text),
-        schema::Elastic::Conformal(text) => (CylinderLaw::Conformal, text),
-        schema::Elastic::Radzimovsky(text) => (CylinderLaw::Radzimovsky, text),
-        schema::Elastic::Esdu78035(text) => (CylinderLaw::Esdu78035, text),
-        schema::Elastic::DubowskyFreudenstein(text) => (CylinderLaw::DubowskyFreudenstein, text),
-        schema::Elastic::Cylindrical(text) => (CylinderLaw::Cylindrical, text),
+        law => json!(law),
     };
-    cylinders(kind, text, pair, path, findings)
+    // Kinds and parameters are called the same in a scene and in the law: a law of its own needs nothing else.
+    let read = match CylinderLaw::deserialize(&text["kind"]) {
+        Ok(kind) => {
+            if let Some(text) = text.as_object_mut() {
+                text.remove("kind");
+            }
+            match schema::Cylinders::deserialize(text) {
+                Ok(text) => return cylinders(kind, &text, pair, path, findings),
+                Err(error) => Err(error),
+            }
+        }
+        Err(_) => Elastic::deserialize(text),
+    };
+    read.map_err(|error| findings.refuse_once(path, error.to_string(), ""))
+        .ok()
 }
 
 fn cylinders(
