@@ -90,18 +90,20 @@ def work_precision(
     if not names and (steps or tolerances or onset_depth is not None):
         message = "steps, tolerances and onset depths belong to methods"
         raise ParameterError(message, "methods", "name the methods")
-    adaptive = [name == "dormand-prince" for name in names]
+    with_tolerance = _core.adaptive_methods()
+    adaptive = [name in with_tolerance for name in names]
     if names and steps and all(adaptive):
         message = "steps are for methods with fixed steps, and there is none among `methods`"
         raise ParameterError(message, "steps", "leave them out, or name such a method")
     if tolerances and not any(adaptive):
-        message = "tolerances are for dormand-prince, which is not among `methods`"
+        allowed = " or ".join(with_tolerance)
+        message = f"tolerances are for {allowed}, which is not among `methods`"
         raise ParameterError(message, "tolerances", "leave them out, or name it")
     depth = _number(drive, "onset_depth", onset_depth)
     variants: list[tuple[str, float | None, float | None, float | None]] = []
     none: list[float | str | None] = [None]
     for name in names:
-        if name == "dormand-prince":
+        if name in with_tolerance:
             for value in [*tolerances] or none:
                 variants.append((name, None, _number(drive, "tolerance", value), depth))
         else:

@@ -27,6 +27,7 @@ mod run;
 pub mod scene;
 mod seal;
 mod simulate;
+mod stepping;
 pub mod sweep;
 pub mod verdict;
 
@@ -42,9 +43,10 @@ pub use precision::{Choice, Estimate, Judgement};
 pub use record::{Axis, Channel, EventTable, Memory, Recording, Summary};
 pub use run::{
     Checkpoint, End, Given, Onlooker, Report, Request, RequestError, Run, RunError, Settings, Sink,
-    Stepping, Stop, assemble, execute, patiently,
+    Stop, assemble, execute, patiently,
 };
 pub use scene::Scene;
 pub use seal::SealError;
 pub use simulate::{Control, Simulation, Snapshot, SnapshotError};
+pub use stepping::Stepping;
 pub use verdict::{Reason, Trust, Verdict};

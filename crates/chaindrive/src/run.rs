@@ -6,12 +6,13 @@ mod patience;
 mod request;
 mod settings;
 
-use chaindrive_integrate::{Method, SecondOrderSystem};
+use chaindrive_integrate::Method;
 use chaindrive_mechanics::{EventKinds, System};
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value as Json};
 
-use crate::SimulationError;
 use crate::scene::RunDefaults;
+use crate::{SimulationError, Stepping};
 
 pub use checkpoint::Checkpoint;
 pub(crate) use execute::resume;
@@ -55,95 +56,21 @@ impl Default for Run {
     }
 }
 
-/// Methods of time stepping.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Stepping {
-    /// What suits the drive: implicit damping for those that solve the equations of an implicit step,
-    /// else Verlet.
-    #[default]
-    Auto,
-    /// Velocity Verlet: one evaluation a step, no drift; the workhorse.
-    Verlet,
-    /// The classical Runge–Kutta method: for reference runs on smooth stretches.
-    Rk4,
-    /// Dormand and Prince's embedded pair with error control.
-    DormandPrince,
-    /// Damping implicit, stiffness explicit: for damping far stiffer than the springs.
-    ImplicitDamping,
-    /// Generalized-α: implicit, stable with every step.
-    GeneralizedAlpha,
-}
+/// Keys of `[run]` that say how to step, each in place of an accuracy that would choose.
+pub(crate) const STEPPING_KEYS: [&str; 4] = ["method", "step", "tolerance", "onset_depth"];
 
-impl Stepping {
-    /// All methods.
-    pub const ALL: [Self; 6] = [
-        Self::Auto,
-        Self::Verlet,
-        Self::Rk4,
-        Self::DormandPrince,
-        Self::ImplicitDamping,
-        Self::GeneralizedAlpha,
-    ];
-
-    /// Name in scene files, on the command line and in results.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Auto => "auto",
-            Self::Verlet => "verlet",
-            Self::Rk4 => "rk4",
-            Self::DormandPrince => "dormand-prince",
-            Self::ImplicitDamping => "implicit-damping",
-            Self::GeneralizedAlpha => "generalized-alpha",
-        }
-    }
-
-    /// The method for a system: itself, or what [`Stepping::Auto`] chooses.
-    #[must_use]
-    pub fn suited(self, system: &System) -> Self {
-        match self {
-            Self::Auto if system.can_solve() => Self::ImplicitDamping,
-            Self::Auto => Self::Verlet,
-            chosen => chosen,
-        }
-    }
-
-    /// Whether it needs a chain that solves the equations of an implicit step, whatever the drive.
-    pub fn is_implicit(self) -> bool {
-        match self {
-            Self::Auto | Self::Verlet | Self::Rk4 | Self::DormandPrince => false,
-            Self::ImplicitDamping | Self::GeneralizedAlpha => true,
-        }
-    }
-
-    /// The method of a name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|method| method.name() == name)
-    }
-}
-
-impl From<Method> for Stepping {
-    fn from(method: Method) -> Self {
-        match method {
-            Method::Verlet { .. } => Self::Verlet,
-            Method::Rk4 { .. } => Self::Rk4,
-            Method::DormandPrince { .. } => Self::DormandPrince,
-            Method::ImplicitDamping { .. } => Self::ImplicitDamping,
-            Method::GeneralizedAlpha { .. } => Self::GeneralizedAlpha,
-        }
-    }
-}
+/// Keys with a number, all of them positive.
+const NUMBERS: [&str; 6] = [
+    "until",
+    "every",
+    "step",
+    "tolerance",
+    "onset_depth",
+    "accuracy",
+];
 
 /// Steps of a run at most: at a microsecond each they would take eleven days.
 const MOST_STEPS: f64 = 1e12;
-
-/// Default steps in units of 1/ω of the stiffest mode. Verlet is stable to 2; contacts stiffen
-/// as they are pressed, and accuracy asks for a quarter of that anyway.
-const VERLET_STEP: f64 = 0.5;
-const RK4_STEP: f64 = 0.25;
-
-/// The same without the damping: implicit damping has Verlet's limit on the springs, and none on the
-/// dampers. The bicycle drive errs by 0.04 % in its tight span at this step.
-const IMPLICIT_DAMPING_STEP: f64 = 1.4;
 
 /// Speed of approach \[m/s\] up to which a contact may begin wherever a step of implicit damping lands.
 ///
@@ -151,17 +78,6 @@ const IMPLICIT_DAMPING_STEP: f64 = 1.4;
 /// first seen inside is energy from nowhere; at the speeds of heavy impacts that feeds itself. The bicycle drive with a
 /// slack chain at 100 rad/s overflows without this, and closes its ledger to 2 % with it, at the same cost.
 const ONSET_SPEED: f64 = 1.0;
-
-/// Longest step of Dormand–Prince in units of 1/ω of the stiffest mode at the start: error control alone has not been
-/// seen to take more than 11 (bicycle drive), and longer ones run over contacts before it notices them.
-const DORMAND_PRINCE_STEP: f64 = 16.0;
-
-/// Generalized-α has no limit, but contacts open and close: at twice Verlet's step the stiffest mode is still followed.
-const GENERALIZED_ALPHA_STEP: f64 = 1.0;
-
-/// Share of its amplitude that a mode far beyond the step keeps per step. At 0.8 a hundredth is left after twenty
-/// steps, while a mode with ωh = 1 loses 5e-4 of its amplitude per step and one with ωh = 0.1 loses 7e-8.
-const SPECTRAL_RADIUS: f64 = 0.8;
 
 impl Run {
     /// A run of reference quality: RK4 at a quarter of 1/ω of the stiffest mode, with contacts that
@@ -185,7 +101,7 @@ impl Run {
         Self {
             until: by.until.unwrap_or(default.until),
             every: by.every.unwrap_or(default.every),
-            stepping: by.method.and_then(Stepping::from_name).unwrap_or_default(),
+            stepping: by.method.unwrap_or_default(),
             step: by.step,
             tolerance: by.tolerance.unwrap_or(default.tolerance),
             onset_depth: by.onset_depth,
@@ -233,6 +149,22 @@ impl Run {
         Ok(())
     }
 
+    /// The settings as a scene writes them in `[run]`, once the method is chosen; what the run leaves open is absent.
+    pub(crate) fn table(&self, method: Method) -> Map<String, Json> {
+        let mut table = Map::new();
+        table.insert("until".into(), self.until.into());
+        table.insert("every".into(), self.every.into());
+        table.insert("method".into(), Stepping::from(method).name().into());
+        table.insert("step".into(), method.step().into());
+        if let Some(tolerance) = method.tolerance() {
+            table.insert("tolerance".into(), tolerance.into());
+        }
+        if let Some(depth) = self.onset_depth {
+            table.insert("onset_depth".into(), depth.into());
+        }
+        table
+    }
+
     /// Deepest penetration at which a contact may begin \[m\], if there is a limit.
     pub fn onset_depth_with(&self, method: &Method) -> Option<f64> {
         match method {
@@ -243,35 +175,6 @@ impl Run {
 
     /// The method for a system, with a default step where none is given.
     pub fn method(&self, system: &System) -> Method {
-        let stepping = self.stepping.suited(system);
-        let scale = if stepping.is_implicit() {
-            system.undamped_time_scale()
-        } else {
-            system.time_scale()
-        };
-        // What is recorded has no say in it: samples are interpolated.
-        let step = |factor: f64| self.step.unwrap_or(factor * scale);
-        match stepping {
-            Stepping::Auto | Stepping::Verlet => Method::Verlet {
-                step: step(VERLET_STEP),
-            },
-            Stepping::Rk4 => Method::Rk4 {
-                step: step(RK4_STEP),
-            },
-            Stepping::DormandPrince => Method::DormandPrince {
-                relative: self.tolerance,
-                // At 1e-8: ten nanometres of a metre, 10 µm/s.
-                absolute: self.tolerance,
-                absolute_rate: self.tolerance * 1e3,
-                max_step: step(DORMAND_PRINCE_STEP),
-            },
-            Stepping::ImplicitDamping => Method::ImplicitDamping {
-                step: step(IMPLICIT_DAMPING_STEP),
-            },
-            Stepping::GeneralizedAlpha => Method::GeneralizedAlpha {
-                step: step(GENERALIZED_ALPHA_STEP),
-                spectral_radius: SPECTRAL_RADIUS,
-            },
-        }
+        self.stepping.method(system, self.step, self.tolerance)
     }
 }

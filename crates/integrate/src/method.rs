@@ -10,7 +10,7 @@ use crate::generalized_alpha::GeneralizedAlpha;
 use crate::implicit_damping::{self, ImplicitDamping};
 use crate::runge_kutta::{self, RungeKutta};
 use crate::state::{Size, State};
-use crate::step_size::stable_step;
+use crate::step_size::{Tolerance, stable_step};
 use crate::stepper::Stepper;
 use crate::tableau::{DORMAND_PRINCE, RK4};
 use crate::verlet::{self, Verlet};
@@ -146,6 +146,67 @@ impl Method {
             Self::Verlet { .. } | Self::GeneralizedAlpha { .. } => 2,
             Self::Rk4 { .. } => RK4.order,
             Self::DormandPrince { .. } => DORMAND_PRINCE.order,
+        }
+    }
+
+    /// Step \[s\]; under error control the longest.
+    pub fn step(&self) -> f64 {
+        match *self {
+            Self::Verlet { step }
+            | Self::Rk4 { step }
+            | Self::ImplicitDamping { step }
+            | Self::GeneralizedAlpha { step, .. }
+            | Self::DormandPrince { max_step: step, .. } => step,
+        }
+    }
+
+    /// Relative tolerance \[–\] of a method under error control.
+    pub fn tolerance(&self) -> Option<f64> {
+        self.tolerances().map(|tolerance| tolerance.relative)
+    }
+
+    /// Whether the step follows the estimated error.
+    pub fn is_adaptive(&self) -> bool {
+        self.tolerances().is_some()
+    }
+
+    /// Every parameter by its name in recordings, in SI units.
+    pub fn parameters(&self) -> Vec<(&'static str, f64)> {
+        let Some(tolerance) = self.tolerances() else {
+            let mut all = vec![("step", self.step())];
+            if let Self::GeneralizedAlpha {
+                spectral_radius, ..
+            } = *self
+            {
+                all.push(("spectral_radius", spectral_radius));
+            }
+            return all;
+        };
+        vec![
+            ("relative_tolerance", tolerance.relative),
+            ("absolute_tolerance", tolerance.absolute),
+            ("absolute_rate_tolerance", tolerance.absolute_rate),
+            ("max_step", self.step()),
+        ]
+    }
+
+    /// What a step may err by, where the step follows the error.
+    pub(crate) fn tolerances(&self) -> Option<Tolerance> {
+        match *self {
+            Self::DormandPrince {
+                relative,
+                absolute,
+                absolute_rate,
+                ..
+            } => Some(Tolerance {
+                relative,
+                absolute,
+                absolute_rate,
+            }),
+            Self::Verlet { .. }
+            | Self::Rk4 { .. }
+            | Self::ImplicitDamping { .. }
+            | Self::GeneralizedAlpha { .. } => None,
         }
     }
 

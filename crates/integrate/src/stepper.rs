@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::finite::Watch;
 use crate::method::{Kernel, Outcome};
 use crate::state::{Size, Snapshot, State};
-use crate::step_size::{Controller, FLOOR, Fixed, Tolerance, first_step, shortened, stable_step};
+use crate::step_size::{Controller, FLOOR, Fixed, first_step, shortened, stable_step};
 use crate::{
     Continuity, IntegrationError, Method, Moment, Quantity, SecondOrderSystem, Statistics, Verdict,
 };
@@ -304,11 +304,9 @@ pub fn slack(t: f64) -> f64 {
 
 /// The pace a run begins with.
 fn first_pace(method: Method, time_scale: f64, state: &State) -> Result<Pace, IntegrationError> {
-    match method {
-        Method::Verlet { step }
-        | Method::Rk4 { step }
-        | Method::ImplicitDamping { step }
-        | Method::GeneralizedAlpha { step, .. } => {
+    let step = method.step();
+    match method.tolerances() {
+        None => {
             let limit = stable_step(&method, time_scale);
             if step <= limit {
                 Ok(Pace::Fixed(Fixed::new(step)))
@@ -321,21 +319,11 @@ fn first_pace(method: Method, time_scale: f64, state: &State) -> Result<Pace, In
                 })
             }
         }
-        Method::DormandPrince {
-            relative,
-            absolute,
-            absolute_rate,
-            max_step,
-        } => {
-            let tolerance = Tolerance {
-                relative,
-                absolute,
-                absolute_rate,
-            };
-            let longest = max_step.min(time_scale);
+        Some(tolerance) => {
+            let longest = step.min(time_scale);
             let first = first_step(tolerance, longest, state);
             let order = method.order();
-            let controller = Controller::new(tolerance, max_step, first, order);
+            let controller = Controller::new(tolerance, step, first, order);
             Ok(Pace::Controlled(controller))
         }
     }

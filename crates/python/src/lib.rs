@@ -48,7 +48,7 @@ mod core {
     #[pymodule_export]
     use crate::profile::Profile;
     #[pymodule_export]
-    use crate::run::{channels, is_being_written, methods, resume, simulate};
+    use crate::run::{adaptive_methods, channels, is_being_written, methods, resume, simulate};
 
     #[pymodule_export]
     use crate::sweep::Sweep;

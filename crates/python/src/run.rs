@@ -332,3 +332,12 @@ pub(crate) fn is_being_written(path: PathBuf) -> PyResult<bool> {
 pub(crate) fn methods() -> Vec<&'static str> {
     Stepping::ALL.map(Stepping::name).to_vec()
 }
+
+/// Names of those whose step follows the estimated error.
+#[pyfunction]
+pub(crate) fn adaptive_methods() -> Vec<&'static str> {
+    let adaptive = Stepping::ALL
+        .into_iter()
+        .filter(|stepping| stepping.is_adaptive());
+    adaptive.map(Stepping::name).collect()
+}

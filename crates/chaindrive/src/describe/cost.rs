@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use chaindrive_integrate::{Method, SecondOrderSystem};
+use chaindrive_integrate::SecondOrderSystem;
 use chaindrive_mechanics::Assembled;
 use serde::Serialize;
 
@@ -51,14 +51,11 @@ fn take_steps(simulation: &mut Simulation, patience: Duration) -> Result<(), Sim
 
 pub(super) fn measure(assembled: &Assembled, run: &Run) -> Result<Cost, SimulationError> {
     let method = run.method(&assembled.system);
-    let (step, adaptive) = match method {
-        Method::Verlet { step }
-        | Method::Rk4 { step }
-        | Method::ImplicitDamping { step }
-        | Method::GeneralizedAlpha { step, .. } => (step, false),
-        Method::DormandPrince { max_step, .. } => {
-            (max_step.min(assembled.system.time_scale()), true)
-        }
+    let adaptive = method.is_adaptive();
+    let step = if adaptive {
+        method.step().min(assembled.system.time_scale())
+    } else {
+        method.step()
     };
     // Never beyond the end of the run: what comes later may not even be defined.
     let measured = (MEASURED * step).min(0.8 * run.until);

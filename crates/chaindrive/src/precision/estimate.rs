@@ -1,6 +1,5 @@
 //! The numerical error of a run, by shadow runs with half and with a quarter of the step.
 
-use chaindrive_integrate::Method;
 use chaindrive_mechanics::Assembled;
 
 use super::Watch;
@@ -151,15 +150,8 @@ pub fn estimate(
 
 /// The run with the step that it would choose for itself, so that other samples do not change it.
 pub(super) fn pinned(start: &Assembled, run: &Run) -> Run {
-    let step = match run.method(&start.system) {
-        Method::Verlet { step }
-        | Method::Rk4 { step }
-        | Method::ImplicitDamping { step }
-        | Method::GeneralizedAlpha { step, .. } => step,
-        Method::DormandPrince { max_step, .. } => max_step,
-    };
     Run {
-        step: Some(step),
+        step: Some(run.method(&start.system).step()),
         ..run.clone()
     }
 }
@@ -170,17 +162,18 @@ pub(super) fn pinned(start: &Assembled, run: &Run) -> Run {
 /// |u(h) − u(h/2)| / |u(h/2) − u(h/4)| = 2ᵖ;   10 for tenths of a tolerance
 /// ```
 fn expected_ratio(start: &Assembled, run: &Run) -> f64 {
-    match run.method(&start.system) {
-        Method::DormandPrince { .. } => 10.0,
-        method => f64::from(2_u32.pow(method.order())),
+    let method = run.method(&start.system);
+    if method.is_adaptive() {
+        10.0
+    } else {
+        f64::from(2_u32.pow(method.order()))
     }
 }
 
 /// The same run, sharper, and in what.
 fn sharper(start: &Assembled, run: &Run) -> (Run, &'static str) {
     let onset_depth = run.onset_depth.map(|depth| 0.1 * depth);
-    let adaptive = matches!(run.method(&start.system), Method::DormandPrince { .. });
-    if adaptive {
+    if run.method(&start.system).is_adaptive() {
         let better = Run {
             tolerance: 0.1 * run.tolerance,
             onset_depth,

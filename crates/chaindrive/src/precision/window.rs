@@ -1,6 +1,6 @@
 //! How much of a run is looked at: long enough for a few teeth, short enough to cost little.
 
-use chaindrive_integrate::{Method, Moment, SecondOrderSystem};
+use chaindrive_integrate::{Moment, SecondOrderSystem};
 use chaindrive_mechanics::{Assembled, Observation};
 
 use crate::{Run, Stepping};
@@ -86,12 +86,11 @@ impl Window {
 
 /// The step that a run will take \[s\]; under error control, that of the stiffest mode.
 pub(super) fn typical_step(start: &Assembled, run: &Run) -> f64 {
-    match run.method(&start.system) {
-        Method::Verlet { step }
-        | Method::Rk4 { step }
-        | Method::ImplicitDamping { step }
-        | Method::GeneralizedAlpha { step, .. } => step,
-        Method::DormandPrince { max_step, .. } => max_step.min(start.system.time_scale()),
+    let method = run.method(&start.system);
+    if method.is_adaptive() {
+        method.step().min(start.system.time_scale())
+    } else {
+        method.step()
     }
 }
 

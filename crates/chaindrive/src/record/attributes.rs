@@ -200,28 +200,8 @@ fn speed(story: &mut Story, simulation: &Simulation, wall_time: Duration) {
 fn method(story: &mut Story, method: Method) {
     story.text("method", Stepping::from(method).name());
     story.count("method_order", u64::from(method.order()));
-    match method {
-        Method::Verlet { step } | Method::Rk4 { step } | Method::ImplicitDamping { step } => {
-            story.number("step", step);
-        }
-        Method::GeneralizedAlpha {
-            step,
-            spectral_radius,
-        } => {
-            story.number("step", step);
-            story.number("spectral_radius", spectral_radius);
-        }
-        Method::DormandPrince {
-            relative,
-            absolute,
-            absolute_rate,
-            max_step,
-        } => {
-            story.number("relative_tolerance", relative);
-            story.number("absolute_tolerance", absolute);
-            story.number("absolute_rate_tolerance", absolute_rate);
-            story.number("max_step", max_step);
-        }
+    for (name, value) in method.parameters() {
+        story.number(name, value);
     }
 }
 

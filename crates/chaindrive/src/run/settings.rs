@@ -2,9 +2,9 @@
 
 use serde_json::Value as Json;
 
-use super::Stepping;
+use super::{NUMBERS, STEPPING_KEYS};
 use crate::scene::{Scene, SceneError};
-use crate::{RequestError, SimulationError};
+use crate::{RequestError, SimulationError, Stepping};
 
 /// A value that a caller gives for a key of `[run]`.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,19 +47,6 @@ pub enum Given {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings(Vec<(String, Given)>);
 
-/// Keys that say how to step, each in place of an accuracy that would choose.
-pub(crate) const STEPPING_KEYS: [&str; 4] = ["method", "step", "tolerance", "onset_depth"];
-
-/// Keys with a number, all of them positive.
-const NUMBERS: [&str; 6] = [
-    "until",
-    "every",
-    "step",
-    "tolerance",
-    "onset_depth",
-    "accuracy",
-];
-
 impl Settings {
     /// The settings with one more, by its key in `[run]`.
     #[must_use]
@@ -98,7 +85,7 @@ impl Settings {
             keys.extend(STEPPING_KEYS);
         }
         if let Some(Given::Text(method)) = self.get("method")
-            && method != scene.run_defaults().method.unwrap_or(Stepping::Auto.name())
+            && method != scene.run_defaults().method.unwrap_or_default().name()
         {
             keys.push("step");
         }

@@ -68,14 +68,14 @@ mod tree;
 mod unit;
 mod validate;
 
-use chaindrive_mechanics::{Drive, EventKinds};
+use chaindrive_mechanics::Drive;
 use serde::Deserialize;
 
 pub use datum::Datum;
 pub use diff::{Difference, diff};
 pub use error::{Problem, SceneError};
 pub use presets::presets;
-pub use schema::schema;
+pub use schema::{RunDefaults, schema};
 
 use schema::SceneText;
 use tree::Node;
@@ -166,18 +166,7 @@ impl Scene {
 
     /// What a front end runs and records unless told otherwise.
     pub fn run_defaults(&self) -> RunDefaults {
-        let run = &self.content.run;
-        RunDefaults {
-            until: run.until.map(|time| time.0),
-            every: run.every.map(|time| time.0),
-            method: run.method.map(schema::Method::name),
-            step: run.step.map(|time| time.0),
-            tolerance: run.tolerance.map(|ratio| ratio.0),
-            onset_depth: run.onset_depth.map(|depth| depth.0),
-            accuracy: run.accuracy.map(|ratio| ratio.0),
-            record: run.record.clone().unwrap_or_default(),
-            events: events(&run.events),
-        }
+        self.content.run.suggestions()
     }
 }
 
@@ -185,49 +174,4 @@ impl Scene {
 fn unreadable(error: &serde_json::Error) -> Problem {
     let problem = Problem::new("", None, format!("the scene could not be read: {error}"));
     problem.hint("please report this scene as a bug")
-}
-
-/// What a scene suggests to run and record.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct RunDefaults {
-    /// Duration of the run \[s\].
-    pub until: Option<f64>,
-    /// Time between two samples \[s\].
-    pub every: Option<f64>,
-    /// Method of time stepping: `auto`, `verlet`, `rk4`, `dormand-prince`, `implicit-damping` or
-    /// `generalized-alpha`.
-    pub method: Option<&'static str>,
-    /// Step of a method with a fixed step \[s\].
-    pub step: Option<f64>,
-    /// Relative tolerance of a method under error control \[–\].
-    pub tolerance: Option<f64>,
-    /// Deepest penetration at which a contact may begin \[m\].
-    pub onset_depth: Option<f64>,
-    /// Relative error of the tension that method and step are to be chosen for \[–\].
-    pub accuracy: Option<f64>,
-    /// Channels to record; empty when the scene leaves them open.
-    pub record: Vec<String>,
-    /// Contacts to log.
-    pub events: EventKinds,
-}
-
-impl RunDefaults {
-    /// The accuracy \[–\] that method and step are chosen for: what is asked for, or
-    /// [`ACCURACY`](crate::precision::ACCURACY) where method, step, tolerance and onset depth are all left open.
-    pub fn chosen_accuracy(&self) -> Option<f64> {
-        let open = self.method.is_none()
-            && self.step.is_none()
-            && self.tolerance.is_none()
-            && self.onset_depth.is_none();
-        self.accuracy
-            .or_else(|| open.then_some(crate::precision::ACCURACY))
-    }
-}
-
-fn events(named: &[schema::Events]) -> EventKinds {
-    EventKinds {
-        teeth: named.contains(&schema::Events::Teeth),
-        guides: named.contains(&schema::Events::Guides),
-        joints: named.contains(&schema::Events::Joints),
-    }
 }

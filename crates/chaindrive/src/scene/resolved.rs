@@ -12,7 +12,7 @@ use super::schema::SceneText;
 use super::tree::{Node, is_json, steps};
 use super::validate::below;
 use super::{Scene, SceneError, schema, unreadable, validate};
-use crate::run::{Run, Stepping};
+use crate::run::{Run, STEPPING_KEYS};
 use chaindrive_integrate::Method;
 
 /// Remark about a value that is simply not there.
@@ -102,37 +102,19 @@ impl Resolved {
 
     /// Puts the settings of a run in place of those of the scene.
     fn settle_on(&mut self, run: &Run, method: Method) {
-        let mut settings = json!({
-            "until": run.until,
-            "every": run.every,
-            "method": Stepping::from(method).name(),
-        });
-        let (step, tolerance) = match method {
-            Method::Verlet { step }
-            | Method::Rk4 { step }
-            | Method::ImplicitDamping { step }
-            | Method::GeneralizedAlpha { step, .. } => (step, None),
-            Method::DormandPrince {
-                relative, max_step, ..
-            } => (max_step, Some(relative)),
-        };
-        settings["step"] = step.into();
-        if let Some(tolerance) = tolerance {
-            settings["tolerance"] = tolerance.into();
-        }
-        if let Some(depth) = run.onset_depth {
-            settings["onset_depth"] = depth.into();
-        }
+        let mut settings = run.table(method);
+        // What a run does not decide stays as the scene says it.
+        let decided = |key: &str| key == "accuracy" || STEPPING_KEYS.contains(&key);
         let kept = self.values.get("run").and_then(Json::as_object);
-        for key in ["record", "events"] {
-            if let Some(value) = kept.and_then(|kept| kept.get(key)) {
-                settings[key] = value.clone();
+        for (key, value) in kept.into_iter().flatten() {
+            if !decided(key) && !settings.contains_key(key) {
+                settings.insert(key.clone(), value.clone());
             }
         }
         self.remarks
             .retain(|path, _| path != "run" && !path.starts_with("run."));
         self.remarks.insert("run".into(), "as it was run".into());
-        self.values.insert("run".into(), settings);
+        self.values.insert("run".into(), settings.into());
         self.units = units(&Json::Object(self.values.clone()));
     }
 

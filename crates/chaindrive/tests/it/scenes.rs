@@ -1,5 +1,6 @@
 //! The embedded scenes, the shipped schema, and changes to scenes.
 
+use chaindrive::Stepping;
 use chaindrive::scene::{Scene, presets, schema};
 
 #[test]
@@ -87,7 +88,7 @@ fn the_text_of_a_changed_scene_reproduces_it_and_keeps_its_comments() {
         other.text()
     );
     assert!(other.text().contains("# Reconstructed: teeth"));
-    assert_eq!(other.run_defaults().method, Some("verlet"));
+    assert_eq!(other.run_defaults().method, Some(Stepping::Verlet));
     let drive = other.drive().unwrap_or_else(|error| panic!("{error}"));
     assert!((drive.chains[0].chain.damping[0] - 990.5).abs() < 1.0);
     let again = Scene::from_text(other.text(), other.name()).unwrap();

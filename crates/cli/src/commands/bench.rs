@@ -156,7 +156,12 @@ fn variants(arguments: &Arguments, scene: &Scene) -> Result<Vec<Variant>, Failur
             return Err(Failure::Argument(message));
         }
     }
-    let adaptive = |name: &String| name == Stepping::DormandPrince.name();
+    let adaptive = |name: &String| Stepping::from_name(name).is_some_and(Stepping::is_adaptive);
+    let with_tolerance = Stepping::ALL
+        .into_iter()
+        .filter(|stepping| stepping.is_adaptive());
+    let with_tolerance: Vec<_> = with_tolerance.map(Stepping::name).collect();
+    let with_tolerance = with_tolerance.join(" or ");
     let idle = [
         (
             "--steps",
@@ -167,7 +172,7 @@ fn variants(arguments: &Arguments, scene: &Scene) -> Result<Vec<Variant>, Failur
         (
             "--tolerances",
             &tolerances,
-            "dormand-prince",
+            &with_tolerance,
             !arguments.methods.iter().any(adaptive),
         ),
     ];
@@ -184,7 +189,7 @@ fn variants(arguments: &Arguments, scene: &Scene) -> Result<Vec<Variant>, Failur
         .filter_map(|name| Stepping::from_name(name));
     let mut list = Vec::new();
     for stepping in methods {
-        let adaptive = stepping == Stepping::DormandPrince;
+        let adaptive = stepping.is_adaptive();
         let of = |value: Option<f64>| Variant {
             stepping,
             step: value.filter(|_| !adaptive),

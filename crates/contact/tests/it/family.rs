@@ -161,12 +161,12 @@ fn energy_is_the_integral_of_the_force() {
 /// Whether a law changes to its tangent between two penetrations.
 fn crosses_a_knee(elastic: &Elastic, from: f64, to: f64) -> bool {
     let knee = match elastic {
-        Elastic::Power(_) | Elastic::Cylindrical(_) => return false,
         Elastic::Johnson(law) => 0.9 * law.greatest_penetration(),
         Elastic::Radzimovsky(law) => 0.9 * law.greatest_penetration(),
         Elastic::Esdu78035(law) => 0.9 * law.greatest_penetration(),
         Elastic::DubowskyFreudenstein(law) => 0.9 * law.greatest_penetration(),
         Elastic::Conformal(law) => 1.590_390_386_062_958_2 * law.clearance,
+        _ => return false,
     };
     from < knee && knee < to
 }

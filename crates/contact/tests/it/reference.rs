@@ -94,7 +94,7 @@ impl Row<'_> {
             Elastic::DubowskyFreudenstein(law) => law.greatest_penetration(),
             Elastic::Conformal(law) if self.internal => 1.590_390_386 * law.clearance,
             Elastic::Conformal(_) => 0.0,
-            Elastic::Power(_) | Elastic::Cylindrical(_) => f64::INFINITY,
+            _ => f64::INFINITY,
         }
     }
 }

@@ -1,0 +1,123 @@
+//! `[run]`: what a front end runs and records by default.
+
+use chaindrive_mechanics::EventKinds;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::Stepping;
+use crate::scene::quantity::{Length, Ratio, Time};
+
+/// What a front end runs and records unless told otherwise.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Run {
+    /// Duration of the run [s].
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) until: Option<Time>,
+    /// Time between two samples of the recording [s].
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) every: Option<Time>,
+    /// Time stepping.
+    #[serde(default)]
+    pub(crate) method: Option<Stepping>,
+    /// Step of a method with a fixed step [s].
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) step: Option<Time>,
+    /// Relative tolerance of a method under error control [–].
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
+    pub(crate) tolerance: Option<Ratio>,
+    /// Deepest penetration at which a contact may begin [m]: deeper steps are shortened; absent:
+    /// contacts begin wherever the step lands, but with implicit damping no deeper than an approach at 1 m/s takes them
+    /// in a step.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) onset_depth: Option<Length>,
+    /// Relative error of the tension that method, step and onset depth are chosen for, 0 to 1; it takes the
+    /// place of what is said about them. Absent: 0.01, unless one of them or a tolerance is given.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
+    pub(crate) accuracy: Option<Ratio>,
+    /// Channels to record.
+    #[serde(default)]
+    pub(crate) record: Option<Vec<String>>,
+    /// Contacts to log, each from touch to parting; absent: none.
+    #[serde(default)]
+    pub(crate) events: Vec<Events>,
+}
+
+/// Contacts that can be logged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Events {
+    /// Rollers on teeth.
+    Teeth,
+    /// Rollers and plates on guides.
+    Guides,
+    /// Pins in bushes, and bushes in free rollers.
+    Joints,
+}
+
+impl Run {
+    /// The same in SI units.
+    pub(crate) fn suggestions(&self) -> RunDefaults {
+        RunDefaults {
+            until: self.until.map(|time| time.0),
+            every: self.every.map(|time| time.0),
+            method: self.method,
+            step: self.step.map(|time| time.0),
+            tolerance: self.tolerance.map(|ratio| ratio.0),
+            onset_depth: self.onset_depth.map(|depth| depth.0),
+            accuracy: self.accuracy.map(|ratio| ratio.0),
+            record: self.record.clone().unwrap_or_default(),
+            events: events(&self.events),
+        }
+    }
+}
+
+/// What a scene suggests to run and record.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RunDefaults {
+    /// Duration of the run \[s\].
+    pub until: Option<f64>,
+    /// Time between two samples \[s\].
+    pub every: Option<f64>,
+    /// Method of time stepping.
+    pub method: Option<Stepping>,
+    /// Step of a method with a fixed step \[s\].
+    pub step: Option<f64>,
+    /// Relative tolerance of a method under error control \[–\].
+    pub tolerance: Option<f64>,
+    /// Deepest penetration at which a contact may begin \[m\].
+    pub onset_depth: Option<f64>,
+    /// Relative error of the tension that method and step are to be chosen for \[–\].
+    pub accuracy: Option<f64>,
+    /// Channels to record; empty when the scene leaves them open.
+    pub record: Vec<String>,
+    /// Contacts to log.
+    pub events: EventKinds,
+}
+
+impl RunDefaults {
+    /// The accuracy \[–\] that method and step are chosen for: what is asked for, or
+    /// [`ACCURACY`](crate::precision::ACCURACY) where method, step, tolerance and onset depth are all left open.
+    pub fn chosen_accuracy(&self) -> Option<f64> {
+        let open = self.method.is_none()
+            && self.step.is_none()
+            && self.tolerance.is_none()
+            && self.onset_depth.is_none();
+        self.accuracy
+            .or_else(|| open.then_some(crate::precision::ACCURACY))
+    }
+}
+
+fn events(named: &[Events]) -> EventKinds {
+    EventKinds {
+        teeth: named.contains(&Events::Teeth),
+        guides: named.contains(&Events::Guides),
+        joints: named.contains(&Events::Joints),
+    }
+}
