@@ -110,6 +110,31 @@ fn mechanics_reads_no_file_clock_or_chance() {
     }
 }
 
+/// A method is asked for its step, tolerance and parameters; only its own table, the table of names and the usual variants of a study
+/// tell methods apart.
+#[test]
+fn pairs_under_error_control_are_named_where_they_are_listed() {
+    let listed = [
+        "crates/integrate/src/method.rs",
+        "crates/chaindrive/src/stepping.rs",
+        "crates/chaindrive/src/precision/variant.rs",
+    ];
+    for folder in ["integrate", "mechanics", "chaindrive", "cli", "python"] {
+        for path in sources(&root().join("crates").join(folder).join("src")) {
+            let list = listed.iter().any(|list| path == root().join(list));
+            if list || path.ends_with("tests.rs") {
+                continue;
+            }
+            let text = fs::read_to_string(&path).expect("sources are text");
+            assert!(
+                !arrows::code(&text).contains("DormandPrince"),
+                "{} names a method: ask it `is_adaptive`, `step` or `parameters`",
+                path.display()
+            );
+        }
+    }
+}
+
 /// The chains are a family: outside its folder and its table of contents nobody knows which members there are.
 #[test]
 fn no_member_of_the_chain_family_is_named_outside() {

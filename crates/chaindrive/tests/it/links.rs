@@ -15,10 +15,10 @@ fn preset(name: &str) -> Scene {
 
 fn links(scene: &Scene) -> RigidLinks {
     let drive = scene.drive().unwrap_or_else(|error| panic!("{error}"));
-    match &drive.chains[0].chain.model {
-        ChainModel::Rigid(links) => links.clone(),
-        ChainModel::Particles => panic!("these are particles"),
-    }
+    let ChainModel::Rigid(links) = &drive.chains[0].chain.model else {
+        panic!("these are no rigid links");
+    };
+    links.clone()
 }
 
 fn joint(scene: &Scene) -> Surface {

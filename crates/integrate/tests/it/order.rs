@@ -10,10 +10,10 @@ use problems::{Driven, Kepler, Oscillator, Smooth, all_methods, fixed, run};
 fn coarsest(method: Method) -> u32 {
     match method {
         Method::Verlet { .. } => 400,
-        Method::Rk4 { .. } => 160,
-        Method::DormandPrince { .. } => 240,
         Method::ImplicitDamping { .. } => 1600,
         Method::GeneralizedAlpha { .. } => 800,
+        method if method.is_adaptive() => 240,
+        _ => 160,
     }
 }
 

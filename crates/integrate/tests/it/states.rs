@@ -11,7 +11,7 @@ fn coarsest(method: Method) -> u32 {
     match method {
         Method::ImplicitDamping { .. } => 6400,
         Method::Verlet { .. } | Method::GeneralizedAlpha { .. } => 800,
-        Method::Rk4 { .. } | Method::DormandPrince { .. } => 160,
+        _ => 160,
     }
 }
 

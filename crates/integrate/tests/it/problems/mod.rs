@@ -37,10 +37,9 @@ pub(crate) fn fixed(method: Method, step: f64) -> Method {
 }
 
 /// Every method, explicit and implicit.
-pub(crate) fn all_methods(step: f64) -> [Method; 5] {
-    let [a, b, c] = Method::specimens(step);
-    let [d, e] = Method::implicit_specimens(step);
-    [a, b, c, d, e]
+pub(crate) fn all_methods(step: f64) -> Vec<Method> {
+    let explicit = Method::specimens(step).into_iter();
+    explicit.chain(Method::implicit_specimens(step)).collect()
 }
 
 /// The states at eight instants of a run in a number of equal steps.
