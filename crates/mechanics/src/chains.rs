@@ -44,7 +44,7 @@ pub(crate) enum ChainMemory {
     /// Nothing.
     Particles,
     /// The contacts in its joints.
-    Links(links::Memory),
+    Links(Box<links::Memory>),
 }
 
 /// What a chain is evaluated among.
@@ -265,7 +265,7 @@ impl Chain {
     pub(crate) fn memory(&self) -> ChainMemory {
         match self {
             Self::Particles(_) => ChainMemory::Particles,
-            Self::Links(chain) => ChainMemory::Links(chain.memory.clone()),
+            Self::Links(chain) => ChainMemory::Links(Box::new(chain.memory.clone())),
         }
     }
 
@@ -273,7 +273,7 @@ impl Chain {
     pub(crate) fn remember(&mut self, memory: ChainMemory) -> Result<(), MemoryError> {
         match (self, memory) {
             (Self::Particles(_), ChainMemory::Particles) => Ok(()),
-            (Self::Links(chain), ChainMemory::Links(memory)) => chain.remember(memory),
+            (Self::Links(chain), ChainMemory::Links(memory)) => chain.remember(*memory),
             (Self::Particles(_), ChainMemory::Links(_))
             | (Self::Links(_), ChainMemory::Particles) => Err(MemoryError::Model),
         }
