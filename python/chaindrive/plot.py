@@ -254,6 +254,7 @@ def _bodies(
     from matplotlib.patches import Circle, Polygon
 
     chains = list(zip(drawing["chains"], rollers, strict=True))
+    named: list[NDArray[np.float64]] = []
     for name, wheel in drawing["sprockets"].items():
         centre = centres[name]
         turn = 0.0
@@ -265,10 +266,13 @@ def _bodies(
         ax.add_patch(Polygon(outline, facecolor=_STEEL, edgecolor=_OUTLINE, alpha=0.6, lw=0.6))
         ax.plot(*centre, "+", color=_OUTLINE, markersize=6)
         if names:
+            # Names of sprockets on one axis stand above each other.
+            above = sum(bool(np.hypot(*(centre - other)) < 1e-6) for other in named)
+            named.append(centre)
             ax.annotate(
                 name,
                 (centre[0], centre[1]),
-                xytext=(0, 6),
+                xytext=(0, 6 + 9 * above),
                 textcoords="offset points",
                 ha="center",
                 fontsize=8,

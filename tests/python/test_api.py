@@ -55,7 +55,9 @@ def test_every_preset_has_a_function(name):
     assert drive.title
     assert name in repr(drive)
     assert cd.scenes.presets()[name] in preset.__doc__
-    assert drive.to_dict()["chain"]["links"] == drive.links
+    scene = drive.to_dict()
+    chains = scene.get("chains") or [scene["chain"]]
+    assert sum(chain["links"] for chain in chains) == drive.links
 
 
 def test_a_file_reads_as_its_text(tmp_path):
@@ -105,6 +107,10 @@ def test_description_is_a_dict_and_a_text():
     assert description["chain"]["links"] == 122
     assert "crank" in str(description)
     json.dumps(description)
+    several = cd.scenes.two_stage_timing().describe()
+    assert [chain["links"] for chain in several["chains"]] == [76, 84]
+    assert "chain" not in several
+    assert "closing" not in several
 
 
 def test_a_description_says_where_a_run_will_choose_another_step():
@@ -207,8 +213,9 @@ def test_plots_draw(tmp_path):
 def test_layout_puts_rollers_into_gaps():
     drawing = cd.scenes.marine_engine()._inner.drawing(True)
     crank = drawing["sprockets"]["crank"]
-    turn = cd.plot._turn(drawing["rollers"], crank["centre"], crank, drawing["pitch"])
-    x, y = (drawing["rollers"] - crank["centre"]).T
+    (chain,) = drawing["chains"]
+    turn = cd.plot._turn(chain["rollers"], crank["centre"], crank, chain["pitch"])
+    x, y = (chain["rollers"] - crank["centre"]).T
     seated = np.abs(np.hypot(x, y) - crank["pitch_radius"]) < 1e-3
     phase = crank["teeth"] * (np.arctan2(y, x)[seated] - np.pi / 2 - turn) / (2 * np.pi)
     np.testing.assert_allclose(phase, np.round(phase), atol=0.02)

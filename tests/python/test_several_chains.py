@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import chaindrive as cd
 import matplotlib as mpl
 import numpy as np
 import pytest
 import xarray as xr
+
+import chaindrive as cd
 
 CHANNELS = ["link_tension", "span_tension", "roller_x", "shaft_speed", "sprocket_speed"]
 
@@ -16,9 +17,7 @@ CHANNELS = ["link_tension", "span_tension", "roller_x", "shaft_speed", "sprocket
 @pytest.fixture(scope="module")
 def run() -> xr.Dataset:
     drive = cd.scenes.two_stage_timing()
-    return cd.simulate(
-        drive, until=5e-4, every=1e-4, method="verlet", record=CHANNELS, error=False
-    )
+    return cd.simulate(drive, until=5e-4, every=1e-4, method="verlet", record=CHANNELS, error=False)
 
 
 def test_a_drive_tells_its_chains_and_shafts() -> None:

@@ -15,7 +15,8 @@ use chaindrive_mechanics::{
     Assembled, ChainModel, Clash, Drive, Fitting, Flow, GuideSupport, Observation, PlacedChain,
     Statics,
 };
-use serde::Serialize;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
 
 pub use cost::Cost;
 pub use links::{ContactFacts, LinkFacts};
@@ -27,7 +28,8 @@ use crate::{Run, SimulationError};
 /// A drive and a run, described.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Description {
-    /// The chains.
+    /// The chains; in JSON `chain` and its `closing` where there is one, as scenes have it.
+    #[serde(flatten, serialize_with = "as_in_scenes")]
     pub chains: Vec<ChainFacts>,
     /// The bodies of the routes, in path order, chain by chain.
     pub stops: Vec<StopFacts>,
@@ -198,6 +200,18 @@ impl Description {
         self.cost.unless_chosen_for = accuracy;
         self
     }
+}
+
+/// One `chain`, or several `chains`.
+fn as_in_scenes<S: Serializer>(chains: &[ChainFacts], serializer: S) -> Result<S::Ok, S::Error> {
+    let mut map = serializer.serialize_map(None)?;
+    if let [only] = chains {
+        map.serialize_entry("chain", only)?;
+        map.serialize_entry("closing", &only.closing)?;
+    } else {
+        map.serialize_entry("chains", chains)?;
+    }
+    map.end()
 }
 
 /// The static states on the way to the start of an assembled drive.

@@ -55,3 +55,50 @@ pub(crate) fn trains(parts: &Parts) -> Vec<InTrain> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use chaindrive_geometry::Vector;
+
+    use super::{InTrain, trains};
+    use crate::{GearPair, Motion, Parts, Rotation, Shaft};
+
+    /// Four shafts in a row of three pairs, and one apart: i₀₃ = i₀₁ i₁₂ i₂₃, whichever of them leads.
+    #[test]
+    fn ratios_multiply_along_a_train() {
+        let pair = |shafts: [usize; 2], ratio: f64| GearPair {
+            name: format!("{shafts:?}"),
+            shafts,
+            ratio,
+        };
+        let free = Rotation::Free {
+            drive: Vec::new(),
+            load: Vec::new(),
+        };
+        let mut parts = Parts {
+            chains: Vec::new(),
+            sprockets: Vec::new(),
+            guides: Vec::new(),
+            tensioners: Vec::new(),
+            shafts: vec![Shaft::of_one(free); 5],
+            couplings: Vec::new(),
+            gears: vec![pair([2, 3], 4.0), pair([2, 1], 0.5), pair([0, 1], -2.0)],
+            settle: false,
+            gravity: Vector::zeros(),
+        };
+        let ratios = |parts: &Parts| -> Vec<(usize, f64)> {
+            let all = trains(parts).into_iter();
+            all.map(|InTrain { leader, ratio }| (leader, ratio))
+                .collect()
+        };
+        assert_eq!(
+            ratios(&parts),
+            [(0, 1.0), (0, -2.0), (0, -4.0), (0, -16.0), (4, 1.0)]
+        );
+        parts.shafts[3].rotation = Rotation::Prescribed(Motion::Held);
+        assert_eq!(
+            ratios(&parts),
+            [(3, -0.0625), (3, 0.125), (3, 0.25), (3, 1.0), (4, 1.0)]
+        );
+    }
+}

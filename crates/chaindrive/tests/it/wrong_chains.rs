@@ -11,6 +11,7 @@ fn problem(text: &str) -> String {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table of refusals")]
 fn what_does_not_go_together_is_refused() {
     let good = Scene::preset("two_stage_timing").unwrap().text().to_owned();
     let insert = |before: &str, text: &str| good.replacen(before, &format!("{text}{before}"), 1);

@@ -303,12 +303,11 @@ impl Bodies {
     pub(crate) fn name(&self, dof: usize) -> String {
         let shaft = || {
             let index = self.shafts.iter().position(|s| s.led() == Some(dof))?;
-            let called = match &self.shafts[index].name {
-                Some(name) => format!("shaft `{name}`"),
-                None => {
-                    let wheel = self.wheels.iter().find(|wheel| wheel.shaft == index)?;
-                    format!("sprocket `{}`", wheel.name)
-                }
+            let called = if let Some(name) = &self.shafts[index].name {
+                format!("shaft `{name}`")
+            } else {
+                let wheel = self.wheels.iter().find(|wheel| wheel.shaft == index)?;
+                format!("sprocket `{}`", wheel.name)
             };
             Some(format!("the angle of {called}"))
         };

@@ -273,7 +273,7 @@ fn a_shaft_carries_sprockets_of_two_chains() {
         let [a, b] = pair("first ", [20, 20], 0.0, EVEN, driven());
         let [mut c, mut d] = pair("second ", [20, 20], 2.0, EVEN, free(0.0));
         d.1 = free(-1.0_f64.copysign(ratio));
-        let on_one = ratio == 1.0;
+        let on_one = ratio > 0.0;
         if on_one {
             c.0.centre = b.0.centre;
             d.0.centre = Point::new(0.0, 2.0 * EVEN);

@@ -81,12 +81,11 @@ pub(super) fn resolve(
     let roller_length = roller_length.map(|length| length.0);
     let roller_length = roller_length.or(of_type.and_then(catalogue::roller_length));
     let ends = ends(text, findings);
-    let body = match text.model {
-        schema::ChainModel::Particles => particles(text, links, findings),
-        _ => {
-            let all = (scene, described.route);
-            links::resolve(all, text, links, roller_diameter, roller_length, findings)
-        }
+    let body = if text.model == schema::ChainModel::Particles {
+        particles(text, links, findings)
+    } else {
+        let all = (scene, described.route);
+        links::resolve(all, text, links, roller_diameter, roller_length, findings)
     };
 
     let scatter = text.scatter.clone().unwrap_or_default();

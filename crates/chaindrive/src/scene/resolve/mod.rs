@@ -161,13 +161,8 @@ impl<'s> Names<'s> {
             guides: scene.guides.iter().map(|g| g.name.as_str()).collect(),
             tensioners: scene.tensioners.iter().map(|t| t.name.as_str()).collect(),
         };
-        let place = |list: &str, index: usize| format!("{list}[{index}].name");
-        let listed = |list: &'static str, names: &[&'s str]| {
-            let names = names.to_vec().into_iter().enumerate();
-            names.map(move |(i, name)| (place(list, i), name))
-        };
-        let sprockets = || listed("sprockets", &names.sprockets);
-        findings.unique(sprockets().chain(listed("guides", &names.guides)));
+        let sprockets = listed("sprockets", &names.sprockets);
+        findings.unique(sprockets.chain(listed("guides", &names.guides)));
         // Names in `sprockets` have been looked at.
         findings.unique_beside(&names.sprockets, listed("shafts", &names.shafts));
         findings.unique(listed("tensioners", &names.tensioners));
@@ -183,6 +178,15 @@ impl<'s> Names<'s> {
     fn tensioner(&self, name: &str, path: &str, findings: &mut Findings<'_>) -> Option<usize> {
         findings.lookup(&self.tensioners, "tensioner", name, path)
     }
+}
+
+/// The names of a list, each with its place.
+fn listed<'n, 's>(
+    list: &'static str,
+    names: &'n [&'s str],
+) -> impl Iterator<Item = (String, &'s str)> + use<'n, 's> {
+    let names = names.iter().enumerate();
+    names.map(move |(index, name)| (format!("{list}[{index}].name"), *name))
 }
 
 /// A value that a scene leaves open, with what is taken for it.

@@ -209,7 +209,7 @@ fn drop_null(object: &mut Map<String, Value>) {
 
 /// Some keys are required unless another one is there.
 fn require_unless(object: &mut Map<String, Value>) {
-    if let Some(Value::Object(unless)) = object.remove("x-required-unless") {
+    if let Some(Value::Object(unless)) = object.shift_remove("x-required-unless") {
         let choices = unless
             .into_iter()
             .flat_map(|(key, keys)| [json!({"required": [key]}), json!({"required": keys})]);
