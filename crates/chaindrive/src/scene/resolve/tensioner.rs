@@ -134,7 +134,7 @@ fn push(
                 None => complete(direct, path, findings)?,
             };
             let column = match oil {
-                Some(oil) => column(oil, [extending.0, relieving.0], path, findings)?,
+                Some(oil) => column(oil, [extending.0, relieving.0], path, findings).ok()?,
                 None => None,
             };
             if relief < supply {
@@ -203,20 +203,23 @@ fn area(oil: &Oil) -> f64 {
     0.25 * std::f64::consts::PI * oil.diameter.0 * oil.diameter.0
 }
 
+/// What is wrong stands among the findings.
+struct Refused;
+
 /// Oil that can be compressed, if it can: it needs all that says how, and valves with a resistance.
 fn column(
     oil: &Oil,
     [extending, relieving]: [f64; 2],
     path: &str,
     findings: &mut Findings<'_>,
-) -> Option<Option<OilColumn>> {
+) -> Result<Option<OilColumn>, Refused> {
     let given = [
         ("bulk_modulus", oil.bulk_modulus.map(|modulus| modulus.0)),
         ("volume", oil.volume.map(|volume| volume.0)),
         ("air", oil.air.map(|air| air.0)),
     ];
     if given.iter().all(|(_, value)| value.is_none()) {
-        return Some(None);
+        return Ok(None);
     }
     for (key, _) in given.iter().filter(|(_, value)| value.is_none()) {
         let hint = "oil that can be compressed needs `bulk_modulus`, `volume` and `air`";
@@ -229,12 +232,16 @@ fn column(
             findings.refuse_with(&format!("{path}.{key}"), message, hint);
         }
     }
-    let [modulus, volume, air] = given.map(|(_, value)| value);
-    let column = OilColumn {
-        area: area(oil),
-        volume: volume?,
-        bulk_modulus: modulus?,
-        air: air?,
+    let [Some(modulus), Some(volume), Some(air)] = given.map(|(_, value)| value) else {
+        return Err(Refused);
     };
-    (extending > 0.0 && relieving > 0.0).then_some(Some(column))
+    if extending <= 0.0 || relieving <= 0.0 {
+        return Err(Refused);
+    }
+    Ok(Some(OilColumn {
+        area: area(oil),
+        volume,
+        bulk_modulus: modulus,
+        air,
+    }))
 }

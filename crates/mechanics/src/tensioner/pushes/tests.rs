@@ -26,6 +26,12 @@ fn linear() -> Hydraulic {
     }
 }
 
+/// Something over time or a step.
+type Over<T> = fn(f64) -> T;
+
+/// What makes a push wrong.
+type Change = fn(&mut Hydraulic, &mut OilColumn);
+
 const STIFFNESS: f64 = 1e7;
 
 /// The plunger of a timing chain: 12 mm, 25 µm gap, 4 cm³ of oil with a hundredth of air.
@@ -165,7 +171,7 @@ fn it_answers_frequencies_like_a_spring_behind_a_dashpot() {
     // A newton, far less than the supply.
     let amplitude = 1e-7;
     // ẍ = −ω² X sin ωt for ωτ = 0.1, 1 and 10
-    let cases: [(f64, fn(f64) -> f64); 3] = [
+    let cases: [(f64, Over<f64>); 3] = [
         (50.0, |t| -0.000_25 * (50.0 * t).sin()),
         (500.0, |t| -0.025 * (500.0 * t).sin()),
         (5000.0, |t| -2.5 * (5000.0 * t).sin()),
@@ -408,7 +414,7 @@ fn every_method_keeps_its_order_on_oil() {
     let precise = seen(Method::Rk4 {
         step: end / 20_000.0,
     });
-    let methods: [(fn(f64) -> Method, f64, f64); 5] = [
+    let methods: [(Over<Method>, f64, f64); 5] = [
         (|step| Method::Verlet { step }, 800.0, 2.0),
         (|step| Method::Rk4 { step }, 96.0, 4.0),
         (
@@ -463,7 +469,7 @@ fn what_makes_no_oil_is_named() {
             .expect_err("it is wrong");
         error.to_string()
     };
-    let cases: [(fn(&mut Hydraulic, &mut OilColumn), &str); 9] = [
+    let cases: [(Change, &str); 9] = [
         (
             |_, oil| oil.bulk_modulus = f64::NAN,
             "push.oil.bulk_modulus",
