@@ -461,7 +461,7 @@ fn a_checkpoint_that_does_not_fit_ends_the_run_and_leaves_nothing_half_written()
         "--checkpoint-every",
         "50 us",
     ];
-    let (code, err) = on_a_full_disk(300, at, &[&scene[..], &longer, &to].concat());
+    let (code, err) = on_a_full_disk(260, at, &[&scene[..], &longer, &to].concat());
     assert_eq!(code, Some(3), "{err}");
     let store = at.join("run.zarr");
     assert_eq!(status(&store), "failed");
