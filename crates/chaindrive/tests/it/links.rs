@@ -288,7 +288,8 @@ fn joints_are_recorded_where_there_are_any() {
     let mut simulation = Simulation::start(&scene.drive().unwrap(), &run).unwrap();
     let channels = Channel::chosen(&["all"], simulation.system()).unwrap();
     let missing: Vec<Channel> = Channel::ALL
-        .into_iter()
+        .iter()
+        .copied()
         .filter(|channel| !channels.contains(channel))
         .collect();
     // This bicycle has neither shafts of their own names nor couplings.
