@@ -111,7 +111,7 @@ fn every_method_moves_it_and_the_ledger_closes() {
         let mut stepper = method.start(&mut system, &mut state).expect("starts");
         let start = observed(&system, &state).energy;
         let mut most = 0.0_f64;
-        while state.t < 2e-3 {
+        while state.t < 8e-4 {
             stepper.advance(&mut system, &mut state).expect("advances");
             most = most.max((state.z[0] - state.q[slide]).abs());
         }
@@ -124,7 +124,8 @@ fn every_method_moves_it_and_the_ledger_closes() {
             seen.oil_pressure[0]
         );
         assert!(lost > 1e-5, "{name} loses nothing");
-        (residual / lost, seen.oil_pressure[0])
+        // Of the energy that the slide was given, ½ m v².
+        (residual / (0.5 * 1.5 * 0.05 * 0.05), seen.oil_pressure[0])
     };
     let particles = || assembled(tensioned(Some(OIL)));
     let linked = || {
@@ -132,13 +133,13 @@ fn every_method_moves_it_and_the_ledger_closes() {
         parts.chains.iter_mut().for_each(with_play);
         assembled(parts)
     };
-    for (method, bound) in Method::specimens(4e-7).into_iter().zip([1e-3, 1e-4, 1e-4]) {
+    for (method, bound) in Method::specimens(4e-7).into_iter().zip([1e-4, 1e-6, 1e-6]) {
         let (share, _) = run(particles(), method);
         assert!(share.abs() < bound, "{}: {share}", method.name());
     }
     let pressures = Method::implicit_specimens(4e-7).map(|method| {
         let (share, pressure) = run(linked(), method);
-        assert!(share.abs() < 0.1, "{}: {share}", method.name());
+        assert!(share.abs() < 0.02, "{}: {share}", method.name());
         pressure
     });
     let [damped, alpha] = pressures;
@@ -158,8 +159,8 @@ fn an_implicit_step_takes_the_oil_along() {
     let system = &assembled.system;
     let dofs = system.dofs();
     let along = system.quadratures();
-    // Oil under pressure, so that it flows out.
-    let z = vec![assembled.z[0] + 1e-5];
+    // So much oil that the relief valve is open.
+    let z = vec![assembled.z[0] + 2e-4];
     let evaluate = |q: &[f64], v: &[f64], z: &[f64]| {
         let mut record = system.new_record();
         let mut a = vec![0.0; dofs];
