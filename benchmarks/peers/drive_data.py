@@ -39,7 +39,7 @@ def scene():
 def _phase(drawing, name, pitch):
     """Direction of a tooth gap as the chain is laid, modulo a tooth [rad]."""
     wheel = drawing["sprockets"][name]
-    away = drawing["rollers"] - wheel["centre"]
+    away = drawing["chains"][0]["rollers"] - wheel["centre"]
     on = np.abs(np.hypot(*away.T) - wheel["pitch_radius"]) < 1e-6 * pitch
     step = 2 * math.pi / wheel["teeth"]
     angles = np.arctan2(away[on, 1], away[on, 0])

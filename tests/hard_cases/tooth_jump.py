@@ -102,7 +102,7 @@ def _register(drive, run, at, near):
         raise ValueError(f"at {at} s {len(on)} rollers lie on the idler, needs two")
     # Gap axes of the laid chain: rollers of the drawing sit in them exactly.
     laid = drive._inner.drawing(False)
-    from_centre = laid["rollers"] - laid["sprockets"]["idler"]["centre"]
+    from_centre = laid["chains"][0]["rollers"] - laid["sprockets"]["idler"]["centre"]
     seat = from_centre[np.abs(np.hypot(*from_centre.T) - pitch_radius) < 0.02 * pitch_radius]
     origin = np.arctan2(seat[len(seat) // 2, 1], seat[len(seat) // 2, 0])
     angle = np.arctan2(away[on, 1], away[on, 0]) - now["sprocket_angle"].values[3] - origin
