@@ -27,6 +27,7 @@ __all__ = [
     "methods",
     "polygon_action",
     "presets",
+    "resume",
     "schema",
     "simulate",
     "work_precision",
