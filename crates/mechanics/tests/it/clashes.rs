@@ -131,7 +131,9 @@ fn planes_keep_bodies_apart() {
     for sprocket in &mut away.sprockets {
         sprocket.centre += Vector::new(20.0, 0.0);
         sprocket.name += "-2";
+        sprocket.shaft += parts.shafts.len();
     }
+    parts.shafts.append(&mut away.shafts);
     let first = parts.sprockets.len();
     let mut chain = away.chains.remove(0);
     if let Layout::Route { stops, .. } = &mut chain.layout {
