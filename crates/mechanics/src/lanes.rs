@@ -99,6 +99,12 @@ impl<S: Simd> Wide<S> {
         LanesMut { whole }
     }
 
+    /// Calls what shall not be part of the loop that calls it, compiled for the same kind of processor.
+    #[inline(always)]
+    pub(crate) fn call<Op: WithSimd>(self, op: Op) -> Op::Output {
+        self.0.vectorize(op)
+    }
+
     /// True in the first `count` lanes.
     #[inline(always)]
     pub(crate) fn first(self, count: usize) -> Mask<S> {
@@ -131,6 +137,14 @@ impl<S: Simd> Lane<S> {
     pub(crate) fn store(self, slice: &mut [f64], start: usize) {
         let (whole, _) = S::as_mut_simd_f64s(&mut slice[start..start + Wide::<S>::COUNT]);
         whole[0] = self.v;
+    }
+
+    /// The numbers, and zeros behind them.
+    #[inline(always)]
+    pub(crate) fn numbers(self) -> [f64; LANES] {
+        let mut numbers = [0.0; LANES];
+        self.store(&mut numbers, 0);
+        numbers
     }
 
     #[inline(always)]
@@ -262,8 +276,7 @@ impl<S: Simd> Lane<S> {
     /// Applies a function to one lane after the other.
     #[inline(always)]
     pub(crate) fn one_by_one(self, f: impl Fn(f64) -> f64) -> Self {
-        let mut numbers = [0.0; LANES];
-        self.store(&mut numbers, 0);
+        let mut numbers = self.numbers();
         for value in &mut numbers[..Wide::<S>::COUNT] {
             *value = f(*value);
         }
@@ -301,6 +314,12 @@ impl<S: Simd> Mask<S> {
         if size_of::<S::m64s>() == 1 {
             let [bits] = pulp::bytemuck::cast::<S::m64s, [u8; 1]>(self.m);
             return bits != 0;
+        }
+        // AVX2 collects the signs of its lanes in one instruction; the library looks at one after the other.
+        #[cfg(target_arch = "x86_64")]
+        if let Some(v3) = (&self.simd as &dyn std::any::Any).downcast_ref::<pulp::x86::V3>() {
+            let lanes: pulp::f64x4 = pulp::bytemuck::cast(self.m);
+            return v3.avx._mm256_movemask_pd(pulp::cast(lanes)) != 0;
         }
         self.simd.first_true_m64s(self.m) < Wide::<S>::COUNT
     }

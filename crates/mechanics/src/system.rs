@@ -298,7 +298,9 @@ fn largest(rates: impl Iterator<Item = [f64; 2]>, own: [f64; 2]) -> [f64; 2] {
 /// The first chain at a body sets what it feels, others add to it.
 fn take(sum: &mut Wrench, wrench: &Wrench, first: bool) {
     if first {
-        *sum = *wrench;
+        sum.force = wrench.force;
+        sum.moment = wrench.moment;
+        sum.depth = wrench.depth;
         return;
     }
     for axis in 0..2 {

@@ -13,10 +13,10 @@
 //! of the gap to the left as side j − 1, counted round.
 
 use chaindrive_geometry::Point;
-use pulp::Simd;
+use pulp::{Simd, WithSimd};
 
 use super::{Contacts, Frame, Shape, Teeth};
-use crate::lanes::{Lane, Mask, Wide};
+use crate::lanes::{LANES, Lane, Mask, Wide};
 use crate::profile::{Extent, Nearest, Probe, Profile, Stretch};
 
 /// Roller centres in gap frames, and the gap axes in the world.
@@ -111,6 +111,97 @@ impl<S: Simd> Place<S> {
     }
 }
 
+impl<S: Simd> Place<S> {
+    /// Whether some rollers face another stretch than that of their side, or the other way of one that is divided.
+    #[inline(always)]
+    fn needs_more(&self, w: Wide<S>, stretches: &[Stretch], side: usize) -> bool {
+        if stretches.len() > 1
+            && let Some([right, left]) = self.over
+            && (right.any() || left.any())
+        {
+            return true;
+        }
+        match &stretches[side].extent {
+            Extent::Divided(divide) => w.splat(divide.at).greater(self.at[0]).any(),
+            Extent::Folded | Extent::Outward => false,
+        }
+    }
+}
+
+/// What rollers face of which [`Place::needs_more`] is true: rare, and long.
+///
+/// It is a call of its own, compiled for the kind of processor that asks, so that the inner loop stays short. Such a call takes
+/// numbers, not lanes.
+struct Elsewhere<'a> {
+    stretches: &'a [Stretch],
+    side: usize,
+    at: [[f64; LANES]; 2],
+    /// Positive for rollers that have left their gap to the right, and to the left.
+    over: Option<[[f64; LANES]; 2]>,
+    radius: f64,
+    measured: bool,
+    /// What they would face on their own side.
+    faced: [[f64; LANES]; 5],
+}
+
+impl Elsewhere<'_> {
+    #[inline(always)]
+    fn ask<S: Simd>(
+        w: Wide<S>,
+        stretches: &[Stretch],
+        side: usize,
+        place: &Place<S>,
+        radius: f64,
+        measured: bool,
+        faced: FacedSurface<S>,
+    ) -> FacedSurface<S> {
+        let yes = |mask: Mask<S>| mask.select(w.splat(1.0), w.splat(0.0)).numbers();
+        let found = w.call(Elsewhere {
+            stretches,
+            side,
+            at: place.at.map(Lane::numbers),
+            over: place.over.map(|over| over.map(yes)),
+            radius,
+            measured,
+            faced: faced.lanes().map(Lane::numbers),
+        });
+        FacedSurface::of(found.map(|numbers| w.load(&numbers, 0)))
+    }
+}
+
+impl WithSimd for Elsewhere<'_> {
+    type Output = [[f64; LANES]; 5];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let Self {
+            stretches,
+            side,
+            radius,
+            measured,
+            ..
+        } = self;
+        let w = Wide(simd);
+        let at = self.at.map(|numbers| w.load(&numbers, 0));
+        let mut faced = FacedSurface::of(self.faced.map(|numbers| w.load(&numbers, 0)));
+        let all = w.first(Wide::<S>::COUNT);
+        faced = stretches[side].other_way(w, all, faced, at, radius, measured);
+        if let (Some(over), true) = (self.over, stretches.len() > 1) {
+            let count = stretches.len();
+            for (over, neighbour) in over.iter().zip([count - 1, 1]) {
+                let over = w.load(over, 0).greater(w.splat(0.5));
+                if over.any() {
+                    let stretch = &stretches[(side + neighbour) % count];
+                    let there = stretch.face(w, at, radius, measured);
+                    faced = there.where_of(over, faced);
+                    faced = stretch.other_way(w, over, faced, at, radius, measured);
+                }
+            }
+        }
+        faced.lanes().map(Lane::numbers)
+    }
+}
+
 impl View<'_> {
     /// The surfaces that circles of some radius face; how far beyond the hollow they are only if `measured`.
     #[inline(always)]
@@ -127,21 +218,12 @@ impl View<'_> {
                 face(w, profile, place.at, sign, radius, measured)
             }
             View::Gap(stretches, side) => {
-                let all = w.first(Wide::<S>::COUNT);
-                let mut faced = stretches[side].face(w, place.at, radius, measured);
-                faced = stretches[side].other_way(w, all, faced, place.at, radius, measured);
-                if let (Some([right, left]), true) = (place.over, stretches.len() > 1) {
-                    let count = stretches.len();
-                    for (over, neighbour) in [(right, count - 1), (left, 1)] {
-                        if over.any() {
-                            let stretch = &stretches[(side + neighbour) % count];
-                            let there = stretch.face(w, place.at, radius, measured);
-                            faced = there.where_of(over, faced);
-                            faced = stretch.other_way(w, over, faced, place.at, radius, measured);
-                        }
-                    }
+                let faced = stretches[side].face(w, place.at, radius, measured);
+                if place.needs_more(w, stretches, side) {
+                    Elsewhere::ask(w, stretches, side, place, radius, measured, faced)
+                } else {
+                    faced
                 }
-                faced
             }
         };
         // The gap's x axis is its y axis turned by −90°.
@@ -220,6 +302,22 @@ fn face<S: Simd>(
 }
 
 impl<S: Simd> FacedSurface<S> {
+    #[inline(always)]
+    fn lanes(self) -> [Lane<S>; 5] {
+        [self.gap, self.nx, self.ny, self.bend, self.beyond]
+    }
+
+    #[inline(always)]
+    fn of([gap, nx, ny, bend, beyond]: [Lane<S>; 5]) -> Self {
+        Self {
+            gap,
+            nx,
+            ny,
+            bend,
+            beyond,
+        }
+    }
+
     /// This in some lanes, another in the rest.
     #[inline(always)]
     fn where_of(self, some: Mask<S>, other: Self) -> Self {
@@ -261,7 +359,7 @@ impl Contacts {
         let sides = 0..self.sides();
         let probe = |side| {
             let faced = self.view(side).faced(w, &place, self.radius, true);
-            Probe::of([faced.gap, faced.nx, faced.ny, faced.bend, faced.beyond])
+            Probe::of(faced.lanes())
         };
         sides.map(probe).collect()
     }

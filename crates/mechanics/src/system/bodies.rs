@@ -27,6 +27,8 @@ pub(crate) struct Bodies {
     pub(crate) states: usize,
     /// Mass or inertia that goes with each of them \[kg or kg m²\].
     pub(crate) inertias: Vec<f64>,
+    /// ω² and damping rate of the quickest of them, but for what states of pushes add.
+    pub(crate) rates: [f64; 2],
     /// What somebody sets from outside.
     pub(crate) inputs: Inputs,
 }
@@ -166,6 +168,19 @@ impl Bodies {
 
     /// ω² and damping rate of every body by itself, the largest of each; `pushes` of every tensioner at the last evaluation.
     pub(crate) fn own_rates(&self, pushes: &[Slopes]) -> [f64; 2] {
+        let [mut squared, mut damping] = self.rates;
+        for (slide, state) in self.slides.iter().zip(pushes) {
+            if slide.state.is_some() {
+                let [trapped, settling] = state.largest;
+                squared = squared.max(slide.own_rate() + trapped / slide.inertia);
+                damping = damping.max(settling);
+            }
+        }
+        [squared, damping]
+    }
+
+    /// The same without what states of pushes add: it never changes.
+    fn constant_rates(&self) -> [f64; 2] {
         let (mut squared, mut damping) = (0.0_f64, 0.0_f64);
         for wheel in &self.wheels {
             let [own, drag] = wheel.own_rates();
@@ -187,12 +202,9 @@ impl Bodies {
             squared = squared.max(coupling.stiffness * light);
             damping = damping.max(coupling.damping * light);
         }
-        for (slide, state) in self.slides.iter().zip(pushes) {
-            let lever = slide.carrier.extension(0.0).lever;
-            let light = lever * lever / slide.inertia;
-            let [trapped, settling] = state.largest;
-            squared = squared.max(slide.push.stiffness() * light + trapped / slide.inertia);
-            damping = damping.max(slide.push.damping() * light).max(settling);
+        for slide in &self.slides {
+            squared = squared.max(slide.own_rate());
+            damping = damping.max(slide.push.damping() * slide.lightness());
         }
         [squared, damping]
     }
@@ -253,6 +265,7 @@ impl Bodies {
         let mut inertias = vec![0.0; count];
         self.each_inertia(|dof, inertia| inertias[dof - self.first] += inertia);
         self.inertias = inertias;
+        self.rates = self.constant_rates();
     }
 
     /// Bearings, tensioners and shafts: visits (entry of the state, c C + k K) of what they have of their own, with the slopes of the

@@ -82,6 +82,7 @@ impl System {
             first,
             states: 0,
             inertias: Vec::new(),
+            rates: [0.0; 2],
             inputs: super::inputs::Inputs::default(),
         };
         bodies.number_states();

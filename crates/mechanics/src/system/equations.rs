@@ -21,11 +21,11 @@ impl Bodies {
         let (rates, flows) = rates.split_at_mut(Flow::ALL.len());
         self.turn_shafts(at, a, rates, wheel_wrenches);
         for (wheel, wrench) in self.wheels.iter().zip(wheel_wrenches) {
-            let (centre, velocity, acceleration) =
-                wheel.centre_course(at.t, at.q, at.v, &self.slides);
+            let centre = || wheel.centre_course(at.t, at.q, at.v, &self.slides);
             match &wheel.support {
                 WheelSupport::Fixed => {}
                 WheelSupport::Prescribed { .. } => {
+                    let (_, velocity, acceleration) = centre();
                     // P = (m a − F − m g)·v
                     let force = Vector::new(wrench.force[0], wrench.force[1]);
                     let needed = (acceleration - self.gravity) * wheel.mass - force;
@@ -36,6 +36,7 @@ impl Bodies {
                     stiffness,
                     damping,
                 } => {
+                    let (centre, velocity, _) = centre();
                     for axis in 0..2 {
                         let away = centre[axis] - wheel.centre[axis];
                         let speed = velocity[axis];
@@ -49,6 +50,7 @@ impl Bodies {
                 WheelSupport::Carried(index) => {
                     let slide = &self.slides[*index];
                     if let Some(dof) = slide.dof {
+                        let (centre, _, _) = centre();
                         let pose = slide.pose(at.q, at.v);
                         a[dof] += slide.project(pose, wrench.force, centre);
                     }
@@ -87,12 +89,8 @@ impl Bodies {
             }
             let input = self.inputs.force(i);
             rates[Flow::DriveTorque as usize] += input * pose.rate;
-            let mut force = a[dof] + (push.elastic + push.damping) * lever + input;
-            for (mass, at_rest) in slide.weights() {
-                let (place, _) = slide.carry(pose, at_rest);
-                let weight = self.gravity * mass;
-                force += slide.project(pose, [weight.x, weight.y], place);
-            }
+            let weight = slide.weight(pose, self.gravity);
+            let force = a[dof] + (push.elastic + push.damping) * lever + input + weight;
             // I s̈ = Σ Q − ½ I′ ṡ²
             let reduced = slide.reduced(pose);
             a[dof] = (force - 0.5 * reduced.slope * pose.rate * pose.rate) / reduced.inertia;

@@ -116,10 +116,27 @@ impl Slide {
         self.push.settled(length)
     }
 
+    /// Square of the push's lever over the inertia at assembly \[1/kg\].
+    pub(crate) fn lightness(&self) -> f64 {
+        let lever = self.carrier.extension(0.0).lever;
+        lever * lever / self.inertia
+    }
+
+    /// ω² of the push's spring alone.
+    pub(crate) fn own_rate(&self) -> f64 {
+        self.push.stiffness() * self.lightness()
+    }
+
     /// Inertia as it now is.
     pub(crate) fn reduced(&self, pose: Pose) -> Reduced {
         self.carrier
             .reduced(pose.coordinate, self.own, &self.carried)
+    }
+
+    /// Generalised force of the weight of all that it moves.
+    pub(crate) fn weight(&self, pose: Pose, gravity: Vector) -> f64 {
+        self.carrier
+            .weight(pose.coordinate, self.own, &self.carried, gravity)
     }
 
     /// Masses whose weight moves it, and where they are at assembly.

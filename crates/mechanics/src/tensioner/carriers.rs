@@ -85,6 +85,29 @@ trait Carries: Copy {
         let _ = inertia;
         None
     }
+
+    /// What goes with s: the carrier's own inertia and that of the masses it carries.
+    fn reduced(&self, s: f64, own: f64, carried: &[Weight]) -> Reduced {
+        let mut reduced = Reduced {
+            inertia: own,
+            slope: 0.0,
+        };
+        for (mass, at) in carried {
+            // I = J + Σ m |∂x/∂s|²,   I′ = 2 Σ m ∂x/∂s·∂²x/∂s²
+            reduced.inertia += mass * self.squared_lever(s, *at);
+            let [first, second] = self.ways(s, self.carry(s, *at).0);
+            reduced.slope += 2.0 * mass * first.dot(&second);
+        }
+        reduced
+    }
+
+    /// Generalised force of the weight of all masses.
+    fn weight(&self, s: f64, own: f64, carried: &[Weight], gravity: Vector) -> f64 {
+        let masses = carried.iter().copied().chain(self.own_weight(own));
+        // Q = Σ m g·∂x/∂s
+        let pull = |(mass, at): Weight| (gravity * mass).dot(&self.carry(s, at).1);
+        masses.map(pull).sum()
+    }
 }
 
 /// How far the push of a carrier is out, and how that goes on.
@@ -188,17 +211,12 @@ impl Carrier {
 impl Carrier {
     /// What goes with s: the carrier's own inertia and that of the masses it carries.
     pub(crate) fn reduced(&self, s: f64, own: f64, carried: &[Weight]) -> Reduced {
-        let mut reduced = Reduced {
-            inertia: own,
-            slope: 0.0,
-        };
-        for (mass, at) in carried {
-            // I = J + Σ m |∂x/∂s|²,   I′ = 2 Σ m ∂x/∂s·∂²x/∂s²
-            reduced.inertia += mass * self.squared_lever(s, *at);
-            let [first, second] = self.ways(s, self.carry(s, *at).0);
-            reduced.slope += 2.0 * mass * first.dot(&second);
-        }
-        reduced
+        ask!(self, carrier => carrier.reduced(s, own, carried))
+    }
+
+    /// Generalised force of the weight of all masses.
+    pub(crate) fn weight(&self, s: f64, own: f64, carried: &[Weight], gravity: Vector) -> f64 {
+        ask!(self, carrier => carrier.weight(s, own, carried, gravity))
     }
 
     /// The carrier's own mass and where it is when s = 0, if its weight is to count.
