@@ -87,8 +87,9 @@ def sweep(
         Dimensions are those swept, named by the end of their paths, with coordinates in SI
         units; `path` in their attributes is the whole path. Variables:
 
-        - statistics of each variant, such as ``span_tension_mean``, ``span_tension_std``,
-          ``span_tension_min``, ``span_tension_max`` (…, span), ``contact_force_p99``,
+        - statistics of each variant, such as ``span_tension_mean``, ``span_tension_half_width``
+          (of the 95 % interval of the mean), ``span_tension_std``, ``span_tension_min``,
+          ``span_tension_max`` (…, span), ``contact_force_p99``,
           ``contact_force_max`` [N], ``energy_dissipated_total``, ``energy_residual_max`` [J],
           ``steps``; those of contacts by kind where the scene logs them; ``accuracy_error`` and
           ``accuracy_kept`` (1 or 0) where an accuracy was asked for. ``stepping_time`` and

@@ -21,7 +21,9 @@ pub use error::WriteError;
 pub use event::{EventColumn, EventTable};
 pub use in_store::InStore;
 pub use memory::Memory;
-pub use summary::{ContactStatistics, ForceStatistics, Ledger, SpanStatistics, Summary};
+pub use summary::{
+    ContactStatistics, ForceStatistics, Ledger, SpanStatistics, Steadiness, Summary,
+};
 pub use zarr::{Existing, ResumeError, Stopped, SweepWriter, ZarrWriter};
 
 /// One channel of a recording.

@@ -13,7 +13,7 @@ mod reason;
 use std::fmt;
 
 use crate::precision::{Attribute, Choice, Judgement, Promise};
-use crate::record::{Ledger, Summary};
+use crate::record::{Ledger, Steadiness, Summary};
 use crate::{Channel, Simulation};
 
 pub use reason::Reason;
@@ -86,6 +86,8 @@ const ONE_WAY: f64 = 0.25;
 const LEAST_STEPS: u64 = 32;
 /// Share of the samples without a tension above which the statistics of a span are not those of the run.
 const UNHELD: f64 = 0.5;
+/// Share of a mean below which the start of a run does not count.
+const LEAST_SHIFT: f64 = 1e-3;
 
 impl Verdict {
     /// The verdict on a run that ended: by its samples, the estimate of its error, and the choice of its method.
@@ -99,6 +101,11 @@ impl Verdict {
         reasons.extend(not_finite(summary));
         reasons.extend(ledger(&summary.ledger(), simulation.statistics().steps));
         reasons.extend(spans(summary));
+        let known = summary.spans.iter().filter_map(|span| {
+            let found = span.steadiness()?;
+            Some((span.name.as_str(), span.mean(), found))
+        });
+        reasons.extend(steadiness(&known.collect::<Vec<_>>(), simulation.time()));
         reasons.extend(choice.and_then(accuracy));
         reasons.extend(examination(judgement));
         Self::from_reasons(reasons)
@@ -227,6 +234,36 @@ fn spans(summary: &Summary) -> impl Iterator<Item = Reason> {
                 Reason::SpanNotHeld { span, share }
             }
         })
+}
+
+/// What speaks against means over a run up to some time \[s\]: names of spans, means of all samples, and what their batches say.
+fn steadiness(spans: &[(&str, f64, Steadiness)], time: f64) -> Vec<Reason> {
+    if let Some((span, ..)) = spans.iter().find(|(.., found)| !found.is_steady) {
+        let span = (*span).to_owned();
+        return vec![Reason::NotSteady { span }];
+    }
+    let mut reasons = Vec::new();
+    let shifts = spans.iter().map(|(span, mean, found)| {
+        let shift = (mean - found.mean).abs();
+        let counts = shift > found.half_width;
+        let share = if counts {
+            shift / found.mean.abs()
+        } else {
+            0.0
+        };
+        (*span, found.before * time, share)
+    });
+    if let Some((span, until, shift)) = shifts.max_by(|a, b| a.2.total_cmp(&b.2))
+        && shift > LEAST_SHIFT
+    {
+        let span = span.to_owned();
+        reasons.push(Reason::StartCounts { span, until, shift });
+    }
+    if let Some((span, ..)) = spans.iter().find(|(.., found)| !found.is_independent) {
+        let span = (*span).to_owned();
+        reasons.push(Reason::MeansUncertain { span });
+    }
+    reasons
 }
 
 fn accuracy(choice: &Choice) -> Option<Reason> {

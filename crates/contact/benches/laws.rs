@@ -111,6 +111,7 @@ fn respond(group: &mut Group<'_>, name: &str, law: Law, approaches: &[Approach])
 
 fn with(elastic: Elastic, dissipation: Dissipation) -> Law {
     Law {
+        series: None,
         elastic,
         dissipation,
         onset_floor: 1e-3,

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::dissipation::Action;
-use crate::elastic::{Curve, ElasticLaw};
-use crate::error::require;
+use crate::elastic::{Curve, ElasticLaw, Stack};
+use crate::error::{require, require_positive};
 use crate::{Dissipation, Elastic, ParameterError};
 
 /// How two surfaces stand to each other at one instant.
@@ -38,6 +38,12 @@ pub struct Response {
 /// F = max(0, g(δ) + c δ̇)                                        viscous
 /// ```
 ///
+/// g is the force of the elastic law alone, or that of the law and a spring k_s behind it, which dissipation takes as a whole:
+///
+/// ```text
+/// δ = x + g(x)/k_s,   1/k = 1/g′(x) + 1/k_s
+/// ```
+///
 /// F is zero for δ ≤ 0 and never negative. The floor v_c is a parameter of the model: a contact
 /// that begins gently, in a pretensioned strand or at assembly, has δ̇₀ ≈ 0, and without the floor would be a rigid
 /// dashpot that neither reaches its static penetration nor lets go. Around a preload F₀ the
@@ -48,6 +54,9 @@ pub struct Response {
 pub struct Law {
     /// Elastic law g(δ).
     pub elastic: Elastic,
+    /// Stiffness k_s \[N/m\] of what lies behind the surfaces and bears their force: plates, a rim; absent: rigid.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub series: Option<f64>,
     /// Dissipation on top of it.
     pub dissipation: Dissipation,
     /// Least speed at onset v_c \[m/s\] a hysteretic dissipation reckons with; positive.
@@ -58,10 +67,14 @@ impl Law {
     /// The law with all its constants worked out, for loops.
     pub fn prepared(&self) -> Prepared {
         Prepared {
-            curve: self.elastic.curve(),
+            stack: self.stack(),
             action: self.dissipation.action(),
             onset_floor: self.onset_floor,
         }
+    }
+
+    fn stack(&self) -> Stack {
+        Stack::new(self.elastic.curve(), self.series)
     }
 
     /// Force, stiffness and damping at once; in a loop ask the [prepared](Self::prepared) law.
@@ -74,7 +87,7 @@ impl Law {
     #[inline]
     pub fn force(&self, approach: Approach) -> f64 {
         self.dissipation.action().force(
-            self.elastic.force(approach.penetration),
+            self.elastic_force(approach.penetration),
             approach.rate,
             self.onset(approach),
         )
@@ -84,7 +97,7 @@ impl Law {
     #[inline]
     pub fn damping(&self, approach: Approach) -> f64 {
         self.dissipation.action().slope(
-            self.elastic.force(approach.penetration),
+            self.elastic_force(approach.penetration),
             approach.rate,
             self.onset(approach),
         )
@@ -93,19 +106,19 @@ impl Law {
     /// Elastic part g \[N\] of the force at the penetration δ \[m\].
     #[inline]
     pub fn elastic_force(&self, penetration: f64) -> f64 {
-        self.elastic.force(penetration)
+        self.stack().pair(penetration).0
     }
 
     /// Tangent stiffness dg/dδ \[N/m\] of the elastic part.
     #[inline]
     pub fn stiffness(&self, penetration: f64) -> f64 {
-        self.elastic.stiffness(penetration)
+        self.stack().pair(penetration).1
     }
 
     /// Stored energy ∫ g dδ \[J\].
     #[inline]
     pub fn energy(&self, penetration: f64) -> f64 {
-        self.elastic.energy(penetration)
+        self.stack().energy(penetration)
     }
 
     /// v = max(δ̇₀, v_c) \[m/s\].
@@ -120,6 +133,9 @@ impl Law {
     /// Names the first parameter outside its range.
     pub fn check(&self) -> Result<(), ParameterError> {
         self.elastic.check()?;
+        if let Some(series) = self.series {
+            require_positive("series", series, "positive [N/m]")?;
+        }
         self.dissipation.check()?;
         let floor = self.onset_floor;
         require(
@@ -138,16 +154,19 @@ impl Law {
         )
     }
 
-    /// Every elastic specimen with every dissipation specimen, for tests and benchmarks.
+    /// Every elastic specimen, alone and with a spring behind it, with every dissipation specimen, for tests and benchmarks.
     pub fn specimens() -> Vec<Self> {
         let mut laws = Vec::new();
         for elastic in Elastic::specimens() {
             for dissipation in Dissipation::specimens() {
-                laws.push(Self {
-                    elastic,
-                    dissipation,
-                    onset_floor: 1e-3,
-                });
+                for series in [None, Some(5e7)] {
+                    laws.push(Self {
+                        elastic,
+                        series,
+                        dissipation,
+                        onset_floor: 1e-3,
+                    });
+                }
             }
         }
         laws
@@ -160,7 +179,7 @@ impl Law {
 /// logarithmic law two logarithms; the factor of the dissipation is a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prepared {
-    curve: Curve,
+    stack: Stack,
     action: Action,
     onset_floor: f64,
 }
@@ -169,7 +188,7 @@ impl Prepared {
     /// Force, stiffness and damping from one evaluation of the elastic law.
     #[inline]
     pub fn respond(&self, approach: Approach) -> Response {
-        let (elastic, slope) = self.curve.pair(approach.penetration);
+        let (elastic, slope) = self.stack.pair(approach.penetration);
         // v = max(δ̇₀, v_c)
         let onset = approach.onset_rate.max(self.onset_floor);
         let [force, stiffness, damping] = self.action.respond(elastic, slope, approach.rate, onset);
@@ -184,18 +203,25 @@ impl Prepared {
     /// Stored energy ∫ g dδ \[J\].
     #[inline]
     pub fn energy(&self, penetration: f64) -> f64 {
-        self.curve.energy(penetration)
+        self.stack.energy(penetration)
     }
 
     /// K \[N/mⁿ\] and n of an elastic law g = K δⁿ, for those who take powers of many numbers at a time.
     #[inline]
     pub fn power(&self) -> Option<[f64; 2]> {
-        match self.curve {
+        match self.stack.curve()? {
             Curve::Linear(stiffness) => Some([stiffness, 1.0]),
             Curve::Hertz(stiffness) => Some([stiffness, 1.5]),
             Curve::Power(power) => Some([power.stiffness, power.exponent]),
             Curve::Logarithmic(_) | Curve::Plain(_) => None,
         }
+    }
+
+    /// K \[N/mⁿ\], n and k_s \[N/m\] of a power with a spring behind it, for the same.
+    #[inline]
+    pub fn power_and_series(&self) -> Option<[f64; 3]> {
+        let (power, series) = self.stack.power_and_series()?;
+        Some([power.stiffness, power.exponent, series])
     }
 
     /// What the dissipation does, its constants worked out.

@@ -27,6 +27,7 @@
 //! use chaindrive_contact::{dissipation::LankaraniNikravesh, elastic::Power};
 //!
 //! let law = Law {
+//!     series: None,
 //!     elastic: Elastic::Power(Power { stiffness: 6.61e10, exponent: 1.5 }),
 //!     dissipation: Dissipation::LankaraniNikravesh(LankaraniNikravesh { restitution: 0.9 }),
 //!     onset_floor: 1e-3,

@@ -56,6 +56,7 @@ impl Law {
         let dissipation: Dissipation = serde_json::from_str(dissipation)
             .map_err(|error| refused(&error, "dissipation", "a dissipation"))?;
         let law = chaindrive_contact::Law {
+            series: None,
             elastic: cylinders.between(&pair).or_raise()?,
             dissipation,
             onset_floor,

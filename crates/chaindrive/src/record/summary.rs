@@ -1,6 +1,7 @@
 //! The short account that ends every run.
 
 mod counted;
+mod steadiness;
 
 use std::fmt;
 
@@ -10,6 +11,8 @@ use serde::{Deserialize, Serialize};
 
 use super::event::{EventTable, kind};
 use crate::Simulation;
+use steadiness::Batches;
+pub use steadiness::Steadiness;
 
 /// Collects statistics sample by sample, in bounded memory.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -43,6 +46,7 @@ pub struct SpanStatistics {
     sum: f64,
     sum_of_squares: f64,
     count: f64,
+    batches: Batches,
     /// Samples without a tension, because no roller holds the span.
     pub missing: u64,
 }
@@ -58,6 +62,16 @@ impl SpanStatistics {
         (self.sum_of_squares / self.count - self.mean().powi(2))
             .max(0.0)
             .sqrt()
+    }
+
+    /// How well the mean is known, and whether it is that of a steady state; nothing of fewer than 20 samples.
+    pub fn steadiness(&self) -> Option<Steadiness> {
+        self.batches.steadiness()
+    }
+
+    /// Half width of the 95 % interval of the mean \[N\]; NaN where it is not known.
+    pub fn half_width(&self) -> f64 {
+        self.steadiness().map_or(f64::NAN, |found| found.half_width)
     }
 }
 
@@ -191,6 +205,7 @@ impl Summary {
             sum: 0.0,
             sum_of_squares: 0.0,
             count: 0.0,
+            batches: Batches::default(),
             missing: 0,
         };
         Self {
@@ -221,6 +236,7 @@ impl Summary {
                 span.sum += tension;
                 span.sum_of_squares += tension * tension;
                 span.count += 1.0;
+                span.batches.push(tension);
             } else {
                 span.missing += 1;
             }
@@ -351,7 +367,7 @@ impl fmt::Display for Report<'_> {
         if !summary.spans.is_empty() {
             writeln!(
                 f,
-                "span tension [N]            mean        std      least   greatest"
+                "span tension [N]            mean     ± 95 %        std      least   greatest"
             )?;
             for span in &summary.spans {
                 let samples = summary.samples;
@@ -359,9 +375,13 @@ impl fmt::Display for Report<'_> {
                     writeln!(f, "  {:22} no roller holds it in any sample", span.name)?;
                     continue;
                 }
+                let half_width = match span.steadiness() {
+                    Some(found) => format!("{:.1}", found.half_width),
+                    None => "not known".to_owned(),
+                };
                 write!(
                     f,
-                    "  {:22} {:>9.1}  {:>9.1}  {:>9.1}  {:>9.1}",
+                    "  {:22} {:>9.1}  {half_width:>9}  {:>9.1}  {:>9.1}  {:>9.1}",
                     span.name,
                     span.mean(),
                     span.deviation(),

@@ -54,6 +54,7 @@ const KIND: &str = "contact_kind";
 
 statistics! {
     SpanTensionMean, "span_tension_mean", "N", Some("span"), "mean over time of the span tension";
+    SpanTensionHalfWidth, "span_tension_half_width", "N", Some("span"), "half width of the 95 % interval of the mean, from means of batches; NaN below 20 samples";
     SpanTensionStd, "span_tension_std", "N", Some("span"), "standard deviation of the span tension";
     SpanTensionMin, "span_tension_min", "N", Some("span"), "least sample of the span tension";
     SpanTensionMax, "span_tension_max", "N", Some("span"), "greatest sample of the span tension";
@@ -109,6 +110,7 @@ impl Statistic {
         let counts = simulation.statistics();
         let number = match self {
             Self::SpanTensionMean => return spans(SpanStatistics::mean),
+            Self::SpanTensionHalfWidth => return spans(SpanStatistics::half_width),
             Self::SpanTensionStd => return spans(SpanStatistics::deviation),
             Self::SpanTensionMin => return spans(|span| span.least),
             Self::SpanTensionMax => return spans(|span| span.greatest),

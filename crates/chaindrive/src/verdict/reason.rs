@@ -53,6 +53,25 @@ pub enum Reason {
         /// Share of the samples without a tension \[–\].
         share: f64,
     },
+    /// The motion has not become steady: means are those of a transient.
+    NotSteady {
+        /// Name of a span where that is so.
+        span: String,
+    },
+    /// The mean over the run is not that of the steady state, because its start counts.
+    StartCounts {
+        /// Name of the span where that matters most.
+        span: String,
+        /// Time at which the steady state begins \[s\].
+        until: f64,
+        /// Mean over the run less that of the steady state, over the latter \[–\].
+        shift: f64,
+    },
+    /// The run is too short for the interval of a mean to be believed.
+    MeansUncertain {
+        /// Name of a span where that is so.
+        span: String,
+    },
     /// The span tensions could not be compared with those of a sharper run.
     SpansNotExamined {
         /// The span without a tension, and when.
@@ -98,6 +117,9 @@ impl Reason {
             Self::LossesUncertain { .. }
             | Self::TooShort { .. }
             | Self::SpanNotHeld { .. }
+            | Self::NotSteady { .. }
+            | Self::StartCounts { .. }
+            | Self::MeansUncertain { .. }
             | Self::SpansNotExamined { .. }
             | Self::AccuracyMissed { .. }
             | Self::HorizonWithinRun { .. }
@@ -117,6 +139,9 @@ impl Reason {
             Self::TooShort { .. } => "too-short",
             Self::SpanRarelyHeld { .. } => "span-rarely-held",
             Self::SpanNotHeld { .. } => "span-not-held",
+            Self::NotSteady { .. } => "not-steady",
+            Self::StartCounts { .. } => "start-counts",
+            Self::MeansUncertain { .. } => "means-uncertain",
             Self::SpansNotExamined { .. } => "spans-not-examined",
             Self::AccuracyMissed { .. } => "accuracy-missed",
             Self::HorizonWithinRun { .. } => "horizon-within-run",
@@ -165,6 +190,20 @@ impl fmt::Display for Reason {
                 f,
                 "span {span} has no tension in {} of the samples, no roller holds it there: its statistics are of the rest",
                 percent(*share)
+            ),
+            Self::NotSteady { span } => write!(
+                f,
+                "the tension of span {span} has not become steady: its mean is that of a transient, simulate longer"
+            ),
+            Self::StartCounts { span, until, shift } => write!(
+                f,
+                "the mean tension of span {span} is off by {} because the start counts: the motion is steady from {} on",
+                percent(*shift),
+                duration(*until)
+            ),
+            Self::MeansUncertain { span } => write!(
+                f,
+                "the mean tension of span {span} is known worse than its interval says: it swings slowly, simulate longer"
             ),
             Self::SpansNotExamined { gap } => write!(
                 f,

@@ -108,3 +108,52 @@ fn the_worst_reason_decides_and_comes_first() {
     assert_eq!(sound.trust, Trust::Trusted);
     assert_eq!(sound.to_string(), "verdict                  trusted");
 }
+
+/// A span with a mean over all samples, and a steady state of 1000 N ± 5 N that begins after 30 % of them.
+fn reached(mean: f64) -> (&'static str, f64, Steadiness) {
+    let found = Steadiness {
+        half_width: 5.0,
+        mean: 1000.0,
+        before: 0.3,
+        is_steady: true,
+        is_independent: true,
+    };
+    ("a-b", mean, found)
+}
+
+#[test]
+fn means_of_a_steady_state_are_not_spoken_against() {
+    assert_eq!(steadiness(&[reached(1004.0)], 2.0), []);
+    assert_eq!(steadiness(&[], 2.0), []);
+}
+
+#[test]
+fn a_start_that_counts_is_told() {
+    let reasons = steadiness(&[reached(1003.0), reached(1020.0)], 2.0);
+    let [Reason::StartCounts { until, shift, .. }] = reasons[..] else {
+        panic!("{reasons:?}");
+    };
+    assert!((until - 0.6).abs() < 1e-12 && (shift - 0.02).abs() < 1e-12);
+}
+
+#[test]
+fn what_is_not_steady_is_told_alone() {
+    let (span, mean, mut found) = reached(1020.0);
+    found.is_steady = false;
+    let reasons = steadiness(&[reached(1020.0), (span, mean, found)], 2.0);
+    assert!(
+        matches!(reasons[..], [Reason::NotSteady { .. }]),
+        "{reasons:?}"
+    );
+}
+
+#[test]
+fn an_interval_that_is_not_to_be_believed_is_told() {
+    let (span, mean, mut found) = reached(1000.0);
+    found.is_independent = false;
+    let reasons = steadiness(&[(span, mean, found)], 2.0);
+    assert!(
+        matches!(reasons[..], [Reason::MeansUncertain { .. }]),
+        "{reasons:?}"
+    );
+}

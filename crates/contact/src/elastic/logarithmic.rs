@@ -23,14 +23,22 @@ const LEAST_DEPTH: f64 = 1e-290;
 /// ```
 ///
 /// From 0.9 δ_max on it continues as its own tangent, with the stiffness 1.88 π E* L.
+///
+/// A spring k_s in series makes the curve of a longer D, and leaves the load at the knee:
+///
+/// ```text
+/// δ + g/k_s = p [ln(D eᶜ/p) − 1],   c = π E* L/k_s
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Logarithmic {
     /// π E* L \[N/m\], what all stiffnesses are measured with.
     scale: f64,
-    /// δ_max \[m\].
+    /// ln δ_max, δ_max in metres.
     end: f64,
-    /// 0.9 δ_max \[m\].
+    /// δ at the knee \[m\].
     knee: f64,
+    /// u at the knee.
+    knee_ratio: f64,
 }
 
 impl Logarithmic {
@@ -40,8 +48,21 @@ impl Logarithmic {
         let end = greatest_penetration(length_scale);
         Self {
             scale: PI * modulus_length,
-            end,
+            end: end.ln(),
             knee: KNEE * end,
+            knee_ratio: KNEE_RATIO,
+        }
+    }
+
+    /// The curve with a spring in series.
+    pub(super) fn with_series(self, stiffness: f64) -> Self {
+        let shift = self.scale / stiffness;
+        let p = self.knee / self.knee_ratio;
+        Self {
+            end: self.end + shift,
+            knee: self.knee + shift * p,
+            knee_ratio: self.knee_ratio + shift,
+            ..self
         }
     }
 
@@ -49,13 +70,14 @@ impl Logarithmic {
     #[inline]
     fn ratio(self, penetration: f64) -> f64 {
         // u − ln u = 1 + ln(δ_max/δ)
-        minus_w_lower((self.end / penetration.max(LEAST_DEPTH)).ln())
+        minus_w_lower(self.end - penetration.max(LEAST_DEPTH).ln())
     }
 
     /// Force beyond the knee: g = g_k + k_k (δ − δ_k).
     #[inline]
     fn straight(self, penetration: f64) -> f64 {
-        self.scale * (self.knee / KNEE_RATIO + (penetration - self.knee) / (KNEE_RATIO - 1.0))
+        let ratio = self.knee_ratio;
+        self.scale * (self.knee / ratio + (penetration - self.knee) / (ratio - 1.0))
     }
 
     #[inline]
@@ -85,7 +107,10 @@ impl Logarithmic {
             let u = self.ratio(penetration);
             (self.scale * penetration / u, self.scale / (u - 1.0))
         } else {
-            (self.straight(penetration), self.scale / (KNEE_RATIO - 1.0))
+            (
+                self.straight(penetration),
+                self.scale / (self.knee_ratio - 1.0),
+            )
         }
     }
 
@@ -98,7 +123,7 @@ impl Logarithmic {
         let ratio = if penetration < self.knee {
             self.ratio(depth)
         } else {
-            KNEE_RATIO
+            self.knee_ratio
         };
         // U = π E* L p² (2u − 1)/4,   p = δ/u
         let p = depth / ratio;

@@ -29,6 +29,7 @@ mod lambert;
 mod logarithmic;
 mod power;
 mod radzimovsky;
+mod stack;
 
 pub use conformal::Conformal;
 pub(crate) use curve::Curve;
@@ -39,6 +40,7 @@ pub use esdu_78035::Esdu78035;
 pub use johnson::Johnson;
 pub use power::Power;
 pub use radzimovsky::Radzimovsky;
+pub(crate) use stack::Stack;
 
 use serde::{Deserialize, Serialize};
 

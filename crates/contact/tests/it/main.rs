@@ -5,4 +5,5 @@ mod friction;
 mod johnson;
 mod reference;
 mod restitution;
+mod series;
 mod validation_impact;

@@ -59,17 +59,18 @@ fn every_hysteretic_dissipation_delivers_what_the_theory_says() {
         for dissipation in Dissipation::hysteretic(asked) {
             let expected = delivered(dissipation.factor().unwrap());
             for elastic in elastics() {
-                let law = Law {
-                    elastic,
-                    dissipation,
-                    onset_floor: 1e-6,
-                };
-                let error = thrown(&law, 5e-4, 0.5, 1000.0) - expected;
-                worst = worst.max(error.abs());
-                assert!(
-                    error.abs() < 1e-4,
-                    "{dissipation:?}, {elastic:?}: {error:e}"
-                );
+                // Dissipation multiplies the force of the whole stack.
+                for series in [None, Some(5e7)] {
+                    let law = Law {
+                        elastic,
+                        series,
+                        dissipation,
+                        onset_floor: 1e-6,
+                    };
+                    let error = thrown(&law, 5e-4, 0.5, 1000.0) - expected;
+                    worst = worst.max(error.abs());
+                    assert!(error.abs() < 1e-4, "{law:?}: {error:e}");
+                }
                 if matches!(dissipation, Dissipation::Exact(_)) {
                     assert!((expected - asked).abs() < 1e-13);
                 }
@@ -83,6 +84,7 @@ fn every_hysteretic_dissipation_delivers_what_the_theory_says() {
 fn without_dissipation_nothing_is_lost() {
     for elastic in elastics() {
         let law = Law {
+            series: None,
             elastic,
             dissipation: Dissipation::None,
             onset_floor: 1e-6,
@@ -98,6 +100,7 @@ fn kelvin_and_voigt_part_when_the_force_is_zero() {
     let (stiffness, mass) = (1e8_f64, 5e-4_f64);
     for damping_ratio in [0.05, 0.2, 0.5] {
         let law = Law {
+            series: None,
             elastic: Elastic::Power(Power::linear(stiffness)),
             dissipation: Dissipation::Viscous(Viscous {
                 damping: 2.0 * damping_ratio * (stiffness * mass).sqrt(),

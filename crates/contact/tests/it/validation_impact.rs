@@ -74,6 +74,7 @@ fn impact(law: Law, mass: f64, speed: f64) -> Impact {
 
 fn power(stiffness: f64, exponent: f64, dissipation: Dissipation) -> Law {
     Law {
+        series: None,
         elastic: Elastic::Power(Power {
             stiffness,
             exponent,
@@ -162,6 +163,7 @@ fn c02_restitution_of_lankarani_and_nikravesh() {
     for (input, expected) in inputs.iter().zip(expected) {
         for elastic in elastic {
             let law = Law {
+                series: None,
                 elastic,
                 dissipation: lankarani_nikravesh(input[0]),
                 onset_floor: 1e-6,

@@ -102,6 +102,7 @@ mod tests {
     fn contacts(shape: Shape) -> Contacts {
         let surface = Surface {
             law: Law {
+                series: None,
                 elastic: Elastic::Power(Power::linear(1e6)),
                 dissipation: Dissipation::None,
                 onset_floor: 0.01,

@@ -134,6 +134,7 @@ fn gap(kind: Kind, dice: &mut Dice) -> Vec<Piece> {
 fn surface(friction: Friction) -> Surface {
     Surface {
         law: Law {
+            series: None,
             elastic: Elastic::Power(Power::linear(STIFFNESS)),
             dissipation: Dissipation::None,
             onset_floor: 0.01,

@@ -228,6 +228,7 @@ mod tests {
         };
         let surface = Surface {
             law: Law {
+                series: None,
                 elastic: Elastic::Power(Power::linear(1e6)),
                 dissipation: Dissipation::None,
                 onset_floor: 0.01,

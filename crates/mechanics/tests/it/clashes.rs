@@ -16,6 +16,7 @@ const TIP: f64 = 0.75;
 
 fn law() -> Law {
     Law {
+        series: None,
         elastic: Elastic::Power(Power::linear(1e8)),
         dissipation: Dissipation::None,
         onset_floor: 0.01,

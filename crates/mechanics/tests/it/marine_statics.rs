@@ -32,6 +32,7 @@ const STATES: [(&str, [[f64; 2]; 4]); 3] = [
 #[test]
 fn span_tensions_match_the_reference_states() {
     let law = Law {
+        series: None,
         elastic: Elastic::Power(Power::linear(5e9)),
         dissipation: Dissipation::None,
         onset_floor: 0.0,

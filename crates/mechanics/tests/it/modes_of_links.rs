@@ -38,6 +38,7 @@ fn clearance() -> Joint {
         bore_radius: 2e-3,
         surface: Surface {
             law: Law {
+                series: None,
                 elastic: Elastic::Power(Power::linear(STIFFNESS)),
                 dissipation: Dissipation::None,
                 onset_floor: 0.01,

@@ -33,6 +33,7 @@ fn sprocket(name: &str, teeth: u32, centre: [f64; 2], rotation: Rotation) -> Tur
         mass: 1.0,
         surface: Surface {
             law: Law {
+                series: None,
                 elastic: Elastic::Power(Power::linear(5e7)),
                 dissipation: Dissipation::None,
                 onset_floor: 0.01,
@@ -370,6 +371,7 @@ pub(crate) fn with_play(placed: &mut PlacedChain) {
             bore_radius: 2.07e-3,
             surface: Surface {
                 law: Law {
+                    series: None,
                     elastic: Elastic::Power(Power::linear(2e8)),
                     dissipation: Dissipation::Viscous(Viscous { damping: 500.0 }),
                     onset_floor: 0.01,

@@ -77,6 +77,7 @@ pub(super) fn surface(
     let onset_floor = findings.or_default(floor, &place, &defaults::ONSET_FLOOR);
     Some(Surface {
         law: Law {
+            series: None,
             elastic: elastic?,
             dissipation: dissipation?,
             onset_floor,

@@ -119,6 +119,7 @@ pub(crate) fn body(mass: f64, inertia: f64) -> LinkBody {
 pub(crate) fn surface(stiffness: f64, exponent: f64) -> Surface {
     Surface {
         law: Law {
+            series: None,
             elastic: Elastic::Power(Power {
                 stiffness,
                 exponent,

@@ -65,6 +65,7 @@ impl SliderCrank {
         let stiffness = case["inputs"]["K"].as_f64().unwrap_or(66_101_983_978.97);
         let surface = Surface {
             law: Law {
+                series: None,
                 elastic: Elastic::Power(Power {
                     stiffness,
                     exponent: 1.5,

@@ -22,6 +22,7 @@ fn surface(hole: f64, pin: f64, length: f64) -> Surface {
     let pair = Cylinders::pin_in_hole(hole, pin, length, 113.7e9);
     Surface {
         law: Law {
+            series: None,
             elastic: CylinderLaw::Cylindrical.between(&pair).unwrap(),
             dissipation: Dissipation::LankaraniNikravesh(LankaraniNikravesh { restitution: 0.7 }),
             onset_floor: 0.05,

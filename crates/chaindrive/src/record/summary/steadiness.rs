@@ -1,0 +1,346 @@
+//! How well a mean over time is known, and whether it is that of a steady state.
+//!
+//! Samples follow one another and are not independent, so their scatter says little about their mean. Means of long batches
+//! are nearly independent (Schmeiser, Operations Research 30, 1982: ten to thirty batches do):
+//!
+//! ```text
+//! x̄ ± t₀.₉₇₅,ₘ₋₁ s/√m,   s² = Σ (b_j − x̄)²/(m − 1),   b_j: means of m = 20 batches
+//! ```
+//!
+//! Where the means of neighbouring batches still go together, 10 longer ones are taken. A series that is shorter than 20 of its
+//! correlation times τ is too short for either:
+//!
+//! ```text
+//! τ = 1 + 2 Σ_{k≤M} ρ_k,   M ≥ 5 τ the smallest        (Sokal, Monte Carlo Methods in Statistical Mechanics, 1997)
+//! ```
+//!
+//! What comes before the steady state
+//! is cut off where the standard error of the rest is least (MSER: White, Simulation 69, 1997; on means of batches as in MSER-5,
+//! White, Cobb and Spratt, Winter Simulation Conference 2000):
+//!
+//! ```text
+//! d = argmin Σ_{j>d} (b_j − x̄_d)²/(n − d)²,   d < n/2
+//! ```
+//!
+//! A minimum at half of the run, or halves of the rest whose means differ (Geweke 1992), say that there is no steady state yet.
+
+use serde::{Deserialize, Serialize};
+
+/// Batches kept at most; when there are so many, neighbours are joined.
+const MOST: usize = 160;
+
+/// Batches that the scatter is taken from, with t₀.₉₇₅ of their degrees of freedom: more if they are independent.
+const GROUPINGS: [(usize, f64); 2] = [(20, 2.093_024), (10, 2.262_157)];
+
+/// Lag-one correlation of m independent means stays below this over √m in 19 of 20 cases (von Neumann).
+const INDEPENDENT: f64 = 1.645;
+
+/// Correlation times below which a series is too short for its mean to be known.
+const CORRELATION_TIMES: f64 = 20.0;
+
+/// Correlation times over which correlations are added up.
+const WINDOW: f64 = 5.0;
+
+/// Standard errors by which the means of two halves may differ: 1 of 130 steady runs differs by more.
+const HALVES_AGREE: f64 = 3.0;
+
+/// Relative scatter below which a number is constant.
+const CONSTANT: f64 = 1e-12;
+
+/// Means of batches of a series, in bounded memory.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Batches {
+    means: Vec<f64>,
+    /// Samples in a batch.
+    length: u64,
+    /// Sum and number of those in the batch that is not full.
+    begun: (f64, u64),
+}
+
+/// What is known of a mean over time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Steadiness {
+    /// Half width of the 95 % interval of the mean, without what comes before the steady state.
+    pub half_width: f64,
+    /// Mean of the steady state.
+    pub mean: f64,
+    /// Share of the samples that come before it.
+    pub before: f64,
+    /// Whether a steady state is reached.
+    pub is_steady: bool,
+    /// Whether the batches are long enough for the half width to be believed.
+    pub is_independent: bool,
+}
+
+impl Default for Batches {
+    fn default() -> Self {
+        Self {
+            means: Vec::with_capacity(MOST),
+            length: 1,
+            begun: (0.0, 0),
+        }
+    }
+}
+
+impl Batches {
+    pub(super) fn push(&mut self, value: f64) {
+        let (sum, count) = &mut self.begun;
+        *sum += value;
+        *count += 1;
+        if *count < self.length {
+            return;
+        }
+        self.means.push(*sum / self.length as f64);
+        self.begun = (0.0, 0);
+        if self.means.len() == MOST {
+            let joined = self.means.chunks_exact(2);
+            self.means = joined.map(|pair| 0.5 * (pair[0] + pair[1])).collect();
+            self.length *= 2;
+        }
+    }
+
+    /// What they say about the mean; nothing as long as there are fewer than 20.
+    pub(super) fn steadiness(&self) -> Option<Steadiness> {
+        let all = &self.means;
+        let (least, _) = GROUPINGS[0];
+        if all.len() < least {
+            return None;
+        }
+        let cut = truncation(all);
+        let steady = &all[cut..];
+        let mut found = None;
+        for (groups, quantile) in GROUPINGS {
+            let Some(means) = grouped(steady, groups) else {
+                continue;
+            };
+            let [mean, error] = moments(&means);
+            let independent = correlation(&means, 1) < INDEPENDENT / (groups as f64).sqrt();
+            found = Some((mean, quantile * error, independent, means));
+            if independent {
+                break;
+            }
+        }
+        let (_, half_width, is_independent, means) = found?;
+        let is_independent =
+            is_independent && steady.len() as f64 > CORRELATION_TIMES * correlation_time(steady);
+        let (first, second) = means.split_at(means.len() / 2);
+        let [[a, ea], [b, eb]] = [first, second].map(moments);
+        let constant = CONSTANT * a.abs().max(b.abs());
+        let apart = (a - b).abs() > HALVES_AGREE * ea.hypot(eb) + constant;
+        Some(Steadiness {
+            half_width,
+            mean: mean(steady),
+            before: cut as f64 / all.len() as f64,
+            is_steady: cut < all.len() / 2 && !apart,
+            is_independent,
+        })
+    }
+}
+
+/// Batches before the steady state, at most half of them.
+fn truncation(means: &[f64]) -> usize {
+    let n = means.len();
+    // Sums over what is left, from the end.
+    let (mut sum, mut squares) = (0.0, 0.0);
+    // About the last mean, so that nothing is lost where scatter is small.
+    let origin = means[n - 1];
+    let mut best = (f64::INFINITY, 0);
+    for d in (0..n).rev() {
+        let x = means[d] - origin;
+        sum += x;
+        squares += x * x;
+        if d > n / 2 {
+            continue;
+        }
+        let left = (n - d) as f64;
+        let scatter = (squares - sum * sum / left).max(0.0) / (left * left);
+        if scatter <= best.0 {
+            best = (scatter, d);
+        }
+    }
+    best.1
+}
+
+/// Means of some groups of equal length; what does not fill one is left out at the start.
+fn grouped(means: &[f64], groups: usize) -> Option<Vec<f64>> {
+    let length = means.len() / groups;
+    let chunks = means.rchunks_exact(length.max(1));
+    let mut chunks: Vec<f64> = chunks.take(groups).map(mean).collect();
+    chunks.reverse();
+    (length > 0).then_some(chunks)
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Mean, and its standard error.
+fn moments(values: &[f64]) -> [f64; 2] {
+    let mean = mean(values);
+    let n = values.len() as f64;
+    let squares: f64 = values.iter().map(|x| (x - mean).powi(2)).sum();
+    [mean, (squares / (n - 1.0) / n).sqrt()]
+}
+
+/// Correlation of those that are `lag` apart; none where nothing scatters.
+fn correlation(values: &[f64], lag: usize) -> f64 {
+    let mean = mean(values);
+    let squares: f64 = values.iter().map(|x| (x - mean).powi(2)).sum();
+    let pairs = values.iter().zip(&values[lag..]);
+    let products: f64 = pairs.map(|(a, b)| (a - mean) * (b - mean)).sum();
+    let correlation = products / squares;
+    if correlation.is_nan() {
+        0.0
+    } else {
+        correlation
+    }
+}
+
+/// Number of values after which one tells little of the next, at least 1.
+fn correlation_time(values: &[f64]) -> f64 {
+    let mut time = 1.0_f64;
+    for lag in 1..values.len() {
+        if lag as f64 >= WINDOW * time.max(1.0) {
+            break;
+        }
+        time += 2.0 * correlation(values, lag);
+    }
+    time.max(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers that look normal and are the same every time.
+    struct Noise(u64);
+
+    impl Noise {
+        fn uniform(&mut self) -> f64 {
+            // xorshift64* (Vigna 2016)
+            self.0 ^= self.0 >> 12;
+            self.0 ^= self.0 << 25;
+            self.0 ^= self.0 >> 27;
+            (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11) as f64 / (1_u64 << 53) as f64
+        }
+
+        /// Sum of twelve: variance 1.
+        fn normal(&mut self) -> f64 {
+            (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
+        }
+    }
+
+    /// x ← φ x + e, which has the mean 0, after `settle` steps.
+    fn series(seed: u64, phi: f64, count: usize) -> impl Iterator<Item = f64> {
+        let mut noise = Noise(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
+        let mut x = noise.normal() / (1.0 - phi * phi).sqrt();
+        (0..count).map(move |_| {
+            x = phi * x + noise.normal();
+            x
+        })
+    }
+
+    fn of(values: impl Iterator<Item = f64>) -> Option<Steadiness> {
+        let mut batches = Batches::default();
+        values.for_each(|value| batches.push(value));
+        batches.steadiness()
+    }
+
+    /// The intervals hold the true mean, 0, as often as they say, for noise that is independent and for noise that is not.
+    #[test]
+    fn intervals_hold_the_mean_as_often_as_they_say() {
+        for (phi, count) in [(0.0, 500), (0.5, 1000), (0.9, 4000), (0.98, 20_000)] {
+            let seeds = 1..=400;
+            let held = seeds.filter(|&seed| {
+                let found = of(series(seed, phi, count)).unwrap();
+                found.mean.abs() < found.half_width
+            });
+            let share = held.count() as f64 / 400.0;
+            assert!((0.90..0.985).contains(&share), "{phi}: {share}");
+        }
+    }
+
+    /// s/√n of independent numbers with variance 1, and √((1 + φ)/(1 − φ)) times that of numbers that go on.
+    #[test]
+    fn half_widths_are_those_of_theory() {
+        for (phi, count) in [(0.0_f64, 2000_u32), (0.9, 20_000)] {
+            let widths = (1..=200).map(|seed| of(series(seed, phi, count as usize)).unwrap());
+            let mean = widths.map(|found| found.half_width).sum::<f64>() / 200.0;
+            // σ_x̄ = σ_e/(1 − φ)/√n
+            let theory = 2.09 / (1.0 - phi) / f64::from(count).sqrt();
+            assert!(
+                (mean / theory - 1.0).abs() < 0.15,
+                "{phi}: {mean}, {theory}"
+            );
+        }
+    }
+
+    #[test]
+    fn steady_noise_is_called_steady() {
+        let steady = (1..=400).filter(|&seed| of(series(seed, 0.5, 3000)).unwrap().is_steady);
+        assert!(steady.count() > 370);
+    }
+
+    #[test]
+    fn a_transient_is_cut_off() {
+        let mut steady = 0;
+        for seed in 1..=100 {
+            let noise = series(seed, 0.5, 4000).enumerate();
+            let found = of(noise.map(|(i, x)| x + 60.0 * (-(i as f64) / 150.0).exp())).unwrap();
+            steady += usize::from(found.is_steady);
+            // It has decayed to the size of the noise after 4 time constants.
+            assert!((0.08..0.5).contains(&found.before), "{seed}: {found:?}");
+            assert!(
+                found.mean.abs() < 2.0 * found.half_width,
+                "{seed}: {found:?}"
+            );
+        }
+        assert!(steady > 95);
+    }
+
+    #[test]
+    fn a_drift_is_no_steady_state() {
+        for seed in 1..=50 {
+            let noise = series(seed, 0.5, 4000).enumerate();
+            let found = of(noise.map(|(i, x)| x + 10.0 * i as f64 / 4000.0)).unwrap();
+            assert!(!found.is_steady, "{seed}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_constant_is_known() {
+        let found = of((0..1000).map(|_| 17.25)).unwrap();
+        assert_eq!(found.half_width.to_bits(), 0);
+        assert!(found.is_steady && found.is_independent, "{found:?}");
+        assert!((found.mean - 17.25).abs() < 1e-12);
+    }
+
+    #[test]
+    fn few_samples_say_nothing() {
+        assert_eq!(of(series(1, 0.0, 19)), None);
+        assert!(of(series(1, 0.0, 20)).is_some());
+    }
+
+    /// What goes on for a quarter of the run is not known from it, and what swings once in it is not steady.
+    #[test]
+    fn batches_that_go_together_are_told() {
+        let doubted = (1..=100).filter(|&seed| {
+            let found = of(series(seed, 0.999, 4000)).unwrap();
+            !found.is_independent || !found.is_steady
+        });
+        let doubted = doubted.count();
+        assert!(doubted > 80, "{doubted}");
+        let slow = |i: usize| (std::f64::consts::TAU * i as f64 / 3000.0).sin();
+        let found = of((0..3000).map(slow)).unwrap();
+        assert!(!found.is_steady, "{found:?}");
+    }
+
+    /// Memory stays what it is, and means of joined batches are those of their samples.
+    #[test]
+    fn batches_are_joined() {
+        let mut batches = Batches::default();
+        (0..100_000_u32).for_each(|i| batches.push(f64::from(i)));
+        assert!(batches.means.len() < MOST);
+        assert!((batches.means[0] - 0.5 * (batches.length - 1) as f64).abs() < 1e-9);
+    }
+}
