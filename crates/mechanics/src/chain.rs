@@ -1,6 +1,6 @@
 //! The particle chain: point masses at the rollers, joined by spring-damper links.
 
-use crate::{ChainModel, DriveError};
+use crate::{Articulation, ChainModel, DriveError};
 
 /// How the two ends of the chain are joined.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,6 +65,8 @@ pub struct Chain {
     pub roller_diameter: f64,
     /// Height of the link plates \[m\], positive: what a guide for plates touches.
     pub plate_height: f64,
+    /// What resists in the joints, if anything. Joints with clearance have their friction in the contact of pin and bush.
+    pub articulation: Option<Articulation>,
     /// How the ends are joined.
     pub ends: Ends,
     /// What it is made of. Rigid links take their lengths from `lengths`; stiffness, damping and
@@ -157,6 +159,7 @@ impl Chain {
             }
         }
         problems.extend(self.model.problems());
+        problems.extend(self.articulation.iter().flat_map(Articulation::problems));
         problems
     }
 }

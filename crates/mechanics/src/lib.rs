@@ -17,6 +17,7 @@
 //! SI units and radians throughout; counter-clockwise positive; tension positive; normals point
 //! out of the material; penetration positive.
 
+mod articulation;
 mod assembly;
 mod chain;
 mod chains;
@@ -39,6 +40,7 @@ mod tensioner;
 mod torque;
 mod trains;
 
+pub use articulation::Articulation;
 pub use assembly::{Assembled, Fitting, RollerLayout, Statics};
 pub use chain::{Chain, End, Ends};
 pub use chains::ChainModel;

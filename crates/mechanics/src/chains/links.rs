@@ -25,6 +25,7 @@ mod observe;
 mod pins;
 mod posture;
 pub(crate) mod rates;
+mod resist;
 #[cfg(test)]
 mod slider_crank;
 #[cfg(test)]
@@ -44,6 +45,7 @@ pub(crate) use impulses::Impulses;
 pub(crate) use pins::{Pairs, Pins};
 pub(crate) use posture::{Posture, Shapes, free_part};
 
+use super::joints::Joints;
 use super::{Record, Surroundings};
 use crate::End;
 use crate::contact::{ContactMemory, LaneTally, MemoryLanes};
@@ -111,6 +113,8 @@ pub(crate) struct Linkage {
     pub(crate) joints: Vec<JointMates>,
     pub(crate) pairs: Pairs,
     pub(crate) joining: Joining,
+    /// What resists in the joints beside the contact of pin and bush, if anything.
+    pub(super) resisting: Option<Joints>,
     pub(crate) free_rollers: Option<FreeRollers>,
     /// Whether what runs on the teeth turns with its link: a bush.
     pub(crate) bush_turns: bool,
@@ -178,7 +182,10 @@ impl Linkage {
         record: &mut Record,
     ) {
         let Record {
-            joint_state, loads, ..
+            joint_state,
+            loads,
+            resistance,
+            ..
         } = record;
         self.pose_links(at, &mut joint_state.posture);
         joint_state.elements.clear();
@@ -188,6 +195,9 @@ impl Linkage {
         self.roller_forces(at, rates, joint_state);
         self.end_loads(rates, joint_state);
         self.mesh(around, at, rates, loads, joint_state);
+        if let Some(joints) = &self.resisting {
+            self.resist(joints, at, rates, joint_state, resistance);
+        }
         if let Joining::Hinges(hinges) = &self.joining {
             hinges.hold(self, at, rates, joint_state);
         }

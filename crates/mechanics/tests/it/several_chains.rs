@@ -57,6 +57,7 @@ pub(crate) fn chain(links: usize, stops: [usize; 2]) -> PlacedChain {
             masses: vec![3.81e-3; links],
             roller_diameter: ROLLER,
             plate_height: 9.6e-3,
+            articulation: None,
             ends: Ends::Closed,
             model: ChainModel::Particles,
         },

@@ -133,6 +133,7 @@ pub(super) fn resolve(
             &defaults::PLATE_HEIGHT,
             roller_diameter,
         ),
+        articulation: None,
         ends: ends?,
         model,
     };

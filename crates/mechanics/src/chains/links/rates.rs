@@ -4,6 +4,7 @@ use chaindrive_geometry::{Point, Vector};
 use nalgebra::Vector3;
 
 use super::{Joining, JointState, Linkage, Partner, cross, turned};
+use crate::chains::joints::Joints;
 use crate::chains::{Record, Surroundings};
 use crate::contact::{PlatePins, PlatePlaces};
 
@@ -64,6 +65,9 @@ impl Linkage {
             squared = squared.max(RIM_SHARE * rim);
             damping = damping.max(RIM_SHARE * drag);
         }
+        let [turning, drag] = self.joint_rates(record.resistance.slopes);
+        squared = squared.max(turning);
+        damping = damping.max(drag);
         if let Joining::Hinges(hinges) = &self.joining {
             damping = damping.max(hinges.rate);
             squared = squared.max(self.pulled(joint_state));
@@ -71,13 +75,17 @@ impl Linkage {
         [squared, damping]
     }
 
-    /// Frequency \[1/s\] of the stabilisation of ideal joints, which every method takes explicitly.
+    /// Frequency \[1/s\] of the stabilisation of ideal joints and of torques in joints, which every method takes explicitly.
     ///
-    /// It is a damper and a spring of rate α: symplectic Euler takes steps up to 0.83/α with it, and this is 0.41/α.
+    /// The stabilisation is a damper and a spring of rate α: symplectic Euler takes steps up to 0.83/α with it, and this is 0.41/α.
+    /// Torques are reckoned with as explicit methods do, by D + √(D² + ω²).
     pub(crate) fn stabilisation(&self) -> f64 {
+        let joints = self.resisting.as_ref();
+        let [squared, damping] = self.joint_rates(joints.map_or([0.0; 2], Joints::slopes));
+        let torques = damping + (damping * damping + squared).sqrt();
         match &self.joining {
-            Joining::Hinges(hinges) => (1.0 + std::f64::consts::SQRT_2) * hinges.rate,
-            Joining::Clearance(_) => 0.0,
+            Joining::Hinges(hinges) => torques.max((1.0 + std::f64::consts::SQRT_2) * hinges.rate),
+            Joining::Clearance(_) => torques,
         }
     }
 

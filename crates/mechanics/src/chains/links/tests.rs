@@ -75,6 +75,7 @@ pub(super) fn bicycle(model: ChainModel) -> Parts {
                 masses: vec![3.81e-3; links],
                 roller_diameter,
                 plate_height: 9.6e-3,
+                articulation: None,
                 ends: Ends::Closed,
                 model,
             },

@@ -68,6 +68,7 @@ pub(crate) fn parts(law: Law) -> Parts {
                 masses: vec![mass; links],
                 roller_diameter,
                 plate_height: 0.0778,
+                articulation: None,
                 ends: Ends::Closed,
                 model: chaindrive_mechanics::ChainModel::Particles,
             },
