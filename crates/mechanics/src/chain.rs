@@ -1,5 +1,7 @@
 //! The particle chain: point masses at the rollers, joined by spring-damper links.
 
+use chaindrive_contact::Friction;
+
 use crate::{Articulation, ChainModel, DriveError};
 
 /// How the two ends of the chain are joined.
@@ -160,6 +162,13 @@ impl Chain {
         }
         problems.extend(self.model.problems());
         problems.extend(self.articulation.iter().flat_map(Articulation::problems));
+        let rubs = |it: &Articulation| it.friction != Friction::None;
+        if self.model.has_clearance() && self.articulation.as_ref().is_some_and(rubs) {
+            problems.push(DriveError::Conflict {
+                path: "chain.joint.contact.friction".into(),
+                problem: "pins with clearance rub by the contact with their bushes".into(),
+            });
+        }
         problems
     }
 }

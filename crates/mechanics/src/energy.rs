@@ -41,13 +41,13 @@ pub enum Flow {
     LinkLoss,
     /// Loss in impacts of pins, bushes and rollers.
     JointLoss,
-    /// Loss by friction of pins in bushes, where chains have joints without clearance, and in the lubricant there.
+    /// Loss where links turn against each other: friction of pins in bushes, and viscous damping there.
     ArticulationLoss,
     /// Loss in roller-tooth impacts.
     ToothLoss,
     /// Loss in chain-guide impacts.
     GuideLoss,
-    /// Loss by friction.
+    /// Loss by friction on teeth and guides, and of bushes in rollers.
     FrictionLoss,
     /// Loss in the dampers of bearings and couplings.
     SupportLoss,

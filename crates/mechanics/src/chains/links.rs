@@ -241,7 +241,7 @@ impl Linkage {
                 part(1).velocity.dot(&push(self.links)) - part(0).velocity.dot(&push(0));
         }
         rates[Flow::JointLoss as usize] += tally.normal_loss;
-        rates[Flow::FrictionLoss as usize] += tally.friction_loss;
+        rates[Flow::ArticulationLoss as usize] += tally.friction_loss;
         Tally {
             normal_loss: 0.0,
             friction_loss: 0.0,
@@ -327,6 +327,23 @@ impl Linkage {
             sum += closed.map(|&gap| free.bearing.energy(gap)).sum::<f64>();
         }
         sum
+    }
+
+    /// Energy of the friction of pins that stick in their bushes \[J\].
+    pub(crate) fn stuck(&self, memory: &Memory) -> f64 {
+        let Joining::Clearance(bearing) = &self.joining else {
+            return 0.0;
+        };
+        let friction = &bearing.lanes.friction;
+        let ContactMemory {
+            gap, force, stick, ..
+        } = &memory.joints;
+        let joints = gap.iter().zip(force.iter().zip(stick));
+        let closed = joints.filter(|(gap, _)| **gap < 0.0);
+        // U = ½ k z²
+        closed
+            .map(|(_, (force, z))| 0.5 * friction.stiffness(*force) * z * z)
+            .sum()
     }
 
     /// All closed contacts, those of pins in bushes first.
