@@ -10,7 +10,7 @@ use crate::dynamics::{pairs, run};
 /// Links of the strand, its tension \[N\], and μ r with the pin of 56B-1 \[m\].
 const LINKS: u32 = 31;
 const TENSION: f64 = 30e3;
-const LEVER: f64 = 0.1 * 0.5 * 0.0279;
+const LEVER: f64 = 0.1 * 0.5 * 0.034_32;
 
 /// A strand of 56B-1 with soft links, plucked to the shape of its first mode.
 fn strand(joint: &str) -> String {

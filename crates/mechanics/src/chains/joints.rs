@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::MemoryError;
 use crate::articulation::Articulation;
-use crate::contact::LaneFriction;
+use crate::contact::{LaneFriction, LaneSpring};
 use crate::lanes::{Lane, Wide, padded};
 
 /// The joints in flat arrays, and what their friction remembers.
@@ -24,6 +24,8 @@ pub(super) struct Joints {
     radius: Vec<f64>,
     /// Viscous damping c \[N m s/rad\], likewise.
     damping: Vec<f64>,
+    /// Largest r² \[m²\] and c \[N m s/rad\].
+    largest: [f64; 2],
     pub(super) memory: Stick,
 }
 
@@ -67,6 +69,7 @@ impl Joints {
             friction: LaneFriction::new(friction),
             radius: at_joints(radius),
             damping: at_joints(damping),
+            largest: [radius * radius, damping],
             memory: Stick {
                 time: 0.0,
                 state: vec![0.0; entries],
@@ -98,61 +101,108 @@ impl Joints {
         Ok(())
     }
 
-    /// Finds the torques, where `motion` tells ω and N of a lane of joints; returns the power \[W\] that goes into the joints.
+    /// Finds the torques; returns the power \[W\] that goes into the joints.
     #[inline(always)]
     pub(super) fn resist<S: Simd>(
         &self,
         w: Wide<S>,
         t: f64,
         found: &mut Resistance,
-        motion: impl Fn(usize) -> [Lane<S>; 2],
+        turns: &impl Turns<S>,
     ) -> f64 {
         let n = self.radius.len();
         let dt = t - self.memory.time;
-        let Resistance {
-            torque,
-            stick,
-            stored,
-            slopes,
-        } = found;
-        stick.time = t;
-        if stick.state.len() != n {
-            stick.state.resize(n, 0.0);
+        found.stick.time = t;
+        if found.stick.state.len() != n {
+            found.stick.state.resize(n, 0.0);
         }
-        if torque.len() != padded(n + 1) {
-            torque.resize(padded(n + 1), 0.0);
+        if found.torque.len() <= n {
+            found.torque.resize(padded(n + 1), 0.0);
         }
+        // The law that most have gets a loop of its own.
+        if let LaneFriction::SpringSlider(spring) = &self.friction {
+            let sums = self.sweep::<S, true>(w, dt, found, turns, *spring);
+            // What the spring resists within a step is in its stiffness already.
+            found.slopes = [self.largest[0] * spring.stiffness, self.largest[1]];
+            found.stored = 0.5 * spring.stiffness * sums.squares.sum();
+            return sums.power.sum();
+        }
+        let sums = self.sweep::<S, false>(w, dt, found, turns, LaneSpring::default());
+        let stiffness = self.friction.stiffness(sums.normal.largest());
+        found.slopes = [self.largest[0] * stiffness, sums.steepest.largest()];
+        found.stored = sums.held.sum();
+        sums.power.sum()
+    }
+
+    /// All joints once; without closures, since those that are not inlined are compiled for the oldest processor.
+    #[inline(always)]
+    fn sweep<S: Simd, const SPRING: bool>(
+        &self,
+        w: Wide<S>,
+        dt: f64,
+        found: &mut Resistance,
+        turns: &impl Turns<S>,
+        spring: LaneSpring,
+    ) -> Sums<S> {
+        let n = self.radius.len();
         let zero = w.splat(0.0);
-        let [radius, damping, before] =
-            [&self.radius, &self.damping, &self.memory.state].map(|values| w.lanes(values));
-        let mut now = Wide::<S>::lanes_mut(&mut stick.state);
-        let mut moments = Wide::<S>::lanes_mut(&mut torque[..n]);
-        // What a spring resists within the step is in its stiffness already.
-        let springs = w.splat(if self.friction.is_elastic() { 0.0 } else { 1.0 });
-        let (mut power, mut steepest, mut most, mut held) = (zero, zero, zero, zero);
+        let radius = w.lanes(&self.radius);
+        let damping = w.lanes(&self.damping);
+        let before = w.lanes(&self.memory.state);
+        let mut now = Wide::<S>::lanes_mut(&mut found.stick.state);
+        let mut moments = Wide::<S>::lanes_mut(&mut found.torque[..n]);
+        let mut sums = Sums {
+            power: zero,
+            squares: zero,
+            held: zero,
+            steepest: zero,
+            normal: zero,
+        };
         for i in 0..n / Wide::<S>::COUNT {
             let (r, c) = (radius.get(i), damping.get(i));
-            let [rate, normal] = motion(i);
+            let [rate, normal] = turns.at(w, i);
             let normal = r.greater(zero).select(normal, zero);
             let slip = r * rate;
-            let (rubbing, state) = self
-                .friction
-                .rub(w, dt, [normal, normal], slip, before.get(i));
+            let (rubbing, state) = if SPRING {
+                spring.rub(w, dt, normal, slip, before.get(i))
+            } else {
+                self.friction
+                    .rub(w, dt, [normal, normal], slip, before.get(i))
+            };
             now.set(i, state);
             // M = r f − c ω
             let drag = c * rate;
             moments.set(i, r * rubbing.force - drag);
-            power += drag * rate - rubbing.force * slip;
-            held += self.friction.stored(w, normal, state);
-            steepest = steepest.max(r * r * (springs * rubbing.steepest) + c);
-            most = most.max(normal);
+            sums.power += drag * rate - rubbing.force * slip;
+            sums.squares += state * state;
+            if !SPRING {
+                sums.held += self.friction.stored(w, normal, state);
+                sums.steepest = sums.steepest.max(r * r * rubbing.steepest + c);
+                sums.normal = sums.normal.max(normal);
+            }
         }
-        *stored = held.sum();
-        let radius = self.radius.iter().copied().fold(0.0, f64::max);
-        let stiffness = radius * radius * self.friction.stiffness(most.largest());
-        *slopes = [stiffness, steepest.largest()];
-        power.sum()
+        sums
     }
+}
+
+/// How the links of a member turn against each other.
+pub(super) trait Turns<S: Simd> {
+    /// ω \[rad/s\] and N \[N\] of a lane of joints.
+    fn at(&self, w: Wide<S>, lane: usize) -> [Lane<S>; 2];
+}
+
+/// What a sweep over the joints adds up.
+struct Sums<S: Simd> {
+    /// Power that goes into the joints \[W\].
+    power: Lane<S>,
+    /// Squares of the states of the friction.
+    squares: Lane<S>,
+    /// Energy of what sticks \[J\].
+    held: Lane<S>,
+    /// Steepest −∂M/∂ω \[N m s/rad\].
+    steepest: Lane<S>,
+    /// Largest normal force \[N\].
+    normal: Lane<S>,
 }
 
 /// Goes on from what the joints of another chain remembered; there must be some in both or in none.

@@ -46,6 +46,15 @@ pub(super) enum LaneElastic {
     General(Box<Prepared>),
 }
 
+/// A spring and a slider, prepared.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct LaneSpring {
+    /// k \[N/m\]
+    pub(crate) stiffness: f64,
+    /// μ/k \[m/N\]
+    coefficient_by_stiffness: f64,
+}
+
 /// A friction law on lanes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum LaneFriction {
@@ -59,12 +68,7 @@ pub(crate) enum LaneFriction {
         slope: f64,
     },
     /// A spring and a slider.
-    SpringSlider {
-        /// k \[N/m\]
-        stiffness: f64,
-        /// μ/k \[m/N\]
-        coefficient_by_stiffness: f64,
-    },
+    SpringSlider(LaneSpring),
     /// Any other law, one lane after the other.
     General(Friction),
 }
@@ -352,6 +356,34 @@ fn respond_one_by_one(law: &Prepared, part: Part, numbers: &mut [f64]) {
     }
 }
 
+impl LaneSpring {
+    /// Friction, and the deflection of the spring.
+    #[inline(always)]
+    pub(crate) fn rub<S: Simd>(
+        &self,
+        w: Wide<S>,
+        dt: f64,
+        normal: Lane<S>,
+        slip: Lane<S>,
+        before: Lane<S>,
+    ) -> (Rubbing<S>, Lane<S>) {
+        // z′ = z + v h, drawn back to |z′| ≤ μ N/k;   f = −k z′,   −∂f/∂v = k h while it holds
+        let stiffness = w.splat(self.stiffness);
+        let limit = w.splat(self.coefficient_by_stiffness) * normal;
+        let tried = before + slip * w.splat(dt);
+        let stick = tried.max(-limit).min(limit);
+        let holds = limit.greater(tried.abs());
+        let drag = holds.select(stiffness * w.splat(dt), w.splat(0.0));
+        let rubbing = Rubbing {
+            force: -(stiffness * stick),
+            drag,
+            secant: drag,
+            steepest: drag,
+        };
+        (rubbing, stick)
+    }
+}
+
 impl LaneFriction {
     pub(crate) fn new(friction: Friction) -> Self {
         match friction {
@@ -361,10 +393,10 @@ impl LaneFriction {
                 slip_speed_squared: coulomb.slip_speed * coulomb.slip_speed,
                 slope: coulomb.coefficient / coulomb.slip_speed,
             },
-            Friction::SpringSlider(spring) => Self::SpringSlider {
+            Friction::SpringSlider(spring) => Self::SpringSlider(LaneSpring {
                 stiffness: spring.stiffness,
                 coefficient_by_stiffness: spring.coefficient / spring.stiffness,
-            },
+            }),
             other => Self::General(other),
         }
     }
@@ -374,7 +406,7 @@ impl LaneFriction {
         match self {
             Self::None => 0.0,
             Self::Coulomb { slope, .. } => slope * force,
-            Self::SpringSlider { .. } => 0.0,
+            Self::SpringSlider(_) => 0.0,
             Self::General(friction) => friction.damping(force, 0.0),
         }
     }
@@ -411,25 +443,7 @@ impl LaneFriction {
                 };
                 (rubbing, zero)
             }
-            Self::SpringSlider {
-                stiffness,
-                coefficient_by_stiffness,
-            } => {
-                // z′ = z + v h, drawn back to |z′| ≤ μ N/k;   f = −k z′,   −∂f/∂v = k h while it holds
-                let stiffness = w.splat(*stiffness);
-                let limit = w.splat(*coefficient_by_stiffness) * normal;
-                let tried = before + slip * w.splat(dt);
-                let stick = tried.max(-limit).min(limit);
-                let holds = limit.greater(tried.abs());
-                let drag = holds.select(stiffness * w.splat(dt), zero);
-                let rubbing = Rubbing {
-                    force: -(stiffness * stick),
-                    drag,
-                    secant: drag,
-                    steepest: drag,
-                };
-                (rubbing, stick)
-            }
+            Self::SpringSlider(spring) => spring.rub(w, dt, normal, slip, before),
             Self::General(friction) => {
                 one_by_one(w, friction, dt, [touching, normal], slip, before)
             }
@@ -443,7 +457,7 @@ impl LaneFriction {
         let half_square = w.splat(0.5) * stick * stick;
         match self {
             Self::None | Self::Coulomb { .. } => w.splat(0.0),
-            Self::SpringSlider { stiffness, .. } => w.splat(*stiffness) * half_square,
+            Self::SpringSlider(spring) => w.splat(spring.stiffness) * half_square,
             Self::General(friction) if !friction.has_state() => w.splat(0.0),
             Self::General(friction) => {
                 half_square * normal.one_by_one(|normal| friction.stiffness(normal))
@@ -453,20 +467,20 @@ impl LaneFriction {
 
     /// Whether nothing but a spring holds what sticks.
     pub(crate) fn is_elastic(&self) -> bool {
-        matches!(self, Self::SpringSlider { .. })
+        matches!(self, Self::SpringSlider(_))
     }
 
     /// Whether it has a state.
     #[inline(always)]
     fn remembers(&self) -> bool {
-        matches!(self, Self::SpringSlider { .. } | Self::General(_))
+        matches!(self, Self::SpringSlider(_) | Self::General(_))
     }
 
     /// Stiffness along the surface of what sticks under a normal force \[N/m\].
     pub(crate) fn stiffness(&self, normal: f64) -> f64 {
         match self {
             Self::None | Self::Coulomb { .. } => 0.0,
-            Self::SpringSlider { stiffness, .. } => *stiffness,
+            Self::SpringSlider(spring) => spring.stiffness,
             Self::General(friction) => friction.stiffness(normal),
         }
     }

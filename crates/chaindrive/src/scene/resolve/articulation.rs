@@ -105,7 +105,6 @@ impl<'a> Joints<'a> {
         let friction = if play {
             Friction::None
         } else {
-            self.refuse_play(findings);
             self.friction(findings)?
         };
         let rubs = friction != Friction::None;
@@ -136,26 +135,26 @@ impl<'a> Joints<'a> {
             damping,
         }))
     }
+}
 
-    /// Joints without clearance have no play to describe, nor an impact.
-    fn refuse_play(&self, findings: &mut Findings<'_>) {
-        let Some(joint) = &self.text.joint else {
-            return;
-        };
-        let contact = &joint.contact;
-        let given = [
-            ("clearance", joint.clearance.is_some()),
-            ("length", joint.length.is_some()),
-            ("contact.law", contact.law.is_some()),
-            ("contact.restitution", contact.restitution.is_some()),
-            ("contact.damping", contact.damping.is_some()),
-            ("contact.dissipation", contact.dissipation.is_some()),
-            ("contact.onset_floor", contact.onset_floor.is_some()),
-        ];
-        for (key, _) in given.iter().filter(|(_, given)| *given) {
-            let hint = "take `model = \"clearance-joints\"`, or leave it out";
-            let message = "only pins with clearance have one";
-            findings.refuse_with(&format!("chain.joint.{key}"), message, hint);
-        }
+/// Joints without clearance have no play to describe, nor an impact.
+pub(super) fn refuse_play(text: &schema::Chain, findings: &mut Findings<'_>) {
+    let Some(joint) = &text.joint else {
+        return;
+    };
+    let contact = &joint.contact;
+    let given = [
+        ("clearance", joint.clearance.is_some()),
+        ("length", joint.length.is_some()),
+        ("contact.law", contact.law.is_some()),
+        ("contact.restitution", contact.restitution.is_some()),
+        ("contact.damping", contact.damping.is_some()),
+        ("contact.dissipation", contact.dissipation.is_some()),
+        ("contact.onset_floor", contact.onset_floor.is_some()),
+    ];
+    for (key, _) in given.iter().filter(|(_, given)| *given) {
+        let hint = "take `model = \"clearance-joints\"`, or leave it out";
+        let message = "only pins with clearance have one";
+        findings.refuse_with(&format!("chain.joint.{key}"), message, hint);
     }
 }

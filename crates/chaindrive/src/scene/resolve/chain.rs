@@ -2,7 +2,7 @@
 
 use chaindrive_mechanics::{Chain, ChainModel, End, Ends};
 
-use super::articulation::Joints;
+use super::articulation::{self, Joints};
 use super::chains::Described;
 use super::law::Pair;
 use super::scatter::Normal;
@@ -55,6 +55,9 @@ pub(super) fn resolve(
     };
     if written.model == schema::ChainModel::Particles {
         links::refuse_on_particles(written, findings);
+    }
+    if written.model != schema::ChainModel::ClearanceJoints {
+        articulation::refuse_play(written, findings);
     }
     let text = &match of_type {
         Some(chain) => catalogue::completed(written, chain, findings),

@@ -138,9 +138,15 @@ impl Linkage {
             return;
         };
         let (pins, posture) = (&joint_state.pins, &joint_state.posture);
+        let friction = &bearing.lanes.friction;
         for joint in 0..self.joints.len() {
             let stiffness = pins.stiffness[joint];
-            let drag = pins.drag[joint];
+            // What a spring resists within the step is in its stiffness already.
+            let (drag, spring) = if friction.is_elastic() {
+                (0.0, friction.stiffness(pins.force[joint]))
+            } else {
+                (pins.drag[joint], 0.0)
+            };
             if stiffness <= 0.0 && drag <= 0.0 {
                 continue;
             }
@@ -170,8 +176,9 @@ impl Linkage {
                 add_square(&mut sum[0], along, share * stiffness);
                 add_square(&mut sum[0], pivoting, share * pins.across[joint]);
                 add_square(&mut sum[1], along, share * pins.damping[joint]);
-                if drag > 0.0 {
+                if drag > 0.0 || spring > 0.0 {
                     let across = self.scaled_row(body, t, cross(arm, t) + lever);
+                    add_square(&mut sum[0], across, share * spring);
                     add_square(&mut sum[1], across, share * drag);
                 }
             }

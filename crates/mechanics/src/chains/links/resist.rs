@@ -6,9 +6,9 @@ use pulp::{Simd, WithSimd};
 use super::hinge::Hinges;
 use super::posture::Posture;
 use super::{Joining, JointState, Linkage};
-use crate::chains::joints::{Joints, Resistance};
+use crate::chains::joints::{Joints, Resistance, Turns};
 use crate::energy::Flow;
-use crate::lanes::{Wide, dispatch, padded};
+use crate::lanes::{Lane, Lanes, Wide, dispatch, padded};
 
 impl Linkage {
     /// Adds the torques of the joints to those on the links.
@@ -96,10 +96,26 @@ impl WithSimd for Torques<'_> {
         let w = Wide(simd);
         let n = self.normal.len();
         let Posture { before, after, .. } = self.posture;
-        let [before, after, normal] =
-            [&before.spin[..n], &after.spin[..n], self.normal].map(|values| w.lanes(values));
-        self.joints.resist(w, self.t, self.found, |i| {
-            [after.get(i) - before.get(i), normal.get(i)]
-        })
+        let spins = Spins {
+            before: w.lanes(&before.spin[..n]),
+            after: w.lanes(&after.spin[..n]),
+            normal: w.lanes(self.normal),
+        };
+        self.joints.resist(w, self.t, self.found, &spins)
+    }
+}
+
+/// Angular speeds of the links before and after every joint, and the force on its pin.
+struct Spins<'a, S: Simd> {
+    before: Lanes<'a, S>,
+    after: Lanes<'a, S>,
+    normal: Lanes<'a, S>,
+}
+
+impl<S: Simd> Turns<S> for Spins<'_, S> {
+    #[inline(always)]
+    fn at(&self, _w: Wide<S>, lane: usize) -> [Lane<S>; 2] {
+        let rate = self.after.get(lane) - self.before.get(lane);
+        [rate, self.normal.get(lane)]
     }
 }

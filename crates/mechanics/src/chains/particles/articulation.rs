@@ -14,9 +14,9 @@ use pulp::Simd;
 
 use super::Particles;
 use super::springs::Links;
-use crate::chains::joints::{Joints, Resistance};
+use crate::chains::joints::{Joints, Resistance, Turns};
 use crate::contact::Rollers;
-use crate::lanes::{LANES, Lane, Wide};
+use crate::lanes::{LANES, Lane, Lanes, Wide};
 
 /// How links turn and pull: work space, filled anew by every evaluation.
 #[derive(Clone, Debug, Default)]
@@ -70,15 +70,13 @@ pub(super) fn act<S: Simd>(
     for values in across.iter_mut() {
         values[count..].fill(0.0);
     }
-    let [turn, pull] = [&*rate, &*tension].map(|values| w.lanes(&values[LANES..LANES + n]));
-    let [turn_before, pull_before] =
-        [&*rate, &*tension].map(|values| w.lanes(&values[LANES - 1..LANES - 1 + n]));
-    let half = w.splat(0.5);
-    let power = joints.resist(w, t, found, |i| {
-        // ω = ω_i − ω_{i−1},   N = ½ (|T_{i−1}| + |T_i|)
-        let rate = turn.get(i) - turn_before.get(i);
-        [rate, half * (pull_before.get(i).abs() + pull.get(i).abs())]
-    });
+    let neighbours = Neighbours {
+        rate: w.lanes(&rate[LANES..LANES + n]),
+        rate_before: w.lanes(&rate[LANES - 1..LANES - 1 + n]),
+        tension: w.lanes(&tension[LANES..LANES + n]),
+        tension_before: w.lanes(&tension[LANES - 1..LANES - 1 + n]),
+    };
+    let power = joints.resist(w, t, found, &neighbours);
     if links.closed {
         // Behind the last link is the first joint again.
         found.torque[count] = found.torque[0];
@@ -91,6 +89,24 @@ pub(super) fn act<S: Simd>(
         rollers.ay[0] += rollers.ay[count] - behind[1];
     }
     power
+}
+
+/// The links at every joint, and those before them.
+struct Neighbours<'a, S: Simd> {
+    rate: Lanes<'a, S>,
+    rate_before: Lanes<'a, S>,
+    tension: Lanes<'a, S>,
+    tension_before: Lanes<'a, S>,
+}
+
+impl<S: Simd> Turns<S> for Neighbours<'_, S> {
+    #[inline(always)]
+    fn at(&self, w: Wide<S>, lane: usize) -> [Lane<S>; 2] {
+        // ω = ω_i − ω_{i−1},   N = ½ (|T_{i−1}| + |T_i|)
+        let rate = self.rate.get(lane) - self.rate_before.get(lane);
+        let both = self.tension_before.get(lane).abs() + self.tension.get(lane).abs();
+        [rate, w.splat(0.5) * both]
+    }
 }
 
 impl Particles {
@@ -114,19 +130,20 @@ impl Particles {
 fn pass_on<S: Simd>(w: Wide<S>, torque: &[f64], across: &[Vec<f64>; 2], rollers: &mut Rollers<'_>) {
     let n = across[0].len();
     let zero = w.splat(0.0);
-    let [here, next] = [&torque[..n], &torque[1..=n]].map(|values| w.lanes(values));
+    let (here, next) = (w.lanes(&torque[..n]), w.lanes(&torque[1..=n]));
     let inverse_mass = w.lanes(&rollers.inverse_mass[..n]);
-    let across = across.each_ref().map(|values| w.lanes(values));
+    let (across_x, across_y) = (w.lanes(&across[0]), w.lanes(&across[1]));
+    let mut ax = Wide::<S>::lanes_mut(&mut rollers.ax[..n]);
+    let mut ay = Wide::<S>::lanes_mut(&mut rollers.ay[..n]);
     let mut before: [Lane<S>; 2] = [zero; 2];
     for i in 0..n / Wide::<S>::COUNT {
         // F = (M_i − M_{i+1}) n/ℓ at the second end, −F at the first
         let couple = here.get(i) - next.get(i);
-        let push = [couple * across[0].get(i), couple * across[1].get(i)];
-        let start = i * Wide::<S>::COUNT;
-        for (axis, a) in [&mut *rollers.ax, &mut *rollers.ay].into_iter().enumerate() {
-            let force = push[axis].after(before[axis]) - push[axis];
-            (w.load(a, start) + force * inverse_mass.get(i)).store(a, start);
-        }
+        let push = [couple * across_x.get(i), couple * across_y.get(i)];
+        let fx = push[0].after(before[0]) - push[0];
+        let fy = push[1].after(before[1]) - push[1];
+        ax.add(i, fx * inverse_mass.get(i));
+        ay.add(i, fy * inverse_mass.get(i));
         before = push;
     }
 }
