@@ -404,9 +404,8 @@ impl LaneFriction {
     /// Slope at rest under a normal force \[N s/m\].
     pub(super) fn at_rest(&self, force: f64) -> f64 {
         match self {
-            Self::None => 0.0,
+            Self::None | Self::SpringSlider(_) => 0.0,
             Self::Coulomb { slope, .. } => slope * force,
-            Self::SpringSlider(_) => 0.0,
             Self::General(friction) => friction.damping(force, 0.0),
         }
     }

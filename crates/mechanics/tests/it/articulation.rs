@@ -31,12 +31,12 @@ fn spring_slider(coefficient: f64) -> Friction {
     })
 }
 
-fn articulation(friction: Friction, damping: f64) -> Option<Articulation> {
-    Some(Articulation {
+fn articulation(friction: Friction, damping: f64) -> Articulation {
+    Articulation {
         friction,
         radius: RADIUS,
         damping,
-    })
+    }
 }
 
 fn assembled(chain: Chain, positions: Vec<Point>, velocities: Vec<Vector>) -> Assembled {
@@ -176,7 +176,7 @@ fn friction_takes_the_same_from_every_swing() {
             links,
             tension,
             amplitude,
-            articulation(spring_slider(FRICTION), 0.0),
+            Some(articulation(spring_slider(FRICTION), 0.0)),
         );
         let peaks = swings(plucked, 1e-5, 4.3 * period);
         // From the end of the second cycle on: the shape has adapted.
@@ -200,7 +200,7 @@ fn viscous_joints_damp_a_strand_as_their_closed_form_says() {
     let eigen = 2.0 - 2.0 * (PI / links as f64).cos();
     let omega = (tension * eigen / (PITCH * MASS)).sqrt();
     let zeta = damping * eigen * eigen / (2.0 * PITCH * PITCH * MASS * omega);
-    let joints = articulation(Friction::None, damping);
+    let joints = Some(articulation(Friction::None, damping));
     let peaks = swings(
         plucked(links, tension, 1e-4, joints),
         5e-6,
@@ -274,12 +274,12 @@ fn resisting() -> Vec<Resisting> {
     let mut all = vec![(
         "clearance",
         rigid(clearance(Friction::None)),
-        articulation(Friction::None, 30.0),
+        Some(articulation(Friction::None, 30.0)),
     )];
     let mut frictions = Friction::specimens();
     frictions.push(spring_slider(FRICTION));
     for friction in frictions {
-        let joints = articulation(friction, 30.0);
+        let joints = Some(articulation(friction, 30.0));
         all.push(("particles", ChainModel::Particles, joints));
         all.push(("ideal", rigid(Joint::Ideal), joints));
     }
@@ -348,19 +348,19 @@ fn the_ledger_of_a_ring_closes_in_every_model() {
         (
             "particles",
             ChainModel::Particles,
-            articulation(friction, 5.0),
+            Some(articulation(friction, 5.0)),
             2e-6,
         ),
         (
             "ideal",
             rigid(Joint::Ideal),
-            articulation(friction, 5.0),
+            Some(articulation(friction, 5.0)),
             2e-6,
         ),
         (
             "clearance",
             rigid(clearance(friction)),
-            articulation(Friction::None, 5.0),
+            Some(articulation(Friction::None, 5.0)),
             2e-6,
         ),
     ];
@@ -399,7 +399,7 @@ fn the_ledger_of_a_strand_with_friction_closes() {
     });
     for (friction, tolerance) in [(smooth, 2e-3), (spring_slider(FRICTION), 2e-3)] {
         let open = |step: f64| {
-            let strand = plucked(20, 40e3, 0.02, articulation(friction, 0.0));
+            let strand = plucked(20, 40e3, 0.02, Some(articulation(friction, 0.0)));
             let flows = vec![0.0; strand.system.quadratures()];
             let at = |assembled: &Assembled, t: f64, flows: &[f64]| {
                 let moment = Moment {

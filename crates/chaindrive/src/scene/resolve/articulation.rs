@@ -98,7 +98,7 @@ impl<'a> Joints<'a> {
     }
 
     /// What resists; none where nothing does. Pins with clearance rub in the contact with their bushes.
-    pub(super) fn articulation(&self, findings: &mut Findings<'_>) -> Option<Option<Articulation>> {
+    pub(super) fn articulation(&self, findings: &mut Findings<'_>) -> Option<Articulation> {
         let joint = self.text.joint.as_ref();
         let damping = joint.map_or(0.0, |joint| joint.damping.0);
         let play = self.text.model == ChainModel::ClearanceJoints;
@@ -109,7 +109,7 @@ impl<'a> Joints<'a> {
         };
         let rubs = friction != Friction::None;
         if !rubs && damping == 0.0 {
-            return Some(None);
+            return None;
         }
         let pin = self.pin();
         if rubs {
@@ -128,12 +128,12 @@ impl<'a> Joints<'a> {
                 findings.assume("chain.joint.pin_diameter", 2.0 * pin, remark);
             }
         }
-        Some(Some(Articulation {
+        Some(Articulation {
             friction,
             // Where nothing slides any radius will do.
             radius: pin.unwrap_or(0.5 * self.text.pitch?.0),
             damping,
-        }))
+        })
     }
 }
 

@@ -141,7 +141,7 @@ pub(super) fn resolve(
             &defaults::PLATE_HEIGHT,
             roller_diameter,
         ),
-        articulation: articulation?,
+        articulation,
         ends: ends?,
         model,
     };

@@ -278,10 +278,12 @@ impl Findings<'_> {
     }
 
     /// A choice, or the default.
-    fn or_chosen<T: Copy>(&mut self, given: Option<T>, path: &str, choice: &Choice<T>) -> T
-    where
-        T: Serialize,
-    {
+    fn or_chosen<T: Copy + Serialize>(
+        &mut self,
+        given: Option<T>,
+        path: &str,
+        choice: &Choice<T>,
+    ) -> T {
         given.unwrap_or_else(|| {
             let chosen = choice.value(self.version);
             self.assume(path, json!(chosen), choice.basis.remark());
