@@ -1,6 +1,8 @@
 //! The particle chain: point masses at the rollers, joined by spring-damper links.
 
-use crate::{ChainModel, DriveError};
+use chaindrive_contact::Friction;
+
+use crate::{Articulation, ChainModel, DriveError};
 
 /// How the two ends of the chain are joined.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,6 +67,8 @@ pub struct Chain {
     pub roller_diameter: f64,
     /// Height of the link plates \[m\], positive: what a guide for plates touches.
     pub plate_height: f64,
+    /// What resists in the joints, if anything. Joints with clearance have their friction in the contact of pin and bush.
+    pub articulation: Option<Articulation>,
     /// How the ends are joined.
     pub ends: Ends,
     /// What it is made of. Rigid links take their lengths from `lengths`; stiffness, damping and
@@ -157,6 +161,14 @@ impl Chain {
             }
         }
         problems.extend(self.model.problems());
+        problems.extend(self.articulation.iter().flat_map(Articulation::problems));
+        let rubs = |it: &Articulation| it.friction != Friction::None;
+        if self.model.has_clearance() && self.articulation.as_ref().is_some_and(rubs) {
+            problems.push(DriveError::Conflict {
+                path: "chain.joint.contact.friction".into(),
+                problem: "pins with clearance rub by the contact with their bushes".into(),
+            });
+        }
         problems
     }
 }

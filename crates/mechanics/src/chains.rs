@@ -6,6 +6,7 @@
 //! bodies that it touches, never at the system. Nobody outside this folder asks which member it is.
 
 mod balance;
+mod joints;
 pub(crate) mod links;
 mod model;
 pub(crate) mod particles;
@@ -41,10 +42,10 @@ pub(crate) enum Chain {
 /// What a chain remembers beside its contacts with bodies.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) enum ChainMemory {
-    /// Nothing.
-    Particles,
-    /// The contacts in its joints.
-    Links(Box<links::Memory>),
+    /// The friction of its joints, if there is any.
+    Particles(Option<joints::Stick>),
+    /// The contacts in its joints, and the friction of those without clearance.
+    Links(Box<links::Memory>, Option<joints::Stick>),
 }
 
 /// What a chain is evaluated among.
@@ -263,19 +264,28 @@ impl Chain {
 impl Chain {
     /// See [`System::memory`](crate::System::memory).
     pub(crate) fn memory(&self) -> ChainMemory {
+        let stick = |joints: Option<&joints::Joints>| joints.map(|joints| joints.memory.clone());
         match self {
-            Self::Particles(_) => ChainMemory::Particles,
-            Self::Links(chain) => ChainMemory::Links(Box::new(chain.memory.clone())),
+            Self::Particles(chain) => ChainMemory::Particles(stick(chain.joints.as_ref())),
+            Self::Links(chain) => {
+                let memory = Box::new(chain.memory.clone());
+                ChainMemory::Links(memory, stick(chain.resisting.as_ref()))
+            }
         }
     }
 
     /// See [`System::remember`](crate::System::remember).
     pub(crate) fn remember(&mut self, memory: ChainMemory) -> Result<(), MemoryError> {
         match (self, memory) {
-            (Self::Particles(_), ChainMemory::Particles) => Ok(()),
-            (Self::Links(chain), ChainMemory::Links(memory)) => chain.remember(*memory),
-            (Self::Particles(_), ChainMemory::Links(_))
-            | (Self::Links(_), ChainMemory::Particles) => Err(MemoryError::Model),
+            (Self::Particles(chain), ChainMemory::Particles(memory)) => {
+                joints::remember(chain.joints.as_mut(), memory)
+            }
+            (Self::Links(chain), ChainMemory::Links(memory, stick)) => {
+                joints::remember(chain.resisting.as_mut(), stick)?;
+                chain.remember(*memory)
+            }
+            (Self::Particles(_), ChainMemory::Links(..))
+            | (Self::Links(_), ChainMemory::Particles(_)) => Err(MemoryError::Model),
         }
     }
 }

@@ -231,7 +231,9 @@ fn layout_problems(placed: &PlacedChain, parts: &Parts) -> Vec<DriveError> {
             found.extend(numbers.filter_map(|v| finite(v, "chain.start")).take(1));
             found
         }
-        Layout::Route { stops, phase, fit } => {
+        Layout::Route {
+            stops, phase, fit, ..
+        } => {
             let mut found = Vec::new();
             if placed.chain.ends != Ends::Closed {
                 found.push(conflict(

@@ -23,7 +23,7 @@ use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
 
-pub(crate) use law::SurfaceLaw;
+pub(crate) use law::{LaneFriction, LaneSpring, SurfaceLaw};
 pub(crate) use memory::{ContactMemory, ContactState, MemoryLanes};
 pub(crate) use plates::{PlateContact, PlatePins, PlatePlaces};
 pub(crate) use rollers::Rollers;

@@ -178,6 +178,8 @@ pub enum Layout {
         stops: Vec<Stop>,
         /// Where the first wheel stands within its half-tooth window, 0 to 1; 0.5 is symmetric.
         phase: f64,
+        /// How the spans set off.
+        start: SpanStart,
         /// How the loop is fitted and tightened.
         fit: Fit,
     },
@@ -198,6 +200,15 @@ impl Layout {
             Self::Points { .. } => 0.0,
         }
     }
+}
+
+/// How the chain moves between the sprockets when the run begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpanStart {
+    /// Along itself.
+    Quiet,
+    /// As the seated rollers at both ends, linear in between: with the instantaneous motion of the polygons across the spans.
+    Polygon,
 }
 
 /// How a closed chain is fitted to its sprockets.

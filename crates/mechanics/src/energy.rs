@@ -20,7 +20,7 @@ pub enum Store {
     Carriers,
     /// Stretch of the links.
     Links,
-    /// Indentation of pins, bushes and rollers.
+    /// Indentation of pins, bushes and rollers, and deflection of what sticks in joints.
     Joints,
     /// Indentation of rollers and teeth.
     Teeth,
@@ -41,11 +41,13 @@ pub enum Flow {
     LinkLoss,
     /// Loss in impacts of pins, bushes and rollers.
     JointLoss,
+    /// Loss where links turn against each other: friction of pins in bushes, and viscous damping there.
+    ArticulationLoss,
     /// Loss in roller-tooth impacts.
     ToothLoss,
     /// Loss in chain-guide impacts.
     GuideLoss,
-    /// Loss by friction.
+    /// Loss by friction on teeth and guides, and of bushes in rollers.
     FrictionLoss,
     /// Loss in the dampers of bearings and couplings.
     SupportLoss,
@@ -100,9 +102,10 @@ impl Store {
 
 impl Flow {
     /// All flows, in the order of [`Energy::flows`].
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::LinkLoss,
         Self::JointLoss,
+        Self::ArticulationLoss,
         Self::ToothLoss,
         Self::GuideLoss,
         Self::FrictionLoss,
@@ -120,6 +123,7 @@ impl Flow {
             self,
             Self::LinkLoss
                 | Self::JointLoss
+                | Self::ArticulationLoss
                 | Self::ToothLoss
                 | Self::GuideLoss
                 | Self::FrictionLoss
@@ -133,6 +137,7 @@ impl Flow {
         match self {
             Self::LinkLoss => "links_dissipated",
             Self::JointLoss => "joints_dissipated",
+            Self::ArticulationLoss => "articulation_dissipated",
             Self::ToothLoss => "teeth_dissipated",
             Self::GuideLoss => "guides_dissipated",
             Self::FrictionLoss => "friction_dissipated",
@@ -200,6 +205,12 @@ impl Energy {
             .filter(|f| !f.is_loss())
             .map(|&f| self.flow(f))
             .sum()
+    }
+
+    /// Puts what the springs of friction in joints hold among the stores: it went into the joints, and is not lost yet.
+    pub(crate) fn hold_in_joints(&mut self, stored: f64) {
+        self.stores[Store::Joints as usize] += stored;
+        self.flows[Flow::ArticulationLoss as usize] -= stored;
     }
 
     /// Energy unaccounted for since `start` \[J\]: the error of the time stepping.

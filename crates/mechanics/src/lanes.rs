@@ -125,6 +125,13 @@ impl<S: Simd> LanesMut<'_, S> {
     pub(crate) fn set(&mut self, lane: usize, value: Lane<S>) {
         self.whole[lane] = value.v;
     }
+
+    /// Adds to a lane.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, lane: usize, value: Lane<S>) {
+        let sum = Wide(value.simd).lane(self.whole[lane]) + value;
+        self.whole[lane] = sum.v;
+    }
 }
 
 impl<S: Simd> Lane<S> {

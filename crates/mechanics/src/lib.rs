@@ -17,6 +17,7 @@
 //! SI units and radians throughout; counter-clockwise positive; tension positive; normals point
 //! out of the material; penetration positive.
 
+mod articulation;
 mod assembly;
 mod chain;
 mod chains;
@@ -39,13 +40,14 @@ mod tensioner;
 mod torque;
 mod trains;
 
+pub use articulation::Articulation;
 pub use assembly::{Assembled, Fitting, RollerLayout, Statics};
 pub use chain::{Chain, End, Ends};
 pub use chains::ChainModel;
 pub use chains::links::model::{Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel};
 pub use drive::{
     Adjust, Coupling, Drive, Fit, Flank, GearPair, Guide, GuideSupport, Layout, Parts, PlacedChain,
-    Rotation, Shaft, Sprocket, Stop, Support, Surface, Tighten, Touches,
+    Rotation, Shaft, SpanStart, Sprocket, Stop, Support, Surface, Tighten, Touches,
 };
 pub use energy::{Energy, Flow, Store};
 pub use error::{AssemblyError, Clash, DriveError, MemoryError};

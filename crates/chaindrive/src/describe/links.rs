@@ -18,10 +18,32 @@ pub struct LinkFacts {
     pub joint_clearance: Option<f64>,
     /// Radial clearance of free rollers \[m\].
     pub roller_clearance: Option<f64>,
+    /// Kind of the friction of pins in their bushes, where there is any.
+    pub joint_friction: Option<String>,
+    /// Diameter of the pins on which it acts \[m\].
+    pub pin_diameter: Option<f64>,
+    /// Viscous damping of the joints \[N m s/rad\].
+    pub joint_damping: f64,
 }
 
 impl LinkFacts {
     pub(super) fn of(chain: &Chain) -> Self {
+        let resisting = chain.articulation.as_ref();
+        let mut rubbing = resisting.map(|it| (it.friction, it.radius));
+        if let ChainModel::Rigid(links) = &chain.model
+            && let Joint::Clearance(joint) = &links.joint
+        {
+            rubbing = Some((joint.surface.friction, joint.pin_radius));
+        }
+        let rubbing = rubbing.filter(|(friction, _)| *friction != Friction::None);
+        let (joint_friction, pin_diameter) = match rubbing {
+            Some((friction, radius)) => {
+                let kind = kind(serde_json::to_value(friction));
+                (Some(kind), Some(2.0 * radius))
+            }
+            None => (None, None),
+        };
+        let joint_damping = resisting.map_or(0.0, |it| it.damping);
         let ChainModel::Rigid(links) = &chain.model else {
             return Self {
                 model: "particles",
@@ -29,6 +51,9 @@ impl LinkFacts {
                 joints: 0,
                 joint_clearance: None,
                 roller_clearance: None,
+                joint_friction,
+                pin_diameter,
+                joint_damping,
             };
         };
         let (model, joint_clearance) = match &links.joint {
@@ -46,6 +71,9 @@ impl LinkFacts {
             joints: chain.rollers(),
             joint_clearance,
             roller_clearance,
+            joint_friction,
+            pin_diameter,
+            joint_damping,
         }
     }
 }

@@ -266,22 +266,27 @@ impl fmt::Display for Model {
 
 impl fmt::Display for LinkFacts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Some(rollers) = self.rollers else {
-            return write!(
-                f,
-                "{}: point masses at the rollers, links as springs",
-                self.model
-            );
-        };
-        write!(f, "{}: rigid links, {} joints", self.model, self.joints)?;
-        if let Some(gap) = self.joint_clearance {
-            write!(f, " with {:.1} µm of radial play", gap * 1e6)?;
+        if let Some(rollers) = self.rollers {
+            write!(f, "{}: rigid links, {} joints", self.model, self.joints)?;
+            if let Some(gap) = self.joint_clearance {
+                write!(f, " with {:.1} µm of radial play", gap * 1e6)?;
+            }
+            match (rollers, self.roller_clearance) {
+                (_, Some(gap)) => write!(f, ", free rollers with {:.1} µm", gap * 1e6)?,
+                ("none", _) => write!(f, ", no rollers")?,
+                _ => write!(f, ", rollers lumped with their bushes")?,
+            }
+        } else {
+            let made = "point masses at the rollers, links as springs";
+            write!(f, "{}: {made}", self.model)?;
         }
-        match (rollers, self.roller_clearance) {
-            (_, Some(gap)) => write!(f, ", free rollers with {:.1} µm", gap * 1e6),
-            ("none", _) => write!(f, ", no rollers"),
-            _ => write!(f, ", rollers lumped with their bushes"),
+        if let (Some(friction), Some(pin)) = (&self.joint_friction, self.pin_diameter) {
+            write!(f, "; pins of {:.2} mm rub, {friction}", pin * 1e3)?;
         }
+        if self.joint_damping > 0.0 {
+            write!(f, "; joints damp with {} N m s/rad", self.joint_damping)?;
+        }
+        Ok(())
     }
 }
 

@@ -10,9 +10,10 @@
 use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use serde::Serialize;
 use serde_json::{Value as Json, json};
 
-use super::schema::Version;
+use super::schema::{Dissipation, SpanStart, Version};
 
 /// Where a default comes from.
 #[derive(Clone, Copy, Debug)]
@@ -56,6 +57,51 @@ impl Default {
     }
 }
 
+/// A member of a family that is taken where a scene names none.
+#[derive(Debug)]
+pub(crate) struct Choice<T: 'static> {
+    /// Keys of the schema that it is for, as `Type.key`.
+    pub(crate) keys: &'static [&'static str],
+    /// Why.
+    pub(crate) basis: Basis,
+    /// The members, each from a version on, the first version first.
+    values: &'static [(Version, T)],
+}
+
+impl<T: Copy> Choice<T> {
+    /// The member in a version.
+    pub(crate) fn value(&self, version: Version) -> T {
+        let (_, first) = self.values[0];
+        let holds = |(since, _): &&(Version, T)| *since <= version;
+        let last = self.values.iter().rfind(holds);
+        last.map_or(first, |(_, value)| *value)
+    }
+}
+
+/// How spans set off.
+pub(crate) static SPAN_START: Choice<SpanStart> = Choice {
+    keys: &["Route.start"],
+    basis: Assumed(
+        "what polygons do across a span at one instant averages to nothing over a tooth",
+    ),
+    values: &[
+        (Version::V0_1, SpanStart::Polygon),
+        (Version::V0_2, SpanStart::Quiet),
+    ],
+};
+
+/// How impacts lose energy.
+pub(crate) static DISSIPATION: Choice<Dissipation> = Choice {
+    keys: &["Contact.dissipation"],
+    basis: Assumed(
+        "delivers the restitution that is asked for, Lankarani and Nikravesh's law of version 0.1 does not",
+    ),
+    values: &[
+        (Version::V0_1, Dissipation::LankaraniNikravesh),
+        (Version::V0_2, Dissipation::Exact),
+    ],
+};
+
 macro_rules! defaults {
     ($($(#[$doc:meta])* $name:ident = $value:expr, $unit:literal, $basis:expr, $keys:expr;)*) => {
         $($(#[$doc])* pub(crate) static $name: Default = Default {
@@ -69,12 +115,12 @@ macro_rules! defaults {
     };
 }
 
+use Basis::{Assumed, Source};
+
 /// A value that has not changed since the first version.
 const fn always(value: f64) -> [(Version, f64); 1] {
     [(Version::V0_1, value)]
 }
-
-use Basis::{Assumed, Source};
 
 const STEEL: &str = "steel on steel";
 
@@ -95,6 +141,10 @@ defaults! {
     GUIDES_RESTITUTION = always(0.5), "1", Assumed("a lining of rubber or plastic"), ["Contact.restitution"];
     /// Restitution of pins in their bushes.
     JOINTS_RESTITUTION = always(0.7), "1", Assumed("steel in an oiled bush"), ["Contact.restitution"];
+    /// Friction in joints of chains of the catalogue.
+    JOINTS_FRICTION = [(Version::V0_1, 0.0), (Version::V0_2, 0.1)], "1", Assumed("steel on oiled steel with boundary lubrication, 0.1 to 0.15"), ["Contact.friction"];
+    /// Spring with which friction in joints holds.
+    JOINTS_SPRING = always(0.1), "link stiffnesses times the pitch over the radius of the pin, squared", Assumed("explicit steps stay those of the links, and a strand slides when its joints have turned by some 1e-5"), ["Friction.stiffness"];
     /// Restitution of bushes in free rollers.
     ROLLERS_RESTITUTION = always(0.7), "1", Assumed("steel in an oiled roller"), ["Contact.restitution"];
     /// Least closing speed that a restitution reckons with.
@@ -137,13 +187,28 @@ pub(crate) fn put_into(schema: &mut Json) {
             "unit": default.unit,
             "basis": default.basis.remark(),
         });
-        for place in default.keys {
-            for property in properties(schema, place) {
-                let list = &mut property["x-defaults"];
-                match list.as_array_mut() {
-                    Some(list) => list.push(told.clone()),
-                    None => *list = json!([told]),
-                }
+        tell(schema, default.keys, &told);
+    }
+    tell_choice(schema, &SPAN_START);
+    tell_choice(schema, &DISSIPATION);
+}
+
+fn tell_choice<T: Copy + Serialize>(schema: &mut Json, choice: &Choice<T>) {
+    let told = json!({
+        "value": choice.value(Version::default()),
+        "basis": choice.basis.remark(),
+    });
+    tell(schema, choice.keys, &told);
+}
+
+/// Adds one default to all its keys.
+fn tell(schema: &mut Json, keys: &[&str], told: &Json) {
+    for place in keys {
+        for property in properties(schema, place) {
+            let list = &mut property["x-defaults"];
+            match list.as_array_mut() {
+                Some(list) => list.push(told.clone()),
+                None => *list = json!([told]),
             }
         }
     }

@@ -414,7 +414,8 @@ fn a_description_says_what_the_chain_is() {
     let text = bicycle.to_string();
     for words in [
         "104 joints with 25.0 µm of radial play",
-        "contact of joints      cylindrical, lankarani-nikravesh 0.7",
+        "contact of joints      cylindrical, exact 0.7, friction spring-slider",
+        "pins of 4.09 mm rub, spring-slider",
         "implicit damping, step",
         "without its damping",
     ] {

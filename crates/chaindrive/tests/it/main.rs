@@ -7,6 +7,7 @@ mod describe;
 mod dynamics;
 mod energy;
 mod horizons;
+mod joints;
 mod linkage;
 mod linkages;
 mod links;

@@ -78,7 +78,7 @@ fn running(pitch: f64, line_mass: f64, v: f64, push: f64, torque: f64) -> Runnin
         setting = damper * speed,
         load = -torque,
         pretension = 0.5 * push,
-        until = 5.0 * turn,
+        until = 7.0 * turn,
         every = turn / 10000.0,
     );
     let mut seen: [Vec<f64>; 4] = Default::default();

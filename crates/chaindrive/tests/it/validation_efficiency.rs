@@ -8,8 +8,47 @@ use chaindrive::Flow;
 use dynamics::run;
 use reference::Reference;
 
+/// The chain of F02 in a model, with the diameter of its pins \[m\] and a coefficient of friction.
+fn chain(model: &str, [links, pitch]: [f64; 2], pin: f64, friction: f64) -> String {
+    let rigid = "
+        roller = { mass = 1.4e-3, length = 0.0078 }
+        inner = { mass = 6.6e-3, inertia = 3.5e-7 }
+        outer = { mass = 8.1e-3, inertia = 3.8e-7 }";
+    let (rest, joint, law) = match model {
+        "clearance-joints" => (
+            rigid,
+            ", clearance = 5e-6, length = 0.009",
+            "slip_speed = 2e-4",
+        ),
+        "ideal-joints" => (rigid, "", "kind = \"spring-slider\", stiffness = 1e8"),
+        _ => (
+            "mass = 8.75e-3\nstiffness = 20e6",
+            "",
+            "kind = \"spring-slider\"",
+        ),
+    };
+    format!(
+        "[chain]
+        model = \"{model}\"
+        pitch = {pitch}
+        links = {links}
+        roller_diameter = 0.00851
+        joint = {{ pin_diameter = {pin}{joint} }}
+        {rest}
+        [contact.joints]
+        friction = {{ coefficient = {friction}, {law} }}"
+    )
+}
+
+/// The tensions are those of the run; the loss is that of the joints alone, in every chain model.
 #[test]
 fn f02_friction_of_the_joints() {
+    for model in ["clearance-joints", "ideal-joints", "particles"] {
+        joints_of(model);
+    }
+}
+
+fn joints_of(model: &str) {
     let case = Reference::read("F02");
     for row in case.table("expected.rows") {
         let [z1, z2, p, r, mu, tight, slack, _] = row[..] else {
@@ -24,17 +63,7 @@ fn f02_friction_of_the_joints() {
         let scene = format!(
             r#"
             gravity = [0, 0]
-            [chain]
-            model = "clearance-joints"
-            pitch = {p}
-            links = {links}
-            roller_diameter = 0.00851
-            joint = {{ pin_diameter = {d}, clearance = 5e-6, length = 0.009 }}
-            roller = {{ mass = 1.4e-3, length = 0.0078 }}
-            inner = {{ mass = 6.6e-3, inertia = 3.5e-7 }}
-            outer = {{ mass = 8.1e-3, inertia = 3.8e-7 }}
-            [contact.joints]
-            friction = {{ coefficient = {mu}, slip_speed = 2e-4 }}
+            {chain}
             [[sprockets]]
             name = "driver"
             teeth = {z1}
@@ -53,7 +82,7 @@ fn f02_friction_of_the_joints() {
             every = 1e-4
             step = 4e-7
             "#,
-            d = 2.0 * r,
+            chain = chain(model, [links, p], 2.0 * r, mu),
             torque = (tight - slack) * radius(z2),
             pretension = 0.5 * (tight + slack),
         );
@@ -62,7 +91,7 @@ fn f02_friction_of_the_joints() {
             if sample.time < 0.02 {
                 return;
             }
-            let lost = sample.energy.flow(Flow::FrictionLoss);
+            let lost = sample.energy.flow(Flow::ArticulationLoss);
             start.get_or_insert((sample.time, lost));
             end = (sample.time, lost);
             sums[0] += sample.span_tension[0];
@@ -82,11 +111,11 @@ fn f02_friction_of_the_joints() {
         let found = end.1 - start.1;
         let error = found / expected - 1.0;
         println!(
-            "F02: {z1}/{z2}, {tensions:.0?} N: {found:.4} J against {expected:.4}: {error:+.3}"
+            "F02, {model}: {z1}/{z2}, {tensions:.0?} N: {found:.4} J against {expected:.4}: {error:+.3}"
         );
         assert!(
             error.abs() < case.number("tolerance.relative"),
-            "{row:?}: {error}"
+            "{model}, {row:?}: {error}"
         );
     }
 }

@@ -503,6 +503,7 @@ fn f01_friction_work_of_one_articulation() {
             [contact.joints]
             law = {{ kind = "linear", stiffness = {k} }}
             restitution = 0.5
+            dissipation = "lankarani-nikravesh"
             friction = {{ coefficient = {mu}, slip_speed = 5e-5 }}
             [run]
             until = {until}
@@ -520,7 +521,7 @@ fn f01_friction_work_of_one_articulation() {
         let scene = format!("gravity = [0, 0]\nsettle = false\n{scene}");
         let (mut lost, mut sum, mut count) = (0.0, 0.0, 0.0);
         run(&scene, |sample| {
-            lost = sample.energy.flow(Flow::FrictionLoss);
+            lost = sample.energy.flow(Flow::ArticulationLoss);
             sum += sample.joint_force[0];
             count += 1.0;
         });

@@ -187,7 +187,7 @@ fn waveforms_that_end_within_the_run_are_a_caution() {
 /// Defect A8: 1.2 ms of 50 ms were looked at, and the rest was said to be fine.
 #[test]
 fn what_was_not_looked_at_is_said() {
-    let timing = scene("timing_drive", &[]);
+    let timing = scene("timing_drive", &[("defaults", "\"0.1\"")]);
     let found = examined(&timing, &run(0.05, 50.0));
     assert_eq!(names(&found), ["not-examined"], "{found}");
     assert_eq!(found.note(), "not examined beyond 1.2 ms of 50 ms");

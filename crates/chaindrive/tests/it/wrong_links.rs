@@ -71,9 +71,9 @@ const CASES: &[Mistake] = &[
     ("outer = { mass = \"3.8 g\"", "outer = { mass = \"0 g\"", "chain.outer.mass", 9, "0, must be positive [kg]"),
     // Models.
     ("model = \"clearance-joints\"", "model = \"ideal\"", "chain.model", 5, "known are particles, ideal-joints, clearance-joints"),
-    ("model = \"clearance-joints\"", "model = \"particles\"", "chain.joint", 10, "the particle chain has none; take `model = \"clearance-joints\"`"),
+    ("model = \"clearance-joints\"", "model = \"particles\"", "chain.joint.clearance", 12, "only pins with clearance have one; take `model = \"clearance-joints\"`"),
     ("model = \"clearance-joints\"", "model = \"particles\"", "chain.rollers", 6, "the particle chain has none"),
-    ("model = \"clearance-joints\"", "model = \"ideal-joints\"", "chain.joint", 10, "ideal joints have no dimensions"),
+    ("model = \"clearance-joints\"", "model = \"ideal-joints\"", "chain.joint.length", 13, "only pins with clearance have one"),
     ("rollers = \"free\"", "rollers = \"none\"", "chain.roller", 14, "this chain has no rollers"),
     ("rollers = \"free\"", "rollers = \"loose\"", "chain.rollers", 6, "known are lumped, free, none"),
     ("links = 78", "links = 78\nmass = \"3 g\"", "chain.mass", 5, "rigid links have none; give `chain.inner.mass`"),
@@ -120,7 +120,7 @@ fn every_mistake_is_found_in_its_place() {
         GOOD,
         CASES,
         |found, expected| found.starts_with(expected),
-        7,
+        8,
     );
 }
 

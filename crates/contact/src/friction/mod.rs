@@ -12,12 +12,14 @@
 //! | [`BengisuAkay`] | `bengisu-akay` | creeps, slope 2 μ_s N/v₀ | yes |
 //! | [`BrownMcphee`] | `brown-mcphee` | creeps, slope above 4 μ_d N/v_t | yes |
 //! | [`Lugre`] | `lugre` | sticks, a spring σ₀ N | yes |
+//! | [`SpringSlider`] | `spring-slider` | sticks, a spring k | no |
 
 mod ambrosio;
 mod bengisu_akay;
 mod brown_mcphee;
 mod coulomb;
 mod lugre;
+mod spring_slider;
 mod threlfall;
 
 pub use ambrosio::Ambrosio;
@@ -25,6 +27,7 @@ pub use bengisu_akay::BengisuAkay;
 pub use brown_mcphee::BrownMcphee;
 pub use coulomb::Coulomb;
 pub use lugre::Lugre;
+pub use spring_slider::SpringSlider;
 pub use threlfall::Threlfall;
 
 use serde::{Deserialize, Serialize};
@@ -51,6 +54,8 @@ pub enum Friction {
     BrownMcphee(BrownMcphee),
     /// Bristles that bend: sticking, with a state.
     Lugre(Lugre),
+    /// Coulomb friction that holds elastically: with a state.
+    SpringSlider(SpringSlider),
 }
 
 /// What a rubbing contact answers over a step.
@@ -75,6 +80,7 @@ macro_rules! each {
             Friction::BengisuAkay($member) => $answer,
             Friction::BrownMcphee($member) => $answer,
             Friction::Lugre($member) => $answer,
+            Friction::SpringSlider($member) => $answer,
         }
     };
 }
@@ -98,22 +104,32 @@ impl Friction {
     /// Force, damping and state after rubbing for dt \[s\] at constant normal force \[N\] and slip \[m/s\].
     ///
     /// `state` is that of the last accepted step, zero for a new contact. Laws without memory ignore
-    /// it and hand back zero; see [`Lugre`] for the one that has it.
+    /// it and hand back zero; see [`Lugre`] and [`SpringSlider`] for those that have it.
     #[inline]
     pub fn rub(&self, normal: f64, slip: f64, state: f64, dt: f64) -> Rub {
-        if let Self::Lugre(member) = self {
-            return member.rub(normal, slip, state, dt);
+        match self {
+            Self::Lugre(member) => member.rub(normal, slip, state, dt),
+            Self::SpringSlider(member) => member.rub(normal, slip, state, dt),
+            _ => Rub {
+                force: self.force(normal, slip),
+                damping: self.damping(normal, slip),
+                state: 0.0,
+            },
         }
-        Rub {
-            force: self.force(normal, slip),
-            damping: self.damping(normal, slip),
-            state: 0.0,
+    }
+
+    /// Stiffness along the surface \[N/m\] of a contact that sticks under the normal force \[N\]; zero for laws that creep.
+    pub fn stiffness(&self, normal: f64) -> f64 {
+        match self {
+            Self::Lugre(member) => member.stiffness * normal,
+            Self::SpringSlider(member) => member.stiffness,
+            _ => 0.0,
         }
     }
 
     /// Whether the law has a state to be kept between steps.
     pub fn has_state(&self) -> bool {
-        matches!(self, Self::Lugre(_))
+        matches!(self, Self::Lugre(_) | Self::SpringSlider(_))
     }
 
     /// Refuses parameters outside the range of the member.
@@ -155,6 +171,10 @@ impl Friction {
                 stiffness: 1e5,
                 damping: 10.0,
                 viscosity: 0.0,
+            }),
+            Self::SpringSlider(SpringSlider {
+                coefficient: 0.12,
+                stiffness: 1e8,
             }),
         ]
     }

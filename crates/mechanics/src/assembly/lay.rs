@@ -33,7 +33,9 @@ pub(super) fn lay(drive: &Drive) -> Result<(Laid, Vec<Option<Fitting>>), Assembl
                 });
                 None
             }
-            Layout::Route { stops, phase, fit } => {
+            Layout::Route {
+                stops, phase, fit, ..
+            } => {
                 let sprockets = laid.parts.sprockets.iter().map(|s| s.name.clone());
                 let guides = laid.parts.guides.iter().map(|g| g.name.clone());
                 let (sprockets, guides): (Vec<_>, Vec<_>) = (sprockets.collect(), guides.collect());

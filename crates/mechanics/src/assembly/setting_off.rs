@@ -1,10 +1,12 @@
 //! Velocities at t = 0: everything turns at the speed that the driven sprocket asks for.
 
+use std::f64::consts::TAU;
+
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 
 use crate::System;
-use crate::drive::{Layout, Stop};
+use crate::drive::{Layout, SpanStart, Stop};
 use crate::system::{Member, Shaft, TurnedBy};
 
 /// Gives chains the velocities that their layouts ask for, and along routes the sprockets too.
@@ -18,7 +20,7 @@ pub(super) fn set_off(system: &System, layouts: &[&Layout], q: &[f64], v: &mut [
     for (member, layout) in system.chains.iter().zip(layouts) {
         let places = roller_places(member, q);
         let velocities = match layout {
-            Layout::Route { .. } => along_route(system, member, &places, q, v),
+            Layout::Route { start, .. } => along_route(system, (member, *start), &places, q, v),
             Layout::Points { velocities, .. } => velocities.clone(),
         };
         let own = &mut v[member.entries.clone()];
@@ -118,13 +120,15 @@ fn roller_places(member: &Member, q: &[f64]) -> Vec<Point> {
 /// Velocities of the rollers where sprockets carry them, and between.
 ///
 /// ```text
-/// v = v_c + ω × d on a sprocket, linear in between
+/// v = v_c + ω × d on a sprocket;   quiet between:   v_i = ṅ ½ (p_{i+1} − p_{i−1}),   ṅ = s ω z/2π links a second
 /// ```
 ///
-/// Consistent to O((π/z)²), like every steady state of a polygon drive.
+/// A quiet span runs along itself: what the polygons do across it at the first instant averages to nothing over a tooth, and a
+/// span that began with it would swing for long. With the polygon's kick velocities are linear between the sprockets. Either is
+/// consistent to O((π/z)²), like every steady state of a polygon drive.
 fn along_route(
     system: &System,
-    member: &Member,
+    (member, start): (&Member, SpanStart),
     places: &[Point],
     q: &[f64],
     v: &[f64],
@@ -164,15 +168,28 @@ fn along_route(
     if rigid.iter().all(Option::is_none) {
         return vec![Vector::zeros(); places.len()];
     }
-    (0..places.len())
-        .map(|i| rigid[i].unwrap_or_else(|| between(&rigid, i)))
+    let links_a_second = member.route.first().map_or(0.0, |&index| {
+        let wheel = &bodies.wheels[index];
+        wheel.sense * wheel.course(0.0, q, v).rate * f64::from(wheel.teeth) / TAU
+    });
+    let n = places.len();
+    let free = |i: usize| match start {
+        SpanStart::Polygon => between(&rigid, i),
+        SpanStart::Quiet => {
+            let along = places[(i + 1) % n] - places[(i + n - 1) % n];
+            along * (0.5 * links_a_second)
+        }
+    };
+    let velocities = rigid.iter().enumerate();
+    velocities
+        .map(|(i, seated)| seated.unwrap_or_else(|| free(i)))
         .collect()
 }
 
 /// Angle that one pitch of chain turns a wheel, per metre of chain.
 fn pitch_angle(pitch: f64, wheel: &crate::system::Wheel) -> f64 {
     // 2π / (z p)
-    std::f64::consts::TAU / (f64::from(wheel.teeth) * pitch)
+    TAU / (f64::from(wheel.teeth) * pitch)
 }
 
 /// Linear interpolation between the nearest seated rollers on both sides.

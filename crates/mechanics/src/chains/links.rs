@@ -25,6 +25,7 @@ mod observe;
 mod pins;
 mod posture;
 pub(crate) mod rates;
+mod resist;
 #[cfg(test)]
 mod slider_crank;
 #[cfg(test)]
@@ -44,6 +45,7 @@ pub(crate) use impulses::Impulses;
 pub(crate) use pins::{Pairs, Pins};
 pub(crate) use posture::{Posture, Shapes, free_part};
 
+use super::joints::Joints;
 use super::{Record, Surroundings};
 use crate::End;
 use crate::contact::{ContactMemory, LaneTally, MemoryLanes};
@@ -111,6 +113,8 @@ pub(crate) struct Linkage {
     pub(crate) joints: Vec<JointMates>,
     pub(crate) pairs: Pairs,
     pub(crate) joining: Joining,
+    /// What resists in the joints beside the contact of pin and bush, if anything.
+    pub(super) resisting: Option<Joints>,
     pub(crate) free_rollers: Option<FreeRollers>,
     /// Whether what runs on the teeth turns with its link: a bush.
     pub(crate) bush_turns: bool,
@@ -178,7 +182,10 @@ impl Linkage {
         record: &mut Record,
     ) {
         let Record {
-            joint_state, loads, ..
+            joint_state,
+            loads,
+            resistance,
+            ..
         } = record;
         self.pose_links(at, &mut joint_state.posture);
         joint_state.elements.clear();
@@ -188,6 +195,9 @@ impl Linkage {
         self.roller_forces(at, rates, joint_state);
         self.end_loads(rates, joint_state);
         self.mesh(around, at, rates, loads, joint_state);
+        if let Some(joints) = &self.resisting {
+            self.resist(joints, at, rates, joint_state, resistance);
+        }
         if let Joining::Hinges(hinges) = &self.joining {
             hinges.hold(self, at, rates, joint_state);
         }
@@ -231,7 +241,7 @@ impl Linkage {
                 part(1).velocity.dot(&push(self.links)) - part(0).velocity.dot(&push(0));
         }
         rates[Flow::JointLoss as usize] += tally.normal_loss;
-        rates[Flow::FrictionLoss as usize] += tally.friction_loss;
+        rates[Flow::ArticulationLoss as usize] += tally.friction_loss;
         Tally {
             normal_loss: 0.0,
             friction_loss: 0.0,
@@ -317,6 +327,23 @@ impl Linkage {
             sum += closed.map(|&gap| free.bearing.energy(gap)).sum::<f64>();
         }
         sum
+    }
+
+    /// Energy of the friction of pins that stick in their bushes \[J\].
+    pub(crate) fn stuck(&self, memory: &Memory) -> f64 {
+        let Joining::Clearance(bearing) = &self.joining else {
+            return 0.0;
+        };
+        let friction = &bearing.lanes.friction;
+        let ContactMemory {
+            gap, force, stick, ..
+        } = &memory.joints;
+        let joints = gap.iter().zip(force.iter().zip(stick));
+        let closed = joints.filter(|(gap, _)| **gap < 0.0);
+        // U = ½ k z²
+        closed
+            .map(|(_, (force, z))| 0.5 * friction.stiffness(*force) * z * z)
+            .sum()
     }
 
     /// All closed contacts, those of pins in bushes first.

@@ -25,6 +25,11 @@ impl ChainModel {
         }
     }
 
+    /// Whether pins have play in their bushes.
+    pub(crate) fn has_clearance(&self) -> bool {
+        matches!(self, Self::Rigid(links) if matches!(links.joint, Joint::Clearance(_)))
+    }
+
     /// Names every parameter out of range.
     pub(crate) fn problems(&self) -> Vec<DriveError> {
         match self {

@@ -8,6 +8,7 @@
 //! copies of the first ones; they are given the accelerations of their originals and so follow
 //! them bit by bit, and the loops never wrap around.
 
+mod articulation;
 mod build;
 mod ends;
 mod forces;
@@ -20,16 +21,20 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 use pulp::Arch;
 
+use super::joints::Joints;
 use super::{Pose, Record, Surroundings};
 use crate::contact::Rollers;
 use crate::contact::{PlatePins, PlatePlaces};
 use crate::system::HeldEnd;
+pub(super) use articulation::Turning;
 pub(super) use springs::Links;
 
 /// Rollers as point masses, links as spring-dampers.
 #[derive(Clone, Debug)]
 pub(crate) struct Particles {
     pub(super) links: Links,
+    /// What resists in the joints, if anything.
+    pub(super) joints: Option<Joints>,
     pub(super) rollers: usize,
     /// Distance from the x to the y block of the state.
     pub(super) stride: usize,
@@ -164,6 +169,10 @@ impl Particles {
             bodies, contacts, ..
         } = around;
         let [mut squared, mut damping] = self.link_rates;
+        // Across the links, where these have no stiffness of their own: the stiffer of both counts.
+        let [across, drag] = self.joint_rates(&record.resistance);
+        squared = squared.max(across);
+        damping = damping.max(drag);
         let (mut contact, mut drag) = (0.0_f64, 0.0_f64);
         for (on, wrench) in contacts.teeth.iter().zip(&record.loads.wheel_wrenches) {
             let stiffness = on.contacts.surface.stiffness(wrench.depth);

@@ -3,7 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::Way;
+use super::joints::Resistance;
 use super::links::{Impulses, JointState};
+use super::particles::Turning;
 use crate::contact::{ContactMemory, Frame, Touch, Wrench};
 use crate::system::BodyContacts;
 
@@ -33,6 +35,11 @@ pub(crate) struct Record {
     pub(super) joint_state: JointState,
     #[serde(skip)]
     pub(super) impulses: Impulses,
+    /// What resists in the joints; empty where nothing does.
+    pub(super) resistance: Resistance,
+    /// How the links of particles turn, where something resists that.
+    #[serde(skip)]
+    pub(super) turning: Turning,
 }
 
 impl Record {

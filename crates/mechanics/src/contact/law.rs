@@ -46,6 +46,15 @@ pub(super) enum LaneElastic {
     General(Box<Prepared>),
 }
 
+/// A spring and a slider, prepared.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct LaneSpring {
+    /// k \[N/m\]
+    pub(crate) stiffness: f64,
+    /// μ/k \[m/N\]
+    coefficient_by_stiffness: f64,
+}
+
 /// A friction law on lanes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum LaneFriction {
@@ -58,6 +67,8 @@ pub(crate) enum LaneFriction {
         /// Slope at rest per normal force, μ/v_s \[s/m\].
         slope: f64,
     },
+    /// A spring and a slider.
+    SpringSlider(LaneSpring),
     /// Any other law, one lane after the other.
     General(Friction),
 }
@@ -96,7 +107,7 @@ pub(crate) struct Rubbing<S: Simd> {
     /// slope of a saturated friction would let it chatter.
     pub(crate) secant: Lane<S>,
     /// The slope that limits explicit steps \[N s/m\].
-    pub(super) steepest: Lane<S>,
+    pub(crate) steepest: Lane<S>,
 }
 
 /// A depth \[m\] that no power is taken below; the force there is nothing beside rounding.
@@ -212,32 +223,17 @@ impl SurfaceLaw {
         slip: Lane<S>,
         tally: &mut LaneTally<S>,
     ) -> Rubbing<S> {
-        let rubbing = match &self.friction {
-            LaneFriction::None => Rubbing::none(w),
-            LaneFriction::Coulomb {
-                coefficient,
-                slip_speed_squared,
-                slope,
-            } => {
-                // f = −μ F v/√(v² + v_s²),   −∂f/∂v = μ F v_s²/√(v² + v_s²)³
-                let regular = w.splat(*slip_speed_squared);
-                let inverse = (slip * slip + regular).inverse_root();
-                let limit = w.splat(*coefficient) * pressed.force;
-                let secant = limit * inverse;
-                Rubbing {
-                    force: -(limit * slip * inverse),
-                    drag: secant * regular * inverse * inverse,
-                    secant,
-                    steepest: w.splat(*slope) * pressed.force,
-                }
-            }
-            LaneFriction::General(friction) => {
-                let before = memory.stick(w, lane);
-                let (rubbing, stick) = one_by_one(w, friction, dt, pressed, slip, before);
-                memory.keep_stick(w, lane, pressed.closed, stick);
-                rubbing
-            }
+        let before = if self.friction.remembers() {
+            memory.stick(w, lane)
+        } else {
+            w.splat(0.0)
         };
+        let (rubbing, stick) =
+            self.friction
+                .rub(w, dt, [pressed.depth, pressed.force], slip, before);
+        if self.friction.remembers() {
+            memory.keep_stick(w, lane, pressed.closed, stick);
+        }
         tally.friction_loss += -(rubbing.force * slip);
         rubbing
     }
@@ -360,8 +356,36 @@ fn respond_one_by_one(law: &Prepared, part: Part, numbers: &mut [f64]) {
     }
 }
 
+impl LaneSpring {
+    /// Friction, and the deflection of the spring.
+    #[inline(always)]
+    pub(crate) fn rub<S: Simd>(
+        &self,
+        w: Wide<S>,
+        dt: f64,
+        normal: Lane<S>,
+        slip: Lane<S>,
+        before: Lane<S>,
+    ) -> (Rubbing<S>, Lane<S>) {
+        // z′ = z + v h, drawn back to |z′| ≤ μ N/k;   f = −k z′,   −∂f/∂v = k h while it holds
+        let stiffness = w.splat(self.stiffness);
+        let limit = w.splat(self.coefficient_by_stiffness) * normal;
+        let tried = before + slip * w.splat(dt);
+        let stick = tried.max(-limit).min(limit);
+        let holds = limit.greater(tried.abs());
+        let drag = holds.select(stiffness * w.splat(dt), w.splat(0.0));
+        let rubbing = Rubbing {
+            force: -(stiffness * stick),
+            drag,
+            secant: drag,
+            steepest: drag,
+        };
+        (rubbing, stick)
+    }
+}
+
 impl LaneFriction {
-    fn new(friction: Friction) -> Self {
+    pub(crate) fn new(friction: Friction) -> Self {
         match friction {
             Friction::None => Self::None,
             Friction::Coulomb(coulomb) => Self::Coulomb {
@@ -369,6 +393,10 @@ impl LaneFriction {
                 slip_speed_squared: coulomb.slip_speed * coulomb.slip_speed,
                 slope: coulomb.coefficient / coulomb.slip_speed,
             },
+            Friction::SpringSlider(spring) => Self::SpringSlider(LaneSpring {
+                stiffness: spring.stiffness,
+                coefficient_by_stiffness: spring.coefficient / spring.stiffness,
+            }),
             other => Self::General(other),
         }
     }
@@ -376,9 +404,83 @@ impl LaneFriction {
     /// Slope at rest under a normal force \[N s/m\].
     pub(super) fn at_rest(&self, force: f64) -> f64 {
         match self {
-            Self::None => 0.0,
+            Self::None | Self::SpringSlider(_) => 0.0,
             Self::Coulomb { slope, .. } => slope * force,
             Self::General(friction) => friction.damping(force, 0.0),
+        }
+    }
+
+    /// Friction under these normal forces at these slip speeds, `dt` after the accepted state, and its state then. There is
+    /// a contact where the first number is positive.
+    #[inline(always)]
+    pub(crate) fn rub<S: Simd>(
+        &self,
+        w: Wide<S>,
+        dt: f64,
+        [touching, normal]: [Lane<S>; 2],
+        slip: Lane<S>,
+        before: Lane<S>,
+    ) -> (Rubbing<S>, Lane<S>) {
+        let zero = w.splat(0.0);
+        match self {
+            Self::None => (Rubbing::none(w), zero),
+            Self::Coulomb {
+                coefficient,
+                slip_speed_squared,
+                slope,
+            } => {
+                // f = −μ F v/√(v² + v_s²),   −∂f/∂v = μ F v_s²/√(v² + v_s²)³
+                let regular = w.splat(*slip_speed_squared);
+                let inverse = (slip * slip + regular).inverse_root();
+                let limit = w.splat(*coefficient) * normal;
+                let secant = limit * inverse;
+                let rubbing = Rubbing {
+                    force: -(limit * slip * inverse),
+                    drag: secant * regular * inverse * inverse,
+                    secant,
+                    steepest: w.splat(*slope) * normal,
+                };
+                (rubbing, zero)
+            }
+            Self::SpringSlider(spring) => spring.rub(w, dt, normal, slip, before),
+            Self::General(friction) => {
+                one_by_one(w, friction, dt, [touching, normal], slip, before)
+            }
+        }
+    }
+
+    /// Energy of what sticks, in this state under a normal force \[J\].
+    #[inline(always)]
+    pub(crate) fn stored<S: Simd>(&self, w: Wide<S>, normal: Lane<S>, stick: Lane<S>) -> Lane<S> {
+        // U = ½ k z²
+        let half_square = w.splat(0.5) * stick * stick;
+        match self {
+            Self::None | Self::Coulomb { .. } => w.splat(0.0),
+            Self::SpringSlider(spring) => w.splat(spring.stiffness) * half_square,
+            Self::General(friction) if !friction.has_state() => w.splat(0.0),
+            Self::General(friction) => {
+                half_square * normal.one_by_one(|normal| friction.stiffness(normal))
+            }
+        }
+    }
+
+    /// Whether nothing but a spring holds what sticks.
+    pub(crate) fn is_elastic(&self) -> bool {
+        matches!(self, Self::SpringSlider(_))
+    }
+
+    /// Whether it has a state.
+    #[inline(always)]
+    fn remembers(&self) -> bool {
+        matches!(self, Self::SpringSlider(_) | Self::General(_))
+    }
+
+    /// Stiffness along the surface of what sticks under a normal force \[N/m\].
+    pub(crate) fn stiffness(&self, normal: f64) -> f64 {
+        match self {
+            Self::None | Self::Coulomb { .. } => 0.0,
+            Self::SpringSlider(spring) => spring.stiffness,
+            Self::General(friction) => friction.stiffness(normal),
         }
     }
 
@@ -407,16 +509,16 @@ fn one_by_one<S: Simd>(
     w: Wide<S>,
     friction: &Friction,
     dt: f64,
-    pressed: &Pressed<S>,
+    [touching, normal]: [Lane<S>; 2],
     slip: Lane<S>,
     before: Lane<S>,
 ) -> (Rubbing<S>, Lane<S>) {
     let [mut rub, mut drag, mut secant, mut stick] = [[0.0; LANES]; 4];
-    pressed.force.store(&mut rub, 0);
+    normal.store(&mut rub, 0);
     slip.store(&mut drag, 0);
     before.store(&mut stick, 0);
-    // In the place of the answer: the depth, which says where there is a contact.
-    pressed.depth.store(&mut secant, 0);
+    // In the place of the answer: what says where there is a contact.
+    touching.store(&mut secant, 0);
     rub_one_by_one(
         friction,
         dt,

@@ -71,6 +71,7 @@ fn alone(
         masses,
         roller_diameter: 7.75e-3,
         plate_height: 9.6e-3,
+        articulation: None,
         ends,
         model,
     };

@@ -7,7 +7,7 @@ use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Weights};
 use chaindrive_mechanics::{
     Adjust, Assembled, Chain, ChainModel, Clearance, Coupling, Drive, Ends, Fit, GearPair, Joint,
     Layout, LinkBody, Motion, Observation, Parts, PlacedChain, RigidLinks, RollerModel, Rotation,
-    Shaft, Sprocket, Stop, Support, Surface, System, Tighten, Torque,
+    Shaft, SpanStart, Sprocket, Stop, Support, Surface, System, Tighten, Torque,
 };
 
 const PITCH: f64 = 0.0127;
@@ -58,12 +58,14 @@ pub(crate) fn chain(links: usize, stops: [usize; 2]) -> PlacedChain {
             masses: vec![3.81e-3; links],
             roller_diameter: ROLLER,
             plate_height: 9.6e-3,
+            articulation: None,
             ends: Ends::Closed,
             model: ChainModel::Particles,
         },
         layout: Layout::Route {
             stops: stops.map(Stop::Sprocket).to_vec(),
             phase: 0.5,
+            start: SpanStart::Polygon,
             fit: Fit {
                 adjust: Adjust::Nothing,
                 pretension: 60.0,

@@ -2,6 +2,7 @@
 
 use chaindrive_mechanics::{Chain, ChainModel, End, Ends};
 
+use super::articulation::{self, Joints};
 use super::chains::Described;
 use super::law::Pair;
 use super::scatter::Normal;
@@ -55,6 +56,9 @@ pub(super) fn resolve(
     if written.model == schema::ChainModel::Particles {
         links::refuse_on_particles(written, findings);
     }
+    if written.model != schema::ChainModel::ClearanceJoints {
+        articulation::refuse_play(written, findings);
+    }
     let text = &match of_type {
         Some(chain) => catalogue::completed(written, chain, findings),
         None => written.clone(),
@@ -104,6 +108,10 @@ pub(super) fn resolve(
     } = body?;
     let masses = vary(masses, scatter.mass.0, 1, None);
     let stiffness = vary(stiffness, scatter.stiffness.0, 2, None);
+    let known = matches!(model, ChainModel::Particles);
+    let mean = stiffness.iter().sum::<f64>() / stiffness.len() as f64;
+    let joints = Joints::new(scene, text, known.then_some(mean));
+    let articulation = joints.articulation(findings);
     let damping = if let Some(damping) = text.damping {
         vec![damping.0; links]
     } else {
@@ -133,6 +141,7 @@ pub(super) fn resolve(
             &defaults::PLATE_HEIGHT,
             roller_diameter,
         ),
+        articulation,
         ends: ends?,
         model,
     };

@@ -7,7 +7,7 @@ use chaindrive_contact::dissipation::{
 use chaindrive_contact::{Dissipation, Elastic, Friction, Law};
 use chaindrive_mechanics::Surface;
 use serde::Deserialize;
-use serde_json::{Error, json};
+use serde_json::json;
 
 use super::Findings;
 use super::law::{Pair, elastic};
@@ -57,32 +57,57 @@ pub(super) fn surface(
     findings: &mut Findings<'_>,
     absent: impl FnOnce(&mut Findings<'_>) -> Option<Elastic>,
 ) -> Option<Surface> {
+    let law = law(own, path, common, fallback, pair, findings, absent);
+    let friction = rubbing(own, path, common, fallback, findings);
+    Some(Surface {
+        law: law?,
+        friction: friction?,
+    })
+}
+
+/// How it rubs.
+pub(super) fn rubbing(
+    own: &Contact,
+    path: &str,
+    common: &Contact,
+    fallback: Fallback,
+    findings: &mut Findings<'_>,
+) -> Option<Friction> {
+    match (own.friction, common.friction) {
+        (Some(text), _) => friction(text, path, None, findings),
+        (None, Some(text)) => friction(text, fallback.path, None, findings),
+        (None, None) => {
+            let place = format!("{}.friction", fallback.path);
+            findings.assume_kind(&place, "none");
+            Some(Friction::None)
+        }
+    }
+}
+
+/// How it pushes.
+pub(super) fn law(
+    own: &Contact,
+    path: &str,
+    common: &Contact,
+    fallback: Fallback,
+    pair: Pair,
+    findings: &mut Findings<'_>,
+    absent: impl FnOnce(&mut Findings<'_>) -> Option<Elastic>,
+) -> Option<Law> {
     let elastic = match (&own.law, &common.law) {
         (Some(law), _) => elastic(law, pair, &format!("{path}.law"), findings),
         (None, Some(law)) => elastic(law, pair, &format!("{}.law", fallback.path), findings),
         (None, None) => absent(findings),
     };
     let dissipation = dissipation(own, path, common, fallback, findings);
-    let friction = match (own.friction, common.friction) {
-        (Some(text), _) => friction(text, path, findings),
-        (None, Some(text)) => friction(text, fallback.path, findings),
-        (None, None) => {
-            let place = format!("{}.friction", fallback.path);
-            findings.assume_kind(&place, "none");
-            Some(Friction::None)
-        }
-    };
     let floor = own.onset_floor.or(common.onset_floor).map(|v| v.0);
     let place = format!("{}.onset_floor", fallback.path);
     let onset_floor = findings.or_default(floor, &place, &defaults::ONSET_FLOOR);
-    Some(Surface {
-        law: Law {
-            series: None,
-            elastic: elastic?,
-            dissipation: dissipation?,
-            onset_floor,
-        },
-        friction: friction?,
+    Some(Law {
+        elastic: elastic?,
+        series: None,
+        dissipation: dissipation?,
+        onset_floor,
     })
 }
 
@@ -124,15 +149,11 @@ fn dissipation(
         twice("restitution", "dissipation = \"none\"");
         return None;
     }
-    let name = name.unwrap_or_else(|| {
-        let remark = "assumed: the usual choice, for nearly elastic impacts";
-        findings.assume(
-            &format!("{place}.dissipation"),
-            "lankarani-nikravesh",
-            remark,
-        );
-        Name::LankaraniNikravesh
-    });
+    let name = findings.or_chosen(
+        name,
+        &format!("{place}.dissipation"),
+        &defaults::DISSIPATION,
+    );
     let restitution = match name {
         Name::None => 1.0,
         _ => findings.or_default(
@@ -164,24 +185,14 @@ fn dissipation(
     sound.ok().map(|()| dissipation)
 }
 
-fn friction(text: schema::Friction, place: &str, findings: &mut Findings<'_>) -> Option<Friction> {
-    let friction = rubbing(text, place, findings)
-        .map_err(|error| findings.refuse_once(&format!("{place}.friction"), error.to_string(), ""))
-        .ok()?;
-    let sound = friction.check().map_err(|error| {
-        let path = format!("{place}.friction.{}", error.parameter);
-        let message = format!("{}, must be {}", error.value, error.allowed);
-        findings.refuse_once(&path, message, "");
-    });
-    sound.ok().map(|()| friction)
-}
-
-/// Kinds and parameters are called the same in a scene and in the law, in SI units here: a law of its own needs nothing else.
-fn rubbing(
+/// The friction that a scene describes at `place`; a spring of unknown stiffness has a share of `spring` \[N/m\].
+pub(super) fn friction(
     text: schema::Friction,
     place: &str,
+    spring: Option<f64>,
     findings: &mut Findings<'_>,
-) -> Result<Friction, Error> {
+) -> Option<Friction> {
+    // Kinds and parameters are called the same in a scene and in the law, in SI units here: a law of its own needs nothing else.
     let mut parameters = json!(text);
     // What may stay open, whichever law has it.
     for (key, default) in [
@@ -193,7 +204,29 @@ fn rubbing(
             *value = findings.or_default(None, &path, default).into();
         }
     }
-    Friction::deserialize(parameters)
+    if let Some(value) = parameters
+        .get_mut("stiffness")
+        .filter(|value| value.is_null())
+    {
+        let path = format!("{place}.friction.stiffness");
+        let Some(spring) = spring else {
+            let hint = "give it, such as \"50 MN/m\"; it is known in joints of links whose pins and stiffness are";
+            findings.refuse_once(&path, "missing", hint);
+            return None;
+        };
+        *value = findings
+            .or_multiple(None, &path, &defaults::JOINTS_SPRING, spring)
+            .into();
+    }
+    let friction = Friction::deserialize(parameters)
+        .map_err(|error| findings.refuse_once(&format!("{place}.friction"), error.to_string(), ""))
+        .ok()?;
+    let sound = friction.check().map_err(|error| {
+        let path = format!("{place}.friction.{}", error.parameter);
+        let message = format!("{}, must be {}", error.value, error.allowed);
+        findings.refuse_once(&path, message, "");
+    });
+    sound.ok().map(|()| friction)
 }
 
 #[cfg(test)]

@@ -5,11 +5,12 @@ use chaindrive_contact::Law;
 use chaindrive_contact::elastic::{ElasticLaw, Johnson};
 use chaindrive_geometry::Vector;
 use chaindrive_mechanics::{
-    ChainModel, Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel,
+    ChainModel, Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel, Surface,
 };
 
 use serde_json::json;
 
+use super::articulation::Joints;
 use super::chain::Body;
 use super::law::{Pair, cylindrical, elastic, steel};
 use super::{Findings, contact};
@@ -26,7 +27,6 @@ pub(super) fn refuse_on_particles(text: &schema::Chain, findings: &mut Findings<
         ("outer_first", text.outer_first),
         ("inner", text.inner.is_some()),
         ("outer", text.outer.is_some()),
-        ("joint", text.joint.is_some()),
         ("roller", text.roller.is_some()),
     ];
     for (key, _) in given.iter().filter(|(_, given)| *given) {
@@ -218,20 +218,26 @@ fn rollers(
                 bore: Some(bore),
                 length,
             };
-            let surface = surface(
-                (&roller.contact, &scene.contact.rollers),
+            let (own, common) = (&roller.contact, &scene.contact.rollers);
+            let law = law(
+                (own, common),
                 contact::ROLLERS,
                 pair,
                 clearance,
                 "roller",
                 needs.findings,
             );
+            let place = "chain.roller.contact";
+            let friction = contact::rubbing(own, place, common, contact::ROLLERS, needs.findings);
             Some(RollerModel::Free(FreeRoller {
                 mass: mass?,
                 inertia: inertia?,
                 bush_radius: bush,
                 bore_radius: bore,
-                surface: surface?,
+                surface: Surface {
+                    law: law?,
+                    friction: friction?,
+                },
             }))
         }
     }
@@ -244,12 +250,6 @@ fn joint(
     needs: &mut Needs<'_, '_>,
 ) -> Option<Joint> {
     if text.model == schema::ChainModel::IdealJoints {
-        if text.joint.is_some() {
-            let hint = "take `model = \"clearance-joints\"`, or leave it out";
-            needs
-                .findings
-                .refuse_with("chain.joint", "ideal joints have no dimensions", hint);
-        }
         return Some(Joint::Ideal);
     }
     let joint = text.joint.clone().unwrap_or_default();
@@ -276,7 +276,7 @@ fn joint(
         bore: Some(bore),
         length: joint.length.map(|length| length.0),
     };
-    let surface = surface(
+    let law = law(
         (&joint.contact, &scene.contact.joints),
         contact::JOINTS,
         pair,
@@ -284,24 +284,28 @@ fn joint(
         "joint",
         needs.findings,
     );
+    let friction = Joints::new(scene, text, None).friction(needs.findings);
     Some(Joint::Clearance(Clearance {
         pin_radius: pin,
         bore_radius: bore,
-        surface: surface?,
+        surface: Surface {
+            law: law?,
+            friction: friction?,
+        },
     }))
 }
 
-/// Contact of what turns in a bore; steel, and the enhanced cylindrical law, unless the scene says more.
-fn surface(
+/// Law of what turns in a bore; steel, and the enhanced cylindrical law, unless the scene says more.
+fn law(
     (own, common): (&schema::Contact, &schema::Contact),
     fallback: contact::Fallback,
     pair: Pair,
     clearance: f64,
     name: &str,
     findings: &mut Findings<'_>,
-) -> Option<chaindrive_mechanics::Surface> {
+) -> Option<Law> {
     let place = format!("chain.{name}.contact");
-    contact::surface(own, &place, common, fallback, pair, findings, |findings| {
+    contact::law(own, &place, common, fallback, pair, findings, |findings| {
         let Some(length) = pair.length else {
             let hint = format!("give the length of the contact, or `contact.{name}s.law`");
             findings.refuse_with(&format!("chain.{name}.length"), "missing", hint);

@@ -1,5 +1,6 @@
 //! From the scene as written to the drive: names become indices, choices become models.
 
+mod articulation;
 mod catalogue;
 mod chain;
 mod chains;
@@ -22,9 +23,10 @@ use std::collections::{HashMap, HashSet};
 
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_mechanics::{Drive, DriveError, Parts, PlacedChain};
+use serde::Serialize;
 use serde_json::{Value as Json, json};
 
-use super::defaults::{self, Default};
+use super::defaults::{self, Choice, Default};
 use super::error::{Problem, Problems};
 use super::quantity::{Length, Ratio};
 use super::schema::{SceneText, Version};
@@ -272,6 +274,20 @@ impl Findings<'_> {
             let value = default.value(self.version);
             self.assume(path, value, default.basis.remark());
             value
+        })
+    }
+
+    /// A choice, or the default.
+    fn or_chosen<T: Copy + Serialize>(
+        &mut self,
+        given: Option<T>,
+        path: &str,
+        choice: &Choice<T>,
+    ) -> T {
+        given.unwrap_or_else(|| {
+            let chosen = choice.value(self.version);
+            self.assume(path, json!(chosen), choice.basis.remark());
+            chosen
         })
     }
 

@@ -15,8 +15,8 @@ pub(crate) struct Chain {
     /// Name in the catalogue, such as "16B-1"; whatever is absent below comes from there.
     #[serde(default, rename = "type")]
     pub(crate) of_type: Option<String>,
-    /// What it is made of; absent: particles, and all below from `rollers` to `roller` is for
-    /// rigid links only.
+    /// What it is made of; absent: particles, and all below from `rollers` to `roller`, but for what `joint` says of friction and
+    /// damping, is for rigid links only.
     #[serde(default)]
     pub(crate) model: ChainModel,
     /// Nominal pitch [m]: what the sprockets are cut for.
@@ -89,7 +89,7 @@ pub(crate) struct Chain {
     /// Links with pins.
     #[serde(default)]
     pub(crate) outer: Option<Link>,
-    /// Pins in their bushes; for clearance joints.
+    /// Pins in their bushes.
     #[serde(default)]
     pub(crate) joint: Option<Joint>,
     /// Rollers on their bushes.

@@ -22,7 +22,7 @@ pub(crate) struct Contacts {
     /// Contact of the chain with guides.
     #[serde(default)]
     pub(crate) guides: Contact,
-    /// Contact of pins with their bushes, in clearance joints.
+    /// Contact of pins with their bushes; where joints have no clearance, its friction.
     #[serde(default)]
     pub(crate) joints: Contact,
     /// Contact of bushes with free rollers.
@@ -62,7 +62,7 @@ pub(crate) struct Contact {
     #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) damping: Option<Damping>,
-    /// How the restitution becomes a force; absent: Lankarani and Nikravesh.
+    /// How the restitution becomes a force; absent: exact.
     #[serde(default)]
     pub(crate) dissipation: Option<Dissipation>,
     /// Least closing speed with which a restitution reckons [m/s]: keeps contacts that begin gently
@@ -70,7 +70,8 @@ pub(crate) struct Contact {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) onset_floor: Option<Speed>,
-    /// Friction; absent: none.
+    /// Friction; absent: none, but in joints of a chain whose pin the catalogue knows: a spring and a slider, with a coefficient of
+    /// 0.1.
     #[serde(default)]
     pub(crate) friction: Option<Friction>,
 }

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::scene::quantity::{Damping, Force, PerLength, Ratio, Slowness, Speed};
+use crate::scene::quantity::{Damping, Force, PerLength, Ratio, Slowness, Speed, Stiffness};
 
 /// The friction of a table without `kind`.
 pub(crate) const PLAIN: &str = "coulomb";
@@ -107,5 +107,16 @@ pub(crate) enum Friction {
         #[serde(default)]
         #[schemars(extend("minimum" = 0))]
         viscosity: Slowness,
+    },
+    /// A spring and a slider in series: Coulomb friction that holds elastically, sharp at any speed, with a state.
+    SpringSlider {
+        /// Coefficient of friction [–].
+        #[schemars(extend("minimum" = 0))]
+        coefficient: Ratio,
+        /// Stiffness along the surface until it slides [N/m]; in joints of a chain whose links have a stiffness it may be
+        /// absent: a tenth of a link's, seen from its ends.
+        #[serde(default)]
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        stiffness: Option<Stiffness>,
     },
 }

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Contact;
-use crate::scene::quantity::{Inertia, Length, Mass};
+use crate::scene::quantity::{AngularDamping, Inertia, Length, Mass};
 
 /// What the chain is made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
@@ -53,19 +53,24 @@ pub(crate) struct Link {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Joint {
-    /// Diameter of the pin [m].
+    /// Diameter of the pin [m], on which the joints slide.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) pin_diameter: Option<Length>,
-    /// Radial clearance [m]: radius of the bore less radius of the pin.
+    /// Radial clearance [m]: radius of the bore less radius of the pin; for clearance joints.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) clearance: Option<Length>,
-    /// Length on which pin and bush touch [m].
+    /// Length on which pin and bush touch [m]; for clearance joints.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) length: Option<Length>,
-    /// Contact of pin and bush, where it differs from `contact.joints`.
+    /// Viscous damping [N m s/rad] against turning; absent: none.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0))]
+    pub(crate) damping: AngularDamping,
+    /// Contact of pin and bush, where it differs from `contact.joints`; joints without clearance have nothing of it but the
+    /// friction.
     #[serde(default)]
     pub(crate) contact: Contact,
 }

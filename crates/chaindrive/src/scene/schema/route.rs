@@ -24,9 +24,22 @@ pub(crate) struct Route {
     /// How the pretension is made; absent: by shorter links.
     #[serde(default)]
     pub(crate) tighten: Tighten,
+    /// How the spans set off; absent: quiet.
+    #[serde(default)]
+    pub(crate) start: Option<SpanStart>,
     /// What is moved until the links close without stress; absent: nothing.
     #[serde(default)]
     pub(crate) adjust: Option<Adjust>,
+}
+
+/// How the chain moves between the sprockets at the start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum SpanStart {
+    /// Along itself: the polygon effect reaches the spans with the first teeth.
+    Quiet,
+    /// With the motion across that the polygons have at the first instant: a kick after which spans swing.
+    Polygon,
 }
 
 /// How the pretension is made.

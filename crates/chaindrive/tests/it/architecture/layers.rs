@@ -16,7 +16,7 @@ const CRATES: [Storeys; 4] = [
         folder: "mechanics",
         layers: &[
             &["energy", "error", "lanes"],
-            &["motion", "profile", "tensioner"],
+            &["articulation", "motion", "profile", "tensioner"],
             &["chain", "torque"],
             &["drive"],
             &["contact", "groups"],

@@ -64,6 +64,7 @@ impl Strand {
             masses: vec![0.01; rollers],
             roller_diameter: self.roller_diameter,
             plate_height: self.roller_diameter,
+            articulation: None,
             ends: self.ends.clone(),
             model: ChainModel::Rigid(self.links.clone()),
         };

@@ -67,6 +67,9 @@ impl Linkage {
 
     pub(crate) fn commit(&mut self, _t: f64, _q: &mut [f64], _v: &mut [f64], record: &mut Record) {
         std::mem::swap(&mut self.memory, &mut record.joint_state.memory);
+        if let Some(joints) = &mut self.resisting {
+            joints.commit(&mut record.resistance);
+        }
     }
 
     /// Goes on from what the joints remembered.

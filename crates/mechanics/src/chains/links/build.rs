@@ -12,6 +12,7 @@ use super::{
     Pairs, Shapes, turned,
 };
 use crate::chains::LaidAs;
+use crate::chains::joints::Joints;
 use crate::chains::particles::Particles;
 use crate::contact::ContactMemory;
 use crate::lanes::padded;
@@ -298,6 +299,7 @@ fn compile(particles: &Particles, laid: &LaidAs<'_>, links: &RigidLinks) -> Link
             bushes: ContactMemory::open(joints.len()),
         },
         pairs: Pairs::of(&joints),
+        resisting: Joints::new(chain, padded(joints.len())),
         joints,
         joining,
         free_rollers,

@@ -43,6 +43,25 @@ impl Hinges {
         rates: &mut [f64],
         joint_state: &mut JointState,
     ) {
+        self.find(linkage, at, joint_state);
+        for (index, joint) in linkage.joints.iter().enumerate() {
+            let Some(mates) = joint.pair else {
+                continue;
+            };
+            let force = joint_state.hinge_forces[index];
+            for limb in limbs(&mates, joint_state) {
+                if let Some(body) = limb.body {
+                    let push = force * limb.sign;
+                    joint_state.forces[body] += Vector3::new(push.x, push.y, cross(limb.arm, push));
+                }
+            }
+            let [hole, pin] = mates.map(|mate| linkage.part(mate, at, &joint_state.posture));
+            rates[Flow::Motions as usize] += supplied(&mates, force, &hole, &pin);
+        }
+    }
+
+    /// Writes down the joint forces that keep the ends together under the forces on the bodies.
+    pub(super) fn find(&self, linkage: &Linkage, at: Moment<'_>, joint_state: &mut JointState) {
         let held: Vec<usize> = (0..linkage.joints.len())
             .filter(|&joint| linkage.joints[joint].pair.is_some())
             .collect();
@@ -96,18 +115,7 @@ impl Hinges {
         let forces = solve(&diagonal, &below, &right, closed)
             .unwrap_or_else(|| vec![Vector::repeat(f64::NAN); count]);
         for (&joint, force) in held.iter().zip(&forces) {
-            let Some(mates) = linkage.joints[joint].pair else {
-                continue;
-            };
             joint_state.hinge_forces[joint] = *force;
-            for limb in limbs(&mates, joint_state) {
-                if let Some(body) = limb.body {
-                    let push = force * limb.sign;
-                    joint_state.forces[body] += Vector3::new(push.x, push.y, cross(limb.arm, push));
-                }
-            }
-            let [hole, pin] = mates.map(|mate| linkage.part(mate, at, &joint_state.posture));
-            rates[Flow::Motions as usize] += supplied(&mates, *force, &hole, &pin);
         }
     }
 }

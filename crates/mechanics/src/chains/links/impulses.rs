@@ -62,7 +62,7 @@ impl Linkage {
             joint_state,
         };
         // Around a link there are its two joints, the wheels, and the right-hand side.
-        match (bearing.rubs(), wheels) {
+        match (bearing.rubs_by_step(), wheels) {
             (false, ..=1) => work.solve::<1, 4>(step, x),
             (false, 2..=5) => work.solve::<1, 8>(step, x),
             (true, ..=3) => work.solve::<2, 8>(step, x),

@@ -72,6 +72,8 @@ impl Linkage {
             out.stores[Store::Gravity as usize] -= body.mass * (gravity.x * x + gravity.y * y);
         }
         out.stores[Store::Joints as usize] += self.stored(&record.joint_state.memory);
+        let stuck = self.stuck(&record.joint_state.memory);
+        out.hold_in_joints(record.resistance.stored + stuck);
     }
 
     /// What the contacts of the plates with a guide store \[J\].

@@ -4,6 +4,7 @@ use chaindrive_geometry::{Point, Vector};
 use nalgebra::Vector3;
 
 use super::{Joining, JointState, Linkage, Partner, cross, turned};
+use crate::chains::joints::Joints;
 use crate::chains::{Record, Surroundings};
 use crate::contact::{PlatePins, PlatePlaces};
 
@@ -64,6 +65,9 @@ impl Linkage {
             squared = squared.max(RIM_SHARE * rim);
             damping = damping.max(RIM_SHARE * drag);
         }
+        let [turning, drag] = self.joint_rates(record.resistance.slopes);
+        squared = squared.max(turning);
+        damping = damping.max(drag);
         if let Joining::Hinges(hinges) = &self.joining {
             damping = damping.max(hinges.rate);
             squared = squared.max(self.pulled(joint_state));
@@ -71,13 +75,17 @@ impl Linkage {
         [squared, damping]
     }
 
-    /// Frequency \[1/s\] of the stabilisation of ideal joints, which every method takes explicitly.
+    /// Frequency \[1/s\] of the stabilisation of ideal joints and of torques in joints, which every method takes explicitly.
     ///
-    /// It is a damper and a spring of rate α: symplectic Euler takes steps up to 0.83/α with it, and this is 0.41/α.
+    /// The stabilisation is a damper and a spring of rate α: symplectic Euler takes steps up to 0.83/α with it, and this is 0.41/α.
+    /// Torques are reckoned with as explicit methods do, by D + √(D² + ω²).
     pub(crate) fn stabilisation(&self) -> f64 {
+        let joints = self.resisting.as_ref();
+        let [squared, damping] = self.joint_rates(joints.map_or([0.0; 2], Joints::slopes));
+        let torques = damping + (damping * damping + squared).sqrt();
         match &self.joining {
-            Joining::Hinges(hinges) => (1.0 + std::f64::consts::SQRT_2) * hinges.rate,
-            Joining::Clearance(_) => 0.0,
+            Joining::Hinges(hinges) => torques.max((1.0 + std::f64::consts::SQRT_2) * hinges.rate),
+            Joining::Clearance(_) => torques,
         }
     }
 
@@ -130,9 +138,15 @@ impl Linkage {
             return;
         };
         let (pins, posture) = (&joint_state.pins, &joint_state.posture);
+        let friction = &bearing.lanes.friction;
         for joint in 0..self.joints.len() {
             let stiffness = pins.stiffness[joint];
-            let drag = pins.drag[joint];
+            // What a spring resists within the step is in its stiffness already.
+            let (drag, spring) = if friction.is_elastic() {
+                (0.0, friction.stiffness(pins.force[joint]))
+            } else {
+                (pins.drag[joint], 0.0)
+            };
             if stiffness <= 0.0 && drag <= 0.0 {
                 continue;
             }
@@ -162,8 +176,9 @@ impl Linkage {
                 add_square(&mut sum[0], along, share * stiffness);
                 add_square(&mut sum[0], pivoting, share * pins.across[joint]);
                 add_square(&mut sum[1], along, share * pins.damping[joint]);
-                if drag > 0.0 {
+                if drag > 0.0 || spring > 0.0 {
                     let across = self.scaled_row(body, t, cross(arm, t) + lever);
+                    add_square(&mut sum[0], across, share * spring);
                     add_square(&mut sum[1], across, share * drag);
                 }
             }

@@ -14,7 +14,7 @@ use crate::system::GroupBodies;
 use crate::{
     Adjust, ChainModel, Clearance, Drive, End, Ends, Fit, Flank, FreeRoller, Joint, Layout,
     LinkBody, Motion, Parts, PlacedChain, Record, RigidLinks, RollerModel, Rotation, Shaft,
-    Sprocket, Stop, Support, Surface, System, Tighten, Torque,
+    SpanStart, Sprocket, Stop, Support, Surface, System, Tighten, Torque,
 };
 
 /// Steel on steel with a little friction, so that normals and tangents take part.
@@ -76,12 +76,14 @@ pub(super) fn bicycle(model: ChainModel) -> Parts {
                 masses: vec![3.81e-3; links],
                 roller_diameter,
                 plate_height: 9.6e-3,
+                articulation: None,
                 ends: Ends::Closed,
                 model,
             },
             layout: Layout::Route {
                 stops: vec![Stop::Sprocket(0), Stop::Sprocket(1)],
                 phase: 0.5,
+                start: SpanStart::Polygon,
                 fit: Fit {
                     adjust: Adjust::Nothing,
                     pretension: 60.0,

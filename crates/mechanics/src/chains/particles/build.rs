@@ -5,6 +5,7 @@ use pulp::Arch;
 
 use super::{Links, Particles};
 use crate::chains::held_ends;
+use crate::chains::joints::Joints;
 use crate::{Chain, End};
 
 impl Particles {
@@ -27,6 +28,7 @@ impl Particles {
         let particles = Self {
             lightest: inverse_masses.iter().copied().fold(0.0, f64::max),
             link_rates: link_rates(&links, &inverse_masses, rollers),
+            joints: Joints::new(chain, links.rest.len()),
             links,
             rollers,
             stride,

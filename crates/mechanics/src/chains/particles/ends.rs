@@ -11,8 +11,11 @@ use crate::system::HeldEnd;
 use crate::{End, Motion};
 
 impl Particles {
-    /// Puts driven ends where they are given.
-    pub(crate) fn commit(&mut self, t: f64, q: &mut [f64], v: &mut [f64], _record: &mut Record) {
+    /// Puts driven ends where they are given, and keeps what the friction of joints remembers.
+    pub(crate) fn commit(&mut self, t: f64, q: &mut [f64], v: &mut [f64], record: &mut Record) {
+        if let Some(joints) = &mut self.joints {
+            joints.commit(&mut record.resistance);
+        }
         let n = self.stride;
         for held in &self.ends {
             if let End::Driven { x, y } = &held.end {

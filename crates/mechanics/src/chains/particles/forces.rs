@@ -3,11 +3,16 @@
 use chaindrive_integrate::Moment;
 use pulp::{Scalar128b, Simd, WithSimd};
 
+use super::articulation::{self, Turning};
 use super::{Particles, Pins};
+use crate::chains::joints::Resistance;
 use crate::chains::{Loads, Record, Surroundings};
 use crate::energy::Flow;
 use crate::lanes::Wide;
 use crate::system::RailContact;
+
+/// What bodies feel, how links turn, and what resists in the joints.
+type Found<'a> = (&'a mut Loads, &'a mut Turning, &'a mut Resistance);
 
 impl Particles {
     pub(crate) fn evaluate(
@@ -18,9 +23,15 @@ impl Particles {
         rates: &mut [f64],
         record: &mut Record,
     ) {
-        let loads = &mut record.loads;
+        let Record {
+            loads,
+            resistance,
+            turning,
+            ..
+        } = record;
         if self.oldest {
-            self.forces(Wide(Scalar128b), around, at, a, rates, loads);
+            let found = (&mut *loads, turning, resistance);
+            self.forces(Wide(Scalar128b), around, at, a, rates, found);
         } else {
             self.arch.dispatch(Forces {
                 chain: self,
@@ -28,7 +39,7 @@ impl Particles {
                 at,
                 a: &mut *a,
                 rates: &mut *rates,
-                loads: &mut *loads,
+                found: (&mut *loads, turning, resistance),
             });
         }
         self.plate_forces(around, at, a, rates, loads);
@@ -54,12 +65,22 @@ impl Particles {
         at: Moment<'_>,
         a: &mut [f64],
         rates: &mut [f64],
-        loads: &mut Loads,
+        (loads, turning, found): Found<'_>,
     ) {
         let contacts = around.contacts;
         let mut rollers = self.view(at.q, at.v, a);
         let gravity = [around.bodies.gravity.x, around.bodies.gravity.y];
-        rates[Flow::LinkLoss as usize] += self.links.act(w, &mut rollers, gravity);
+        let links = &self.links;
+        let loss = if let Some(joints) = &self.joints {
+            let loss = links.act::<S, true>(w, &mut rollers, gravity, turning);
+            let found = (turning, found);
+            rates[Flow::ArticulationLoss as usize] +=
+                articulation::act(joints, w, at.t, links, found, &mut rollers);
+            loss
+        } else {
+            links.act::<S, false>(w, &mut rollers, gravity, turning)
+        };
+        rates[Flow::LinkLoss as usize] += loss;
         // One call of the kernel serves wheels and rails: it is inlined, and long.
         let wheels = contacts.teeth.len();
         for i in 0..wheels + contacts.rails.len() {
@@ -122,7 +143,7 @@ struct Forces<'a> {
     at: Moment<'a>,
     a: &'a mut [f64],
     rates: &'a mut [f64],
-    loads: &'a mut Loads,
+    found: Found<'a>,
 }
 
 impl WithSimd for Forces<'_> {
@@ -137,8 +158,8 @@ impl WithSimd for Forces<'_> {
             at,
             a,
             rates,
-            loads,
+            found,
         } = self;
-        chain.forces(Wide(simd), around, at, a, rates, loads);
+        chain.forces(Wide(simd), around, at, a, rates, found);
     }
 }

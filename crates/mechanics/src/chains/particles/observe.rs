@@ -33,7 +33,7 @@ impl Particles {
         &self,
         at: Moment<'_>,
         gravity: Vector,
-        _record: &Record,
+        record: &Record,
         out: &mut Energy,
     ) {
         let mut none = vec![0.0; self.coordinates()];
@@ -51,6 +51,7 @@ impl Particles {
             );
         }
         add(Store::Links, self.links.stored(&rollers));
+        out.hold_in_joints(record.resistance.stored);
     }
 
     pub(crate) fn plate_energy(

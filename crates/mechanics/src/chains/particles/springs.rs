@@ -3,6 +3,7 @@
 use chaindrive_geometry::{Point, Vector};
 use pulp::Simd;
 
+use super::articulation::Turning;
 use crate::Chain;
 use crate::contact::Rollers;
 use crate::lanes::{LANES, Wide, padded};
@@ -46,13 +47,14 @@ impl Links {
     }
 
     /// Sets the accelerations of the rollers to gravity and the links' pulls, and returns the
-    /// power \[W\] lost in the dampers.
+    /// power \[W\] lost in the dampers. Where joints resist, the links write down how they turn and pull.
     #[inline(always)]
-    pub(crate) fn act<S: Simd>(
+    pub(crate) fn act<S: Simd, const ARTICULATED: bool>(
         &self,
         w: Wide<S>,
         rollers: &mut Rollers<'_>,
         gravity: [f64; 2],
+        turning: &mut Turning,
     ) -> f64 {
         let n = self.rest.len();
         let [rest, stiffness, damping, inverse_mass] = [
@@ -70,6 +72,23 @@ impl Links {
         let [gx, gy] = gravity.map(|g| w.splat(g));
         let zero = w.splat(0.0);
         let (mut loss, mut before) = (zero, [zero; 2]);
+        let written = if ARTICULATED {
+            turning.make_room(self);
+            n
+        } else {
+            0
+        };
+        let [turns, pulls] = [&mut turning.rate, &mut turning.tension].map(|values| {
+            if ARTICULATED {
+                &mut values[LANES..]
+            } else {
+                &mut []
+            }
+        });
+        let (mut turns, mut pulls) = (Wide::<S>::lanes_mut(turns), Wide::<S>::lanes_mut(pulls));
+        let [across_x, across_y] = &mut turning.across;
+        let mut across =
+            [across_x, across_y].map(|values| Wide::<S>::lanes_mut(&mut values[..written]));
         for i in 0..n / Wide::<S>::COUNT {
             let dx = x_next.get(i) - x.get(i);
             let dy = y_next.get(i) - y.get(i);
@@ -86,6 +105,14 @@ impl Links {
             let scale = tension * inverse;
             let pull = [scale * dx, scale * dy];
             loss += drag * rate;
+            if ARTICULATED {
+                let inverse_square = inverse * inverse;
+                // ω = d × u/ℓ²
+                turns.set(i, (dx * uy - dy * ux) * inverse_square);
+                pulls.set(i, tension);
+                across[0].set(i, -dy * inverse_square);
+                across[1].set(i, dx * inverse_square);
+            }
             // m a = T₊ u₊ − T₋ u₋ + m g
             let fx = pull[0] - pull[0].after(before[0]);
             let fy = pull[1] - pull[1].after(before[1]);

@@ -3,8 +3,8 @@
 use chaindrive_contact::{Friction, Law};
 use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
 use chaindrive_mechanics::{
-    Adjust, Chain, Ends, Fit, Layout, Motion, Parts, PlacedChain, Rotation, Shaft, Sprocket, Stop,
-    Support, Surface, Tighten, Torque,
+    Adjust, Chain, Ends, Fit, Layout, Motion, Parts, PlacedChain, Rotation, Shaft, SpanStart,
+    Sprocket, Stop, Support, Surface, Tighten, Torque,
 };
 
 /// Pitch, link mass and stiffness as published; the rest is a reconstruction that closes exactly.
@@ -68,12 +68,14 @@ pub(crate) fn parts(law: Law) -> Parts {
                 masses: vec![mass; links],
                 roller_diameter,
                 plate_height: 0.0778,
+                articulation: None,
                 ends: Ends::Closed,
                 model: chaindrive_mechanics::ChainModel::Particles,
             },
             layout: Layout::Route {
                 stops: (0..4).map(Stop::Sprocket).collect(),
                 phase: 0.5,
+                start: SpanStart::Polygon,
                 fit: Fit {
                     adjust: Adjust::Nothing,
                     pretension: 15e3,

@@ -1,0 +1,160 @@
+//! What resists in the joints of any chain: friction of pin and bush, and viscous damping.
+
+use chaindrive_contact::Friction;
+use chaindrive_contact::friction::SpringSlider;
+use chaindrive_mechanics::Articulation;
+use serde_json::json;
+
+use super::{Findings, contact};
+use crate::catalogue::{CatalogueChain, Number};
+use crate::scene::defaults;
+use crate::scene::schema::{self, ChainModel, SceneText};
+
+/// The joints of a chain, as far as friction is concerned.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Joints<'a> {
+    scene: &'a SceneText,
+    text: &'a schema::Chain,
+    of_type: Option<&'static CatalogueChain>,
+    /// Stiffness of a link \[N/m\], where it is known.
+    link_stiffness: Option<f64>,
+}
+
+impl<'a> Joints<'a> {
+    /// `text` is the chain completed from the catalogue; links whose stiffness is not given have that of the catalogue.
+    pub(super) fn new(
+        scene: &'a SceneText,
+        text: &'a schema::Chain,
+        link_stiffness: Option<f64>,
+    ) -> Self {
+        let of_type = text.of_type.as_deref().and_then(CatalogueChain::named);
+        let catalogued = || of_type?.number(Number::LinkStiffness);
+        Self {
+            scene,
+            text,
+            of_type,
+            link_stiffness: link_stiffness.or_else(catalogued),
+        }
+    }
+
+    /// Radius of the pin \[m\]: as given, or that of the catalogue.
+    fn pin(&self) -> Option<f64> {
+        let given = self.text.joint.as_ref().and_then(|it| it.pin_diameter);
+        let diameter = given.map(|diameter| diameter.0);
+        diameter
+            .or_else(|| self.of_type?.number(Number::PinDiameter))
+            .map(|it| 0.5 * it)
+    }
+
+    /// Friction of pin and bush: as the chain says, or as all chains do; or the usual one where the catalogue knows the pin.
+    pub(super) fn friction(&self, findings: &mut Findings<'_>) -> Option<Friction> {
+        let own = self.text.joint.as_ref().and_then(|it| it.contact.friction);
+        // k = 0.1 k_link (p/r)² on the surface is σ = 0.1 k_link p² in the joint.
+        let spring = || {
+            let lever = self.text.pitch?.0 / self.pin()?;
+            Some(self.link_stiffness? * lever * lever)
+        };
+        match (own, self.scene.contact.joints.friction) {
+            (Some(text), _) => contact::friction(text, "chain.joint.contact", spring(), findings),
+            (None, Some(text)) => contact::friction(text, "contact.joints", spring(), findings),
+            (None, None) => Some(self.usual(spring(), findings)),
+        }
+    }
+
+    fn usual(&self, spring: Option<f64>, findings: &mut Findings<'_>) -> Friction {
+        // What is common is that of the only chain.
+        let common = "contact.joints.friction";
+        let place = findings
+            .chain
+            .map_or(common, |_| "chain.joint.contact.friction");
+        let coefficient = defaults::JOINTS_FRICTION.value(findings.version);
+        let knows_pin = |chain: &CatalogueChain| chain.number(Number::PinDiameter).is_some();
+        let (true, Some(spring)) = (
+            self.of_type.is_some_and(knows_pin) && coefficient > 0.0,
+            spring,
+        ) else {
+            findings.assume_kind(place, "none");
+            return Friction::None;
+        };
+        let soft = &defaults::JOINTS_SPRING;
+        let factor = soft.value(findings.version);
+        let law = SpringSlider {
+            coefficient,
+            stiffness: factor * spring,
+        };
+        let text = json!({
+            "kind": "spring-slider",
+            "coefficient": law.coefficient,
+            "stiffness": law.stiffness,
+        });
+        let coefficient = defaults::JOINTS_FRICTION.basis.remark();
+        let stiffness = soft.basis.remark();
+        let remark = format!(
+            "coefficient {coefficient}; stiffness {factor} {}, {stiffness}",
+            soft.unit
+        );
+        findings.assume(place, text, remark);
+        Friction::SpringSlider(law)
+    }
+
+    /// What resists; none where nothing does. Pins with clearance rub in the contact with their bushes.
+    pub(super) fn articulation(&self, findings: &mut Findings<'_>) -> Option<Articulation> {
+        let joint = self.text.joint.as_ref();
+        let damping = joint.map_or(0.0, |joint| joint.damping.0);
+        let play = self.text.model == ChainModel::ClearanceJoints;
+        let friction = if play {
+            Friction::None
+        } else {
+            self.friction(findings)?
+        };
+        let rubs = friction != Friction::None;
+        if !rubs && damping == 0.0 {
+            return None;
+        }
+        let pin = self.pin();
+        if rubs {
+            let Some(pin) = pin else {
+                let hint = "give the diameter of the pin, on which the joints slide";
+                findings.refuse_with("chain.joint.pin_diameter", "missing", hint);
+                return None;
+            };
+            let given = joint.is_some_and(|joint| joint.pin_diameter.is_some());
+            if let (false, Some(chain)) = (given, self.of_type) {
+                let remark = format!(
+                    "{}: {}",
+                    chain.name,
+                    chain.status(Number::PinDiameter.status())
+                );
+                findings.assume("chain.joint.pin_diameter", 2.0 * pin, remark);
+            }
+        }
+        Some(Articulation {
+            friction,
+            // Where nothing slides any radius will do.
+            radius: pin.unwrap_or(0.5 * self.text.pitch?.0),
+            damping,
+        })
+    }
+}
+
+/// Joints without clearance have no play to describe, nor an impact.
+pub(super) fn refuse_play(text: &schema::Chain, findings: &mut Findings<'_>) {
+    let Some(joint) = &text.joint else {
+        return;
+    };
+    let contact = &joint.contact;
+    let given = [
+        ("clearance", joint.clearance.is_some()),
+        ("length", joint.length.is_some()),
+        ("contact.law", contact.law.is_some()),
+        ("contact.restitution", contact.restitution.is_some()),
+        ("contact.damping", contact.damping.is_some()),
+        ("contact.dissipation", contact.dissipation.is_some()),
+        ("contact.onset_floor", contact.onset_floor.is_some()),
+    ];
+    for (key, _) in given.iter().filter(|(_, given)| *given) {
+        let hint = "take `model = \"clearance-joints\"`, or leave it out";
+        let message = "only pins with clearance have one";
+        findings.refuse_with(&format!("chain.joint.{key}"), message, hint);
+    }
+}

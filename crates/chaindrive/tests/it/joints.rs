@@ -1,0 +1,176 @@
+//! Joints that resist, as scenes describe them: friction of every chain model, and what it does to a plucked strand.
+#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
+
+use std::f64::consts::PI;
+
+use chaindrive::{Flow, Scene};
+
+use crate::dynamics::{pairs, run};
+
+/// Links of the strand, its tension \[N\], and μ r with the pin of 56B-1 \[m\].
+const LINKS: u32 = 31;
+const TENSION: f64 = 30e3;
+const LEVER: f64 = 0.1 * 0.5 * 0.034_32;
+
+/// A strand of 56B-1 with soft links, plucked to the shape of its first mode.
+fn strand(joint: &str) -> String {
+    let (pitch, stiffness) = (0.0889, 2e6);
+    let amplitude = 45.0 * LEVER;
+    let place = |i: u32| {
+        let share = f64::from(i) / f64::from(LINKS);
+        [f64::from(i) * pitch, amplitude * (PI * share).sin()]
+    };
+    format!(
+        r#"
+        gravity = [0, 0]
+        settle = false
+        [chain]
+        type = "56B-1"
+        links = {LINKS}
+        inner_pitch = {rest}
+        outer_pitch = {rest}
+        mass = 3
+        stiffness = {stiffness}
+        damping_ratio = 0
+        ends = [{{ kind = "fixed" }}, {{ kind = "fixed" }}]
+        {joint}
+        [chain.start]
+        kind = "points"
+        positions = {positions}
+        [run]
+        until = {until}
+        every = 2e-4
+        step = 2e-5
+        "#,
+        rest = pitch - TENSION / stiffness,
+        positions = pairs((0..=LINKS).map(place)),
+        until = 4.3 * 2.0 * f64::from(LINKS) * (pitch * 3.0 / TENSION).sqrt(),
+    )
+}
+
+/// Greatest amplitudes of the first mode, one a half cycle, and the loss in the joints \[J\].
+fn swings(scene: &str) -> (Vec<f64>, f64) {
+    let (mut peaks, mut last, mut lost) = (Vec::new(), [0.0_f64; 2], 0.0);
+    run(scene, |sample| {
+        let parts = sample.roller_y.iter().enumerate();
+        let sum: f64 = parts
+            .map(|(i, y)| y * (PI * i as f64 / f64::from(LINKS)).sin())
+            .sum();
+        let now = 2.0 * sum / f64::from(LINKS);
+        if last[1].abs() > last[0].abs() && last[1].abs() >= now.abs() {
+            peaks.push(last[1].abs());
+        }
+        last = [last[1], now];
+        lost = sample.energy.flow(Flow::ArticulationLoss);
+    });
+    (peaks, lost)
+}
+
+/// Friction takes 4.5 μ r a cycle from a strand, with the pin of the catalogue; version 0.1 lets it swing on.
+#[test]
+fn a_plucked_strand_comes_to_rest() {
+    let joint = r#"joint.contact.friction = { kind = "spring-slider", coefficient = 0.1, stiffness = "5 GN/m" }"#;
+    let (peaks, lost) = swings(&strand(joint));
+    let found = (peaks[2] - peaks[6]) / 2.0 / LEVER;
+    assert!((found - 4.5).abs() < 0.25, "{found} μ r a cycle, {peaks:?}");
+    assert!(lost > 10.0, "{lost} J");
+    let (peaks, lost) = swings(&format!("defaults = \"0.1\"\n{}", strand("")));
+    assert!(
+        peaks[6] > 0.98 * peaks[0] && lost.abs() < 1e-9,
+        "{peaks:?}, {lost} J"
+    );
+}
+
+/// A scene with a chain of the catalogue around two sprockets.
+fn drive(model: &str, more: &str) -> Scene {
+    let text = format!(
+        r#"
+        {more}
+        [chain]
+        type = "16B-1"
+        model = "{model}"
+        [[sprockets]]
+        name = "driver"
+        teeth = 19
+        centre = ["0 m", "0 m"]
+        motion = {{ kind = "constant", speed = "300 rpm" }}
+        [[sprockets]]
+        name = "driven"
+        teeth = 57
+        centre = ["1.03 m", "0 m"]
+        inertia = "1.5 kg m^2"
+        load = [{{ kind = "constant", torque = "-1433 N m" }}]
+        [run]
+        until = "1 ms"
+        "#
+    );
+    Scene::from_text(&text, "drive.toml").unwrap()
+}
+
+/// Where the catalogue knows the pin, joints rub: by the same keys in every model, each default with its reason. The defaults of
+/// version 0.1 have none.
+#[test]
+fn joints_of_the_catalogue_rub_in_every_model() {
+    for model in ["particles", "ideal-joints", "clearance-joints"] {
+        let resolved = drive(model, "").resolved().unwrap().text().to_owned();
+        assert!(resolved.contains("spring-slider"), "{model}: {resolved}");
+        assert!(
+            resolved.contains("pin_diameter = 0.00828"),
+            "{model}: {resolved}"
+        );
+        assert!(
+            resolved.contains("boundary lubrication"),
+            "{model}: {resolved}"
+        );
+        assert!(
+            resolved.contains("start = \"quiet\""),
+            "{model}: {resolved}"
+        );
+        let resolved = drive(model, "defaults = \"0.1\"")
+            .resolved()
+            .unwrap()
+            .text()
+            .to_owned();
+        assert!(!resolved.contains("spring-slider"), "{model}: {resolved}");
+        assert!(
+            resolved.contains("start = \"polygon\""),
+            "{model}: {resolved}"
+        );
+        assert!(
+            resolved.contains("lankarani-nikravesh"),
+            "{model}: {resolved}"
+        );
+    }
+}
+
+/// What a pin needs is asked for, and what only pins with clearance have is refused.
+#[test]
+fn joints_say_what_they_need() {
+    let of_dimensions = r#"
+        [chain]
+        pitch = "25.4 mm"
+        links = 120
+        mass = "69 g"
+        stiffness = "160 MN/m"
+        roller_diameter = "15.88 mm"
+        "#;
+    let drive = drive("particles", "").text().to_owned();
+    let bare = drive.replace(
+        "[chain]\n        type = \"16B-1\"\n        model = \"particles\"",
+        of_dimensions,
+    );
+    let wrong = |more: &str| {
+        let scene = Scene::from_text(&format!("{bare}\n{more}"), "drive.toml").unwrap();
+        scene.drive().unwrap_err().to_string()
+    };
+    let message = wrong("[contact.joints]\nfriction = { coefficient = 0.1 }");
+    assert!(message.contains("chain.joint.pin_diameter"), "{message}");
+    let message = wrong("[chain.joint]\nclearance = \"0.05 mm\"");
+    assert!(message.contains("only pins with clearance"), "{message}");
+    let message =
+        wrong("[contact.teeth]\nfriction = { kind = \"spring-slider\", coefficient = 0.1 }");
+    assert!(
+        message.contains("contact.teeth.friction.stiffness"),
+        "{message}"
+    );
+}

@@ -1,0 +1,218 @@
+//! What resists in the joints of a chain: torques between neighbouring links, on lanes.
+//!
+//! ```text
+//! ω = ω_after − ω_before,   M = r f(N, r ω) − c ω       on the link after the joint, and −M on the one before it
+//! ```
+//!
+//! Joint i lies between the links i − 1 and i. What the turning ω and the normal force N are, the member says. Joints
+//! with clearance have their friction in the contact of pin and bush, and only c here.
+
+use chaindrive_contact::Friction;
+use pulp::Simd;
+use serde::{Deserialize, Serialize};
+
+use crate::MemoryError;
+use crate::articulation::Articulation;
+use crate::contact::{LaneFriction, LaneSpring};
+use crate::lanes::{Lane, Wide, padded};
+
+/// The joints in flat arrays, and what their friction remembers.
+#[derive(Clone, Debug)]
+pub(super) struct Joints {
+    friction: LaneFriction,
+    /// Radius r of what slides \[m\], whole lanes; zero where no two links meet.
+    radius: Vec<f64>,
+    /// Viscous damping c \[N m s/rad\], likewise.
+    damping: Vec<f64>,
+    /// Largest r² \[m²\] and c \[N m s/rad\].
+    largest: [f64; 2],
+    pub(super) memory: Stick,
+}
+
+/// State of the friction in all joints at an accepted moment.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Stick {
+    time: f64,
+    state: Vec<f64>,
+    /// Stiffness σ \[N m/rad\] and damping −∂M/∂ω \[N m s/rad\] of the stiffest joint.
+    slopes: [f64; 2],
+}
+
+/// What one evaluation finds in the joints.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Resistance {
+    /// Torque of every joint on the link after it \[N m\], and whole lanes behind.
+    #[serde(skip)]
+    pub(super) torque: Vec<f64>,
+    stick: Stick,
+    /// Energy in the springs of friction that holds \[J\].
+    pub(super) stored: f64,
+    /// As [`Stick`] has them.
+    pub(super) slopes: [f64; 2],
+}
+
+impl Joints {
+    /// The joints of a chain, in so many entries; none where nothing resists.
+    pub(super) fn new(chain: &crate::Chain, entries: usize) -> Option<Self> {
+        let Articulation {
+            friction,
+            radius,
+            damping,
+        } = chain.articulation?;
+        let meet = |joint: usize| joint < chain.links() && (joint > 0 || chain.is_closed());
+        let at_joints = |value: f64| {
+            let each = |joint| if meet(joint) { value } else { 0.0 };
+            (0..entries).map(each).collect::<Vec<f64>>()
+        };
+        let resists = friction != Friction::None || damping > 0.0;
+        resists.then(|| Self {
+            friction: LaneFriction::new(friction),
+            radius: at_joints(radius),
+            damping: at_joints(damping),
+            largest: [radius * radius, damping],
+            memory: Stick {
+                time: 0.0,
+                state: vec![0.0; entries],
+                slopes: [0.0; 2],
+            },
+        })
+    }
+
+    /// σ and damping of the stiffest joint at the accepted state.
+    pub(super) fn slopes(&self) -> [f64; 2] {
+        self.memory.slopes
+    }
+
+    /// Whether the normal force matters.
+    pub(super) fn rub(&self) -> bool {
+        self.friction.acts()
+    }
+
+    /// Takes the accepted state of the friction.
+    pub(super) fn commit(&mut self, found: &mut Resistance) {
+        std::mem::swap(&mut self.memory, &mut found.stick);
+        self.memory.slopes = found.slopes;
+    }
+
+    /// Goes on from what other joints remembered.
+    fn remember(&mut self, memory: Stick) -> Result<(), MemoryError> {
+        MemoryError::unless("joints", memory.state.len(), self.radius.len())?;
+        self.memory = memory;
+        Ok(())
+    }
+
+    /// Finds the torques; returns the power \[W\] that goes into the joints.
+    #[inline(always)]
+    pub(super) fn resist<S: Simd>(
+        &self,
+        w: Wide<S>,
+        t: f64,
+        found: &mut Resistance,
+        turns: &impl Turns<S>,
+    ) -> f64 {
+        let n = self.radius.len();
+        let dt = t - self.memory.time;
+        found.stick.time = t;
+        if found.stick.state.len() != n {
+            found.stick.state.resize(n, 0.0);
+        }
+        if found.torque.len() <= n {
+            found.torque.resize(padded(n + 1), 0.0);
+        }
+        // The law that most have gets a loop of its own.
+        if let LaneFriction::SpringSlider(spring) = &self.friction {
+            let sums = self.sweep::<S, true>(w, dt, found, turns, *spring);
+            // What the spring resists within a step is in its stiffness already.
+            found.slopes = [self.largest[0] * spring.stiffness, self.largest[1]];
+            found.stored = 0.5 * spring.stiffness * sums.squares.sum();
+            return sums.power.sum();
+        }
+        let sums = self.sweep::<S, false>(w, dt, found, turns, LaneSpring::default());
+        let stiffness = self.friction.stiffness(sums.normal.largest());
+        found.slopes = [self.largest[0] * stiffness, sums.steepest.largest()];
+        found.stored = sums.held.sum();
+        sums.power.sum()
+    }
+
+    /// All joints once; without closures, since those that are not inlined are compiled for the oldest processor.
+    #[inline(always)]
+    fn sweep<S: Simd, const SPRING: bool>(
+        &self,
+        w: Wide<S>,
+        dt: f64,
+        found: &mut Resistance,
+        turns: &impl Turns<S>,
+        spring: LaneSpring,
+    ) -> Sums<S> {
+        let n = self.radius.len();
+        let zero = w.splat(0.0);
+        let radius = w.lanes(&self.radius);
+        let damping = w.lanes(&self.damping);
+        let before = w.lanes(&self.memory.state);
+        let mut now = Wide::<S>::lanes_mut(&mut found.stick.state);
+        let mut moments = Wide::<S>::lanes_mut(&mut found.torque[..n]);
+        let mut sums = Sums {
+            power: zero,
+            squares: zero,
+            held: zero,
+            steepest: zero,
+            normal: zero,
+        };
+        for i in 0..n / Wide::<S>::COUNT {
+            let (r, c) = (radius.get(i), damping.get(i));
+            let [rate, normal] = turns.at(w, i);
+            let normal = r.greater(zero).select(normal, zero);
+            let slip = r * rate;
+            let (rubbing, state) = if SPRING {
+                spring.rub(w, dt, normal, slip, before.get(i))
+            } else {
+                self.friction
+                    .rub(w, dt, [normal, normal], slip, before.get(i))
+            };
+            now.set(i, state);
+            // M = r f − c ω
+            let drag = c * rate;
+            moments.set(i, r * rubbing.force - drag);
+            sums.power += drag * rate - rubbing.force * slip;
+            sums.squares += state * state;
+            if !SPRING {
+                sums.held += self.friction.stored(w, normal, state);
+                sums.steepest = sums.steepest.max(r * r * rubbing.steepest + c);
+                sums.normal = sums.normal.max(normal);
+            }
+        }
+        sums
+    }
+}
+
+/// How the links of a member turn against each other.
+pub(super) trait Turns<S: Simd> {
+    /// ω \[rad/s\] and N \[N\] of a lane of joints.
+    fn at(&self, w: Wide<S>, lane: usize) -> [Lane<S>; 2];
+}
+
+/// What a sweep over the joints adds up.
+struct Sums<S: Simd> {
+    /// Power that goes into the joints \[W\].
+    power: Lane<S>,
+    /// Squares of the states of the friction.
+    squares: Lane<S>,
+    /// Energy of what sticks \[J\].
+    held: Lane<S>,
+    /// Steepest −∂M/∂ω \[N m s/rad\].
+    steepest: Lane<S>,
+    /// Largest normal force \[N\].
+    normal: Lane<S>,
+}
+
+/// Goes on from what the joints of another chain remembered; there must be some in both or in none.
+pub(super) fn remember(
+    joints: Option<&mut Joints>,
+    memory: Option<Stick>,
+) -> Result<(), MemoryError> {
+    match (joints, memory) {
+        (Some(joints), Some(memory)) => joints.remember(memory),
+        (None, None) => Ok(()),
+        (Some(_), None) | (None, Some(_)) => Err(MemoryError::Model),
+    }
+}

@@ -1,0 +1,121 @@
+//! Torques between rigid links: friction of ideal joints, and viscous damping of all.
+
+use chaindrive_integrate::Moment;
+use pulp::{Simd, WithSimd};
+
+use super::hinge::Hinges;
+use super::posture::Posture;
+use super::{Joining, JointState, Linkage};
+use crate::chains::joints::{Joints, Resistance, Turns};
+use crate::energy::Flow;
+use crate::lanes::{Lane, Lanes, Wide, dispatch, padded};
+
+impl Linkage {
+    /// Adds the torques of the joints to those on the links.
+    pub(super) fn resist(
+        &self,
+        joints: &Joints,
+        at: Moment<'_>,
+        rates: &mut [f64],
+        joint_state: &mut JointState,
+        found: &mut Resistance,
+    ) {
+        // Behind the joints whole lanes; pins with clearance rub in their bushes.
+        let mut normal = vec![0.0; padded(self.joints.len())];
+        if let (Joining::Hinges(hinges), true) = (&self.joining, joints.rub()) {
+            self.press(hinges, at, joint_state, &mut normal);
+        }
+        let power = dispatch(
+            self.arch,
+            Torques {
+                joints,
+                posture: &joint_state.posture,
+                normal: &normal,
+                t: at.t,
+                found: &mut *found,
+            },
+        );
+        rates[Flow::ArticulationLoss as usize] += power;
+        let torque = &mut found.torque;
+        if self.closed {
+            // Behind the last link is the first joint again.
+            torque[self.links] = torque[0];
+        }
+        let links = joint_state.forces[..self.links].iter_mut();
+        for (force, ends) in links.zip(torque.windows(2)) {
+            force.z += ends[0] - ends[1];
+        }
+    }
+
+    /// Normal forces \[N\] of pins in ideal joints: those without friction.
+    ///
+    /// Friction changes them by the share μ r/p of itself, a hundredth, which is left out here: their torques are those of these
+    /// forces, and what they do and lose is exact.
+    fn press(
+        &self,
+        hinges: &Hinges,
+        at: Moment<'_>,
+        joint_state: &mut JointState,
+        normal: &mut [f64],
+    ) {
+        hinges.find(self, at, joint_state);
+        for (normal, force) in normal.iter_mut().zip(&joint_state.hinge_forces) {
+            *normal = force.norm();
+        }
+    }
+
+    /// ω² and D of links that turn to and fro against their neighbours.
+    ///
+    /// ```text
+    /// I φ̈_i = M_i − M_{i+1},   M_i = −σ (φ_i − φ_{i−1}) − c (ω_i − ω_{i−1}):   ω² ≤ 4 σ/I,   D ≤ 4 c/I
+    /// ```
+    pub(super) fn joint_rates(&self, slopes: [f64; 2]) -> [f64; 2] {
+        let lightest = self.bodies[..self.links]
+            .iter()
+            .map(|body| body.inertia)
+            .fold(f64::INFINITY, f64::min);
+        slopes.map(|slope| 4.0 * slope / lightest)
+    }
+}
+
+/// The torques of all joints, as one call that is compiled for every kind of processor.
+struct Torques<'a> {
+    joints: &'a Joints,
+    posture: &'a Posture,
+    normal: &'a [f64],
+    t: f64,
+    found: &'a mut Resistance,
+}
+
+impl WithSimd for Torques<'_> {
+    /// Power that goes into the joints.
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+        let w = Wide(simd);
+        let n = self.normal.len();
+        let Posture { before, after, .. } = self.posture;
+        let spins = Spins {
+            before: w.lanes(&before.spin[..n]),
+            after: w.lanes(&after.spin[..n]),
+            normal: w.lanes(self.normal),
+        };
+        self.joints.resist(w, self.t, self.found, &spins)
+    }
+}
+
+/// Angular speeds of the links before and after every joint, and the force on its pin.
+struct Spins<'a, S: Simd> {
+    before: Lanes<'a, S>,
+    after: Lanes<'a, S>,
+    normal: Lanes<'a, S>,
+}
+
+impl<S: Simd> Turns<S> for Spins<'_, S> {
+    #[inline(always)]
+    fn at(&self, _w: Wide<S>, lane: usize) -> [Lane<S>; 2] {
+        let rate = self.after.get(lane) - self.before.get(lane);
+        [rate, self.normal.get(lane)]
+    }
+}

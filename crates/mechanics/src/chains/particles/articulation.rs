@@ -1,0 +1,149 @@
+//! Torques in the joints of the particle chain, turned into forces, on lanes.
+//!
+//! ```text
+//! ω_i = (d_i × u_i)/ℓ_i²                    turning of link i
+//! N_i = ½ (|T_{i−1}| + |T_i|)               joint i, between link i − 1 and link i
+//! F   = ± (M_i − M_{i+1}) n_i/ℓ_i           couple at the ends of link i
+//! ```
+//!
+//! Three sweeps: the links write down how they turn and pull (`springs.rs`), the joints find their torques (`joints.rs`), the
+//! links pass them on to the rollers. The arrays of links begin one lane late, so that the joint before the first link finds its
+//! neighbour there.
+
+use pulp::Simd;
+
+use super::Particles;
+use super::springs::Links;
+use crate::chains::joints::{Joints, Resistance, Turns};
+use crate::contact::Rollers;
+use crate::lanes::{LANES, Lane, Lanes, Wide};
+
+/// How links turn and pull: work space, filled anew by every evaluation.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Turning {
+    /// Turning of the links \[rad/s\], from entry [`LANES`] on.
+    pub(super) rate: Vec<f64>,
+    /// Tension of the links \[N\], likewise.
+    pub(super) tension: Vec<f64>,
+    /// n/ℓ of the links \[1/m\].
+    pub(super) across: [Vec<f64>; 2],
+}
+
+impl Turning {
+    /// Room for the links to write into.
+    pub(super) fn make_room(&mut self, links: &Links) {
+        let n = links.rest.len();
+        if self.across[0].len() == n {
+            return;
+        }
+        for values in [&mut self.rate, &mut self.tension] {
+            values.resize(n + LANES, 0.0);
+        }
+        for values in &mut self.across {
+            values.resize(n, 0.0);
+        }
+    }
+}
+
+/// Adds what the joints do to the rollers, and returns the power \[W\] that goes into them.
+#[inline(always)]
+pub(super) fn act<S: Simd>(
+    joints: &Joints,
+    w: Wide<S>,
+    t: f64,
+    links: &Links,
+    (turning, found): (&mut Turning, &mut Resistance),
+    rollers: &mut Rollers<'_>,
+) -> f64 {
+    let n = links.rest.len();
+    let count = links.count;
+    let Turning {
+        rate,
+        tension,
+        across,
+    } = turning;
+    if links.closed {
+        for values in [&mut *rate, &mut *tension] {
+            values[LANES - 1] = values[LANES - 1 + count];
+        }
+    }
+    for values in across.iter_mut() {
+        values[count..].fill(0.0);
+    }
+    let neighbours = Neighbours {
+        rate: w.lanes(&rate[LANES..LANES + n]),
+        rate_before: w.lanes(&rate[LANES - 1..LANES - 1 + n]),
+        tension: w.lanes(&tension[LANES..LANES + n]),
+        tension_before: w.lanes(&tension[LANES - 1..LANES - 1 + n]),
+    };
+    let power = joints.resist(w, t, found, &neighbours);
+    if links.closed {
+        // Behind the last link is the first joint again.
+        found.torque[count] = found.torque[0];
+    }
+    let behind = [rollers.ax[count], rollers.ay[count]];
+    pass_on(w, &found.torque, across, rollers);
+    if links.closed {
+        // The roller behind the last link is the first one again.
+        rollers.ax[0] += rollers.ax[count] - behind[0];
+        rollers.ay[0] += rollers.ay[count] - behind[1];
+    }
+    power
+}
+
+/// The links at every joint, and those before them.
+struct Neighbours<'a, S: Simd> {
+    rate: Lanes<'a, S>,
+    rate_before: Lanes<'a, S>,
+    tension: Lanes<'a, S>,
+    tension_before: Lanes<'a, S>,
+}
+
+impl<S: Simd> Turns<S> for Neighbours<'_, S> {
+    #[inline(always)]
+    fn at(&self, w: Wide<S>, lane: usize) -> [Lane<S>; 2] {
+        // ω = ω_i − ω_{i−1},   N = ½ (|T_{i−1}| + |T_i|)
+        let rate = self.rate.get(lane) - self.rate_before.get(lane);
+        let both = self.tension_before.get(lane).abs() + self.tension.get(lane).abs();
+        [rate, w.splat(0.5) * both]
+    }
+}
+
+impl Particles {
+    /// Largest ω² and D that the joints add to the modes of the chain, see [`rates`](Self::rates).
+    ///
+    /// ```text
+    /// ω² = 16 σ/(ℓ² m),   D = 16 c/(ℓ² m)
+    /// ```
+    ///
+    /// Torques act on second differences of what is across, and their forces are second differences again: the row of the fourth
+    /// difference is 1, −4, 6, −4, 1.
+    pub(super) fn joint_rates(&self, found: &Resistance) -> [f64; 2] {
+        found
+            .slopes
+            .map(|value| 16.0 * value * self.lightest / (self.pitch * self.pitch))
+    }
+}
+
+/// Turns the torques on the links into forces on the rollers at their ends.
+#[inline(always)]
+fn pass_on<S: Simd>(w: Wide<S>, torque: &[f64], across: &[Vec<f64>; 2], rollers: &mut Rollers<'_>) {
+    let n = across[0].len();
+    let zero = w.splat(0.0);
+    let (here, next) = (w.lanes(&torque[..n]), w.lanes(&torque[1..=n]));
+    let inverse_mass = w.lanes(&rollers.inverse_mass[..n]);
+    let (across_x, across_y) = (w.lanes(&across[0]), w.lanes(&across[1]));
+    let mut ax = Wide::<S>::lanes_mut(&mut rollers.ax[..n]);
+    let mut ay = Wide::<S>::lanes_mut(&mut rollers.ay[..n]);
+    let mut before: [Lane<S>; 2] = [zero; 2];
+    for i in 0..n / Wide::<S>::COUNT {
+        // F = (M_i − M_{i+1}) n/ℓ at the second end, −F at the first
+        let couple = here.get(i) - next.get(i);
+        let push = [couple * across_x.get(i), couple * across_y.get(i)];
+        let fx = push[0].after(before[0]) - push[0];
+        let fy = push[1].after(before[1]) - push[1];
+        ax.add(i, fx * inverse_mass.get(i));
+        ay.add(i, fy * inverse_mass.get(i));
+        before = push;
+    }
+}
