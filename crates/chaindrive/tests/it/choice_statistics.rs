@@ -71,15 +71,15 @@ fn over(runs: &[Vec<Statistics>], span: usize, index: usize) -> (f64, f64) {
     (mean, (square / (count - 1.0) / count).sqrt())
 }
 
-/// The worst difference of the means of two ensembles, over what is allowed: the accuracy, or what chance makes of
-/// ensembles of this size, where that is more.
+/// The worst difference of the means of two ensembles, over what is allowed: the accuracy, and what chance makes of
+/// ensembles of this size.
 fn worst(found: &[Vec<Statistics>], replicates: &[Vec<Statistics>]) -> (f64, String) {
     let mut worst = (0.0, String::new());
     for span in 0..replicates[0].len() {
         for (index, name) in NAMES.iter().enumerate() {
             let (exact, error) = over(replicates, span, index);
             let (mean, own_error) = over(found, span, index);
-            let allowed = (CHANCE * error.hypot(own_error)).max(ACCURACY * exact);
+            let allowed = CHANCE * error.hypot(own_error) + ACCURACY * exact;
             let ratio = (mean - exact).abs() / allowed;
             if ratio > worst.0 {
                 let text =

@@ -193,6 +193,11 @@ fn a_variant_that_fails_leaves_a_message_and_the_others() -> Checked {
         let mut blocks = it.values.chunks(it.values.len() / 4);
         let good = blocks.next().unwrap_or_default();
         let name = it.quantity.name();
+        if name == "span_tension_half_width" {
+            // So few samples say nothing about their mean.
+            assert!(it.values.iter().all(|value| value.is_nan()), "{name}");
+            continue;
+        }
         assert!(
             !good.is_empty() && good.iter().all(|value| value.is_finite()),
             "{name}"
