@@ -173,7 +173,7 @@ impl Friction {
                 viscosity: 0.0,
             }),
             Self::SpringSlider(SpringSlider {
-                coefficient: 0.12,
+                coefficient: 0.1,
                 stiffness: 1e8,
             }),
         ]

@@ -1,7 +1,9 @@
 //! What every friction law owes, and the values of each.
 
 use chaindrive_contact::Friction;
-use chaindrive_contact::friction::{Ambrosio, BengisuAkay, BrownMcphee, Coulomb, Lugre, Threlfall};
+use chaindrive_contact::friction::{
+    Ambrosio, BengisuAkay, BrownMcphee, Coulomb, Lugre, SpringSlider, Threlfall,
+};
 
 const NORMAL: f64 = 1e3;
 
@@ -162,6 +164,33 @@ fn coulombs_limit() {
         };
         assert!((force - expected).abs() < 1e-3, "{friction:?}: {force}");
     }
+}
+
+/// A spring up to μ N, then Coulomb's law at any speed; back again it unloads as a spring, and a load that falls lets it go.
+#[test]
+fn a_spring_and_a_slider_hold_and_slide() {
+    let law = Friction::SpringSlider(SpringSlider {
+        coefficient: 0.1,
+        stiffness: 1e8,
+    });
+    let (dt, yields) = (1e-5, 0.1 * NORMAL / 1e8);
+    let speed = 0.25 * yields / dt;
+    let mut state = 0.0;
+    for k in 1..=8 {
+        let rub = law.rub(NORMAL, speed, state, dt);
+        let expected = 1e8 * yields * (0.25 * f64::from(k)).min(1.0);
+        assert!((rub.force + expected).abs() < 1e-9, "{k}: {}", rub.force);
+        assert_eq!(rub.damping > 0.0, k < 4, "{k}");
+        state = rub.state;
+    }
+    let back = law.rub(NORMAL, -speed, state, dt);
+    assert!((back.force + 0.075 * NORMAL).abs() < 1e-9, "{}", back.force);
+    let eased = law.rub(0.5 * NORMAL, 0.0, state, dt);
+    assert!(
+        (eased.force + 0.05 * NORMAL).abs() < 1e-9,
+        "{}",
+        eased.force
+    );
 }
 
 const BRISTLES: Lugre = Lugre {
