@@ -13,6 +13,7 @@ mod plates;
 mod rest;
 mod rollers;
 mod slots;
+mod stacked;
 #[cfg(test)]
 mod tests;
 mod window;

@@ -135,6 +135,8 @@ defaults! {
     ROLLER_DIAMETER = always(0.6), "pitches", Assumed("it touches nothing"), ["Chain.roller_diameter"];
     /// Laying stiffness of rigid links with ideal joints.
     LAYING_STIFFNESS = always(10.0), "stiffnesses of a tooth", Assumed("their stretch must not show beside the indentation of the teeth"), ["Chain.stiffness"];
+    /// What links yield beside their joints with clearance.
+    PLATES = [(Version::V0_1, 0.0), (Version::V0_2, 1.0)], "of what the stiffness of a link leaves beside its joint", Source("the stiffness of a link is that between its pins, joints included"), ["Contact.series"];
     /// Restitution on teeth.
     TEETH_RESTITUTION = always(0.8), "1", Assumed("teeth of steel"), ["Contact.restitution"];
     /// Restitution on guides.

@@ -14,6 +14,7 @@ use chaindrive_contact::{Approach, Friction, Law, Prepared, Rub};
 use pulp::Simd;
 
 use super::memory::MemoryLanes;
+use super::stacked::Stacked;
 use super::wrench::LaneTally;
 use crate::drive::{Flank, Surface};
 use crate::lanes::{FixedPower, LANES, Lane, Mask, Wide};
@@ -42,6 +43,8 @@ pub(super) enum LaneElastic {
     Hertz(f64),
     /// g = K δ δⁿ⁻¹: K, n, and the power.
     Power(f64, f64, Box<FixedPower>),
+    /// A power with a spring behind it.
+    Stacked(Box<Stacked>),
     /// Any law, one lane after the other.
     General(Box<Prepared>),
 }
@@ -111,7 +114,7 @@ pub(crate) struct Rubbing<S: Simd> {
 }
 
 /// A depth \[m\] that no power is taken below; the force there is nothing beside rounding.
-const LEAST_DEPTH: f64 = 1e-30;
+pub(super) const LEAST_DEPTH: f64 = 1e-30;
 
 impl SurfaceLaw {
     pub(crate) fn new(surface: &Surface, flank: Option<Flank>) -> Self {
@@ -295,7 +298,12 @@ impl LaneElastic {
             Some([stiffness, n]) if is(n, 1.0) => Self::Linear(stiffness),
             Some([stiffness, n]) if is(n, 1.5) => Self::Hertz(stiffness),
             Some([stiffness, n]) => Self::Power(stiffness, n, Box::new(FixedPower::new(n - 1.0))),
-            None => Self::General(Box::new(prepared)),
+            None => match prepared.power_and_series() {
+                Some([stiffness, n, series]) => {
+                    Self::Stacked(Box::new(Stacked::new(stiffness, n, series)))
+                }
+                None => Self::General(Box::new(prepared)),
+            },
         }
     }
 
@@ -307,6 +315,7 @@ impl LaneElastic {
             Self::Power(stiffness, _, lower) => {
                 w.splat(*stiffness) * depth * lower.of(w, depth.max(w.splat(LEAST_DEPTH)))
             }
+            Self::Stacked(stack) => stack.force(w, depth),
             Self::General(law) => general(w, law, depth, Part::Force),
         }
     }
@@ -318,6 +327,7 @@ impl LaneElastic {
             Self::Linear(stiffness) => return w.splat(*stiffness),
             Self::Hertz(_) => 1.5,
             Self::Power(_, n, _) => *n,
+            Self::Stacked(stack) => return stack.slope(w, depth, force),
             Self::General(law) => return general(w, law, depth, Part::Slope),
         };
         // k = n g/δ

@@ -1,14 +1,15 @@
 //! What resists in the joints of any chain: friction of pin and bush, and viscous damping.
 
-use chaindrive_contact::Friction;
 use chaindrive_contact::friction::SpringSlider;
+use chaindrive_contact::{Friction, Law};
 use chaindrive_mechanics::Articulation;
 use serde_json::json;
 
+use super::links::stiffness_under_pretension;
 use super::{Findings, contact};
 use crate::catalogue::{CatalogueChain, Number};
 use crate::scene::defaults;
-use crate::scene::schema::{self, ChainModel, SceneText};
+use crate::scene::schema::{self, ChainModel, Route, SceneText};
 
 /// The joints of a chain, as far as friction is concerned.
 #[derive(Clone, Copy, Debug)]
@@ -97,6 +98,35 @@ impl<'a> Joints<'a> {
         Friction::SpringSlider(law)
     }
 
+    /// Stiffness \[N/m\] of what yields in a link beside its joint with clearance, where that of the whole link is known and the joint
+    /// alone is stiffer.
+    ///
+    /// ```text
+    /// 1/k_s = 1/k − 1/k_joint
+    /// ```
+    pub(super) fn plates(
+        &self,
+        joint: &Law,
+        route: Option<&Route>,
+        radius: f64,
+        findings: &mut Findings<'_>,
+    ) -> Option<f64> {
+        let share = defaults::PLATES.value(findings.version);
+        let compliance =
+            1.0 / self.link_stiffness? - 1.0 / stiffness_under_pretension(joint, route, radius);
+        let stiffness = 1.0 / (share * compliance);
+        if !(stiffness > 0.0 && stiffness.is_finite()) {
+            return None;
+        }
+        let common = "contact.joints.series";
+        let place = findings
+            .chain
+            .map_or(common, |_| "chain.joint.contact.series");
+        let remark = defaults::PLATES.basis.remark();
+        findings.assume(place, stiffness, &*remark);
+        Some(stiffness)
+    }
+
     /// What resists; none where nothing does. Pins with clearance rub in the contact with their bushes.
     pub(super) fn articulation(&self, findings: &mut Findings<'_>) -> Option<Articulation> {
         let joint = self.text.joint.as_ref();
@@ -147,6 +177,7 @@ pub(super) fn refuse_play(text: &schema::Chain, findings: &mut Findings<'_>) {
         ("clearance", joint.clearance.is_some()),
         ("length", joint.length.is_some()),
         ("contact.law", contact.law.is_some()),
+        ("contact.series", contact.series.is_some()),
         ("contact.restitution", contact.restitution.is_some()),
         ("contact.damping", contact.damping.is_some()),
         ("contact.dissipation", contact.dissipation.is_some()),

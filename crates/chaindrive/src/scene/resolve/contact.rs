@@ -105,7 +105,7 @@ pub(super) fn law(
     let onset_floor = findings.or_default(floor, &place, &defaults::ONSET_FLOOR);
     Some(Law {
         elastic: elastic?,
-        series: None,
+        series: own.series.or(common.series).map(|stiffness| stiffness.0),
         dissipation: dissipation?,
         onset_floor,
     })

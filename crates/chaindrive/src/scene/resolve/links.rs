@@ -116,7 +116,7 @@ pub(super) fn resolve(
     let inner = link(text.inner, "inner", &mut needs);
     let outer = link(text.outer, "outer", &mut needs);
     let rollers = rollers(scene, text, roller_diameter, roller_length, &mut needs);
-    let joint = joint(scene, text, roller_diameter, &mut needs);
+    let joint = joint((scene, route), text, roller_diameter, &mut needs);
     let links = RigidLinks {
         inner: inner?,
         outer: outer?,
@@ -244,7 +244,7 @@ fn rollers(
 }
 
 fn joint(
-    scene: &SceneText,
+    (scene, route): (&SceneText, Option<&Route>),
     text: &schema::Chain,
     roller_diameter: f64,
     needs: &mut Needs<'_, '_>,
@@ -284,12 +284,17 @@ fn joint(
         "joint",
         needs.findings,
     );
-    let friction = Joints::new(scene, text, None).friction(needs.findings);
+    let known = Joints::new(scene, text, text.stiffness.map(|stiffness| stiffness.0));
+    let friction = known.friction(needs.findings);
+    let mut law = law?;
+    if law.series.is_none() {
+        law.series = known.plates(&law, route, pin, needs.findings);
+    }
     Some(Joint::Clearance(Clearance {
         pin_radius: pin,
         bore_radius: bore,
         surface: Surface {
-            law: law?,
+            law,
             friction: friction?,
         },
     }))
@@ -344,9 +349,7 @@ fn laying_stiffness(
     findings: &mut Findings<'_>,
 ) -> Option<f64> {
     if let Joint::Clearance(joint) = joint {
-        let pretension = route.map_or(0.0, |route| route.pretension.0);
-        let law = &joint.surface.law;
-        let stiffness = law.stiffness(indentation(law, pretension, pair.radius).max(PRESSED));
+        let stiffness = stiffness_under_pretension(&joint.surface.law, route, pair.radius);
         let remark = "follows from a joint under the pretension";
         findings.assume("chain.stiffness", stiffness, remark);
         return Some(stiffness);
@@ -366,6 +369,12 @@ fn laying_stiffness(
     let tooth = teeth.stiffness(PRESSED);
     let default = &defaults::LAYING_STIFFNESS;
     Some(findings.or_multiple(None, "chain.stiffness", default, tooth))
+}
+
+/// Stiffness \[N/m\] of a joint that bears the pretension, or next to nothing where there is none.
+pub(super) fn stiffness_under_pretension(law: &Law, route: Option<&Route>, radius: f64) -> f64 {
+    let pretension = route.map_or(0.0, |route| route.pretension.0);
+    law.stiffness(indentation(law, pretension, radius).max(PRESSED))
 }
 
 /// Indentation \[m\] at which a law reaches a force \[N\], at most `most`.

@@ -53,6 +53,11 @@ pub(crate) struct Contact {
     /// the stiffness of a joint; in joints and rollers: cylindrical.
     #[serde(default)]
     pub(crate) law: Option<Elastic>,
+    /// Stiffness [N/m] of what lies behind the surfaces and bears their force, such as plates behind a pin; absent: rigid, but in
+    /// joints with clearance of links whose stiffness is known: what leaves the links that stiffness between their pins.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) series: Option<Stiffness>,
     /// Coefficient of restitution of an impact [–]; absent, without `damping`: 0.8 on teeth, 0.5 on
     /// guides, 0.7 in joints and rollers.
     #[serde(default)]

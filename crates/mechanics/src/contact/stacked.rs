@@ -1,0 +1,178 @@
+//! A power law with a spring behind it, on lanes.
+//!
+//! ```text
+//! x + K xⁿ/k_s = δ,   F = K xⁿ,   1/k = x/(n F) + 1/k_s
+//! ```
+//!
+//! Newton's method from x = δ/(1 + K δⁿ⁻¹/k_s), which lies below the root; the first step passes it, and the rest come down to it.
+//! How many it takes depends on n and on K δⁿ⁻¹/k_s alone: they are counted once.
+
+use pulp::{Simd, WithSimd};
+
+use super::law::LEAST_DEPTH;
+use crate::lanes::{FixedPower, LANES, Lane, Wide};
+
+/// K δⁿ⁻¹/k_s that steps are counted for: beyond the last one the surfaces are as good as rigid, before the first what lies behind.
+const RATIOS: [f64; 2] = [1e-8, 1e8];
+
+/// Steps at most, where doubling digits has long come to an end.
+const MOST: usize = 12;
+
+/// The law.
+#[derive(Clone, Debug)]
+pub(super) struct Stacked {
+    stiffness: f64,
+    exponent: f64,
+    /// δ ↦ δⁿ⁻¹
+    lower: FixedPower,
+    /// 1/k_s \[m/N\]
+    compliance: f64,
+    steps: usize,
+}
+
+impl Stacked {
+    pub(super) fn new(stiffness: f64, exponent: f64, series: f64) -> Self {
+        Self {
+            stiffness,
+            exponent,
+            lower: FixedPower::new(exponent - 1.0),
+            compliance: 1.0 / series,
+            steps: steps(exponent),
+        }
+    }
+
+    /// A call of its own, so that the kernels of all laws stay short.
+    #[inline(always)]
+    pub(super) fn force<S: Simd>(&self, w: Wide<S>, depth: Lane<S>) -> Lane<S> {
+        let depth = depth.numbers();
+        w.load(&w.call(Ask { law: self, depth }), 0)
+    }
+
+    #[inline(always)]
+    fn found<S: Simd>(&self, w: Wide<S>, depth: Lane<S>) -> Lane<S> {
+        let one = w.splat(1.0);
+        let depth = depth.max(w.splat(LEAST_DEPTH));
+        let yielding = w.splat(self.stiffness * self.compliance);
+        let n = w.splat(self.exponent);
+        let mut x = depth * (one + yielding * self.lower.of(w, depth)).recip();
+        for _ in 0..self.steps {
+            // a = K xⁿ⁻¹/k_s,   x ← x − (x + a x − δ)/(1 + n a)
+            let a = yielding * self.lower.of(w, x);
+            let excess = x + a * x - depth;
+            x = (x - excess * (one + n * a).recip()).max(w.splat(LEAST_DEPTH));
+        }
+        w.splat(self.stiffness) * x * self.lower.of(w, x)
+    }
+
+    /// dF/dδ of lanes with a force F.
+    #[inline(always)]
+    pub(super) fn slope<S: Simd>(&self, w: Wide<S>, depth: Lane<S>, force: Lane<S>) -> Lane<S> {
+        let compliance = w.splat(self.compliance);
+        let x = (depth - force * compliance).max(w.splat(LEAST_DEPTH));
+        // k = n F/(x + n F/k_s)
+        let steep = w.splat(self.exponent) * force;
+        steep * (x + steep * compliance).max(w.splat(LEAST_DEPTH)).recip()
+    }
+}
+
+/// The force at some depths.
+struct Ask<'a> {
+    law: &'a Stacked,
+    depth: [f64; LANES],
+}
+
+impl WithSimd for Ask<'_> {
+    type Output = [f64; LANES];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let w = Wide(simd);
+        self.law.found(w, w.load(&self.depth, 0)).numbers()
+    }
+}
+
+/// Steps after which y + r yⁿ = 1 holds to rounding, for all r.
+fn steps(n: f64) -> usize {
+    let taken = |r: f64| {
+        let mut y = 1.0 / (1.0 + r);
+        for step in 0..MOST {
+            let a = r * y.powf(n - 1.0);
+            let excess = y + a * y - 1.0;
+            // What is missing of y is half of what its last step was, squared; one more step makes it good.
+            if excess.abs() < 1e-9 * (1.0 + n * a) * y {
+                return step + 1;
+            }
+            y -= excess / (1.0 + n * a);
+        }
+        MOST
+    };
+    let [least, greatest] = RATIOS.map(f64::log10);
+    let ratios = (0..=64).map(|i| 10.0_f64.powf(least + (greatest - least) * f64::from(i) / 64.0));
+    ratios.map(taken).max().unwrap_or(MOST)
+}
+
+#[cfg(test)]
+mod tests {
+    use chaindrive_contact::elastic::Power;
+    use chaindrive_contact::{Dissipation, Elastic, Law};
+    use pulp::Arch;
+
+    use super::*;
+
+    struct Check;
+
+    impl WithSimd for Check {
+        type Output = ();
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) {
+            let w = Wide(simd);
+            let cases = [(8.5e8, 1.08), (6.6e10, 1.5), (3e12, 2.0), (4e8, 1.01)];
+            for ((stiffness, exponent), series) in cases.into_iter().zip([53e6, 5e8, 1e7, 1e12]) {
+                let stacked = Stacked::new(stiffness, exponent, series);
+                let law = Law {
+                    elastic: Elastic::Power(Power {
+                        stiffness,
+                        exponent,
+                    }),
+                    series: Some(series),
+                    dissipation: Dissipation::None,
+                    onset_floor: 0.0,
+                };
+                for i in 0..60 {
+                    let depth = 1e-10 * 10.0_f64.powf(f64::from(i) / 8.0);
+                    let lane = w.splat(depth);
+                    let force = stacked.force(w, lane);
+                    let slope = stacked.slope(w, lane, force);
+                    let expected = [law.elastic_force(depth), law.stiffness(depth)];
+                    for (found, expected) in [force, slope].into_iter().zip(expected) {
+                        let found: [f64; LANES] = found.numbers();
+                        let error = (found[0] / expected - 1.0).abs();
+                        assert!(error < 2e-12, "{stacked:?} at {depth:e}: {error:e}");
+                    }
+                }
+            }
+        }
+    }
+
+    /// As the law itself, whose Newton method goes on until nothing changes.
+    #[test]
+    fn lanes_find_what_the_law_says() {
+        Arch::new().dispatch(Check);
+        Check.with_simd(pulp::Scalar);
+    }
+
+    /// Nothing where there is no contact.
+    #[test]
+    fn an_open_contact_has_no_force() {
+        let stacked = Stacked::new(6.6e10, 1.5, 5e7);
+        let w = Wide(pulp::Scalar);
+        assert!(stacked.force(w, w.splat(0.0)).sum() < 1e-20);
+        assert!(
+            stacked
+                .slope(w, w.splat(0.0), w.splat(0.0))
+                .sum()
+                .is_finite()
+        );
+    }
+}
