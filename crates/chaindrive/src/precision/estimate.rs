@@ -3,7 +3,7 @@
 use chaindrive_mechanics::Assembled;
 
 use super::Watch;
-use super::compare::{Account, Comparison, distances, rms};
+use super::compare::{Account, Comparison, Distance, distances, rms};
 use super::convergence::factor;
 use super::horizon::{APART, Divergence, Horizon, LIMIT};
 use super::trace::{Gap, Strands, Trace};
@@ -16,14 +16,15 @@ use crate::{Channel, Run, SimulationError};
 /// run      the beginning of the run, over the window
 /// twin     the same, started 1e-12 m apart                         → chaos horizon, spread of the statistics
 /// shadow   half the step, over half of the longest window          → difference d
-/// second   a quarter of the step, over a quarter of it             → factor c between difference and error
+/// second   a quarter of the step, over a quarter of it             → difference d₂ from the shadow, factor c
 ///
-/// e = c d
+/// e = max(c d, d + d₂)
 /// ```
 ///
 /// Where a method shows its order p, c = 1/(1 − 2⁻ᵖ); contacts that open and close take the order away, and c is what
-/// the two shadows say. A difference of statistics that does not exceed the spread of equal runs says only that the
-/// error is no larger than that.
+/// the two shadows say of the whole stretch that they share. At single moments, as when a roller lets go in the second
+/// shadow only, the distances along the way say more. A difference of statistics that does not exceed the spread of equal
+/// runs says only that the error is no larger than that.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
     /// Time over which run and shadow were compared \[s\]: beyond, nothing was examined.
@@ -87,7 +88,7 @@ pub fn estimate(
     watch: Watch<'_>,
 ) -> Result<Estimate, SimulationError> {
     let run = pinned(start, run);
-    let window = Window::of(start, &run);
+    let window = Window::of(start, &run).finely(start, &run);
     let base = Trace::take(start, &run, &window, watch)?;
     let twin = Trace::take(&start.nudged(APART), &run, &window, watch)?;
     let (better, shadow_words) = sharper(start, &run);
@@ -100,9 +101,20 @@ pub fn estimate(
     let expected = expected_ratio(start, &run);
     let found = |strands: Strands| {
         let factor = factor(&base, &shadow, &second, strands, expected);
-        let errors = distances(&shadow, &base, strands).into_iter();
-        let errors: Vec<[f64; 2]> = errors
-            .map(|distance| [factor * distance.all, factor * distance.tight])
+        // Both relative to the mean tension of the run.
+        let scale = shadow.tensions(strands).mean() / base.tensions(strands).mean();
+        let further = distances(&second, &shadow, strands).into_iter();
+        let further = further.chain(std::iter::repeat(Distance::default()));
+        let near = distances(&shadow, &base, strands).into_iter();
+        let errors: Vec<[f64; 2]> = near
+            .zip(further)
+            .map(|(near, further)| {
+                let error = |d: f64, d2: f64| (factor * d).max(d + scale * d2);
+                [
+                    error(near.all, further.all),
+                    error(near.tight, further.tight),
+                ]
+            })
             .collect();
         let horizon = Horizon::of(&base, &twin, strands);
         let all = errors.iter().map(|[all, _]| *all);

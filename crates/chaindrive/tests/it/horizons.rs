@@ -88,7 +88,8 @@ fn check(case: &Case) -> String {
     let start = case.start();
     let run = Run {
         until: case.until,
-        every: case.until / 400.0,
+        // Blows last a few steps: between fewer samples the true horizon would pass unseen.
+        every: case.until / 2000.0,
         ..Run::default()
     };
     let stated = estimate(&start, &run, &|| false).unwrap();
@@ -135,16 +136,24 @@ fn check(case: &Case) -> String {
 }
 
 /// Defect A6: the horizon of the bicycle lay at 6.8 ms where the error exceeds 1 % at 4 ms, and at 300 rpm there was
-/// none. Defect A7: that of link tensions lies far before that of span tensions.
+/// none; that of the slack one at 0.97 ms, for 0.63. Defect A7: that of link tensions lies far before that of span tensions.
 #[test]
 fn stated_horizons_do_not_lie_behind_the_true_ones() {
     for case in [
         preset("marine_two_sprockets", 0.03),
         preset("bicycle", 6e-3),
+        preset("bicycle_slack", 4e-3),
+        preset("motorcycle", 1e-3),
+        changed("bicycle", ("contact.joints.restitution", "0.99"), 6e-3),
         changed(
             "bicycle",
             ("sprockets.chainring.motion.speed", "-300 rpm"),
             4e-3,
+        ),
+        changed(
+            "marine_two_sprockets",
+            ("sprockets.crank.motion.speed", "-300 rpm"),
+            8e-3,
         ),
         changed(
             "marine_two_sprockets",
@@ -156,15 +165,7 @@ fn stated_horizons_do_not_lie_behind_the_true_ones() {
     }
 }
 
-/// A known miss: the spans of the slack chain err by 1 % after 0.63 ms, and 0.97 ms are stated; the factor between the
-/// difference of two runs and the error stands at its limit there. Whoever cures it moves the case into the test above.
-#[test]
-#[should_panic(expected = "bicycle_slack")]
-fn the_horizon_of_the_slack_chain_is_stated_too_late() {
-    check(&preset("bicycle_slack", 4e-3));
-}
-
-/// The same of more drives, as a table.
+/// The same of all presets and more, as a table.
 #[test]
 #[ignore = "takes minutes"]
 fn stated_horizons_of_many_drives() {
@@ -173,8 +174,15 @@ fn stated_horizons_of_many_drives() {
         preset("marine_engine", 0.08),
         preset("industrial_16b", 0.02),
         preset("bicycle", 0.016),
+        preset("bicycle_slack", 0.016),
+        preset("bicycle_crank", 0.016),
         preset("motorcycle", 0.004),
         preset("timing_drive", 0.015),
+        preset("two_stage_timing", 0.01),
+        preset("spinning_ring", 0.02),
+        preset("hanging_chain", 0.02),
+        preset("pin_in_bush", 0.02),
+        preset("pendulum_in_bush", 0.02),
         changed(
             "marine_two_sprockets",
             ("sprockets.crank.motion.speed", "-1000 rpm"),
