@@ -91,7 +91,7 @@ def simulate(
         last bit.
     error
         Whether the run ends with an estimate of its own numerical error. It takes the time of some
-        32 000 steps of the default length, whatever the length of the run; more if its own steps
+        40 000 steps of the default length, whatever the length of the run; more if its own steps
         are shorter.
     progress
         True for a line on stderr, or a function called with the share done, 0 to 1.

@@ -69,6 +69,17 @@ impl Window {
         }
     }
 
+    /// Number of its samples, the one at its beginning included.
+    pub(super) fn samples(&self) -> usize {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a few thousand"
+        )]
+        let behind = (self.until / self.every) as usize;
+        behind + 1
+    }
+
     /// Another end \[s\], with as many samples.
     pub(super) fn with_end(&self, until: f64) -> Self {
         Self {

@@ -5,11 +5,12 @@ use chaindrive::precision::{Strands, estimate};
 use chaindrive::{Assembled, Run, Scene, Simulation, Stepping};
 use chaindrive_integrate::SecondOrderSystem;
 
-/// A drive, changed in one value, and the length of the run \[s\].
+/// A drive, changed in one value, the length of the run \[s\], and its step in those that it would choose.
 struct Case {
     preset: &'static str,
     change: Option<(&'static str, &'static str)>,
     until: f64,
+    step: f64,
 }
 
 /// A preset as it is.
@@ -18,6 +19,7 @@ const fn preset(preset: &'static str, until: f64) -> Case {
         preset,
         change: None,
         until,
+        step: 1.0,
     }
 }
 
@@ -27,6 +29,7 @@ const fn changed(preset: &'static str, change: (&'static str, &'static str), unt
         preset,
         change: Some(change),
         until,
+        step: 1.0,
     }
 }
 
@@ -65,9 +68,9 @@ fn tensions(start: &Assembled, run: &Run) -> [Vec<Vec<f64>>; 2] {
     [spans, links]
 }
 
-/// Root mean square over the strands, over the mean tension, sample by sample \[–\].
-fn errors(of: &[Vec<f64>], exact: &[Vec<f64>]) -> Vec<f64> {
-    let all = exact.concat();
+/// Root mean square over the strands, over the mean tension of the first samples, sample by sample \[–\].
+fn errors(of: &[Vec<f64>], exact: &[Vec<f64>], first: usize) -> Vec<f64> {
+    let all = exact[..first].concat();
     let mean = all.iter().map(|tension| tension.abs()).sum::<f64>() / all.len() as f64;
     let pairs = of.iter().zip(exact);
     pairs
@@ -90,6 +93,7 @@ fn check(case: &Case) -> String {
         until: case.until,
         // Blows last a few steps: between fewer samples the true horizon would pass unseen.
         every: case.until / 2000.0,
+        step: Some(case.step * Run::default().method(&start.system).step()),
         ..Run::default()
     };
     let stated = estimate(&start, &run, &|| false).unwrap();
@@ -99,7 +103,8 @@ fn check(case: &Case) -> String {
         ..reference(&start)
     };
     let (found, exact) = (tensions(&start, &run), tensions(&start, &exact));
-    let [spans, links] = [0, 1].map(|k| errors(&found[k], &exact[k]));
+    let examined = exact[0].len().min((stated.window / run.every) as usize + 1);
+    let [spans, links] = [0, 1].map(|k| errors(&found[k], &exact[k], examined));
     let compared = match stated.strands {
         Strands::Spans => &spans,
         Strands::Links => &links,
@@ -165,7 +170,21 @@ fn stated_horizons_do_not_lie_behind_the_true_ones() {
     }
 }
 
-/// The same of all presets and more, as a table.
+/// Defect A3: the tension rises a hundredfold within the window, and the error was stated relative to the mean of all of it; and
+/// with a quarter of the step the run errs by 0.23 % as does that of half the step, which differs by 0.1 %.
+#[test]
+fn errors_of_a_drive_under_overload_are_as_large_as_stated() {
+    for step in [1.0, 0.25] {
+        let speed = ("sprockets.crank.motion.speed", "-2000 rpm");
+        let case = Case {
+            step,
+            ..changed("marine_two_sprockets", speed, 0.02)
+        };
+        println!("{}", check(&case));
+    }
+}
+
+/// The same as the horizons above of all presets and more, as a table.
 #[test]
 #[ignore = "takes minutes"]
 fn stated_horizons_of_many_drives() {

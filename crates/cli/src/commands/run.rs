@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     checkpoint_every: Option<String>,
 
     /// Leaves out the estimate of the numerical error that ends the run; it takes the time of some
-    /// 32 000 steps of the default length, whatever the length of the run
+    /// 40 000 steps of the default length, whatever the length of the run
     #[arg(long)]
     no_error: bool,
 
