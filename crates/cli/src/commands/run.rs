@@ -91,6 +91,11 @@ pub(super) fn not_run<E: std::error::Error + Into<Failure>>(
 
 /// Says what came of a run.
 pub(super) fn concluded(report: Report, scene: &str, quiet: bool) -> Result<(), Failure> {
+    if !quiet {
+        for clash in &report.simulation.assembled().warnings {
+            eprintln!("warning: {scene}: {clash}");
+        }
+    }
     if let Some(warning) = report.verdict.warning() {
         eprintln!("{scene}: {warning}");
     }
