@@ -72,6 +72,9 @@ impl fmt::Display for Gap {
 
 impl Trace {
     /// Runs a drive over a window.
+    ///
+    /// This is no `execute`: that begins with a scene and ends with a judgement of its own, which is made of traces. A trace
+    /// begins with a drive that stands assembled, such as a twin that no scene describes, and nobody is told of it.
     pub(super) fn take(
         start: &Assembled,
         run: &Run,
