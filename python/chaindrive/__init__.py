@@ -21,6 +21,7 @@ from chaindrive.drive import Difference, Drive, diff, load, schema
 from chaindrive.errors import (
     AssemblyError,
     ChaindriveError,
+    ClashWarning,
     DistrustedResultWarning,
     IntegrationError,
     ParameterError,
@@ -42,6 +43,7 @@ from chaindrive.sweeping import sweep
 __all__ = [
     "AssemblyError",
     "ChaindriveError",
+    "ClashWarning",
     "Difference",
     "DistrustedResultWarning",
     "Drive",

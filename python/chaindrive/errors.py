@@ -122,6 +122,10 @@ class ResultWarning(UserWarning):
     """A result is less than it was meant to be."""
 
 
+class ClashWarning(UserWarning):
+    """Bodies of a drive are in each other's way, unless they pass side by side."""
+
+
 class DistrustedResultWarning(UserWarning):
     """A result contradicts itself: its attribute ``verdict`` is ``"distrusted"``.
 

@@ -17,7 +17,7 @@ import xarray as xr
 from chaindrive import _core
 from chaindrive.channels import channels
 from chaindrive.drive import Drive, _needed
-from chaindrive.errors import DistrustedResultWarning, ParameterError
+from chaindrive.errors import ClashWarning, DistrustedResultWarning, ParameterError
 from chaindrive.signals import heard
 
 __all__ = ["resume", "simulate"]
@@ -91,7 +91,7 @@ def simulate(
         last bit.
     error
         Whether the run ends with an estimate of its own numerical error. It takes the time of some
-        32 000 steps of the default length, whatever the length of the run; more if its own steps
+        40 000 steps of the default length, whatever the length of the run; more if its own steps
         are shorter.
     progress
         True for a line on stderr, or a function called with the share done, 0 to 1.
@@ -157,6 +157,8 @@ def simulate(
     -----
     DistrustedResultWarning
         The result contradicts itself: its attribute ``verdict`` is ``"distrusted"``.
+    ClashWarning
+        Bodies are in each other's way, unless they pass side by side.
 
     Examples
     --------
@@ -275,6 +277,8 @@ def _concluded(result: Any, output: str | PathLike[str] | None) -> xr.Dataset:
         vars(stop)["result"] = dataset
         reached = f"the run got to {dataset.attrs['time_reached']:.6g} s"
         stop.add_note(f"{reached}: `except KeyboardInterrupt as stop` finds it in `stop.result`")
+    for clash in result["clashes"]:
+        warnings.warn(clash, ClashWarning, stacklevel=3)
     if stop is not None:
         raise stop
     if result["warning"] is not None:

@@ -202,6 +202,15 @@ def test_a_result_that_contradicts_itself_is_warned_of(recwarn: pytest.WarningsR
     assert not recwarn.list
 
 
+def test_bodies_in_each_others_way_are_warned_of_once() -> None:
+    face = {"kind": "bar", "start": [0.2, 0.86], "end": [-0.2, 0.86], "end_radius": 0.02}
+    rail = {"name": "rail", "touches": "plates", "face": face}
+    drive = cd.scenes.marine_two_sprockets().replace({"guides": [rail]})
+    with pytest.warns(cd.ClashWarning, match="`rail` cuts into the teeth of `crank`") as told:
+        cd.simulate(drive, until=1e-3, error=False)
+    assert len(told) == 1
+
+
 def test_the_error_can_be_left_out() -> None:
     run = cd.simulate(cd.scenes.spinning_ring(), until=2e-3, error=False)
     assert run.attrs["error_estimate"] == "switched off"

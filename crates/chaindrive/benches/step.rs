@@ -25,7 +25,7 @@ fn steps(criterion: &mut Criterion) {
             Method::Verlet { step: 0.5 * scale },
             Method::Rk4 { step: 0.5 * scale },
         ];
-        if assembled.system.can_solve() {
+        if assembled.system.prefers_implicit_damping() {
             methods.push(Method::ImplicitDamping {
                 step: 1.4 * assembled.system.undamped_time_scale(),
             });

@@ -77,7 +77,7 @@ impl Stepping {
     #[must_use]
     pub fn suited(self, system: &System) -> Self {
         match self {
-            Self::Auto if system.can_solve() => Self::ImplicitDamping,
+            Self::Auto if system.prefers_implicit_damping() => Self::ImplicitDamping,
             Self::Auto => Self::Verlet,
             chosen => chosen,
         }

@@ -232,6 +232,15 @@ impl Chain {
         }
     }
 
+    /// Whether damping is so stiff in it that a method had better take it implicitly: contacts in joints are, springs between
+    /// rollers are not.
+    pub(crate) fn prefers_implicit_damping(&self) -> bool {
+        match self {
+            Self::Particles(_) => false,
+            Self::Links(_) => true,
+        }
+    }
+
     /// x ← (M + c C + k K)⁻¹ M x over the chain and, behind it, the bodies of its group.
     pub(crate) fn solve(
         &self,

@@ -2,6 +2,7 @@
 
 use chaindrive_contact::{Elastic, Friction, Law};
 use chaindrive_geometry::{ArcSpline, Point, Side, ToothGap, Vector};
+use serde::{Deserialize, Serialize};
 
 use crate::{Chain, Motion, Tensioner, Torque};
 
@@ -150,9 +151,12 @@ pub enum GuideSupport {
 }
 
 /// Which part of the chain touches a guide.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
 pub enum Touches {
     /// The rollers, as circles of the roller diameter.
+    #[default]
     Rollers,
     /// Waisted link plates, with their eyes: circles of the plate height about the pins.
     Eyes,
@@ -247,9 +251,12 @@ pub enum Adjust {
 }
 
 /// How the pretension is made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
 pub enum Tighten {
     /// The links are made shorter by the strain of the pretension.
+    #[default]
     RestLength,
     /// The adjusted body moves on until the chain carries the pretension.
     Travel,

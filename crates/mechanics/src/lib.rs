@@ -53,7 +53,7 @@ pub use energy::{Energy, Flow, Store};
 pub use error::{AssemblyError, Clash, DriveError, MemoryError};
 pub use events::{ContactEvent, ContactPair, EventKinds};
 pub use modes::{Mode, Modes};
-pub use motion::{Course, Harmonic, Motion, Table};
+pub use motion::{Harmonic, Kinematics, Motion, Table};
 pub use observe::{ChainSize, Observation};
 pub use system::{Input, Record, System, SystemMemory};
 pub use tensioner::{Carrier, Push, PushForce, Tensioner, carriers, pushes};

@@ -6,7 +6,7 @@ use crate::DriveError;
 
 /// Position, rate and acceleration of a prescribed coordinate at one instant.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
-pub struct Course {
+pub struct Kinematics {
     /// Position x \[m or rad\].
     pub position: f64,
     /// Rate ẋ \[m/s or rad/s\].
@@ -60,7 +60,7 @@ pub enum Motion {
     /// On from a place and speed at a constant acceleration: x = x₀ + v τ + ½ a τ², τ = t − t₀.
     Onward {
         /// Position, rate and acceleration at t₀.
-        from: Course,
+        from: Kinematics,
         /// Time t₀ \[s\].
         since: f64,
     },
@@ -68,10 +68,10 @@ pub enum Motion {
 
 impl Motion {
     /// Position, rate and acceleration at time `t` \[s\].
-    pub fn at(&self, t: f64) -> Course {
+    pub fn at(&self, t: f64) -> Kinematics {
         match self {
-            Self::Held => Course::default(),
-            Self::Constant { rate } => Course {
+            Self::Held => Kinematics::default(),
+            Self::Constant { rate } => Kinematics {
                 position: rate * t,
                 rate: *rate,
                 acceleration: 0.0,
@@ -83,7 +83,7 @@ impl Motion {
                 duration,
             } => ramp(*from, *to, *start, *duration, t),
             Self::Harmonics { rate, terms } => terms.iter().fold(
-                Course {
+                Kinematics {
                     position: rate * t,
                     rate: *rate,
                     acceleration: 0.0,
@@ -92,7 +92,7 @@ impl Motion {
                     // x = A (sin(2π f t + φ) − sin φ)
                     let circular = std::f64::consts::TAU * term.frequency;
                     let (sine, cosine) = (circular * t + term.phase).sin_cos();
-                    Course {
+                    Kinematics {
                         position: sum.position + term.amplitude * (sine - term.phase.sin()),
                         rate: sum.rate + term.amplitude * circular * cosine,
                         acceleration: sum.acceleration
@@ -105,7 +105,7 @@ impl Motion {
                 let after = t - since;
                 // x = x₀ + v τ + ½ a τ²
                 let gained = from.acceleration * after;
-                Course {
+                Kinematics {
                     position: from.position + (from.rate + 0.5 * gained) * after,
                     rate: from.rate + gained,
                     ..*from
@@ -177,12 +177,12 @@ impl Motion {
     }
 }
 
-fn ramp(from: f64, to: f64, start: f64, duration: f64, t: f64) -> Course {
+fn ramp(from: f64, to: f64, start: f64, duration: f64, t: f64) -> Kinematics {
     let change = to - from;
     let s = ((t - start) / duration).clamp(0.0, 1.0);
     let after = (t - start - duration).max(0.0);
     // ẋ = from + Δ (3 s² − 2 s³),  s = (t − start) / duration
-    Course {
+    Kinematics {
         position: from * t + change * (duration * (s * s * s - 0.5 * s.powi(4)) + after)
             - offset_before_zero(change, start, duration),
         rate: from + change * s * s * (3.0 - 2.0 * s),
@@ -247,13 +247,13 @@ impl Table {
     }
 
     /// The curve at `t`, not shifted.
-    pub fn value(&self, t: f64) -> Course {
+    pub fn value(&self, t: f64) -> Kinematics {
         let n = self.times.len();
         let (first, last) = (self.times[0], self.times[n - 1]);
         if t < first || t > last {
             let edge = self.value(t.clamp(first, last));
             let beyond = t - t.clamp(first, last);
-            return Course {
+            return Kinematics {
                 position: edge.position + edge.rate * beyond,
                 rate: edge.rate,
                 acceleration: 0.0,
@@ -269,7 +269,7 @@ impl Table {
         let (x0, x1) = (self.values[i - 1], self.values[i]);
         let (m0, m1) = (self.curvatures[i - 1], self.curvatures[i]);
         // x = a x₀ + b x₁ + ((a³ − a) m₀ + (b³ − b) m₁) w²/6
-        Course {
+        Kinematics {
             position: a * x0
                 + b * x1
                 + ((a * a * a - a) * m0 + (b * b * b - b) * m1) * width * width / 6.0,
@@ -295,11 +295,11 @@ impl Table {
         self.times.get(next).copied()
     }
 
-    fn at(&self, t: f64) -> Course {
-        let course = self.value(t);
-        Course {
-            position: course.position - self.value(0.0).position,
-            ..course
+    fn at(&self, t: f64) -> Kinematics {
+        let kinematics = self.value(t);
+        Kinematics {
+            position: kinematics.position - self.value(0.0).position,
+            ..kinematics
         }
     }
 }
@@ -378,9 +378,9 @@ mod tests {
     #[test]
     fn spline_reproduces_a_straight_line() {
         let table = Table::new(vec![0.0, 0.3, 1.0], vec![1.0, 1.6, 3.0]).unwrap();
-        let course = table.value(0.77);
-        assert!((course.position - 2.54).abs() < 1e-14);
-        assert!(course.acceleration.abs() < 1e-13);
+        let kinematics = table.value(0.77);
+        assert!((kinematics.position - 2.54).abs() < 1e-14);
+        assert!(kinematics.acceleration.abs() < 1e-13);
     }
 
     #[test]

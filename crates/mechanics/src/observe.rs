@@ -250,12 +250,12 @@ impl System {
             values.clear();
         }
         for (wheel, wrench) in self.bodies.wheels.iter().zip(&record.wheel_wrenches) {
-            let course = wheel.course(at.t, at.q, at.v);
-            let (centre, _, _) = wheel.centre_course(at.t, at.q, at.v, &self.bodies.slides);
+            let kinematics = wheel.kinematics(at.t, at.q, at.v);
+            let (centre, _, _) = wheel.centre_kinematics(at.t, at.q, at.v, &self.bodies.slides);
             out.contacts.push(0.0);
             out.contact_depth.push(wrench.depth);
-            out.sprocket_angle.push(course.position - wheel.angle);
-            out.sprocket_speed.push(course.rate);
+            out.sprocket_angle.push(kinematics.position - wheel.angle);
+            out.sprocket_speed.push(kinematics.rate);
             out.sprocket_torque.push(wrench.moment);
             out.sprocket_force_x.push(wrench.force[0]);
             out.sprocket_force_y.push(wrench.force[1]);
@@ -370,9 +370,9 @@ impl System {
         out.shaft_speed.clear();
         out.coupling_torque.clear();
         for shaft in self.bodies.shafts.iter().filter(|it| it.name.is_some()) {
-            let course = shaft.turn.course(at.t, at.q, at.v);
-            out.shaft_angle.push(course.position);
-            out.shaft_speed.push(course.rate);
+            let kinematics = shaft.turn.kinematics(at.t, at.q, at.v);
+            out.shaft_angle.push(kinematics.position);
+            out.shaft_speed.push(kinematics.rate);
         }
         for coupling in &self.bodies.couplings {
             let [torque, _] = self.bodies.coupling_torque(coupling, at);
@@ -406,13 +406,13 @@ impl System {
         }
         let mut add = |store: Store, value: f64| energy.stores[store as usize] += value;
         for wheel in &bodies.wheels {
-            let course = wheel.course(at.t, at.q, at.v);
-            let (centre, velocity, _) = wheel.centre_course(at.t, at.q, at.v, &bodies.slides);
+            let kinematics = wheel.kinematics(at.t, at.q, at.v);
+            let (centre, velocity, _) = wheel.centre_kinematics(at.t, at.q, at.v, &bodies.slides);
             let moves = !matches!(wheel.support, WheelSupport::Fixed);
             if wheel.inertia > 0.0 {
                 add(
                     Store::Sprockets,
-                    0.5 * wheel.inertia * course.rate * course.rate,
+                    0.5 * wheel.inertia * kinematics.rate * kinematics.rate,
                 );
             }
             // What a tensioner carries is in the tensioner's inertia and weights.
@@ -447,7 +447,7 @@ impl System {
             }
         }
         for shaft in bodies.shafts.iter().filter(|shaft| shaft.inertia > 0.0) {
-            let rate = shaft.turn.course(at.t, at.q, at.v).rate;
+            let rate = shaft.turn.kinematics(at.t, at.q, at.v).rate;
             add(Store::Sprockets, 0.5 * shaft.inertia * rate * rate);
         }
         for coupling in &bodies.couplings {

@@ -40,7 +40,7 @@ impl Standing {
     ) -> Result<Self, GeometryError> {
         let bodies = &system.bodies;
         let sprockets = bodies.wheels.iter().enumerate().map(|(index, wheel)| {
-            let angle = wheel.course(at.t, at.q, at.v).position;
+            let angle = wheel.kinematics(at.t, at.q, at.v).position;
             (bodies.wheel_centre(index, at), angle)
         });
         let faces = parts.guides.iter().enumerate().map(|(index, guide)| {

@@ -101,6 +101,12 @@ impl System {
             .fold(0.0, f64::max)
     }
 
+    /// Whether a chain has damping so stiff that a method had better take it implicitly, and all chains let one do so.
+    pub fn prefers_implicit_damping(&self) -> bool {
+        let mut chains = self.chains.iter();
+        self.can_solve() && chains.any(|member| member.chain.prefers_implicit_damping())
+    }
+
     /// Number of rollers of all chains.
     pub fn rollers(&self) -> usize {
         self.sum(Chain::rollers)

@@ -153,6 +153,9 @@ fn told<'py>(py: Python<'py>, report: &Report, memory: Memory) -> PyResult<Bound
     }
     answer.set_item("waveform_horizons", horizons)?;
     answer.set_item("warning", report.verdict.warning())?;
+    let clashes = report.simulation.assembled().warnings.iter();
+    let clashes: Vec<String> = clashes.map(ToString::to_string).collect();
+    answer.set_item("clashes", clashes)?;
     let samples = recording.len();
     answer.set_item("time", PyArray1::from_vec(py, recording.time))?;
     let columns = PyDict::new(py);

@@ -51,7 +51,7 @@ pub(super) fn entries(start: &Assembled) -> Vec<Entry> {
             onset_depth,
         }
     };
-    if system.can_solve() {
+    if system.prefers_implicit_damping() {
         let list = IMPLICIT_DAMPING.map(|factor| of(Stepping::ImplicitDamping, factor, None));
         return pairs(&list);
     }

@@ -18,7 +18,7 @@ impl Comparison {
     }
 }
 
-/// Distance of two traces at one sample, over the mean tension.
+/// Distance of two traces at one sample, over the mean tension of the samples that both have.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Distance {
     /// Root mean square over the strands \[–\]; infinite where a tension is not a number.
@@ -34,12 +34,12 @@ pub(super) struct Distance {
 /// ```
 ///
 /// A tension that is not a number agrees with nothing, not even with another one: compare traces by [`Strands`]
-/// that all of them have.
+/// that all of them have. The mean is that of the samples compared: the tension may rise a hundredfold behind them.
 pub(super) fn distances(of: &Trace, from: &Trace, strands: Strands) -> Vec<Distance> {
     let samples = of.len().min(from.len());
     let (of, from) = (of.tensions(strands), from.tensions(strands));
     let (n, tight) = (from.strands, from.tight());
-    let scale = from.mean();
+    let scale = from.mean_of_first(samples);
     (0..samples)
         .map(|sample| {
             let apart = |strand: usize| {

@@ -12,16 +12,14 @@ const LARGEST: f64 = 3.0;
 /// r = |u₁ − u₂| / |u₂ − u₃|,   e₁ = |u₁ − u| = |u₁ − u₂| (1 + 1/r + 1/r² + …) = |u₁ − u₂| / (1 − 1/r)
 /// ```
 ///
-/// r is `expected` where the method shows its order. It is hardly ever larger, and never believed to be: differences
+/// r is that of the first samples, and `expected` where the method shows its order. It is hardly ever larger, and never believed to be: differences
 /// of different sign can cancel.
 pub(super) fn factor(
-    first: &Trace,
-    second: &Trace,
-    third: &Trace,
+    [first, second, third]: [&Trace; 3],
     strands: Strands,
+    samples: usize,
     expected: f64,
 ) -> f64 {
-    let samples = third.len().min(second.len()).min(first.len());
     let apart = |of: &Trace, from: &Trace| difference(of, from, strands, samples);
     let ratio = apart(second, first) / apart(third, second);
     extrapolated(ratio, expected)

@@ -16,14 +16,15 @@ use crate::{Channel, Run, SimulationError};
 /// run      the beginning of the run, over the window
 /// twin     the same, started 1e-12 m apart                         → chaos horizon, spread of the statistics
 /// shadow   half the step, over half of the longest window          → difference d
-/// second   a quarter of the step, over a quarter of it             → factor c between difference and error
+/// second   a quarter of the step, over the same                    → difference d₂ from the shadow, factor c
 ///
-/// e = c d
+/// e = max(c d, d + d₂)
 /// ```
 ///
 /// Where a method shows its order p, c = 1/(1 − 2⁻ᵖ); contacts that open and close take the order away, and c is what
-/// the two shadows say. A difference of statistics that does not exceed the spread of equal runs says only that the
-/// error is no larger than that.
+/// the two shadows say of a quarter of the longest window. At moments where chance brings a run near to its first shadow, as
+/// when a roller lets go in the second one only, the distances along the way say more. A difference of statistics that does not exceed the spread of equal
+/// runs says only that the error is no larger than that.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
     /// Time over which run and shadow were compared \[s\]: beyond, nothing was examined.
@@ -69,13 +70,14 @@ pub struct ChannelHorizon {
     pub found_on: Channel,
 }
 
-/// Shares of the longest window over which the two shadows are followed.
-const SHADOW: f64 = 0.5;
-const SECOND: f64 = 0.25;
+/// Share of the longest window over which the two shadows are followed.
+const SHADOWS: f64 = 0.5;
+/// Share of it that tells the factor: farther on, chaos would.
+const EARLY: f64 = 0.25;
 
 /// Estimates the error of a run from its beginning.
 ///
-/// Costs some 32 000 evaluations for a run with its default step, and the more the shorter the step, whatever the
+/// Costs some 40 000 evaluations for a run with its default step, and the more the shorter the step, whatever the
 /// length of the run: see [`Window`].
 ///
 /// # Errors
@@ -87,22 +89,32 @@ pub fn estimate(
     watch: Watch<'_>,
 ) -> Result<Estimate, SimulationError> {
     let run = pinned(start, run);
-    let window = Window::of(start, &run);
+    let window = Window::of(start, &run).finely(start, &run);
     let base = Trace::take(start, &run, &window, watch)?;
     let twin = Trace::take(&start.nudged(APART), &run, &window, watch)?;
     let (better, shadow_words) = sharper(start, &run);
-    let shadow = Trace::take(start, &better, &window.first(SHADOW), watch)?;
+    let examined = window.first(SHADOWS);
+    let shadow = Trace::take(start, &better, &examined, watch)?;
     let (best, _) = sharper(start, &better);
-    let second = Trace::take(start, &best, &window.first(SECOND), watch)?;
+    let second = Trace::take(start, &best, &examined, watch)?;
 
     let traces = [&base, &twin, &shadow, &second];
     let strands = Strands::of(traces);
     let expected = expected_ratio(start, &run);
     let found = |strands: Strands| {
-        let factor = factor(&base, &shadow, &second, strands, expected);
-        let errors = distances(&shadow, &base, strands).into_iter();
-        let errors: Vec<[f64; 2]> = errors
-            .map(|distance| [factor * distance.all, factor * distance.tight])
+        let early = window.first(EARLY).samples();
+        let factor = factor([&base, &shadow, &second], strands, early, expected);
+        let near = distances(&shadow, &base, strands).into_iter();
+        let further = distances(&second, &shadow, strands).into_iter();
+        let errors: Vec<[f64; 2]> = near
+            .zip(further)
+            .map(|(near, further)| {
+                let error = |d: f64, d2: f64| (factor * d).max(d + d2);
+                [
+                    error(near.all, further.all),
+                    error(near.tight, further.tight),
+                ]
+            })
             .collect();
         let horizon = Horizon::of(&base, &twin, strands);
         let all = errors.iter().map(|[all, _]| *all);

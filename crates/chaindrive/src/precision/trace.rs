@@ -72,6 +72,9 @@ impl fmt::Display for Gap {
 
 impl Trace {
     /// Runs a drive over a window.
+    ///
+    /// This is no `execute`: that begins with a scene and ends with a judgement of its own, which is made of traces. A trace
+    /// begins with a drive that stands assembled, such as a twin that no scene describes, and nobody is told of it.
     pub(super) fn take(
         start: &Assembled,
         run: &Run,
@@ -155,10 +158,19 @@ impl Tensions {
         values.step_by(self.strands.max(1)).copied()
     }
 
-    /// Mean magnitude over samples and strands \[N\]; what relative errors are relative to.
+    /// Mean magnitude over samples and strands \[N\].
     pub(super) fn mean(&self) -> f64 {
+        self.mean_of_first(usize::MAX)
+    }
+
+    /// The same over the first samples; what relative errors are relative to.
+    pub(super) fn mean_of_first(&self, samples: usize) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
-        for tension in self.values.iter().filter(|tension| tension.is_finite()) {
+        let values = self
+            .values
+            .iter()
+            .take(samples.saturating_mul(self.strands));
+        for tension in values.filter(|tension| tension.is_finite()) {
             sum += tension.abs();
             count += 1.0;
         }

@@ -93,7 +93,7 @@ pub(super) fn usual(start: &Assembled) -> Vec<Variant> {
             .map(|factor| fixed(start, stepping, *factor, None))
             .collect()
     };
-    if start.system.can_solve() {
+    if start.system.prefers_implicit_damping() {
         let mut list = of(Stepping::ImplicitDamping, &IMPLICIT_DAMPING);
         list.extend(of(Stepping::GeneralizedAlpha, &GENERALIZED_ALPHA));
         list.extend(of(Stepping::Rk4, &[1.0]));
@@ -114,7 +114,7 @@ pub(super) fn usual(start: &Assembled) -> Vec<Variant> {
 /// Particles: Runge–Kutta of fourth order with rejected first penetrations, and Dormand–Prince under
 /// error control. Rigid links: Runge–Kutta and Verlet, both with steps that follow the damping of the joints.
 pub(super) fn references(start: &Assembled) -> [Variant; 2] {
-    if start.system.can_solve() {
+    if start.system.prefers_implicit_damping() {
         return [
             fixed(start, Stepping::Rk4, CLEARANCE_REFERENCE, None),
             fixed(start, Stepping::Verlet, CLEARANCE_CHECK, None),

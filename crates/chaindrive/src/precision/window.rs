@@ -14,6 +14,9 @@ const STEPS: f64 = 8000.0;
 const OWN_STEPS: f64 = 64_000.0;
 /// Samples of a window.
 const SAMPLES: f64 = 256.0;
+/// Samples of a window that is looked at for the first moment of an error: blows last a few default steps, and between
+/// fewer samples they pass unseen.
+const FINE_SAMPLES: f64 = 2048.0;
 
 /// A short stretch at the beginning of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,6 +58,26 @@ impl Window {
             period,
             longest,
         }
+    }
+
+    /// The same with samples so close that hardly a blow falls between two of them, but no closer than the steps.
+    pub(super) fn finely(&self, start: &Assembled, run: &Run) -> Self {
+        let steps = (self.until / typical_step(start, run)).round();
+        Self {
+            every: self.until / steps.clamp(SAMPLES, FINE_SAMPLES),
+            ..*self
+        }
+    }
+
+    /// Number of its samples, the one at its beginning included.
+    pub(super) fn samples(&self) -> usize {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a few thousand"
+        )]
+        let behind = (self.until / self.every) as usize;
+        behind + 1
     }
 
     /// Another end \[s\], with as many samples.

@@ -204,6 +204,8 @@ fn window(start: &Assembled, run: &Run, study: &Study) -> Result<Window, Simulat
 }
 
 /// Medians of wall time and time on the processor \[s\], sampling left out.
+///
+/// Nothing but the steps may lie between the two looks at the clock: no sink, no summary, no question whether to stop.
 fn timed(
     start: &Assembled,
     run: &Run,

@@ -5,11 +5,12 @@ use chaindrive::precision::{Strands, estimate};
 use chaindrive::{Assembled, Run, Scene, Simulation, Stepping};
 use chaindrive_integrate::SecondOrderSystem;
 
-/// A drive, changed in one value, and the length of the run \[s\].
+/// A drive, changed in one value, the length of the run \[s\], and its step in those that it would choose.
 struct Case {
     preset: &'static str,
     change: Option<(&'static str, &'static str)>,
     until: f64,
+    step: f64,
 }
 
 /// A preset as it is.
@@ -18,6 +19,7 @@ const fn preset(preset: &'static str, until: f64) -> Case {
         preset,
         change: None,
         until,
+        step: 1.0,
     }
 }
 
@@ -27,6 +29,7 @@ const fn changed(preset: &'static str, change: (&'static str, &'static str), unt
         preset,
         change: Some(change),
         until,
+        step: 1.0,
     }
 }
 
@@ -44,7 +47,7 @@ impl Case {
 
 /// Runge–Kutta of fourth order with steps that follow the damping and contacts that begin at most ten nanometres deep.
 fn reference(start: &Assembled) -> Run {
-    let particles = !start.system.can_solve();
+    let particles = !start.system.prefers_implicit_damping();
     let factor = if particles { 0.0625 } else { 0.5 };
     Run {
         stepping: Stepping::Rk4,
@@ -65,9 +68,9 @@ fn tensions(start: &Assembled, run: &Run) -> [Vec<Vec<f64>>; 2] {
     [spans, links]
 }
 
-/// Root mean square over the strands, over the mean tension, sample by sample \[–\].
-fn errors(of: &[Vec<f64>], exact: &[Vec<f64>]) -> Vec<f64> {
-    let all = exact.concat();
+/// Root mean square over the strands, over the mean tension of the first samples, sample by sample \[–\].
+fn errors(of: &[Vec<f64>], exact: &[Vec<f64>], first: usize) -> Vec<f64> {
+    let all = exact[..first].concat();
     let mean = all.iter().map(|tension| tension.abs()).sum::<f64>() / all.len() as f64;
     let pairs = of.iter().zip(exact);
     pairs
@@ -88,7 +91,9 @@ fn check(case: &Case) -> String {
     let start = case.start();
     let run = Run {
         until: case.until,
-        every: case.until / 400.0,
+        // Blows last a few steps: between fewer samples the true horizon would pass unseen.
+        every: case.until / 2000.0,
+        step: Some(case.step * Run::default().method(&start.system).step()),
         ..Run::default()
     };
     let stated = estimate(&start, &run, &|| false).unwrap();
@@ -98,7 +103,8 @@ fn check(case: &Case) -> String {
         ..reference(&start)
     };
     let (found, exact) = (tensions(&start, &run), tensions(&start, &exact));
-    let [spans, links] = [0, 1].map(|k| errors(&found[k], &exact[k]));
+    let examined = exact[0].len().min((stated.window / run.every) as usize + 1);
+    let [spans, links] = [0, 1].map(|k| errors(&found[k], &exact[k], examined));
     let compared = match stated.strands {
         Strands::Spans => &spans,
         Strands::Links => &links,
@@ -135,16 +141,24 @@ fn check(case: &Case) -> String {
 }
 
 /// Defect A6: the horizon of the bicycle lay at 6.8 ms where the error exceeds 1 % at 4 ms, and at 300 rpm there was
-/// none. Defect A7: that of link tensions lies far before that of span tensions.
+/// none; that of the slack one at 0.97 ms, for 0.63. Defect A7: that of link tensions lies far before that of span tensions.
 #[test]
 fn stated_horizons_do_not_lie_behind_the_true_ones() {
     for case in [
         preset("marine_two_sprockets", 0.03),
         preset("bicycle", 6e-3),
+        preset("bicycle_slack", 4e-3),
+        preset("motorcycle", 1e-3),
+        changed("bicycle", ("contact.joints.restitution", "0.99"), 6e-3),
         changed(
             "bicycle",
             ("sprockets.chainring.motion.speed", "-300 rpm"),
             4e-3,
+        ),
+        changed(
+            "marine_two_sprockets",
+            ("sprockets.crank.motion.speed", "-300 rpm"),
+            8e-3,
         ),
         changed(
             "marine_two_sprockets",
@@ -156,15 +170,21 @@ fn stated_horizons_do_not_lie_behind_the_true_ones() {
     }
 }
 
-/// A known miss: the spans of the slack chain err by 1 % after 0.63 ms, and 0.97 ms are stated; the factor between the
-/// difference of two runs and the error stands at its limit there. Whoever cures it moves the case into the test above.
+/// Defect A3: the tension rises a hundredfold within the window, and the error was stated relative to the mean of all of it; and
+/// with a quarter of the step the run errs by 0.23 % as does that of half the step, which differs by 0.1 %.
 #[test]
-#[should_panic(expected = "bicycle_slack")]
-fn the_horizon_of_the_slack_chain_is_stated_too_late() {
-    check(&preset("bicycle_slack", 4e-3));
+fn errors_of_a_drive_under_overload_are_as_large_as_stated() {
+    for step in [1.0, 0.25] {
+        let speed = ("sprockets.crank.motion.speed", "-2000 rpm");
+        let case = Case {
+            step,
+            ..changed("marine_two_sprockets", speed, 0.02)
+        };
+        println!("{}", check(&case));
+    }
 }
 
-/// The same of more drives, as a table.
+/// The same as the horizons above of all presets and more, as a table.
 #[test]
 #[ignore = "takes minutes"]
 fn stated_horizons_of_many_drives() {
@@ -173,8 +193,15 @@ fn stated_horizons_of_many_drives() {
         preset("marine_engine", 0.08),
         preset("industrial_16b", 0.02),
         preset("bicycle", 0.016),
+        preset("bicycle_slack", 0.016),
+        preset("bicycle_crank", 0.016),
         preset("motorcycle", 0.004),
         preset("timing_drive", 0.015),
+        preset("two_stage_timing", 0.01),
+        preset("spinning_ring", 0.02),
+        preset("hanging_chain", 0.02),
+        preset("pin_in_bush", 0.02),
+        preset("pendulum_in_bush", 0.02),
         changed(
             "marine_two_sprockets",
             ("sprockets.crank.motion.speed", "-1000 rpm"),

@@ -4,8 +4,8 @@
 use chaindrive::precision::choose;
 use chaindrive::record::{Existing, InStore};
 use chaindrive::{
-    Choice, Given, Judgement, Memory, Reason, Request, Run, Scene, Settings, Simulation, Summary,
-    Trust, Verdict, execute,
+    Choice, Given, Judgement, Memory, Reason, Request, Run, Scene, Settings, Simulation, Stepping,
+    Summary, Trust, Verdict, execute,
 };
 
 /// A preset with changes, each `path = value`.
@@ -88,6 +88,58 @@ fn losses_that_are_wrong_are_distrusted() {
     assert!(found.contains(&"losses-wrong") && found.contains(&"efficiency-above-one"));
 
     let fine = verdict(&scene("industrial_16b", &[]), &run(2e-3, 10.0));
+    assert_eq!(names(&fine), ["not-estimated"], "{fine}");
+}
+
+/// Defect A5: the chain of a large engine with clearance, joints that rub, and a heavy load. At the step that implicit damping takes by
+/// itself more than half of the losses is unaccounted for, though it is a few hundredths of the energy moved; with generalized alpha
+/// they are right.
+#[test]
+fn losses_of_a_large_chain_with_joints_that_rub_are_distrusted_where_they_are_wrong() {
+    let large = Scene::from_toml(
+        r#"
+        [chain]
+        type = "56B-1"
+        model = "clearance-joints"
+        links = 112
+        [contact.joints]
+        friction = { coefficient = 0.1, slip_speed = "1 mm/s" }
+        [contact.teeth]
+        law = { kind = "power", stiffness = "6e11 N/m^1.5", exponent = 1.5 }
+        restitution = 0.8
+        onset_floor = "0.05 m/s"
+        [[sprockets]]
+        name = "crank"
+        teeth = 60
+        centre = ["0 m", "0 m"]
+        motion = { kind = "constant", speed = "-300 rpm" }
+        [[sprockets]]
+        name = "camshaft"
+        teeth = 40
+        centre = ["0 m", "2.7412651200728666 m"]
+        inertia = "200 kg m^2"
+        load = [{ kind = "constant", torque = "15 kN m" }]
+        [route]
+        pretension = "15 kN"
+        "#,
+        "large",
+    )
+    .unwrap();
+    let by = |stepping: Stepping| {
+        let run = Run {
+            stepping,
+            ..run(0.02, 20.0)
+        };
+        let (simulation, summary) = finished(&large, &run);
+        let ledger = summary.ledger();
+        let verdict = Verdict::of(&summary, &simulation, None, Some(&Judgement::SwitchedOff));
+        (verdict, ledger.residual.abs() / ledger.moved)
+    };
+    let (rough, of_moved) = by(Stepping::ImplicitDamping);
+    assert_eq!(rough.trust, Trust::Distrusted, "{rough}");
+    assert!(names(&rough).contains(&"losses-wrong"), "{rough}");
+    assert!(of_moved < 0.05, "{of_moved}");
+    let (fine, _) = by(Stepping::GeneralizedAlpha);
     assert_eq!(names(&fine), ["not-estimated"], "{fine}");
 }
 

@@ -56,7 +56,7 @@ const CASES: &[Mistake] = &[
     ("stiffness = \"161 MN/m\"\n", "", "chain.stiffness", 3, "or `stiffnesses` as a list"),
     ("roller_diameter = \"15.88 mm\"\n", "", "chain.roller_diameter", 3, "missing; give the roller diameter"),
     ("name = \"driver\"\n", "", "sprockets[0].name", 13, "missing"),
-    ("inertia = \"0.05 kg m^2\"\n", "", "sprockets[1].inertia", 18, "missing; give the moment of inertia"),
+    ("inertia = \"0.05 kg m^2\"\n", "", "sprockets[1].inertia", 18, "missing; give the moment of inertia of what turns with the sprocket"),
     ("mass = \"4 kg\"\n", "", "sprockets[1].mass", 18, "the centre can move"),
     (", mass = \"1 kg\" }", " }", "tensioners[0].carrier.mass", 31, "missing"),
     ("speed = \"300 rpm\"", "sped = \"300 rpm\"", "sprockets[0].motion.sped", 17, "a `constant` has no `sped`; did you mean `speed`?"),

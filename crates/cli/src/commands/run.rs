@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     checkpoint_every: Option<String>,
 
     /// Leaves out the estimate of the numerical error that ends the run; it takes the time of some
-    /// 32 000 steps of the default length, whatever the length of the run
+    /// 40 000 steps of the default length, whatever the length of the run
     #[arg(long)]
     no_error: bool,
 
@@ -91,6 +91,11 @@ pub(super) fn not_run<E: std::error::Error + Into<Failure>>(
 
 /// Says what came of a run.
 pub(super) fn concluded(report: Report, scene: &str, quiet: bool) -> Result<(), Failure> {
+    if !quiet {
+        for clash in &report.simulation.assembled().warnings {
+            eprintln!("warning: {scene}: {clash}");
+        }
+    }
     if let Some(warning) = report.verdict.warning() {
         eprintln!("{scene}: {warning}");
     }

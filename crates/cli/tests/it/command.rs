@@ -31,6 +31,22 @@ fn group(path: &Path) -> serde_json::Value {
     serde_json::from_slice(&fs::read(path.join("zarr.json")).unwrap()).unwrap()
 }
 
+/// `check` and `describe` told of clashes, and the run that suffers from them did not.
+#[test]
+fn a_run_tells_of_bodies_in_each_others_way_once() {
+    let folder = folder();
+    let rail = "guides=[{name=\"rail\",touches=\"plates\",face={kind=\"bar\",start=[0.2,0.86],end=[-0.2,0.86],end_radius=0.02}}]";
+    let run = ["run", "marine_two_sprockets", "--until", "1 ms"];
+    let arguments = [&run[..], &["--no-error", "--set", rail]].concat();
+    let (code, _, err) = self::run(folder.path(), &arguments);
+    assert_eq!(code, 0, "{err}");
+    let told =
+        err.matches("warning: marine_two_sprockets: guide `rail` cuts into the teeth of `crank`");
+    assert_eq!(told.count(), 1, "{err}");
+    let (_, _, err) = self::run(folder.path(), &[&arguments[..], &["-q"]].concat());
+    assert_eq!(err, "");
+}
+
 #[test]
 fn a_run_writes_a_store_and_ends_with_a_summary() {
     let folder = folder();

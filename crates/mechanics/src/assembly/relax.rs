@@ -399,7 +399,7 @@ impl Newton<'_> {
         let still = vec![0.0; q.len()];
         for shaft in &bodies.shafts {
             if let Some((dof, ratio)) = shaft.turn.turned_by() {
-                let angle = shaft.turn.course(0.0, q, &still).position;
+                let angle = shaft.turn.kinematics(0.0, q, &still).position;
                 let torques = shaft.drive.iter().chain(&shaft.load);
                 let torque: f64 = torques.map(|m| m.at(0.0, angle, 0.0)).sum();
                 sum.force(dof, -load.torque * (ratio * torque));

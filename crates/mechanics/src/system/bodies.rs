@@ -8,7 +8,7 @@ use super::Slide;
 use super::inputs::Inputs;
 use super::shafts::{Shaft, Turn};
 use crate::contact::Frame;
-use crate::motion::Course;
+use crate::motion::Kinematics;
 use crate::tensioner::Slopes;
 use crate::{Coupling, Motion};
 
@@ -145,13 +145,13 @@ impl Bodies {
     #[inline(always)]
     pub(crate) fn wheel_frame(&self, wheel: usize, anchor: &Anchor, at: Moment<'_>) -> Frame {
         let wheel = &self.wheels[wheel];
-        let course = wheel.course(at.t, at.q, at.v);
-        let (origin, velocity, _) = wheel.centre_course(at.t, at.q, at.v, &self.slides);
+        let kinematics = wheel.kinematics(at.t, at.q, at.v);
+        let (origin, velocity, _) = wheel.centre_kinematics(at.t, at.q, at.v, &self.slides);
         Frame {
             origin,
-            turn: anchor.turn(course.position),
+            turn: anchor.turn(kinematics.position),
             velocity,
-            spin: course.rate,
+            spin: kinematics.rate,
         }
     }
 
@@ -162,7 +162,7 @@ impl Bodies {
 
     /// Centre of a wheel.
     pub(crate) fn wheel_centre(&self, wheel: usize, at: Moment<'_>) -> Point {
-        let (centre, _, _) = self.wheels[wheel].centre_course(at.t, at.q, at.v, &self.slides);
+        let (centre, _, _) = self.wheels[wheel].centre_kinematics(at.t, at.q, at.v, &self.slides);
         centre
     }
 
@@ -341,8 +341,8 @@ impl Bodies {
 impl Wheel {
     /// Angle of the first gap axis and its rates at time `t`.
     #[inline(always)]
-    pub(crate) fn course(&self, t: f64, q: &[f64], v: &[f64]) -> Course {
-        self.turn.course(t, q, v)
+    pub(crate) fn kinematics(&self, t: f64, q: &[f64], v: &[f64]) -> Kinematics {
+        self.turn.kinematics(t, q, v)
     }
 
     /// The tensioner that carries it.
@@ -355,7 +355,7 @@ impl Wheel {
 
     /// Place, velocity and prescribed acceleration of the centre.
     #[inline(always)]
-    pub(crate) fn centre_course(
+    pub(crate) fn centre_kinematics(
         &self,
         t: f64,
         q: &[f64],

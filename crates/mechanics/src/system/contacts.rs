@@ -90,8 +90,8 @@ impl BodyContacts {
     /// Turns the anchors to where the sprockets are.
     pub(crate) fn anchor(&mut self, bodies: &Bodies, at: Moment<'_>) {
         for on in &mut self.teeth {
-            let course = bodies.wheels[on.wheel].course(at.t, at.q, at.v);
-            on.anchor = Anchor::at(course.position);
+            let kinematics = bodies.wheels[on.wheel].kinematics(at.t, at.q, at.v);
+            on.anchor = Anchor::at(kinematics.position);
         }
     }
 
@@ -119,7 +119,7 @@ impl BodyContacts {
         self.anchor(bodies, at);
         for on in &mut self.teeth {
             let wheel = &bodies.wheels[on.wheel];
-            let rate = wheel.course(at.t, at.q, at.v).rate;
+            let rate = wheel.kinematics(at.t, at.q, at.v).rate;
             let frame = bodies.wheel_frame(on.wheel, &on.anchor, at);
             let rim = rate.abs() * wheel.pitch_radius + frame.velocity.norm();
             speed = speed.max(fastest + rim);

@@ -21,7 +21,7 @@ impl Bodies {
         let (rates, flows) = rates.split_at_mut(Flow::ALL.len());
         self.turn_shafts(at, a, rates, wheel_wrenches);
         for (wheel, wrench) in self.wheels.iter().zip(wheel_wrenches) {
-            let centre = || wheel.centre_course(at.t, at.q, at.v, &self.slides);
+            let centre = || wheel.centre_kinematics(at.t, at.q, at.v, &self.slides);
             match &wheel.support {
                 WheelSupport::Fixed => {}
                 WheelSupport::Prescribed { .. } => {
@@ -114,27 +114,30 @@ impl Bodies {
                 a[dof] += ratio * wrench.moment;
             } else {
                 // P = (J α − M) ω
-                let course = wheel.course(at.t, at.q, at.v);
-                let torque = wheel.inertia * course.acceleration - wrench.moment;
-                rates[Flow::Driver as usize] += torque * course.rate;
+                let kinematics = wheel.kinematics(at.t, at.q, at.v);
+                let torque = wheel.inertia * kinematics.acceleration - wrench.moment;
+                rates[Flow::Driver as usize] += torque * kinematics.rate;
             }
         }
         for (i, shaft) in self.shafts.iter().enumerate() {
-            let course = shaft.turn.course(at.t, at.q, at.v);
+            let kinematics = shaft.turn.kinematics(at.t, at.q, at.v);
             let sum = |torques: &[crate::Torque]| -> f64 {
-                let angle = course.position;
-                torques.iter().map(|m| m.at(at.t, angle, course.rate)).sum()
+                let angle = kinematics.position;
+                torques
+                    .iter()
+                    .map(|m| m.at(at.t, angle, kinematics.rate))
+                    .sum()
             };
             let (driving, loading) = (sum(&shaft.drive) + self.inputs.torque(i), sum(&shaft.load));
-            rates[Flow::DriveTorque as usize] += driving * course.rate;
-            rates[Flow::Load as usize] += loading * course.rate;
+            rates[Flow::DriveTorque as usize] += driving * kinematics.rate;
+            rates[Flow::Load as usize] += loading * kinematics.rate;
             if let Some((dof, ratio)) = shaft.turn.turned_by() {
                 a[dof] += ratio * driving;
                 a[dof] += ratio * loading;
             } else {
                 // What else turns with a motion that is given, or resists it, is supplied by it.
-                let torque = shaft.inertia * course.acceleration - driving - loading;
-                rates[Flow::Driver as usize] += torque * course.rate;
+                let torque = shaft.inertia * kinematics.acceleration - driving - loading;
+                rates[Flow::Driver as usize] += torque * kinematics.rate;
             }
         }
         for coupling in &self.couplings {
@@ -146,7 +149,7 @@ impl Bodies {
                     a[dof] += sign * ratio * torque;
                 } else {
                     // A motion that is given supplies what the coupling takes.
-                    let speed = turn.course(at.t, at.q, at.v).rate;
+                    let speed = turn.kinematics(at.t, at.q, at.v).rate;
                     rates[Flow::Driver as usize] -= sign * torque * speed;
                 }
             }

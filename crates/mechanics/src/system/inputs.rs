@@ -7,7 +7,7 @@ use chaindrive_integrate::slack;
 use serde::{Deserialize, Serialize};
 
 use super::{System, TurnedBy, WheelSupport};
-use crate::motion::Course;
+use crate::motion::Kinematics;
 use crate::{MemoryError, Motion};
 
 /// What can be set from outside.
@@ -65,7 +65,7 @@ impl Inputs {
 pub(super) struct OnwardCentre {
     sprocket: usize,
     axis: usize,
-    from: Course,
+    from: Kinematics,
     since: f64,
 }
 
@@ -129,7 +129,7 @@ impl System {
 
     fn accelerate(&mut self, sprocket: usize, axis: usize, time: f64, acceleration: f64) {
         if let Some(motion) = self.centre_motion(sprocket, axis) {
-            let from = Course {
+            let from = Kinematics {
                 acceleration,
                 ..motion.at(time)
             };

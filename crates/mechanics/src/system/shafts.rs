@@ -3,7 +3,7 @@
 use chaindrive_integrate::Moment;
 
 use super::Bodies;
-use crate::motion::Course;
+use crate::motion::Kinematics;
 use crate::{Coupling, Motion, Torque};
 
 /// How an angle follows from time or state.
@@ -31,16 +31,16 @@ pub(crate) enum TurnedBy {
 impl Turn {
     /// The angle and its rates; the acceleration is known where the motion is.
     #[inline(always)]
-    pub(crate) fn course(&self, t: f64, q: &[f64], v: &[f64]) -> Course {
+    pub(crate) fn kinematics(&self, t: f64, q: &[f64], v: &[f64]) -> Kinematics {
         let of = match &self.by {
-            TurnedBy::Coordinate(dof) => Course {
+            TurnedBy::Coordinate(dof) => Kinematics {
                 position: q[*dof],
                 rate: v[*dof],
                 acceleration: 0.0,
             },
             TurnedBy::Motion(motion) => motion.at(t),
         };
-        Course {
+        Kinematics {
             position: self.zero + self.ratio * of.position,
             rate: self.ratio * of.rate,
             acceleration: self.ratio * of.acceleration,
@@ -119,8 +119,8 @@ impl Bodies {
     /// Twist φ of a coupling and its rate.
     pub(crate) fn twist(&self, coupling: &Coupling, at: Moment<'_>) -> [f64; 2] {
         let [from, to] = coupling.shafts.map(|index| {
-            let course = self.shafts[index].turn.course(at.t, at.q, at.v);
-            [course.position, course.rate]
+            let kinematics = self.shafts[index].turn.kinematics(at.t, at.q, at.v);
+            [kinematics.position, kinematics.rate]
         });
         [to[0] - from[0], to[1] - from[1]]
     }

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use chaindrive_geometry::{Arc, ArcSpline, GeometryError, Piece, Point, bar, rail};
-use chaindrive_mechanics::{Guide, GuideSupport, Touches};
+use chaindrive_mechanics::{Guide, GuideSupport};
 
 use super::chain::Resolved;
 use super::law::linear;
@@ -60,11 +60,7 @@ fn resolve(
         name: text.name.clone(),
         face: face?,
         support: support?,
-        touches: match text.touches {
-            schema::Touches::Rollers => Touches::Rollers,
-            schema::Touches::Eyes => Touches::Eyes,
-            schema::Touches::Plates => Touches::Plates,
-        },
+        touches: text.touches,
         surface: surface?,
     })
 }

@@ -41,10 +41,7 @@ pub(super) fn layout(
     let stops = stops(route, &described.sprockets, names, findings);
     let adjust = adjust(route, scene, names, findings);
     let adjust = adjust?;
-    let tighten = match route.tighten {
-        schema::Tighten::RestLength => Tighten::RestLength,
-        schema::Tighten::Travel => Tighten::Travel,
-    };
+    let tighten = route.tighten;
     if tighten == Tighten::Travel && adjust == Adjust::Nothing {
         let hint = "say in `route.adjust` what moves, or take `rest-length`";
         findings.refuse_with("route.tighten", "nothing is there to travel", hint);

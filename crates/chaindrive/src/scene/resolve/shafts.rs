@@ -33,7 +33,8 @@ pub(super) fn resolve(
             continue;
         }
         if text.motion.is_none() && text.inertia.is_none() {
-            let hint = "give the moment of inertia of a wheel that turns freely, or `motion`";
+            let hint =
+                "give the moment of inertia of what turns with the sprocket, or its `motion`";
             findings.refuse_with(&format!("{path}.inertia"), "missing", hint);
         }
         let turned = (&text.motion, &text.drive, &text.load);

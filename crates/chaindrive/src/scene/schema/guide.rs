@@ -1,5 +1,6 @@
 //! Rails on which the chain slides.
 
+use chaindrive_mechanics::Touches;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -85,19 +86,6 @@ pub(crate) enum TravelSide {
     /// On the right of travel.
     #[default]
     Right,
-}
-
-/// Which part of the chain touches a guide.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum Touches {
-    /// The rollers.
-    #[default]
-    Rollers,
-    /// Waisted link plates, with their eyes: circles of the plate height about the pins.
-    Eyes,
-    /// Straight-edged link plates, anywhere along the edge.
-    Plates,
 }
 
 /// What holds a guide.

@@ -1,5 +1,6 @@
 //! The way of a closed chain.
 
+use chaindrive_mechanics::Tighten;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -40,17 +41,6 @@ pub(crate) enum SpanStart {
     Quiet,
     /// With the motion across that the polygons have at the first instant: a kick after which spans swing.
     Polygon,
-}
-
-/// How the pretension is made.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum Tighten {
-    /// The links are made shorter by the strain of the pretension.
-    #[default]
-    RestLength,
-    /// The adjusted body moves on until the chain carries the pretension.
-    Travel,
 }
 
 /// What is moved until the given number of links closes without stress.

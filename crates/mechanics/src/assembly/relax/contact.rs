@@ -45,11 +45,11 @@ pub(super) fn add_contacts(system: &System, q: &[f64], sum: &mut Sum<'_>) {
 }
 
 fn wheel_mount(bodies: &Bodies, wheel: &Wheel, at: Moment<'_>) -> (Frame, Mount) {
-    let course = wheel.course(at.t, at.q, at.v);
-    let (origin, _, _) = wheel.centre_course(at.t, at.q, at.v, &bodies.slides);
+    let kinematics = wheel.kinematics(at.t, at.q, at.v);
+    let (origin, _, _) = wheel.centre_kinematics(at.t, at.q, at.v, &bodies.slides);
     let frame = Frame {
         origin,
-        turn: [course.position.cos(), course.position.sin()],
+        turn: [kinematics.position.cos(), kinematics.position.sin()],
         velocity: Vector::zeros(),
         spin: 0.0,
     };

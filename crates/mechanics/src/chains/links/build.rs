@@ -74,7 +74,7 @@ pub(crate) fn replace(
     if !laid.on_route {
         // Along a route the links have taken the lengths that they were laid with.
         let mut whole = [chain_q, vec![0.0; bodies.count]].concat();
-        linkage.close_in_place(bodies, &mut whole);
+        linkage.close_in_place(bodies, &pulls(particles, &places), &mut whole);
         whole.truncate(linkage.coordinates());
         chain_q = whole;
     }
@@ -115,39 +115,85 @@ impl Linkage {
         }
     }
 
-    /// Moves ideal joints together that stand a little apart, as when the particles that the chain was laid as had
-    /// stretched; links keep their lengths.
-    pub(crate) fn close_in_place(&self, bodies: GroupBodies<'_>, q: &mut [f64]) {
-        if matches!(self.joining, Joining::Clearance(_)) {
-            return;
-        }
-        let still = vec![0.0; q.len()];
-        let mut joint_state = JointState::default();
+    /// Moves joints to where they carry what the particles carried that the chain was laid as; links keep their lengths.
+    ///
+    /// Ideal joints close. Pins that were laid pressed into their bushes are seated in the direction of the pull T, as deep as it
+    /// presses them; others stay where they were laid, since their play is free. Where links of their length do not reach, as in a
+    /// straight strand between two supports, all stay.
+    ///
+    /// ```text
+    /// after − before = (c + δ(|T|)) T/|T|
+    /// ```
+    fn close_in_place(&self, bodies: GroupBodies<'_>, pulls: &[Vector], q: &mut [f64]) {
+        let laid = q.to_vec();
+        let mut joint_state = JointState {
+            hinge_forces: vec![Vector::zeros(); self.joints.len()],
+            ..JointState::default()
+        };
+        let offsets = self.offsets(q, &mut joint_state);
+        let seats = self.seats(&offsets, pulls);
         // Newton's method, from a few thousandths of a pitch at most: three passes leave rounding.
         for _ in 0..PASSES {
-            let at = Moment {
-                t: 0.0,
-                q,
-                v: &still,
-                z: &[],
-            };
-            self.pose_links(at, &mut joint_state.posture);
-            joint_state.hinge_forces = vec![Vector::zeros(); self.joints.len()];
-            let apart = self.joints.iter().map(|joint| {
-                joint.pair.map_or_else(Vector::zeros, |mates| {
-                    let [hole, pin] =
-                        mates.map(|mate| self.part(mate, at, &joint_state.posture).place);
-                    hole - pin
-                })
-            });
-            let apart: Vec<Vector> = apart.collect();
-            let Some(change) = self.nearest(bodies, &mut joint_state, &apart, q.len()) else {
+            let offsets = self.offsets(q, &mut joint_state);
+            let apart: Vec<Vector> = seats.iter().zip(&offsets).map(|(s, o)| s - o).collect();
+            if apart.iter().all(|apart| *apart == Vector::zeros()) {
                 return;
+            }
+            let Some(change) = self.nearest(bodies, &mut joint_state, &apart, q.len()) else {
+                break;
             };
             for (q, change) in q.iter_mut().zip(&change) {
                 *q += change;
             }
         }
+        let offsets = self.offsets(q, &mut joint_state);
+        let mut apart = seats.iter().zip(&offsets).map(|(s, o)| (s - o).norm());
+        let reached = apart.all(|apart| apart < 1e-9 * self.pitch);
+        if !reached && self.has_play() {
+            q.copy_from_slice(&laid);
+        }
+    }
+
+    /// From the middle of every hole to its pin.
+    fn offsets(&self, q: &[f64], joint_state: &mut JointState) -> Vec<Vector> {
+        let still = vec![0.0; q.len()];
+        let at = Moment {
+            t: 0.0,
+            q,
+            v: &still,
+            z: &[],
+        };
+        self.pose_links(at, &mut joint_state.posture);
+        let offset = |joint: &JointMates| {
+            joint.pair.map_or_else(Vector::zeros, |mates| {
+                let [hole, pin] = mates.map(|mate| self.part(mate, at, &joint_state.posture).place);
+                pin - hole
+            })
+        };
+        self.joints.iter().map(offset).collect()
+    }
+
+    /// Where every pin shall stand from the middle of its hole, by where it was laid and by the pull on its joint.
+    fn seats(&self, offsets: &[Vector], pulls: &[Vector]) -> Vec<Vector> {
+        let Joining::Clearance(bearing) = &self.joining else {
+            return vec![Vector::zeros(); offsets.len()];
+        };
+        let joints = offsets.iter().zip(pulls).enumerate();
+        let seat = |(joint, (offset, pull)): (usize, (&Vector, &Vector))| {
+            let sense = if self.pairs.pin_after(joint) {
+                1.0
+            } else {
+                -1.0
+            };
+            let force = pull.norm();
+            let pressed = offset.norm() > bearing.clearance && offset.dot(pull) * sense > 0.0;
+            if pressed {
+                pull * (sense * (bearing.clearance + bearing.indentation(force)) / force)
+            } else {
+                *offset
+            }
+        };
+        joints.map(seat).collect()
     }
 
     /// Velocities of the chain and, behind it, the bodies brought to where no hinge opens: what the stabilisation would otherwise
@@ -183,6 +229,24 @@ impl Linkage {
 
 /// Passes of [`Linkage::close_in_place`].
 const PASSES: usize = 4;
+
+/// What the laid particles pull at the side after of every joint by, from the side before \[N\]: the mean of both links, and at the
+/// ends of a strand the only one.
+fn pulls(particles: &Particles, places: &[Point]) -> Vec<Vector> {
+    let count = particles.links.count;
+    let pull = |link: usize| {
+        let line = places[(link + 1) % places.len()] - places[link];
+        // T = k (ℓ − p)
+        let tension = particles.links.stiffness[link] * (line.norm() - particles.links.rest[link]);
+        line.normalize() * tension
+    };
+    let joint = |joint: usize| match (joint, particles.links.closed) {
+        (0, false) => pull(0),
+        (last, false) if last == count => pull(count - 1),
+        (joint, _) => (pull((joint + count - 1) % count) + pull(joint)) * 0.5,
+    };
+    (0..places.len()).map(joint).collect()
+}
 
 /// Where free rollers let the bushes be: on a wheel they lie deeper by the clearance, in a span the rollers
 /// hang. Returns the shift of every bush from the particle, and by how much their way around the

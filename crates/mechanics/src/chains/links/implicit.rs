@@ -132,10 +132,14 @@ impl Linkage {
             loose: &mut loose,
             border,
         };
-        self.each_element(joint_state, |element| {
-            sum.add(element, &joint_state.mounts, weights);
-        });
-        let known = matches!(self.joining, Joining::Hinges(_)).then(|| x.to_vec());
+        let prescribed = matches!(asked, Prescribed::Given(_));
+        if !prescribed {
+            self.each_element(joint_state, |element| {
+                sum.add(element, &joint_state.mounts, weights);
+            });
+        }
+        let hinged = prescribed || matches!(self.joining, Joining::Hinges(_));
+        let known = hinged.then(|| x.to_vec());
         if let Some(b) = &known {
             if weights.stiffness > 0.0 {
                 sum.add_hinge_turns(joint_state, weights.stiffness);

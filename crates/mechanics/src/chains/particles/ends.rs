@@ -6,7 +6,7 @@ use chaindrive_integrate::Moment;
 use super::Particles;
 use crate::chains::Record;
 use crate::energy::Flow;
-use crate::motion::Course;
+use crate::motion::Kinematics;
 use crate::system::HeldEnd;
 use crate::{End, Motion};
 
@@ -19,7 +19,7 @@ impl Particles {
         let n = self.stride;
         for held in &self.ends {
             if let End::Driven { x, y } = &held.end {
-                let (x, y): (Course, Course) = (Motion::at(x, t), y.at(t));
+                let (x, y): (Kinematics, Kinematics) = (Motion::at(x, t), y.at(t));
                 q[held.roller] = held.place.x + x.position;
                 q[n + held.roller] = held.place.y + y.position;
                 v[held.roller] = x.rate;

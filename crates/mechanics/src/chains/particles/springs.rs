@@ -64,9 +64,9 @@ impl Links {
             rollers.inverse_mass,
         ]
         .map(|values| w.lanes(&values[..n]));
-        let courses = [rollers.x, rollers.y, rollers.vx, rollers.vy];
-        let [x, y, vx, vy] = courses.map(|values| w.lanes(&values[..n]));
-        let [x_next, y_next, vx_next, vy_next] = courses.map(|values| w.lanes(&values[1..=n]));
+        let columns = [rollers.x, rollers.y, rollers.vx, rollers.vy];
+        let [x, y, vx, vy] = columns.map(|values| w.lanes(&values[..n]));
+        let [x_next, y_next, vx_next, vy_next] = columns.map(|values| w.lanes(&values[1..=n]));
         let mut ax = Wide::<S>::lanes_mut(&mut rollers.ax[..n]);
         let mut ay = Wide::<S>::lanes_mut(&mut rollers.ay[..n]);
         let [gx, gy] = gravity.map(|g| w.splat(g));
