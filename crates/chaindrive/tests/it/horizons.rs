@@ -103,7 +103,13 @@ fn check(case: &Case) -> String {
         ..reference(&start)
     };
     let (found, exact) = (tensions(&start, &run), tensions(&start, &exact));
-    let examined = exact[0].len().min((stated.window / run.every) as usize + 1);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a window has some thousands of samples"
+    )]
+    let samples = (stated.window / run.every) as usize + 1;
+    let examined = exact[0].len().min(samples);
     let [spans, links] = [0, 1].map(|k| errors(&found[k], &exact[k], examined));
     let compared = match stated.strands {
         Strands::Spans => &spans,

@@ -4,6 +4,8 @@
 use std::f64::consts::PI;
 
 use chaindrive::{Flow, Scene};
+use chaindrive_contact::Law;
+use chaindrive_mechanics::{ChainModel, Joint, Surface};
 
 use crate::dynamics::{pairs, run};
 
@@ -173,4 +175,49 @@ fn joints_say_what_they_need() {
         message.contains("contact.teeth.friction.stiffness"),
         "{message}"
     );
+}
+
+/// The surface of the joints of a preset with play in them.
+fn surface(defaults: &str) -> Surface {
+    let scene = Scene::preset("bicycle").unwrap();
+    let scene = scene.replace("defaults", defaults).unwrap();
+    let drive = scene.drive().unwrap();
+    let ChainModel::Rigid(links) = &drive.chains[0].chain.model else {
+        panic!("links with play are rigid");
+    };
+    match links.joint {
+        Joint::Clearance(joint) => joint.surface,
+        Joint::Ideal => panic!("the preset has play"),
+    }
+}
+
+/// Stiffness \[N/m\] at a load.
+fn under(law: &Law, load: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1e-3);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if law.elastic_force(middle) < load {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    law.stiffness(low)
+}
+
+/// Between its pins a link of 081 has the stiffness of the catalogue, 48 MN/m, plates and joint together, from slack to tight
+/// strand. Its joint alone has eleven times that, which is all that there was with the defaults of version 0.1.
+#[test]
+fn links_with_play_have_the_stiffness_of_the_catalogue() {
+    let law = surface("\"0.2\"").law;
+    for load in [30.0, 60.0, 180.0, 500.0] {
+        let stiffness = under(&law, load);
+        assert!(
+            (stiffness / 48e6 - 1.0).abs() < 0.02,
+            "{load}: {stiffness:e}"
+        );
+    }
+    let rigid = surface("\"0.1\"").law;
+    assert_eq!(rigid.series, None);
+    assert!(under(&rigid, 180.0) > 450e6);
 }
