@@ -207,11 +207,14 @@ impl Layout {
 }
 
 /// How the chain moves between the sprockets when the run begins.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
 pub enum SpanStart {
-    /// Along itself.
+    /// Along itself: the polygon effect reaches the spans with the first teeth.
     Quiet,
-    /// As the seated rollers at both ends, linear in between: with the instantaneous motion of the polygons across the spans.
+    /// With the motion across that the polygons have at the first instant, linear between the seated rollers at both ends: a kick
+    /// after which spans swing.
     Polygon,
 }
 

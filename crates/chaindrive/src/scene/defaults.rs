@@ -10,10 +10,11 @@
 use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use chaindrive_mechanics::SpanStart;
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 
-use super::schema::{Dissipation, SpanStart, Version};
+use super::schema::{Dissipation, Version};
 
 /// Where a default comes from.
 #[derive(Clone, Copy, Debug)]

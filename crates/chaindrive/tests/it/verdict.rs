@@ -138,7 +138,8 @@ fn losses_of_a_large_chain_with_joints_that_rub_are_distrusted_where_they_are_wr
     let (rough, of_moved) = by(Stepping::ImplicitDamping);
     assert_eq!(rough.trust, Trust::Distrusted, "{rough}");
     assert!(names(&rough).contains(&"losses-wrong"), "{rough}");
-    assert!(of_moved < 0.05, "{of_moved}");
+    // Judged by the energy moved, a tenth of which may be missing, nothing would be said.
+    assert!(of_moved < 0.1, "{of_moved}");
     let (fine, _) = by(Stepping::GeneralizedAlpha);
     assert_eq!(names(&fine), ["not-estimated"], "{fine}");
 }

@@ -1,7 +1,7 @@
 //! Where the chain lies at the start.
 
 use chaindrive_geometry::Vector;
-use chaindrive_mechanics::{Adjust, Chain, Fit, Layout, SpanStart, Stop, Tighten};
+use chaindrive_mechanics::{Adjust, Chain, Fit, Layout, Stop, Tighten};
 
 use super::chains::Described;
 use super::{Findings, Names, start};
@@ -49,10 +49,7 @@ pub(super) fn layout(
     let phase = route.phase.map(|phase| phase.0);
     Some(Layout::Route {
         stops: stops?,
-        start: match findings.or_chosen(route.start, "route.start", &defaults::SPAN_START) {
-            schema::SpanStart::Quiet => SpanStart::Quiet,
-            schema::SpanStart::Polygon => SpanStart::Polygon,
-        },
+        start: findings.or_chosen(route.start, "route.start", &defaults::SPAN_START),
         phase: findings.or_default(phase, "route.phase", &defaults::PHASE),
         fit: Fit {
             adjust,

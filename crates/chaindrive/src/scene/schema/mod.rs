@@ -22,7 +22,7 @@ pub(crate) use friction::Friction;
 pub(crate) use guide::{Face, Guide, GuideSupport, TravelSide};
 pub(crate) use links::{ChainModel, Joint, Link, Roller, Rollers};
 pub(crate) use motion::{Motion, Torque};
-pub(crate) use route::{Adjust, Route, SpanStart};
+pub(crate) use route::{Adjust, Route};
 pub(crate) use run::Run;
 pub use run::RunDefaults;
 pub(crate) use shaft::{Coupling, Gears, Mesh, Shaft};

@@ -1,6 +1,6 @@
 //! The way of a closed chain.
 
-use chaindrive_mechanics::Tighten;
+use chaindrive_mechanics::{SpanStart, Tighten};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -31,16 +31,6 @@ pub(crate) struct Route {
     /// What is moved until the links close without stress; absent: nothing.
     #[serde(default)]
     pub(crate) adjust: Option<Adjust>,
-}
-
-/// How the chain moves between the sprockets at the start.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum SpanStart {
-    /// Along itself: the polygon effect reaches the spans with the first teeth.
-    Quiet,
-    /// With the motion across that the polygons have at the first instant: a kick after which spans swing.
-    Polygon,
 }
 
 /// What is moved until the given number of links closes without stress.
