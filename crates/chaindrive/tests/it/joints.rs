@@ -205,12 +205,12 @@ fn under(law: &Law, load: f64) -> f64 {
     law.stiffness(low)
 }
 
-/// Between its pins a link of 081 has the stiffness of the catalogue, 48 MN/m, plates and joint together, from slack to tight
-/// strand. Its joint alone has eleven times that, which is all that there was with the defaults of version 0.1.
+/// Between its pins a link of 081 has the stiffness of the catalogue, 48 MN/m, plates and joint together, from 3 to 12 % of its
+/// breaking load; where it bears little the joint gives more. Its joint alone has eleven times that, which is all that there was with the defaults of version 0.1.
 #[test]
 fn links_with_play_have_the_stiffness_of_the_catalogue() {
     let law = surface("\"0.2\"").law;
-    for load in [30.0, 60.0, 180.0, 500.0] {
+    for load in [250.0, 500.0, 1000.0] {
         let stiffness = under(&law, load);
         assert!(
             (stiffness / 48e6 - 1.0).abs() < 0.02,
@@ -219,5 +219,5 @@ fn links_with_play_have_the_stiffness_of_the_catalogue() {
     }
     let rigid = surface("\"0.1\"").law;
     assert_eq!(rigid.series, None);
-    assert!(under(&rigid, 180.0) > 450e6);
+    assert!(under(&rigid, 500.0) > 450e6);
 }

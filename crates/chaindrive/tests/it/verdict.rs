@@ -69,10 +69,13 @@ fn a_run_examined_to_its_end_is_trusted() {
     assert!(verdict.reasons.is_empty());
 }
 
+/// Plates and joints of the defaults of version 0.1: rigid, without friction, where small steps go wrong.
+const BARE: (&str, &str) = ("defaults", "\"0.1\"");
+
 /// Defect A4: a fifth of the energy is missing, and nothing but a line of the summary said so.
 #[test]
 fn energy_that_does_not_add_up_is_distrusted() {
-    let change = [("sprockets.chainring.motion.speed", "-5000 rpm")];
+    let change = [BARE, ("sprockets.chainring.motion.speed", "-5000 rpm")];
     let verdict = verdict(&scene("bicycle", &change), &run(3e-3, 300.0));
     assert_eq!(verdict.trust, Trust::Distrusted);
     assert!(names(&verdict).contains(&"energy-missing"), "{verdict}");
@@ -82,7 +85,7 @@ fn energy_that_does_not_add_up_is_distrusted() {
 /// Defect A5: of the energy moved 1 % is missing, which is more than all that is lost.
 #[test]
 fn losses_that_are_wrong_are_distrusted() {
-    let rough = verdict(&scene("motorcycle", &[]), &run(1e-4, 10.0));
+    let rough = verdict(&scene("motorcycle", &[BARE]), &run(1e-4, 10.0));
     assert_eq!(rough.trust, Trust::Distrusted, "{rough}");
     let found = names(&rough);
     assert!(found.contains(&"losses-wrong") && found.contains(&"efficiency-above-one"));
@@ -141,7 +144,8 @@ fn losses_of_a_large_chain_with_joints_that_rub_are_distrusted_where_they_are_wr
     // Judged by the energy moved, a tenth of which may be missing, nothing would be said.
     assert!(of_moved < 0.1, "{of_moved}");
     let (fine, _) = by(Stepping::GeneralizedAlpha);
-    assert_eq!(names(&fine), ["not-estimated"], "{fine}");
+    assert_eq!(fine.trust, Trust::Caution, "{fine}");
+    assert!(!fine.note().contains("losses"), "{fine}");
 }
 
 #[test]
@@ -230,7 +234,7 @@ fn waveforms_that_end_within_the_run_are_a_caution() {
         step: Some(2e-6),
         ..run(6e-3, 6.0)
     };
-    let found = examined(&scene("bicycle_slack", &[]), &settings);
+    let found = examined(&scene("bicycle_slack", &[BARE]), &settings);
     assert_eq!(found.trust, Trust::Caution);
     assert!(names(&found).contains(&"horizon-within-run"), "{found}");
     assert!(found.note().contains("of link tensions to"), "{found}");

@@ -49,7 +49,7 @@ const CASES: &[Mistake] = &[
     ("links = 78", "link = 78", "chain.link", 5, "unknown key; did you mean `links`?"),
     ("teeth = 19\ncentre = [\"0 mm\"", "teath = 19\ncentre = [\"0 mm\"", "sprockets[0].teath", 15, "did you mean `teeth`?"),
     ("[route]", "[rout]", "rout", 33, "did you mean `route`?"),
-    ("restitution = 0.8", "xyzzy = 0.8", "contact.teeth.xyzzy", 12, "known are law, restitution, damping"),
+    ("restitution = 0.8", "xyzzy = 0.8", "contact.teeth.xyzzy", 12, "known are law, series, restitution, damping"),
     ("pitch = \"25.4 mm\"\n", "", "chain.pitch", 3, "missing; give the nominal pitch"),
     ("links = 78\n", "", "chain.links", 3, "missing; give the number of links"),
     ("mass = \"68.8 g\"\n", "", "chain.mass", 3, "missing"),

@@ -474,6 +474,8 @@ fn a_run_says_how_exact_it_is_unless_told_not_to() {
     let short = [
         "run",
         "bicycle_slack",
+        "--set",
+        "defaults=\"0.1\"",
         "--until",
         "6 ms",
         "-o",
@@ -531,6 +533,8 @@ fn a_result_that_contradicts_itself_is_told_of_even_quietly() {
         "bicycle",
         "--method",
         "implicit-damping",
+        "--set",
+        "defaults=\"0.1\"",
         "--set",
         "sprockets.chainring.motion.speed=-5000 rpm",
     ];
