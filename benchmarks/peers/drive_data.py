@@ -24,6 +24,8 @@ def scene():
     """Return the drive that every program simulates."""
     text = cd.scenes.marine_engine().to_dict()
     del text["guides"], text["tensioners"]
+    # What every program has: no friction in joints, the loss of Lankarani and Nikravesh.
+    text["defaults"] = "0.1"
     text["title"] = "Marine two-stroke engine, camshaft drive, without guides and tensioner"
     diameter = text["chain"]["roller_diameter"]
     value, unit = diameter.split()

@@ -89,7 +89,10 @@ PARTICLES = [
         0.5,
     ),
     Case(
-        "e = 0", "restitution 0, Lankarani–Nikravesh", large({"contact.teeth.restitution": 0}), 0.5
+        "e = 0",
+        "restitution 0, Lankarani–Nikravesh",
+        large({"contact.teeth.restitution": 0, "contact.teeth.dissipation": "lankarani-nikravesh"}),
+        0.5,
     ),
     Case(
         "e = 1",
@@ -182,7 +185,14 @@ CLEARANCE = [
     Case(
         "e = 0",
         "restitution 0 in joints and on teeth, Lankarani–Nikravesh",
-        bicycle({"contact.joints.restitution": 0, "contact.teeth.restitution": 0}),
+        bicycle(
+            {
+                "contact.joints.restitution": 0,
+                "contact.joints.dissipation": "lankarani-nikravesh",
+                "contact.teeth.restitution": 0,
+                "contact.teeth.dissipation": "lankarani-nikravesh",
+            }
+        ),
         SHORT,
     ),
     Case(

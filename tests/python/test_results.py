@@ -175,7 +175,8 @@ def test_zarr_holds_what_memory_holds(tmp_path):
 
 
 def test_a_run_says_how_exact_it_is() -> None:
-    run = cd.simulate(cd.scenes.bicycle_slack(), until=6e-3, every=1e-3, record="span_tension")
+    bare = cd.scenes.bicycle_slack().replace({"defaults": "0.1"})
+    run = cd.simulate(bare, until=6e-3, every=1e-3, record="span_tension")
     story = run.attrs
     assert story["error_estimate"] == "made"
     assert 0 < story["error_tight_span_tension"] < 0.05
@@ -189,7 +190,8 @@ def test_a_run_says_how_exact_it_is() -> None:
 
 def test_a_result_that_contradicts_itself_is_warned_of(recwarn: pytest.WarningsRecorder) -> None:
     settings = {"every": 1e-5, "method": "implicit-damping", "error": False}
-    fast = cd.scenes.bicycle().replace({"sprockets.chainring.motion.speed": "-5000 rpm"})
+    changes = {"defaults": "0.1", "sprockets.chainring.motion.speed": "-5000 rpm"}
+    fast = cd.scenes.bicycle().replace(changes)
     with pytest.warns(cd.DistrustedResultWarning, match="does not add up"):
         run = cd.simulate(fast, until=3e-3, **settings)
     assert run.attrs["verdict"] == "distrusted"
@@ -205,7 +207,7 @@ def test_a_result_that_contradicts_itself_is_warned_of(recwarn: pytest.WarningsR
 def test_bodies_in_each_others_way_are_warned_of_once() -> None:
     face = {"kind": "bar", "start": [0.2, 0.86], "end": [-0.2, 0.86], "end_radius": 0.02}
     rail = {"name": "rail", "touches": "plates", "face": face}
-    drive = cd.scenes.marine_two_sprockets().replace({"guides": [rail]})
+    drive = cd.scenes.marine_two_sprockets().replace({"guides": [rail], "defaults": "0.1"})
     with pytest.warns(cd.ClashWarning, match="`rail` cuts into the teeth of `crank`") as told:
         cd.simulate(drive, until=1e-3, error=False)
     assert len(told) == 1
