@@ -160,9 +160,10 @@ def law(
         ``"cylindrical"`` is Johnson's law towards a flat: in hollows with more than 10 mm between
         the radii, and outside with more than 300 mm; `Law.parameters` tells.
     restitution
-        Coefficient of restitution [–], after Lankarani and Nikravesh unless ``dissipation`` names
-        another: ``"exact"``, ``"hunt-crossley"``, ``"lee-wang"``, ``"herbert-mcwhannell"``,
-        ``"gonthier"``, ``"zhiying-qishao"``, ``"flores"``, ``"hu-guo"``.
+        Coefficient of restitution [–], which an impact has exactly unless ``dissipation`` names
+        another factor than ``"exact"``: ``"lankarani-nikravesh"``, ``"hunt-crossley"``,
+        ``"lee-wang"``, ``"herbert-mcwhannell"``, ``"gonthier"``, ``"zhiying-qishao"``,
+        ``"flores"``, ``"hu-guo"``.
     damping
         Viscous damping [N s/m]: a Kelvin–Voigt element.
     dissipation
@@ -249,7 +250,7 @@ def _dissipation(
     if isinstance(dissipation, Mapping):
         return {**dissipation, "kind": named(dissipation.get("kind"))}
     if dissipation is None:
-        short = {"restitution": "lankarani-nikravesh", "damping": "viscous"}
+        short = {"restitution": "exact", "damping": "viscous"}
         dissipation = short[names[0]] if names else "none"
     return {"kind": named(dissipation), **given}
 

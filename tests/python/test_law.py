@@ -8,7 +8,9 @@ import chaindrive as cd
 
 @pytest.fixture
 def steel():
-    return cd.law("power", stiffness=6e11, exponent=1.5, restitution=0.8, onset_floor=1e-3)
+    power = {"stiffness": 6e11, "exponent": 1.5}
+    dissipation = {"kind": "lankarani-nikravesh", "restitution": 0.8}
+    return cd.law("power", **power, dissipation=dissipation, onset_floor=1e-3)
 
 
 def test_force_is_the_printed_formula(steel):
@@ -179,7 +181,7 @@ def test_friction():
 def test_dissipations_have_short_forms():
     power = {"stiffness": 1e8, "exponent": 1.0}
     short = cd.law("power", **power, restitution=0.9)
-    long = cd.law("power", **power, dissipation={"kind": "lankarani-nikravesh", "restitution": 0.9})
+    long = cd.law("power", **power, dissipation={"kind": "exact", "restitution": 0.9})
     assert short.parameters == long.parameters
     assert cd.law("power", **power, damping=10.0).damping(1e-3) == 10.0
     named = cd.law("power", **power, dissipation="flores", restitution=0.9)
