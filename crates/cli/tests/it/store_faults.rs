@@ -4,6 +4,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
@@ -68,6 +69,17 @@ pub(crate) fn wait_for(what: &str, done: impl Fn() -> bool) {
         assert!(begin.elapsed() < Duration::from_mins(1), "{what}");
         sleep(Duration::from_millis(2));
     }
+}
+
+/// Removes a folder into which another process writes: a file that it puts where the last one was
+/// just taken away makes the removal fail, and it is asked for again.
+fn remove_under_way(folder: &Path) {
+    wait_for("the folder was never removed", || {
+        matches!(
+            fs::remove_dir_all(folder).map_err(|error| error.kind()),
+            Ok(()) | Err(io::ErrorKind::NotFound)
+        )
+    });
 }
 
 pub(crate) fn group(store: &Path) -> Option<serde_json::Value> {
@@ -270,9 +282,7 @@ fn removed_under_way_it_is_not_made_anew() {
         wait_for("nothing was begun", || path.exists());
         if path.is_dir() {
             wait_for("nothing was committed", || samples(&path) > 0);
-            fs::remove_dir_all(&path)
-                .or_else(|_| fs::remove_dir_all(&path))
-                .unwrap();
+            remove_under_way(&path);
         } else {
             fs::remove_file(&path).unwrap();
         }
@@ -297,7 +307,7 @@ fn with_a_part_removed_it_says_that_it_failed() {
     let store = at.join("ring.zarr");
     let child = start(at, &[&LONG[..], &["-o", "ring.zarr"]].concat());
     wait_for("nothing was committed", || samples(&store) > 0);
-    fs::remove_dir_all(store.join("span")).unwrap();
+    remove_under_way(&store.join("span"));
     signal(&child, "-INT");
     let (code, err) = told(child.wait_with_output().unwrap());
     assert_eq!(code, Some(3), "{err}");
