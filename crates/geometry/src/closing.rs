@@ -348,14 +348,16 @@ impl Lattice<'_> {
         let (distance, bearing) = (line.norm(), line.y.atan2(line.x));
         let half = 0.5 * wheel.pitch_angle(to.pitch);
         let length = links as f64 * to.pitch;
-        // |A B| = m p with B on the circle: D² + R² − 2 D R cos(ψ − ψ_A) = m² p²
-        let cosine = (distance * distance + wheel.radius * wheel.radius - length * length)
-            / (2.0 * distance * wheel.radius);
-        if cosine.abs() > 1.0 {
+        // |A B| = m p with B on the circle: m² p² = (D − R)² + 4 D R sin²((ψ − ψ_A)/2). The cosine law says the
+        // same, but loses the digits of a short link on a large circle.
+        let radial = distance - wheel.radius;
+        let squared = (length - radial) * (length + radial) / (4.0 * distance * wheel.radius);
+        if !(0.0..=1.0).contains(&squared) {
             return None;
         }
+        let turned = 2.0 * squared.sqrt().asin();
         // The chain arrives before it turns: behind the bearing in the sense of the wheel.
-        let ends = [bearing + cosine.acos(), bearing - cosine.acos()].map(|angle| {
+        let ends = [bearing + turned, bearing - turned].map(|angle| {
             let span = wheel.at(angle) - from;
             let direction = span.y.atan2(span.x);
             let depth = depth(wheel, half, angle, direction).min(self.depth(leaves, direction));

@@ -94,8 +94,7 @@ proptest! {
         let mut turned = 0.0;
         for i in 0..n {
             let length = edge(i).norm();
-            // Links of one pitch between places tens of pitches away, reckoned from angles of many turns: thousands of roundings.
-            prop_assert!((length - 1.0).abs() < 1e-11, "link {i} is {length} long");
+            prop_assert!((length - 1.0).abs() < 1e-12, "link {i} is {length} long");
             let (before, behind) = (edge(i), edge(i + 1));
             let turn = before.perp(&behind).atan2(before.dot(&behind));
             let (least, most) = match places[(i + 1) % n].on {
