@@ -31,7 +31,7 @@ class Simulation:
     ----------
     drive
         What moves.
-    method, step, tolerance, onset_depth, accuracy
+    run_in, method, step, tolerance, onset_depth, accuracy
         As in `simulate`, but for one thing: method and step are chosen for an accuracy only where
         one is asked for, here or in the scene.
 
@@ -58,6 +58,7 @@ class Simulation:
         self,
         drive: Drive,
         *,
+        run_in: float | str | None = None,
         method: str | None = None,
         step: float | str | None = None,
         tolerance: float | str | None = None,
@@ -66,6 +67,7 @@ class Simulation:
     ) -> None:
         _needed(drive)
         given = {
+            "run_in": run_in,
             "method": method,
             "step": step,
             "tolerance": tolerance,

@@ -27,6 +27,7 @@ def simulate(
     drive: Drive,
     *,
     until: float | str | None = None,
+    run_in: float | str | None = None,
     every: float | str | None = None,
     record: str | Iterable[str] | None = None,
     method: str | None = None,
@@ -52,7 +53,11 @@ def simulate(
         What to simulate.
     until
         End of the run [s], or a text with a unit, as all quantities here may be. This and the next
-        eight come from the scene when absent.
+        nine come from the scene when absent.
+    run_in
+        What is simulated before t = 0, so that the record begins where the motion is steady: a time
+        [s], turns of a sprocket (``"5 turns"`` of the first one, ``"5 turns of camshaft"``), or
+        ``"auto"``: until the tension of every span is steady, at most 32 circuits of the chain.
     every
         Interval between samples [s]. Samples are interpolated: more of them do not change the
         motion.
@@ -175,6 +180,7 @@ def simulate(
         raise ParameterError(message, "checkpoint_every", "give `output`")
     given: dict[str, Any] = {
         "until": until,
+        "run_in": run_in,
         "every": every,
         "method": method,
         "step": step,

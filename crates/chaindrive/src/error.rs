@@ -71,6 +71,13 @@ pub enum SimulationError {
     )]
     TooFast { speed: f64, fastest: f64 },
 
+    /// The drive cannot be run in like that.
+    #[error("`run_in`: {reason}")]
+    RunIn {
+        /// Why not, and what to write instead.
+        reason: String,
+    },
+
     /// A time that lies behind.
     #[error(
         "t = {time} s is past: the simulation was read at {read} s; take a snapshot to go back to"

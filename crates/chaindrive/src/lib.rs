@@ -42,8 +42,8 @@ pub use error::SimulationError;
 pub use precision::{Choice, Estimate, Judgement};
 pub use record::{Axis, Channel, EventTable, Memory, Recording, Summary};
 pub use run::{
-    Checkpoint, End, Given, Onlooker, Report, Request, RequestError, Run, RunError, Settings, Sink,
-    Stop, assemble, execute, patiently,
+    Checkpoint, End, Given, MOST_CIRCUITS, Onlooker, RanIn, Report, Request, RequestError, Run,
+    RunError, RunIn, Settings, Sink, Stop, assemble, execute, patiently, run_in,
 };
 pub use scene::Scene;
 pub use seal::SealError;

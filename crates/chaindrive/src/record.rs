@@ -21,6 +21,7 @@ pub use error::WriteError;
 pub use event::{EventColumn, EventTable};
 pub use in_store::InStore;
 pub use memory::Memory;
+pub(crate) use summary::Batches;
 pub use summary::{
     ContactStatistics, ForceStatistics, Ledger, SpanStatistics, Steadiness, Summary,
 };

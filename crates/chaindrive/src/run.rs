@@ -4,12 +4,14 @@ mod checkpoint;
 pub(crate) mod execute;
 mod patience;
 mod request;
+mod run_in;
 mod settings;
+mod steady;
 
 use chaindrive_integrate::Method;
 use chaindrive_mechanics::{EventKinds, System};
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value as Json};
+use serde_json::{Map, Value as Json, json};
 
 use crate::scene::RunDefaults;
 use crate::{SimulationError, Stepping};
@@ -19,6 +21,7 @@ pub(crate) use execute::resume;
 pub use execute::{End, Onlooker, Report, RunError, Sink, Stop, assemble, execute};
 pub use patience::patiently;
 pub use request::{Request, RequestError};
+pub use run_in::{MOST_CIRCUITS, RanIn, RunIn, run_in};
 pub use settings::{Given, Settings};
 
 /// Settings of one run.
@@ -26,6 +29,9 @@ pub use settings::{Given, Settings};
 pub struct Run {
     /// End \[s\], positive.
     pub until: f64,
+    /// What is simulated before t = 0.
+    #[serde(default)]
+    pub run_in: RunIn,
     /// Interval between samples \[s\], positive.
     pub every: f64,
     /// Method of time stepping.
@@ -46,6 +52,7 @@ impl Default for Run {
     fn default() -> Self {
         Self {
             until: 1.0,
+            run_in: RunIn::None,
             every: 1e-3,
             stepping: Stepping::Auto,
             step: None,
@@ -100,6 +107,7 @@ impl Run {
         let default = Self::default();
         Self {
             until: by.until.unwrap_or(default.until),
+            run_in: by.run_in.clone(),
             every: by.every.unwrap_or(default.every),
             stepping: by.method.unwrap_or_default(),
             step: by.step,
@@ -126,6 +134,7 @@ impl Run {
             }
         };
         positive("until", self.until)?;
+        self.run_in.check()?;
         positive("every", self.every)?;
         positive("tolerance", self.tolerance)?;
         self.step.map_or(Ok(()), |step| positive("step", step))?;
@@ -153,6 +162,9 @@ impl Run {
     pub(crate) fn table(&self, method: Method) -> Map<String, Json> {
         let mut table = Map::new();
         table.insert("until".into(), self.until.into());
+        if self.run_in != RunIn::None {
+            table.insert("run_in".into(), json!(self.run_in));
+        }
         table.insert("every".into(), self.every.into());
         table.insert("method".into(), Stepping::from(method).name().into());
         table.insert("step".into(), method.step().into());

@@ -12,7 +12,7 @@ use chaindrive_mechanics::{
 };
 
 use crate::SimulationError;
-use crate::run::Run;
+use crate::run::{Run, run_in};
 
 /// A run in progress: ask it for one sample after the other.
 ///
@@ -102,17 +102,18 @@ fn slow_enough(system: &System, state: &State) -> Result<(), SimulationError> {
 const STEPS_PER_LOOK: usize = 64;
 
 impl Simulation {
-    /// Assembles the drive and starts the clock at t = 0.
+    /// Assembles the drive, runs it in if the run says so, and starts the clock at t = 0.
     ///
     /// # Errors
     /// [`SimulationError`] when the drive does not assemble, a setting is out of range, the method is
     /// not for this chain, or the step asked for is unstable.
     pub fn start(drive: &Drive, run: &Run) -> Result<Self, SimulationError> {
         run.check()?;
-        Self::from_assembled(drive.assemble()?, run)
+        let (start, _) = run_in(drive.assemble()?, run, &|| false)?;
+        Self::from_assembled(start, run)
     }
 
-    /// Starts from a drive already assembled.
+    /// Starts from a drive already assembled, and run in if it is to be.
     ///
     /// # Errors
     /// As [`Simulation::start`].
@@ -143,7 +144,7 @@ impl Simulation {
                 ended: [Vec::new(), Vec::new()],
             },
             before: None,
-            read: 0.0,
+            read: assembled.time,
             assembled: Arc::new(assembled),
             until: run.until,
             every: run.every,
@@ -245,6 +246,12 @@ impl Simulation {
     /// Time reached \[s\].
     pub fn time(&self) -> f64 {
         self.moving.state.t
+    }
+
+    /// Where another simulation can begin: the drive as it stands at the end of the last step, contacts that last included.
+    pub(crate) fn as_start(&self) -> Assembled {
+        let Moving { system, state, .. } = &self.moving;
+        self.assembled.come_to(system.clone(), state)
     }
 
     /// The system in its present state.

@@ -14,7 +14,7 @@ use std::fmt;
 
 use crate::precision::{Attribute, Choice, Judgement, Promise};
 use crate::record::{Ledger, Steadiness, Summary};
-use crate::{Channel, Simulation};
+use crate::{Channel, RanIn, Simulation};
 
 pub use reason::Reason;
 
@@ -90,10 +90,12 @@ const UNHELD: f64 = 0.5;
 const LEAST_SHIFT: f64 = 1e-3;
 
 impl Verdict {
-    /// The verdict on a run that ended: by its samples, the estimate of its error, and the choice of its method.
+    /// The verdict on a run that ended: by its samples, how it was run in, the estimate of its error, and the choice of its
+    /// method.
     pub fn of(
         summary: &Summary,
         simulation: &Simulation,
+        ran_in: Option<RanIn>,
         choice: Option<&Choice>,
         judgement: Option<&Judgement>,
     ) -> Self {
@@ -106,6 +108,7 @@ impl Verdict {
             Some((span.name.as_str(), span.mean(), found))
         });
         reasons.extend(steadiness(&known.collect::<Vec<_>>(), simulation.time()));
+        reasons.extend(ran_in.and_then(started));
         reasons.extend(choice.and_then(accuracy));
         reasons.extend(examination(judgement));
         Self::from_reasons(reasons)
@@ -264,6 +267,12 @@ fn steadiness(spans: &[(&str, f64, Steadiness)], time: f64) -> Vec<Reason> {
         reasons.push(Reason::MeansUncertain { span });
     }
     reasons
+}
+
+/// What a run-in that was to end by itself leaves open.
+fn started(ran_in: RanIn) -> Option<Reason> {
+    let gave_up = ran_in.is_steady == Some(false);
+    gave_up.then_some(Reason::NotRunIn { time: ran_in.time })
 }
 
 fn accuracy(choice: &Choice) -> Option<Reason> {

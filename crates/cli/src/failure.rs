@@ -68,6 +68,10 @@ pub(crate) enum Failure {
         hint: &'static str,
     },
 
+    /// The result contradicts itself, and the user wants to be told by the exit code; what speaks against it is out.
+    #[error("{scene}: distrusted, and --strict was asked for")]
+    Distrusted { scene: String },
+
     /// The user stopped the run.
     #[error("interrupted")]
     Interrupted,
@@ -119,6 +123,7 @@ impl Failure {
             | Self::Resume(_)
             | Self::Sweep(_) => BAD_INPUT,
             Self::Write(_) | Self::File { .. } | Self::Taken { .. } => 3,
+            Self::Distrusted { .. } => 4,
             Self::Interrupted => crate::INTERRUPTED,
         }
     }

@@ -8,6 +8,7 @@
 //! | 1 | the simulation failed, or some variants of a sweep; a result keeps the rest and says so |
 //! | 2 | bad input; nothing was written |
 //! | 3 | the result could not be written |
+//! | 4 | `--strict` was asked for, and the verdict on the result is `distrusted` |
 //! | 130 | interrupted; a result keeps the samples or variants so far and says so |
 
 mod commands;
@@ -32,6 +33,7 @@ Exit codes:
   1    the simulation failed, or some variants of a sweep; a result keeps the rest and says so
   2    bad input; nothing was written
   3    the result could not be written
+  4    --strict was asked for, and the verdict on the result is distrusted
   130  interrupted; a result keeps the samples or variants so far and says so";
 
 /// Simulates roller chain drives that are described in scene files.

@@ -27,6 +27,11 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "TIME")]
     until: Option<String>,
 
+    /// What is simulated before t = 0: a time, turns of a sprocket such as "5 turns of camshaft", or auto, until the
+    /// tensions are steady
+    #[arg(long, value_name = "TIME|TURNS|auto")]
+    run_in: Option<String>,
+
     /// Time between two samples, such as "0.1 ms"
     #[arg(long, value_name = "TIME")]
     every: Option<String>,
@@ -140,9 +145,10 @@ impl RunArguments {
     }
 
     /// Path in the scene, option and value.
-    fn settings(&self) -> [(&'static str, &'static str, &Option<String>); 7] {
+    fn settings(&self) -> [(&'static str, &'static str, &Option<String>); 8] {
         [
             ("run.until", "--until", &self.until),
+            ("run.run_in", "--run-in", &self.run_in),
             ("run.every", "--every", &self.every),
             ("run.method", "--method", &self.method),
             ("run.step", "--step", &self.step),

@@ -1,12 +1,15 @@
 //! From a valid drive to one that is ready to move: lay the chain, settle it, set it going.
 
 mod apart;
+mod beginning;
 mod hard;
 mod lay;
 mod relax;
 mod setting_off;
 mod settle;
 mod slack;
+
+use std::f64::consts::TAU;
 
 use chaindrive_geometry::{ArcSpline, Point};
 use chaindrive_integrate::{Moment, SecondOrderSystem, State};
@@ -16,7 +19,7 @@ use crate::check::clash::clashes;
 use crate::drive::{Layout, Parts};
 use crate::groups::groups;
 use crate::standing::Standing;
-use crate::system::Laid;
+use crate::system::{Laid, Member};
 use crate::{AssemblyError, Clash, Drive, System};
 use settle::Tightening;
 
@@ -30,11 +33,13 @@ pub struct Assembled {
     pub drive: Drive,
     /// The compiled drive.
     pub system: System,
-    /// Coordinates at t = 0.
+    /// Time \[s\] at which it stands so: the drive's [begin](Drive::begin), or when it has [come](Assembled::come_to) to later.
+    pub time: f64,
+    /// Coordinates.
     pub q: Vec<f64>,
-    /// Velocities at t = 0.
+    /// Velocities.
     pub v: Vec<f64>,
-    /// First-order states at t = 0: those of pushes with one, in the order of the tensioners.
+    /// First-order states: those of pushes with one, in the order of the tensioners.
     pub z: Vec<f64>,
     /// Static states on the way, when the drive was settled: after pretension, gravity and load.
     pub statics: Vec<Statics>,
@@ -71,7 +76,49 @@ pub struct RollerLayout {
 impl Assembled {
     /// Where a run begins.
     pub fn state(&self) -> State {
-        State::new(0.0, self.q.clone(), self.v.clone()).with_states(self.z.clone())
+        State::new(self.time, self.q.clone(), self.v.clone()).with_states(self.z.clone())
+    }
+}
+
+impl Assembled {
+    /// Angular speed of every sprocket \[rad/s\], counter-clockwise positive, in the order of
+    /// [`System::sprocket_names`].
+    pub fn sprocket_speeds(&self) -> Vec<f64> {
+        let at = self.start();
+        let wheels = self.system.bodies.wheels.iter();
+        wheels
+            .map(|it| it.kinematics(at.t, at.q, at.v).rate)
+            .collect()
+    }
+
+    /// Time \[s\] that the slowest chain around sprockets takes for one circuit at the speed that it sets off with; infinite where
+    /// there is none, or it stands still.
+    ///
+    /// ```text
+    /// t = n 2π/(z ω)     n: links, z and ω: teeth and speed of its first sprocket
+    /// ```
+    pub fn slowest_circuit(&self) -> f64 {
+        let speeds = self.sprocket_speeds();
+        let circuit = |member: &Member| {
+            let first = *member.route.first()?;
+            let teeth = f64::from(self.system.bodies.wheels[first].teeth);
+            Some(member.chain.links() as f64 * TAU / (teeth * speeds[first].abs()))
+        };
+        let circuits = self.system.chains.iter().filter_map(circuit);
+        circuits.reduce(f64::max).unwrap_or(f64::INFINITY)
+    }
+
+    /// The same drive as it stands after it has moved for a while: a run that begins from here goes on from there.
+    #[must_use]
+    pub fn come_to(&self, system: System, state: &State) -> Self {
+        Self {
+            system,
+            time: state.t,
+            q: state.q.clone(),
+            v: state.v.clone(),
+            z: state.z.clone(),
+            ..self.clone()
+        }
     }
 }
 
@@ -116,10 +163,11 @@ impl Drive {
         setting_off::set_off(&system, &layouts, &q, &mut v);
         self.put_in_place(&mut system, &laid.parts, &mut q, &mut v)?;
         let z = system.settled_states(&q);
-        system.start(0.0, &mut q, &mut v, &z);
+        system.start(self.begin, &mut q, &mut v, &z);
         Ok(Assembled {
             drive: self.clone(),
             system,
+            time: self.begin,
             q,
             v,
             z,
@@ -154,7 +202,7 @@ impl Drive {
         }
         let mut still = vec![0.0; q.len()];
         let z = system.settled_states(q);
-        system.start(0.0, q, &mut still, &z);
+        system.start(self.begin, q, &mut still, &z);
         let loose = |index: &usize| system.chains[*index].chain.has_play();
         let tightenings: Vec<Tightening> = parts
             .chains
@@ -207,7 +255,7 @@ impl Drive {
 }
 
 impl Assembled {
-    /// The whole profile of a sprocket or guide where it stands at t = 0, as [`Drive::profile`] has it.
+    /// The whole profile of a sprocket or guide where it stands when the run begins, as [`Drive::profile`] has it.
     ///
     /// # Errors
     /// [`AssemblyError`] when nothing has this name.
@@ -221,14 +269,14 @@ impl Assembled {
 
     fn start(&self) -> Moment<'_> {
         Moment {
-            t: 0.0,
+            t: self.time,
             q: &self.q,
             v: &self.v,
             z: &self.z,
         }
     }
 
-    /// What may be in each other's way at t = 0.
+    /// What may be in each other's way when the run begins.
     ///
     /// # Errors
     /// What is.

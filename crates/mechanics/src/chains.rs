@@ -118,10 +118,16 @@ impl Chain {
     }
 
     /// Brings velocities of the chain and, behind it, the bodies to where no joint opens.
-    pub(crate) fn close_in_motion(&self, bodies: GroupBodies<'_>, q: &[f64], v: &mut [f64]) {
+    pub(crate) fn close_in_motion(
+        &self,
+        begin: f64,
+        bodies: GroupBodies<'_>,
+        q: &[f64],
+        v: &mut [f64],
+    ) {
         match self {
             Self::Particles(_) => {}
-            Self::Links(chain) => chain.close_in_motion(bodies, q, v),
+            Self::Links(chain) => chain.close_in_motion(begin, bodies, q, v),
         }
     }
 
@@ -199,6 +205,20 @@ impl Chain {
         record: &mut Record,
     ) {
         ask!(self, chain => chain.evaluate(around, at, a, rates, record));
+    }
+
+    /// Says when the memory of joints and free rollers is of.
+    pub(crate) fn set_clock(&mut self, t: f64) {
+        let resisting = match self {
+            Self::Particles(chain) => chain.joints.as_mut(),
+            Self::Links(chain) => {
+                chain.memory.time = t;
+                chain.resisting.as_mut()
+            }
+        };
+        if let Some(joints) = resisting {
+            joints.set_clock(t);
+        }
     }
 
     /// Takes an accepted state: memory, and places that are given in time.

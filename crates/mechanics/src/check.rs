@@ -21,7 +21,7 @@ impl Drive {
     pub fn new(parts: Parts) -> Result<Self, Vec<DriveError>> {
         let problems = problems(&parts);
         if problems.is_empty() {
-            Ok(Self { parts })
+            Ok(Self { parts, begin: 0.0 })
         } else {
             Err(problems)
         }

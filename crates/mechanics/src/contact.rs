@@ -103,6 +103,9 @@ pub(crate) struct Contacts {
     pub(crate) writes_faces: bool,
 }
 
+/// The lane does not rest: it is looked at at any time, times before 0 included.
+const AWAKE: f64 = f64::NEG_INFINITY;
+
 /// Contact state per slot; where a gap has several stretches, each is a side, and the slots of one stand behind those of the
 /// other.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -157,7 +160,7 @@ impl Touch {
     pub(crate) fn open(&mut self, slots: usize) {
         self.state.reopen(slots);
         self.wake.clear();
-        self.wake.resize(slots, 0.0);
+        self.wake.resize(slots, AWAKE);
     }
 
     #[inline]
@@ -166,7 +169,7 @@ impl Touch {
             return;
         }
         self.state.resize(slots);
-        self.wake.resize(slots, 0.0);
+        self.wake.resize(slots, AWAKE);
     }
 }
 

@@ -341,9 +341,15 @@ pub struct Parts {
 #[derive(Clone, Debug)]
 pub struct Drive {
     pub(crate) parts: Parts,
+    /// Time at which it is assembled \[s\], 0 or before.
+    pub(crate) begin: f64,
 }
 
 impl Drive {
+    /// Time at which it is assembled \[s\]: 0, but for a drive that [begins](Self::beginning) before.
+    pub fn begin(&self) -> f64 {
+        self.begin
+    }
     /// The parts.
     pub fn parts(&self) -> &Parts {
         &self.parts

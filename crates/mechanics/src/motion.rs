@@ -64,9 +64,24 @@ pub enum Motion {
         /// Time t₀ \[s\].
         since: f64,
     },
+    /// Another motion, counted from where it was when the drive was assembled: x = y(t) − y(t₀).
+    From {
+        /// Its position y(t₀) \[m or rad\].
+        place: f64,
+        /// The motion y.
+        motion: Box<Motion>,
+    },
 }
 
 impl Motion {
+    /// The same motion for a drive that is assembled at a time t₀ \[s\] other than 0.
+    pub(crate) fn from(&self, begin: f64) -> Self {
+        Self::From {
+            place: self.at(begin).position,
+            motion: Box::new(self.clone()),
+        }
+    }
+
     /// Position, rate and acceleration at time `t` \[s\].
     pub fn at(&self, t: f64) -> Kinematics {
         match self {
@@ -111,6 +126,13 @@ impl Motion {
                     ..*from
                 }
             }
+            Self::From { place, motion } => {
+                let there = motion.at(t);
+                Kinematics {
+                    position: there.position - place,
+                    ..there
+                }
+            }
         }
     }
 
@@ -118,6 +140,7 @@ impl Motion {
     pub(crate) fn next_knot(&self, t: f64) -> Option<f64> {
         match self {
             Self::Table(table) => table.next_knot(t),
+            Self::From { motion, .. } => motion.next_knot(t),
             _ => None,
         }
     }
@@ -144,6 +167,10 @@ impl Motion {
                 finite("since", *since)
             }
             Self::Constant { rate } => finite("rate", *rate),
+            Self::From { place, motion } => {
+                finite("place", *place)?;
+                motion.check(name)
+            }
             Self::Ramp {
                 from,
                 to,

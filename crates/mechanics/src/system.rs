@@ -52,6 +52,8 @@ pub struct System {
     time_scales: [f64; 2],
     /// Deepest first penetration accepted \[m\], when steps are to be rejected for it.
     onset_depth: Option<f64>,
+    /// Time at which it was assembled \[s\].
+    pub(crate) begin: f64,
 }
 
 /// An end roller whose motion or load is given.
@@ -144,6 +146,10 @@ impl System {
     /// Lays the contact windows and takes the state as the first accepted one.
     pub(crate) fn start(&mut self, t: f64, q: &mut [f64], v: &mut [f64], z: &[f64]) {
         let mut record = self.new_record();
+        for member in &mut self.chains {
+            member.contacts.set_clock(t);
+            member.chain.set_clock(t);
+        }
         for (member, record) in self.chains.iter_mut().zip(&mut record.chains) {
             member.renew_windows(&self.bodies, Moment { t, q, v, z }, record);
         }
@@ -220,7 +226,7 @@ impl System {
     ) -> bool {
         let member = &self.chains[index];
         let at = Moment {
-            t: 0.0,
+            t: self.begin,
             q,
             v,
             z: &[],
@@ -243,7 +249,7 @@ impl System {
             let mut own = [&v[entries.clone()], &v[group.range()]].concat();
             member
                 .chain
-                .close_in_motion(group, &q[entries.clone()], &mut own);
+                .close_in_motion(self.begin, group, &q[entries.clone()], &mut own);
             let (chain, bodies) = own.split_at(entries.len());
             v[entries].copy_from_slice(chain);
             v[group.range()].copy_from_slice(bodies);

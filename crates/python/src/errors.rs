@@ -126,6 +126,11 @@ impl IntoException for SimulationError {
             Self::UnknownName { setting, known, .. } => {
                 parameter(message, setting, &format!("one of {known}"))
             }
+            Self::RunIn { .. } => parameter(
+                message,
+                "run_in",
+                "a time, turns of a sprocket that turns, or \"auto\"",
+            ),
             Self::Conflict { given } => python::ParameterError::new_err((
                 message,
                 "accuracy",

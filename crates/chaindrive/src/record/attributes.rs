@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Map, Value};
 
 use super::Summary;
+use crate::RanIn;
 use crate::precision::{Attribute, Choice, Judgement};
 use crate::sweep::Outcome;
 use crate::{Run, Scene, Simulation, Stepping, Verdict};
@@ -29,6 +30,8 @@ pub struct Provenance {
     pub scene_name: String,
     /// Settings of the run.
     pub run: Run,
+    /// How it was run in, if it was.
+    pub ran_in: Option<RanIn>,
     /// How method and step were chosen, if they were.
     pub choice: Option<Choice>,
     /// When somebody asked for it, or for it to go on.
@@ -46,6 +49,7 @@ impl Provenance {
             resolved_scene: None,
             scene_name: scene.name().to_owned(),
             run: run.clone(),
+            ran_in: None,
             choice: None,
             began: Instant::now(),
             earlier: Duration::ZERO,
@@ -123,6 +127,12 @@ pub fn attributes(
     }
 
     story.number("until", provenance.run.until);
+    if let Some(ran_in) = provenance.ran_in {
+        story.number("run_in", ran_in.time);
+        if let Some(is_steady) = ran_in.is_steady {
+            story.count("run_in_steady", u64::from(is_steady));
+        }
+    }
     story.number("every", provenance.run.every);
     story.number("time_reached", simulation.time());
     story.count("samples", samples);
@@ -153,7 +163,7 @@ pub fn attributes(
     speed(&mut story, simulation, provenance.wall_time());
     let choice = provenance.choice.as_ref();
     let verdict = summary.map(|summary| {
-        let verdict = Verdict::of(summary, simulation, choice, judgement);
+        let verdict = Verdict::of(summary, simulation, provenance.ran_in, choice, judgement);
         let figures = figures(summary, simulation, choice, judgement);
         story.text("summary", &format!("{verdict}\n{figures}"));
         verdict.attributes()

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::event::{EventTable, kind};
 use crate::Simulation;
-use steadiness::Batches;
+pub(crate) use steadiness::Batches;
 pub use steadiness::Steadiness;
 
 /// Collects statistics sample by sample, in bounded memory.

@@ -6,7 +6,7 @@ use chaindrive_mechanics::{Assembled, Drive};
 use serde_json::{Map, Value};
 
 use super::patience::{LOOK, patiently};
-use super::{Checkpoint, Request};
+use super::{Checkpoint, Request, run_in};
 use crate::precision::{Choice, Judgement, choose};
 use crate::record::{Ending, Provenance, Summary, attributes};
 use crate::scene::SceneError;
@@ -288,7 +288,8 @@ fn complete<S: Sink>(
         // The samples are complete, but the user wants to get away.
         stop = Stop::Interrupted;
     }
-    let verdict = Verdict::of(&summary, &simulation, provenance.choice.as_ref(), judged);
+    let choice = provenance.choice.as_ref();
+    let verdict = Verdict::of(&summary, &simulation, provenance.ran_in, choice, judged);
     Ok(Report {
         verdict,
         simulation,
@@ -355,6 +356,8 @@ fn begin<E: std::error::Error>(
         provenance.run = choice.run.clone();
         provenance.choice = Some(choice);
     }
+    let (start, ran_in) = run_in(start, &provenance.run, watch).map_err(failed)?;
+    provenance.ran_in = ran_in;
     let simulation = Simulation::from_assembled(start, &provenance.run).map_err(failed)?;
     Ok(Begun {
         summary: Summary::new(&simulation),

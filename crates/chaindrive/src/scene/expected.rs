@@ -15,6 +15,7 @@ pub(crate) enum Expected<'s> {
     Integer,
     Truth,
     Text,
+    RunIn,
     Anything,
 }
 
@@ -25,6 +26,9 @@ impl<'s> Expected<'s> {
             && let Some(dimension) = Dimension::named(name)
         {
             return Expected::Quantity(schema, dimension);
+        }
+        if schema.get("x-run-in").is_some() {
+            return Expected::RunIn;
         }
         if let Some(members) = schema.get("oneOf").and_then(Json::as_array) {
             if members.iter().all(|member| kind_of(member).is_some()) {

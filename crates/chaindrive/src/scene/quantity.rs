@@ -126,6 +126,13 @@ pub(crate) struct Complaint {
     pub(crate) hint: String,
 }
 
+/// A time \[s\] from a number and a unit, or what is wrong with it.
+pub(crate) fn read_time(text: &str) -> Result<f64, String> {
+    let time = DIMENSIONS.iter().find(|dimension| dimension.unit == "s");
+    let time = time.expect("times are quantities");
+    time.read(text, None).map_err(|complaint| complaint.message)
+}
+
 impl Dimension {
     /// The dimension called so in the schema.
     pub(crate) fn named(name: &str) -> Option<&'static Self> {

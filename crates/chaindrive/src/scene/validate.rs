@@ -13,6 +13,7 @@ use super::quantity::{CONTACT_STIFFNESS, Dimension};
 use super::schema::Version;
 use super::suggest::{nearest, one_of};
 use super::tree::{Entry, Node, Value, push_step};
+use crate::RunIn;
 
 /// Checks `tree` against `schema` and normalises it: quantities become SI numbers, bare names of
 /// kinds become tables.
@@ -99,6 +100,16 @@ impl<'s> Validator<'s> {
                     self.wrong_type(node, path, "a text");
                 }
             }
+            Expected::RunIn => match &node.value {
+                Value::Text(text) => {
+                    if let Err(problem) = text.parse::<RunIn>() {
+                        let hint = "write a time such as \"0.5 s\", turns such as \"5 turns of camshaft\", or \"auto\"";
+                        self.refuse(Problem::new(path, node.line, problem).hint(hint));
+                    }
+                }
+                Value::Integer(_) | Value::Float(_) => {}
+                _ => self.wrong_type(node, path, "a time, turns of a sprocket, or \"auto\""),
+            },
             Expected::Anything => {}
         }
         if self.problems.count() == before {

@@ -67,6 +67,11 @@ pub enum Reason {
         /// Mean over the run less that of the steady state, over the latter \[–\].
         shift: f64,
     },
+    /// The run-in came to its end before the motion was steady.
+    NotRunIn {
+        /// How long it was \[s\].
+        time: f64,
+    },
     /// The run is too short for the interval of a mean to be believed.
     MeansUncertain {
         /// Name of a span where that is so.
@@ -119,6 +124,7 @@ impl Reason {
             | Self::SpanNotHeld { .. }
             | Self::NotSteady { .. }
             | Self::StartCounts { .. }
+            | Self::NotRunIn { .. }
             | Self::MeansUncertain { .. }
             | Self::SpansNotExamined { .. }
             | Self::AccuracyMissed { .. }
@@ -141,6 +147,7 @@ impl Reason {
             Self::SpanNotHeld { .. } => "span-not-held",
             Self::NotSteady { .. } => "not-steady",
             Self::StartCounts { .. } => "start-counts",
+            Self::NotRunIn { .. } => "not-run-in",
             Self::MeansUncertain { .. } => "means-uncertain",
             Self::SpansNotExamined { .. } => "spans-not-examined",
             Self::AccuracyMissed { .. } => "accuracy-missed",
@@ -200,6 +207,11 @@ impl fmt::Display for Reason {
                 "the mean tension of span {span} is off by {} because the start counts: the motion is steady from {} on",
                 percent(*shift),
                 duration(*until)
+            ),
+            Self::NotRunIn { time } => write!(
+                f,
+                "the motion was not steady after a run-in of {}, the longest that ends by itself: it swings slowly, or never settles",
+                duration(*time)
             ),
             Self::MeansUncertain { span } => write!(
                 f,

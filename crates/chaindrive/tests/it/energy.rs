@@ -6,7 +6,7 @@ use chaindrive::{Run, Scene, Simulation, Summary, Verdict};
 
 /// Whether the verdict on a run that is over distrusts it.
 fn is_distrusted(summary: &Summary, simulation: &Simulation) -> bool {
-    Verdict::of(summary, simulation, None, None).is_distrusted()
+    Verdict::of(summary, simulation, None, None, None).is_distrusted()
 }
 
 /// Largest residual and energy supplied \[J\] of a run of the marine drive.
@@ -77,7 +77,7 @@ fn a_run_without_a_driver_is_judged_too() -> Result<(), Box<dyn Error>> {
     let mut sample = last.ok_or("a run has samples")?;
     sample.energy.stores[0] += 2.0 * summary.energy_moved().max(1.0);
     summary.push(&sample);
-    let verdict = Verdict::of(&summary, &simulation, None, None);
+    let verdict = Verdict::of(&summary, &simulation, None, None, None);
     assert_eq!(verdict.reasons[0].name(), "energy-missing", "{verdict}");
     Ok(())
 }

@@ -19,6 +19,7 @@ mod reproducible;
 mod requests;
 mod resolved;
 mod robust_scenes;
+mod run_in;
 mod scenes;
 mod several_chains;
 mod sweep;

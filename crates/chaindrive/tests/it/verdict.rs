@@ -37,7 +37,13 @@ fn finished(scene: &Scene, run: &Run) -> (Simulation, Summary) {
 /// The verdict on a run whose error nobody estimated.
 fn verdict(scene: &Scene, run: &Run) -> Verdict {
     let (simulation, summary) = finished(scene, run);
-    Verdict::of(&summary, &simulation, None, Some(&Judgement::SwitchedOff))
+    Verdict::of(
+        &summary,
+        &simulation,
+        None,
+        None,
+        Some(&Judgement::SwitchedOff),
+    )
 }
 
 /// The verdict on the estimate of a run alone: it is not carried out.
@@ -45,7 +51,7 @@ fn examined(scene: &Scene, run: &Run) -> Verdict {
     let simulation = Simulation::start(&scene.drive().unwrap(), run).unwrap();
     let judgement = Judgement::of(&simulation, run, &|| false);
     let summary = Summary::new(&simulation);
-    Verdict::of(&summary, &simulation, None, Some(&judgement))
+    Verdict::of(&summary, &simulation, None, None, Some(&judgement))
 }
 
 fn names(verdict: &Verdict) -> Vec<&'static str> {
@@ -64,7 +70,7 @@ fn a_run_examined_to_its_end_is_trusted() {
     let run = run(0.02, 20.0);
     let (simulation, summary) = finished(&ring, &run);
     let judgement = Judgement::of(&simulation, &run, &|| false);
-    let verdict = Verdict::of(&summary, &simulation, None, Some(&judgement));
+    let verdict = Verdict::of(&summary, &simulation, None, None, Some(&judgement));
     assert_eq!(verdict.trust, Trust::Trusted, "{verdict}");
     assert!(verdict.reasons.is_empty());
 }
@@ -135,7 +141,13 @@ fn losses_of_a_large_chain_with_joints_that_rub_are_distrusted_where_they_are_wr
         };
         let (simulation, summary) = finished(&large, &run);
         let ledger = summary.ledger();
-        let verdict = Verdict::of(&summary, &simulation, None, Some(&Judgement::SwitchedOff));
+        let verdict = Verdict::of(
+            &summary,
+            &simulation,
+            None,
+            None,
+            Some(&Judgement::SwitchedOff),
+        );
         (verdict, ledger.residual.abs() / ledger.moved)
     };
     let (rough, of_moved) = by(Stepping::ImplicitDamping);
@@ -173,7 +185,7 @@ fn a_span_without_a_tension_is_named() {
     let (simulation, summary) = finished(&flying, &run(0.02, 100.0));
     let report = summary.report(&simulation).to_string();
     assert!(report.contains("no roller holds it in"), "{report}");
-    let found = Verdict::of(&summary, &simulation, None, None);
+    let found = Verdict::of(&summary, &simulation, None, None, None);
     assert!(names(&found).contains(&"span-rarely-held"), "{found}");
     assert!(found.is_distrusted());
 
@@ -193,7 +205,7 @@ fn a_force_that_is_not_a_number_is_distrusted() {
     let mut sample = simulation.observation().clone();
     sample.link_tension[3] = f64::NAN;
     summary.push(&sample);
-    let found = Verdict::of(&summary, &simulation, None, None);
+    let found = Verdict::of(&summary, &simulation, None, None, None);
     assert_eq!(names(&found)[0], "not-finite");
     assert!(found.is_distrusted());
 }
@@ -220,6 +232,7 @@ fn an_accuracy_that_is_missed_is_a_caution() {
         Verdict::of(
             &summary,
             &simulation,
+            None,
             Some(&choice),
             Some(&Judgement::SwitchedOff),
         )
@@ -264,7 +277,7 @@ fn an_estimate_that_was_not_made_is_a_caution() {
         Some(Judgement::Interrupted),
         Some(Judgement::Failed("the twin overflowed".to_owned())),
     ] {
-        let found = Verdict::of(&summary, &simulation, None, judgement.as_ref());
+        let found = Verdict::of(&summary, &simulation, None, None, judgement.as_ref());
         assert_eq!(names(&found), ["not-estimated"], "{found}");
         assert_eq!(found.trust, Trust::Caution);
     }

@@ -6,7 +6,7 @@ use chaindrive::Given;
 use chaindrive::record::Stopped;
 use clap::Args;
 
-use super::run::{Terminal, concluded, not_run};
+use super::run::{Telling, Terminal, concluded, not_run};
 use crate::failure::Failure;
 
 const CHECKPOINTS: &str = "\
@@ -28,24 +28,23 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "TIME")]
     until: Option<String>,
 
-    /// Prints errors only, and a line if the result is not to be trusted
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    telling: Telling,
 }
 
 pub(crate) fn resume(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
     let until = arguments.until.clone().map(Given::Text);
     let stopped = Stopped::open(&arguments.result, until.as_ref())?;
     let checkpoint = stopped.checkpoint();
-    if !arguments.quiet {
+    if !arguments.telling.quiet {
         let (time, until) = (checkpoint.time(), checkpoint.until());
         let samples = checkpoint.samples();
         eprintln!("going on from t = {time:.6} s of {until} s, behind {samples} samples");
     }
     let scene = checkpoint.scene_name().to_owned();
-    let terminal = Terminal::new(arguments.quiet, interrupted);
+    let terminal = Terminal::new(arguments.telling.quiet, interrupted);
     let report = stopped.resume(&terminal);
     let report = report.map_err(|error| not_run(error, &scene))?;
     drop(terminal);
-    concluded(report, &scene, arguments.quiet)
+    concluded(report, &scene, arguments.telling)
 }

@@ -41,9 +41,20 @@ pub(crate) struct Arguments {
     #[arg(long)]
     no_error: bool,
 
+    #[command(flatten)]
+    telling: Telling,
+}
+
+/// How much is said of a result, and how strictly it is taken.
+#[derive(Clone, Copy, Debug, Args)]
+pub(super) struct Telling {
     /// Prints errors only, and a line if the result is not to be trusted
     #[arg(short, long)]
-    quiet: bool,
+    pub(super) quiet: bool,
+
+    /// Exits with 4 if the verdict is `distrusted`; the result is kept all the same
+    #[arg(long)]
+    strict: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
@@ -65,11 +76,11 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
         Existing::Keep
     };
     let mut result = target.output(existing);
-    let terminal = Terminal::new(arguments.quiet, interrupted);
+    let terminal = Terminal::new(arguments.telling.quiet, interrupted);
     let report = execute(&request, &mut result, &terminal);
     let report = report.map_err(|error| not_run(error, &scene))?;
     drop(terminal);
-    concluded(report, &scene, arguments.quiet)
+    concluded(report, &scene, arguments.telling)
 }
 
 /// Why there is no report.
@@ -90,7 +101,8 @@ pub(super) fn not_run<E: std::error::Error + Into<Failure>>(
 }
 
 /// Says what came of a run.
-pub(super) fn concluded(report: Report, scene: &str, quiet: bool) -> Result<(), Failure> {
+pub(super) fn concluded(report: Report, scene: &str, telling: Telling) -> Result<(), Failure> {
+    let Telling { quiet, strict } = telling;
     if !quiet {
         for clash in &report.simulation.assembled().warnings {
             eprintln!("warning: {scene}: {clash}");
@@ -103,6 +115,9 @@ pub(super) fn concluded(report: Report, scene: &str, quiet: bool) -> Result<(), 
         print(told(&report))?;
     }
     match report.stop {
+        Stop::End if strict && report.verdict.is_distrusted() => Err(Failure::Distrusted {
+            scene: scene.to_owned(),
+        }),
         Stop::End => Ok(()),
         Stop::Interrupted => Err(Failure::Interrupted),
         Stop::Failed(source) => Err(Failure::Simulation {

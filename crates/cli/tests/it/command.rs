@@ -549,7 +549,24 @@ fn a_result_that_contradicts_itself_is_told_of_even_quietly() {
     let reasons = attributes["reasons"].as_str().unwrap();
     assert!(reasons.contains("energy-missing"), "{reasons}");
 
-    let slow = ["run", "marine_two_sprockets", "--method", "verlet"];
+    // The same by the exit code, once the result is kept.
+    let strict = [&fast[..], &settings, &["--overwrite", "--strict"]].concat();
+    let (code, _, err) = run(at, &strict);
+    assert_eq!(code, 4);
+    assert!(
+        err.ends_with("bicycle: distrusted, and --strict was asked for\n"),
+        "{err}"
+    );
+    let attributes = &group(&at.join("run.zarr"))["attributes"];
+    assert_eq!(attributes["status"], "complete");
+
+    let slow = [
+        "run",
+        "marine_two_sprockets",
+        "--method",
+        "verlet",
+        "--strict",
+    ];
     let (code, out, err) = run(at, &[&slow[..], &settings, &["--overwrite"]].concat());
     assert_eq!((code, out.as_str(), err.as_str()), (0, "", ""));
     let attributes = &group(&at.join("run.zarr"))["attributes"];

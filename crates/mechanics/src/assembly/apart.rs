@@ -14,6 +14,7 @@ impl Drive {
         for group in groups {
             let drive = Self {
                 parts: group.parts(self.parts()),
+                begin: self.begin,
             };
             let names = || drive.chains.iter().map(|placed| placed.name.as_ref());
             let assembled = drive.assemble_joined();
@@ -32,6 +33,7 @@ impl Drive {
         Ok(Assembled {
             drive: self.clone(),
             system,
+            time: self.begin,
             q,
             v,
             z,

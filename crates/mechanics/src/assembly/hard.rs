@@ -60,6 +60,7 @@ impl Drive {
             }
             let assembled = Self {
                 parts: parts.clone(),
+                begin: self.begin,
             }
             .assemble_as_is()?;
             let taut = assembled

@@ -21,6 +21,7 @@ pub(super) fn lay(drive: &Drive) -> Result<(Laid, Vec<Option<Fitting>>), Assembl
         gap_angles: parts.sprockets.iter().map(|s| s.gap_angle).collect(),
         chains: Vec::new(),
         parts,
+        begin: drive.begin,
     };
     let mut fittings = Vec::new();
     for index in 0..laid.parts.chains.len() {

@@ -125,7 +125,7 @@ pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Static
 /// Whether a chain pulls as it was laid.
 fn is_taut(system: &System, q: &[f64]) -> bool {
     let still = vec![0.0; q.len()];
-    let at = at_rest(q, &still);
+    let at = at_rest(system.begin, q, &still);
     let mut record = system.new_record();
     let mut rates = vec![0.0; system.quadratures() + system.states()];
     let z = system.settled_states(q);
@@ -395,13 +395,13 @@ impl Newton<'_> {
     }
 
     fn add_bodies(&self, q: &[f64], load: Load, sum: &mut Sum<'_>) {
-        let bodies = &self.system.bodies;
+        let (bodies, begin) = (&self.system.bodies, self.system.begin);
         let still = vec![0.0; q.len()];
         for shaft in &bodies.shafts {
             if let Some((dof, ratio)) = shaft.turn.turned_by() {
-                let angle = shaft.turn.kinematics(0.0, q, &still).position;
+                let angle = shaft.turn.kinematics(begin, q, &still).position;
                 let torques = shaft.drive.iter().chain(&shaft.load);
-                let torque: f64 = torques.map(|m| m.at(0.0, angle, 0.0)).sum();
+                let torque: f64 = torques.map(|m| m.at(begin, angle, 0.0)).sum();
                 sum.force(dof, -load.torque * (ratio * torque));
             }
         }
@@ -416,7 +416,7 @@ impl Newton<'_> {
             }
         }
         for coupling in &bodies.couplings {
-            let [twist, _] = bodies.twist(coupling, at_rest(q, &still));
+            let [twist, _] = bodies.twist(coupling, at_rest(begin, q, &still));
             for (entry, share) in bodies.twisted_by(coupling) {
                 sum.force(entry, coupling.stiffness * twist * share);
                 for (other, other_share) in bodies.twisted_by(coupling) {
@@ -454,9 +454,9 @@ impl Newton<'_> {
 }
 
 /// A moment at rest.
-fn at_rest<'a>(q: &'a [f64], still: &'a [f64]) -> Moment<'a> {
+fn at_rest<'a>(t: f64, q: &'a [f64], still: &'a [f64]) -> Moment<'a> {
     Moment {
-        t: 0.0,
+        t,
         q,
         v: still,
         z: &[],

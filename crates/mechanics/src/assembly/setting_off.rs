@@ -36,7 +36,7 @@ pub(super) fn set_off(system: &System, layouts: &[&Layout], q: &[f64], v: &mut [
 /// ```
 fn speeds(system: &System, layouts: &[&Layout]) -> Vec<Option<f64>> {
     let given = |shaft: &Shaft| match &shaft.turn.by {
-        TurnedBy::Motion(_) => Some(shaft.turn.kinematics(0.0, &[], &[]).rate),
+        TurnedBy::Motion(_) => Some(shaft.turn.kinematics(system.begin, &[], &[]).rate),
         // That of a coordinate would be read off the state.
         TurnedBy::Coordinate(_) => None,
     };
@@ -134,7 +134,7 @@ fn along_route(
     v: &[f64],
 ) -> Vec<Vector> {
     let at = Moment {
-        t: 0.0,
+        t: system.begin,
         q,
         v,
         z: &[],
@@ -158,10 +158,10 @@ fn along_route(
         .map(|(seat, place)| {
             seat.map(|index| {
                 let wheel = &bodies.wheels[index];
-                let (centre, velocity, _) = wheel.centre_kinematics(0.0, q, v, &bodies.slides);
+                let (centre, velocity, _) = wheel.centre_kinematics(at.t, q, v, &bodies.slides);
                 let d = place - centre;
                 // v = v_c + ω ẑ × d
-                velocity + Vector::new(-d.y, d.x) * wheel.kinematics(0.0, q, v).rate
+                velocity + Vector::new(-d.y, d.x) * wheel.kinematics(at.t, q, v).rate
             })
         })
         .collect();
@@ -170,7 +170,7 @@ fn along_route(
     }
     let links_a_second = member.route.first().map_or(0.0, |&index| {
         let wheel = &bodies.wheels[index];
-        wheel.sense * wheel.kinematics(0.0, q, v).rate * f64::from(wheel.teeth) / TAU
+        wheel.sense * wheel.kinematics(at.t, q, v).rate * f64::from(wheel.teeth) / TAU
     });
     let n = places.len();
     let free = |i: usize| match start {

@@ -127,7 +127,7 @@ fn mean_tension(system: &System, chain: usize, q: &[f64]) -> f64 {
     forces(system, q, &still, &mut record);
     let member = &system.chains[chain];
     let at = Moment {
-        t: 0.0,
+        t: system.begin,
         q,
         v: &still,
         z: &[],
@@ -140,7 +140,7 @@ fn forces(system: &System, q: &[f64], still: &[f64], record: &mut Record) -> Vec
     let mut a = vec![0.0; q.len()];
     let mut rates = vec![0.0; Flow::ALL.len()];
     let at = Moment {
-        t: 0.0,
+        t: system.begin,
         q,
         v: still,
         z: &[],
@@ -257,7 +257,7 @@ impl System {
     fn imbalance(&self, q: &[f64], a: &[f64], record: &Record, typical: f64) -> (f64, f64) {
         let still = vec![0.0; q.len()];
         let at = Moment {
-            t: 0.0,
+            t: self.begin,
             q,
             v: &still,
             z: &[],

@@ -83,6 +83,11 @@ impl Joints {
         self.memory.slopes
     }
 
+    /// Says when the memory is of.
+    pub(super) fn set_clock(&mut self, t: f64) {
+        self.memory.time = t;
+    }
+
     /// Whether the normal force matters.
     pub(super) fn rub(&self) -> bool {
         self.friction.acts()

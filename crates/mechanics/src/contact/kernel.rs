@@ -7,7 +7,7 @@ use super::rest::{CLOSE, Clear};
 use super::slots::Slots;
 use super::window::FAR;
 use super::wrench::{Sums, Wrench};
-use super::{Contacts, Frame, Rollers, Shape, Touch};
+use super::{AWAKE, Contacts, Frame, Rollers, Shape, Touch};
 use crate::lanes::{LANES, Lane, Mask, Wide};
 use crate::profile::SHARPEST;
 
@@ -117,11 +117,11 @@ impl Contacts {
         let faced = view.faced(w, &place, self.radius, self.law.flank.is_some());
         let Some(closing) = self.respond(w, dt, &motion, &faced, near, slot, rollers, slots, sums)
         else {
-            slots.set_wake(slot.lane, 0.0);
+            slots.set_wake(slot.lane, AWAKE);
             return true;
         };
         if self.writes_faces {
-            slots.set_wake(slot.lane, 0.0);
+            slots.set_wake(slot.lane, AWAKE);
             return false;
         }
         let (close, convex) = match &self.shape {

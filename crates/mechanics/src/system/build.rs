@@ -17,7 +17,7 @@ use crate::tensioner::Weight;
 use crate::trains::{InTrain, trains};
 use crate::{AssemblyError, Chain, Motion, Push};
 
-/// A drive with its chains laid: where everything is at t = 0.
+/// A drive with its chains laid: where everything is when it begins.
 #[derive(Clone, Debug)]
 pub(crate) struct Laid {
     /// The parts, moved to where the chains close.
@@ -26,6 +26,8 @@ pub(crate) struct Laid {
     pub(crate) chains: Vec<LaidChain>,
     /// Angle of one gap axis of every sprocket.
     pub(crate) gap_angles: Vec<f64>,
+    /// Time \[s\].
+    pub(crate) begin: f64,
 }
 
 /// Where a chain lies.
@@ -95,11 +97,12 @@ impl System {
             events: None,
             time_scales: [f64::INFINITY; 2],
             onset_depth: None,
+            begin: laid.begin,
         };
         system.refer_to_groups();
         let mut v = vec![0.0; dofs];
         let z = system.settled_states(&q);
-        system.start(0.0, &mut q, &mut v, &z);
+        system.start(laid.begin, &mut q, &mut v, &z);
         Ok((system, q))
     }
 }

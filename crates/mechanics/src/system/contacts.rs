@@ -134,6 +134,19 @@ impl BodyContacts {
         speed
     }
 
+    /// Says when the memory of the contacts is of.
+    pub(crate) fn set_clock(&mut self, t: f64) {
+        for on in &mut self.teeth {
+            on.contacts.accepted = t;
+        }
+        for on in &mut self.rails {
+            match &mut on.contact {
+                RailContact::Circles(contacts) => contacts.accepted = t,
+                RailContact::Plates(plates) => plates.accepted = t,
+            }
+        }
+    }
+
     /// Takes over what was found at an accepted state.
     pub(crate) fn commit(&mut self, t: f64, loads: &mut Loads) {
         for (on, touch) in self.teeth.iter_mut().zip(&mut loads.teeth) {

@@ -188,7 +188,8 @@ impl System {
         Ok(())
     }
 
-    /// Time \[s\] of the first event after t: a change of an input, or a knot of a table over time.
+    /// Time \[s\] of the first event after t: a change of an input, a knot of a table over time, or t = 0, where the
+    /// record begins.
     pub(super) fn event_after(&self, t: f64) -> f64 {
         let earliest = |times: &mut dyn Iterator<Item = Option<f64>>| {
             times.flatten().fold(f64::INFINITY, f64::min)
@@ -215,7 +216,8 @@ impl System {
             .chain(wheels)
             .chain(rails)
             .chain(ends)
-            .chain([self.bodies.inputs.next_change(t)]);
+            .chain([self.bodies.inputs.next_change(t)])
+            .chain([(t < 0.0).then_some(0.0)]);
         earliest(&mut all)
     }
 }

@@ -49,7 +49,7 @@ const CONSTANT: f64 = 1e-12;
 
 /// Means of batches of a series, in bounded memory.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Batches {
+pub(crate) struct Batches {
     means: Vec<f64>,
     /// Samples in a batch.
     length: u64,
@@ -83,7 +83,7 @@ impl Default for Batches {
 }
 
 impl Batches {
-    pub(super) fn push(&mut self, value: f64) {
+    pub(crate) fn push(&mut self, value: f64) {
         let (sum, count) = &mut self.begun;
         *sum += value;
         *count += 1;
@@ -100,7 +100,7 @@ impl Batches {
     }
 
     /// What they say about the mean; nothing as long as there are fewer than 20.
-    pub(super) fn steadiness(&self) -> Option<Steadiness> {
+    pub(crate) fn steadiness(&self) -> Option<Steadiness> {
         let all = &self.means;
         let (least, _) = GROUPINGS[0];
         if all.len() < least {

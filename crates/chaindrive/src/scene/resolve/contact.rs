@@ -46,143 +46,143 @@ pub(super) const ROLLERS: Fallback = Fallback {
     restitution: &defaults::ROLLERS_RESTITUTION,
 };
 
-/// The surface of one body: its own contact at `path`, then the common one, then the fallback, for
-/// which `absent` knows the elastic law.
-pub(super) fn surface(
-    own: &Contact,
-    path: &str,
-    common: &Contact,
-    fallback: Fallback,
-    pair: Pair,
-    findings: &mut Findings<'_>,
-    absent: impl FnOnce(&mut Findings<'_>) -> Option<Elastic>,
-) -> Option<Surface> {
-    let law = law(own, path, common, fallback, pair, findings, absent);
-    let friction = rubbing(own, path, common, fallback, findings);
-    Some(Surface {
-        law: law?,
-        friction: friction?,
-    })
+/// What a scene says of one contact: its own words at `path`, then what holds for all of its kind.
+#[derive(Clone, Copy)]
+pub(super) struct Said<'a> {
+    pub(super) own: &'a Contact,
+    pub(super) path: &'a str,
+    pub(super) common: &'a Contact,
+    pub(super) fallback: Fallback,
 }
 
-/// How it rubs.
-pub(super) fn rubbing(
-    own: &Contact,
-    path: &str,
-    common: &Contact,
-    fallback: Fallback,
-    findings: &mut Findings<'_>,
-) -> Option<Friction> {
-    match (own.friction, common.friction) {
-        (Some(text), _) => friction(text, path, None, findings),
-        (None, Some(text)) => friction(text, fallback.path, None, findings),
-        (None, None) => {
-            let place = format!("{}.friction", fallback.path);
-            findings.assume_kind(&place, "none");
-            Some(Friction::None)
+impl Said<'_> {
+    /// How it pushes and rubs; `absent` knows the elastic law where the scene names none.
+    pub(super) fn surface(
+        &self,
+        pair: Pair,
+        findings: &mut Findings<'_>,
+        absent: impl FnOnce(&mut Findings<'_>) -> Option<Elastic>,
+    ) -> Option<Surface> {
+        let law = self.law(pair, findings, absent);
+        let friction = self.friction(findings);
+        Some(Surface {
+            law: law?,
+            friction: friction?,
+        })
+    }
+
+    /// How it rubs.
+    pub(super) fn friction(&self, findings: &mut Findings<'_>) -> Option<Friction> {
+        let common = self.fallback.path;
+        match (self.own.friction, self.common.friction) {
+            (Some(text), _) => friction(text, self.path, None, findings),
+            (None, Some(text)) => friction(text, common, None, findings),
+            (None, None) => {
+                findings.assume_kind(&format!("{common}.friction"), "none");
+                Some(Friction::None)
+            }
         }
     }
-}
 
-/// How it pushes.
-pub(super) fn law(
-    own: &Contact,
-    path: &str,
-    common: &Contact,
-    fallback: Fallback,
-    pair: Pair,
-    findings: &mut Findings<'_>,
-    absent: impl FnOnce(&mut Findings<'_>) -> Option<Elastic>,
-) -> Option<Law> {
-    let elastic = match (&own.law, &common.law) {
-        (Some(law), _) => elastic(law, pair, &format!("{path}.law"), findings),
-        (None, Some(law)) => elastic(law, pair, &format!("{}.law", fallback.path), findings),
-        (None, None) => absent(findings),
-    };
-    let dissipation = dissipation(own, path, common, fallback, findings);
-    let floor = own.onset_floor.or(common.onset_floor).map(|v| v.0);
-    let place = format!("{}.onset_floor", fallback.path);
-    let onset_floor = findings.or_default(floor, &place, &defaults::ONSET_FLOOR);
-    Some(Law {
-        elastic: elastic?,
-        series: own.series.or(common.series).map(|stiffness| stiffness.0),
-        dissipation: dissipation?,
-        onset_floor,
-    })
-}
+    /// How it pushes; `absent` as in [`Said::surface`].
+    pub(super) fn law(
+        &self,
+        pair: Pair,
+        findings: &mut Findings<'_>,
+        absent: impl FnOnce(&mut Findings<'_>) -> Option<Elastic>,
+    ) -> Option<Law> {
+        let Self { own, common, .. } = self;
+        let at = |path: &str| format!("{path}.law");
+        let elastic = match (&own.law, &common.law) {
+            (Some(law), _) => elastic(law, pair, &at(self.path), findings),
+            (None, Some(law)) => elastic(law, pair, &at(self.fallback.path), findings),
+            (None, None) => absent(findings),
+        };
+        let dissipation = self.dissipation(findings);
+        let floor = own.onset_floor.or(common.onset_floor).map(|v| v.0);
+        let place = format!("{}.onset_floor", self.fallback.path);
+        let onset_floor = findings.or_default(floor, &place, &defaults::ONSET_FLOOR);
+        Some(Law {
+            elastic: elastic?,
+            series: own.series.or(common.series).map(|stiffness| stiffness.0),
+            dissipation: dissipation?,
+            onset_floor,
+        })
+    }
 
-fn dissipation(
-    own: &Contact,
-    path: &str,
-    common: &Contact,
-    fallback: Fallback,
-    findings: &mut Findings<'_>,
-) -> Option<Dissipation> {
-    use schema::Dissipation as Name;
-    let says = |text: &Contact| {
-        text.restitution.is_some() || text.damping.is_some() || text.dissipation.is_some()
-    };
-    let (said, place) = if says(own) {
-        (own, path)
-    } else {
-        (common, fallback.path)
-    };
-    let mut twice = |key: &str, other: &str| {
-        let message = format!("`{other}` is given too");
-        findings.refuse_once(&format!("{place}.{key}"), message, "keep one of them");
-    };
-    if let Some(damping) = said.damping {
-        if said.restitution.is_some() {
-            twice("damping", "restitution");
+    fn dissipation(&self, findings: &mut Findings<'_>) -> Option<Dissipation> {
+        use schema::Dissipation as Name;
+        let Self {
+            own,
+            path,
+            common,
+            fallback,
+        } = *self;
+        let says = |text: &Contact| {
+            text.restitution.is_some() || text.damping.is_some() || text.dissipation.is_some()
+        };
+        let (said, place) = if says(own) {
+            (own, path)
+        } else {
+            (common, fallback.path)
+        };
+        let mut twice = |key: &str, other: &str| {
+            let message = format!("`{other}` is given too");
+            findings.refuse_once(&format!("{place}.{key}"), message, "keep one of them");
+        };
+        if let Some(damping) = said.damping {
+            if said.restitution.is_some() {
+                twice("damping", "restitution");
+                return None;
+            }
+            if said.dissipation.is_some() {
+                twice("damping", "dissipation");
+                return None;
+            }
+            return Some(Dissipation::Viscous(Viscous { damping: damping.0 }));
+        }
+        let name = said
+            .dissipation
+            .or(common.dissipation.filter(|name| *name != Name::None));
+        if name == Some(Name::None) && said.restitution.is_some() {
+            twice("restitution", "dissipation = \"none\"");
             return None;
         }
-        if said.dissipation.is_some() {
-            twice("damping", "dissipation");
-            return None;
-        }
-        return Some(Dissipation::Viscous(Viscous { damping: damping.0 }));
+        let name = findings.or_chosen(
+            name,
+            &format!("{place}.dissipation"),
+            &defaults::DISSIPATION,
+        );
+        let restitution = match name {
+            Name::None => 1.0,
+            _ => findings.or_default(
+                said.restitution.or(common.restitution).map(|e| e.0),
+                &format!("{place}.restitution"),
+                fallback.restitution,
+            ),
+        };
+        let dissipation = match name {
+            Name::None => Dissipation::None,
+            Name::Exact => Dissipation::Exact(Exact { restitution }),
+            Name::HuntCrossley => Dissipation::HuntCrossley(HuntCrossley { restitution }),
+            Name::LankaraniNikravesh => {
+                Dissipation::LankaraniNikravesh(LankaraniNikravesh { restitution })
+            }
+            Name::LeeWang => Dissipation::LeeWang(LeeWang { restitution }),
+            Name::HerbertMcWhannell => {
+                Dissipation::HerbertMcWhannell(HerbertMcWhannell { restitution })
+            }
+            Name::Gonthier => Dissipation::Gonthier(Gonthier { restitution }),
+            Name::ZhiyingQishao => Dissipation::ZhiyingQishao(ZhiyingQishao { restitution }),
+            Name::Flores => Dissipation::Flores(Flores { restitution }),
+            Name::HuGuo => Dissipation::HuGuo(HuGuo { restitution }),
+        };
+        let sound = dissipation.check().map_err(|error| {
+            let message = format!("{}, must be {}", error.value, error.allowed);
+            findings.refuse_once(&format!("{place}.{}", error.parameter), message, "");
+        });
+        sound.ok().map(|()| dissipation)
     }
-    let name = said
-        .dissipation
-        .or(common.dissipation.filter(|name| *name != Name::None));
-    if name == Some(Name::None) && said.restitution.is_some() {
-        twice("restitution", "dissipation = \"none\"");
-        return None;
-    }
-    let name = findings.or_chosen(
-        name,
-        &format!("{place}.dissipation"),
-        &defaults::DISSIPATION,
-    );
-    let restitution = match name {
-        Name::None => 1.0,
-        _ => findings.or_default(
-            said.restitution.or(common.restitution).map(|e| e.0),
-            &format!("{place}.restitution"),
-            fallback.restitution,
-        ),
-    };
-    let dissipation = match name {
-        Name::None => Dissipation::None,
-        Name::Exact => Dissipation::Exact(Exact { restitution }),
-        Name::HuntCrossley => Dissipation::HuntCrossley(HuntCrossley { restitution }),
-        Name::LankaraniNikravesh => {
-            Dissipation::LankaraniNikravesh(LankaraniNikravesh { restitution })
-        }
-        Name::LeeWang => Dissipation::LeeWang(LeeWang { restitution }),
-        Name::HerbertMcWhannell => {
-            Dissipation::HerbertMcWhannell(HerbertMcWhannell { restitution })
-        }
-        Name::Gonthier => Dissipation::Gonthier(Gonthier { restitution }),
-        Name::ZhiyingQishao => Dissipation::ZhiyingQishao(ZhiyingQishao { restitution }),
-        Name::Flores => Dissipation::Flores(Flores { restitution }),
-        Name::HuGuo => Dissipation::HuGuo(HuGuo { restitution }),
-    };
-    let sound = dissipation.check().map_err(|error| {
-        let message = format!("{}, must be {}", error.value, error.allowed);
-        findings.refuse_once(&format!("{place}.{}", error.parameter), message, "");
-    });
-    sound.ok().map(|()| dissipation)
 }
 
 /// The friction that a scene describes at `place`; a spring of unknown stiffness has a share of `spring` \[N/m\].

@@ -42,20 +42,18 @@ fn resolve(
     let face = face(&text.face, &place, findings);
     let face = findings.keep(&place, face);
     let support = support(text, path, names, findings);
-    let surface = contact::surface(
-        &text.contact,
-        &format!("{path}.contact"),
-        &scene.contact.guides,
-        contact::GUIDES,
-        chain.roller(),
-        findings,
-        |findings| {
-            let place = format!("{path}.contact.law");
-            let stiffness = chain.link_stiffness();
-            let default = &defaults::GUIDES_STIFFNESS;
-            Some(linear(stiffness, &place, default, findings))
-        },
-    );
+    let said = contact::Said {
+        own: &text.contact,
+        path: &format!("{path}.contact"),
+        common: &scene.contact.guides,
+        fallback: contact::GUIDES,
+    };
+    let surface = said.surface(chain.roller(), findings, |findings| {
+        let place = format!("{path}.contact.law");
+        let stiffness = chain.link_stiffness();
+        let default = &defaults::GUIDES_STIFFNESS;
+        Some(linear(stiffness, &place, default, findings))
+    });
     Some(Guide {
         name: text.name.clone(),
         face: face?,

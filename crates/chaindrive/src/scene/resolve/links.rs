@@ -218,17 +218,14 @@ fn rollers(
                 bore: Some(bore),
                 length,
             };
-            let (own, common) = (&roller.contact, &scene.contact.rollers);
-            let law = law(
-                (own, common),
-                contact::ROLLERS,
-                pair,
-                clearance,
-                "roller",
-                needs.findings,
-            );
-            let place = "chain.roller.contact";
-            let friction = contact::rubbing(own, place, common, contact::ROLLERS, needs.findings);
+            let said = contact::Said {
+                own: &roller.contact,
+                path: "chain.roller.contact",
+                common: &scene.contact.rollers,
+                fallback: contact::ROLLERS,
+            };
+            let law = law(said, pair, clearance, "roller", needs.findings);
+            let friction = said.friction(needs.findings);
             Some(RollerModel::Free(FreeRoller {
                 mass: mass?,
                 inertia: inertia?,
@@ -276,14 +273,13 @@ fn joint(
         bore: Some(bore),
         length: joint.length.map(|length| length.0),
     };
-    let law = law(
-        (&joint.contact, &scene.contact.joints),
-        contact::JOINTS,
-        pair,
-        clearance,
-        "joint",
-        needs.findings,
-    );
+    let said = contact::Said {
+        own: &joint.contact,
+        path: "chain.joint.contact",
+        common: &scene.contact.joints,
+        fallback: contact::JOINTS,
+    };
+    let law = law(said, pair, clearance, "joint", needs.findings);
     let known = Joints::new(scene, text, text.stiffness.map(|stiffness| stiffness.0));
     let friction = known.friction(needs.findings);
     let mut law = law?;
@@ -302,15 +298,13 @@ fn joint(
 
 /// Law of what turns in a bore; steel, and the enhanced cylindrical law, unless the scene says more.
 fn law(
-    (own, common): (&schema::Contact, &schema::Contact),
-    fallback: contact::Fallback,
+    said: contact::Said<'_>,
     pair: Pair,
     clearance: f64,
     name: &str,
     findings: &mut Findings<'_>,
 ) -> Option<Law> {
-    let place = format!("chain.{name}.contact");
-    contact::law(own, &place, common, fallback, pair, findings, |findings| {
+    said.law(pair, findings, |findings| {
         let Some(length) = pair.length else {
             let hint = format!("give the length of the contact, or `contact.{name}s.law`");
             findings.refuse_with(&format!("chain.{name}.length"), "missing", hint);
@@ -327,7 +321,7 @@ fn law(
             });
             // What is common is that of the only chain.
             let common = format!("contact.{name}s");
-            let of = findings.chain.map_or(common, |_| place.clone());
+            let of = findings.chain.map_or(common, |_| said.path.to_owned());
             let remark = "follows from the dimensions of the chain";
             findings.assume(&format!("{of}.law"), text, remark);
         }

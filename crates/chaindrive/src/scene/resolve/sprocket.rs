@@ -67,22 +67,16 @@ fn resolve(
         findings.keep(&format!("{path}.{place}"), gap)
     });
     let support = support(text, path, names, findings);
-    let surface = contact::surface(
-        &text.contact,
-        &format!("{path}.contact"),
-        &scene.contact.teeth,
-        contact::TEETH,
-        chain.roller(),
-        findings,
-        |findings| {
-            law(
-                gap.as_ref()?,
-                chain,
-                &format!("{path}.contact.law"),
-                findings,
-            )
-        },
-    );
+    let said = contact::Said {
+        own: &text.contact,
+        path: &format!("{path}.contact"),
+        common: &scene.contact.teeth,
+        fallback: contact::TEETH,
+    };
+    let surface = said.surface(chain.roller(), findings, |findings| {
+        let place = format!("{path}.contact.law");
+        law(gap.as_ref()?, chain, &place, findings)
+    });
     let flank = gap
         .as_ref()
         .and_then(|gap| flank::resolve(text, path, scene, gap, chain, findings));

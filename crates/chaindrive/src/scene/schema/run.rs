@@ -1,11 +1,13 @@
 //! `[run]`: what a front end runs and records by default.
 
+use std::borrow::Cow;
+
 use chaindrive_mechanics::EventKinds;
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
-use crate::Stepping;
 use crate::scene::quantity::{Length, Ratio, Time};
+use crate::{RunIn, Stepping};
 
 /// What a front end runs and records unless told otherwise.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
@@ -15,6 +17,11 @@ pub(crate) struct Run {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) until: Option<Time>,
+    /// What is simulated before t = 0, so that the record begins where the motion is steady: a time [s], turns of a
+    /// sprocket ("5 turns" of the first one, "5 turns of camshaft"), or "auto"; absent: nothing.
+    #[serde(default)]
+    #[schemars(with = "Option<RunInText>")]
+    pub(crate) run_in: Option<RunIn>,
     /// Time between two samples of the recording [s].
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
@@ -49,6 +56,28 @@ pub(crate) struct Run {
     pub(crate) events: Vec<Events>,
 }
 
+/// How a run-in is written.
+struct RunInText;
+
+impl JsonSchema for RunInText {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "RunIn".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "type": ["number", "string"],
+            "minimum": 0,
+            "x-run-in": true,
+            "examples": ["auto", "0.5 s", "5 turns of camshaft"],
+        })
+    }
+}
+
 /// Contacts that can be logged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -66,6 +95,7 @@ impl Run {
     pub(crate) fn suggestions(&self) -> RunDefaults {
         RunDefaults {
             until: self.until.map(|time| time.0),
+            run_in: self.run_in.clone().unwrap_or_default(),
             every: self.every.map(|time| time.0),
             method: self.method,
             step: self.step.map(|time| time.0),
@@ -83,6 +113,8 @@ impl Run {
 pub struct RunDefaults {
     /// Duration of the run \[s\].
     pub until: Option<f64>,
+    /// What is simulated before t = 0.
+    pub run_in: RunIn,
     /// Time between two samples \[s\].
     pub every: Option<f64>,
     /// Method of time stepping.

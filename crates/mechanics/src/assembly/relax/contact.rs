@@ -22,7 +22,7 @@ struct Mount {
 /// Adds the energies of all closed contacts.
 pub(super) fn add_contacts(system: &System, q: &[f64], sum: &mut Sum<'_>) {
     let still = vec![0.0; q.len()];
-    let at = at_rest(q, &still);
+    let at = at_rest(system.begin, q, &still);
     let bodies = &system.bodies;
     for member in &system.chains {
         for on in &member.contacts.teeth {

@@ -47,19 +47,11 @@ impl Linkage {
         on_body(q, link, self.bodies[link].arms[end])
     }
 
-    /// One side of a joint; supports stand where they are at the start.
+    /// One side of a joint; supports stand where they were laid.
     fn side_moving(&self, q: &[f64], mate: Mate) -> Moving {
         match mate {
             Mate::Link { link, end } => self.pin_moving(q, link, end),
-            Mate::Ground(end) => Moving::held(self.ends[end].place + self.driven_by(end)),
-        }
-    }
-
-    /// How far a support has moved at t = 0.
-    fn driven_by(&self, end: usize) -> Vector {
-        match &self.ends[end].end {
-            End::Driven { x, y } => Vector::new(x.at(0.0).position, y.at(0.0).position),
-            End::Free | End::Fixed | End::Pulled { .. } => Vector::zeros(),
+            Mate::Ground(end) => Moving::held(self.ends[end].place),
         }
     }
 

@@ -74,7 +74,7 @@ pub(crate) fn replace(
     if !laid.on_route {
         // Along a route the links have taken the lengths that they were laid with.
         let mut whole = [chain_q, vec![0.0; bodies.count]].concat();
-        linkage.close_in_place(bodies, &pulls(particles, &places), &mut whole);
+        linkage.close_in_place(at.t, bodies, &pulls(particles, &places), &mut whole);
         whole.truncate(linkage.coordinates());
         chain_q = whole;
     }
@@ -124,17 +124,17 @@ impl Linkage {
     /// ```text
     /// after − before = (c + δ(|T|)) T/|T|
     /// ```
-    fn close_in_place(&self, bodies: GroupBodies<'_>, pulls: &[Vector], q: &mut [f64]) {
+    fn close_in_place(&self, begin: f64, bodies: GroupBodies<'_>, pulls: &[Vector], q: &mut [f64]) {
         let laid = q.to_vec();
         let mut joint_state = JointState {
             hinge_forces: vec![Vector::zeros(); self.joints.len()],
             ..JointState::default()
         };
-        let offsets = self.offsets(q, &mut joint_state);
+        let offsets = self.offsets(begin, q, &mut joint_state);
         let seats = self.seats(&offsets, pulls);
         // Newton's method, from a few thousandths of a pitch at most: three passes leave rounding.
         for _ in 0..PASSES {
-            let offsets = self.offsets(q, &mut joint_state);
+            let offsets = self.offsets(begin, q, &mut joint_state);
             let apart: Vec<Vector> = seats.iter().zip(&offsets).map(|(s, o)| s - o).collect();
             if apart.iter().all(|apart| *apart == Vector::zeros()) {
                 return;
@@ -146,7 +146,7 @@ impl Linkage {
                 *q += change;
             }
         }
-        let offsets = self.offsets(q, &mut joint_state);
+        let offsets = self.offsets(begin, q, &mut joint_state);
         let mut apart = seats.iter().zip(&offsets).map(|(s, o)| (s - o).norm());
         let reached = apart.all(|apart| apart < 1e-9 * self.pitch);
         if !reached && self.has_play() {
@@ -155,10 +155,10 @@ impl Linkage {
     }
 
     /// From the middle of every hole to its pin.
-    fn offsets(&self, q: &[f64], joint_state: &mut JointState) -> Vec<Vector> {
+    fn offsets(&self, begin: f64, q: &[f64], joint_state: &mut JointState) -> Vec<Vector> {
         let still = vec![0.0; q.len()];
         let at = Moment {
-            t: 0.0,
+            t: begin,
             q,
             v: &still,
             z: &[],
@@ -198,13 +198,19 @@ impl Linkage {
 
     /// Velocities of the chain and, behind it, the bodies brought to where no hinge opens: what the stabilisation would otherwise
     /// take out of the chain in its first milliseconds.
-    pub(crate) fn close_in_motion(&self, bodies: GroupBodies<'_>, q: &[f64], v: &mut [f64]) {
+    pub(crate) fn close_in_motion(
+        &self,
+        begin: f64,
+        bodies: GroupBodies<'_>,
+        q: &[f64],
+        v: &mut [f64],
+    ) {
         if matches!(self.joining, Joining::Clearance(_)) {
             return;
         }
         let mut joint_state = JointState::default();
         let at = Moment {
-            t: 0.0,
+            t: begin,
             q,
             v,
             z: &[],

@@ -1,0 +1,253 @@
+//! What is simulated before t = 0, so that the record begins where the motion is steady.
+
+use std::f64::consts::TAU;
+use std::str::FromStr;
+
+use chaindrive_mechanics::{Assembled, Drive};
+use serde::{Deserialize, Serialize};
+
+use super::execute::assemble;
+use super::patience::LOOK;
+use super::{Run, steady};
+use crate::scene::read_time;
+use crate::{Simulation, SimulationError};
+
+/// What is simulated before t = 0.
+///
+/// In a scene, for the command and in Python: a time (`"0.5 s"`), turns of a sprocket (`"5 turns"` of the first one, or
+/// `"5 turns of camshaft"`), or `"auto"`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Written", into = "Written")]
+pub enum RunIn {
+    /// Nothing: the record begins with the start.
+    #[default]
+    None,
+    /// A time \[s\], positive.
+    Time(f64),
+    /// So many turns of a sprocket at the speed that it sets off with; of the first one without a name.
+    Turns {
+        /// Turns, positive.
+        turns: f64,
+        /// The sprocket.
+        sprocket: Option<String>,
+    },
+    /// Until the tension of every span is steady, at most [`MOST_CIRCUITS`] circuits of the slowest chain.
+    Auto,
+}
+
+/// Circuits of the chain \[–\] after which a run-in that ends by itself gives up. *Assumed*: what swings longer than that is no
+/// start that dies out.
+pub const MOST_CIRCUITS: u32 = 32;
+
+/// How a run was run in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RanIn {
+    /// Simulated before t = 0 \[s\].
+    pub time: f64,
+    /// Whether the tensions were found steady by then; nobody looked where the time was given.
+    pub is_steady: Option<bool>,
+}
+
+/// As scenes have it.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum Written {
+    Seconds(f64),
+    Text(String),
+}
+
+impl TryFrom<Written> for RunIn {
+    type Error = String;
+
+    fn try_from(written: Written) -> Result<Self, String> {
+        match written {
+            Written::Seconds(0.0) => Ok(Self::None),
+            Written::Seconds(time) => Ok(Self::Time(time)),
+            Written::Text(text) => text.parse(),
+        }
+    }
+}
+
+impl From<RunIn> for Written {
+    fn from(run_in: RunIn) -> Self {
+        match run_in {
+            RunIn::None => Self::Seconds(0.0),
+            RunIn::Time(time) => Self::Seconds(time),
+            RunIn::Turns { turns, sprocket } => Self::Text(match sprocket {
+                None => format!("{turns} turns"),
+                Some(name) => format!("{turns} turns of {name}"),
+            }),
+            RunIn::Auto => Self::Text("auto".to_owned()),
+        }
+    }
+}
+
+impl FromStr for RunIn {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let text = text.trim();
+        if text == "auto" {
+            return Ok(Self::Auto);
+        }
+        let (amount, sprocket) = match text.split_once(" of ") {
+            Some((amount, name)) => (amount.trim_end(), Some(name.trim().to_owned())),
+            None => (text, None),
+        };
+        let turns = amount
+            .strip_suffix("turns")
+            .or_else(|| amount.strip_suffix("turn"));
+        if let Some(turns) = turns {
+            let turns: f64 = turns
+                .trim_end()
+                .parse()
+                .map_err(|_| format!("`{}` is no number of turns", turns.trim_end()))?;
+            return Ok(Self::Turns { turns, sprocket });
+        }
+        if sprocket.is_some() {
+            return Err(format!("`{amount}` is no number of turns"));
+        }
+        let time = read_time(text)?;
+        Ok(if time == 0.0 {
+            Self::None
+        } else {
+            Self::Time(time)
+        })
+    }
+}
+
+impl RunIn {
+    /// Names what is out of range.
+    pub(super) fn check(&self) -> Result<(), SimulationError> {
+        let (value, allowed) = match self {
+            Self::None | Self::Auto => return Ok(()),
+            Self::Time(time) => (*time, "a time that is not negative"),
+            Self::Turns { turns, .. } => (*turns, "a positive number of turns"),
+        };
+        if value > 0.0 && value.is_finite() {
+            return Ok(());
+        }
+        Err(SimulationError::Setting {
+            name: "run_in",
+            value,
+            allowed,
+        })
+    }
+}
+
+/// Runs an assembled drive in, if the run says so: as it stands at t = 0 then.
+///
+/// The drive is assembled again, so long before, and moved with the method, step and tolerance of the run. What this leaves is
+/// a start like any other: the error of the run counts from there.
+///
+/// # Errors
+/// As [`Simulation::start`]; a sprocket that does not turn, or is not there; [`SimulationError::Interrupted`] when `stop`
+/// says so.
+pub fn run_in(
+    start: Assembled,
+    run: &Run,
+    stop: &dyn Fn() -> bool,
+) -> Result<(Assembled, Option<RanIn>), SimulationError> {
+    run.check()?;
+    let (time, is_steady) = match &run.run_in {
+        RunIn::None => return Ok((start, None)),
+        RunIn::Time(time) => (*time, None),
+        RunIn::Turns { turns, sprocket } => {
+            (turns_last(&start, *turns, sprocket.as_deref())?, None)
+        }
+        RunIn::Auto => {
+            let (time, is_steady) = steady::begins(&start, run, stop)?;
+            (time, Some(is_steady))
+        }
+    };
+    let ran_in = Some(RanIn { time, is_steady });
+    if time == 0.0 {
+        return Ok((start, ran_in));
+    }
+    let mut moving = before(&start.drive, time, run, stop)?;
+    while !moving.advance(LOOK)? {
+        if stop() {
+            return Err(SimulationError::Interrupted);
+        }
+    }
+    Ok((moving.as_start(), ran_in))
+}
+
+/// The drive in motion from so long before t = 0 \[s\]; nothing is logged on the way.
+pub(super) fn before(
+    drive: &Drive,
+    time: f64,
+    run: &Run,
+    stop: &dyn Fn() -> bool,
+) -> Result<Simulation, SimulationError> {
+    let start = assemble(&drive.beginning(-time)?, stop)?;
+    let silent = Run {
+        run_in: RunIn::None,
+        events: Default::default(),
+        ..run.clone()
+    };
+    Simulation::from_assembled(start, &silent)
+}
+
+/// Time \[s\] that a sprocket takes for some turns at the speed that it sets off with.
+fn turns_last(
+    start: &Assembled,
+    turns: f64,
+    sprocket: Option<&str>,
+) -> Result<f64, SimulationError> {
+    let names = start.system.sprocket_names();
+    let refuse = |reason: String| SimulationError::RunIn { reason };
+    let index = match sprocket {
+        Some(name) => names.iter().position(|known| known == name),
+        None => (!names.is_empty()).then_some(0),
+    };
+    let Some(index) = index else {
+        let wanted = sprocket.unwrap_or("a sprocket");
+        let known = match names.len() {
+            0 => "the drive has none: give a time".to_owned(),
+            _ => format!("there are {}", names.join(", ")),
+        };
+        return Err(refuse(format!("turns of {wanted}: {known}")));
+    };
+    let speed = start.sprocket_speeds()[index].abs();
+    // t = n 2π/ω
+    let time = turns * TAU / speed;
+    if time.is_finite() {
+        Ok(time)
+    } else {
+        let name = &names[index];
+        Err(refuse(format!(
+            "`{name}` sets off at {speed} rad/s: give a time, or turns of a sprocket that turns"
+        )))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_are_read_and_written() {
+        let turns = |turns, name: Option<&str>| RunIn::Turns {
+            turns,
+            sprocket: name.map(str::to_owned),
+        };
+        for (text, meant) in [
+            ("auto", RunIn::Auto),
+            ("0.5 s", RunIn::Time(0.5)),
+            ("500 ms", RunIn::Time(0.5)),
+            ("0 s", RunIn::None),
+            ("5 turns", turns(5.0, None)),
+            ("1 turn of camshaft", turns(1.0, Some("camshaft"))),
+            ("2.5 turns of the hub", turns(2.5, Some("the hub"))),
+        ] {
+            let read: RunIn = text.parse().unwrap();
+            assert_eq!(read, meant, "{text}");
+            let again = serde_json::to_value(&read).unwrap();
+            assert_eq!(serde_json::from_value::<RunIn>(again).unwrap(), meant);
+        }
+        for text in ["automatic", "five turns", "5 mm", "5 s of crank", ""] {
+            assert!(text.parse::<RunIn>().is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! When the motion is steady: how long a run-in has to be that ends by itself.
+
+use chaindrive_mechanics::Assembled;
+
+use super::Run;
+use super::run_in::{MOST_CIRCUITS, before};
+use crate::SimulationError;
+use crate::record::Batches;
+
+/// Samples a circuit: enough for a dozen over the slowest swing of a span, which lasts a good part of one.
+const SAMPLES: u32 = 256;
+
+/// Time \[s\] after which the tension of every span is steady, and whether it is; else the longest that is tried.
+///
+/// The drive is moved for 2 circuits of its slowest chain, then on to 4, 8 and so on. Each time all samples so far say where
+/// the steady part begins, by the minimum of the standard error of the mean of the rest (MSER; K. P. White, *Simulation*
+/// **69**, 1997, 323–334), and whether the halves of the rest agree. The motion is steady once they do for every span and the
+/// rest is long against what its samples remember.
+pub(super) fn begins(
+    start: &Assembled,
+    run: &Run,
+    stop: &dyn Fn() -> bool,
+) -> Result<(f64, bool), SimulationError> {
+    let circuit = start.slowest_circuit();
+    if !circuit.is_finite() {
+        let reason =
+            "auto: no chain runs around sprockets here, so nothing says when to stop: give a time";
+        return Err(SimulationError::RunIn {
+            reason: reason.to_owned(),
+        });
+    }
+    let longest = f64::from(MOST_CIRCUITS) * circuit;
+    let mut moving = before(&start.drive, longest, run, stop)?;
+    let mut spans: Vec<Batches> = Vec::new();
+    let mut taken = 0;
+    let mut circuits = 2;
+    while circuits <= MOST_CIRCUITS {
+        while taken < circuits * SAMPLES {
+            taken += 1;
+            let time = f64::from(taken) * circuit / f64::from(SAMPLES) - longest;
+            let tensions = &moving.advance_to(time)?.span_tension;
+            spans.resize_with(tensions.len(), Batches::default);
+            for (span, tension) in spans.iter_mut().zip(tensions) {
+                // A span without a tension says nothing.
+                if tension.is_finite() {
+                    span.push(*tension);
+                }
+            }
+            if stop() {
+                return Err(SimulationError::Interrupted);
+            }
+        }
+        let found: Option<Vec<_>> = spans.iter().map(Batches::steadiness).collect();
+        if let Some(found) = found
+            && found.iter().all(|it| it.is_steady && it.is_independent)
+        {
+            let before = found.iter().map(|it| it.before).fold(0.0, f64::max);
+            return Ok((before * f64::from(circuits) * circuit, true));
+        }
+        circuits *= 2;
+    }
+    Ok((longest, false))
+}
