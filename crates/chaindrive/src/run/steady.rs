@@ -14,8 +14,9 @@ const SAMPLES: u32 = 256;
 ///
 /// The drive is moved for 2 circuits of its slowest chain, then on to 4, 8 and so on. Each time all samples so far say where
 /// the steady part begins, by the minimum of the standard error of the mean of the rest (MSER; K. P. White, *Simulation*
-/// **69**, 1997, 323–334), and whether the halves of the rest agree. The motion is steady once they do for every span and the
-/// rest is long against what its samples remember.
+/// **69**, 1997, 323–334), and whether the halves of the rest agree. The motion is steady once they do for every span, the
+/// rest is long against what its samples remember, and all this holds twice in a row: a drift that hides in the scatter of a
+/// short time shows in twice that.
 pub(super) fn begins(
     start: &Assembled,
     run: &Run,
@@ -34,6 +35,7 @@ pub(super) fn begins(
     let mut spans: Vec<Batches> = Vec::new();
     let mut taken = 0;
     let mut circuits = 2;
+    let mut was_steady = false;
     while circuits <= MOST_CIRCUITS {
         while taken < circuits * SAMPLES {
             taken += 1;
@@ -51,12 +53,12 @@ pub(super) fn begins(
             }
         }
         let found: Option<Vec<_>> = spans.iter().map(Batches::steadiness).collect();
-        if let Some(found) = found
-            && found.iter().all(|it| it.is_steady && it.is_independent)
-        {
+        let found = found.filter(|all| all.iter().all(|it| it.is_steady && it.is_independent));
+        if let (Some(found), true) = (&found, was_steady) {
             let before = found.iter().map(|it| it.before).fold(0.0, f64::max);
             return Ok((before * f64::from(circuits) * circuit, true));
         }
+        was_steady = found.is_some();
         circuits *= 2;
     }
     Ok((longest, false))
