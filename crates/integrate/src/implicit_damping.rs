@@ -68,8 +68,11 @@ impl ImplicitDamping {
         }
         to.t = from.t + h;
         // The right-hand side of the equations, divided by the masses.
-        for (x, rate) in self.change.iter_mut().zip(from.a.iter().chain(from.flow())) {
-            *x = h * rate;
+        let (dv, dz) = self.change.split_at_mut(from.a.len());
+        for (x, rates) in [(dv, &from.a[..]), (dz, from.flow())] {
+            for (x, rate) in x.iter_mut().zip(rates) {
+                *x = h * rate;
+            }
         }
         let weights = Weights {
             damping: h,

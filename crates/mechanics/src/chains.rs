@@ -227,7 +227,7 @@ impl Chain {
     }
 
     /// ω² and damping rate D of the stiffest mode, bodies by themselves left out.
-    pub(crate) fn rates(&self, around: Surroundings<'_>, record: &Record) -> [f64; 2] {
+    pub(crate) fn rates(&self, around: Surroundings<'_>, record: &mut Record) -> [f64; 2] {
         ask!(self, chain => chain.rates(around, record))
     }
 

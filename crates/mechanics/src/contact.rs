@@ -28,7 +28,7 @@ pub(crate) use law::{LaneFriction, LaneSpring, SurfaceLaw};
 pub(crate) use memory::{ContactMemory, ContactState, MemoryLanes};
 pub(crate) use plates::{PlateContact, PlatePins, PlatePlaces};
 pub(crate) use rollers::Rollers;
-pub(crate) use window::{FAR, Places, Run};
+pub(crate) use window::{FAR, Places, Run, Spare};
 pub(crate) use windows::{PlateMemory, Windows};
 pub(crate) use wrench::{LaneTally, Wrench};
 
@@ -101,6 +101,7 @@ pub(crate) struct Contacts {
     /// Whether the circles belong to rigid links. Faces are then written down for implicit steps, and no lane rests: a link that is
     /// struck at its other end moves at once.
     pub(crate) writes_faces: bool,
+    spare: Option<Box<Spare>>,
 }
 
 /// The lane does not rest: it is looked at at any time, times before 0 included.
@@ -188,6 +189,7 @@ impl Contacts {
             memory: Box::default(),
             accepted: 0.0,
             writes_faces: false,
+            spare: None,
         }
     }
 

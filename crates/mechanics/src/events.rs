@@ -94,21 +94,21 @@ impl EventLog {
         let dt = t - self.time;
         let place = &mut self.places[place];
         let before = place.before.replace(now);
-        // Without a state before, the contact was there from the start.
-        let share = before.map_or(1.0, |before| share_to_zero(before.gap, now.gap));
-        let touching = self.time + share * dt;
+        // Asked for where a contact begins or ends, which few do. Without a state before it was there from the start.
+        let share = || before.map_or(1.0, |before| share_to_zero(before.gap, now.gap));
         match (place.lasting.as_mut(), now.force) {
             (Some(event), Some(force)) => {
                 event.peak_force = event.peak_force.max(force);
                 event.impulse += force * dt;
             }
             (None, Some(force)) => {
+                let share = share();
                 // v = v_a + s (v_b − v_a)
                 let closing = before.map_or(now.closing, |before| before.closing);
                 let onset_speed = closing + share * (now.closing - closing);
                 place.lasting = Some(ContactEvent {
                     pair,
-                    start: touching,
+                    start: self.time + share * dt,
                     end: f64::INFINITY,
                     onset_speed: onset_speed.max(0.0),
                     peak_force: force,
@@ -116,7 +116,7 @@ impl EventLog {
                 });
             }
             (Some(event), None) => {
-                event.end = touching;
+                event.end = self.time + share() * dt;
                 self.ended.push(*event);
                 place.lasting = None;
             }

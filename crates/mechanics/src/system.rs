@@ -266,8 +266,8 @@ impl System {
     }
 
     /// ω² and damping rate of the stiffest mode at an evaluation.
-    pub(crate) fn rates(&self, record: &Record) -> [f64; 2] {
-        let chains = self.chains.iter().zip(&record.chains);
+    pub(crate) fn rates(&self, record: &mut Record) -> [f64; 2] {
+        let chains = self.chains.iter().zip(&mut record.chains);
         let rates = chains.map(|(member, record)| member.rates_at(&self.bodies, record));
         largest(rates, self.bodies.own_rates(&record.pushes))
     }

@@ -157,7 +157,7 @@ fn relax(system: &mut System, q: &mut [f64], typical: f64) -> Balance {
     let mut a = forces(system, q, &still, &mut record);
     let (mut worst, mut residual) = system.imbalance(q, &a, &record, typical);
     let mut best = (worst, residual, q.to_vec());
-    let [squared, _] = system.rates(&record);
+    let [squared, _] = system.rates(&mut record);
     let scale = (1.0 / squared.sqrt()).min(1e-4);
     let longest = 10.0;
     let mut reach = 10.0 * scale;

@@ -25,6 +25,7 @@ mod observe;
 mod pins;
 mod posture;
 pub(crate) mod rates;
+mod reactions;
 mod resist;
 #[cfg(test)]
 mod slider_crank;
@@ -163,9 +164,17 @@ pub(crate) struct JointState {
     pub(crate) tally: Tally,
     // Work space, filled anew before it is read.
     #[serde(skip)]
-    pub(crate) blocks: Blocks,
+    pub(crate) equations: implicit::Equations,
     #[serde(skip)]
-    pub(crate) loose: Vec<loose::Loose>,
+    pub(crate) reactions: reactions::Reactions,
+    #[serde(skip)]
+    pub(crate) answers: held::Answers,
+    /// Normal forces of pins in ideal joints without friction \[N\], whole lanes.
+    #[serde(skip)]
+    pub(crate) normal: Vec<f64>,
+    /// Stiffness and damping by body, for the time scales.
+    #[serde(skip)]
+    pub(crate) sums: Vec<[rates::Packed; 2]>,
     /// Accelerations and inverse masses of particles, which the kernel of the teeth asks for and links have no use for.
     #[serde(skip)]
     pub(crate) idle: Idle,
@@ -195,6 +204,9 @@ impl Linkage {
         self.roller_forces(at, rates, joint_state);
         self.end_loads(rates, joint_state);
         self.mesh(around, at, rates, loads, joint_state);
+        if matches!(self.joining, Joining::Hinges(_)) {
+            Hinges::factor(self, joint_state);
+        }
         if let Some(joints) = &self.resisting {
             self.resist(joints, at, rates, joint_state, resistance);
         }

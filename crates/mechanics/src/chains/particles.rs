@@ -164,7 +164,7 @@ impl Particles {
     /// ```
     ///
     /// The damping rate enters because Verlet's predicted velocity limits h D to 1.
-    pub(super) fn rates(&self, around: Surroundings<'_>, record: &Record) -> [f64; 2] {
+    pub(super) fn rates(&self, around: Surroundings<'_>, record: &mut Record) -> [f64; 2] {
         let Surroundings {
             bodies, contacts, ..
         } = around;

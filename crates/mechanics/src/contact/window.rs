@@ -1,5 +1,7 @@
 //! Which rollers can touch a body before the windows are renewed.
 
+use std::mem::swap;
+
 use chaindrive_geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
 
@@ -13,6 +15,15 @@ pub(crate) struct Run {
     pub(crate) start: usize,
     /// Number of rollers.
     pub(crate) count: usize,
+}
+
+/// Windows as they were before the last ones: their space is that of the next.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Spare {
+    runs: Vec<Run>,
+    axis_x: Vec<f64>,
+    axis_y: Vec<f64>,
+    memory: Touch,
 }
 
 /// Where the rollers are.
@@ -33,14 +44,20 @@ pub(crate) const FAR: f64 = 1.0;
 impl Contacts {
     /// Looks for the rollers within `margin` \[m\] of touching, and carries the memory over.
     pub(crate) fn renew(&mut self, frame: &Frame, places: Places<'_>, margin: f64) {
-        let runs = self.near_runs(frame, places, margin);
-        let runs: Vec<Run> = runs.into_iter().flat_map(|run| self.cut(run)).collect();
-        let slots = runs.len() * LANES;
+        // In the space of the windows before the last, so that nothing is allocated.
+        let mut next = self.spare.take().unwrap_or_default();
+        next.runs.clear();
+        for run in self.near_runs(frame, places, margin) {
+            next.runs.extend(self.cut(run));
+        }
+        let slots = next.runs.len() * LANES;
         let sides = self.sides();
-        let mut memory = Box::<Touch>::default();
-        memory.open(slots * sides);
-        let mut axes = (vec![1.0; slots], vec![0.0; slots]);
-        for_each_slot(&runs, |slot, roller| {
+        next.memory.open(slots * sides);
+        for (axis, value) in [(&mut next.axis_x, 1.0), (&mut next.axis_y, 0.0)] {
+            axis.clear();
+            axis.resize(slots, value);
+        }
+        for_each_slot(&next.runs, |slot, roller| {
             let old = self.slot_of(roller);
             let axis = old.map(|old| [self.axis_x[old], self.axis_y[old]]);
             // By how many stretches the gap of the roller has moved on.
@@ -49,24 +66,33 @@ impl Contacts {
                 let d = Point::new(places.x[roller], places.y[roller]) - frame.origin;
                 let here = teeth.gap_axis(frame.turn, d, axis);
                 over = axis.map_or(0, |axis| sides_over(axis, here, sides));
-                [axes.0[slot], axes.1[slot]] = here;
+                [next.axis_x[slot], next.axis_y[slot]] = here;
             }
             let Some(old) = old else { return };
             for side in 0..sides {
                 let from = (side + over) % sides * self.slots + old;
                 let to = side * slots + slot;
-                memory.state.carry(to, &self.memory.state, from);
+                next.memory.state.carry(to, &self.memory.state, from);
             }
         });
-        self.runs = runs;
         self.slots = slots;
-        self.memory = memory;
-        (self.axis_x, self.axis_y) = axes;
+        swap(&mut self.runs, &mut next.runs);
+        swap(&mut *self.memory, &mut next.memory);
+        swap(&mut self.axis_x, &mut next.axis_x);
+        swap(&mut self.axis_y, &mut next.axis_y);
+        self.spare = Some(next);
     }
 
-    fn near_runs(&self, frame: &Frame, places: Places<'_>, margin: f64) -> Vec<Run> {
+    /// Rollers that are near, and follow each other.
+    fn near_runs(
+        &self,
+        frame: &Frame,
+        places: Places<'_>,
+        margin: f64,
+    ) -> impl Iterator<Item = Run> {
         let [c, s] = frame.turn;
-        let near = |x: f64, y: f64| {
+        let near = move |roller: usize| {
+            let (x, y) = (places.x[roller], places.y[roller]);
             let (dx, dy) = (x - frame.origin.x, y - frame.origin.y);
             match &self.shape {
                 Shape::Teeth(teeth) => {
@@ -85,19 +111,13 @@ impl Contacts {
                 }
             }
         };
-        let mut runs: Vec<Run> = Vec::new();
-        for roller in 0..places.count {
-            if near(places.x[roller], places.y[roller]) {
-                match runs.last_mut() {
-                    Some(run) if run.start + run.count == roller => run.count += 1,
-                    _ => runs.push(Run {
-                        start: roller,
-                        count: 1,
-                    }),
-                }
-            }
-        }
-        runs
+        let mut rest = 0..places.count;
+        std::iter::from_fn(move || {
+            let start = rest.find(|&roller| near(roller))?;
+            let end = rest.find(|&roller| !near(roller));
+            let count = end.unwrap_or(places.count) - start;
+            Some(Run { start, count })
+        })
     }
 
     /// Cuts a run into lanes of eight rollers. The first takes fewer, where those likely to touch then need fewer lanes:

@@ -97,7 +97,7 @@ impl Member {
     }
 
     /// ω² and damping rate of the stiffest mode at an evaluation.
-    pub(crate) fn rates_at(&self, bodies: &Bodies, record: &Record) -> [f64; 2] {
+    pub(crate) fn rates_at(&self, bodies: &Bodies, record: &mut Record) -> [f64; 2] {
         let around = Surroundings {
             bodies,
             first: bodies.first + self.first_body,

@@ -1,5 +1,6 @@
 //! Integration tests in one binary: linking dozens of them takes longer than running them.
 
+mod allocations;
 mod articulation;
 mod clashes;
 mod marine;

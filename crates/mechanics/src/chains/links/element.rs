@@ -14,12 +14,12 @@ pub(crate) enum Partner {
     Mount(usize),
 }
 
-/// How a wheel or rail can move: which border unknowns shift its frame, and which one turns it.
+/// How a wheel or rail can move: which coordinates of the bodies shift its frame, and which one turns it, counted from the first.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Mount {
-    /// (border unknown, shift of the frame's origin per unit); unused ones have no unknown.
+    /// (coordinate, shift of the frame's origin per unit); unused ones have none.
     pub(crate) shifts: [Option<(usize, Vector)>; 2],
-    /// Border unknown of the rotation, and how far the frame turns with it.
+    /// Coordinate of the rotation, and how far the frame turns with it.
     pub(crate) turn: Option<(usize, f64)>,
 }
 

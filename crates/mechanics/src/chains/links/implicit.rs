@@ -24,6 +24,7 @@ use crate::system::GroupBodies;
 pub(super) enum Row {
     Nothing,
     Body(usize, Vector3<f64>),
+    /// Coordinates of wheels and tensioners, unused ones `usize::MAX`.
     Border([(usize, f64); 3]),
 }
 
@@ -31,27 +32,12 @@ pub(super) enum Row {
 #[derive(Clone, Copy, PartialEq)]
 enum Place {
     Link(usize),
-    /// The last link of a closed chain: first three of the border.
+    /// The last link of a closed chain, where it stands first in the border.
     Corner,
     Roller(usize),
 }
 
 impl Linkage {
-    /// Place of a further degree of freedom in the border.
-    pub(crate) fn border(&self, first: usize, dof: usize) -> usize {
-        dof - first + if self.closed { 3 } else { 0 }
-    }
-
-    fn place(&self, body: usize) -> Place {
-        if body >= self.links {
-            Place::Roller(body - self.links)
-        } else if self.closed && body + 1 == self.links {
-            Place::Corner
-        } else {
-            Place::Link(body)
-        }
-    }
-
     /// x ← (M + c C + k K)⁻¹ M x of the chain and, behind it, the bodies, at the state that the record was left by.
     pub(crate) fn solve(
         &self,
@@ -65,11 +51,14 @@ impl Linkage {
             impulses,
             ..
         } = record;
+        if matches!(self.joining, Joining::Hinges(_)) {
+            return self.solve_held(bodies, weights, joint_state, x, Prescribed::Kept);
+        }
         let few = x.len() - self.coordinates() <= MOST_WHEELS;
-        if weights.stiffness <= 0.0 && few && matches!(self.joining, Joining::Clearance(_)) {
+        if weights.stiffness <= 0.0 && few {
             return self.damp(bodies, weights.damping, joint_state, impulses, x);
         }
-        self.eliminate(bodies, weights, joint_state, x, Prescribed::Kept)
+        self.eliminate(bodies, weights, joint_state, x)
     }
 
     /// The least change of coordinates or velocities, of which there are `count`, that moves every pin towards its hole by what is
@@ -85,19 +74,10 @@ impl Linkage {
             damping: 0.0,
             stiffness: 0.0,
         };
-        // Solved for the change, which is nothing where no hinge opens.
         let mut change = vec![0.0; count];
-        // Every pass leaves 1e-5 of what was missing.
-        let solved = (0..3).all(|_| {
-            self.eliminate(
-                bodies,
-                none,
-                joint_state,
-                &mut change,
-                Prescribed::Given(towards),
-            )
-        });
-        solved.then_some(change)
+        let asked = Prescribed::Given(towards);
+        self.solve_held(bodies, none, joint_state, &mut change, asked)
+            .then_some(change)
     }
 
     pub(super) fn eliminate(
@@ -106,128 +86,29 @@ impl Linkage {
         weights: Weights,
         joint_state: &mut JointState,
         x: &mut [f64],
-        asked: Prescribed<'_>,
     ) -> bool {
-        let border = x.len() - self.coordinates() + if self.closed { 3 } else { 0 };
+        let mut equations = std::mem::take(&mut joint_state.equations);
+        // The last link of a closed chain touches both ends of the row, and stands in the border.
         let row = self.links - usize::from(self.closed);
-        let rollers = self.bodies.len() - self.links;
-        let mut blocks = std::mem::take(&mut joint_state.blocks);
-        blocks.clear(row, border);
-        let mut loose = std::mem::take(&mut joint_state.loose);
-        loose.resize_with(rollers, Loose::default);
-        for roller in &mut loose {
-            roller.clear();
-        }
-        self.add_masses(bodies, &mut blocks, &mut loose, x);
-        let first = if self.closed { 3 } else { 0 };
-        bodies.each_own(weights, |[i, j], weighted| {
-            // The lower half is kept.
-            if i >= j {
-                blocks.corner[(first + i, first + j)] += weighted;
-            }
+        let mut sum = Sum::new(self, &mut equations, row, x);
+        sum.add_masses(bodies, weights, x);
+        self.each_element(joint_state, |element| {
+            sum.add(element, &joint_state.mounts, weights);
         });
-        let mut sum = Sum {
-            linkage: self,
-            blocks: &mut blocks,
-            loose: &mut loose,
-            border,
-        };
-        let prescribed = matches!(asked, Prescribed::Given(_));
-        if !prescribed {
-            self.each_element(joint_state, |element| {
-                sum.add(element, &joint_state.mounts, weights);
-            });
-        }
-        let hinged = prescribed || matches!(self.joining, Joining::Hinges(_));
-        let known = hinged.then(|| x.to_vec());
-        if let Some(b) = &known {
-            if weights.stiffness > 0.0 {
-                sum.add_hinge_turns(joint_state, weights.stiffness);
-            }
-            sum.subtract_known(b);
-            sum.add_hinges(joint_state, weights, b, asked);
-        }
-        let solved = sum.eliminate_rollers() && blocks.solve();
+        let solved = sum.eliminate_rollers() && sum.blocks.solve();
         if solved {
-            self.read(&blocks, &loose, border, x);
-            for (x, b) in x.iter_mut().zip(known.iter().flatten()) {
-                *x += b;
-            }
+            sum.read(x);
         }
-        joint_state.blocks = blocks;
-        joint_state.loose = loose;
+        joint_state.equations = equations;
         solved
     }
+}
 
-    fn add_masses(
-        &self,
-        bodies: GroupBodies<'_>,
-        blocks: &mut Blocks,
-        loose: &mut [Loose],
-        x: &[f64],
-    ) {
-        for (index, body) in self.bodies.iter().enumerate() {
-            let mass = Vector3::new(body.mass, body.mass, body.inertia);
-            let b = Vector3::new(x[3 * index], x[3 * index + 1], x[3 * index + 2]);
-            let force = mass.component_mul(&b);
-            match self.place(index) {
-                Place::Link(i) => {
-                    blocks.diagonal[i] = Matrix3::from_diagonal(&mass);
-                    blocks.right[i] = force;
-                }
-                Place::Corner => {
-                    for k in 0..3 {
-                        blocks.corner[(k, k)] = mass[k];
-                        blocks.right_border[k] = force[k];
-                    }
-                }
-                Place::Roller(i) => {
-                    loose[i].own = Matrix3::from_diagonal(&mass);
-                    loose[i].right = force;
-                }
-            }
-        }
-        let first = if self.closed { 3 } else { 0 };
-        for (j, (x, &inertia)) in x[self.coordinates()..]
-            .iter()
-            .zip(bodies.inertias())
-            .enumerate()
-        {
-            blocks.corner[(first + j, first + j)] = inertia;
-            blocks.right_border[first + j] = inertia * x;
-        }
-    }
-
-    fn read(&self, blocks: &Blocks, loose: &[Loose], border: usize, x: &mut [f64]) {
-        for index in 0..self.links {
-            let found = self.found(blocks, index);
-            x[3 * index..3 * index + 3].copy_from_slice(found.as_slice());
-        }
-        for (i, roller) in loose.iter().enumerate() {
-            // x_r = D_r⁻¹ (b_r − L_rᵀ x_l − W_rᵀ x_w)
-            let mut right = roller.right;
-            if let Some(link) = roller.link {
-                right -= roller.coupling.transpose() * self.found(blocks, link);
-            }
-            for &(j, row) in &roller.beside {
-                right -= row * blocks.right_border[j];
-            }
-            let found = roller.inverse * right;
-            let index = self.links + i;
-            x[3 * index..3 * index + 3].copy_from_slice(found.as_slice());
-        }
-        let first = if self.closed { 3 } else { 0 };
-        for j in first..border {
-            x[self.coordinates() + j - first] = blocks.right_border[j];
-        }
-    }
-
-    fn found(&self, blocks: &Blocks, link: usize) -> Vector3<f64> {
-        match self.place(link) {
-            Place::Link(i) => blocks.right[i],
-            Place::Corner | Place::Roller(_) => Vector3::from_fn(|k, _| blocks.right_border[k]),
-        }
-    }
+/// The equations of the bodies, and the space for their solution.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Equations {
+    pub(super) blocks: Blocks,
+    pub(super) loose: Vec<Loose>,
 }
 
 /// The system under assembly.
@@ -235,23 +116,118 @@ pub(super) struct Sum<'a> {
     pub(super) linkage: &'a Linkage,
     pub(super) blocks: &'a mut Blocks,
     pub(super) loose: &'a mut [Loose],
-    pub(super) border: usize,
+    /// Unknowns of the border.
+    border: usize,
+    /// Those of the wheels among them come last, from this one on.
+    first: usize,
 }
 
-impl Sum<'_> {
-    pub(super) fn force(&mut self, body: usize, force: Vector3<f64>) {
-        match self.linkage.place(body) {
-            Place::Link(i) => self.blocks.right[i] += force,
-            Place::Corner => {
-                for k in 0..3 {
-                    self.blocks.right_border[k] += force[k];
-                }
-            }
-            Place::Roller(i) => self.loose[i].right += force,
+impl<'a> Sum<'a> {
+    /// Makes room for as many links in a row as given; a last one stands in the border.
+    pub(super) fn new(
+        linkage: &'a Linkage,
+        equations: &'a mut Equations,
+        row: usize,
+        x: &[f64],
+    ) -> Self {
+        let Equations { blocks, loose } = equations;
+        let first = 3 * (linkage.links - row);
+        let border = first + x.len() - linkage.coordinates();
+        blocks.clear(row, border);
+        loose.resize_with(linkage.bodies.len() - linkage.links, Loose::default);
+        loose.iter_mut().for_each(Loose::clear);
+        Self {
+            linkage,
+            blocks,
+            loose,
+            border,
+            first,
         }
     }
 
-    fn add(&mut self, element: &Element, mounts: &[Mount], weights: Weights) {
+    /// Inertia, M b on the right, and what the bodies have of their own.
+    pub(super) fn add_masses(&mut self, bodies: GroupBodies<'_>, weights: Weights, b: &[f64]) {
+        for (index, body) in self.linkage.bodies.iter().enumerate() {
+            let mass = Vector3::new(body.mass, body.mass, body.inertia);
+            let b = Vector3::new(b[3 * index], b[3 * index + 1], b[3 * index + 2]);
+            let force = mass.component_mul(&b);
+            match self.place(index) {
+                Place::Link(i) => {
+                    self.blocks.diagonal[i] = Matrix3::from_diagonal(&mass);
+                    self.blocks.right[i] = force;
+                }
+                Place::Corner => {
+                    for k in 0..3 {
+                        self.blocks.corner[(k, k)] = mass[k];
+                        self.blocks.right_border[k] = force[k];
+                    }
+                }
+                Place::Roller(i) => {
+                    self.loose[i].own = Matrix3::from_diagonal(&mass);
+                    self.loose[i].right = force;
+                }
+            }
+        }
+        let b = &b[self.linkage.coordinates()..];
+        for (j, (b, &inertia)) in b.iter().zip(bodies.inertias()).enumerate() {
+            let j = self.first + j;
+            self.blocks.corner[(j, j)] = inertia;
+            self.blocks.right_border[j] = inertia * b;
+        }
+        bodies.each_own(weights, |[i, j], weighted| {
+            // The lower half is kept.
+            if i >= j {
+                self.blocks.corner[(self.first + i, self.first + j)] += weighted;
+            }
+        });
+    }
+
+    /// Takes the solution out of the right-hand sides.
+    pub(super) fn read(&self, x: &mut [f64]) {
+        let links = self.linkage.links;
+        for link in 0..links {
+            let found = self.found(link);
+            x[3 * link..3 * link + 3].copy_from_slice(found.as_slice());
+        }
+        for (i, roller) in self.loose.iter().enumerate() {
+            // x_r = D_r⁻¹ (b_r − L_rᵀ x_l − W_rᵀ x_w)
+            let mut right = roller.right;
+            if let Some(link) = roller.link {
+                right -= roller.coupling.transpose() * self.found(link);
+            }
+            for &(j, row) in &roller.beside {
+                right -= row * self.blocks.right_border[j];
+            }
+            let found = roller.inverse * right;
+            let index = links + i;
+            x[3 * index..3 * index + 3].copy_from_slice(found.as_slice());
+        }
+        let wheels = self.blocks.right_border.iter().skip(self.first);
+        for (x, found) in x[self.linkage.coordinates()..].iter_mut().zip(wheels) {
+            *x = *found;
+        }
+    }
+
+    fn found(&self, link: usize) -> Vector3<f64> {
+        match self.place(link) {
+            Place::Link(i) => self.blocks.right[i],
+            Place::Corner | Place::Roller(_) => {
+                Vector3::from_fn(|k, _| self.blocks.right_border[k])
+            }
+        }
+    }
+
+    fn place(&self, body: usize) -> Place {
+        if body >= self.linkage.links {
+            Place::Roller(body - self.linkage.links)
+        } else if body < self.blocks.diagonal.len() {
+            Place::Link(body)
+        } else {
+            Place::Corner
+        }
+    }
+
+    pub(super) fn add(&mut self, element: &Element, mounts: &[Mount], weights: Weights) {
         let normal = weights.damping * element.damping + weights.stiffness * element.stiffness;
         let tangent = element.tangent();
         let rows = |direction: Vector, levers: [f64; 2]| {
@@ -298,6 +274,7 @@ impl Sum<'_> {
             Partner::Body(body) => self.add_turn(body, weight * other.max(0.0)),
             Partner::Mount(mount) => {
                 if let Some((j, ratio)) = mounts[mount].turn {
+                    let j = self.first + j;
                     self.blocks.corner[(j, j)] += weight * other.max(0.0) * ratio * ratio;
                 }
             }
@@ -305,7 +282,7 @@ impl Sum<'_> {
     }
 
     pub(super) fn add_turn(&mut self, body: usize, value: f64) {
-        match self.linkage.place(body) {
+        match self.place(body) {
             Place::Link(i) => self.blocks.diagonal[i][(2, 2)] += value,
             Place::Corner => self.blocks.corner[(2, 2)] += value,
             Place::Roller(i) => self.loose[i].own[(2, 2)] += value,
@@ -323,14 +300,14 @@ impl Sum<'_> {
         if weight <= 0.0 {
             return;
         }
-        let place = a.map(|body| self.linkage.place(body));
+        let place = a.map(|body| self.place(body));
         if let Some(place) = place {
             self.diagonal(place, row, weight);
         }
         match partner {
             Row::Nothing => {}
             Row::Body(body, other) => {
-                let there = self.linkage.place(body);
+                let there = self.place(body);
                 self.diagonal(there, other, weight);
                 if let Some(place) = place {
                     self.couple(place, row, there, other, -weight);
@@ -345,11 +322,11 @@ impl Sum<'_> {
                         if i == usize::MAX {
                             continue;
                         }
-                        let (high, low) = (i.max(j), i.min(j));
+                        let [high, low] = [i.max(j), i.min(j)].map(|j| self.first + j);
                         self.blocks.corner[(high, low)] += weight * value * other;
                     }
                     if let Some(place) = place {
-                        self.beside(place, j, row * (-weight * value));
+                        self.beside(place, self.first + j, row * (-weight * value));
                     }
                 }
             }
@@ -428,7 +405,7 @@ impl Sum<'_> {
     }
 
     /// Schur complements of the free rollers.
-    fn eliminate_rollers(&mut self) -> bool {
+    pub(super) fn eliminate_rollers(&mut self) -> bool {
         for index in 0..self.loose.len() {
             let Some(inverse) = self.loose[index].own.try_inverse() else {
                 return false;
@@ -452,7 +429,7 @@ impl Sum<'_> {
     /// What an eliminated roller leaves with its link.
     fn pass_on(&mut self, roller: &Loose, inverse: &Matrix3<f64>, right: &Vector3<f64>) {
         let Some(link) = roller.link else { return };
-        let place = self.linkage.place(link);
+        let place = self.place(link);
         let through = roller.coupling * inverse;
         let block = through * roller.coupling.transpose();
         let force = roller.coupling * right;

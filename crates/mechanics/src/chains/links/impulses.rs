@@ -283,7 +283,6 @@ mod tests {
     use chaindrive_integrate::Weights;
 
     use super::{Impulses, Joining, Step};
-    use crate::chains::links::held::Prescribed;
     use crate::chains::links::tests::{kinds, of, started, whole};
 
     /// The bodies' own equations, block by block, give the same answer: two independent eliminations.
@@ -324,8 +323,7 @@ mod tests {
                 whole(&system),
                 weights,
                 &mut record.chains[0].joint_state,
-                &mut blocks,
-                Prescribed::Kept
+                &mut blocks
             ));
             let size = b.iter().fold(0.0_f64, |m, b| m.max(b.abs()));
             for found in [&impulses, &roomy] {

@@ -32,7 +32,7 @@ impl Linkage {
         for (i, on) in contacts.teeth.iter().enumerate() {
             let frame = loads.frames[i];
             let wheel = &bodies.wheels[on.wheel];
-            let mount = self.wheel_mount(first, wheel, loads.ways[i]);
+            let mount = Self::wheel_mount(first, wheel, loads.ways[i]);
             joint_state.mounts.push(mount);
             let touch = &mut loads.teeth[i];
             let wrench = self.roll(&on.contacts, &frame, i, at, touch, joint_state);
@@ -44,7 +44,7 @@ impl Linkage {
             let number = contacts.teeth.len() + i;
             let frame = loads.frames[number];
             let support = &bodies.rails[on.rail].support;
-            let mount = self.rail_mount((bodies, first), support, loads.ways[number]);
+            let mount = Self::rail_mount((bodies, first), support, loads.ways[number]);
             joint_state.mounts.push(mount);
             let wrench = match &on.contact {
                 RailContact::Circles(contacts) => {
@@ -62,8 +62,8 @@ impl Linkage {
         }
     }
 
-    fn wheel_mount(&self, first: usize, wheel: &Wheel, way: Option<Way>) -> Mount {
-        let border = |dof: usize| self.border(first, dof);
+    fn wheel_mount(first: usize, wheel: &Wheel, way: Option<Way>) -> Mount {
+        let border = |dof: usize| dof - first;
         let turned = wheel.turn.turned_by();
         let turn = turned.map(|(dof, ratio)| (border(dof), ratio));
         let shifts = match &wheel.support {
@@ -78,12 +78,11 @@ impl Linkage {
     }
 
     fn rail_mount(
-        &self,
         (bodies, first): (&Bodies, usize),
         support: &RailSupport,
         way: Option<Way>,
     ) -> Mount {
-        let border = |dof: usize| self.border(first, dof);
+        let border = |dof: usize| dof - first;
         let turn = match support {
             RailSupport::Carried(index) => bodies.slides[*index].turn(),
             RailSupport::Fixed | RailSupport::Prescribed { .. } => None,

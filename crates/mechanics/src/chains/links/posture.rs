@@ -66,6 +66,8 @@ pub(crate) struct Shapes {
     pub(crate) mobilities: Vec<[f64; 2]>,
     /// Their roots.
     pub(crate) roots: Vec<[f64; 2]>,
+    /// Inertia of the link that turns most easily \[kg m²\].
+    pub(crate) least_inertia: f64,
 }
 
 impl Shapes {
@@ -93,7 +95,9 @@ impl Shapes {
             }
             values
         };
+        let inertias = links.iter().map(|link| link.inertia);
         Self {
+            least_inertia: inertias.fold(f64::INFINITY, f64::min),
             arms: [0, 1].map(|end| [all(&|link| link.arms[end].x), all(&|link| link.arms[end].y)]),
             mobility: shifted(&|link| 1.0 / link.mass),
             turning: shifted(&|link| 1.0 / link.inertia),

@@ -3,7 +3,7 @@
 use chaindrive_geometry::{Point, Vector};
 use nalgebra::Vector3;
 
-use super::{Joining, JointState, Linkage, Partner, cross, turned};
+use super::{Element, Joining, JointState, Linkage, Partner, cross, turned};
 use crate::chains::joints::Joints;
 use crate::chains::{Record, Surroundings};
 use crate::contact::{PlatePins, PlatePlaces};
@@ -24,9 +24,11 @@ impl Linkage {
     ///
     /// λ is the largest eigenvalue of a three-by-three matrix. Against a wheel the contact is shared unevenly:
     /// 1.1 for the chain, 11 for the wheel, and 1 where the wheel does not answer. Friction counts as damping.
-    pub(crate) fn rates(&self, around: Surroundings<'_>, record: &Record) -> [f64; 2] {
-        let joint_state = &record.joint_state;
-        let mut sums = vec![[Packed::default(); 2]; self.bodies.len()];
+    pub(crate) fn rates(&self, around: Surroundings<'_>, record: &mut Record) -> [f64; 2] {
+        let joint_state = &mut record.joint_state;
+        let mut sums = std::mem::take(&mut joint_state.sums);
+        sums.clear();
+        sums.resize(self.bodies.len(), [Packed::default(); 2]);
         self.add_joints(joint_state, &mut sums);
         for element in &joint_state.elements {
             let share = match element.b {
@@ -60,6 +62,7 @@ impl Linkage {
         let [mut squared, mut damping] = sums.iter().fold([0.0_f64; 2], |[k, d], sum| {
             [k.max(largest(&sum[0])), d.max(largest(&sum[1]))]
         });
+        joint_state.sums = sums;
         squared = squared.max(self.resting());
         for [rim, drag] in joint_state.wheel_rates(around) {
             squared = squared.max(RIM_SHARE * rim);
@@ -194,7 +197,7 @@ impl Linkage {
 }
 
 /// A symmetric matrix of three rows: diagonal, then entries (1, 0), (2, 0), (2, 1).
-type Packed = [f64; 6];
+pub(super) type Packed = [f64; 6];
 
 /// S += w r rᵀ
 #[inline]
@@ -225,25 +228,18 @@ fn largest(matrix: &Packed) -> f64 {
 
 impl JointState {
     /// Sums of stiffness and damping at the rims, times the mobility of the wheels.
-    fn wheel_rates(&self, around: Surroundings<'_>) -> Vec<[f64; 2]> {
+    fn wheel_rates(&self, around: Surroundings<'_>) -> impl Iterator<Item = [f64; 2]> {
         let Surroundings {
             bodies, contacts, ..
         } = around;
-        let mut sums = vec![[0.0; 2]; contacts.teeth.len()];
-        for element in &self.elements {
-            if let Partner::Mount(mount) = element.b
-                && mount < sums.len()
-            {
-                sums[mount][0] += element.stiffness;
-                sums[mount][1] += element.damping + element.drag;
-            }
-        }
-        for (sum, on) in sums.iter_mut().zip(&contacts.teeth) {
+        contacts.teeth.iter().enumerate().map(move |(mount, on)| {
             let mobility = bodies.mobility(on.wheel);
-            sum[0] *= mobility;
-            sum[1] *= mobility;
-        }
-        sums
+            let here = |element: &&Element| element.b == Partner::Mount(mount);
+            let sum = self.elements.iter().filter(here).fold([0.0; 2], |sum, at| {
+                [sum[0] + at.stiffness, sum[1] + (at.damping + at.drag)]
+            });
+            sum.map(|sum| sum * mobility)
+        })
     }
 }
 

@@ -21,16 +21,17 @@ impl Linkage {
         found: &mut Resistance,
     ) {
         // Behind the joints whole lanes; pins with clearance rub in their bushes.
-        let mut normal = vec![0.0; padded(self.joints.len())];
+        joint_state.normal.clear();
+        joint_state.normal.resize(padded(self.joints.len()), 0.0);
         if let (Joining::Hinges(hinges), true) = (&self.joining, joints.rub()) {
-            self.press(hinges, at, joint_state, &mut normal);
+            self.press(hinges, at, joint_state);
         }
         let power = dispatch(
             self.arch,
             Torques {
                 joints,
                 posture: &joint_state.posture,
-                normal: &normal,
+                normal: &joint_state.normal,
                 t: at.t,
                 found: &mut *found,
             },
@@ -51,15 +52,14 @@ impl Linkage {
     ///
     /// Friction changes them by the share μ r/p of itself, a hundredth, which is left out here: their torques are those of these
     /// forces, and what they do and lose is exact.
-    fn press(
-        &self,
-        hinges: &Hinges,
-        at: Moment<'_>,
-        joint_state: &mut JointState,
-        normal: &mut [f64],
-    ) {
+    fn press(&self, hinges: &Hinges, at: Moment<'_>, joint_state: &mut JointState) {
         hinges.find(self, at, joint_state);
-        for (normal, force) in normal.iter_mut().zip(&joint_state.hinge_forces) {
+        let JointState {
+            normal,
+            hinge_forces,
+            ..
+        } = joint_state;
+        for (normal, force) in normal.iter_mut().zip(hinge_forces) {
             *normal = force.norm();
         }
     }
@@ -70,11 +70,7 @@ impl Linkage {
     /// I φ̈_i = M_i − M_{i+1},   M_i = −σ (φ_i − φ_{i−1}) − c (ω_i − ω_{i−1}):   ω² ≤ 4 σ/I,   D ≤ 4 c/I
     /// ```
     pub(super) fn joint_rates(&self, slopes: [f64; 2]) -> [f64; 2] {
-        let lightest = self.bodies[..self.links]
-            .iter()
-            .map(|body| body.inertia)
-            .fold(f64::INFINITY, f64::min);
-        slopes.map(|slope| 4.0 * slope / lightest)
+        slopes.map(|slope| 4.0 * slope / self.shapes.least_inertia)
     }
 }
 

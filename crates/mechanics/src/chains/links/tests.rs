@@ -176,13 +176,13 @@ pub(super) fn kinds() -> Vec<(&'static str, Parts)> {
             bicycle(links(clearance(), free_rollers())),
         ),
         ("sprung wheel", sprung),
-        ("strand, smooth", smooth(strand(rough.clone()))),
-        ("strand, rough", strand(rough)),
+        ("strand, smooth", smooth(strand(rough.clone(), 30e-6))),
+        ("strand, rough", strand(rough, 30e-6)),
     ]
 }
 
-/// Eleven links of a chain held at both ends, a little longer than they are apart.
-fn strand(mut parts: Parts) -> Parts {
+/// Eleven links of a chain held at both ends, each laid longer than it is by so much.
+pub(super) fn strand(mut parts: Parts, longer: f64) -> Parts {
     let links = 11;
     let placed = &mut parts.chains[0];
     let chain = &mut placed.chain;
@@ -191,7 +191,7 @@ fn strand(mut parts: Parts) -> Parts {
     chain.damping.truncate(links);
     chain.masses = vec![chain.masses[0]; links + 1];
     chain.ends = Ends::Open([End::Fixed, End::Fixed]);
-    let pitch = chain.pitch + 30e-6;
+    let pitch = chain.pitch + longer;
     placed.layout = Layout::Points {
         positions: (0..=links)
             .map(|i| Point::new(pitch * i as f64, 1e-6 * (i % 3) as f64))

@@ -227,14 +227,7 @@ impl Line {
         match partner_row(element, &joint_state.mounts, direction, levers[1]) {
             Row::Nothing => {}
             Row::Body(body, row) => self.bodies[1] = (body, -row),
-            Row::Border(entries) => {
-                let skip = if linkage.closed { 3 } else { 0 };
-                for (entry, (j, value)) in self.border.iter_mut().zip(entries) {
-                    if j != usize::MAX {
-                        *entry = (j - skip, value);
-                    }
-                }
-            }
+            Row::Border(entries) => self.border = entries,
         }
         for (mobile, (body, row)) in self.mobile.iter_mut().zip(&self.bodies) {
             if *body != NOBODY {
