@@ -2,6 +2,7 @@
 
 mod articulation;
 mod clashes;
+mod loads;
 mod marine;
 mod marine_statics;
 mod modes_of_links;
