@@ -112,7 +112,12 @@ impl Bodies {
     /// Sum of torques on a shaft that turns so \[N m\].
     pub(crate) fn torque(&self, torques: &[Torque], turning: Kinematics, at: Moment<'_>) -> f64 {
         let angle = |torque: &Torque| match torque.follows() {
-            Some(shaft) => self.shafts[shaft].turn.kinematics(at.t, at.q, at.v).position,
+            Some(shaft) => {
+                self.shafts[shaft]
+                    .turn
+                    .kinematics(at.t, at.q, at.v)
+                    .position
+            }
             None => turning.position,
         };
         let all = torques.iter();

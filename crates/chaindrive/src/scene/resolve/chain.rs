@@ -268,11 +268,7 @@ fn each(
     }
 }
 
-fn ends(
-    text: &schema::Chain,
-    scene: &SceneText,
-    findings: &mut Findings<'_>,
-) -> Option<Ends> {
+fn ends(text: &schema::Chain, scene: &SceneText, findings: &mut Findings<'_>) -> Option<Ends> {
     let Some([first, last]) = &text.ends else {
         return Some(Ends::Closed);
     };

@@ -101,9 +101,7 @@ fn mean_speed(
 fn speed_given(motion: Option<&schema::Motion<Angle, AngularSpeed>>) -> Option<f64> {
     let speed = match motion? {
         schema::Motion::Constant { speed } => *speed,
-        schema::Motion::Harmonics { speed, .. } | schema::Motion::Orders { speed, .. } => {
-            (*speed)?
-        }
+        schema::Motion::Harmonics { speed, .. } | schema::Motion::Orders { speed, .. } => (*speed)?,
         _ => return None,
     };
     Some(speed.0).filter(|speed| *speed != 0.0)

@@ -198,12 +198,7 @@ impl Ends<'_> {
     }
 
     /// The shaft that a name means.
-    pub(super) fn one(
-        &self,
-        name: &str,
-        path: &str,
-        findings: &mut Findings<'_>,
-    ) -> Option<usize> {
+    pub(super) fn one(&self, name: &str, path: &str, findings: &mut Findings<'_>) -> Option<usize> {
         let shaft = self.shafts.iter().position(|known| *known == name);
         let sprocket = || self.sprockets.iter().position(|known| *known == name);
         let found = shaft

@@ -52,7 +52,6 @@ pub(crate) enum Motion<Position, Rate> {
         #[serde(default)]
         of: Option<String>,
         /// The orders.
-        #[schemars(extend("minItems" = 1))]
         terms: Vec<Order<Position>>,
     },
     /// Values at given times, joined by a natural cubic spline.
@@ -153,7 +152,6 @@ pub(crate) enum Torque {
         #[serde(default)]
         of: Option<String>,
         /// The orders.
-        #[schemars(extend("minItems" = 1))]
         terms: Vec<Order<Moment>>,
     },
     /// A torque over time, along straight lines, held beyond the ends.
