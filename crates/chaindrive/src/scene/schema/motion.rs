@@ -52,7 +52,7 @@ pub(crate) enum Motion<Position, Rate> {
         #[serde(default)]
         of: Option<String>,
         /// The orders.
-        terms: Vec<Order<Position>>,
+        terms: Vec<OrderTerm<Position>>,
     },
     /// Values at given times, joined by a natural cubic spline.
     Table {
@@ -82,7 +82,7 @@ pub(crate) struct Term<Position> {
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Order_of_{Amplitude}")]
-pub(crate) struct Order<Amplitude> {
+pub(crate) struct OrderTerm<Amplitude> {
     /// Periods per turn [–]: 0.5 repeats every second turn.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) order: Ratio,
@@ -152,7 +152,7 @@ pub(crate) enum Torque {
         #[serde(default)]
         of: Option<String>,
         /// The orders.
-        terms: Vec<Order<Moment>>,
+        terms: Vec<OrderTerm<Moment>>,
     },
     /// A torque over time, along straight lines, held beyond the ends.
     TimeTable {
