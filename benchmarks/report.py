@@ -79,7 +79,7 @@ def kernels(report: Report) -> None:
         "Nanoseconds per link and "
         f"step, median and least of {report.repeats}.",
     )
-    marine = cd.scenes.marine_engine()
+    marine = cd.scenes.marine_engine_bare()
     bare = marine.replace({"guides": []})
     drives = {
         "marine engine, four sprockets": bare,
@@ -254,7 +254,7 @@ def precision(report: Report) -> None:
         "mean; cheapest rows within an error. Real time: simulated over processor time, median "
         "of the repeats.",
     )
-    marine = cd.scenes.marine_engine()
+    marine = cd.scenes.marine_engine_bare()
     drives = {
         "large chain on two sprockets": cd.scenes.marine_two_sprockets(),
         "marine engine, four sprockets": marine.replace({"guides": []}),
@@ -382,7 +382,7 @@ def long_runs(report: Report) -> None:
         "that begin with pretensions a billionth apart; chaos makes them different runs of the "
         "same drive.",
     )
-    drive = cd.scenes.marine_engine().replace({"guides": []})
+    drive = cd.scenes.marine_engine_bare().replace({"guides": []})
     options = {"until": until, "every": 5e-4, "record": "span_tension", "error": False}
 
     def account(result):
@@ -450,7 +450,7 @@ def sweeps(report: Report) -> None:
         for jobs in (1, cores):
             begin = time.perf_counter()
             results.append(
-                cd.sweep(cd.scenes.marine_engine(), vary, until=0.02, every=1e-3, jobs=jobs)
+                cd.sweep(cd.scenes.marine_engine_bare(), vary, until=0.02, every=1e-3, jobs=jobs)
             )
             walls.append(time.perf_counter() - begin)
         measured = ["stepping_time", "real_time_factor"]

@@ -1,6 +1,6 @@
 """Write drive.json: the marine drive in plain numbers, for programs that know no scene files.
 
-The drive is the preset `marine_engine` without guides, its tensioner wheel fixed where it is
+The drive is the preset `marine_engine_bare` without guides, its tensioner wheel fixed where it is
 drawn, its teeth with a circular seat and straight flanks. The initial state is the static
 equilibrium under gravity and load, set going at the speed of the chain, as chaindrive starts a run.
 
@@ -22,7 +22,7 @@ CENTRE_SEATS = 0.505  # seat radius over roller diameter, the least of ISO 606
 
 def scene():
     """Return the drive that every program simulates."""
-    text = cd.scenes.marine_engine().to_dict()
+    text = cd.scenes.marine_engine_bare().to_dict()
     del text["guides"], text["tensioners"]
     # What every program has: no friction in joints, the loss of Lankarani and Nikravesh.
     text["defaults"] = "0.1"

@@ -44,7 +44,7 @@ def bicycle(changes=None):
 
 def sharp_guides():
     """Return the marine engine with guides that are straight lines with bare corners."""
-    drive = cd.scenes.marine_engine()
+    drive = cd.scenes.marine_engine_bare()
     changes = {}
     for name in drive.guides:
         index = drive.guides.index(name)

@@ -32,7 +32,7 @@ CHANNELS = [
 
 def drive(overload=OVERLOAD, wear=WEAR):
     """Return the drive with a brake torque of `overload` [N m] on the idler."""
-    scene = cd.scenes.marine_engine().to_dict()
+    scene = cd.scenes.marine_engine_bare().to_dict()
     direction = scene["tensioners"][0]["carrier"]["direction"]
     del scene["guides"], scene["tensioners"]
     torques = [0, 0, overload, overload, 0]

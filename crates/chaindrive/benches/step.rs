@@ -9,7 +9,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 fn steps(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("step");
     for preset in [
-        "marine_engine",
+        "marine_engine_bare",
         "marine_two_sprockets",
         "industrial_16b",
         "spinning_ring",

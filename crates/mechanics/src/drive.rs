@@ -80,6 +80,24 @@ impl Shaft {
             inertia: 0.0,
         }
     }
+
+    /// All torques on it.
+    pub(crate) fn torques(&self) -> impl Iterator<Item = &Torque> {
+        let [drive, load]: [&[Torque]; 2] = match &self.rotation {
+            Rotation::Prescribed(_) => [&[], &[]],
+            Rotation::Free { drive, load } => [drive, load],
+        };
+        drive.iter().chain(load)
+    }
+
+    /// All torques on it, to change them.
+    pub(crate) fn torques_mut(&mut self) -> impl Iterator<Item = &mut Torque> {
+        let [drive, load]: [&mut [Torque]; 2] = match &mut self.rotation {
+            Rotation::Prescribed(_) => [&mut [], &mut []],
+            Rotation::Free { drive, load } => [drive, load],
+        };
+        drive.iter_mut().chain(load)
+    }
 }
 
 /// What turns a shaft.

@@ -1,7 +1,8 @@
 //! Parts of a drive that nothing joins: each group moves, and settles, as if it were alone.
 
+use crate::Torque;
 use crate::drive::{
-    Adjust, Coupling, GearPair, GuideSupport, Layout, Parts, PlacedChain, Stop, Support,
+    Adjust, Coupling, GearPair, GuideSupport, Layout, Parts, PlacedChain, Shaft, Stop, Support,
 };
 
 /// Sets that grow together: every entry points to one of its own set, in the end to the least.
@@ -79,6 +80,11 @@ pub(crate) fn groups(parts: &Parts) -> Vec<Group> {
     for (index, body) in parts.guides.iter().enumerate() {
         if let GuideSupport::Tensioner(i) = body.support {
             sets.join(guides + index, tensioners + i);
+        }
+    }
+    for (index, shaft) in parts.shafts.iter().enumerate() {
+        for followed in shaft.torques().filter_map(Torque::follows) {
+            sets.join(shafts + index, shafts + followed);
         }
     }
     let couplings = parts.couplings.iter().map(|coupling| coupling.shafts);
@@ -182,12 +188,16 @@ impl Group {
                 ..pair
             }
         });
+        let mut shafts = pick(&whole.shafts, &self.shafts);
+        for torque in shafts.iter_mut().flat_map(Shaft::torques_mut) {
+            torque.refer(shaft_at);
+        }
         Parts {
             chains: chains.collect(),
             sprockets: sprockets.collect(),
             guides: guides.collect(),
             tensioners: pick(&whole.tensioners, &self.tensioners),
-            shafts: pick(&whole.shafts, &self.shafts),
+            shafts,
             couplings: couplings.collect(),
             gears: gears.collect(),
             settle: whole.settle,

@@ -57,4 +57,4 @@ pub use motion::{Harmonic, Kinematics, Motion, Table};
 pub use observe::{ChainSize, Observation};
 pub use system::{Input, Record, System, SystemMemory};
 pub use tensioner::{Carrier, Push, PushForce, Tensioner, carriers, pushes};
-pub use torque::{Argument, Torque};
+pub use torque::{Argument, Order, Torque};

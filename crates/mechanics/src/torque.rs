@@ -5,7 +5,18 @@ use std::f64::consts::TAU;
 use crate::DriveError;
 use crate::motion::Table;
 
-/// A torque on a free sprocket \[N m\], counter-clockwise positive; several add up.
+/// One order of a torque: A sin(n θ + φ).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Order {
+    /// Amplitude A \[N m\].
+    pub amplitude: f64,
+    /// Order n, periods per turn \[–\].
+    pub order: f64,
+    /// Phase φ \[rad\].
+    pub phase: f64,
+}
+
+/// A torque on a free shaft \[N m\], counter-clockwise positive; several add up.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Torque {
     /// M = M₀.
@@ -20,14 +31,12 @@ pub enum Torque {
         /// Quadratic coefficient c₂ \[N m s²\], not negative.
         quadratic: f64,
     },
-    /// M = A sin(n θ + φ), a cam or gas torque of order n.
-    Harmonic {
-        /// Amplitude A \[N m\].
-        amplitude: f64,
-        /// Order n \[per turn\].
-        order: f64,
-        /// Phase φ \[rad\].
-        phase: f64,
+    /// M = Σ Aᵢ sin(nᵢ θ + φᵢ), such as the torque of cams or of gas, by orders of a shaft.
+    Orders {
+        /// The shaft that θ belongs to, by index; none: the one that the torque acts on.
+        of: Option<usize>,
+        /// The orders.
+        terms: Vec<Order>,
     },
     /// Straight lines between points over time, angle or speed: a torque never overshoots its table.
     /// Beyond the ends the torque of the nearest end holds.
@@ -53,27 +62,32 @@ pub enum Torque {
 pub enum Argument {
     /// Time \[s\].
     Time,
-    /// Angle \[rad\], taken within one turn.
-    Angle,
+    /// Angle \[rad\], taken within so many turns.
+    Angle {
+        /// The shaft that the angle belongs to, by index; none: the one that the torque acts on.
+        of: Option<usize>,
+        /// Turns after which the torque repeats, at least one.
+        turns: u32,
+    },
     /// Speed \[rad/s\].
     Speed,
 }
 
 impl Torque {
-    /// Torque \[N m\] at time `t` \[s\], angle \[rad\] and speed \[rad/s\].
+    /// Torque \[N m\] at time `t` \[s\], angle \[rad\] of the shaft that it [follows](Self::follows), and speed \[rad/s\] of the
+    /// shaft that it acts on.
     pub fn at(&self, t: f64, angle: f64, speed: f64) -> f64 {
         match self {
             Self::Constant { torque } => *torque,
             Self::Resistance { linear, quadratic } => -speed * (linear + quadratic * speed.abs()),
-            Self::Harmonic {
-                amplitude,
-                order,
-                phase,
-            } => amplitude * (order * angle + phase).sin(),
+            Self::Orders { terms, .. } => terms
+                .iter()
+                .map(|term| term.amplitude * (term.order * angle + term.phase).sin())
+                .sum(),
             Self::Table { over, curve } => {
                 let argument = match over {
                     Argument::Time => t,
-                    Argument::Angle => angle.rem_euclid(TAU),
+                    Argument::Angle { turns, .. } => angle.rem_euclid(f64::from(*turns) * TAU),
                     Argument::Speed => speed,
                 };
                 curve.polyline(argument)
@@ -86,6 +100,30 @@ impl Torque {
                 let s = ((t - start) / duration).clamp(0.0, 1.0);
                 torque * s * s * (3.0 - 2.0 * s)
             }
+        }
+    }
+
+    /// The shaft whose angle it depends on, by index; none where that is its own, or it depends on no angle.
+    pub fn follows(&self) -> Option<usize> {
+        match self {
+            Self::Orders { of, .. }
+            | Self::Table {
+                over: Argument::Angle { of, .. },
+                ..
+            } => *of,
+            _ => None,
+        }
+    }
+
+    /// Puts another index in the place of that of the shaft it follows.
+    pub(crate) fn refer(&mut self, place: impl FnOnce(usize) -> usize) {
+        match self {
+            Self::Orders { of, .. }
+            | Self::Table {
+                over: Argument::Angle { of, .. },
+                ..
+            } => *of = of.map(place),
+            _ => {}
         }
     }
 
@@ -135,15 +173,20 @@ impl Torque {
                 not_negative("linear", *linear)?;
                 not_negative("quadratic", *quadratic)
             }
-            Self::Harmonic {
-                amplitude,
-                order,
-                phase,
-            } => {
-                finite("amplitude", *amplitude)?;
-                finite("order", *order)?;
-                finite("phase", *phase)
-            }
+            Self::Orders { terms, .. } => terms.iter().try_for_each(|term| {
+                finite("amplitude", term.amplitude)?;
+                finite("order", term.order)?;
+                finite("phase", term.phase)
+            }),
+            Self::Table {
+                over: Argument::Angle { turns, .. },
+                ..
+            } => DriveError::require(
+                *turns > 0,
+                &format!("{name}.turns"),
+                f64::from(*turns),
+                "at least 1",
+            ),
             Self::Table { .. } => Ok(()),
             Self::Ramp {
                 torque,
@@ -160,5 +203,58 @@ impl Torque {
                 )
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    #[test]
+    fn orders_add_up() {
+        let term = |amplitude, order, phase| Order {
+            amplitude,
+            order,
+            phase,
+        };
+        let torque = Torque::Orders {
+            of: None,
+            terms: vec![term(2.0, 0.5, 0.0), term(-3.0, 6.0, 0.4)],
+        };
+        for i in -20..20 {
+            let angle = 0.37 * f64::from(i);
+            // M = Σ A sin(n θ + φ)
+            let expected = 2.0 * (0.5 * angle).sin() - 3.0 * (6.0 * angle + 0.4).sin();
+            assert!((torque.at(1.0, angle, -9.0) - expected).abs() < 1e-14);
+        }
+    }
+
+    /// One point a half-turn: the table repeats after two turns and not after one.
+    #[test]
+    fn a_table_over_two_turns_has_a_period_of_four_pi() {
+        let angles = (0..5).map(|i| PI * f64::from(i)).collect();
+        let curve = Table::new(angles, vec![1.0, 5.0, -2.0, 0.0, 1.0]).unwrap();
+        let over = |turns| Torque::Table {
+            over: Argument::Angle { of: None, turns },
+            curve: curve.clone(),
+        };
+        let torque = over(2);
+        for (angle, expected) in [
+            (0.0, 1.0),
+            (0.5 * PI, 3.0),
+            (2.5 * PI, -1.0),
+            (3.5 * PI, 0.5),
+        ] {
+            for turns in [-2.0, 0.0, 2.0, 20.0] {
+                let found = torque.at(0.0, angle + turns * 2.0 * PI, 0.0);
+                assert!((found - expected).abs() < 1e-12, "{found} at {angle}");
+            }
+        }
+        assert!((torque.at(0.0, 2.5 * PI, 0.0) - torque.at(0.0, 0.5 * PI, 0.0)).abs() > 1.0);
+        assert!(over(1).check("load").is_ok());
+        let problem = over(0).check("load").unwrap_err().to_string();
+        assert!(problem.contains("load.turns"), "{problem}");
     }
 }

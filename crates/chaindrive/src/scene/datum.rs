@@ -71,7 +71,7 @@ mod tests {
 
     #[test]
     fn values_are_as_they_were_understood() {
-        let scene = Scene::preset("marine_engine").unwrap();
+        let scene = Scene::preset("marine_engine_bare").unwrap();
         let scene = scene
             .replace("sprockets.crank.motion.speed", "-60 rpm")
             .unwrap();

@@ -4,11 +4,16 @@ use super::suggest::one_of;
 use super::{Problem, Scene, SceneError};
 
 /// Name, one-line description and text of every embedded scene.
-const PRESETS: [(&str, &str, &str); 13] = [
+const PRESETS: [(&str, &str, &str); 14] = [
     (
         "marine_engine",
-        "Camshaft drive of a large two-stroke engine: four sprockets, three guide bars, tensioner",
+        "Camshaft drive of a large two-stroke engine under its pumps and valves: four sprockets, three guide bars, tensioner",
         include_str!("../../scenes/marine_engine.toml"),
+    ),
+    (
+        "marine_engine_bare",
+        "The same drive as the paper models it: no friction in the joints, constant loads",
+        include_str!("../../scenes/marine_engine_bare.toml"),
     ),
     (
         "marine_two_sprockets",

@@ -48,7 +48,7 @@ fn error(start: &Assembled, choice: &Choice, reference: &Run, until: f64) -> f64
 
 #[test]
 fn the_marine_drives_keep_what_was_asked() {
-    for scene in ["marine_two_sprockets", "marine_engine"] {
+    for scene in ["marine_two_sprockets", "marine_engine_bare"] {
         let start = start(scene);
         for accuracy in [0.01, 0.001] {
             let choice = chosen(&start, accuracy);

@@ -20,7 +20,7 @@ fn close(found: f64, expected: f64, relative: f64) {
 
 #[test]
 fn the_marine_engine() {
-    let it = describe("marine_engine");
+    let it = describe("marine_engine_bare");
     assert_eq!(it.chains[0].links, 122);
     close(it.chains[0].mass_per_length, 3.01 / 0.0889, 1e-12);
     close(

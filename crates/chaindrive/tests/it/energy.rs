@@ -11,7 +11,7 @@ fn is_distrusted(summary: &Summary, simulation: &Simulation) -> bool {
 
 /// Largest residual and energy supplied \[J\] of a run of the marine drive.
 fn ledger(run: &Run) -> Result<(f64, f64), Box<dyn Error>> {
-    let drive = Scene::preset("marine_engine")?.drive()?;
+    let drive = Scene::preset("marine_engine_bare")?.drive()?;
     let mut simulation = Simulation::start(&drive, run)?;
     let mut summary = Summary::new(&simulation);
     while let Some(sample) = simulation.next_sample()? {

@@ -196,7 +196,7 @@ fn errors_of_a_drive_under_overload_are_as_large_as_stated() {
 fn stated_horizons_of_many_drives() {
     for case in [
         preset("marine_two_sprockets", 0.08),
-        preset("marine_engine", 0.08),
+        preset("marine_engine_bare", 0.08),
         preset("industrial_16b", 0.02),
         preset("bicycle", 0.016),
         preset("bicycle_slack", 0.016),

@@ -12,6 +12,7 @@ mod linkage;
 mod linkages;
 mod links;
 mod live;
+mod loads;
 mod mistakes;
 mod precision;
 mod reference;

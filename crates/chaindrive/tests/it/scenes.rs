@@ -45,7 +45,10 @@ fn a_preset_that_does_not_exist_names_its_neighbour() {
 
 #[test]
 fn the_marine_preset_is_what_its_source_says() {
-    let drive = Scene::preset("marine_engine").unwrap().drive().unwrap();
+    let drive = Scene::preset("marine_engine_bare")
+        .unwrap()
+        .drive()
+        .unwrap();
     assert_eq!(drive.chains[0].chain.links(), 122);
     assert!((drive.chains[0].chain.stiffness[7] - 815e6).abs() < 1e-3);
     // c = 2 ζ √(k m) = 2.97 kN s/m
@@ -73,7 +76,7 @@ fn values_are_replaced_by_name_and_by_index() {
 
 #[test]
 fn the_text_of_a_changed_scene_reproduces_it_and_keeps_its_comments() {
-    let scene = Scene::preset("marine_engine").unwrap();
+    let scene = Scene::preset("marine_engine_bare").unwrap();
     let other = scene
         .replace("chain.damping_ratio", "0.01")
         .and_then(|scene| scene.replace("run.method", "verlet"))
@@ -108,7 +111,7 @@ fn a_scene_in_json_stays_json() {
 
 #[test]
 fn a_value_is_left_out_and_the_rest_of_the_text_stays() {
-    let scene = Scene::preset("marine_engine").unwrap();
+    let scene = Scene::preset("marine_engine_bare").unwrap();
     let asking = scene.replace("run.accuracy", "0.1 %").unwrap();
     assert_eq!(asking.run_defaults().accuracy, Some(1e-3));
     let again = asking.without("run.accuracy").unwrap();
@@ -269,7 +272,7 @@ fn the_hanging_chain_pulls_as_a_catenary_does() {
 /// 5 kN m on a camshaft of 0.68 m make a difference of 7.4 kN between the strands beside it.
 #[test]
 fn the_tensioner_of_the_marine_engine_holds_its_chain() {
-    let (least, most) = settled_tensions("marine_engine");
+    let (least, most) = settled_tensions("marine_engine_bare");
     assert!((12.5e3..13.2e3).contains(&least), "{least} N");
     assert!((20.2e3..21.2e3).contains(&most), "{most} N");
 }

@@ -310,7 +310,7 @@ fn an_elastic_ring_stretches_by_its_rotation() {
 /// ```
 #[test]
 fn forces_of_whole_drives_agree_with_their_modes() {
-    for name in ["marine_engine", "timing_drive", "industrial_16b"] {
+    for name in ["marine_engine_bare", "timing_drive", "industrial_16b"] {
         let mut parts = Scene::preset(name)
             .unwrap()
             .drive()

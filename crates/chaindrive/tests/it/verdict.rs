@@ -166,7 +166,7 @@ fn losses_that_are_uncertain_are_a_caution() {
         step: Some(2.3e-5),
         ..run(0.05, 50.0)
     };
-    let found = verdict(&scene("marine_engine", &[]), &coarse);
+    let found = verdict(&scene("marine_engine_bare", &[]), &coarse);
     assert!(names(&found).contains(&"losses-uncertain"), "{found}");
     assert_eq!(found.trust, Trust::Caution);
 }

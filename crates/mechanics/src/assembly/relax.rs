@@ -399,9 +399,9 @@ impl Newton<'_> {
         let still = vec![0.0; q.len()];
         for shaft in &bodies.shafts {
             if let Some((dof, ratio)) = shaft.turn.turned_by() {
-                let angle = shaft.turn.kinematics(begin, q, &still).position;
-                let torques = shaft.drive.iter().chain(&shaft.load);
-                let torque: f64 = torques.map(|m| m.at(begin, angle, 0.0)).sum();
+                let kinematics = shaft.turn.kinematics(begin, q, &still);
+                let of = |torques| bodies.torque(torques, kinematics, at_rest(begin, q, &still));
+                let torque = of(&shaft.drive) + of(&shaft.load);
                 sum.force(dof, -load.torque * (ratio * torque));
             }
         }

@@ -1,10 +1,10 @@
 //! Checks of shafts, couplings and gears.
 
 use super::{conflict, reference};
-use crate::DriveError;
 use crate::drive::{Adjust, Coupling, GearPair, Layout, Parts, Rotation, Shaft, Support};
 use crate::groups::Sets;
 use crate::trains::trains;
+use crate::{DriveError, Torque};
 
 /// Every reason why the shafts of `parts` cannot turn.
 pub(super) fn problems(parts: &Parts) -> Vec<DriveError> {
@@ -27,6 +27,10 @@ fn references(parts: &Parts) -> Vec<DriveError> {
     let known = parts.shafts.len();
     let shaft = |place: String, index: usize| reference(&place, "shaft", index, known);
     let mut found = Vec::new();
+    for (index, turned) in parts.shafts.iter().enumerate() {
+        let followed = turned.torques().filter_map(Torque::follows);
+        found.extend(followed.filter_map(|other| shaft(place(index, parts), other)));
+    }
     for sprocket in &parts.sprockets {
         found.extend(shaft(
             format!("sprockets.{}", sprocket.name),

@@ -102,6 +102,11 @@ impl System {
                 *slide = group.tensioners[*slide];
             }
         }
+        for shaft in &mut self.bodies.shafts {
+            for torque in shaft.drive.iter_mut().chain(&mut shaft.load) {
+                torque.refer(|index| group.shafts[index]);
+            }
+        }
         for coupling in &mut self.bodies.couplings {
             coupling.shafts = coupling.shafts.map(|shaft| group.shafts[shaft]);
         }

@@ -121,14 +121,8 @@ impl Bodies {
         }
         for (i, shaft) in self.shafts.iter().enumerate() {
             let kinematics = shaft.turn.kinematics(at.t, at.q, at.v);
-            let sum = |torques: &[crate::Torque]| -> f64 {
-                let angle = kinematics.position;
-                torques
-                    .iter()
-                    .map(|m| m.at(at.t, angle, kinematics.rate))
-                    .sum()
-            };
-            let (driving, loading) = (sum(&shaft.drive) + self.inputs.torque(i), sum(&shaft.load));
+            let driving = self.torque(&shaft.drive, kinematics, at) + self.inputs.torque(i);
+            let loading = self.torque(&shaft.load, kinematics, at);
             rates[Flow::DriveTorque as usize] += driving * kinematics.rate;
             rates[Flow::Load as usize] += loading * kinematics.rate;
             if let Some((dof, ratio)) = shaft.turn.turned_by() {

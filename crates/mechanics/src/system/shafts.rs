@@ -109,6 +109,22 @@ impl Bodies {
         self.inertias[dof - self.first]
     }
 
+    /// Sum of torques on a shaft that turns so \[N m\].
+    pub(crate) fn torque(&self, torques: &[Torque], turning: Kinematics, at: Moment<'_>) -> f64 {
+        let angle = |torque: &Torque| match torque.follows() {
+            Some(shaft) => {
+                self.shafts[shaft]
+                    .turn
+                    .kinematics(at.t, at.q, at.v)
+                    .position
+            }
+            None => turning.position,
+        };
+        let all = torques.iter();
+        all.map(|torque| torque.at(at.t, angle(torque), turning.rate))
+            .sum()
+    }
+
     /// Everything that turns.
     pub(crate) fn turns_mut(&mut self) -> impl Iterator<Item = &mut Turn> {
         let wheels = self.wheels.iter_mut().map(|wheel| &mut wheel.turn);

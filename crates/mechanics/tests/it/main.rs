@@ -3,6 +3,7 @@
 mod allocations;
 mod articulation;
 mod clashes;
+mod loads;
 mod marine;
 mod marine_statics;
 mod modes_of_links;

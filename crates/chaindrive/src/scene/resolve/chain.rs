@@ -84,7 +84,7 @@ pub(super) fn resolve(
     let roller_length = text.roller.as_ref().and_then(|roller| roller.length);
     let roller_length = roller_length.map(|length| length.0);
     let roller_length = roller_length.or(of_type.and_then(catalogue::roller_length));
-    let ends = ends(text, findings);
+    let ends = ends(text, scene, findings);
     let body = if text.model == schema::ChainModel::Particles {
         particles(text, links, findings)
     } else {
@@ -268,7 +268,7 @@ fn each(
     }
 }
 
-fn ends(text: &schema::Chain, findings: &mut Findings<'_>) -> Option<Ends> {
+fn ends(text: &schema::Chain, scene: &SceneText, findings: &mut Findings<'_>) -> Option<Ends> {
     let Some([first, last]) = &text.ends else {
         return Some(Ends::Closed);
     };
@@ -278,8 +278,8 @@ fn ends(text: &schema::Chain, findings: &mut Findings<'_>) -> Option<Ends> {
             schema::End::Free => End::Free,
             schema::End::Fixed => End::Fixed,
             schema::End::Driven { x, y } => {
-                let x = motion::shift(x, &format!("{path}.x"), findings);
-                let y = motion::shift(y, &format!("{path}.y"), findings);
+                let x = motion::shift(x, &format!("{path}.x"), scene, findings);
+                let y = motion::shift(y, &format!("{path}.y"), scene, findings);
                 End::Driven { x: x?, y: y? }
             }
             schema::End::Pulled { force: [x, y] } => End::Pulled {

@@ -41,7 +41,7 @@ fn resolve(
     let place = format!("{path}.face");
     let face = face(&text.face, &place, findings);
     let face = findings.keep(&place, face);
-    let support = support(text, path, names, findings);
+    let support = support(text, path, scene, names, findings);
     let said = contact::Said {
         own: &text.contact,
         path: &format!("{path}.contact"),
@@ -119,6 +119,7 @@ fn face(face: &Face, path: &str, findings: &mut Findings<'_>) -> Result<ArcSplin
 fn support(
     text: &schema::Guide,
     path: &str,
+    scene: &SceneText,
     names: &Names<'_>,
     findings: &mut Findings<'_>,
 ) -> Option<GuideSupport> {
@@ -130,8 +131,8 @@ fn support(
         }
         Some(schema::GuideSupport::Fixed) => GuideSupport::Fixed,
         Some(schema::GuideSupport::Prescribed { x, y }) => {
-            let x = motion::shift(x, &format!("{path}.x"), findings);
-            let y = motion::shift(y, &format!("{path}.y"), findings);
+            let x = motion::shift(x, &format!("{path}.x"), scene, findings);
+            let y = motion::shift(y, &format!("{path}.y"), scene, findings);
             GuideSupport::Prescribed { x: x?, y: y? }
         }
         Some(schema::GuideSupport::Tensioner { name }) => {

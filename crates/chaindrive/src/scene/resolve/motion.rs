@@ -2,34 +2,117 @@
 
 use std::f64::consts::TAU;
 
-use chaindrive_mechanics::{Argument, DriveError, Harmonic, Motion, Table, Torque};
+use chaindrive_mechanics::{Argument, DriveError, Harmonic, Motion, Order, Table, Torque};
 
 use super::Findings;
+use super::shafts::Ends;
 use crate::scene::quantity::{Angle, AngularSpeed, Length, Speed};
-use crate::scene::schema;
+use crate::scene::schema::{self, SceneText};
+use crate::scene::suggest::one_of;
 
 /// A displacement.
 pub(super) fn shift(
     text: &schema::Motion<Length, Speed>,
     path: &str,
+    scene: &SceneText,
     findings: &mut Findings<'_>,
 ) -> Option<Motion> {
-    resolve(text, |length| length.0, |speed| speed.0, path, findings)
+    let turning = match text {
+        schema::Motion::Orders { of: Some(of), .. } => mean_speed(of, path, scene, findings)?,
+        schema::Motion::Orders { of: None, .. } => {
+            let hint = "name the shaft whose turns count";
+            findings.refuse_with(&format!("{path}.of"), "missing", hint);
+            return None;
+        }
+        _ => 0.0,
+    };
+    let position = |length: Length| length.0;
+    resolve(text, position, |speed| speed.0, turning, path, findings)
 }
 
 /// A rotation.
 pub(super) fn turn(
     text: &schema::Motion<Angle, AngularSpeed>,
     path: &str,
+    scene: &SceneText,
     findings: &mut Findings<'_>,
 ) -> Option<Motion> {
-    resolve(text, |angle| angle.0, |speed| speed.0, path, findings)
+    let turning = match text {
+        schema::Motion::Orders { of: Some(of), .. } => mean_speed(of, path, scene, findings)?,
+        schema::Motion::Orders { speed, .. } => {
+            let own = speed.map(|speed| speed.0).filter(|speed| *speed != 0.0);
+            if own.is_none() {
+                let hint = "orders count turns: give the mean speed, or in `of` the name of a shaft that has one";
+                findings.refuse_with(&format!("{path}.speed"), "no mean speed", hint);
+            }
+            own?
+        }
+        _ => 0.0,
+    };
+    let position = |angle: Angle| angle.0;
+    resolve(text, position, |speed| speed.0, turning, path, findings)
 }
 
+/// Mean speed \[rad/s\] of the shaft that a motion by orders names.
+fn mean_speed(
+    name: &str,
+    path: &str,
+    scene: &SceneText,
+    findings: &mut Findings<'_>,
+) -> Option<f64> {
+    let carrying = |sprocket: &str| {
+        let carries = |shaft: &&schema::Shaft| shaft.sprockets.iter().any(|it| it == sprocket);
+        scene.shafts.iter().find(carries)
+    };
+    let given = |shaft: &schema::Shaft| speed_given(shaft.motion.as_ref());
+    let shafts = scene.shafts.iter().map(|s| (s.name.as_str(), given(s)));
+    let sprockets = scene.sprockets.iter().map(|sprocket| {
+        let own = || speed_given(sprocket.motion.as_ref());
+        (
+            sprocket.name.as_str(),
+            carrying(&sprocket.name).map_or_else(own, given),
+        )
+    });
+    let all: Vec<(&str, Option<f64>)> = shafts.chain(sprockets).collect();
+    let path = format!("{path}.of");
+    match all.iter().find(|(known, _)| *known == name) {
+        Some((_, Some(speed))) => Some(*speed),
+        Some((_, None)) => {
+            let turning = all.iter().filter(|(_, speed)| speed.is_some());
+            let turning: Vec<&str> = turning.map(|(known, _)| *known).collect();
+            let hint = match turning.as_slice() {
+                [] => "give it a motion that has a mean speed".to_owned(),
+                known => format!("take one whose motion has: {}", known.join(", ")),
+            };
+            let message = format!("`{name}` has no mean speed that is given");
+            findings.refuse_with(&path, message, hint);
+            None
+        }
+        None => {
+            let known: Vec<&str> = all.iter().map(|(known, _)| *known).collect();
+            let message = format!("no shaft or sprocket is named `{name}`");
+            findings.refuse_with(&path, message, one_of(name, &known));
+            None
+        }
+    }
+}
+
+/// Mean speed of a motion that has one, other than zero.
+fn speed_given(motion: Option<&schema::Motion<Angle, AngularSpeed>>) -> Option<f64> {
+    let speed = match motion? {
+        schema::Motion::Constant { speed } => *speed,
+        schema::Motion::Harmonics { speed, .. } | schema::Motion::Orders { speed, .. } => (*speed)?,
+        _ => return None,
+    };
+    Some(speed.0).filter(|speed| *speed != 0.0)
+}
+
+/// `turning`: mean speed \[rad/s\] of the shaft whose turns orders count.
 fn resolve<P: Copy, R: Copy>(
     text: &schema::Motion<P, R>,
     position: impl Fn(P) -> f64,
     rate: impl Fn(R) -> f64,
+    turning: f64,
     path: &str,
     findings: &mut Findings<'_>,
 ) -> Option<Motion> {
@@ -58,6 +141,21 @@ fn resolve<P: Copy, R: Copy>(
                 })
                 .collect(),
         },
+        schema::Motion::Orders { speed, terms, .. } => Motion::Harmonics {
+            rate: speed.map_or(0.0, &rate),
+            terms: terms
+                .iter()
+                .map(|term| {
+                    // A sin(n ω t + φ) = ± A sin(2π f t ± φ),   f = n |ω| / 2π,   the sign that of ω
+                    let sign = turning.signum();
+                    Harmonic {
+                        amplitude: sign * position(term.amplitude),
+                        frequency: term.order.0 * turning.abs() / TAU,
+                        phase: sign * term.phase.0,
+                    }
+                })
+                .collect(),
+        },
         schema::Motion::Table { times, values } => {
             let times = times.iter().map(|time| time.0).collect();
             let values = values.iter().map(|value| position(*value)).collect();
@@ -70,16 +168,29 @@ fn resolve<P: Copy, R: Copy>(
 pub(super) fn torques(
     list: &[schema::Torque],
     path: &str,
+    shafts: &Ends<'_>,
     findings: &mut Findings<'_>,
 ) -> Option<Vec<Torque>> {
     let torques = list.iter().enumerate();
     let torques: Vec<_> = torques
-        .map(|(i, text)| torque(text, &format!("{path}[{i}]"), findings))
+        .map(|(i, text)| torque(text, &format!("{path}[{i}]"), shafts, findings))
         .collect();
     torques.into_iter().collect()
 }
 
-fn torque(text: &schema::Torque, path: &str, findings: &mut Findings<'_>) -> Option<Torque> {
+fn torque(
+    text: &schema::Torque,
+    path: &str,
+    shafts: &Ends<'_>,
+    findings: &mut Findings<'_>,
+) -> Option<Torque> {
+    let of = match text {
+        schema::Torque::Orders { of: Some(of), .. }
+        | schema::Torque::AngleTable { of: Some(of), .. } => {
+            Some(shafts.one(of, &format!("{path}.of"), findings)?)
+        }
+        _ => None,
+    };
     let mut over = |over, arguments: Vec<f64>, torques: &[crate::scene::quantity::Torque], key| {
         let values = torques.iter().map(|torque| torque.0).collect();
         let curve = table(arguments, values, path, key, findings)?;
@@ -104,10 +215,24 @@ fn torque(text: &schema::Torque, path: &str, findings: &mut Findings<'_>) -> Opt
             amplitude,
             order,
             phase,
-        } => Some(Torque::Harmonic {
-            amplitude: amplitude.0,
-            order: order.0,
-            phase: phase.0,
+        } => Some(Torque::Orders {
+            of,
+            terms: vec![Order {
+                amplitude: amplitude.0,
+                order: order.0,
+                phase: phase.0,
+            }],
+        }),
+        schema::Torque::Orders { terms, .. } => Some(Torque::Orders {
+            of,
+            terms: terms
+                .iter()
+                .map(|term| Order {
+                    amplitude: term.amplitude.0,
+                    order: term.order.0,
+                    phase: term.phase.0,
+                })
+                .collect(),
         }),
         schema::Torque::TimeTable { times, torques } => over(
             Argument::Time,
@@ -115,19 +240,38 @@ fn torque(text: &schema::Torque, path: &str, findings: &mut Findings<'_>) -> Opt
             torques,
             "times",
         ),
-        schema::Torque::AngleTable { angles, torques } => {
+        schema::Torque::AngleTable {
+            turns,
+            angles,
+            torques,
+            ..
+        } => {
+            let turns = turns.0;
             let angles: Vec<f64> = angles.iter().map(|angle| angle.0).collect();
             let least = angles.iter().copied().fold(f64::INFINITY, f64::min);
             let most = angles.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            let resolved = over(Argument::Angle, angles, torques, "angles")?;
-            if least > 1e-9 || most < TAU - 1e-9 {
+            let resolved = over(Argument::Angle { of, turns }, angles, torques, "angles")?;
+            if least > 1e-9 || most < f64::from(turns) * TAU - 1e-9 {
+                let of_turns = if turns == 1 { "turn" } else { "two turns" };
                 let message = format!(
-                    "the table covers {:.1}° to {:.1}° of the turn",
+                    "the table covers {:.1}° to {:.1}° of the {of_turns}",
                     least.to_degrees(),
                     most.to_degrees()
                 );
-                let hint = "let it run from 0 to 360 deg, with the same torque at both";
+                let end = 360 * turns;
+                let hint = format!("let it run from 0 to {end} deg, with the same torque at both");
                 findings.refuse_with(&format!("{path}.angles"), message, hint);
+                return None;
+            }
+            if let [first, .., last] = torques.as_slice()
+                && (first.0 - last.0).abs() > 1e-9 * first.0.abs().max(last.0.abs())
+            {
+                let message = format!(
+                    "the torque jumps from {} to {} N m where it repeats",
+                    last.0, first.0
+                );
+                let hint = "give the same torque at both ends; a quick change takes two points close together";
+                findings.refuse_with(&format!("{path}.torques"), message, hint);
                 return None;
             }
             Some(resolved)

@@ -24,8 +24,20 @@ pub(super) fn resolve(
     findings: &mut Findings<'_>,
 ) -> Option<Turning> {
     let carriers = carriers(scene, names, findings);
-    let mut shafts = Vec::new();
     let mut of_sprockets = Vec::new();
+    let own = carriers.iter().filter(|carrier| carrier.is_none()).count();
+    let mut next = 0..own;
+    for carrier in &carriers {
+        let own_shaft = || next.next().unwrap_or(own);
+        of_sprockets.push(carrier.map_or_else(own_shaft, |shaft| own + shaft));
+    }
+    let ends = Ends {
+        shafts: names.shafts.clone(),
+        sprockets: names.sprockets.clone(),
+        own,
+        of_sprockets: &of_sprockets,
+    };
+    let mut shafts = Vec::new();
     for (i, (text, carrier)) in scene.sprockets.iter().zip(&carriers).enumerate() {
         let path = format!("sprockets[{i}]");
         if let Some(shaft) = carrier {
@@ -38,29 +50,18 @@ pub(super) fn resolve(
             findings.refuse_with(&format!("{path}.inertia"), "missing", hint);
         }
         let turned = (&text.motion, &text.drive, &text.load);
-        shafts.push(rotation(turned, &path, findings).map(Shaft::of_one));
-    }
-    let own = shafts.len();
-    let mut next = 0..own;
-    for carrier in &carriers {
-        let own_shaft = || next.next().unwrap_or(own);
-        of_sprockets.push(carrier.map_or_else(own_shaft, |shaft| own + shaft));
+        shafts.push(rotation(turned, &path, (scene, &ends), findings).map(Shaft::of_one));
     }
     for (i, text) in scene.shafts.iter().enumerate() {
         let path = format!("shafts[{i}]");
         let turned = (&text.motion, &text.drive, &text.load);
-        shafts.push(rotation(turned, &path, findings).map(|rotation| Shaft {
+        let rotation = rotation(turned, &path, (scene, &ends), findings);
+        shafts.push(rotation.map(|rotation| Shaft {
             name: Some(text.name.clone()),
             rotation,
             inertia: text.inertia.map_or(0.0, |inertia| inertia.0),
         }));
     }
-    let ends = Ends {
-        shafts: names.shafts.clone(),
-        sprockets: names.sprockets.clone(),
-        own,
-        of_sprockets: &of_sprockets,
-    };
     let couplings: Vec<_> = scene
         .couplings
         .iter()
@@ -152,6 +153,7 @@ type Turned<'t> = (
 fn rotation(
     (given, drive, load): Turned<'_>,
     path: &str,
+    (scene, ends): (&SceneText, &Ends<'_>),
     findings: &mut Findings<'_>,
 ) -> Option<Rotation> {
     if let Some(given) = given {
@@ -162,19 +164,19 @@ fn rotation(
                 findings.refuse_with(&format!("{path}.{key}"), "`motion` is given too", hint);
             }
         }
-        let motion = motion::turn(given, &format!("{path}.motion"), findings);
+        let motion = motion::turn(given, &format!("{path}.motion"), scene, findings);
         return motion.map(Rotation::Prescribed);
     }
-    let drive = motion::torques(drive, &format!("{path}.drive"), findings);
-    let load = motion::torques(load, &format!("{path}.load"), findings);
+    let drive = motion::torques(drive, &format!("{path}.drive"), ends, findings);
+    let load = motion::torques(load, &format!("{path}.load"), ends, findings);
     Some(Rotation::Free {
         drive: drive?,
         load: load?,
     })
 }
 
-/// What couplings and gears can join, by name.
-struct Ends<'n> {
+/// What couplings and gears can join, and torques follow, by name.
+pub(super) struct Ends<'n> {
     shafts: Vec<&'n str>,
     sprockets: Vec<&'n str>,
     /// Number of shafts before those of the scene.
@@ -190,22 +192,24 @@ impl Ends<'_> {
         path: &str,
         findings: &mut Findings<'_>,
     ) -> Option<[usize; 2]> {
-        let [first, second] = [0, 1].map(|i| {
-            let name = between[i].as_str();
-            let shaft = self.shafts.iter().position(|known| *known == name);
-            let sprocket = || self.sprockets.iter().position(|known| *known == name);
-            let found = shaft
-                .map(|shaft| self.own + shaft)
-                .or_else(|| sprocket().map(|sprocket| self.of_sprockets[sprocket]));
-            if found.is_none() {
-                let all = self.shafts.iter().chain(&self.sprockets);
-                let known: Vec<&str> = all.copied().collect();
-                let message = format!("no shaft or sprocket is named `{name}`");
-                let path = format!("{path}.between[{i}]");
-                findings.refuse_with(&path, message, one_of(name, &known));
-            }
-            found
-        });
+        let [first, second] =
+            [0, 1].map(|i| self.one(&between[i], &format!("{path}.between[{i}]"), findings));
         Some([first?, second?])
+    }
+
+    /// The shaft that a name means.
+    pub(super) fn one(&self, name: &str, path: &str, findings: &mut Findings<'_>) -> Option<usize> {
+        let shaft = self.shafts.iter().position(|known| *known == name);
+        let sprocket = || self.sprockets.iter().position(|known| *known == name);
+        let found = shaft
+            .map(|shaft| self.own + shaft)
+            .or_else(|| sprocket().map(|sprocket| self.of_sprockets[sprocket]));
+        if found.is_none() {
+            let all = self.shafts.iter().chain(&self.sprockets);
+            let known: Vec<&str> = all.copied().collect();
+            let message = format!("no shaft or sprocket is named `{name}`");
+            findings.refuse_with(path, message, one_of(name, &known));
+        }
+        found
     }
 }

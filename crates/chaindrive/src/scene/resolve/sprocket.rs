@@ -66,7 +66,7 @@ fn resolve(
         };
         findings.keep(&format!("{path}.{place}"), gap)
     });
-    let support = support(text, path, names, findings);
+    let support = support(text, path, scene, names, findings);
     let said = contact::Said {
         own: &text.contact,
         path: &format!("{path}.contact"),
@@ -149,6 +149,7 @@ fn law(
 fn support(
     text: &schema::Sprocket,
     path: &str,
+    scene: &SceneText,
     names: &Names<'_>,
     findings: &mut Findings<'_>,
 ) -> Option<Support> {
@@ -160,8 +161,8 @@ fn support(
         }
         Some(schema::Support::Fixed) => Support::Fixed,
         Some(schema::Support::Prescribed { x, y }) => {
-            let x = motion::shift(x, &format!("{path}.x"), findings);
-            let y = motion::shift(y, &format!("{path}.y"), findings);
+            let x = motion::shift(x, &format!("{path}.x"), scene, findings);
+            let y = motion::shift(y, &format!("{path}.y"), scene, findings);
             Support::Prescribed { x: x?, y: y? }
         }
         Some(schema::Support::Springs { stiffness, damping }) => Support::Springs {

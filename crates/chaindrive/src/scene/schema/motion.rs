@@ -41,6 +41,19 @@ pub(crate) enum Motion<Position, Rate> {
         /// The sine terms.
         terms: Vec<Term<Position>>,
     },
+    /// A mean speed with sine terms that repeat with the turns of a shaft,
+    /// amplitude × (sin(order α + phase) − sin(phase)), α its angle at its mean speed.
+    Orders {
+        /// Mean speed; absent: 0.
+        #[serde(default)]
+        speed: Option<Rate>,
+        /// Name of the shaft, or of a sprocket on it, whose turns count: its motion is given, with a mean speed. Absent: the shaft
+        /// that this motion turns.
+        #[serde(default)]
+        of: Option<String>,
+        /// The orders.
+        terms: Vec<OrderTerm<Position>>,
+    },
     /// Values at given times, joined by a natural cubic spline.
     Table {
         /// Times [s], increasing.
@@ -63,6 +76,33 @@ pub(crate) struct Term<Position> {
     /// Phase at t = 0 [rad]; absent: 0.
     #[serde(default)]
     pub(crate) phase: Angle,
+}
+
+/// One order of a motion or a torque: what repeats so many times a turn.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Order_of_{Amplitude}")]
+pub(crate) struct OrderTerm<Amplitude> {
+    /// Periods per turn [–]: 0.5 repeats every second turn.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) order: Ratio,
+    /// Amplitude (an angle, a length or a torque).
+    pub(crate) amplitude: Amplitude,
+    /// Phase where the shaft was assembled [rad]; absent: 0.
+    #[serde(default)]
+    pub(crate) phase: Angle,
+}
+
+/// Turns after which a table of torques repeats: 1, or 2 for engines of four strokes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(transparent)]
+#[schemars(extend("minimum" = 1, "maximum" = 2))]
+pub(crate) struct Turns(pub(crate) u32);
+
+impl Default for Turns {
+    fn default() -> Self {
+        Self(1)
+    }
 }
 
 /// A torque on a shaft, counter-clockwise positive.
@@ -96,7 +136,7 @@ pub(crate) enum Torque {
         #[schemars(extend("minimum" = 0))]
         quadratic: QuadraticDamping,
     },
-    /// A torque that repeats with the angle, amplitude × sin(order θ + phase).
+    /// A torque that repeats with the angle of its shaft, amplitude × sin(order θ + phase): one of `orders`.
     Harmonic {
         /// Amplitude [N m].
         amplitude: Moment,
@@ -106,6 +146,14 @@ pub(crate) enum Torque {
         #[serde(default)]
         phase: Angle,
     },
+    /// Torques that repeat with the angle of a shaft, Σ amplitude × sin(order θ + phase), θ counted from where it was assembled.
+    Orders {
+        /// Name of the shaft, or of a sprocket on it, that θ belongs to; absent: the one that the torque acts on.
+        #[serde(default)]
+        of: Option<String>,
+        /// The orders.
+        terms: Vec<OrderTerm<Moment>>,
+    },
     /// A torque over time, along straight lines, held beyond the ends.
     TimeTable {
         /// Times [s], increasing.
@@ -113,11 +161,17 @@ pub(crate) enum Torque {
         /// Torque at each of them [N m].
         torques: Vec<Moment>,
     },
-    /// A torque over the angle within one turn, along straight lines.
+    /// A torque over the angle of a shaft within one turn or two, along straight lines; the last point joins the first.
     AngleTable {
-        /// Angles [rad], increasing from 0 to a full turn.
+        /// Name of the shaft, or of a sprocket on it, that the angle belongs to; absent: the one that the torque acts on.
+        #[serde(default)]
+        of: Option<String>,
+        /// Turns after which it repeats; absent: 1.
+        #[serde(default)]
+        turns: Turns,
+        /// Angles [rad], increasing from 0 to the end of the last turn.
         angles: Vec<Angle>,
-        /// Torque at each of them [N m].
+        /// Torque at each of them [N m], the same at both ends.
         torques: Vec<Moment>,
     },
     /// A torque over the speed, along straight lines, held beyond the ends.
