@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::str::FromStr;
 
-use chaindrive_mechanics::{Assembled, Drive};
+use chaindrive_mechanics::{Assembled, Drive, EventKinds};
 use serde::{Deserialize, Serialize};
 
 use super::execute::assemble;
@@ -183,7 +183,7 @@ pub(super) fn before(
     let start = assemble(&drive.beginning(-time)?, stop)?;
     let silent = Run {
         run_in: RunIn::None,
-        events: Default::default(),
+        events: EventKinds::default(),
         ..run.clone()
     };
     Simulation::from_assembled(start, &silent)

@@ -15,16 +15,15 @@ impl Drive {
     /// # Errors
     /// A time after 0; a guide whose face does not stand where its motion takes it.
     pub fn beginning(&self, t: f64) -> Result<Self, AssemblyError> {
-        let mut drive = self.clone();
-        if t == self.begin {
-            return Ok(drive);
-        }
         if !(t <= 0.0 && t.is_finite()) {
             return Err(AssemblyError::Layout {
                 problem: format!("a drive begins at 0 or before, not at {t} s"),
             });
         }
-        drive.begin = t;
+        let mut drive = Self {
+            parts: self.parts.clone(),
+            begin: t,
+        };
         let parts = &mut drive.parts;
         for sprocket in &mut parts.sprockets {
             if let Support::Prescribed { x, y } = &mut sprocket.support {

@@ -12,6 +12,10 @@ use crate::{RunIn, Stepping};
 /// What a front end runs and records unless told otherwise.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[expect(
+    clippy::struct_field_names,
+    reason = "a run-in is called so in scenes"
+)]
 pub(crate) struct Run {
     /// Duration of the run [s].
     #[serde(default)]
