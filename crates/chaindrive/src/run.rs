@@ -11,7 +11,7 @@ mod steady;
 use chaindrive_integrate::Method;
 use chaindrive_mechanics::{EventKinds, System};
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value as Json, json};
+use serde_json::{Map, Value as Json};
 
 use crate::scene::RunDefaults;
 use crate::{SimulationError, Stepping};
@@ -163,7 +163,7 @@ impl Run {
         let mut table = Map::new();
         table.insert("until".into(), self.until.into());
         if self.run_in != RunIn::None {
-            table.insert("run_in".into(), json!(self.run_in));
+            table.insert("run_in".into(), self.run_in.to_string().into());
         }
         table.insert("every".into(), self.every.into());
         table.insert("method".into(), Stepping::from(method).name().into());

@@ -70,6 +70,8 @@ const CASES: [Case; 6] = [
             "bicycle",
             "--set",
             LUGRE,
+            "--run-in",
+            "0.5 ms",
             "--until",
             "5 ms",
             "--method",

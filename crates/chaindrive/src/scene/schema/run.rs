@@ -12,10 +12,7 @@ use crate::{RunIn, Stepping};
 /// What a front end runs and records unless told otherwise.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[expect(
-    clippy::struct_field_names,
-    reason = "a run-in is called so in scenes"
-)]
+#[expect(clippy::struct_field_names, reason = "a run-in is called so in scenes")]
 pub(crate) struct Run {
     /// Duration of the run [s].
     #[serde(default)]
@@ -24,8 +21,7 @@ pub(crate) struct Run {
     /// What is simulated before t = 0, so that the record begins where the motion is steady: a time [s], turns of a
     /// sprocket ("5 turns" of the first one, "5 turns of camshaft"), or "auto"; absent: nothing.
     #[serde(default)]
-    #[schemars(with = "Option<RunInText>")]
-    pub(crate) run_in: Option<RunIn>,
+    pub(crate) run_in: Option<RunInText>,
     /// Time between two samples of the recording [s].
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
@@ -60,8 +56,40 @@ pub(crate) struct Run {
     pub(crate) events: Vec<Events>,
 }
 
-/// How a run-in is written.
-struct RunInText;
+/// A run-in as scenes have it: a number of seconds, or a text.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[serde(try_from = "Written", into = "Written")]
+pub(crate) struct RunInText(pub(crate) RunIn);
+
+/// What stands in a scene.
+#[derive(Deserialize, Serialize)]
+#[serde(untagged)]
+enum Written {
+    Seconds(f64),
+    Text(String),
+}
+
+impl TryFrom<Written> for RunInText {
+    type Error = String;
+
+    fn try_from(written: Written) -> Result<Self, String> {
+        Ok(Self(match written {
+            Written::Seconds(0.0) => RunIn::None,
+            Written::Seconds(time) => RunIn::Time(time),
+            Written::Text(text) => text.parse()?,
+        }))
+    }
+}
+
+impl From<RunInText> for Written {
+    fn from(RunInText(run_in): RunInText) -> Self {
+        match run_in {
+            RunIn::None => Self::Seconds(0.0),
+            RunIn::Time(time) => Self::Seconds(time),
+            RunIn::Turns { .. } | RunIn::Auto => Self::Text(run_in.to_string()),
+        }
+    }
+}
 
 impl JsonSchema for RunInText {
     fn inline_schema() -> bool {
@@ -99,7 +127,7 @@ impl Run {
     pub(crate) fn suggestions(&self) -> RunDefaults {
         RunDefaults {
             until: self.until.map(|time| time.0),
-            run_in: self.run_in.clone().unwrap_or_default(),
+            run_in: self.run_in.clone().unwrap_or_default().0,
             every: self.every.map(|time| time.0),
             method: self.method,
             step: self.step.map(|time| time.0),
