@@ -311,3 +311,16 @@ def test_an_interrupted_run_keeps_what_there_is():
     assert 0 < kept.sizes["time"] < 1e7
     assert kept.sizes["time"] == kept.attrs["samples"]
     assert "stop.result" in caught.value.__notes__[0]
+
+
+def test_a_run_in_lies_before_the_record() -> None:
+    drive = cd.scenes.marine_two_sprockets()
+    result = cd.simulate(drive, run_in="5 ms", until=2e-3, every=1e-3, error=False)
+    assert result["time"].values.tolist() == [0.0, 1e-3, 2e-3]
+    assert result.attrs["run_in"] == 5e-3
+    moved = cd.Simulation(drive, run_in=5e-3)
+    assert moved.time == 0.0
+    with pytest.raises(cd.ParameterError, match="there are crank, camshaft"):
+        cd.simulate(drive, run_in="1 turn of cam", until=1e-3)
+    with pytest.raises(cd.SceneError, match="no number of turns"):
+        cd.simulate(drive, run_in="five turns", until=1e-3)
