@@ -313,7 +313,7 @@ def test_an_interrupted_run_keeps_what_there_is():
     assert "stop.result" in caught.value.__notes__[0]
 
 
-def test_a_run_in_lies_before_the_record() -> None:
+def test_a_run_in_lies_before_the_record():
     drive = cd.scenes.marine_two_sprockets()
     result = cd.simulate(drive, run_in="5 ms", until=2e-3, every=1e-3, error=False)
     assert result["time"].values.tolist() == [0.0, 1e-3, 2e-3]
