@@ -35,7 +35,7 @@ pub struct Description {
     pub stops: Vec<StopFacts>,
     /// The spans of the routes after the last static stage, in path order, chain by chain.
     pub spans: Vec<SpanAtRest>,
-    /// What turns under a name of its own.
+    /// Shafts with a name of their own.
     pub shafts: Vec<ShaftFacts>,
     /// The static states on the way to the start.
     pub statics: Vec<StaticStage>,

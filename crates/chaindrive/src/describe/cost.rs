@@ -1,4 +1,4 @@
-//! What a run will cost, by taking its first steps.
+//! Cost of a run, found by taking its first steps.
 
 use std::time::{Duration, Instant};
 

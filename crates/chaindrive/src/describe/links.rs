@@ -1,16 +1,16 @@
-//! What the chain is made of, and by which laws it touches.
+//! Links, joints and rollers of the chain, and the laws of their contacts.
 
 use chaindrive_contact::Friction;
 use chaindrive_mechanics::{Chain, ChainModel, Drive, Joint, RollerModel, Surface};
 use serde::Serialize;
 use serde_json::Value;
 
-/// What the chain is made of.
+/// Links, joints and rollers of a chain.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LinkFacts {
     /// Model, as scenes name it.
     pub model: &'static str,
-    /// What runs on the teeth of rigid links: lumped, free or none.
+    /// Rollers of rigid links: lumped, free or none.
     pub rollers: Option<&'static str>,
     /// Joints between links, and between links and supports.
     pub joints: usize,

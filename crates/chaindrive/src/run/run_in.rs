@@ -1,4 +1,4 @@
-//! What is simulated before t = 0, so that the record begins where the motion is steady.
+//! The run-in: motion before t = 0, so that the record begins where it is steady.
 
 use std::f64::consts::TAU;
 use std::fmt;
@@ -13,7 +13,7 @@ use super::{Run, steady};
 use crate::scene::read_time;
 use crate::{Simulation, SimulationError};
 
-/// What is simulated before t = 0.
+/// Motion that is simulated before t = 0.
 ///
 /// In a scene, for the command and in Python: a time (`"0.5 s"`), turns of a sprocket (`"5 turns"` of the first one, or
 /// `"5 turns of camshaft"`), or `"auto"`.
