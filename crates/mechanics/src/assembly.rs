@@ -213,6 +213,7 @@ impl Drive {
                 chain: index,
                 pretension: placed.layout.pretension(),
                 stiffness: placed.chain.stiffness[0],
+                at: placed.layout.pretension_at(),
             })
             .collect();
         if self.settle && !tightenings.is_empty() {

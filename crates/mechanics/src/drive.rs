@@ -215,6 +215,14 @@ pub enum Layout {
 }
 
 impl Layout {
+    /// Where it carries its pretension; a strand, where it lies.
+    pub(crate) fn pretension_at(&self) -> PretensionAt {
+        match self {
+            Self::Route { fit, .. } => fit.at,
+            Self::Points { .. } => PretensionAt::Phase,
+        }
+    }
+
     /// Tension that the chain is laid with \[N\].
     pub(crate) fn pretension(&self) -> f64 {
         match self {
@@ -245,6 +253,21 @@ pub struct Fit {
     pub pretension: f64,
     /// How the pretension is made.
     pub tighten: Tighten,
+    /// Where the chain carries the pretension.
+    pub at: PretensionAt,
+}
+
+/// Where in the passing of a tooth a chain carries its pretension.
+///
+/// The way around polygons is longer at some phases than at others, so that the same chain on the same centres is tighter there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum PretensionAt {
+    /// In the mean over a tooth that passes: the phase that a run begins at makes no other drive of it.
+    MeanPhase,
+    /// At the phase where the run begins.
+    Phase,
 }
 
 /// What is moved until the given number of links closes without stress.

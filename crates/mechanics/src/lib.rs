@@ -47,7 +47,7 @@ pub use chains::ChainModel;
 pub use chains::links::model::{Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel};
 pub use drive::{
     Adjust, Coupling, Drive, Fit, Flank, GearPair, Guide, GuideSupport, Layout, Parts, PlacedChain,
-    Rotation, Shaft, SpanStart, Sprocket, Stop, Support, Surface, Tighten, Touches,
+    PretensionAt, Rotation, Shaft, SpanStart, Sprocket, Stop, Support, Surface, Tighten, Touches,
 };
 pub use energy::{Energy, Flow, Store};
 pub use error::{AssemblyError, Clash, DriveError, MemoryError};

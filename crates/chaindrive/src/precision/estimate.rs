@@ -29,6 +29,8 @@ use crate::{Channel, Run, SimulationError};
 pub struct Estimate {
     /// Time over which run and shadow were compared \[s\]: beyond, nothing was examined.
     pub window: f64,
+    /// Time in which a tooth passes \[s\]; none without a chain that runs over sprockets.
+    pub period: Option<f64>,
     /// What makes the shadow better than the run.
     pub shadow: &'static str,
     /// The tensions that were compared.
@@ -51,7 +53,7 @@ pub struct Estimate {
     /// How long twins stay together.
     pub horizon: Horizon,
     /// Time from which on the waveform of the tensions compared differs from the exact one by 1 % \[s\]: when the
-    /// error does, or the chaos horizon, whichever comes first.
+    /// error does, root mean square over the last tooth that passed, or the chaos horizon, whichever comes first.
     pub waveform: Option<f64>,
     /// The same of the tensions of the links, root mean square over all of them.
     pub link_waveform: Option<f64>,
@@ -118,7 +120,14 @@ pub fn estimate(
             .collect();
         let horizon = Horizon::of(&base, &twin, strands);
         let all = errors.iter().map(|[all, _]| *all);
-        let waveform = waveform(&base.time, all, &horizon);
+        let over = window
+            .period
+            .map_or(1, |period| samples_within(period, window.every));
+        let waveform = waveform(
+            &base.time,
+            &moving(&all.collect::<Vec<_>>(), over),
+            &horizon,
+        );
         (factor, errors, horizon, waveform)
     };
     let (factor, errors, horizon, waveform) = found(strands);
@@ -140,6 +149,7 @@ pub fn estimate(
     };
     Ok(Estimate {
         window: shadow.time.last().copied().unwrap_or(0.0),
+        period: window.period,
         shadow: shadow_words,
         strands,
         gap: traces.iter().find_map(|trace| trace.gap.clone()),
@@ -207,9 +217,30 @@ fn sharper(start: &Assembled, run: &Run) -> (Run, &'static str) {
     }
 }
 
+/// Samples of some time \[s\], one at least.
+fn samples_within(time: f64, every: f64) -> usize {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a window has thousands of samples"
+    )]
+    let samples = (time / every) as usize;
+    samples.max(1)
+}
+
+/// Root mean square of every value and those before it, `over` of them where there are as many.
+///
+/// ```text
+/// ē(t) = √(1/p ∫ e² dt) over the last tooth, from t − p to t
+/// ```
+fn moving(values: &[f64], over: usize) -> Vec<f64> {
+    let last = 1..=values.len();
+    let window = |last: usize| &values[last.saturating_sub(over)..last];
+    last.map(|last| rms(window(last).iter().copied())).collect()
+}
+
 /// When the error becomes 1 %, or the twins part.
-fn waveform(time: &[f64], errors: impl Iterator<Item = f64>, horizon: &Horizon) -> Option<f64> {
-    let errors: Vec<f64> = errors.collect();
+fn waveform(time: &[f64], errors: &[f64], horizon: &Horizon) -> Option<f64> {
     let measured = errors.iter().position(|d| *d >= LIMIT);
     let of_error = match (measured, horizon.all) {
         (Some(first), _) => Some(time[first]),

@@ -10,7 +10,7 @@
 use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use chaindrive_mechanics::SpanStart;
+use chaindrive_mechanics::{PretensionAt, SpanStart};
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 
@@ -88,6 +88,16 @@ pub(crate) static SPAN_START: Choice<SpanStart> = Choice {
     values: &[
         (Version::V0_1, SpanStart::Polygon),
         (Version::V0_2, SpanStart::Quiet),
+    ],
+};
+
+/// Where a chain carries its pretension.
+pub(crate) static PRETENSION_AT: Choice<PretensionAt> = Choice {
+    keys: &["Route.pretension_at"],
+    basis: Assumed("a drive is not another one for where it happens to stand"),
+    values: &[
+        (Version::V0_1, PretensionAt::Phase),
+        (Version::V0_2, PretensionAt::MeanPhase),
     ],
 };
 
@@ -193,6 +203,7 @@ pub(crate) fn put_into(schema: &mut Json) {
         tell(schema, default.keys, &told);
     }
     tell_choice(schema, &SPAN_START);
+    tell_choice(schema, &PRETENSION_AT);
     tell_choice(schema, &DISSIPATION);
 }
 

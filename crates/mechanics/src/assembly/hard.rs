@@ -1,6 +1,6 @@
 //! Chains whose links do not stretch: laid with links that hardly do.
 
-use crate::drive::{Layout, PlacedChain};
+use crate::drive::{Layout, Parts, PlacedChain, PretensionAt};
 use crate::{Assembled, AssemblyError, Drive};
 
 /// Depth at which the teeth are asked for their stiffness \[m\].
@@ -45,6 +45,13 @@ impl Drive {
             }
             let hard = if asked > 0.0 { HARD } else { HANGING };
             placed.chain.stiffness.fill(hard * teeth);
+            if let Layout::Route { fit, phase, .. } = &mut placed.layout
+                && fit.at == PretensionAt::MeanPhase
+            {
+                // The tension is found at one phase; which one must not depend on where the run begins.
+                fit.at = PretensionAt::Phase;
+                *phase = 0.5;
+            }
             searches.extend((asked > 0.0).then_some(Search {
                 chain: index,
                 asked,
@@ -68,7 +75,7 @@ impl Drive {
                 .first()
                 .filter(|statics| statics.stage == "pretension");
             let Some(taut) = taut else {
-                return Ok(assembled);
+                return self.laid_by(parts, assembled);
             };
             let mut met = true;
             for search in &mut searches {
@@ -77,7 +84,7 @@ impl Drive {
                 met &= search.meets(found);
             }
             if met {
-                return Ok(assembled);
+                return self.laid_by(parts, assembled);
             }
         }
         Err(AssemblyError::NoEquilibrium {
@@ -85,6 +92,33 @@ impl Drive {
             residual: 1.0,
             iterations: MOST,
         })
+    }
+}
+
+impl Drive {
+    /// The drive of some parts, which stands assembled, at the phases of this one and with the pretension where this one has it.
+    fn laid_by(&self, mut parts: Parts, assembled: Assembled) -> Result<Assembled, AssemblyError> {
+        let mut elsewhere = false;
+        for (placed, own) in parts.chains.iter_mut().zip(&self.chains) {
+            let (layout, own) = (&mut placed.layout, &own.layout);
+            if let (
+                Layout::Route { fit, phase, .. },
+                Layout::Route {
+                    fit: own,
+                    phase: at,
+                    ..
+                },
+            ) = (layout, own)
+            {
+                elsewhere |= fit.at != own.at;
+                (fit.at, *phase) = (own.at, *at);
+            }
+        }
+        if !elsewhere {
+            return Ok(assembled);
+        }
+        let begin = self.begin;
+        Self { parts, begin }.assemble_as_is()
     }
 }
 

@@ -6,7 +6,7 @@ use chaindrive_geometry::{
 
 use super::{Fitting, slack};
 use crate::drive::{
-    Adjust, Fit, Guide, GuideSupport, Layout, Parts, Stop, Support, Tighten, Touches,
+    Adjust, Fit, Guide, GuideSupport, Layout, Parts, PretensionAt, Stop, Support, Tighten, Touches,
 };
 use crate::system::{Laid, LaidChain};
 use crate::{AssemblyError, Chain, Drive};
@@ -77,33 +77,37 @@ fn around(
     let tightening = fit.pretension / (mean_stiffness * pitch);
     let by_travel = fit.tighten == Tighten::Travel;
 
-    let (travel, moved, closing, strain) = match &fit.adjust {
-        Adjust::Nothing => {
-            let wheels = wheels(parts, chain, stops)?;
-            let (strain, closing) = close_by_strain(&wheels, pitch, links, phase)?;
-            (0.0, parts.clone(), closing, strain)
-        }
-        adjust => {
-            let strain = if by_travel { tightening } else { 0.0 };
-            let within = match adjust {
-                Adjust::Sprocket { within, .. } | Adjust::Tensioner { within, .. } => *within,
-                Adjust::Nothing => 0.0,
-            };
-            // The wheels move without failing where the parts at rest have made wheels.
-            wheels(parts, chain, stops)?;
-            let mut moving = |travel: f64| {
-                // No wheels at all is an error of the closing, never a wrong place.
-                shifted(parts, adjust, travel)
-                    .and_then(|moved| wheels(&moved, chain, stops))
-                    .unwrap_or_default()
-            };
-            let range = (-within, within);
-            let (travel, _, closing) =
-                close_by_motion(pitch, strain, links, phase, &mut moving, range)?;
-            (travel, shifted(parts, adjust, travel)?, closing, strain)
-        }
+    let over_a_tooth = fit.at == PretensionAt::MeanPhase && fit.pretension > 0.0;
+
+    let at_rest = wheels(parts, chain, stops)?;
+    let travel_at = |phase: f64| {
+        let within = match &fit.adjust {
+            Adjust::Sprocket { within, .. } | Adjust::Tensioner { within, .. } => *within,
+            Adjust::Nothing => return Ok(0.0),
+        };
+        // The wheels move without failing where the parts at rest have made wheels. No wheels at all is an error of the
+        // closing, never a wrong place.
+        let mut moving = |travel: f64| {
+            shifted(parts, &fit.adjust, travel)
+                .and_then(|moved| wheels(&moved, chain, stops))
+                .unwrap_or_default()
+        };
+        let strain = if by_travel { tightening } else { 0.0 };
+        let range = (-within, within);
+        let (travel, ..) = close_by_motion(pitch, strain, links, phase, &mut moving, range)?;
+        Ok(travel)
     };
-    let wheels = wheels(&moved, chain, stops)?;
+    let travel = if over_a_tooth {
+        mean_of_phases(travel_at)?
+    } else {
+        travel_at(phase)?
+    };
+    let moved = shifted(parts, &fit.adjust, travel)?;
+    let wheels = match fit.adjust {
+        Adjust::Nothing => at_rest,
+        _ => wheels(&moved, chain, stops)?,
+    };
+    let (strain, closing) = close_by_strain(&wheels, pitch, links, phase)?;
     let slack = strain < SLACK && fit.pretension <= 0.0;
     let (positions, closing) = if slack {
         let closing = Closing::march(&wheels, pitch, phase)?;
@@ -129,8 +133,13 @@ fn around(
     }
     let mut moved = moved;
     if fit.pretension > 0.0 && !by_travel {
-        // ℓ₀ = p (1 + ε) / (1 + ε₀): the laid chain then carries T₀ in every link.
-        let scale = (1.0 + strain) / (1.0 + tightening);
+        let closed = if over_a_tooth {
+            mean_of_phases(|phase| Ok(close_by_strain(&wheels, pitch, links, phase)?.0))?
+        } else {
+            strain
+        };
+        // ℓ₀ = p (1 + ε) / (1 + ε₀): the laid chain then carries T₀ in every link, in the mean of the phases with the mean of ε.
+        let scale = (1.0 + closed) / (1.0 + tightening);
         for length in &mut moved.chains[index].chain.lengths {
             *length *= scale;
         }
@@ -143,6 +152,20 @@ fn around(
         strain,
         travel,
     })
+}
+
+/// Phases that the mean over a tooth is taken of.
+const PHASES: u32 = 8;
+
+/// Mean of a value over the phases of a tooth.
+fn mean_of_phases(
+    mut value: impl FnMut(f64) -> Result<f64, AssemblyError>,
+) -> Result<f64, AssemblyError> {
+    let mut sum = 0.0;
+    for place in 0..PHASES {
+        sum += value((f64::from(place) + 0.5) / f64::from(PHASES))?;
+    }
+    Ok(sum / f64::from(PHASES))
 }
 
 /// The stops as wheels of the route.

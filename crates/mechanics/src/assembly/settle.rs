@@ -13,6 +13,7 @@
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Moment, SecondOrderSystem, Weights};
 
+use crate::drive::PretensionAt;
 use crate::energy::Flow;
 use crate::system::{RailSupport, Record, System, Turn, WheelSupport};
 use crate::{AssemblyError, Motion};
@@ -39,6 +40,8 @@ pub(super) struct Tightening {
     pub(super) pretension: f64,
     /// Stiffness of its links while it was laid \[N/m\].
     pub(super) stiffness: f64,
+    /// Where it is to carry that. In the mean over a tooth it does so as it was laid, and only its joints find their places.
+    pub(super) at: PretensionAt,
 }
 
 /// Settles under pretension, gravity and load.
@@ -68,7 +71,8 @@ fn accept(balance: Balance, stage: &'static str) -> Result<Balance, AssemblyErro
     })
 }
 
-/// Makes all links of a chain longer or shorter until it carries T₀ without gravity and load.
+/// Lets joints find their places without gravity and load, and makes all links of a chain longer or shorter until it carries T₀
+/// there, if it is to do so at this phase.
 fn tighten(
     system: &mut System,
     q: &mut [f64],
@@ -76,6 +80,7 @@ fn tighten(
         chain,
         pretension,
         stiffness,
+        at,
     }: Tightening,
 ) -> Result<(), AssemblyError> {
     let mut bare = system.at_rest();
@@ -91,7 +96,7 @@ fn tighten(
         let balance = relax(&mut bare, q, pretension);
         accept(balance, "pretension on the joints")?;
         let missing = pretension - mean_tension(&bare, chain, q);
-        if missing.abs() < 1e-3 * pretension {
+        if at == PretensionAt::MeanPhase || missing.abs() < 1e-3 * pretension {
             return Ok(());
         }
         bracket[usize::from(missing < 0.0)] = Some((stretch, missing));

@@ -6,8 +6,9 @@ use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Weights};
 use chaindrive_mechanics::{
     Adjust, Assembled, Chain, ChainModel, Clearance, Coupling, Drive, Ends, Fit, GearPair, Joint,
-    Layout, LinkBody, Motion, Observation, Parts, PlacedChain, RigidLinks, RollerModel, Rotation,
-    Shaft, SpanStart, Sprocket, Stop, Support, Surface, System, Tighten, Torque,
+    Layout, LinkBody, Motion, Observation, Parts, PlacedChain, PretensionAt, RigidLinks,
+    RollerModel, Rotation, Shaft, SpanStart, Sprocket, Stop, Support, Surface, System, Tighten,
+    Torque,
 };
 
 const PITCH: f64 = 0.0127;
@@ -70,6 +71,7 @@ pub(crate) fn chain(links: usize, stops: [usize; 2]) -> PlacedChain {
                 adjust: Adjust::Nothing,
                 pretension: 60.0,
                 tighten: Tighten::RestLength,
+                at: PretensionAt::Phase,
             },
         },
         sprockets: stops.to_vec(),

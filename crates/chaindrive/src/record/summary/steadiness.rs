@@ -1,14 +1,15 @@
 //! How well a mean over time is known, and whether it is that of a steady state.
 //!
-//! Samples follow one another and are not independent, so their scatter says little about their mean. Means of long batches
-//! are nearly independent (Schmeiser, Operations Research 30, 1982: ten to thirty batches do):
+//! Samples follow one another and are not independent, so their scatter says little about their mean. What counts is the spectrum at
+//! frequency 0, which is found as Heidelberger and Welch do (Communications of the ACM 24, 1981), from means b of batches of samples: a
+//! line through the logarithm of the periodogram near 0, in pairs, so that single lines (teeth, cams) count little:
 //!
 //! ```text
-//! x̄ ± t₀.₉₇₅,ₘ₋₁ s/√m,   s² = Σ (b_j − x̄)²/(m − 1),   b_j: means of m = 20 batches
+//! x̄ ± t √(p₀/n),   I_j = |Σ b_l exp(−2πi j l/n)|²/n,   J_k = ln ((I₂ₖ₋₁ + I₂ₖ)/2) + 0.270,   k = 1 … 12
+//! ln p₀ = a − C/2,   J ≈ a + b f,   C = 0.645 (1/K + f̄²/Σ (f − f̄)²),   t: 97.5 % of Student's t with 2/(exp C − 1) degrees of freedom
 //! ```
 //!
-//! Where the means of neighbouring batches still go together, 10 longer ones are taken. A series that is shorter than 20 of its
-//! correlation times τ is too short for either:
+//! A series that is shorter than 20 of its correlation times τ is too short for that:
 //!
 //! ```text
 //! τ = 1 + 2 Σ_{k≤M} ρ_k,   M ≥ 5 τ the smallest        (Sokal, Monte Carlo Methods in Statistical Mechanics, 1997)
@@ -24,16 +25,27 @@
 //!
 //! A minimum at half of the run, or halves of the rest whose means differ (Geweke 1992), say that there is no steady state yet.
 
+use std::f64::consts::TAU;
+
 use serde::{Deserialize, Serialize};
 
 /// Batches kept at most; when there are so many, neighbours are joined.
 const MOST: usize = 160;
 
-/// Batches that the scatter is taken from, with t₀.₉₇₅ of their degrees of freedom: more if they are independent.
-const GROUPINGS: [(usize, f64); 2] = [(20, 2.093_024), (10, 2.262_157)];
+/// Batches below which nothing is said.
+const LEAST: usize = 20;
 
-/// Lag-one correlation of m independent means stays below this over √m in 19 of 20 cases (von Neumann).
-const INDEPENDENT: f64 = 1.645;
+/// Groups of batches whose means tell whether the halves agree.
+const GROUPS: usize = 10;
+
+/// Pairs of ordinates of the periodogram that the line goes through, where there are as many.
+const PAIRS: usize = 12;
+
+/// Mean, and variance, of the logarithm of half of χ² with 4 degrees of freedom over 2: the mean of two ordinates over the spectrum.
+const LOG_PAIR: (f64, f64) = (-0.270, 0.645);
+
+/// The normal variate that is exceeded in 2.5 % of cases.
+const NORMAL: f64 = 1.959_964;
 
 /// Correlation times below which a series is too short for its mean to be known.
 const CORRELATION_TIMES: f64 = 20.0;
@@ -68,7 +80,7 @@ pub struct Steadiness {
     pub before: f64,
     /// Whether a steady state is reached.
     pub is_steady: bool,
-    /// Whether the batches are long enough for the half width to be believed.
+    /// Whether the series is long enough for the half width to be believed.
     pub is_independent: bool,
 }
 
@@ -102,39 +114,79 @@ impl Batches {
     /// What they say about the mean; nothing as long as there are fewer than 20.
     pub(crate) fn steadiness(&self) -> Option<Steadiness> {
         let all = &self.means;
-        let (least, _) = GROUPINGS[0];
-        if all.len() < least {
+        if all.len() < LEAST {
             return None;
         }
         let cut = truncation(all);
         let steady = &all[cut..];
-        let mut found = None;
-        for (groups, quantile) in GROUPINGS {
-            let Some(means) = grouped(steady, groups) else {
-                continue;
-            };
-            let [mean, error] = moments(&means);
-            let independent = correlation(&means, 1) < INDEPENDENT / (groups as f64).sqrt();
-            found = Some((mean, quantile * error, independent, means));
-            if independent {
-                break;
-            }
-        }
-        let (_, half_width, is_independent, means) = found?;
-        let is_independent =
-            is_independent && steady.len() as f64 > CORRELATION_TIMES * correlation_time(steady);
-        let (first, second) = means.split_at(means.len() / 2);
+        let groups = grouped(steady, GROUPS)?;
+        let (first, second) = groups.split_at(GROUPS / 2);
         let [[a, ea], [b, eb]] = [first, second].map(moments);
         let constant = CONSTANT * a.abs().max(b.abs());
         let apart = (a - b).abs() > HALVES_AGREE * ea.hypot(eb) + constant;
         Some(Steadiness {
-            half_width,
+            half_width: half_width(steady),
             mean: mean(steady),
             before: cut as f64 / all.len() as f64,
             is_steady: cut < all.len() / 2 && !apart,
-            is_independent,
+            is_independent: steady.len() as f64 > CORRELATION_TIMES * correlation_time(steady),
         })
     }
+}
+
+/// Half width of the 95 % interval of the mean of values that follow one another.
+fn half_width(values: &[f64]) -> f64 {
+    let n = values.len();
+    let mean = mean(values);
+    let ordinate = |j: usize| {
+        let (mut re, mut im) = (0.0, 0.0);
+        for (l, value) in values.iter().enumerate() {
+            // What differs by whole turns is the same.
+            let (s, c) = (TAU * ((j * l) % n) as f64 / n as f64).sin_cos();
+            re += (value - mean) * c;
+            im += (value - mean) * s;
+        }
+        (re * re + im * im) / n as f64
+    };
+    let pairs = PAIRS.min((n / 2 - 1) / 2);
+    let points: Vec<(f64, f64)> = (1..=pairs)
+        .map(|k| {
+            let power = 0.5 * (ordinate(2 * k - 1) + ordinate(2 * k));
+            let frequency = (4 * k - 1) as f64 / (2 * n) as f64;
+            (frequency, power.ln() - LOG_PAIR.0)
+        })
+        .collect();
+    let count = pairs as f64;
+    let centre = points.iter().map(|(f, _)| f).sum::<f64>() / count;
+    let level = points.iter().map(|(_, power)| power).sum::<f64>() / count;
+    // Nothing scatters: no power has no logarithm.
+    if level.is_infinite() {
+        return 0.0;
+    }
+    let spread: f64 = points.iter().map(|(f, _)| (f - centre).powi(2)).sum();
+    let rise: f64 = points
+        .iter()
+        .map(|(f, power)| (f - centre) * (power - level))
+        .sum();
+    let at_zero = level - rise / spread * centre;
+    let doubt = LOG_PAIR.1 * (1.0 / count + centre * centre / spread);
+    let spectrum = (at_zero - 0.5 * doubt).exp();
+    students(2.0 / doubt.exp_m1()) * (spectrum / n as f64).sqrt()
+}
+
+/// Student's t that is exceeded in 2.5 % of cases, of some degrees of freedom.
+///
+/// # Source
+/// Abramowitz and Stegun, *Handbook of Mathematical Functions*, 26.7.5; 1e-3 for 3 degrees and more.
+fn students(freedom: f64) -> f64 {
+    let z = NORMAL;
+    let terms = [
+        (z.powi(3) + z) / 4.0,
+        (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / 96.0,
+        (3.0 * z.powi(7) + 19.0 * z.powi(5) + 17.0 * z.powi(3) - 15.0 * z) / 384.0,
+    ];
+    let powers = (1..).zip(terms);
+    z + powers.map(|(k, term)| term / freedom.powi(k)).sum::<f64>()
 }
 
 /// Batches before the steady state, at most half of them.
@@ -267,11 +319,36 @@ mod tests {
             let widths = (1..=200).map(|seed| of(series(seed, phi, count as usize)).unwrap());
             let mean = widths.map(|found| found.half_width).sum::<f64>() / 200.0;
             // σ_x̄ = σ_e/(1 − φ)/√n
-            let theory = 2.09 / (1.0 - phi) / f64::from(count).sqrt();
+            let theory = 2.05 / (1.0 - phi) / f64::from(count).sqrt();
             assert!(
                 (mean / theory - 1.0).abs() < 0.15,
                 "{phi}: {mean}, {theory}"
             );
+        }
+    }
+
+    /// Teeth and cams, whose periods fit into no batch, do not widen the interval by much.
+    #[test]
+    fn what_repeats_counts_little() {
+        let (count, mut held, mut width) = (4000, 0, 0.0);
+        for seed in 1..=200_u32 {
+            let phase = f64::from(seed);
+            let wave = |i: usize| 5.0 * (TAU * i as f64 / 61.7 + phase).sin();
+            let noise = series(seed.into(), 0.5, count).enumerate();
+            let found = of(noise.map(|(i, x)| x + wave(i))).unwrap();
+            held += usize::from(found.mean.abs() < found.half_width);
+            width += found.half_width / 200.0;
+        }
+        // σ_x̄ = σ_e/(1 − φ)/√n of the noise alone
+        let theory = 1.96 / 0.5 / f64::sqrt(4000.0);
+        assert!(held >= 176, "{held}");
+        assert!((0.8..1.6).contains(&(width / theory)), "{width}, {theory}");
+    }
+
+    #[test]
+    fn students_t_is_that_of_tables() {
+        for (freedom, t) in [(4.0, 2.776_445), (10.0, 2.228_139), (19.0, 2.093_024)] {
+            assert!((students(freedom) / t - 1.0).abs() < 1e-3, "{freedom}");
         }
     }
 
@@ -330,7 +407,7 @@ mod tests {
         });
         let doubted = doubted.count();
         assert!(doubted > 80, "{doubted}");
-        let slow = |i: usize| (std::f64::consts::TAU * i as f64 / 3000.0).sin();
+        let slow = |i: usize| (TAU * i as f64 / 3000.0).sin();
         let found = of((0..3000).map(slow)).unwrap();
         assert!(!found.is_steady, "{found:?}");
     }

@@ -55,6 +55,11 @@ pub(super) fn layout(
             adjust,
             pretension: route.pretension.0,
             tighten,
+            at: findings.or_chosen(
+                route.pretension_at,
+                "route.pretension_at",
+                &defaults::PRETENSION_AT,
+            ),
         },
     })
 }

@@ -1,6 +1,6 @@
 //! The way of a closed chain.
 
-use chaindrive_mechanics::{SpanStart, Tighten};
+use chaindrive_mechanics::{PretensionAt, SpanStart, Tighten};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -22,6 +22,9 @@ pub(crate) struct Route {
     #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) pretension: Force,
+    /// Where the chain carries the pretension; absent: in the mean over a tooth that passes.
+    #[serde(default)]
+    pub(crate) pretension_at: Option<PretensionAt>,
     /// How the pretension is made; absent: by shorter links.
     #[serde(default)]
     pub(crate) tighten: Tighten,

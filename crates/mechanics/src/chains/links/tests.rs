@@ -13,8 +13,8 @@ use crate::energy::Flow;
 use crate::system::GroupBodies;
 use crate::{
     Adjust, ChainModel, Clearance, Drive, End, Ends, Fit, Flank, FreeRoller, Joint, Layout,
-    LinkBody, Motion, Parts, PlacedChain, Record, RigidLinks, RollerModel, Rotation, Shaft,
-    SpanStart, Sprocket, Stop, Support, Surface, System, Tighten, Torque,
+    LinkBody, Motion, Parts, PlacedChain, PretensionAt, Record, RigidLinks, RollerModel, Rotation,
+    Shaft, SpanStart, Sprocket, Stop, Support, Surface, System, Tighten, Torque,
 };
 
 /// Steel on steel with a little friction, so that normals and tangents take part.
@@ -88,6 +88,7 @@ pub(super) fn bicycle(model: ChainModel) -> Parts {
                     adjust: Adjust::Nothing,
                     pretension: 60.0,
                     tighten: Tighten::RestLength,
+                    at: PretensionAt::Phase,
                 },
             },
             sprockets: vec![0, 1],

@@ -3,8 +3,8 @@
 use chaindrive_contact::{Friction, Law};
 use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
 use chaindrive_mechanics::{
-    Adjust, Chain, Ends, Fit, Layout, Motion, Parts, PlacedChain, Rotation, Shaft, SpanStart,
-    Sprocket, Stop, Support, Surface, Tighten, Torque,
+    Adjust, Chain, Ends, Fit, Layout, Motion, Parts, PlacedChain, PretensionAt, Rotation, Shaft,
+    SpanStart, Sprocket, Stop, Support, Surface, Tighten, Torque,
 };
 
 /// Pitch, link mass and stiffness as published; the rest is a reconstruction that closes exactly.
@@ -80,6 +80,7 @@ pub(crate) fn parts(law: Law) -> Parts {
                     adjust: Adjust::Nothing,
                     pretension: 15e3,
                     tighten: Tighten::RestLength,
+                    at: PretensionAt::Phase,
                 },
             },
             sprockets: (0..4).collect(),
