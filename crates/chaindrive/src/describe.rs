@@ -12,7 +12,7 @@ mod text;
 use chaindrive_geometry::mesh_frequency;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 use chaindrive_mechanics::{
-    Assembled, ChainModel, Clash, Drive, Fitting, Flow, GuideSupport, Observation, PlacedChain,
+    Assembled, ChainModel, Clash, Drive, Fight, Fitting, Flow, GuideSupport, Observation, PlacedChain,
     Statics,
 };
 use serde::ser::SerializeMap;
@@ -187,11 +187,19 @@ impl Description {
             },
             polygon: polygon::pairs(drive, &start),
             cost: cost::measure(&assembled, run)?,
-            warnings: assembled.warnings.iter().map(Clash::to_string).collect(),
+            warnings: warnings(drive, &assembled, run),
             spans,
         })
     }
 }
+
+/// What can be said against a drive before it runs.
+fn warnings(drive: &Drive, assembled: &Assembled, run: &Run) -> Vec<String> {
+    let clashes = assembled.warnings.iter().map(Clash::to_string);
+    let fights = drive.fights(0.0, run.until);
+    clashes.chain(fights.iter().map(Fight::to_string)).collect()
+}
+
 
 impl Description {
     /// Says that a run will choose method and step for this accuracy, if for any, instead of those described.

@@ -8,6 +8,7 @@
 //!
 //! [`Reason`] is the list of everything that is looked at; [`Verdict::of`] looks.
 
+mod duty;
 mod reason;
 
 use std::fmt;
@@ -79,9 +80,6 @@ const WRONG_LOSSES: f64 = 0.5;
 const LEAST_LOSSES: f64 = 1e-4;
 /// Efficiency above which more comes out than goes in, by more than a drive without losses may err.
 const MOST_EFFICIENCY: f64 = 1.0 + WRONG_LOSSES * LEAST_LOSSES;
-/// Share of the energy exchanged with the outside that has to go one way before its ratio is an efficiency: a driver that
-/// swings to and fro has none.
-const ONE_WAY: f64 = 0.25;
 /// Steps below which the error of the first one is all that a ledger shows.
 const LEAST_STEPS: u64 = 32;
 /// Share of the samples without a tension above which the statistics of a span are not those of the run.
@@ -103,6 +101,7 @@ impl Verdict {
         reasons.extend(not_finite(summary));
         reasons.extend(ledger(&summary.ledger(), simulation.statistics().steps));
         reasons.extend(spans(summary));
+        reasons.extend(duty::found(summary, simulation));
         let known = summary.spans.iter().filter_map(|span| {
             let found = span.steadiness()?;
             Some((span.name.as_str(), span.mean(), found))
@@ -217,7 +216,7 @@ fn ledger(ledger: &Ledger, steps: u64) -> Vec<Reason> {
         });
     }
     let efficiency = 1.0 - (ledger.losses - ledger.residual) / ledger.supplied;
-    if ledger.supplied > ONE_WAY * ledger.exchanged && efficiency > MOST_EFFICIENCY {
+    if ledger.efficiency().is_some() && efficiency > MOST_EFFICIENCY {
         reasons.push(Reason::EfficiencyAboveOne { efficiency });
     }
     reasons

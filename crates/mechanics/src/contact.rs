@@ -21,6 +21,7 @@ mod windows;
 mod wrench;
 
 use chaindrive_contact::elastic::ElasticLaw;
+use chaindrive_contact::Law;
 use chaindrive_geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
 
@@ -30,7 +31,7 @@ pub(crate) use plates::{PlateContact, PlatePins, PlatePlaces};
 pub(crate) use rollers::Rollers;
 pub(crate) use window::{FAR, Places, Run, Spare};
 pub(crate) use windows::{PlateMemory, Windows};
-pub(crate) use wrench::{LaneTally, Wrench};
+pub(crate) use wrench::{Begun, LaneTally, Wrench};
 
 use crate::drive::{Flank, Surface};
 use crate::profile::{GapFace, Profile};
@@ -223,6 +224,14 @@ impl Contacts {
 }
 
 impl Flank {
+    /// The law on the flank of a surface.
+    pub(crate) fn law(&self, surface: &Surface) -> Law {
+        Law {
+            elastic: self.elastic,
+            ..surface.law
+        }
+    }
+
     /// Share s of the flank's law at a distance beyond the end of the hollow \[m\].
     #[inline]
     pub(crate) fn share(&self, beyond: f64) -> f64 {

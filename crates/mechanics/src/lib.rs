@@ -27,7 +27,9 @@ mod drive;
 mod energy;
 mod error;
 mod events;
+mod fights;
 mod groups;
+mod impacts;
 mod lanes;
 mod modes;
 mod motion;
@@ -35,6 +37,7 @@ mod nudge;
 mod observe;
 mod profile;
 mod standing;
+mod strength;
 mod system;
 mod tensioner;
 mod torque;
@@ -49,12 +52,15 @@ pub use drive::{
     Adjust, Coupling, Drive, Fit, Flank, GearPair, Guide, GuideSupport, Layout, Parts, PlacedChain,
     Rotation, Shaft, SpanStart, Sprocket, Stop, Support, Surface, Tighten, Touches,
 };
-pub use energy::{Energy, Flow, Store};
+pub use energy::{Energy, Flow, Place, Store};
 pub use error::{AssemblyError, Clash, DriveError, MemoryError};
 pub use events::{ContactEvent, ContactPair, EventKinds};
+pub use fights::Fight;
+pub use impacts::{Impacts, Struck};
 pub use modes::{Mode, Modes};
 pub use motion::{Harmonic, Kinematics, Motion, Table};
 pub use observe::{ChainSize, Observation};
+pub use strength::{Rating, Strength};
 pub use system::{Input, Record, System, SystemMemory};
 pub use tensioner::{Carrier, Push, PushForce, Tensioner, carriers, pushes};
 pub use torque::{Argument, Order, Torque};

@@ -33,11 +33,13 @@ pub enum Axis {
     Store,
     /// One a flow of energy.
     Flow,
+    /// One a place where energy is lost.
+    Place,
 }
 
 impl Axis {
     /// All axes with labels.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Roller,
         Self::Link,
         Self::Joint,
@@ -50,6 +52,7 @@ impl Axis {
         Self::OilColumn,
         Self::Store,
         Self::Flow,
+        Self::Place,
     ];
 
     /// Name of the dimension; none for a scalar channel.
@@ -68,6 +71,7 @@ impl Axis {
             Self::OilColumn => Some("oil_column"),
             Self::Store => Some("store"),
             Self::Flow => Some("flow"),
+            Self::Place => Some("place"),
         }
     }
 }
@@ -147,6 +151,7 @@ channels! {
     EnergyResidual, "energy_residual", "J", None, "energy unaccounted for since the start";
     EnergyStores, "energy_stores", "J", Store, "energy by form";
     EnergyFlows, "energy_flows", "J", Flow, "energy that has flowed since the start, by element";
+    EnergyLosses, "energy_losses", "J", Place, "energy lost since the start, by place: together energy_dissipated";
 }
 
 impl Channel {
@@ -319,6 +324,7 @@ impl Channel {
             Self::EnergyResidual => to.push(energy.residual(start)),
             Self::EnergyStores => to.extend(Store::ALL.map(|store| energy.store(store))),
             Self::EnergyFlows => to.extend(Flow::ALL.map(|flow| energy.flow(flow))),
+            Self::EnergyLosses => to.extend(energy.losses()),
         }
     }
 }

@@ -10,7 +10,7 @@ use super::{Checkpoint, Request, run_in};
 use crate::precision::{Choice, Judgement, choose};
 use crate::record::{Ending, Provenance, Summary, attributes};
 use crate::scene::SceneError;
-use crate::{Channel, Run, Simulation, SimulationError, SnapshotError, Verdict};
+use crate::{Channel, RanIn, Run, Simulation, SimulationError, SnapshotError, Verdict};
 
 /// Where samples go: memory, a store, a table.
 pub trait Sink {
@@ -27,6 +27,11 @@ pub trait Sink {
         channels: &[Channel],
         provenance: &Provenance,
     ) -> Result<(), Self::Error>;
+
+    /// Whether it keeps the samples, so that somebody will look at more than the summary of them.
+    fn keeps_samples(&self) -> bool {
+        true
+    }
 
     /// Takes the last sample of the simulation.
     ///
@@ -123,6 +128,8 @@ pub struct Report {
     pub run: Run,
     /// How method and step were chosen, if they were.
     pub choice: Option<Choice>,
+    /// How it was run in, if it was.
+    pub ran_in: Option<RanIn>,
     /// The account of its samples.
     pub summary: Summary,
     /// How exact it is; nothing is said of a run that failed.
@@ -231,6 +238,7 @@ fn complete<S: Sink>(
         Channel::chosen(&request.record, simulation.system()).map_err(RunError::Start)?;
     sink.begin(&simulation, &channels, &provenance)
         .map_err(RunError::Sink)?;
+    summary.kept = sink.keeps_samples();
 
     if request.checkpoint_every.is_some() && summary.samples == 0 {
         // With no sample before it: a store that is killed here is in nobody's way.
@@ -295,6 +303,7 @@ fn complete<S: Sink>(
         simulation,
         drive,
         run,
+        ran_in: provenance.ran_in,
         choice: provenance.choice,
         summary,
         judgement,

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::execute::assemble;
 use super::patience::LOOK;
 use super::{Run, steady};
+use crate::precision::wording::duration;
 use crate::scene::read_time;
 use crate::{Simulation, SimulationError};
 
@@ -46,6 +47,17 @@ pub struct RanIn {
     pub time: f64,
     /// Whether the tensions were found steady by then; nobody looked where the time was given.
     pub is_steady: Option<bool>,
+}
+
+impl fmt::Display for RanIn {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let how = match self.is_steady {
+            None => "as it was asked for; whether it was enough, the means say",
+            Some(true) => "until the tension of every span was steady (MSER)",
+            Some(false) => "the longest that is tried, and not every span was steady (MSER)",
+        };
+        write!(f, "run-in                   {} before t = 0, {how}", duration(self.time))
+    }
 }
 
 impl fmt::Display for RunIn {

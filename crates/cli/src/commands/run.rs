@@ -155,7 +155,8 @@ impl Onlooker for Terminal<'_> {
 /// The account that ends the run.
 fn told(report: &Report) -> String {
     let (choice, judgement) = (report.choice.as_ref(), report.judgement.as_ref());
-    let figures = figures(&report.summary, &report.simulation, choice, judgement);
+    let (summary, simulation) = (&report.summary, &report.simulation);
+    let figures = figures(summary, simulation, report.ran_in, choice, judgement);
     format!("{}\n{}{figures}", report.verdict, at_rest(report))
 }
 

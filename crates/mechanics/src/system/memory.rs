@@ -13,6 +13,7 @@ use crate::MemoryError;
 use crate::chains::ChainMemory;
 use crate::contact::{PlateMemory, Windows};
 use crate::events::EventLog;
+use crate::impacts::Impacts;
 
 /// Contacts, windows, inputs and the log of a [`System`].
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -31,6 +32,7 @@ struct MemberMemory {
     rails: Vec<RailMemory>,
     renew: (f64, u32),
     rates: [f64; 2],
+    impacts: Vec<Impacts>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -112,6 +114,7 @@ impl Member {
             rails: rails.collect(),
             renew: self.renew,
             rates: self.rates,
+            impacts: self.impacts().copied().collect(),
         }
     }
 
@@ -141,6 +144,11 @@ impl Member {
         }
         self.renew = memory.renew;
         self.rates = memory.rates;
+        let known = memory.impacts.len();
+        MemoryError::unless("places of impacts", known, self.impacts().count())?;
+        for (own, then) in self.impacts_mut().zip(memory.impacts) {
+            *own = then;
+        }
         Ok(())
     }
 }

@@ -6,7 +6,7 @@ use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Weights};
 use chaindrive_mechanics::{
     Adjust, Assembled, Chain, ChainModel, Clearance, Coupling, Drive, Ends, Fit, GearPair, Joint,
-    Layout, LinkBody, Motion, Observation, Parts, PlacedChain, RigidLinks, RollerModel, Rotation,
+    Layout, LinkBody, Motion, Observation, Parts, PlacedChain, RigidLinks, RollerModel, Rotation, Strength,
     Shaft, SpanStart, Sprocket, Stop, Support, Surface, System, Tighten, Torque,
 };
 
@@ -58,6 +58,7 @@ pub(crate) fn chain(links: usize, stops: [usize; 2]) -> PlacedChain {
             masses: vec![3.81e-3; links],
             roller_diameter: ROLLER,
             plate_height: 9.6e-3,
+            strength: Strength::default(),
             articulation: None,
             ends: Ends::Closed,
             model: ChainModel::Particles,

@@ -1,6 +1,6 @@
 //! The chain: completed from the catalogue, then lengths, masses, stiffness and damping, link by link.
 
-use chaindrive_mechanics::{Chain, ChainModel, End, Ends};
+use chaindrive_mechanics::{Chain, ChainModel, End, Ends, Strength};
 
 use super::articulation::{self, Joints};
 use super::chains::Described;
@@ -144,6 +144,10 @@ pub(super) fn resolve(
         articulation,
         ends: ends?,
         model,
+        strength: Strength {
+            breaking_load: text.breaking_load.map(|load| load.0),
+            rating: of_type.and_then(|chain| catalogue::rating(chain, pitch)),
+        },
     };
     Some(Resolved {
         chain,

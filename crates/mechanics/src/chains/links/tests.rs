@@ -13,7 +13,7 @@ use crate::energy::Flow;
 use crate::system::GroupBodies;
 use crate::{
     Adjust, ChainModel, Clearance, Drive, End, Ends, Fit, Flank, FreeRoller, Joint, Layout,
-    LinkBody, Motion, Parts, PlacedChain, Record, RigidLinks, RollerModel, Rotation, Shaft,
+    LinkBody, Motion, Parts, PlacedChain, Record, RigidLinks, RollerModel, Rotation, Shaft, Strength,
     SpanStart, Sprocket, Stop, Support, Surface, System, Tighten, Torque,
 };
 
@@ -76,6 +76,7 @@ pub(super) fn bicycle(model: ChainModel) -> Parts {
                 masses: vec![3.81e-3; links],
                 roller_diameter,
                 plate_height: 9.6e-3,
+                strength: Strength::default(),
                 articulation: None,
                 ends: Ends::Closed,
                 model,

@@ -3,7 +3,7 @@
 use chaindrive_contact::{Friction, Law};
 use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
 use chaindrive_mechanics::{
-    Adjust, Chain, Ends, Fit, Layout, Motion, Parts, PlacedChain, Rotation, Shaft, SpanStart,
+    Adjust, Chain, Ends, Fit, Layout, Motion, Parts, PlacedChain, Rotation, Shaft, SpanStart, Strength,
     Sprocket, Stop, Support, Surface, Tighten, Torque,
 };
 
@@ -68,6 +68,7 @@ pub(crate) fn parts(law: Law) -> Parts {
                 masses: vec![mass; links],
                 roller_diameter,
                 plate_height: 0.0778,
+                strength: Strength::default(),
                 articulation: None,
                 ends: Ends::Closed,
                 model: chaindrive_mechanics::ChainModel::Particles,
