@@ -99,7 +99,8 @@ def simulate(
         40 000 steps of the default length, whatever the length of the run; more if its own steps
         are shorter.
     progress
-        True for a line on stderr, or a function called with the share done, 0 to 1.
+        True for a line on stderr, or a function called with the share done, 0 to 1; while the drive
+        is run in, with 0, or its method ``run_in``, if it has one, with the share of that.
 
     Returns
     -------
@@ -339,10 +340,16 @@ class _Line:
         self._begun = False
 
     def __call__(self, share: float) -> None:
+        self._write(f"{share:6.1%}        ")
+
+    def run_in(self, share: float) -> None:
+        self._write(f"{share:6.1%} run-in ")
+
+    def _write(self, text: str) -> None:
         if self._visible:
             self._begun = True
             elapsed = time.perf_counter() - self._start
-            sys.stderr.write(f"\r{share:6.1%}  {elapsed:6.1f} s")
+            sys.stderr.write(f"\r{text}{elapsed:6.1f} s")
             sys.stderr.flush()
 
     def close(self) -> None:

@@ -12,8 +12,8 @@ mod text;
 use chaindrive_geometry::mesh_frequency;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 use chaindrive_mechanics::{
-    Assembled, ChainModel, Clash, Drive, Fight, Fitting, Flow, GuideSupport, Observation, PlacedChain,
-    Statics,
+    Assembled, ChainModel, Clash, Drive, Fight, Fitting, Flow, GuideSupport, Observation,
+    PlacedChain, Statics,
 };
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -199,7 +199,6 @@ fn warnings(drive: &Drive, assembled: &Assembled, run: &Run) -> Vec<String> {
     let fights = drive.fights(0.0, run.until);
     clashes.chain(fights.iter().map(Fight::to_string)).collect()
 }
-
 
 impl Description {
     /// Says that a run will choose method and step for this accuracy, if for any, instead of those described.

@@ -20,8 +20,8 @@ mod window;
 mod windows;
 mod wrench;
 
-use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_contact::Law;
+use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
 

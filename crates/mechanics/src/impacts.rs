@@ -91,7 +91,10 @@ impl System {
             };
             for on in &member.contacts.teeth {
                 let law = on.contacts.surface.law.prepared();
-                let flank = on.contacts.flank.and_then(|flank| flank.law(&on.contacts.surface).prepared().reach());
+                let flank = on
+                    .contacts
+                    .flank
+                    .and_then(|flank| flank.law(&on.contacts.surface).prepared().reach());
                 all.push(Struck {
                     pair: ContactPair::Tooth {
                         sprocket: on.wheel,
@@ -119,7 +122,11 @@ impl System {
             let [pins, bushes] = member.chain.bearing_laws();
             let of_joints = [
                 (ContactPair::Joint { joint: 0 }, "pins in bushes", pins),
-                (ContactPair::Roller { joint: 0 }, "bushes in rollers", bushes),
+                (
+                    ContactPair::Roller { joint: 0 },
+                    "bushes in rollers",
+                    bushes,
+                ),
             ];
             for ((pair, what, law), impacts) in of_joints.into_iter().zip(member.joint_impacts) {
                 let Some(law) = law else { continue };

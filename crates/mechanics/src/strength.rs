@@ -93,7 +93,10 @@ mod tests {
                 rollers: 17.0,
             };
             let found = rating.power(17, -rpm * TAU / 60.0) / HORSEPOWER;
-            assert!((found - horsepower).abs() < 0.006, "{pitch}, {rpm}: {found}");
+            assert!(
+                (found - horsepower).abs() < 0.006,
+                "{pitch}, {rpm}: {found}"
+            );
         }
     }
 

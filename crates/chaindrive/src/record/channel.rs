@@ -122,6 +122,12 @@ channels! {
     JointOffsetX, "joint_offset_x", "m", Joint, "eccentricity of the pin in its bush, x";
     JointOffsetY, "joint_offset_y", "m", Joint, "eccentricity of the pin in its bush, y";
     JointAngle, "joint_angle", "rad", Joint, "direction of the link with the pin from that with the bush";
+    BushForce, "bush_force", "N", Joint, "force of the free roller on its bush";
+    BushForceX, "bush_force_x", "N", Joint, "force of the free roller on its bush, x";
+    BushForceY, "bush_force_y", "N", Joint, "force of the free roller on its bush, y";
+    BushDepth, "bush_depth", "m", Joint, "indentation of bush and free roller";
+    BushOffsetX, "bush_offset_x", "m", Joint, "eccentricity of the bush in its free roller, x";
+    BushOffsetY, "bush_offset_y", "m", Joint, "eccentricity of the bush in its free roller, y";
     ContactForce, "contact_force", "N", Roller, "normal force between roller and teeth";
     ContactDepth, "contact_depth", "m", Sprocket, "deepest indentation on the sprocket";
     Contacts, "contacts", "1", Sprocket, "number of closed contacts on the sprocket";
@@ -218,10 +224,24 @@ impl Channel {
         }
     }
 
+    /// Whether it tells of bushes in free rollers.
+    fn is_of_bushes(self) -> bool {
+        matches!(
+            self,
+            Self::BushForce
+                | Self::BushForceX
+                | Self::BushForceY
+                | Self::BushDepth
+                | Self::BushOffsetX
+                | Self::BushOffsetY
+        )
+    }
+
     /// Whether a system has what the channel records: joints and directions of links belong to rigid
     /// links, shafts and couplings are those that a scene names.
     pub fn is_of(self, system: &System) -> bool {
         match self.axis() {
+            Axis::Joint if self.is_of_bushes() => system.has_free_rollers(),
             Axis::Joint => system.joints() > 0,
             Axis::Link if self == Self::LinkAngle => system.joints() > 0,
             Axis::Shaft => !system.shaft_names().is_empty(),
@@ -295,6 +315,12 @@ impl Channel {
             Self::JointOffsetX => to.extend(&sample.joint_offset_x),
             Self::JointOffsetY => to.extend(&sample.joint_offset_y),
             Self::JointAngle => to.extend(&sample.joint_angle),
+            Self::BushForce => to.extend(&sample.bush_force),
+            Self::BushForceX => to.extend(&sample.bush_force_x),
+            Self::BushForceY => to.extend(&sample.bush_force_y),
+            Self::BushDepth => to.extend(&sample.bush_depth),
+            Self::BushOffsetX => to.extend(&sample.bush_offset_x),
+            Self::BushOffsetY => to.extend(&sample.bush_offset_y),
             Self::ContactForce => to.extend(&sample.contact_force),
             Self::ContactDepth => to.extend(&sample.contact_depth),
             Self::Contacts => to.extend(&sample.contacts),

@@ -380,7 +380,9 @@ impl Summary {
     pub fn losses(&self) -> Vec<(Place, f64)> {
         let start = self.start.unwrap_or_default().losses();
         let lost = self.last.losses().into_iter().zip(start);
-        let lost = Place::ALL.into_iter().zip(lost.map(|(now, then)| now - then));
+        let lost = Place::ALL
+            .into_iter()
+            .zip(lost.map(|(now, then)| now - then));
         lost.filter(|(_, lost)| *lost != 0.0).collect()
     }
 

@@ -5,6 +5,7 @@ use std::convert::Infallible;
 use chaindrive_mechanics::{Assembled, Drive};
 use serde_json::{Map, Value};
 
+use super::checkpoint::NotAgain;
 use super::patience::{LOOK, patiently};
 use super::{Checkpoint, Request, run_in};
 use crate::precision::{Choice, Judgement, choose};
@@ -84,6 +85,12 @@ pub trait Onlooker {
     /// Is told how far the run is, as often as [`stop`](Self::stop) is asked.
     fn see(&self, simulation: &Simulation) {
         let _ = simulation;
+    }
+
+    /// Is told how much of the run-in is done, 0 to 1, as often as [`stop`](Self::stop) is asked there. Where a run-in ends by
+    /// itself, first how much of the longest that is tried, and then of the one that is carried out.
+    fn see_run_in(&self, share: f64) {
+        let _ = share;
     }
 }
 
@@ -191,7 +198,7 @@ pub fn execute<S: Sink>(
     sink: &mut S,
     onlooker: &dyn Onlooker,
 ) -> Result<Report, RunError<S::Error>> {
-    let begun = begin(request, &|| onlooker.stop())?;
+    let begun = begin(request, onlooker)?;
     complete(request, begun, sink, onlooker)
 }
 
@@ -205,15 +212,28 @@ pub(crate) fn resume<S: Sink>(
     onlooker: &dyn Onlooker,
 ) -> Result<Report, RunError<S::Error>> {
     let request = checkpoint.request().map_err(RunError::Scene)?;
-    let mut begun = begin(&request, &|| onlooker.stop())?;
-    let simulation = &mut begun.simulation;
+    let mut provenance = Provenance::of(&request.scene, &request.run);
+    let drive = request.scene.drive().map_err(RunError::Scene)?;
+    let start = checkpoint.start(&drive, &|| onlooker.stop());
+    let start = start.map_err(|error| match error {
+        NotAgain::Start(error) => not_begun(error),
+        NotAgain::Snapshot(error) => RunError::Snapshot(error),
+    })?;
+    let simulation = Simulation::from_assembled(start, &request.run);
+    let mut simulation = simulation.map_err(RunError::Start)?;
     let restored = simulation.restore(&checkpoint.snapshot);
     restored.map_err(RunError::Snapshot)?;
     let [wall, stepping] = checkpoint.spent();
     simulation.has_spent(stepping);
-    begun.provenance.earlier = wall;
-    begun.provenance.choice = checkpoint.choice().cloned();
-    begun.summary = checkpoint.summary.clone();
+    provenance.earlier = wall;
+    provenance.choice = checkpoint.choice().cloned();
+    provenance.ran_in = checkpoint.ran_in();
+    let begun = Begun {
+        drive,
+        simulation,
+        provenance,
+        summary: checkpoint.summary.clone(),
+    };
     complete(&request, begun, sink, onlooker)
 }
 
@@ -348,15 +368,21 @@ struct Begun {
     summary: Summary,
 }
 
+/// Why a run could not begin.
+fn not_begun<E: std::error::Error>(error: SimulationError) -> RunError<E> {
+    match error {
+        SimulationError::Interrupted => RunError::Interrupted,
+        error => RunError::Start(error),
+    }
+}
+
 /// Assembles the drive, chooses method and step where an accuracy is asked for, and starts the clock.
 fn begin<E: std::error::Error>(
     request: &Request,
-    watch: &dyn Fn() -> bool,
+    onlooker: &dyn Onlooker,
 ) -> Result<Begun, RunError<E>> {
-    let failed = |error| match error {
-        SimulationError::Interrupted => RunError::Interrupted,
-        error => RunError::Start(error),
-    };
+    let watch = &|| onlooker.stop();
+    let failed = not_begun;
     let mut provenance = Provenance::of(&request.scene, &request.run);
     let drive = request.scene.drive().map_err(RunError::Scene)?;
     let start = assemble(&drive, watch).map_err(failed)?;
@@ -365,7 +391,7 @@ fn begin<E: std::error::Error>(
         provenance.run = choice.run.clone();
         provenance.choice = Some(choice);
     }
-    let (start, ran_in) = run_in(start, &provenance.run, watch).map_err(failed)?;
+    let (start, ran_in) = run_in(start, &provenance.run, onlooker).map_err(failed)?;
     provenance.ran_in = ran_in;
     let simulation = Simulation::from_assembled(start, &provenance.run).map_err(failed)?;
     Ok(Begun {
@@ -406,7 +432,7 @@ impl Simulation {
     /// # Errors
     /// [`RunError`] when the run cannot begin.
     pub fn of(request: &Request, onlooker: &dyn Onlooker) -> Result<Self, RunError<Infallible>> {
-        begin(request, &|| onlooker.stop()).map(|begun| begun.simulation)
+        begin(request, onlooker).map(|begun| begun.simulation)
     }
 }
 

@@ -3,6 +3,7 @@
 use chaindrive_mechanics::Assembled;
 
 use super::Run;
+use super::execute::Onlooker;
 use super::run_in::{MOST_CIRCUITS, before};
 use crate::SimulationError;
 use crate::record::Batches;
@@ -20,8 +21,9 @@ const SAMPLES: u32 = 256;
 pub(super) fn begins(
     start: &Assembled,
     run: &Run,
-    stop: &dyn Fn() -> bool,
+    onlooker: &dyn Onlooker,
 ) -> Result<(f64, bool), SimulationError> {
+    let stop = &|| onlooker.stop();
     let circuit = start.slowest_circuit();
     if !circuit.is_finite() {
         let reason =
@@ -48,6 +50,7 @@ pub(super) fn begins(
                     span.push(*tension);
                 }
             }
+            onlooker.see_run_in(f64::from(taken) / f64::from(MOST_CIRCUITS * SAMPLES));
             if stop() {
                 return Err(SimulationError::Interrupted);
             }

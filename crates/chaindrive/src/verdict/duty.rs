@@ -27,7 +27,10 @@ pub(super) fn found(summary: &Summary, simulation: &Simulation) -> Vec<Reason> {
     reasons.extend(fastest(&struck));
     reasons.extend(load_that_drives(&summary.ledger()));
     if summary.kept {
-        reasons.extend(samples_too_rare(summary.mesh_frequency(), simulation.every()));
+        reasons.extend(samples_too_rare(
+            summary.mesh_frequency(),
+            simulation.every(),
+        ));
     }
     let drive = &simulation.assembled().drive;
     let fights = drive.fights(0.0, simulation.time()).into_iter();

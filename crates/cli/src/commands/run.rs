@@ -150,6 +150,10 @@ impl Onlooker for Terminal<'_> {
     fn see(&self, simulation: &Simulation) {
         self.progress.borrow_mut().show(simulation);
     }
+
+    fn see_run_in(&self, share: f64) {
+        self.progress.borrow_mut().run_in(share);
+    }
 }
 
 /// The account that ends the run.

@@ -6,8 +6,8 @@ use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Weights};
 use chaindrive_mechanics::{
     Adjust, Assembled, Chain, ChainModel, Clearance, Coupling, Drive, Ends, Fit, GearPair, Joint,
-    Layout, LinkBody, Motion, Observation, Parts, PlacedChain, RigidLinks, RollerModel, Rotation, Strength,
-    Shaft, SpanStart, Sprocket, Stop, Support, Surface, System, Tighten, Torque,
+    Layout, LinkBody, Motion, Observation, Parts, PlacedChain, RigidLinks, RollerModel, Rotation,
+    Shaft, SpanStart, Sprocket, Stop, Strength, Support, Surface, System, Tighten, Torque,
 };
 
 const PITCH: f64 = 0.0127;

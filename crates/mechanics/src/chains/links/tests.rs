@@ -13,8 +13,8 @@ use crate::energy::Flow;
 use crate::system::GroupBodies;
 use crate::{
     Adjust, ChainModel, Clearance, Drive, End, Ends, Fit, Flank, FreeRoller, Joint, Layout,
-    LinkBody, Motion, Parts, PlacedChain, Record, RigidLinks, RollerModel, Rotation, Shaft, Strength,
-    SpanStart, Sprocket, Stop, Support, Surface, System, Tighten, Torque,
+    LinkBody, Motion, Parts, PlacedChain, Record, RigidLinks, RollerModel, Rotation, Shaft,
+    SpanStart, Sprocket, Stop, Strength, Support, Surface, System, Tighten, Torque,
 };
 
 /// Steel on steel with a little friction, so that normals and tangents take part.

@@ -3,8 +3,8 @@
 use chaindrive_contact::{Friction, Law};
 use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
 use chaindrive_mechanics::{
-    Adjust, Chain, Ends, Fit, Layout, Motion, Parts, PlacedChain, Rotation, Shaft, SpanStart, Strength,
-    Sprocket, Stop, Support, Surface, Tighten, Torque,
+    Adjust, Chain, Ends, Fit, Layout, Motion, Parts, PlacedChain, Rotation, Shaft, SpanStart,
+    Sprocket, Stop, Strength, Support, Surface, Tighten, Torque,
 };
 
 /// Pitch, link mass and stiffness as published; the rest is a reconstruction that closes exactly.
