@@ -17,7 +17,12 @@ import xarray as xr
 from chaindrive import _core
 from chaindrive.channels import channels
 from chaindrive.drive import Drive, _needed
-from chaindrive.errors import ClashWarning, DistrustedResultWarning, ParameterError
+from chaindrive.errors import (
+    CautiousResultWarning,
+    ClashWarning,
+    DistrustedResultWarning,
+    ParameterError,
+)
 from chaindrive.signals import heard
 
 __all__ = ["resume", "simulate"]
@@ -35,6 +40,7 @@ def simulate(
     tolerance: float | str | None = None,
     onset_depth: float | str | None = None,
     accuracy: float | str | None = None,
+    accuracy_of: str | None = None,
     events: str | Iterable[str] | None = None,
     output: str | PathLike[str] | None = None,
     overwrite: bool = False,
@@ -82,6 +88,9 @@ def simulate(
         chosen for it by short trials at the beginning of the run, the same ones every time. 0.01
         when neither the scene nor the caller gives one of them or a tolerance: unlike `sweep`,
         which chooses only where it is asked to. Not together with these.
+    accuracy_of
+        What the accuracy is one of: ``"tension"``, which it is by default, or ``"losses"``, and
+        with them the efficiency.
     events
         Contacts to log from touch to parting: of ``"teeth"``, ``"guides"``, ``"joints"``.
     output
@@ -163,6 +172,8 @@ def simulate(
     -----
     DistrustedResultWarning
         The result contradicts itself: its attribute ``verdict`` is ``"distrusted"``.
+    CautiousResultWarning
+        Its ``verdict`` is ``"caution"``; not shown unless somebody asks for it, see there.
     ClashWarning
         Bodies are in each other's way, unless they pass side by side.
 
@@ -188,6 +199,7 @@ def simulate(
         "tolerance": tolerance,
         "onset_depth": onset_depth,
         "accuracy": accuracy,
+        "accuracy_of": accuracy_of,
         "record": None if record is None else _listed(record),
         "events": None if events is None else _listed(events),
     }
@@ -290,6 +302,8 @@ def _concluded(result: Any, output: str | PathLike[str] | None) -> xr.Dataset:
         raise stop
     if result["warning"] is not None:
         warnings.warn(result["warning"], DistrustedResultWarning, stacklevel=3)
+    if result["caution"] is not None:
+        warnings.warn(result["caution"], CautiousResultWarning, stacklevel=3)
     return dataset
 
 

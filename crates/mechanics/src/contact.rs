@@ -5,6 +5,7 @@
 //! such slot the contact remembers, since the last accepted state, the gap, the closing speed
 //! and, while closed, the inverse of the speed at touch.
 
+mod impacts;
 mod kernel;
 mod law;
 mod look;
@@ -25,6 +26,7 @@ use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
 
+pub use impacts::Impacts;
 pub(crate) use law::{LaneFriction, LaneSpring, SurfaceLaw};
 pub(crate) use memory::{ContactMemory, ContactState, MemoryLanes};
 pub(crate) use plates::{PlateContact, PlatePins, PlatePlaces};

@@ -29,7 +29,6 @@ mod error;
 mod events;
 mod fights;
 mod groups;
-mod impacts;
 mod lanes;
 mod modes;
 mod motion;
@@ -38,6 +37,7 @@ mod observe;
 mod profile;
 mod standing;
 mod strength;
+mod struck;
 mod system;
 mod tensioner;
 mod torque;
@@ -48,6 +48,7 @@ pub use assembly::{Assembled, Fitting, RollerLayout, Statics};
 pub use chain::{Chain, End, Ends};
 pub use chains::ChainModel;
 pub use chains::links::model::{Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel};
+pub use contact::Impacts;
 pub use drive::{
     Adjust, Coupling, Drive, Fit, Flank, GearPair, Guide, GuideSupport, Layout, Parts, PlacedChain,
     Rotation, Shaft, SpanStart, Sprocket, Stop, Support, Surface, Tighten, Touches,
@@ -56,11 +57,11 @@ pub use energy::{Energy, Flow, Place, Store};
 pub use error::{AssemblyError, Clash, DriveError, MemoryError};
 pub use events::{ContactEvent, ContactPair, EventKinds};
 pub use fights::Fight;
-pub use impacts::{Impacts, Struck};
 pub use modes::{Mode, Modes};
 pub use motion::{Harmonic, Kinematics, Motion, Table};
 pub use observe::{ChainSize, Observation};
 pub use strength::{Rating, Strength};
+pub use struck::Struck;
 pub use system::{Input, Record, System, SystemMemory};
 pub use tensioner::{Carrier, Push, PushForce, Tensioner, carriers, pushes};
 pub use torque::{Argument, Order, Torque};

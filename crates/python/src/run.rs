@@ -153,6 +153,7 @@ fn told<'py>(py: Python<'py>, report: &Report, memory: Memory) -> PyResult<Bound
     }
     answer.set_item("waveform_horizons", horizons)?;
     answer.set_item("warning", report.verdict.warning())?;
+    answer.set_item("caution", report.verdict.caution())?;
     let clashes = report.simulation.assembled().warnings.iter();
     let clashes: Vec<String> = clashes.map(ToString::to_string).collect();
     answer.set_item("clashes", clashes)?;

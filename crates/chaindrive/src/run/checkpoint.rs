@@ -8,7 +8,7 @@ use chaindrive_mechanics::{Assembled, Drive, SystemMemory};
 
 use super::execute::assemble;
 use super::{Given, RanIn, Request, Run};
-use crate::precision::Choice;
+use crate::precision::{Choice, Quantity};
 use crate::record::{Provenance, Summary};
 use crate::scene::SceneError;
 use crate::seal::{Sealed, opened, sealed};
@@ -179,6 +179,7 @@ impl Checkpoint {
             run: self.run.clone(),
             record: self.record.clone(),
             accuracy: None,
+            accuracy_of: Quantity::default(),
             estimate: self.estimate,
             checkpoint_every: self.every,
         })

@@ -387,6 +387,7 @@ fn begin<E: std::error::Error>(
     let drive = request.scene.drive().map_err(RunError::Scene)?;
     let start = assemble(&drive, watch).map_err(failed)?;
     if let Some(accuracy) = request.accuracy {
+        let accuracy = (accuracy, request.accuracy_of);
         let choice = choose(&start, &request.run, accuracy, watch).map_err(failed)?;
         provenance.run = choice.run.clone();
         provenance.choice = Some(choice);

@@ -5,9 +5,9 @@ use chaindrive_integrate::Moment;
 use super::Bodies;
 use super::bodies::Anchor;
 use crate::chains::{Loads, Pose, Way};
+use crate::contact::Impacts;
 use crate::contact::{Contacts, Frame, Places, PlateContact};
 use crate::drive::Surface;
-use crate::impacts::Impacts;
 
 /// Contacts with sprockets, then with guides.
 #[derive(Clone, Debug, Default)]

@@ -6,7 +6,7 @@ use chaindrive_integrate::Moment;
 
 use super::{Bodies, BodyContacts, Wheel};
 use crate::chains::{Chain, Loads, Record, Surroundings};
-use crate::impacts::Impacts;
+use crate::contact::Impacts;
 
 /// One chain and what it touches.
 #[derive(Clone, Debug)]
@@ -139,5 +139,19 @@ impl Member {
             at.t + 0.5 * margin / speed.max(f64::MIN_POSITIVE),
             STEPS_PER_WINDOW,
         );
+    }
+
+    /// What is counted of the chain, in one order.
+    pub(crate) fn impacts(&self) -> impl Iterator<Item = &Impacts> {
+        let teeth = self.contacts.teeth.iter().map(|on| &on.impacts);
+        let rails = self.contacts.rails.iter().map(|on| &on.impacts);
+        teeth.chain(rails).chain(&self.joint_impacts)
+    }
+
+    /// The same, to change it.
+    pub(crate) fn impacts_mut(&mut self) -> impl Iterator<Item = &mut Impacts> {
+        let teeth = self.contacts.teeth.iter_mut().map(|on| &mut on.impacts);
+        let rails = self.contacts.rails.iter_mut().map(|on| &mut on.impacts);
+        teeth.chain(rails).chain(&mut self.joint_impacts)
     }
 }

@@ -11,9 +11,9 @@ use super::inputs::{Inputs, OnwardCentre};
 use super::{BodyContacts, Member, RailContact, Record, System};
 use crate::MemoryError;
 use crate::chains::ChainMemory;
+use crate::contact::Impacts;
 use crate::contact::{PlateMemory, Windows};
 use crate::events::EventLog;
-use crate::impacts::Impacts;
 
 /// Contacts, windows, inputs and the log of a [`System`].
 #[derive(Clone, Debug, Serialize, Deserialize)]

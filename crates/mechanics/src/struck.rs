@@ -1,33 +1,15 @@
-//! What has touched since the start: how often, how fast, how deep.
+//! What of a drive has touched since the start.
 //!
 //! Counted on accepted states, whether contacts are logged or not. A contact that is lost and found again within one step was never seen
 //! to end; where a tooth gap touches a roller at two places these are two.
 
-use serde::{Deserialize, Serialize};
-
 use crate::System;
-use crate::contact::Begun;
-use crate::events::ContactPair;
+use crate::contact::Impacts;
 use crate::system::Member;
-
-/// Contacts of two parts since the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Impacts {
-    /// Contacts that began.
-    pub count: u64,
-    /// Those that closed slower than the floor of the law, which acts on them as a damper.
-    pub gentle: u64,
-    /// Greatest closing speed at touch \[m/s\].
-    pub fastest: f64,
-    /// Deepest indentation \[m\].
-    pub deepest: f64,
-}
 
 /// What parts of one kind, of one body, have done to each other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Struck {
-    /// What touched what; of rollers and joints the first.
-    pub pair: ContactPair,
     /// In words, such as "teeth of crank".
     pub place: String,
     /// What is counted.
@@ -36,40 +18,6 @@ pub struct Struck {
     pub reach: Option<f64>,
     /// Floor of the law \[m/s\].
     pub floor: f64,
-}
-
-impl Impacts {
-    /// Takes in what an accepted state shows.
-    pub(crate) fn note(&mut self, begun: &Begun, depth: f64) {
-        self.deepest = self.deepest.max(depth);
-        if begun.count > 0.0 {
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "a number of contacts"
-            )]
-            let [count, gentle] = [begun.count, begun.gentle].map(|number| number as u64);
-            self.count += count;
-            self.gentle += gentle;
-            self.fastest = self.fastest.max(begun.fastest);
-        }
-    }
-}
-
-impl Member {
-    /// What is counted of the chain, in one order.
-    pub(crate) fn impacts(&self) -> impl Iterator<Item = &Impacts> {
-        let teeth = self.contacts.teeth.iter().map(|on| &on.impacts);
-        let rails = self.contacts.rails.iter().map(|on| &on.impacts);
-        teeth.chain(rails).chain(&self.joint_impacts)
-    }
-
-    /// The same, to change it.
-    pub(crate) fn impacts_mut(&mut self) -> impl Iterator<Item = &mut Impacts> {
-        let teeth = self.contacts.teeth.iter_mut().map(|on| &mut on.impacts);
-        let rails = self.contacts.rails.iter_mut().map(|on| &mut on.impacts);
-        teeth.chain(rails).chain(&mut self.joint_impacts)
-    }
 }
 
 impl System {
@@ -96,10 +44,6 @@ impl System {
                     .flank
                     .and_then(|flank| flank.law(&on.contacts.surface).prepared().reach());
                 all.push(Struck {
-                    pair: ContactPair::Tooth {
-                        sprocket: on.wheel,
-                        roller: 0,
-                    },
                     place: format!("teeth of {}", wheels[on.wheel].name),
                     impacts: on.impacts,
                     reach: [law.reach(), flank].into_iter().flatten().reduce(f64::min),
@@ -109,10 +53,6 @@ impl System {
             for on in &member.contacts.rails {
                 let law = on.contact.surface().law.prepared();
                 all.push(Struck {
-                    pair: ContactPair::Guide {
-                        guide: on.rail,
-                        roller: 0,
-                    },
                     place: format!("guide {}", rails[on.rail].name),
                     impacts: on.impacts,
                     reach: law.reach(),
@@ -120,18 +60,10 @@ impl System {
                 });
             }
             let [pins, bushes] = member.chain.bearing_laws();
-            let of_joints = [
-                (ContactPair::Joint { joint: 0 }, "pins in bushes", pins),
-                (
-                    ContactPair::Roller { joint: 0 },
-                    "bushes in rollers",
-                    bushes,
-                ),
-            ];
-            for ((pair, what, law), impacts) in of_joints.into_iter().zip(member.joint_impacts) {
+            let of_joints = [("pins in bushes", pins), ("bushes in rollers", bushes)];
+            for ((what, law), impacts) in of_joints.into_iter().zip(member.joint_impacts) {
                 let Some(law) = law else { continue };
                 all.push(Struck {
-                    pair,
                     place: format!("{what}{of_chain}"),
                     impacts,
                     reach: law.reach(),
