@@ -156,19 +156,17 @@ impl Verdict {
         words.join("; ")
     }
 
+    /// The reasons in a line, where they are cautions and nothing worse.
+    pub fn caution(&self) -> Option<String> {
+        (self.trust == Trust::Caution).then(|| format!("be careful with this run: {}", self.note()))
+    }
+
     /// One line for whoever asked to hear of errors only; none unless the result is distrusted.
     pub fn warning(&self) -> Option<String> {
         let worst = self.reasons.iter().filter(|r| r.trust() == self.trust);
         let words: Vec<String> = worst.map(Reason::to_string).collect();
         self.is_distrusted()
             .then(|| format!("do not trust this run: {}", words.join("; ")))
-    }
-}
-
-impl Verdict {
-    /// The reasons in a line, where they are cautions and nothing worse.
-    pub fn caution(&self) -> Option<String> {
-        (self.trust == Trust::Caution).then(|| format!("be careful with this run: {}", self.note()))
     }
 }
 

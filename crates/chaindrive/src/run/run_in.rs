@@ -166,6 +166,7 @@ pub fn run_in(
         return Ok((start, ran_in));
     }
     let mut moving = before(&start.drive, time, run, stop)?;
+    onlooker.see_run_in(0.0);
     while !moving.advance(LOOK)? {
         onlooker.see_run_in(1.0 + moving.time() / time);
         if stop() {
@@ -200,7 +201,7 @@ pub(crate) fn longest(start: &Assembled, run: &Run) -> Result<f64, SimulationErr
         RunIn::None => Ok(0.0),
         RunIn::Time(time) => Ok(*time),
         RunIn::Turns { turns, sprocket } => turns_last(start, *turns, sprocket.as_deref()),
-        RunIn::Auto => Ok(2.0 * f64::from(MOST_CIRCUITS) * start.slowest_circuit()),
+        RunIn::Auto => Ok(2.0 * f64::from(MOST_CIRCUITS) * steady::circuit(start)?),
     }
 }
 

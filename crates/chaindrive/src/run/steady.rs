@@ -24,14 +24,7 @@ pub(super) fn begins(
     onlooker: &dyn Onlooker,
 ) -> Result<(f64, bool), SimulationError> {
     let stop = &|| onlooker.stop();
-    let circuit = start.slowest_circuit();
-    if !circuit.is_finite() {
-        let reason =
-            "auto: no chain runs around sprockets here, so nothing says when to stop: give a time";
-        return Err(SimulationError::RunIn {
-            reason: reason.to_owned(),
-        });
-    }
+    let circuit = circuit(start)?;
     let longest = f64::from(MOST_CIRCUITS) * circuit;
     let mut moving = before(&start.drive, longest, run, stop)?;
     let mut spans: Vec<Batches> = Vec::new();
@@ -65,4 +58,17 @@ pub(super) fn begins(
         circuits *= 2;
     }
     Ok((longest, false))
+}
+
+/// Time \[s\] of a circuit of the slowest chain; refused where none runs around sprockets.
+pub(super) fn circuit(start: &Assembled) -> Result<f64, SimulationError> {
+    let circuit = start.slowest_circuit();
+    if circuit.is_finite() {
+        return Ok(circuit);
+    }
+    let reason =
+        "auto: no chain runs around sprockets here, so nothing says when to stop: give a time";
+    Err(SimulationError::RunIn {
+        reason: reason.to_owned(),
+    })
 }
