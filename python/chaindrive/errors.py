@@ -6,7 +6,6 @@ known; otherwise they are None.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterable
 from typing import NamedTuple
 
@@ -144,10 +143,6 @@ class DistrustedResultWarning(VerdictWarning):
 class CautiousResultWarning(VerdictWarning):
     """Some of a result is uncertain or was not examined: its ``verdict`` is ``"caution"``.
 
-    Most short runs are, so that it is not shown unless somebody asks for it:
-    ``warnings.simplefilter("default", chaindrive.CautiousResultWarning)``.
+    Most short runs are, so that nothing is said unless there is a filter for it, or for
+    `VerdictWarning`: ``warnings.simplefilter("default", chaindrive.CautiousResultWarning)``.
     """
-
-
-# Behind whatever somebody asks for after the import, before whatever was there.
-warnings.simplefilter("ignore", CautiousResultWarning)

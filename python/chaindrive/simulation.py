@@ -22,6 +22,7 @@ from chaindrive.errors import (
     ClashWarning,
     DistrustedResultWarning,
     ParameterError,
+    VerdictWarning,
 )
 from chaindrive.signals import heard
 
@@ -173,7 +174,7 @@ def simulate(
     DistrustedResultWarning
         The result contradicts itself: its attribute ``verdict`` is ``"distrusted"``.
     CautiousResultWarning
-        Its ``verdict`` is ``"caution"``; not shown unless somebody asks for it, see there.
+        Its ``verdict`` is ``"caution"``; said to whoever has a filter for it, see there.
     ClashWarning
         Bodies are in each other's way, unless they pass side by side.
 
@@ -302,9 +303,15 @@ def _concluded(result: Any, output: str | PathLike[str] | None) -> xr.Dataset:
         raise stop
     if result["warning"] is not None:
         warnings.warn(result["warning"], DistrustedResultWarning, stacklevel=3)
-    if result["caution"] is not None:
+    if result["caution"] is not None and _cautions_are_asked_for():
         warnings.warn(result["caution"], CautiousResultWarning, stacklevel=3)
     return dataset
+
+
+def _cautions_are_asked_for() -> bool:
+    """Tell whether a filter speaks of cautions, and not of all warnings."""
+    named = (category for _, _, category, _, _ in warnings.filters)
+    return any(isinstance(it, type) and issubclass(it, VerdictWarning) for it in named)
 
 
 def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:

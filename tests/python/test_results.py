@@ -42,7 +42,8 @@ def test_every_method_keeps_the_ring_turning(method):
 
 
 def test_every_channel_is_recorded_with_its_dimensions_and_unit(marine):
-    absent = {name for name in cd.channels() if name.startswith("joint_") or name == "link_angle"}
+    of_joints = ("joint_", "bush_", "link_angle")
+    absent = {name for name in cd.channels() if name.startswith(of_joints)}
     # Shafts have channels of their own where they have names, and couplings join them.
     absent |= {"shaft_angle", "shaft_speed", "coupling_torque"}
     for name in set(cd.channels()) - absent:
@@ -202,13 +203,12 @@ def test_a_result_that_contradicts_itself_is_warned_of(recwarn: pytest.WarningsR
     settings["method"] = "verlet"
     run = cd.simulate(cd.scenes.marine_two_sprockets(), until=3e-3, **settings)
     assert run.attrs["verdict"] == "caution"
-    # `recwarn` asks for all warnings.
-    assert [warning.category for warning in recwarn.list] == [cd.CautiousResultWarning]
+    assert not recwarn.list
 
 
 def test_a_caution_is_heard_by_whoever_asks() -> None:
     def run() -> None:
-        cd.simulate(cd.scenes.spinning_ring(), until=1e-3, every=1e-3, error=False)
+        cd.simulate(cd.scenes.spinning_ring(), until=0.02, every=1e-3, error=False)
 
     with warnings.catch_warnings(record=True) as told:
         run()
@@ -240,10 +240,12 @@ def test_the_line_and_functions_are_told_of_the_run_in() -> None:
     drive, told = cd.scenes.marine_two_sprockets(), Told()
     settings = {"method": "verlet", "until": 1e-3, "every": 1e-3, "error": False}
     cd.simulate(drive, run_in=1.0, progress=told, **settings)
-    assert told.shares and all(0 < share <= 1 for share in told.shares)
+    assert told.shares
+    assert all(0 <= share <= 1 for share in told.shares)
     plain: list[float] = []
     cd.simulate(drive, run_in=1.0, progress=plain.append, **settings)
-    assert plain[0] == 0 and plain[-1] == 1
+    assert plain[0] == 0
+    assert plain[-1] == 1
 
     def refuse(share: float) -> None:
         raise RuntimeError(f"stopped at {share}")
@@ -258,7 +260,7 @@ def test_bodies_in_each_others_way_are_warned_of_once() -> None:
     drive = cd.scenes.marine_two_sprockets().replace({"guides": [rail], "defaults": "0.1"})
     with pytest.warns(cd.ClashWarning, match="`rail` cuts into the teeth of `crank`") as told:
         cd.simulate(drive, until=1e-3, error=False)
-    assert len([warning for warning in told if warning.category is cd.ClashWarning]) == 1
+    assert len(told) == 1
 
 
 def test_the_error_can_be_left_out() -> None:

@@ -233,6 +233,10 @@ impl Reason {
 const SHARPER: &str = "take a smaller step, or method generalized-alpha for rigid links";
 
 impl fmt::Display for Reason {
+    #[expect(
+        clippy::too_many_lines,
+        reason = "a list: every reason in its own words"
+    )]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotFinite { samples } => {

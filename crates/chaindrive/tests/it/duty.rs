@@ -6,7 +6,7 @@ use chaindrive::{
     Channel, Description, EventKinds, Given, Judgement, Memory, Reason, Request, Run, Scene,
     Settings, Simulation, Summary, Trust, Verdict, execute,
 };
-use chaindrive_mechanics::Struck;
+use chaindrive_mechanics::{Energy, Struck};
 
 /// A preset with changes, each `path = value`.
 fn preset(name: &str, changes: &[(&str, &str)]) -> Scene {
@@ -275,7 +275,7 @@ fn impacts_are_counted_as_they_are_logged() {
 /// Teeth, rail, arm and joints that rub: every place has its part, and together they are what is lost.
 #[test]
 fn losses_by_place_add_up() {
-    let friction = r#"{ coefficient = 0.1 }"#;
+    let friction = "{ coefficient = 0.1 }";
     let scene = preset(
         "timing_drive",
         &[
@@ -293,7 +293,7 @@ fn losses_by_place_add_up() {
     let all = summary.energy_dissipated();
     assert!((sum - all).abs() < 1e-12 * all, "{sum} J of {all} J");
     let (mut by_place, mut whole) = (Vec::new(), Vec::new());
-    let (sample, start) = (simulation.observation(), Default::default());
+    let (sample, start) = (simulation.observation(), Energy::default());
     Channel::EnergyLosses.read(sample, &start, &mut by_place);
     Channel::EnergyDissipated.read(sample, &start, &mut whole);
     assert!((by_place.iter().sum::<f64>() - whole[0]).abs() < 1e-12 * whole[0]);
