@@ -20,6 +20,7 @@ from chaindrive.channels import channels
 from chaindrive.drive import Difference, Drive, diff, load, schema
 from chaindrive.errors import (
     AssemblyError,
+    CautiousResultWarning,
     ChaindriveError,
     ClashWarning,
     DistrustedResultWarning,
@@ -29,6 +30,7 @@ from chaindrive.errors import (
     ResumeError,
     SceneError,
     SimulationError,
+    VerdictWarning,
     WriteError,
 )
 from chaindrive.friction import Friction, friction
@@ -42,6 +44,7 @@ from chaindrive.sweeping import sweep
 
 __all__ = [
     "AssemblyError",
+    "CautiousResultWarning",
     "ChaindriveError",
     "ClashWarning",
     "Difference",
@@ -58,6 +61,7 @@ __all__ = [
     "Simulation",
     "SimulationError",
     "Snapshot",
+    "VerdictWarning",
     "WriteError",
     "__version__",
     "catalogue",

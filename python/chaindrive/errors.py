@@ -1,4 +1,4 @@
-"""What can go wrong, as exceptions under `ChaindriveError`, and a warning.
+"""What can go wrong, as exceptions under `ChaindriveError`, and warnings.
 
 Every exception carries `path`, the place it speaks of, and `hint`, what to try, where they are
 known; otherwise they are None.
@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 __all__ = [
     "AssemblyError",
+    "CautiousResultWarning",
     "ChaindriveError",
     "DistrustedResultWarning",
     "IntegrationError",
@@ -20,6 +21,7 @@ __all__ = [
     "ResumeError",
     "SceneError",
     "SimulationError",
+    "VerdictWarning",
     "WriteError",
 ]
 
@@ -126,8 +128,21 @@ class ClashWarning(UserWarning):
     """Bodies of a drive are in each other's way, unless they pass side by side."""
 
 
-class DistrustedResultWarning(UserWarning):
-    """A result contradicts itself: its attribute ``verdict`` is ``"distrusted"``.
+class VerdictWarning(UserWarning):
+    """A result is not to be trusted without a second look: its attribute ``verdict`` says how far.
 
-    ``warnings.simplefilter("error", chaindrive.DistrustedResultWarning)`` makes an exception of it.
+    ``warnings.simplefilter("error", chaindrive.VerdictWarning)`` makes an exception of every such
+    result.
+    """
+
+
+class DistrustedResultWarning(VerdictWarning):
+    """A result contradicts itself: its attribute ``verdict`` is ``"distrusted"``."""
+
+
+class CautiousResultWarning(VerdictWarning):
+    """Some of a result is uncertain or was not examined: its ``verdict`` is ``"caution"``.
+
+    Most short runs are, so that nothing is said unless there is a filter for it, or for
+    `VerdictWarning`: ``warnings.simplefilter("default", chaindrive.CautiousResultWarning)``.
     """

@@ -31,7 +31,7 @@ class Simulation:
     ----------
     drive
         What moves.
-    run_in, method, step, tolerance, onset_depth, accuracy
+    run_in, method, step, tolerance, onset_depth, accuracy, accuracy_of
         As in `simulate`, but for one thing: method and step are chosen for an accuracy only where
         one is asked for, here or in the scene.
 
@@ -64,6 +64,7 @@ class Simulation:
         tolerance: float | str | None = None,
         onset_depth: float | str | None = None,
         accuracy: float | str | None = None,
+        accuracy_of: str | None = None,
     ) -> None:
         _needed(drive)
         given = {
@@ -73,6 +74,7 @@ class Simulation:
             "tolerance": tolerance,
             "onset_depth": onset_depth,
             "accuracy": accuracy,
+            "accuracy_of": accuracy_of,
         }
         settings = [(name, value) for name, value in given.items() if value is not None]
         self._inner = _core.Simulation(drive._inner, settings)

@@ -17,7 +17,13 @@ import xarray as xr
 from chaindrive import _core
 from chaindrive.channels import channels
 from chaindrive.drive import Drive, _needed
-from chaindrive.errors import ClashWarning, DistrustedResultWarning, ParameterError
+from chaindrive.errors import (
+    CautiousResultWarning,
+    ClashWarning,
+    DistrustedResultWarning,
+    ParameterError,
+    VerdictWarning,
+)
 from chaindrive.signals import heard
 
 __all__ = ["resume", "simulate"]
@@ -35,6 +41,7 @@ def simulate(
     tolerance: float | str | None = None,
     onset_depth: float | str | None = None,
     accuracy: float | str | None = None,
+    accuracy_of: str | None = None,
     events: str | Iterable[str] | None = None,
     output: str | PathLike[str] | None = None,
     overwrite: bool = False,
@@ -82,6 +89,9 @@ def simulate(
         chosen for it by short trials at the beginning of the run, the same ones every time. 0.01
         when neither the scene nor the caller gives one of them or a tolerance: unlike `sweep`,
         which chooses only where it is asked to. Not together with these.
+    accuracy_of
+        What the accuracy is one of: ``"tension"``, which it is by default, or ``"losses"``, and
+        with them the efficiency.
     events
         Contacts to log from touch to parting: of ``"teeth"``, ``"guides"``, ``"joints"``.
     output
@@ -99,7 +109,8 @@ def simulate(
         40 000 steps of the default length, whatever the length of the run; more if its own steps
         are shorter.
     progress
-        True for a line on stderr, or a function called with the share done, 0 to 1.
+        True for a line on stderr, or a function called with the share done, 0 to 1; while the drive
+        is run in, with 0, or its method ``run_in``, if it has one, with the share of that.
 
     Returns
     -------
@@ -162,6 +173,8 @@ def simulate(
     -----
     DistrustedResultWarning
         The result contradicts itself: its attribute ``verdict`` is ``"distrusted"``.
+    CautiousResultWarning
+        Its ``verdict`` is ``"caution"``; said to whoever has a filter for it, see there.
     ClashWarning
         Bodies are in each other's way, unless they pass side by side.
 
@@ -187,6 +200,7 @@ def simulate(
         "tolerance": tolerance,
         "onset_depth": onset_depth,
         "accuracy": accuracy,
+        "accuracy_of": accuracy_of,
         "record": None if record is None else _listed(record),
         "events": None if events is None else _listed(events),
     }
@@ -289,7 +303,15 @@ def _concluded(result: Any, output: str | PathLike[str] | None) -> xr.Dataset:
         raise stop
     if result["warning"] is not None:
         warnings.warn(result["warning"], DistrustedResultWarning, stacklevel=3)
+    if result["caution"] is not None and _cautions_are_asked_for():
+        warnings.warn(result["caution"], CautiousResultWarning, stacklevel=3)
     return dataset
+
+
+def _cautions_are_asked_for() -> bool:
+    """Tell whether a filter speaks of cautions, and not of all warnings."""
+    named = (category for _, _, category, _, _ in warnings.filters)
+    return any(isinstance(it, type) and issubclass(it, VerdictWarning) for it in named)
 
 
 def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:
@@ -339,10 +361,16 @@ class _Line:
         self._begun = False
 
     def __call__(self, share: float) -> None:
+        self._write(f"{share:6.1%}        ")
+
+    def run_in(self, share: float) -> None:
+        self._write(f"{share:6.1%} run-in ")
+
+    def _write(self, text: str) -> None:
         if self._visible:
             self._begun = True
             elapsed = time.perf_counter() - self._start
-            sys.stderr.write(f"\r{share:6.1%}  {elapsed:6.1f} s")
+            sys.stderr.write(f"\r{text}{elapsed:6.1f} s")
             sys.stderr.flush()
 
     def close(self) -> None:

@@ -1,6 +1,7 @@
 """Datasets: dimensions, units, labels, provenance, and numbers that are known."""
 
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -41,7 +42,8 @@ def test_every_method_keeps_the_ring_turning(method):
 
 
 def test_every_channel_is_recorded_with_its_dimensions_and_unit(marine):
-    absent = {name for name in cd.channels() if name.startswith("joint_") or name == "link_angle"}
+    of_joints = ("joint_", "bush_", "link_angle")
+    absent = {name for name in cd.channels() if name.startswith(of_joints)}
     # Shafts have channels of their own where they have names, and couplings join them.
     absent |= {"shaft_angle", "shaft_speed", "coupling_torque"}
     for name in set(cd.channels()) - absent:
@@ -202,6 +204,54 @@ def test_a_result_that_contradicts_itself_is_warned_of(recwarn: pytest.WarningsR
     run = cd.simulate(cd.scenes.marine_two_sprockets(), until=3e-3, **settings)
     assert run.attrs["verdict"] == "caution"
     assert not recwarn.list
+
+
+def test_a_caution_is_heard_by_whoever_asks() -> None:
+    def run() -> None:
+        cd.simulate(cd.scenes.spinning_ring(), until=0.02, every=1e-3, error=False)
+
+    with warnings.catch_warnings(record=True) as told:
+        run()
+        assert not told
+        warnings.simplefilter("default", cd.CautiousResultWarning)
+        run()
+        assert [str(warning.message) for warning in told] == [
+            "be careful with this run: the error is not estimated: switched off"
+        ]
+        warnings.simplefilter("error", cd.VerdictWarning)
+        with pytest.raises(cd.CautiousResultWarning):
+            run()
+        warnings.simplefilter("ignore", cd.VerdictWarning)
+        run()
+    assert issubclass(cd.DistrustedResultWarning, cd.VerdictWarning)
+
+
+def test_the_line_and_functions_are_told_of_the_run_in() -> None:
+    class Told:
+        def __init__(self) -> None:
+            self.shares: list[float] = []
+
+        def __call__(self, share: float) -> None:
+            assert 0 < share <= 1
+
+        def run_in(self, share: float) -> None:
+            self.shares.append(share)
+
+    drive, told = cd.scenes.marine_two_sprockets(), Told()
+    settings = {"method": "verlet", "until": 1e-3, "every": 1e-3, "error": False}
+    cd.simulate(drive, run_in=1.0, progress=told, **settings)
+    assert told.shares
+    assert all(0 <= share <= 1 for share in told.shares)
+    plain: list[float] = []
+    cd.simulate(drive, run_in=1.0, progress=plain.append, **settings)
+    assert plain[0] == 0
+    assert plain[-1] == 1
+
+    def refuse(share: float) -> None:
+        raise RuntimeError(f"stopped at {share}")
+
+    with pytest.raises(RuntimeError, match="stopped at 0"):
+        cd.simulate(drive, run_in=1000.0, progress=refuse, **settings)
 
 
 def test_bodies_in_each_others_way_are_warned_of_once() -> None:

@@ -12,8 +12,8 @@ mod text;
 use chaindrive_geometry::mesh_frequency;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 use chaindrive_mechanics::{
-    Assembled, ChainModel, Clash, Drive, Fitting, Flow, GuideSupport, Observation, PlacedChain,
-    Statics,
+    Assembled, ChainModel, Clash, Drive, Fight, Fitting, Flow, GuideSupport, Observation,
+    PlacedChain, Statics,
 };
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -187,10 +187,17 @@ impl Description {
             },
             polygon: polygon::pairs(drive, &start),
             cost: cost::measure(&assembled, run)?,
-            warnings: assembled.warnings.iter().map(Clash::to_string).collect(),
+            warnings: warnings(drive, &assembled, run),
             spans,
         })
     }
+}
+
+/// What can be said against a drive before it runs.
+fn warnings(drive: &Drive, assembled: &Assembled, run: &Run) -> Vec<String> {
+    let clashes = assembled.warnings.iter().map(Clash::to_string);
+    let fights = drive.fights(0.0, run.until);
+    clashes.chain(fights.iter().map(Fight::to_string)).collect()
 }
 
 impl Description {

@@ -28,8 +28,8 @@ pub enum SimulationError {
 
     /// A channel of something that the drive does not have.
     #[error(
-        "this chain has no `{name}`: particles have neither joints nor directions; set `chain.model` to \
-         `clearance-joints` or `ideal-joints`, or leave the channel out"
+        "this chain has no `{name}`: {}, or leave the channel out",
+        way_to(name)
     )]
     AbsentChannel { name: &'static str },
 
@@ -176,4 +176,13 @@ fn shown(value: f64) -> String {
 
 fn hint(suggestion: Option<&str>) -> String {
     suggestion.map_or_else(String::new, |name| format!(" (did you mean `{name}`?)"))
+}
+
+/// What gives a chain a channel that it has not.
+fn way_to(channel: &str) -> &'static str {
+    if channel.starts_with("bush_") {
+        "its rollers are no bodies of their own; set `chain.rollers` to `free` on rigid links"
+    } else {
+        "particles have neither joints nor directions; set `chain.model` to `clearance-joints` or `ideal-joints`"
+    }
 }

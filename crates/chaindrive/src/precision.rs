@@ -11,6 +11,7 @@
 //! with the length of the run; and nothing of it decides by a clock, so that answers are the same to the
 //! last bit wherever the binary runs on the same kind of processor.
 
+mod accuracy;
 mod attribute;
 mod candidates;
 mod choice;
@@ -29,6 +30,8 @@ mod window;
 pub(crate) mod wording;
 mod work;
 
+pub(crate) use accuracy::LEAST_LOSSES;
+pub use accuracy::{Accuracy, Quantity};
 pub use attribute::Attribute;
 pub use choice::{ACCURACY, Choice, Promise, Trial, choose};
 pub use compare::Comparison;

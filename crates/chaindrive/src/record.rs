@@ -10,7 +10,7 @@ mod memory;
 mod summary;
 mod zarr;
 
-use chaindrive_mechanics::{ChainSize, Energy, Flow, Observation, Store, System};
+use chaindrive_mechanics::{ChainSize, Energy, Flow, Observation, Place, Store, System};
 
 use crate::{Run, SimulationError};
 
@@ -23,7 +23,7 @@ pub use in_store::InStore;
 pub use memory::Memory;
 pub(crate) use summary::Batches;
 pub use summary::{
-    ContactStatistics, ForceStatistics, Ledger, SpanStatistics, Steadiness, Summary,
+    ContactStatistics, ForceStatistics, Ledger, Load, SpanStatistics, Steadiness, Summary,
 };
 pub use zarr::{Existing, ResumeError, Stopped, SweepWriter, ZarrWriter};
 
@@ -170,6 +170,7 @@ pub fn labels(axis: Axis, system: &System) -> Option<Vec<String>> {
         Axis::Tensioner => Some(system.tensioner_names()),
         Axis::OilColumn => Some(system.oil_column_names()),
         Axis::Store => Some(Store::ALL.iter().map(|s| s.name().to_owned()).collect()),
+        Axis::Place => Some(Place::ALL.iter().map(|p| p.name().to_owned()).collect()),
         Axis::Flow => Some(Flow::ALL.iter().map(|f| f.name().to_owned()).collect()),
     }
 }

@@ -21,6 +21,7 @@ pub(crate) use execute::resume;
 pub use execute::{End, Onlooker, Report, RunError, Sink, Stop, assemble, execute};
 pub use patience::patiently;
 pub use request::{Request, RequestError};
+pub(crate) use run_in::longest;
 pub use run_in::{MOST_CIRCUITS, RanIn, RunIn, run_in};
 pub use settings::{Given, Settings};
 

@@ -125,6 +125,7 @@ impl Simulation {
         let method = run.method(&system);
         system.set_onset_depth(run.onset_depth_with(&method));
         system.log_events(run.events);
+        system.forget_impacts();
         let stepper = method
             .start(&mut system, &mut state)
             .map_err(|error| SimulationError::starting(error, run))?;
@@ -241,6 +242,11 @@ impl Simulation {
     /// Share of the run that is done, 0 to 1.
     pub fn progress(&self) -> f64 {
         (self.moving.state.t / self.until).clamp(0.0, 1.0)
+    }
+
+    /// Time between two samples \[s\].
+    pub fn every(&self) -> f64 {
+        self.every
     }
 
     /// Time reached \[s\].

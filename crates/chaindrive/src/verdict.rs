@@ -8,11 +8,12 @@
 //!
 //! [`Reason`] is the list of everything that is looked at; [`Verdict::of`] looks.
 
+mod duty;
 mod reason;
 
 use std::fmt;
 
-use crate::precision::{Attribute, Choice, Judgement, Promise};
+use crate::precision::{Attribute, Choice, Judgement, LEAST_LOSSES, Promise};
 use crate::record::{Ledger, Steadiness, Summary};
 use crate::{Channel, RanIn, Simulation};
 
@@ -67,26 +68,23 @@ impl WrittenVerdict {
     }
 }
 
-/// Share of the energy moved that may be missing before the run is distrusted.
+/// Share of the energy moved that may be missing before the run is distrusted. *Assumed*: ten times what a coarse step leaves.
 const OPEN_LEDGER: f64 = 0.1;
 /// Share of the kinetic energy that may be missing of a free motion: a ring that spins in balance moves no energy.
+/// *Assumed*.
 const OPEN_MOTION: f64 = 0.01;
-/// Share of the losses that may be missing before they, and the efficiency, are called uncertain.
+/// Share of the losses that may be missing before they, and the efficiency, are called uncertain. *Assumed*: 0.2 points of an
+/// efficiency of 98 %.
 const UNCERTAIN_LOSSES: f64 = 0.1;
-/// The same before a drive that transmits energy is distrusted: what is missing is of the size of the losses.
+/// The same before a drive that transmits energy is distrusted: what is missing is of the size of the losses. *Assumed*.
 const WRONG_LOSSES: f64 = 0.5;
-/// Share of the energy moved below which losses are not told from none: 0.01 points of efficiency.
-const LEAST_LOSSES: f64 = 1e-4;
 /// Efficiency above which more comes out than goes in, by more than a drive without losses may err.
 const MOST_EFFICIENCY: f64 = 1.0 + WRONG_LOSSES * LEAST_LOSSES;
-/// Share of the energy exchanged with the outside that has to go one way before its ratio is an efficiency: a driver that
-/// swings to and fro has none.
-const ONE_WAY: f64 = 0.25;
-/// Steps below which the error of the first one is all that a ledger shows.
+/// Steps below which the error of the first one is all that a ledger shows. *Assumed*.
 const LEAST_STEPS: u64 = 32;
-/// Share of the samples without a tension above which the statistics of a span are not those of the run.
+/// Share of the samples without a tension above which the statistics of a span are not those of the run: most of it is missing.
 const UNHELD: f64 = 0.5;
-/// Share of a mean below which the start of a run does not count.
+/// Share of a mean below which the start of a run does not count. *Assumed*: below what anybody reads off a tension.
 const LEAST_SHIFT: f64 = 1e-3;
 
 impl Verdict {
@@ -103,6 +101,7 @@ impl Verdict {
         reasons.extend(not_finite(summary));
         reasons.extend(ledger(&summary.ledger(), simulation.statistics().steps));
         reasons.extend(spans(summary));
+        reasons.extend(duty::found(summary, simulation));
         let known = summary.spans.iter().filter_map(|span| {
             let found = span.steadiness()?;
             Some((span.name.as_str(), span.mean(), found))
@@ -155,6 +154,11 @@ impl Verdict {
     pub fn note(&self) -> String {
         let words: Vec<String> = self.reasons.iter().map(Reason::to_string).collect();
         words.join("; ")
+    }
+
+    /// The reasons in a line, where they are cautions and nothing worse.
+    pub fn caution(&self) -> Option<String> {
+        (self.trust == Trust::Caution).then(|| format!("be careful with this run: {}", self.note()))
     }
 
     /// One line for whoever asked to hear of errors only; none unless the result is distrusted.
@@ -217,7 +221,7 @@ fn ledger(ledger: &Ledger, steps: u64) -> Vec<Reason> {
         });
     }
     let efficiency = 1.0 - (ledger.losses - ledger.residual) / ledger.supplied;
-    if ledger.supplied > ONE_WAY * ledger.exchanged && efficiency > MOST_EFFICIENCY {
+    if ledger.efficiency().is_some() && efficiency > MOST_EFFICIENCY {
         reasons.push(Reason::EfficiencyAboveOne { efficiency });
     }
     reasons

@@ -42,12 +42,21 @@ impl Progress {
     /// Shows how far the run is.
     pub(crate) fn show(&mut self, simulation: &Simulation) {
         let now = [simulation.progress(), simulation.time()];
+        if self.from.is_none() {
+            // What was before was the run-in.
+            self.began = Instant::now();
+        }
         let [_, before] = *self.from.get_or_insert(now);
         self.tell(simulation.progress(), |elapsed, left| {
             let time = simulation.time();
             let factor = (time - before) / elapsed;
             format!("t = {time:.4} s, {left} left, {factor:.3} × real time")
         });
+    }
+
+    /// Shows how much of the run-in is done; the run begins the bar anew.
+    pub(crate) fn run_in(&mut self, share: f64) {
+        self.tell(share, |elapsed, _| format!("run-in, {elapsed:.0} s"));
     }
 
     /// Shows how many variants are finished.

@@ -57,6 +57,10 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "RATIO", conflicts_with_all = ["method", "step", "tolerance", "onset_depth"])]
     accuracy: Option<String>,
 
+    /// What the accuracy is one of: the tension, or the losses and with them the efficiency
+    #[arg(long, value_name = "QUANTITY", value_parser = ["tension", "losses"], conflicts_with_all = ["method", "step", "tolerance", "onset_depth"])]
+    accuracy_of: Option<String>,
+
     /// Channels to record, separated by commas, or all; `chaindrive channels` lists them
     #[arg(long, value_name = "CHANNELS", value_delimiter = ',')]
     record: Vec<String>,
@@ -145,7 +149,7 @@ impl RunArguments {
     }
 
     /// Path in the scene, option and value.
-    fn settings(&self) -> [(&'static str, &'static str, &Option<String>); 8] {
+    fn settings(&self) -> [(&'static str, &'static str, &Option<String>); 9] {
         [
             ("run.until", "--until", &self.until),
             ("run.run_in", "--run-in", &self.run_in),
@@ -155,6 +159,7 @@ impl RunArguments {
             ("run.tolerance", "--tolerance", &self.tolerance),
             ("run.onset_depth", "--onset-depth", &self.onset_depth),
             ("run.accuracy", "--accuracy", &self.accuracy),
+            ("run.accuracy_of", "--accuracy-of", &self.accuracy_of),
         ]
     }
 

@@ -185,6 +185,12 @@ pub struct Prepared {
 }
 
 impl Prepared {
+    /// Depth δ \[m\] from which on the elastic law is no more than its own tangent, what lies behind the surfaces included; none
+    /// for laws that go on.
+    pub fn reach(&self) -> Option<f64> {
+        self.stack.reach()
+    }
+
     /// Force, stiffness and damping from one evaluation of the elastic law.
     #[inline]
     pub fn respond(&self, approach: Approach) -> Response {

@@ -21,6 +21,7 @@ use crate::groups::groups;
 use crate::standing::Standing;
 use crate::system::{Laid, Member};
 use crate::{AssemblyError, Clash, Drive, System};
+use crate::{MemoryError, SystemMemory};
 use settle::Tightening;
 
 pub use relax::Statics;
@@ -106,6 +107,36 @@ impl Assembled {
         };
         let circuits = self.system.chains.iter().filter_map(circuit);
         circuits.reduce(f64::max).unwrap_or(f64::INFINITY)
+    }
+
+    /// The same drive as another one stood after it had moved for a while, with what it remembered and its coordinates, velocities
+    /// and first-order states.
+    ///
+    /// # Errors
+    /// [`MemoryError`] where that was another drive.
+    pub fn stood(
+        &self,
+        time: f64,
+        memory: SystemMemory,
+        [q, v, z]: [Vec<f64>; 3],
+    ) -> Result<Self, MemoryError> {
+        for (what, found, own) in [
+            ("coordinates", &q, &self.q),
+            ("velocities", &v, &self.v),
+            ("states of first order", &z, &self.z),
+        ] {
+            MemoryError::unless(what, found.len(), own.len())?;
+        }
+        let mut system = self.system.clone();
+        system.remember(memory)?;
+        Ok(Self {
+            system,
+            time,
+            q,
+            v,
+            z,
+            ..self.clone()
+        })
     }
 
     /// The same drive as it stands after it has moved for a while: a run that begins from here goes on from there.

@@ -2,7 +2,7 @@
 
 use chaindrive_contact::Friction;
 
-use crate::{Articulation, ChainModel, DriveError};
+use crate::{Articulation, ChainModel, DriveError, Strength};
 
 /// How the two ends of the chain are joined.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,6 +74,8 @@ pub struct Chain {
     /// What it is made of. Rigid links take their lengths from `lengths`; stiffness, damping and
     /// masses are then those of the particle chain that serves to lay and settle them.
     pub model: ChainModel,
+    /// What it bears, as far as that is known. Nothing follows from it but what is said of the result.
+    pub strength: Strength,
 }
 
 /// Whether a value is in its range.
@@ -161,6 +163,7 @@ impl Chain {
             }
         }
         problems.extend(self.model.problems());
+        problems.extend(self.strength.problems());
         problems.extend(self.articulation.iter().flat_map(Articulation::problems));
         let rubs = |it: &Articulation| it.friction != Friction::None;
         if self.model.has_clearance() && self.articulation.as_ref().is_some_and(rubs) {

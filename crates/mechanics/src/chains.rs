@@ -14,6 +14,7 @@ mod record;
 
 use std::ops::Range;
 
+use chaindrive_contact::Prepared;
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Moment, Weights};
 use serde::{Deserialize, Serialize};
@@ -172,6 +173,14 @@ impl Chain {
         match self {
             Self::Particles(_) => 0,
             Self::Links(chain) => chain.joints(),
+        }
+    }
+
+    /// Laws of pins in bushes with clearance, and of bushes in free rollers.
+    pub(crate) fn bearing_laws(&self) -> [Option<Prepared>; 2] {
+        match self {
+            Self::Particles(_) => [None, None],
+            Self::Links(chain) => chain.bearing_laws(),
         }
     }
 

@@ -5,6 +5,7 @@
 //! such slot the contact remembers, since the last accepted state, the gap, the closing speed
 //! and, while closed, the inverse of the speed at touch.
 
+mod impacts;
 mod kernel;
 mod law;
 mod look;
@@ -20,17 +21,19 @@ mod window;
 mod windows;
 mod wrench;
 
+use chaindrive_contact::Law;
 use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
 
+pub use impacts::Impacts;
 pub(crate) use law::{LaneFriction, LaneSpring, SurfaceLaw};
 pub(crate) use memory::{ContactMemory, ContactState, MemoryLanes};
 pub(crate) use plates::{PlateContact, PlatePins, PlatePlaces};
 pub(crate) use rollers::Rollers;
 pub(crate) use window::{FAR, Places, Run, Spare};
 pub(crate) use windows::{PlateMemory, Windows};
-pub(crate) use wrench::{LaneTally, Wrench};
+pub(crate) use wrench::{Begun, LaneTally, Wrench};
 
 use crate::drive::{Flank, Surface};
 use crate::profile::{GapFace, Profile};
@@ -223,6 +226,14 @@ impl Contacts {
 }
 
 impl Flank {
+    /// The law on the flank of a surface.
+    pub(crate) fn law(&self, surface: &Surface) -> Law {
+        Law {
+            elastic: self.elastic,
+            ..surface.law
+        }
+    }
+
     /// Share s of the flank's law at a distance beyond the end of the hollow \[m\].
     #[inline]
     pub(crate) fn share(&self, beyond: f64) -> f64 {

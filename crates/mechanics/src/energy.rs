@@ -39,16 +39,22 @@ pub enum Store {
 pub enum Flow {
     /// Loss in the link dampers.
     LinkLoss,
-    /// Loss in impacts of pins, bushes and rollers.
+    /// Loss in impacts of pins in bushes.
     JointLoss,
     /// Loss where links turn against each other: friction of pins in bushes, and viscous damping there.
     ArticulationLoss,
+    /// Loss in impacts of bushes in free rollers.
+    RollerLoss,
+    /// Loss by friction of bushes in free rollers.
+    RollerFriction,
     /// Loss in roller-tooth impacts.
     ToothLoss,
+    /// Loss by friction on teeth.
+    ToothFriction,
     /// Loss in chain-guide impacts.
     GuideLoss,
-    /// Loss by friction on teeth and guides, and of bushes in rollers.
-    FrictionLoss,
+    /// Loss by friction on guides.
+    GuideFriction,
     /// Loss in the dampers of bearings and couplings.
     SupportLoss,
     /// Loss in tensioners.
@@ -61,6 +67,51 @@ pub enum Flow {
     DriveTorque,
     /// Work of load torques, negative while they resist.
     Load,
+}
+
+/// Places where a drive loses energy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Pins in bushes, and what damps there.
+    Joints,
+    /// Free rollers on their bushes.
+    Rollers,
+    /// Rollers on teeth.
+    Teeth,
+    /// Chain on guides.
+    Guides,
+    /// Links between their joints, damped along themselves.
+    Spans,
+    /// Tensioners.
+    Tensioners,
+    /// Bearings on springs, and couplings.
+    Supports,
+}
+
+impl Place {
+    /// All places, in the order of [`Energy::losses`].
+    pub const ALL: [Self; 7] = [
+        Self::Joints,
+        Self::Rollers,
+        Self::Teeth,
+        Self::Guides,
+        Self::Spans,
+        Self::Tensioners,
+        Self::Supports,
+    ];
+
+    /// Name in results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Joints => "joints",
+            Self::Rollers => "rollers",
+            Self::Teeth => "teeth",
+            Self::Guides => "guides",
+            Self::Spans => "spans",
+            Self::Tensioners => "tensioners",
+            Self::Supports => "supports",
+        }
+    }
 }
 
 impl Store {
@@ -102,13 +153,16 @@ impl Store {
 
 impl Flow {
     /// All flows, in the order of [`Energy::flows`].
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 15] = [
         Self::LinkLoss,
         Self::JointLoss,
         Self::ArticulationLoss,
+        Self::RollerLoss,
+        Self::RollerFriction,
         Self::ToothLoss,
+        Self::ToothFriction,
         Self::GuideLoss,
-        Self::FrictionLoss,
+        Self::GuideFriction,
         Self::SupportLoss,
         Self::TensionerLoss,
         Self::Driver,
@@ -119,17 +173,21 @@ impl Flow {
 
     /// Whether the flow takes energy away.
     pub fn is_loss(self) -> bool {
-        matches!(
-            self,
-            Self::LinkLoss
-                | Self::JointLoss
-                | Self::ArticulationLoss
-                | Self::ToothLoss
-                | Self::GuideLoss
-                | Self::FrictionLoss
-                | Self::SupportLoss
-                | Self::TensionerLoss
-        )
+        self.place().is_some()
+    }
+
+    /// Where energy is lost; none for what comes in or goes out.
+    pub fn place(self) -> Option<Place> {
+        match self {
+            Self::JointLoss | Self::ArticulationLoss => Some(Place::Joints),
+            Self::RollerLoss | Self::RollerFriction => Some(Place::Rollers),
+            Self::ToothLoss | Self::ToothFriction => Some(Place::Teeth),
+            Self::GuideLoss | Self::GuideFriction => Some(Place::Guides),
+            Self::LinkLoss => Some(Place::Spans),
+            Self::TensionerLoss => Some(Place::Tensioners),
+            Self::SupportLoss => Some(Place::Supports),
+            Self::Driver | Self::Motions | Self::DriveTorque | Self::Load => None,
+        }
     }
 
     /// Name in results.
@@ -138,9 +196,12 @@ impl Flow {
             Self::LinkLoss => "links_dissipated",
             Self::JointLoss => "joints_dissipated",
             Self::ArticulationLoss => "articulation_dissipated",
+            Self::RollerLoss => "rollers_dissipated",
+            Self::RollerFriction => "rollers_friction_dissipated",
             Self::ToothLoss => "teeth_dissipated",
+            Self::ToothFriction => "teeth_friction_dissipated",
             Self::GuideLoss => "guides_dissipated",
-            Self::FrictionLoss => "friction_dissipated",
+            Self::GuideFriction => "guides_friction_dissipated",
             Self::SupportLoss => "supports_dissipated",
             Self::TensionerLoss => "tensioners_dissipated",
             Self::Driver => "driver_supplied",
@@ -196,6 +257,17 @@ impl Energy {
             .filter(|f| f.is_loss())
             .map(|&f| self.flow(f))
             .sum()
+    }
+
+    /// Energy lost since the start \[J\] in the order of [`Place::ALL`]: together [`dissipated`](Self::dissipated).
+    pub fn losses(&self) -> [f64; Place::ALL.len()] {
+        let mut losses = [0.0; Place::ALL.len()];
+        for flow in Flow::ALL {
+            if let Some(place) = flow.place() {
+                losses[place as usize] += self.flow(flow);
+            }
+        }
+        losses
     }
 
     /// Energy supplied since the start, loads subtracted \[J\].

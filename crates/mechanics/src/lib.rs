@@ -27,6 +27,7 @@ mod drive;
 mod energy;
 mod error;
 mod events;
+mod fights;
 mod groups;
 mod lanes;
 mod modes;
@@ -35,6 +36,8 @@ mod nudge;
 mod observe;
 mod profile;
 mod standing;
+mod strength;
+mod struck;
 mod system;
 mod tensioner;
 mod torque;
@@ -45,16 +48,20 @@ pub use assembly::{Assembled, Fitting, RollerLayout, Statics};
 pub use chain::{Chain, End, Ends};
 pub use chains::ChainModel;
 pub use chains::links::model::{Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel};
+pub use contact::Impacts;
 pub use drive::{
     Adjust, Coupling, Drive, Fit, Flank, GearPair, Guide, GuideSupport, Layout, Parts, PlacedChain,
     PretensionAt, Rotation, Shaft, SpanStart, Sprocket, Stop, Support, Surface, Tighten, Touches,
 };
-pub use energy::{Energy, Flow, Store};
+pub use energy::{Energy, Flow, Place, Store};
 pub use error::{AssemblyError, Clash, DriveError, MemoryError};
 pub use events::{ContactEvent, ContactPair, EventKinds};
+pub use fights::Fight;
 pub use modes::{Mode, Modes};
 pub use motion::{Harmonic, Kinematics, Motion, Table};
 pub use observe::{ChainSize, Observation};
+pub use strength::{Rating, Strength};
+pub use struck::Struck;
 pub use system::{Input, Record, System, SystemMemory};
 pub use tensioner::{Carrier, Push, PushForce, Tensioner, carriers, pushes};
 pub use torque::{Argument, Order, Torque};

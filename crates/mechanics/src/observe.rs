@@ -39,6 +39,19 @@ pub struct Observation {
     pub joint_angle: Vec<f64>,
     /// Indentation of pin and bush \[m\], (joints,).
     pub joint_depth: Vec<f64>,
+    /// Eccentricity of every bush, seen from the centre of its free roller, x and y \[m\], (joints,) each; NaN where there is none,
+    /// like all of bushes.
+    pub bush_offset_x: Vec<f64>,
+    /// See `bush_offset_x`.
+    pub bush_offset_y: Vec<f64>,
+    /// Force of the free roller on every bush, x and y \[N\], (joints,) each.
+    pub bush_force_x: Vec<f64>,
+    /// See `bush_force_x`.
+    pub bush_force_y: Vec<f64>,
+    /// Its magnitude \[N\], (joints,).
+    pub bush_force: Vec<f64>,
+    /// Indentation of bush and roller \[m\], (joints,).
+    pub bush_depth: Vec<f64>,
     /// Tension of every link, damping included \[N\], (links,).
     pub link_tension: Vec<f64>,
     /// Mean tension of the links between consecutive sprockets of the route \[N\], (spans,).
@@ -488,6 +501,12 @@ impl Observation {
             &mut self.joint_force,
             &mut self.joint_angle,
             &mut self.joint_depth,
+            &mut self.bush_offset_x,
+            &mut self.bush_offset_y,
+            &mut self.bush_force_x,
+            &mut self.bush_force_y,
+            &mut self.bush_force,
+            &mut self.bush_depth,
         ] {
             values.clear();
         }

@@ -124,6 +124,12 @@ impl System {
         self.sum(Chain::joints)
     }
 
+    /// Whether a chain has rollers that are bodies of their own.
+    pub fn has_free_rollers(&self) -> bool {
+        let mut chains = self.chains.iter();
+        chains.any(|member| member.chain.bearing_laws()[1].is_some())
+    }
+
     /// Degrees of freedom that move: those of held rollers do not count.
     pub fn free_dofs(&self) -> usize {
         self.sum(Chain::free_coordinates) + (self.dofs - self.bodies.first)

@@ -153,6 +153,7 @@ fn told<'py>(py: Python<'py>, report: &Report, memory: Memory) -> PyResult<Bound
     }
     answer.set_item("waveform_horizons", horizons)?;
     answer.set_item("warning", report.verdict.warning())?;
+    answer.set_item("caution", report.verdict.caution())?;
     let clashes = report.simulation.assembled().warnings.iter();
     let clashes: Vec<String> = clashes.map(ToString::to_string).collect();
     answer.set_item("clashes", clashes)?;
@@ -203,6 +204,8 @@ pub(crate) struct Interpreter<'a> {
     progress: Option<&'a Py<PyAny>>,
     /// How far the run is.
     share: Cell<f64>,
+    /// How far the run-in is, until the run begins.
+    run_in: Cell<Option<f64>>,
     looked: Cell<Instant>,
     /// What a signal or the function raised.
     pub(crate) raised: RefCell<Option<PyErr>>,
@@ -213,6 +216,7 @@ impl<'a> Interpreter<'a> {
         Self {
             progress,
             share: Cell::new(0.0),
+            run_in: Cell::new(None),
             looked: Cell::new(Instant::now()),
             raised: RefCell::new(None),
         }
@@ -220,7 +224,11 @@ impl<'a> Interpreter<'a> {
 
     fn look(&self, progress: Option<&Py<PyAny>>) {
         self.looked.set(Instant::now());
-        if let Err(error) = look(progress, self.share.get()) {
+        let looked = match self.run_in.get() {
+            Some(share) => look_at_run_in(progress, share),
+            None => look(progress, self.share.get()),
+        };
+        if let Err(error) = looked {
             self.raised.borrow_mut().get_or_insert(error);
         }
     }
@@ -231,12 +239,18 @@ impl Onlooker for Interpreter<'_> {
         if self.looked.get().elapsed() >= PATIENCE {
             // Before the first step and after the last there is nothing to tell.
             let under_way = (f64::MIN_POSITIVE..1.0).contains(&self.share.get());
+            let under_way = under_way || self.run_in.get().is_some();
             self.look(self.progress.filter(|_| under_way));
         }
         self.raised.borrow().is_some()
     }
 
+    fn see_run_in(&self, share: f64) {
+        self.run_in.set(Some(share));
+    }
+
     fn see(&self, simulation: &Simulation) {
+        self.run_in.set(None);
         let before = self.share.replace(simulation.progress());
         if before < 1.0 && self.share.get() >= 1.0 {
             self.look(self.progress);
@@ -266,6 +280,23 @@ pub(crate) fn look(progress: Option<&Py<PyAny>>, share: f64) -> PyResult<()> {
     Python::attach(|py| {
         py.check_signals()?;
         progress.map_or(Ok(()), |tell| tell.call1(py, (share,)).map(drop))
+    })
+}
+
+/// The same while a drive is run in: the share goes to the method `run_in` of whoever is told, if it has one, and else that of the run
+/// is told, zero.
+fn look_at_run_in(progress: Option<&Py<PyAny>>, share: f64) -> PyResult<()> {
+    Python::attach(|py| {
+        py.check_signals()?;
+        let Some(tell) = progress.map(|tell| tell.bind(py)) else {
+            return Ok(());
+        };
+        let told = if tell.hasattr("run_in")? {
+            tell.call_method1("run_in", (share,))
+        } else {
+            tell.call1((0.0,))
+        };
+        told.map(drop)
     })
 }
 

@@ -6,6 +6,7 @@ use chaindrive_integrate::SecondOrderSystem;
 use chaindrive_mechanics::Assembled;
 use serde::Serialize;
 
+use crate::run::longest;
 use crate::{Run, Simulation, SimulationError};
 
 /// Method, steps and run time.
@@ -31,6 +32,10 @@ pub struct Cost {
     pub real_time_ratio: f64,
     /// Steps measured.
     pub measured: u64,
+    /// Simulated time before the record \[s\], at most; zero without a run-in.
+    pub run_in: f64,
+    /// Wall time expected for it, at most \[s\].
+    pub run_in_time: f64,
     /// Accuracy \[–\] that a run chooses another method or step for; absent where it takes these.
     pub unless_chosen_for: Option<f64>,
 }
@@ -77,6 +82,7 @@ pub(super) fn measure(assembled: &Assembled, run: &Run) -> Result<Cost, Simulati
     let step = if adaptive { mean_step } else { step };
     let steps = (run.until / step).ceil();
     let run_time = steps * time_per_step;
+    let run_in = longest(assembled, run)?;
     Ok(Cost {
         method: method.name(),
         step,
@@ -88,6 +94,8 @@ pub(super) fn measure(assembled: &Assembled, run: &Run) -> Result<Cost, Simulati
         run_time,
         real_time_ratio: run_time / run.until,
         measured: taken,
+        run_in,
+        run_in_time: run_in / step * time_per_step,
         unless_chosen_for: None,
     })
 }

@@ -227,6 +227,14 @@ impl Description {
             duration(cost.time_per_step),
             cost.measured
         );
+        if cost.run_in > 0.0 {
+            let before = format!(
+                "at most {} s before the record, about {}",
+                cost.run_in,
+                duration(cost.run_in_time)
+            );
+            row(f, "run-in", &before)?;
+        }
         row(f, "run time", &time)
     }
 }

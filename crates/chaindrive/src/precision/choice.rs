@@ -6,6 +6,7 @@ use chaindrive_mechanics::Assembled;
 use serde::{Deserialize, Serialize};
 
 use super::Watch;
+use super::accuracy::{Accuracy, Quantity};
 use super::attribute::Attribute;
 use super::candidates::{Candidate, Entry, entries, work};
 use super::compare::{Account, distances, rms};
@@ -28,7 +29,9 @@ pub enum Promise {
     /// Mean and root mean square of the tension of every span or link, or no more than chance makes of them: the
     /// chaos horizon lies within the window.
     Statistics,
-    /// Nothing: the chain carries no tension that could be compared.
+    /// The energy lost, as it is without what chance makes of it, and what is unaccounted for beside it.
+    Losses,
+    /// Nothing: the chain carries no tension that could be compared, or loses nothing.
     Nothing,
 }
 
@@ -108,15 +111,23 @@ impl Trials<'_> {
     }
 
     /// Which promise the drive allows, and by how much the statistics of equal runs differ.
-    fn promise(&mut self, first: Candidate) -> Result<(Promise, f64), SimulationError> {
+    fn promise(
+        &mut self,
+        first: Candidate,
+        of: Quantity,
+    ) -> Result<(Promise, f64), SimulationError> {
         let Some(place) = self.place(first)? else {
             return Ok((Promise::Waveform, 0.0));
         };
         let Some(base) = &self.taken[place].1 else {
             return Ok((Promise::Waveform, 0.0));
         };
-        // A tension of nothing has no relative error.
-        if base.tensions(Strands::of([base])).mean() <= 0.0 {
+        // What is nothing has no relative error.
+        let nothing = match of {
+            Quantity::Tension => base.tensions(Strands::of([base])).mean() <= 0.0,
+            Quantity::Losses => base.energy.scale() <= 0.0,
+        };
+        if nothing {
             return Ok((Promise::Nothing, 0.0));
         }
         let twin = Trace::take(
@@ -125,6 +136,9 @@ impl Trials<'_> {
             &self.window,
             self.watch,
         )?;
+        if of == Quantity::Losses {
+            return Ok((Promise::Losses, losses_apart(&twin, base)));
+        }
         let strands = Strands::of([base, &twin]);
         let promise = match Horizon::of(base, &twin, strands).tight {
             Divergence::Measured { .. } => Promise::Statistics,
@@ -141,7 +155,8 @@ impl Trials<'_> {
 /// ```
 ///
 /// Candidates are tried from the cheapest on, each against a sharper one of the list, over half a [`Window`]. Within the
-/// chaos horizon the waveform of the tight span counts, beyond it mean and root mean square of all spans. If none is
+/// chaos horizon the waveform of the tight span counts, beyond it mean and root mean square of all spans. Where the losses are
+/// to be kept, the energy lost counts, less what chance makes of it, and what is unaccounted for: |R|/D ≤ accuracy. If none is
 /// good enough, the run gets the best, and [`Choice::kept`] is false. Counts decide and never clocks: the same drive
 /// gets the same answer.
 ///
@@ -151,9 +166,13 @@ impl Trials<'_> {
 pub fn choose(
     start: &Assembled,
     run: &Run,
-    accuracy: f64,
+    accuracy: impl Into<Accuracy>,
     watch: Watch<'_>,
 ) -> Result<Choice, SimulationError> {
+    let Accuracy {
+        value: accuracy,
+        of,
+    } = accuracy.into();
     if !(accuracy > 0.0 && accuracy < 1.0) {
         return Err(SimulationError::Setting {
             name: "accuracy",
@@ -176,7 +195,7 @@ pub fn choose(
         watch,
         taken: Vec::new(),
     };
-    let (promise, spread) = trials.promise(entries[0].candidate)?;
+    let (promise, spread) = trials.promise(entries[0].candidate, of)?;
     let mut choice = Choice {
         run: automatic,
         accuracy,
@@ -192,15 +211,22 @@ pub fn choose(
     }
     for entry in &entries {
         let found = trials.pair(entry)?.map(|(candidate, judge)| {
-            let apart = if promise == Promise::Statistics {
-                beyond(statistics(candidate, judge), spread)
-            } else {
-                let strands = Strands::of([candidate, judge]);
-                let distances = distances(candidate, judge, strands);
-                rms(distances.iter().map(|distance| distance.tight))
+            let apart = match promise {
+                Promise::Statistics => beyond(statistics(candidate, judge), spread),
+                Promise::Losses => beyond(losses_apart(candidate, judge), spread),
+                Promise::Waveform | Promise::Nothing => {
+                    let strands = Strands::of([candidate, judge]);
+                    let distances = distances(candidate, judge, strands);
+                    rms(distances.iter().map(|distance| distance.tight))
+                }
+            };
+            let bound = apart * entry.caution();
+            let error = match promise {
+                Promise::Losses => bound.max(candidate.energy.residual / judge.energy.scale()),
+                _ => bound,
             };
             let gap = candidate.gap.as_ref().or(judge.gap.as_ref());
-            (apart * entry.caution(), work(candidate), gap.cloned())
+            (error, work(candidate), gap.cloned())
         });
         let (error, work, gap) = found.unwrap_or((f64::INFINITY, f64::NAN, None));
         let candidate = entry.candidate;
@@ -232,6 +258,11 @@ fn beyond(difference: f64, spread: f64) -> f64 {
     } else {
         f64::INFINITY
     }
+}
+
+/// Relative difference of the energies lost.
+fn losses_apart(of: &Trace, from: &Trace) -> f64 {
+    (of.energy.losses - from.energy.losses).abs() / from.energy.scale()
 }
 
 /// Largest relative difference of means and root mean squares of the tensions.
@@ -276,8 +307,9 @@ impl Choice {
             (Promise::Statistics, Some(gap)) => {
                 format!("mean and rms of the link tensions (the motion is chaotic, {gap})")
             }
+            (Promise::Losses, _) => "the losses".to_owned(),
             (Promise::Nothing, _) => {
-                return "the method's own step, because the chain carries no tension to compare"
+                return "the method's own step, because there is no tension or loss to compare"
                     .to_owned();
             }
         };

@@ -3,10 +3,11 @@
 use std::fmt;
 
 use chaindrive_integrate::Statistics;
-use chaindrive_mechanics::Assembled;
+use chaindrive_mechanics::{Assembled, Flow};
 use serde::{Deserialize, Serialize};
 
 use super::Watch;
+use super::accuracy::LEAST_LOSSES;
 use super::window::Window;
 use super::wording::duration;
 use crate::{Run, Simulation, SimulationError};
@@ -28,8 +29,21 @@ pub(super) struct Trace {
     pub(super) angle: Vec<f64>,
     /// Speed of the sprockets \[rad/s\], (samples, sprockets).
     pub(super) speed: Vec<f64>,
+    /// The energy of the run.
+    pub(super) energy: Lost,
     /// Counts of the time stepping.
     pub(super) statistics: Statistics,
+}
+
+/// What a run has lost, and what of its energy is unaccounted for.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Lost {
+    /// Energy lost \[J\].
+    pub(super) losses: f64,
+    /// Energy unaccounted for at the end, in magnitude \[J\].
+    pub(super) residual: f64,
+    /// Energy that has come in \[J\].
+    pub(super) supplied: f64,
 }
 
 /// Tensions of parallel strands, sample by sample.
@@ -70,6 +84,25 @@ impl fmt::Display for Gap {
     }
 }
 
+impl Lost {
+    fn of(simulation: &Simulation) -> Self {
+        let now = simulation.observation().energy;
+        let start = simulation.start_energy().unwrap_or(now);
+        let outside = Flow::ALL.iter().filter(|flow| !flow.is_loss());
+        let came = outside.map(|&flow| now.flow(flow) - start.flow(flow));
+        Self {
+            losses: now.dissipated() - start.dissipated(),
+            residual: simulation.energy_residual().abs(),
+            supplied: came.filter(|work| *work > 0.0).sum(),
+        }
+    }
+
+    /// What relative errors of losses are relative to \[J\]: the losses, or what cannot be told from none.
+    pub(super) fn scale(&self) -> f64 {
+        self.losses.max(LEAST_LOSSES * self.supplied)
+    }
+}
+
 impl Trace {
     /// Runs a drive over a window.
     ///
@@ -100,6 +133,7 @@ impl Trace {
                 return Err(SimulationError::Interrupted);
             }
         }
+        trace.energy = Lost::of(&simulation);
         trace.statistics = *simulation.statistics();
         trace.gap = trace.first_gap(&simulation.system().span_names());
         Ok(trace)

@@ -156,6 +156,10 @@ pub fn attributes(
         story.number("energy_supplied", summary.energy_supplied());
         story.number("energy_dissipated", summary.energy_dissipated());
         story.number("energy_moved", summary.energy_moved());
+        if let Some([efficiency, uncertain]) = summary.ledger().efficiency() {
+            story.number("efficiency", efficiency);
+            story.number("efficiency_error", uncertain);
+        }
         story.number("energy_residual_largest", summary.residual);
         story.number("contact_force_largest", summary.forces().max);
     }
@@ -164,7 +168,7 @@ pub fn attributes(
     let choice = provenance.choice.as_ref();
     let verdict = summary.map(|summary| {
         let verdict = Verdict::of(summary, simulation, provenance.ran_in, choice, judgement);
-        let figures = figures(summary, simulation, choice, judgement);
+        let figures = figures(summary, simulation, provenance.ran_in, choice, judgement);
         story.text("summary", &format!("{verdict}\n{figures}"));
         verdict.attributes()
     });
@@ -183,10 +187,14 @@ pub fn attributes(
 pub fn figures(
     summary: &Summary,
     simulation: &Simulation,
+    ran_in: Option<RanIn>,
     choice: Option<&Choice>,
     judgement: Option<&Judgement>,
 ) -> String {
     let mut text = summary.report(simulation).to_string();
+    if let Some(ran_in) = ran_in {
+        text = format!("{ran_in}\n{text}");
+    }
     if let Some(choice) = choice {
         text = format!("{text}\n{choice}");
     }

@@ -33,11 +33,13 @@ pub enum Axis {
     Store,
     /// One a flow of energy.
     Flow,
+    /// One a place where energy is lost.
+    Place,
 }
 
 impl Axis {
     /// All axes with labels.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Roller,
         Self::Link,
         Self::Joint,
@@ -50,6 +52,7 @@ impl Axis {
         Self::OilColumn,
         Self::Store,
         Self::Flow,
+        Self::Place,
     ];
 
     /// Name of the dimension; none for a scalar channel.
@@ -68,6 +71,7 @@ impl Axis {
             Self::OilColumn => Some("oil_column"),
             Self::Store => Some("store"),
             Self::Flow => Some("flow"),
+            Self::Place => Some("place"),
         }
     }
 }
@@ -118,6 +122,12 @@ channels! {
     JointOffsetX, "joint_offset_x", "m", Joint, "eccentricity of the pin in its bush, x";
     JointOffsetY, "joint_offset_y", "m", Joint, "eccentricity of the pin in its bush, y";
     JointAngle, "joint_angle", "rad", Joint, "direction of the link with the pin from that with the bush";
+    BushForce, "bush_force", "N", Joint, "force of the free roller on its bush";
+    BushForceX, "bush_force_x", "N", Joint, "force of the free roller on its bush, x";
+    BushForceY, "bush_force_y", "N", Joint, "force of the free roller on its bush, y";
+    BushDepth, "bush_depth", "m", Joint, "indentation of bush and free roller";
+    BushOffsetX, "bush_offset_x", "m", Joint, "eccentricity of the bush in its free roller, x";
+    BushOffsetY, "bush_offset_y", "m", Joint, "eccentricity of the bush in its free roller, y";
     ContactForce, "contact_force", "N", Roller, "normal force between roller and teeth";
     ContactDepth, "contact_depth", "m", Sprocket, "deepest indentation on the sprocket";
     Contacts, "contacts", "1", Sprocket, "number of closed contacts on the sprocket";
@@ -147,6 +157,7 @@ channels! {
     EnergyResidual, "energy_residual", "J", None, "energy unaccounted for since the start";
     EnergyStores, "energy_stores", "J", Store, "energy by form";
     EnergyFlows, "energy_flows", "J", Flow, "energy that has flowed since the start, by element";
+    EnergyLosses, "energy_losses", "J", Place, "energy lost since the start, by place: together energy_dissipated";
 }
 
 impl Channel {
@@ -213,10 +224,24 @@ impl Channel {
         }
     }
 
+    /// Whether it tells of bushes in free rollers.
+    fn is_of_bushes(self) -> bool {
+        matches!(
+            self,
+            Self::BushForce
+                | Self::BushForceX
+                | Self::BushForceY
+                | Self::BushDepth
+                | Self::BushOffsetX
+                | Self::BushOffsetY
+        )
+    }
+
     /// Whether a system has what the channel records: joints and directions of links belong to rigid
     /// links, shafts and couplings are those that a scene names.
     pub fn is_of(self, system: &System) -> bool {
         match self.axis() {
+            Axis::Joint if self.is_of_bushes() => system.has_free_rollers(),
             Axis::Joint => system.joints() > 0,
             Axis::Link if self == Self::LinkAngle => system.joints() > 0,
             Axis::Shaft => !system.shaft_names().is_empty(),
@@ -290,6 +315,12 @@ impl Channel {
             Self::JointOffsetX => to.extend(&sample.joint_offset_x),
             Self::JointOffsetY => to.extend(&sample.joint_offset_y),
             Self::JointAngle => to.extend(&sample.joint_angle),
+            Self::BushForce => to.extend(&sample.bush_force),
+            Self::BushForceX => to.extend(&sample.bush_force_x),
+            Self::BushForceY => to.extend(&sample.bush_force_y),
+            Self::BushDepth => to.extend(&sample.bush_depth),
+            Self::BushOffsetX => to.extend(&sample.bush_offset_x),
+            Self::BushOffsetY => to.extend(&sample.bush_offset_y),
             Self::ContactForce => to.extend(&sample.contact_force),
             Self::ContactDepth => to.extend(&sample.contact_depth),
             Self::Contacts => to.extend(&sample.contacts),
@@ -319,6 +350,7 @@ impl Channel {
             Self::EnergyResidual => to.push(energy.residual(start)),
             Self::EnergyStores => to.extend(Store::ALL.map(|store| energy.store(store))),
             Self::EnergyFlows => to.extend(Flow::ALL.map(|flow| energy.flow(flow))),
+            Self::EnergyLosses => to.extend(energy.losses()),
         }
     }
 }

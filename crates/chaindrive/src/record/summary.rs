@@ -1,16 +1,19 @@
 //! The short account that ends every run.
 
+mod carried;
 mod counted;
+mod report;
 mod steadiness;
 
-use std::fmt;
-
-use chaindrive_mechanics::{ContactEvent, Energy, Flow, Observation};
+use chaindrive_mechanics::{ContactEvent, Energy, Flow, Observation, Place};
 use hdrhistogram::Histogram;
 use serde::{Deserialize, Serialize};
 
 use super::event::{EventTable, kind};
 use crate::Simulation;
+use carried::Carried;
+pub use carried::Load;
+use report::Report;
 pub(crate) use steadiness::Batches;
 pub use steadiness::Steadiness;
 
@@ -32,6 +35,9 @@ pub struct Summary {
     pub not_finite: u64,
     /// Samples seen.
     pub samples: u64,
+    /// Whether somebody keeps the samples, so that more than the summary is made of them.
+    pub kept: bool,
+    carried: Carried,
 }
 
 /// Tension of one span over the run.
@@ -128,10 +134,32 @@ pub struct Ledger {
     pub supplied: f64,
     /// Energy that they have put in and taken out again, added up without regard to direction \[J\].
     pub exchanged: f64,
+    /// Energy that loads have put in, those that took some out counted against it \[J\].
+    pub by_loads: f64,
+    /// Energy that loads have put in and taken out, added up without regard to direction \[J\].
+    pub loads_exchanged: f64,
     /// Largest kinetic energy \[J\].
     pub kinetic: f64,
     /// What rounding may leave of a residual \[J\].
     pub rounding: f64,
+}
+
+/// Share of the energy exchanged with the outside that has to go one way before its ratio is an efficiency: a driver that
+/// swings to and fro has none.
+const ONE_WAY: f64 = 0.25;
+
+impl Ledger {
+    /// Share of the energy supplied that is not lost, and by how much the energy unaccounted for makes it uncertain; none where
+    /// energy goes to and fro.
+    ///
+    /// ```text
+    /// η = 1 − D/E ± |R|/E       D: losses, R: residual, E: energy supplied
+    /// ```
+    pub fn efficiency(&self) -> Option<[f64; 2]> {
+        let goes_one_way = self.supplied > ONE_WAY * self.exchanged;
+        let share = |of: f64| of / self.supplied;
+        goes_one_way.then(|| [1.0 - share(self.losses), share(self.residual.abs())])
+    }
 }
 
 /// How much energy a run has moved about.
@@ -144,6 +172,8 @@ struct Turnover {
     flowed: f64,
     /// The same over flows that are no losses \[J\].
     exchanged: f64,
+    /// The same over loads alone \[J\].
+    loads: f64,
     /// Least and greatest kinetic and stored energy \[J\].
     ranges: Option<[[f64; 2]; 2]>,
 }
@@ -154,6 +184,7 @@ impl Turnover {
         self.flowed += Flow::ALL.iter().map(worked).sum::<f64>();
         let outside = Flow::ALL.iter().filter(|flow| !flow.is_loss());
         self.exchanged += outside.map(worked).sum::<f64>();
+        self.loads += worked(&Flow::Load);
         let stores = [now.kinetic(), now.stored()];
         let ranges = self.ranges.get_or_insert(stores.map(|energy| [energy; 2]));
         for (range, energy) in ranges.iter_mut().zip(stores) {
@@ -224,6 +255,8 @@ impl Summary {
             residual: 0.0,
             not_finite: 0,
             samples: 0,
+            kept: false,
+            carried: Carried::new(simulation),
         }
     }
 
@@ -263,6 +296,7 @@ impl Summary {
             self.residual = residual;
         }
         self.last = sample.energy;
+        self.carried.push(sample);
         self.samples += 1;
     }
 
@@ -330,6 +364,8 @@ impl Summary {
             moved: self.energy_moved(),
             supplied: net.filter(|work| *work > 0.0).sum(),
             exchanged: self.turnover.exchanged,
+            by_loads: self.last.flow(Flow::Load) - start.flow(Flow::Load),
+            loads_exchanged: self.turnover.loads,
             kinetic: self.turnover.kinetic(),
             rounding: self.turnover.rounding(),
         }
@@ -338,6 +374,26 @@ impl Summary {
     /// Energy lost since the start \[J\].
     pub fn energy_dissipated(&self) -> f64 {
         self.last.dissipated() - self.start.unwrap_or_default().dissipated()
+    }
+
+    /// Energy lost since the start, by place, where there is any \[J\].
+    pub fn losses(&self) -> Vec<(Place, f64)> {
+        let start = self.start.unwrap_or_default().losses();
+        let lost = self.last.losses().into_iter().zip(start);
+        let lost = Place::ALL
+            .into_iter()
+            .zip(lost.map(|(now, then)| now - then));
+        lost.filter(|(_, lost)| *lost != 0.0).collect()
+    }
+
+    /// What each chain has carried.
+    pub fn carried(&self) -> Vec<Load> {
+        self.carried.loads()
+    }
+
+    /// Greatest frequency at which rollers seat on a sprocket, in the mean over the run \[Hz\].
+    pub fn mesh_frequency(&self) -> f64 {
+        self.carried.mesh_frequency()
     }
 
     /// The account with the counts and speed of the run.
@@ -349,133 +405,5 @@ impl Summary {
     }
 }
 
-/// A summary as text.
-#[derive(Debug)]
-pub struct Report<'a> {
-    summary: &'a Summary,
-    simulation: &'a Simulation,
-}
-
-impl fmt::Display for Report<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            summary,
-            simulation,
-        } = self;
-        let statistics = simulation.statistics();
-        let time = simulation.time();
-        if !summary.spans.is_empty() {
-            writeln!(
-                f,
-                "span tension [N]            mean     ± 95 %        std      least   greatest"
-            )?;
-            for span in &summary.spans {
-                let samples = summary.samples;
-                if span.missing == samples {
-                    writeln!(f, "  {:22} no roller holds it in any sample", span.name)?;
-                    continue;
-                }
-                let half_width = match span.steadiness() {
-                    Some(found) => format!("{:.1}", found.half_width),
-                    None => "not known".to_owned(),
-                };
-                write!(
-                    f,
-                    "  {:22} {:>9.1}  {half_width:>9}  {:>9.1}  {:>9.1}  {:>9.1}",
-                    span.name,
-                    span.mean(),
-                    span.deviation(),
-                    span.least,
-                    span.greatest
-                )?;
-                if span.missing > 0 {
-                    let missing = span.missing;
-                    write!(f, "  no roller holds it in {missing} of {samples} samples")?;
-                }
-                writeln!(f)?;
-            }
-        }
-        let forces = summary.forces();
-        if forces.max > 0.0 {
-            writeln!(
-                f,
-                "contact force [N]        p50 {:.0}  p90 {:.0}  p99 {:.0}  max {:.0}",
-                forces.p50, forces.p90, forces.p99, forces.max
-            )?;
-        }
-        contacts(f, summary, simulation)?;
-        let supplied = summary.energy_supplied();
-        let moved = summary.energy_moved();
-        let relative = if moved > 0.0 {
-            let share = |of: f64| (summary.residual / of).abs();
-            let of_losses = match summary.energy_dissipated() {
-                losses if losses > 0.0 => format!(", {:.1e} of the losses", share(losses)),
-                _ => String::new(),
-            };
-            format!("{of_losses}, {:.1e} of the {moved:.4e} moved", share(moved))
-        } else {
-            String::new()
-        };
-        writeln!(
-            f,
-            "energy [J]               supplied {supplied:.4e}, dissipated {:.4e}; unaccounted for {:.2e}{relative}",
-            summary.energy_dissipated(),
-            summary.residual
-        )?;
-        let steps = statistics.steps.max(1) as f64;
-        writeln!(
-            f,
-            "stepping                 {} with {} steps of {:.3e} to {:.3e} s, {} rejected, {} reduced",
-            simulation.method().name(),
-            statistics.steps,
-            statistics.smallest_step,
-            statistics.largest_step,
-            statistics.rejections + statistics.error_rejections + statistics.newton_failures,
-            statistics.reductions
-        )?;
-        let wall = simulation.stepping_time();
-        write!(
-            f,
-            "speed                    {:.3} × real time, {:.2} ns per link and step, {:.3} s for {time:.4} s",
-            time / wall,
-            wall * 1e9 / steps / simulation.system().links() as f64,
-            wall
-        )
-    }
-}
-
 /// Share of the energy present below which a residual is taken for rounding.
 const ROUNDING: f64 = 1e-9;
-
-/// One line a kind of contact that was logged.
-fn contacts(f: &mut fmt::Formatter<'_>, summary: &Summary, simulation: &Simulation) -> fmt::Result {
-    let found = summary.contacts(simulation);
-    if found.iter().all(|contacts| contacts.count == 0) {
-        return Ok(());
-    }
-    writeln!(
-        f,
-        "contacts                 number   mean peak [N]   max peak [N]   share of time a roller or joint"
-    )?;
-    let system = simulation.system();
-    let places = [
-        system.rollers(),
-        system.rollers(),
-        system.joints(),
-        system.joints(),
-    ];
-    for ((name, contacts), places) in EventTable::KINDS.iter().zip(found).zip(places) {
-        if contacts.count > 0 {
-            let share = contacts.duration / (simulation.time() * places as f64);
-            writeln!(
-                f,
-                "  {name:20} {:>8}   {:>13.1}   {:>12.1}   {:>10.2} %",
-                contacts.count,
-                contacts.mean(),
-                contacts.greatest,
-                100.0 * share
-            )?;
-        }
-    }
-    Ok(())
-}

@@ -4,12 +4,33 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Given, Request, Run};
-use crate::precision::Choice;
+use chaindrive_mechanics::{Assembled, Drive, SystemMemory};
+
+use super::execute::assemble;
+use super::{Given, RanIn, Request, Run};
+use crate::precision::{Choice, Quantity};
 use crate::record::{Provenance, Summary};
 use crate::scene::SceneError;
 use crate::seal::{Sealed, opened, sealed};
-use crate::{RequestError, Scene, SealError, Simulation, SimulationError, Snapshot};
+use crate::{RequestError, Scene, SealError, Simulation, SimulationError, Snapshot, SnapshotError};
+
+/// Why a drive does not stand where it stood.
+pub(super) enum NotAgain {
+    Start(SimulationError),
+    Snapshot(SnapshotError),
+}
+
+impl From<SimulationError> for NotAgain {
+    fn from(error: SimulationError) -> Self {
+        Self::Start(error)
+    }
+}
+
+impl From<SnapshotError> for NotAgain {
+    fn from(error: SnapshotError) -> Self {
+        Self::Snapshot(error)
+    }
+}
 
 /// A run at one of its moments, with everything that does not follow from the scene: a run that goes on from here is
 /// the run that was never stopped, to the last bit.
@@ -26,6 +47,17 @@ pub struct Checkpoint {
     spent: [f64; 2],
     pub(super) summary: Summary,
     pub(super) snapshot: Snapshot,
+    /// Where the record begins, if the drive was run in.
+    start: Option<Start>,
+}
+
+/// A drive that was run in, at t = 0.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Start {
+    ran_in: RanIn,
+    system: SystemMemory,
+    /// Coordinates, velocities, first-order states.
+    state: [Vec<f64>; 3],
 }
 
 impl Sealed for Checkpoint {
@@ -54,6 +86,16 @@ impl Checkpoint {
             ],
             summary: summary.clone(),
             snapshot: simulation.snapshot(),
+            start: provenance.ran_in.map(|ran_in| {
+                let start = simulation.assembled();
+                let state = [&start.q, &start.v, &start.z].map(Clone::clone);
+                let system = start.system.memory();
+                Start {
+                    ran_in,
+                    system,
+                    state,
+                }
+            }),
         }
     }
 
@@ -137,9 +179,33 @@ impl Checkpoint {
             run: self.run.clone(),
             record: self.record.clone(),
             accuracy: None,
+            accuracy_of: Quantity::default(),
             estimate: self.estimate,
             checkpoint_every: self.every,
         })
+    }
+
+    /// How the drive was run in, if it was.
+    pub(super) fn ran_in(&self) -> Option<RanIn> {
+        self.start.as_ref().map(|start| start.ran_in)
+    }
+
+    /// The drive where the record begins. It is assembled as far before as it was, and not moved again.
+    ///
+    /// # Errors
+    /// It does not assemble, or is another one; somebody wants to stop.
+    pub(super) fn start(
+        &self,
+        drive: &Drive,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Assembled, NotAgain> {
+        let Some(start) = self.start.as_ref().filter(|it| it.ran_in.time > 0.0) else {
+            return Ok(assemble(drive, stop)?);
+        };
+        let drive = drive.beginning(-start.ran_in.time);
+        let before = assemble(&drive.map_err(SimulationError::from)?, stop)?;
+        let stood = before.stood(0.0, start.system.clone(), start.state.clone());
+        Ok(stood.map_err(SnapshotError::from)?)
     }
 
     /// How method and step were chosen.

@@ -5,12 +5,13 @@ use std::convert::Infallible;
 use chaindrive_mechanics::{Assembled, Drive};
 use serde_json::{Map, Value};
 
+use super::checkpoint::NotAgain;
 use super::patience::{LOOK, patiently};
 use super::{Checkpoint, Request, run_in};
 use crate::precision::{Choice, Judgement, choose};
 use crate::record::{Ending, Provenance, Summary, attributes};
 use crate::scene::SceneError;
-use crate::{Channel, Run, Simulation, SimulationError, SnapshotError, Verdict};
+use crate::{Channel, RanIn, Run, Simulation, SimulationError, SnapshotError, Verdict};
 
 /// Where samples go: memory, a store, a table.
 pub trait Sink {
@@ -27,6 +28,11 @@ pub trait Sink {
         channels: &[Channel],
         provenance: &Provenance,
     ) -> Result<(), Self::Error>;
+
+    /// Whether it keeps the samples, so that somebody will look at more than the summary of them.
+    fn keeps_samples(&self) -> bool {
+        true
+    }
 
     /// Takes the last sample of the simulation.
     ///
@@ -80,6 +86,12 @@ pub trait Onlooker {
     fn see(&self, simulation: &Simulation) {
         let _ = simulation;
     }
+
+    /// Is told how much of the run-in is done, 0 to 1, as often as [`stop`](Self::stop) is asked there. Where a run-in ends by
+    /// itself, first how much of the longest that is tried, and then of the one that is carried out.
+    fn see_run_in(&self, share: f64) {
+        let _ = share;
+    }
 }
 
 impl<F: Fn() -> bool> Onlooker for F {
@@ -123,6 +135,8 @@ pub struct Report {
     pub run: Run,
     /// How method and step were chosen, if they were.
     pub choice: Option<Choice>,
+    /// How it was run in, if it was.
+    pub ran_in: Option<RanIn>,
     /// The account of its samples.
     pub summary: Summary,
     /// How exact it is; nothing is said of a run that failed.
@@ -184,7 +198,7 @@ pub fn execute<S: Sink>(
     sink: &mut S,
     onlooker: &dyn Onlooker,
 ) -> Result<Report, RunError<S::Error>> {
-    let begun = begin(request, &|| onlooker.stop())?;
+    let begun = begin(request, onlooker)?;
     complete(request, begun, sink, onlooker)
 }
 
@@ -198,15 +212,28 @@ pub(crate) fn resume<S: Sink>(
     onlooker: &dyn Onlooker,
 ) -> Result<Report, RunError<S::Error>> {
     let request = checkpoint.request().map_err(RunError::Scene)?;
-    let mut begun = begin(&request, &|| onlooker.stop())?;
-    let simulation = &mut begun.simulation;
+    let mut provenance = Provenance::of(&request.scene, &request.run);
+    let drive = request.scene.drive().map_err(RunError::Scene)?;
+    let start = checkpoint.start(&drive, &|| onlooker.stop());
+    let start = start.map_err(|error| match error {
+        NotAgain::Start(error) => not_begun(error),
+        NotAgain::Snapshot(error) => RunError::Snapshot(error),
+    })?;
+    let simulation = Simulation::from_assembled(start, &request.run);
+    let mut simulation = simulation.map_err(RunError::Start)?;
     let restored = simulation.restore(&checkpoint.snapshot);
     restored.map_err(RunError::Snapshot)?;
     let [wall, stepping] = checkpoint.spent();
     simulation.has_spent(stepping);
-    begun.provenance.earlier = wall;
-    begun.provenance.choice = checkpoint.choice().cloned();
-    begun.summary = checkpoint.summary.clone();
+    provenance.earlier = wall;
+    provenance.choice = checkpoint.choice().cloned();
+    provenance.ran_in = checkpoint.ran_in();
+    let begun = Begun {
+        drive,
+        simulation,
+        provenance,
+        summary: checkpoint.summary.clone(),
+    };
     complete(&request, begun, sink, onlooker)
 }
 
@@ -231,6 +258,7 @@ fn complete<S: Sink>(
         Channel::chosen(&request.record, simulation.system()).map_err(RunError::Start)?;
     sink.begin(&simulation, &channels, &provenance)
         .map_err(RunError::Sink)?;
+    summary.kept = sink.keeps_samples();
 
     if request.checkpoint_every.is_some() && summary.samples == 0 {
         // With no sample before it: a store that is killed here is in nobody's way.
@@ -295,6 +323,7 @@ fn complete<S: Sink>(
         simulation,
         drive,
         run,
+        ran_in: provenance.ran_in,
         choice: provenance.choice,
         summary,
         judgement,
@@ -339,24 +368,31 @@ struct Begun {
     summary: Summary,
 }
 
+/// Why a run could not begin.
+fn not_begun<E: std::error::Error>(error: SimulationError) -> RunError<E> {
+    match error {
+        SimulationError::Interrupted => RunError::Interrupted,
+        error => RunError::Start(error),
+    }
+}
+
 /// Assembles the drive, chooses method and step where an accuracy is asked for, and starts the clock.
 fn begin<E: std::error::Error>(
     request: &Request,
-    watch: &dyn Fn() -> bool,
+    onlooker: &dyn Onlooker,
 ) -> Result<Begun, RunError<E>> {
-    let failed = |error| match error {
-        SimulationError::Interrupted => RunError::Interrupted,
-        error => RunError::Start(error),
-    };
+    let watch = &|| onlooker.stop();
+    let failed = not_begun;
     let mut provenance = Provenance::of(&request.scene, &request.run);
     let drive = request.scene.drive().map_err(RunError::Scene)?;
     let start = assemble(&drive, watch).map_err(failed)?;
     if let Some(accuracy) = request.accuracy {
+        let accuracy = (accuracy, request.accuracy_of);
         let choice = choose(&start, &request.run, accuracy, watch).map_err(failed)?;
         provenance.run = choice.run.clone();
         provenance.choice = Some(choice);
     }
-    let (start, ran_in) = run_in(start, &provenance.run, watch).map_err(failed)?;
+    let (start, ran_in) = run_in(start, &provenance.run, onlooker).map_err(failed)?;
     provenance.ran_in = ran_in;
     let simulation = Simulation::from_assembled(start, &provenance.run).map_err(failed)?;
     Ok(Begun {
@@ -397,7 +433,7 @@ impl Simulation {
     /// # Errors
     /// [`RunError`] when the run cannot begin.
     pub fn of(request: &Request, onlooker: &dyn Onlooker) -> Result<Self, RunError<Infallible>> {
-        begin(request, &|| onlooker.stop()).map(|begun| begun.simulation)
+        begin(request, onlooker).map(|begun| begun.simulation)
     }
 }
 

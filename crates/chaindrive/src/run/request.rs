@@ -1,6 +1,7 @@
 //! What somebody wants to have run.
 
 use super::{Given, Run, Settings};
+use crate::precision::Quantity;
 use crate::scene::SceneError;
 use crate::{Channel, Scene, SimulationError};
 
@@ -15,6 +16,8 @@ pub struct Request {
     pub record: Vec<String>,
     /// Accuracy \[–\] that method, step and onset depth are to be chosen for.
     pub accuracy: Option<f64>,
+    /// What that is one of.
+    pub accuracy_of: Quantity,
     /// Whether the run ends with an estimate of its numerical error.
     pub estimate: bool,
     /// Simulated time \[s\] between two checkpoints, for results that can be carried on; none without.
@@ -54,6 +57,7 @@ impl Request {
             run,
             record: wanted.record,
             accuracy,
+            accuracy_of: wanted.accuracy_of,
             estimate: true,
             checkpoint_every: None,
         })

@@ -7,9 +7,10 @@ use std::str::FromStr;
 use chaindrive_mechanics::{Assembled, Drive, EventKinds};
 use serde::{Deserialize, Serialize};
 
-use super::execute::assemble;
+use super::execute::{Onlooker, assemble};
 use super::patience::LOOK;
 use super::{Run, steady};
+use crate::precision::wording::duration;
 use crate::scene::read_time;
 use crate::{Simulation, SimulationError};
 
@@ -40,12 +41,27 @@ pub enum RunIn {
 pub const MOST_CIRCUITS: u32 = 32;
 
 /// How a run was run in.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RanIn {
     /// Simulated before t = 0 \[s\].
     pub time: f64,
     /// Whether the tensions were found steady by then; nobody looked where the time was given.
     pub is_steady: Option<bool>,
+}
+
+impl fmt::Display for RanIn {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let how = match self.is_steady {
+            None => "as it was asked for; whether it was enough, the means say",
+            Some(true) => "until the tension of every span was steady (MSER)",
+            Some(false) => "the longest that is tried, and not every span was steady (MSER)",
+        };
+        write!(
+            f,
+            "run-in                   {} before t = 0, {how}",
+            duration(self.time)
+        )
+    }
 }
 
 impl fmt::Display for RunIn {
@@ -125,13 +141,14 @@ impl RunIn {
 /// a start like any other: the error of the run counts from there.
 ///
 /// # Errors
-/// As [`Simulation::start`]; a sprocket that does not turn, or is not there; [`SimulationError::Interrupted`] when `stop`
+/// As [`Simulation::start`]; a sprocket that does not turn, or is not there; [`SimulationError::Interrupted`] when the onlooker
 /// says so.
 pub fn run_in(
     start: Assembled,
     run: &Run,
-    stop: &dyn Fn() -> bool,
+    onlooker: &dyn Onlooker,
 ) -> Result<(Assembled, Option<RanIn>), SimulationError> {
+    let stop = &|| onlooker.stop();
     run.check()?;
     let (time, is_steady) = match &run.run_in {
         RunIn::None => return Ok((start, None)),
@@ -140,7 +157,7 @@ pub fn run_in(
             (turns_last(&start, *turns, sprocket.as_deref())?, None)
         }
         RunIn::Auto => {
-            let (time, is_steady) = steady::begins(&start, run, stop)?;
+            let (time, is_steady) = steady::begins(&start, run, onlooker)?;
             (time, Some(is_steady))
         }
     };
@@ -149,7 +166,9 @@ pub fn run_in(
         return Ok((start, ran_in));
     }
     let mut moving = before(&start.drive, time, run, stop)?;
+    onlooker.see_run_in(0.0);
     while !moving.advance(LOOK)? {
+        onlooker.see_run_in(1.0 + moving.time() / time);
         if stop() {
             return Err(SimulationError::Interrupted);
         }
@@ -171,6 +190,19 @@ pub(super) fn before(
         ..run.clone()
     };
     Simulation::from_assembled(start, &silent)
+}
+
+/// Time \[s\] that is simulated before t = 0 at most, that in which a run-in by itself looks for its end included.
+///
+/// # Errors
+/// As [`run_in`].
+pub(crate) fn longest(start: &Assembled, run: &Run) -> Result<f64, SimulationError> {
+    match &run.run_in {
+        RunIn::None => Ok(0.0),
+        RunIn::Time(time) => Ok(*time),
+        RunIn::Turns { turns, sprocket } => turns_last(start, *turns, sprocket.as_deref()),
+        RunIn::Auto => Ok(2.0 * f64::from(MOST_CIRCUITS) * steady::circuit(start)?),
+    }
 }
 
 /// Time \[s\] that a sprocket takes for some turns at the speed that it sets off with.

@@ -3,6 +3,7 @@
 use chaindrive_mechanics::Assembled;
 
 use super::Run;
+use super::execute::Onlooker;
 use super::run_in::{MOST_CIRCUITS, before};
 use crate::SimulationError;
 use crate::record::Batches;
@@ -20,16 +21,10 @@ const SAMPLES: u32 = 256;
 pub(super) fn begins(
     start: &Assembled,
     run: &Run,
-    stop: &dyn Fn() -> bool,
+    onlooker: &dyn Onlooker,
 ) -> Result<(f64, bool), SimulationError> {
-    let circuit = start.slowest_circuit();
-    if !circuit.is_finite() {
-        let reason =
-            "auto: no chain runs around sprockets here, so nothing says when to stop: give a time";
-        return Err(SimulationError::RunIn {
-            reason: reason.to_owned(),
-        });
-    }
+    let stop = &|| onlooker.stop();
+    let circuit = circuit(start)?;
     let longest = f64::from(MOST_CIRCUITS) * circuit;
     let mut moving = before(&start.drive, longest, run, stop)?;
     let mut spans: Vec<Batches> = Vec::new();
@@ -48,6 +43,7 @@ pub(super) fn begins(
                     span.push(*tension);
                 }
             }
+            onlooker.see_run_in(f64::from(taken) / f64::from(MOST_CIRCUITS * SAMPLES));
             if stop() {
                 return Err(SimulationError::Interrupted);
             }
@@ -62,4 +58,17 @@ pub(super) fn begins(
         circuits *= 2;
     }
     Ok((longest, false))
+}
+
+/// Time \[s\] of a circuit of the slowest chain; refused where none runs around sprockets.
+pub(super) fn circuit(start: &Assembled) -> Result<f64, SimulationError> {
+    let circuit = start.slowest_circuit();
+    if circuit.is_finite() {
+        return Ok(circuit);
+    }
+    let reason =
+        "auto: no chain runs around sprockets here, so nothing says when to stop: give a time";
+    Err(SimulationError::RunIn {
+        reason: reason.to_owned(),
+    })
 }

@@ -248,6 +248,10 @@ impl Sink for Kept {
         Ok(())
     }
 
+    fn keeps_samples(&self) -> bool {
+        self.wanted
+    }
+
     fn push(&mut self, simulation: &Simulation) -> Result<(), SimulationError> {
         if self.wanted {
             self.recording.push(simulation.observation());

@@ -1,6 +1,9 @@
 //! The list of reasons not to trust a result without a second look.
 
+use std::f64::consts::TAU;
 use std::fmt;
+
+use chaindrive_mechanics::Fight;
 
 use super::Trust;
 use crate::precision::wording::{duration, percent};
@@ -96,6 +99,60 @@ pub enum Reason {
         /// When those of the link tensions do.
         links: Option<ChannelHorizon>,
     },
+    /// A link bears more than breaks the chain.
+    AboveBreakingLoad {
+        /// Name of the chain; empty where there is one only.
+        chain: String,
+        /// Greatest tension of a link \[N\].
+        tension: f64,
+        /// Least breaking load \[N\].
+        breaking: f64,
+    },
+    /// A chain carries more power than it is rated for.
+    AboveRating {
+        /// The smallest sprocket that takes part.
+        sprocket: String,
+        /// Its mean speed \[rad/s\].
+        speed: f64,
+        /// Mean power \[W\].
+        power: f64,
+        /// Power that the chain is rated for at this speed \[W\].
+        rated: f64,
+    },
+    /// A contact is deeper than its law reaches.
+    DeepContact {
+        /// What touches what.
+        place: String,
+        /// Deepest indentation \[m\].
+        depth: f64,
+        /// Depth to which the law reaches \[m\].
+        reach: f64,
+    },
+    /// An impact is faster than a restitution stands for.
+    FastImpact {
+        /// What strikes what.
+        place: String,
+        /// Closing speed \[m/s\].
+        speed: f64,
+        /// Greatest for which the restitution is meant \[m/s\].
+        limit: f64,
+    },
+    /// Loads put energy in.
+    LoadDrives {
+        /// How much \[J\].
+        work: f64,
+    },
+    /// The samples that are kept are too rare for the mesh frequency.
+    SamplesRare {
+        /// Samples a tooth passing \[–\].
+        samples: f64,
+        /// Time between them \[s\].
+        every: f64,
+        /// Time between them at most, for the mesh to be seen \[s\].
+        needed: f64,
+    },
+    /// Motions that are given cannot both be on one chain.
+    MotionsFight(Fight),
     /// The error of the end of the run is not known.
     NotExamined {
         /// Time over which the run was examined \[s\].
@@ -118,7 +175,9 @@ impl Reason {
             | Self::EnergyMissing { .. }
             | Self::LossesWrong { .. }
             | Self::EfficiencyAboveOne { .. }
-            | Self::SpanRarelyHeld { .. } => Trust::Distrusted,
+            | Self::SpanRarelyHeld { .. }
+            | Self::AboveBreakingLoad { .. }
+            | Self::MotionsFight(_) => Trust::Distrusted,
             Self::LossesUncertain { .. }
             | Self::TooShort { .. }
             | Self::SpanNotHeld { .. }
@@ -129,6 +188,11 @@ impl Reason {
             | Self::SpansNotExamined { .. }
             | Self::AccuracyMissed { .. }
             | Self::HorizonWithinRun { .. }
+            | Self::AboveRating { .. }
+            | Self::DeepContact { .. }
+            | Self::FastImpact { .. }
+            | Self::LoadDrives { .. }
+            | Self::SamplesRare { .. }
             | Self::NotExamined { .. }
             | Self::NotEstimated { .. } => Trust::Caution,
         }
@@ -152,6 +216,13 @@ impl Reason {
             Self::SpansNotExamined { .. } => "spans-not-examined",
             Self::AccuracyMissed { .. } => "accuracy-missed",
             Self::HorizonWithinRun { .. } => "horizon-within-run",
+            Self::AboveBreakingLoad { .. } => "above-breaking-load",
+            Self::AboveRating { .. } => "above-rating",
+            Self::DeepContact { .. } => "deep-contact",
+            Self::FastImpact { .. } => "fast-impact",
+            Self::LoadDrives { .. } => "load-drives",
+            Self::SamplesRare { .. } => "samples-rare",
+            Self::MotionsFight(_) => "motions-fight",
             Self::NotExamined { .. } => "not-examined",
             Self::NotEstimated { .. } => "not-estimated",
         }
@@ -162,6 +233,10 @@ impl Reason {
 const SHARPER: &str = "take a smaller step, or method generalized-alpha for rigid links";
 
 impl fmt::Display for Reason {
+    #[expect(
+        clippy::too_many_lines,
+        reason = "a list: every reason in its own words"
+    )]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotFinite { samples } => {
@@ -239,6 +314,67 @@ impl fmt::Display for Reason {
                     ends.join(", of ")
                 )
             }
+            Self::AboveBreakingLoad {
+                chain,
+                tension,
+                breaking,
+            } => {
+                let of_chain = match chain.as_str() {
+                    "" => String::new(),
+                    name => format!(" of {name}"),
+                };
+                write!(
+                    f,
+                    "a link{of_chain} bears {:.1} kN, and the chain breaks at {:.1} kN: nothing yields in the model",
+                    tension * 1e-3,
+                    breaking * 1e-3
+                )
+            }
+            Self::AboveRating {
+                sprocket,
+                speed,
+                power,
+                rated,
+            } => write!(
+                f,
+                "the chain carries {:.1} kW at {:.0} rpm of {sprocket}, and is rated for {:.1} kW there: it would not last 15 000 hours",
+                power * 1e-3,
+                speed * 60.0 / TAU,
+                rated * 1e-3
+            ),
+            Self::DeepContact {
+                place,
+                depth,
+                reach,
+            } => write!(
+                f,
+                "{place}: indented by {:.1} µm, and the law reaches to {:.1} µm: beyond, its forces are no prediction",
+                depth * 1e6,
+                reach * 1e6
+            ),
+            Self::FastImpact {
+                place,
+                speed,
+                limit,
+            } => write!(
+                f,
+                "{place}: struck at {speed:.1} m/s, and one restitution stands for impacts up to {limit} m/s"
+            ),
+            Self::LoadDrives { work } => write!(
+                f,
+                "loads put {work:.3e} J in: a load resists with the sign against the motion"
+            ),
+            Self::SamplesRare {
+                samples,
+                every,
+                needed,
+            } => write!(
+                f,
+                "{samples:.1} samples a tooth passing, one in {}: spectra show the mesh at another frequency, take one in {} or less",
+                duration(*every),
+                duration(*needed)
+            ),
+            Self::MotionsFight(fight) => fight.fmt(f),
             Self::NotExamined { window, until } => write!(
                 f,
                 "not examined beyond {} of {}",

@@ -10,6 +10,8 @@ fn ledger_with(residual: f64) -> Ledger {
         moved: 100.0,
         supplied: 100.0,
         exchanged: 198.0,
+        by_loads: -98.0,
+        loads_exchanged: 98.0,
         kinetic: 10.0,
         rounding: 1e-9,
     }

@@ -1,8 +1,10 @@
 //! The method and step that an accuracy chooses keep it, by the judgement of runs that had no part in the choice.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
-use chaindrive::precision::{ACCURACY, Choice, Promise, choose};
-use chaindrive::{Assembled, Run, Scene, Simulation, SimulationError, Stepping};
+use chaindrive::precision::{ACCURACY, Choice, Promise, Quantity, choose};
+use chaindrive::{
+    Assembled, Given, Request, Run, Scene, Settings, Simulation, SimulationError, Stepping,
+};
 
 fn start(scene: &str) -> Assembled {
     let drive = Scene::preset(scene).unwrap().drive().unwrap();
@@ -150,4 +152,60 @@ fn a_scene_with_a_step_keeps_it() {
     assert_eq!(wanted("run.method=rk4"), None);
     assert_eq!(wanted("run.tolerance=1e-6"), None);
     assert_eq!(wanted("run.onset_depth=1 um"), None);
+}
+
+/// Energy lost over a window, and what is unaccounted for \[J\].
+fn lost(start: &Assembled, run: &Run, until: f64) -> [f64; 2] {
+    let run = Run {
+        until,
+        every: until,
+        ..run.clone()
+    };
+    let mut simulation = Simulation::from_assembled(start.clone(), &run).unwrap();
+    let first = simulation.next_sample().unwrap().unwrap().energy;
+    let last = simulation.next_sample().unwrap().unwrap().energy;
+    let residual = simulation.energy_residual().abs();
+    [last.dissipated() - first.dissipated(), residual]
+}
+
+/// The losses of a run by the method chosen are those of one sixteen times as fine, and its ledger closes as well.
+#[test]
+fn losses_are_kept_where_they_are_asked_for() {
+    let start = start("industrial_16b");
+    let of_losses = |accuracy: f64| {
+        let run = Run {
+            until: 1.0,
+            ..Run::default()
+        };
+        choose(&start, &run, (accuracy, Quantity::Losses), &|| false).unwrap()
+    };
+    let choice = of_losses(0.02);
+    assert!(choice.kept && choice.promise == Promise::Losses, "{choice}");
+    assert!(
+        choice.reason().contains("that keeps the losses within"),
+        "{choice}"
+    );
+    let fine = Run {
+        step: choice.run.step.map(|step| step / 16.0),
+        ..choice.run.clone()
+    };
+    let [found, residual] = lost(&start, &choice.run, choice.window);
+    let [exact, _] = lost(&start, &fine, choice.window);
+    assert!((found / exact - 1.0).abs() < 0.02, "{found} J, {exact} J");
+    assert!(residual < 0.02 * exact, "{residual} J of {exact} J");
+    let never = of_losses(1e-12);
+    assert!(!never.kept && never.error < 0.02, "{never}");
+}
+
+#[test]
+fn what_loses_nothing_has_no_losses_to_keep() {
+    let ring = Scene::preset("spinning_ring").unwrap();
+    let ring = ring.replace("run.accuracy_of", "losses").unwrap();
+    let settings = Settings::default().with("accuracy", Given::Number(0.01));
+    let request = Request::new(&ring, &settings).unwrap();
+    assert_eq!(request.accuracy_of, Quantity::Losses);
+    let start = ring.drive().unwrap().assemble().unwrap();
+    let accuracy = (0.01, request.accuracy_of);
+    let choice = choose(&start, &request.run, accuracy, &|| false).unwrap();
+    assert_eq!(choice.promise, Promise::Nothing);
 }

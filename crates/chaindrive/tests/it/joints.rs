@@ -3,11 +3,11 @@
 
 use std::f64::consts::PI;
 
-use chaindrive::{Flow, Scene};
+use chaindrive::{Channel, Flow, Run, Scene, Simulation};
 use chaindrive_contact::Law;
 use chaindrive_mechanics::{ChainModel, Joint, Surface};
 
-use crate::dynamics::{pairs, run};
+use crate::dynamics::{self, pairs};
 
 /// Links of the strand, its tension \[N\], and μ r with the pin of 56B-1 \[m\].
 const LINKS: u32 = 31;
@@ -53,7 +53,7 @@ fn strand(joint: &str) -> String {
 /// Greatest amplitudes of the first mode, one a half cycle, and the loss in the joints \[J\].
 fn swings(scene: &str) -> (Vec<f64>, f64) {
     let (mut peaks, mut last, mut lost) = (Vec::new(), [0.0_f64; 2], 0.0);
-    run(scene, |sample| {
+    dynamics::run(scene, |sample| {
         let parts = sample.roller_y.iter().enumerate();
         let sum: f64 = parts
             .map(|(i, y)| y * (PI * i as f64 / f64::from(LINKS)).sin())
@@ -220,4 +220,51 @@ fn links_with_play_have_the_stiffness_of_the_catalogue() {
     let rigid = surface("\"0.1\"").law;
     assert_eq!(rigid.series, None);
     assert!(under(&rigid, 500.0) > 450e6);
+}
+
+/// A free roller is light: what the tooth presses on it, it presses on its bush, which lies as deep in it as its law says.
+#[test]
+fn bushes_in_free_rollers_are_told_of() {
+    let lumped = Scene::preset("bicycle").unwrap();
+    let free = lumped
+        .replace("chain.rollers", "free")
+        .and_then(|scene| scene.replace("chain.roller", "{ clearance = '50 µm' }"))
+        .unwrap();
+    let run = Run {
+        until: 1e-4,
+        every: 1e-4,
+        ..Run::default()
+    };
+    let simulation = Simulation::start(&free.drive().unwrap(), &run).unwrap();
+    let mut started = simulation.clone();
+    let sample = started.next_sample().unwrap().unwrap();
+    let most = sample.contact_force.iter().copied().fold(0.0, f64::max);
+    assert!(most > 20.0, "{most} N");
+    let mut pressed = 0;
+    for joint in 0..simulation.system().joints() {
+        let (force, depth) = (sample.bush_force[joint], sample.bush_depth[joint]);
+        let offset = sample.bush_offset_x[joint].hypot(sample.bush_offset_y[joint]);
+        let by_parts = sample.bush_force_x[joint].hypot(sample.bush_force_y[joint]);
+        assert!((by_parts - force).abs() <= 1e-12 * force);
+        assert_eq!(depth > 0.0, force > 0.0, "{joint}");
+        if sample.contact_force[joint] > 0.2 * most {
+            pressed += 1;
+            let by_tooth = sample.contact_force[joint];
+            assert!(
+                (force / by_tooth - 1.0).abs() < 0.05,
+                "{joint}: {force} N, {by_tooth} N"
+            );
+            // |e| = c + δ
+            assert!(
+                (offset - 50e-6 - depth).abs() < 1e-12,
+                "{joint}: {offset} m"
+            );
+        }
+    }
+    assert!(pressed > 5, "{pressed}");
+    assert!(Channel::BushForce.is_of(simulation.system()));
+    let lumped = Simulation::start(&lumped.drive().unwrap(), &run).unwrap();
+    assert!(!Channel::BushForce.is_of(lumped.system()));
+    let refused = Channel::chosen(&["bush_depth"], lumped.system()).unwrap_err();
+    assert!(refused.to_string().contains("bush_depth"), "{refused}");
 }

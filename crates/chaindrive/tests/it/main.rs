@@ -4,6 +4,7 @@ mod architecture;
 mod choice;
 mod choice_statistics;
 mod describe;
+mod duty;
 mod dynamics;
 mod energy;
 mod horizons;

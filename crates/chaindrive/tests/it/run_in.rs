@@ -1,11 +1,13 @@
 //! Before t = 0: a run-in by time, by turns, and until the motion is steady.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
+use std::cell::RefCell;
 use std::f64::consts::PI;
 
+use chaindrive::record::{Existing, InStore, Stopped};
 use chaindrive::{
-    Assembled, Channel, Given, MOST_CIRCUITS, Memory, RanIn, Reason, Report, Request, Run, RunIn,
-    Scene, Settings, Simulation, SimulationError, execute, run_in,
+    Assembled, Channel, Description, Given, MOST_CIRCUITS, Memory, Onlooker, RanIn, Reason, Report,
+    Request, Run, RunError, RunIn, Scene, Settings, Simulation, SimulationError, execute, run_in,
 };
 
 fn preset(name: &str, changes: &[(&str, &str)]) -> Scene {
@@ -250,4 +252,119 @@ fn the_resolved_scene_is_run_in_alike() {
         values.map(|value| value.to_bits()).collect::<Vec<_>>()
     });
     assert_eq!(first, second);
+}
+
+/// Sees how far the run-in is, and stops the run when it has heard of it so often.
+#[derive(Default)]
+struct Watching {
+    seen: RefCell<Vec<f64>>,
+    patience: Option<usize>,
+}
+
+impl Onlooker for Watching {
+    fn stop(&self) -> bool {
+        self.patience
+            .is_some_and(|patience| self.seen.borrow().len() >= patience)
+    }
+
+    fn see_run_in(&self, share: f64) {
+        self.seen.borrow_mut().push(share);
+    }
+}
+
+/// Defect 10: whoever carried a run on waited for its run-in again.
+#[test]
+fn a_run_that_is_carried_on_is_not_run_in_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.zarr");
+    let scene = preset("marine_two_sprockets", &[]);
+    let wanted = |until: f64| {
+        Settings::default()
+            .with("until", Given::Number(until))
+            .with("every", Given::Number(1e-3))
+            .with("method", Given::Text("verlet".to_owned()))
+            .with("run_in", Given::Number(0.02))
+    };
+    let request = |until| Request::new(&scene, &wanted(until)).unwrap();
+    let every = Given::Number(5e-3);
+    let first = request(0.01).with_checkpoints(&every).unwrap();
+    let watching = Watching::default();
+    let mut store = InStore::new(path.clone(), Existing::Keep);
+    execute(&first, &mut store, &watching).unwrap();
+    let seen = watching.seen.take();
+    assert!(seen.iter().all(|share| (0.0..=1.0).contains(share)) && !seen.is_empty());
+
+    let stopped = Stopped::open(&path, Some(&Given::Number(0.02))).unwrap();
+    let resumed = stopped.resume(&watching).unwrap();
+    assert!(watching.seen.borrow().is_empty(), "run in again");
+    let whole = execute(&request(0.02), &mut Memory::default(), &|| false).unwrap();
+    let last = |report: &Report| report.simulation.observation().link_tension.clone();
+    assert_eq!(last(&resumed), last(&whole));
+    // The estimate begins where the record does, too.
+    for name in ["run_in", "error_span_tension", "verdict_note"] {
+        assert_eq!(resumed.attributes[name], whole.attributes[name], "{name}");
+    }
+    let summary = resumed.attributes["summary"].as_str().unwrap();
+    assert!(
+        summary.contains("run-in                   20 ms before t = 0"),
+        "{summary}"
+    );
+}
+
+/// Both while a run-in looks for its end and while it is carried out.
+#[test]
+fn a_run_in_can_be_stopped() {
+    for wanted in ["auto", "1000 s"] {
+        let settings = Settings::default().with("run_in", Given::Text(wanted.to_owned()));
+        let scene = preset("marine_two_sprockets", &[]);
+        let request = Request::new(&scene, &settings).unwrap().with_default_step();
+        let watching = Watching {
+            patience: Some(2),
+            ..Watching::default()
+        };
+        let stopped = execute(&request, &mut Memory::default(), &watching);
+        assert!(matches!(stopped, Err(RunError::Interrupted)), "{wanted}");
+    }
+}
+
+/// The criterion stands with the time, and how it ended.
+#[test]
+fn the_summary_tells_of_the_run_in() {
+    let told = |is_steady| {
+        RanIn {
+            time: 0.5,
+            is_steady,
+        }
+        .to_string()
+    };
+    assert!(told(None).ends_with("as it was asked for; whether it was enough, the means say"));
+    assert!(told(Some(true)).ends_with("until the tension of every span was steady (MSER)"));
+    assert!(told(Some(false)).contains("not every span was steady"));
+}
+
+/// A run-in of 1e9 s would never end: what it costs stands in the description.
+#[test]
+fn what_a_run_in_costs_is_described() {
+    let drive = preset("marine_two_sprockets", &[]).drive().unwrap();
+    let described = |run_in: RunIn| {
+        let run = Run {
+            run_in,
+            ..Run::default()
+        };
+        Description::of(&drive, &run).unwrap()
+    };
+    let endless = described(RunIn::Time(1e9));
+    assert!(endless.cost.run_in_time > 1e6, "{:?}", endless.cost);
+    assert!(
+        endless
+            .to_string()
+            .contains("at most 1000000000 s before the record")
+    );
+    // 112 links at 100 teeth a second, 32 circuits twice.
+    let by_itself = described(RunIn::Auto).cost.run_in;
+    assert!(
+        (by_itself / (64.0 * 1.12) - 1.0).abs() < 1e-9,
+        "{by_itself}"
+    );
+    assert!(described(RunIn::None).cost.run_in.abs() < f64::MIN_POSITIVE);
 }

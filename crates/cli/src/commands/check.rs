@@ -1,6 +1,6 @@
 //! `chaindrive check`: are these scenes sound?
 
-use chaindrive::assemble;
+use chaindrive::{Run, assemble};
 use clap::Args;
 
 use crate::failure::Failure;
@@ -43,6 +43,10 @@ fn sound(name: &str, interrupted: &dyn Fn() -> bool) -> Result<String, Failure> 
     let assembled = Failure::or_interrupted(assembled, scene.name())?;
     for warning in &assembled.warnings {
         eprintln!("warning: {name}: {warning}");
+    }
+    let run = Run::suggested(&scene.run_defaults());
+    for fight in drive.fights(0.0, run.until) {
+        eprintln!("warning: {name}: {fight}");
     }
     let links = assembled.system.links();
     let chain = match drive.chains.len() {

@@ -30,13 +30,14 @@ pub(crate) fn describe(
         scene,
         run,
         accuracy,
+        accuracy_of,
         ..
     } = arguments.run.apply(&arguments.scene.load(interrupted)?)?;
     let drive = scene.drive()?;
     // What a run would do, it would do by the method that it would choose.
     let choice = accuracy.map(|accuracy| {
         let start = assemble(&drive, interrupted)?;
-        choose(&start, &run, accuracy, interrupted)
+        choose(&start, &run, (accuracy, accuracy_of), interrupted)
     });
     let choice = Failure::or_interrupted(choice.transpose(), scene.name())?;
     let run = choice.as_ref().map_or(run, |choice| choice.run.clone());

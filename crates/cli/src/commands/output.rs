@@ -85,6 +85,10 @@ impl Sink for Output {
         Ok(())
     }
 
+    fn keeps_samples(&self) -> bool {
+        !matches!(self, Self::Nowhere)
+    }
+
     fn push(&mut self, simulation: &Simulation) -> Result<(), Failure> {
         match self {
             Self::Nowhere | Self::NewCsv(..) => Ok(()),

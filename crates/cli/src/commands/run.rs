@@ -150,12 +150,17 @@ impl Onlooker for Terminal<'_> {
     fn see(&self, simulation: &Simulation) {
         self.progress.borrow_mut().show(simulation);
     }
+
+    fn see_run_in(&self, share: f64) {
+        self.progress.borrow_mut().run_in(share);
+    }
 }
 
 /// The account that ends the run.
 fn told(report: &Report) -> String {
     let (choice, judgement) = (report.choice.as_ref(), report.judgement.as_ref());
-    let figures = figures(&report.summary, &report.simulation, choice, judgement);
+    let (summary, simulation) = (&report.summary, &report.simulation);
+    let figures = figures(summary, simulation, report.ran_in, choice, judgement);
     format!("{}\n{}{figures}", report.verdict, at_rest(report))
 }
 

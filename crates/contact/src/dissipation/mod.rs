@@ -49,6 +49,13 @@ use serde::{Deserialize, Serialize};
 use crate::ParameterError;
 use crate::error::no_parameters;
 
+/// Closing speed \[m/s\] up to which a restitution that does not depend on the speed is reckoned with.
+///
+/// *Assumed*: steel that strikes steel begins to yield at some tenths of a metre a second, and its restitution then falls by the fourth
+/// root of the speed (K. L. Johnson, *Contact Mechanics*, 1985, § 11.5); over a decade that is a factor of two, which no single number
+/// stands for.
+pub const FASTEST_IMPACT: f64 = 3.0;
+
 /// Allowed restitutions where the factor is infinite at zero.
 const POSITIVE: &str =
     "in (0, 1]: at 0 the factor is infinite, take 0.02 for an almost plastic impact";

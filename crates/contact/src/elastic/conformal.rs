@@ -75,6 +75,11 @@ impl Conformal {
         }
     }
 
+    /// Depth \[m\] at which the fit ends.
+    pub(super) fn reach(self) -> f64 {
+        END_DEPTH * self.clearance
+    }
+
     /// π E* L \[N/m\].
     #[inline]
     fn scale(self) -> f64 {

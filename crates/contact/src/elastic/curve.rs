@@ -34,6 +34,15 @@ impl Curve {
         }
     }
 
+    /// Depth \[m\] from which on the law is no more than its own tangent, where there is one.
+    pub(super) fn reach(self) -> Option<f64> {
+        match self {
+            Self::Linear(_) | Self::Hertz(_) | Self::Power(_) => None,
+            Self::Logarithmic(curve) => Some(curve.reach()),
+            Self::Plain(law) => law.reach(),
+        }
+    }
+
     /// Force g \[N\] and stiffness dg/dδ \[N/m\] at the penetration δ \[m\].
     #[inline]
     pub(crate) fn pair(self, penetration: f64) -> (f64, f64) {

@@ -66,6 +66,11 @@ impl Logarithmic {
         }
     }
 
+    /// Depth \[m\] from which on it is its own tangent.
+    pub(super) fn reach(self) -> f64 {
+        self.knee
+    }
+
     /// u = δ/p below the knee.
     #[inline]
     fn ratio(self, penetration: f64) -> f64 {

@@ -139,6 +139,19 @@ impl ElasticLaw for Elastic {
 }
 
 impl Elastic {
+    /// Depth \[m\] from which on a law that is asked as it is goes on as its own tangent.
+    fn reach(&self) -> Option<f64> {
+        match self {
+            Self::Conformal(law) => Some(law.reach()),
+            Self::Power(_)
+            | Self::Johnson(_)
+            | Self::Radzimovsky(_)
+            | Self::Esdu78035(_)
+            | Self::DubowskyFreudenstein(_)
+            | Self::Cylindrical(_) => None,
+        }
+    }
+
     /// The law with its constants worked out.
     pub(crate) fn curve(&self) -> Curve {
         match self {

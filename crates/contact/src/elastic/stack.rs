@@ -44,6 +44,13 @@ impl Stack {
         (self.compliance <= 0.0).then_some(self.curve)
     }
 
+    /// Depth \[m\] from which on the law is no more than its own tangent, what lies behind included.
+    pub(crate) fn reach(self) -> Option<f64> {
+        // δ = x + g(x)/k_s
+        let whole = |x: f64| x + self.curve.pair(x).0 * self.compliance;
+        self.curve.reach().map(whole)
+    }
+
     /// The law of a power, and the stiffness k_s behind it \[N/m\].
     pub(crate) fn power_and_series(self) -> Option<(Power, f64)> {
         let power = match self.curve {

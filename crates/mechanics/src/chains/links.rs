@@ -32,6 +32,7 @@ mod slider_crank;
 #[cfg(test)]
 mod tests;
 
+use chaindrive_contact::Prepared;
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
 use nalgebra::Vector3;
@@ -161,7 +162,8 @@ pub(crate) struct JointState {
     /// All closed contacts, but those of pins in bushes.
     pub(crate) elements: Vec<Element>,
     pub(crate) mounts: Vec<Mount>,
-    pub(crate) tally: Tally,
+    /// Of pins in bushes with clearance, and of bushes in free rollers.
+    pub(crate) tallies: [Tally; 2],
     // Work space, filled anew before it is read.
     #[serde(skip)]
     pub(crate) equations: implicit::Equations,
@@ -199,7 +201,7 @@ impl Linkage {
         self.pose_links(at, &mut joint_state.posture);
         joint_state.elements.clear();
         joint_state.memory.time = at.t;
-        joint_state.tally = self.joint_forces(at, rates, joint_state);
+        joint_state.tallies = [self.joint_forces(at, rates, joint_state), Tally::new()];
         self.body_forces(around.bodies.gravity, joint_state);
         self.roller_forces(at, rates, joint_state);
         self.end_loads(rates, joint_state);
@@ -254,11 +256,7 @@ impl Linkage {
         }
         rates[Flow::JointLoss as usize] += tally.normal_loss;
         rates[Flow::ArticulationLoss as usize] += tally.friction_loss;
-        Tally {
-            normal_loss: 0.0,
-            friction_loss: 0.0,
-            ..tally
-        }
+        tally
     }
 
     /// Weight of all bodies, and what the pins do to the links.
@@ -308,9 +306,9 @@ impl Linkage {
         }
         joint_state.memory.bushes = bushes;
         let tally = Tally::of(&tally);
-        rates[Flow::JointLoss as usize] += tally.normal_loss;
-        rates[Flow::FrictionLoss as usize] += tally.friction_loss;
-        joint_state.tally.began(&tally);
+        rates[Flow::RollerLoss as usize] += tally.normal_loss;
+        rates[Flow::RollerFriction as usize] += tally.friction_loss;
+        joint_state.tallies[1] = tally;
     }
 
     /// Forces that pull at the ends of a strand.
@@ -324,6 +322,16 @@ impl Linkage {
             joint_state.forces[link] += Vector3::new(force.x, force.y, cross(tip.arm, *force));
             rates[Flow::DriveTorque as usize] += force.dot(&tip.velocity);
         }
+    }
+
+    /// Laws of pins in bushes with clearance, and of bushes in free rollers.
+    pub(crate) fn bearing_laws(&self) -> [Option<Prepared>; 2] {
+        let pins = match &self.joining {
+            Joining::Hinges(_) => None,
+            Joining::Clearance(bearing) => Some(bearing.law),
+        };
+        let free = self.free_rollers.as_ref();
+        [pins, free.map(|free| free.bearing.law)]
     }
 
     /// Elastic energy of the joints \[J\].

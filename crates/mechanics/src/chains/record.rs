@@ -6,7 +6,7 @@ use super::Way;
 use super::joints::Resistance;
 use super::links::{Impulses, JointState};
 use super::particles::Turning;
-use crate::contact::{ContactMemory, Frame, Touch, Wrench};
+use crate::contact::{Begun, ContactMemory, Frame, Touch, Wrench};
 use crate::system::BodyContacts;
 
 /// What the bodies that a chain touches feel of it, by contact.
@@ -68,10 +68,16 @@ impl Record {
             rail_wrenches,
             ..
         } = &self.loads;
-        let joints = &self.joint_state.tally;
+        let joints = self.joint_state.tallies.iter();
         let wrenches = wheel_wrenches.iter().chain(rail_wrenches);
         wrenches
             .map(|wrench| (wrench.first_depth, wrench.first_share))
-            .chain([(joints.first_depth, joints.first_share)])
+            .chain(joints.map(|tally| (tally.first_depth, tally.first_share)))
+    }
+
+    /// What began in the joints, and how deep they are: pins in bushes, bushes in rollers.
+    pub(crate) fn joints(&self) -> [(Begun, f64); 2] {
+        let tallies = &self.joint_state.tallies;
+        [&tallies[0], &tallies[1]].map(|tally| (tally.begun, tally.depth))
     }
 }

@@ -126,10 +126,7 @@ impl SurfaceLaw {
         Self {
             elastic: LaneElastic::new(&surface.law),
             flank: flank.map(|flank| LaneFlank {
-                elastic: LaneElastic::new(&Law {
-                    elastic: flank.elastic,
-                    ..surface.law
-                }),
+                elastic: LaneElastic::new(&flank.law(surface)),
                 scale: 0.5 / flank.width,
             }),
             factor,
@@ -173,7 +170,7 @@ impl SurfaceLaw {
             let onset = memory.onset(w, lane, depth, closing);
             let inverse = onset.speed.max(w.splat(self.floor)).recip();
             inverse_onset = fresh.select(inverse, inverse_onset);
-            tally.began(w, fresh, depth, onset.share);
+            tally.began(w, fresh, depth, &onset, self.floor);
         }
         memory.keep_onset(lane, inverse_onset);
 

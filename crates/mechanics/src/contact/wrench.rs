@@ -3,6 +3,7 @@
 use pulp::Simd;
 use serde::{Deserialize, Serialize};
 
+use super::memory::Onset;
 use crate::lanes::{Lane, Mask, Wide};
 
 /// What the rollers do to a body, and what the step control wants to know.
@@ -24,6 +25,19 @@ pub(crate) struct Wrench {
     pub(crate) first_depth: f64,
     /// Smallest share of the step after which such a contact began.
     pub(crate) first_share: f64,
+    /// What began in this step.
+    pub(crate) begun: Begun,
+}
+
+/// Contacts that began in a step.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Begun {
+    /// Their number.
+    pub(crate) count: f64,
+    /// Those that closed slower than the floor of the law.
+    pub(crate) gentle: f64,
+    /// Greatest closing speed at touch \[m/s\].
+    pub(crate) fastest: f64,
 }
 
 /// What contacts cost, and how they began, lane by lane.
@@ -38,6 +52,9 @@ pub(crate) struct LaneTally<S: Simd> {
     fresh: bool,
     first_depth: Lane<S>,
     first_share: Lane<S>,
+    count: Lane<S>,
+    gentle: Lane<S>,
+    fastest: Lane<S>,
 }
 
 impl<S: Simd> LaneTally<S> {
@@ -51,16 +68,51 @@ impl<S: Simd> LaneTally<S> {
             fresh: false,
             first_depth: zero,
             first_share: w.splat(1.0),
+            count: zero,
+            gentle: zero,
+            fastest: zero,
         }
     }
 
-    /// Takes note of contacts that began after some share of the step.
+    /// Takes note of contacts that began after some share of the step, where the law has this floor of the speed at touch \[m/s\].
     #[inline(always)]
-    pub(super) fn began(&mut self, w: Wide<S>, fresh: Mask<S>, depth: Lane<S>, share: Lane<S>) {
+    pub(super) fn began(
+        &mut self,
+        w: Wide<S>,
+        fresh: Mask<S>,
+        depth: Lane<S>,
+        onset: &Onset<S>,
+        floor: f64,
+    ) {
+        let (zero, one) = (w.splat(0.0), w.splat(1.0));
         self.fresh = true;
-        let fresh_depth = fresh.select(depth, w.splat(0.0));
+        let fresh_depth = fresh.select(depth, zero);
         self.first_depth = self.first_depth.max(fresh_depth);
-        self.first_share = self.first_share.min(fresh.select(share, w.splat(1.0)));
+        self.first_share = self.first_share.min(fresh.select(onset.share, one));
+        let gentle = w.splat(floor).greater(onset.speed);
+        self.count += fresh.select(one, zero);
+        self.gentle += (fresh & gentle).select(one, zero);
+        self.fastest = self.fastest.max(fresh.select(onset.speed, zero));
+    }
+
+    /// Deepest penetration \[m\].
+    #[inline(always)]
+    pub(crate) fn deepest(&self) -> f64 {
+        self.depth.largest()
+    }
+
+    /// What began.
+    #[inline(always)]
+    pub(crate) fn begun(&self) -> Begun {
+        if self.fresh {
+            Begun {
+                count: self.count.sum(),
+                gentle: self.gentle.sum(),
+                fastest: self.fastest.largest(),
+            }
+        } else {
+            Begun::default()
+        }
     }
 
     /// Deepest penetration \[m\] of the contacts that began, and the smallest share of the step that had passed then.
@@ -88,6 +140,7 @@ impl<S: Simd> LaneTally<S> {
             depth: self.depth.largest(),
             first_depth,
             first_share,
+            begun: self.begun(),
             ..wrench
         }
     }

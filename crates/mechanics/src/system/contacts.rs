@@ -5,6 +5,7 @@ use chaindrive_integrate::Moment;
 use super::Bodies;
 use super::bodies::Anchor;
 use crate::chains::{Loads, Pose, Way};
+use crate::contact::Impacts;
 use crate::contact::{Contacts, Frame, Places, PlateContact};
 use crate::drive::Surface;
 
@@ -25,6 +26,8 @@ pub(crate) struct OnWheel {
     pub(crate) contacts: Contacts,
     /// An angle of the sprocket with known cosine and sine, renewed with the windows.
     pub(crate) anchor: Anchor,
+    /// What has touched since the start.
+    pub(crate) impacts: Impacts,
 }
 
 /// Contacts with one guide.
@@ -35,6 +38,8 @@ pub(crate) struct OnRail {
     /// Whether no chain before this one touches it.
     pub(crate) first: bool,
     pub(crate) contact: RailContact,
+    /// What has touched since the start.
+    pub(crate) impacts: Impacts,
 }
 
 /// What of the chain touches a guide.
@@ -149,6 +154,12 @@ impl BodyContacts {
 
     /// Takes over what was found at an accepted state.
     pub(crate) fn commit(&mut self, t: f64, loads: &mut Loads) {
+        for (on, wrench) in self.teeth.iter_mut().zip(&loads.wheel_wrenches) {
+            on.impacts.note(&wrench.begun, wrench.depth);
+        }
+        for (on, wrench) in self.rails.iter_mut().zip(&loads.rail_wrenches) {
+            on.impacts.note(&wrench.begun, wrench.depth);
+        }
         for (on, touch) in self.teeth.iter_mut().zip(&mut loads.teeth) {
             std::mem::swap(&mut on.contacts.memory, touch);
             on.contacts.accepted = t;

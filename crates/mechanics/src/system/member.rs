@@ -6,6 +6,7 @@ use chaindrive_integrate::Moment;
 
 use super::{Bodies, BodyContacts, Wheel};
 use crate::chains::{Chain, Loads, Record, Surroundings};
+use crate::contact::Impacts;
 
 /// One chain and what it touches.
 #[derive(Clone, Debug)]
@@ -24,6 +25,8 @@ pub(crate) struct Member {
     pub(super) renew: (f64, u32),
     /// ω² and damping rate of the stiffest mode.
     pub(crate) rates: [f64; 2],
+    /// What has touched since the start: pins in bushes, bushes in rollers.
+    pub(crate) joint_impacts: [Impacts; 2],
 }
 
 /// Accepted steps after which the windows are renewed at the latest.
@@ -48,6 +51,7 @@ impl Member {
             route,
             renew: (0.0, 0),
             rates: [0.0; 2],
+            joint_impacts: Default::default(),
         }
     }
 
@@ -90,6 +94,9 @@ impl Member {
     /// Takes over what was found at an accepted state.
     pub(crate) fn commit(&mut self, t: f64, record: &mut Record, bodies: &Bodies) {
         self.contacts.commit(t, &mut record.loads);
+        for (impacts, (begun, depth)) in self.joint_impacts.iter_mut().zip(record.joints()) {
+            impacts.note(&begun, depth);
+        }
         // Stiffness changes little from one step to the next, and the bound has a reserve.
         if self.renew.1.is_multiple_of(STEPS_PER_SCALE) {
             self.rates = self.rates_at(bodies, record);
@@ -132,5 +139,19 @@ impl Member {
             at.t + 0.5 * margin / speed.max(f64::MIN_POSITIVE),
             STEPS_PER_WINDOW,
         );
+    }
+
+    /// What is counted of the chain, in one order.
+    pub(crate) fn impacts(&self) -> impl Iterator<Item = &Impacts> {
+        let teeth = self.contacts.teeth.iter().map(|on| &on.impacts);
+        let rails = self.contacts.rails.iter().map(|on| &on.impacts);
+        teeth.chain(rails).chain(&self.joint_impacts)
+    }
+
+    /// The same, to change it.
+    pub(crate) fn impacts_mut(&mut self) -> impl Iterator<Item = &mut Impacts> {
+        let teeth = self.contacts.teeth.iter_mut().map(|on| &mut on.impacts);
+        let rails = self.contacts.rails.iter_mut().map(|on| &mut on.impacts);
+        teeth.chain(rails).chain(&mut self.joint_impacts)
     }
 }

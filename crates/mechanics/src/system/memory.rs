@@ -11,6 +11,7 @@ use super::inputs::{Inputs, OnwardCentre};
 use super::{BodyContacts, Member, RailContact, Record, System};
 use crate::MemoryError;
 use crate::chains::ChainMemory;
+use crate::contact::Impacts;
 use crate::contact::{PlateMemory, Windows};
 use crate::events::EventLog;
 
@@ -31,6 +32,7 @@ struct MemberMemory {
     rails: Vec<RailMemory>,
     renew: (f64, u32),
     rates: [f64; 2],
+    impacts: Vec<Impacts>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -112,6 +114,7 @@ impl Member {
             rails: rails.collect(),
             renew: self.renew,
             rates: self.rates,
+            impacts: self.impacts().copied().collect(),
         }
     }
 
@@ -141,6 +144,11 @@ impl Member {
         }
         self.renew = memory.renew;
         self.rates = memory.rates;
+        let known = memory.impacts.len();
+        MemoryError::unless("places of impacts", known, self.impacts().count())?;
+        for (own, then) in self.impacts_mut().zip(memory.impacts) {
+            *own = then;
+        }
         Ok(())
     }
 }

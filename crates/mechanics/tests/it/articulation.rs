@@ -10,7 +10,7 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State};
 use chaindrive_mechanics::{
     Articulation, Assembled, Chain, ChainModel, Clearance, Drive, End, Ends, Energy, Flow, Joint,
-    Layout, LinkBody, Observation, Parts, PlacedChain, RigidLinks, RollerModel, Surface,
+    Layout, LinkBody, Observation, Parts, PlacedChain, RigidLinks, RollerModel, Strength, Surface,
 };
 
 /// A chain of a marine engine, 56B: pitch \[m\], mass of a link \[kg\], stiffness \[N/m\].
@@ -81,6 +81,7 @@ fn chain(
         masses: vec![MASS; rollers],
         roller_diameter: 0.05,
         plate_height: 0.08,
+        strength: Strength::default(),
         articulation,
         ends,
         model: ChainModel::Particles,

@@ -7,7 +7,7 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State};
 use chaindrive_mechanics::{
     Assembled, Chain, ChainModel, Clearance, Drive, End, Ends, Joint, Layout, LinkBody,
-    Observation, Parts, PlacedChain, RigidLinks, RollerModel, Surface,
+    Observation, Parts, PlacedChain, RigidLinks, RollerModel, Strength, Surface,
 };
 
 const PITCH: f64 = 0.0127;
@@ -71,6 +71,7 @@ fn alone(
         masses,
         roller_diameter: 7.75e-3,
         plate_height: 9.6e-3,
+        strength: Strength::default(),
         articulation: None,
         ends,
         model,

@@ -7,8 +7,8 @@ use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Weights};
 use chaindrive_mechanics::{
     Adjust, Assembled, Chain, ChainModel, Clearance, Coupling, Drive, Ends, Fit, GearPair, Joint,
     Layout, LinkBody, Motion, Observation, Parts, PlacedChain, PretensionAt, RigidLinks,
-    RollerModel, Rotation, Shaft, SpanStart, Sprocket, Stop, Support, Surface, System, Tighten,
-    Torque,
+    RollerModel, Rotation, Shaft, SpanStart, Sprocket, Stop, Strength, Support, Surface, System,
+    Tighten, Torque,
 };
 
 const PITCH: f64 = 0.0127;
@@ -59,6 +59,7 @@ pub(crate) fn chain(links: usize, stops: [usize; 2]) -> PlacedChain {
             masses: vec![3.81e-3; links],
             roller_diameter: ROLLER,
             plate_height: 9.6e-3,
+            strength: Strength::default(),
             articulation: None,
             ends: Ends::Closed,
             model: ChainModel::Particles,

@@ -1,10 +1,11 @@
 //! Chains of the catalogue: what a scene leaves out is taken from there.
 
+use chaindrive_mechanics::Rating;
 use serde::Serialize;
 
 use super::Findings;
 use crate::catalogue::{CatalogueChain, Number, Status, catalogue};
-use crate::scene::quantity::{Inertia, Length, Mass, Stiffness};
+use crate::scene::quantity::{Force, Inertia, Length, Mass, Stiffness};
 use crate::scene::schema::{self, ChainModel, Rollers};
 use crate::scene::suggest::one_of;
 
@@ -24,6 +25,28 @@ pub(super) fn named(name: &str, findings: &mut Findings<'_>) -> Option<&'static 
 pub(super) fn roller_length(chain: &CatalogueChain) -> Option<f64> {
     chain.number(Number::InnerWidth)
 }
+
+/// The power that a chain is rated for, where there is a formula for it and the pitch of the scene is its own.
+pub(super) fn rating(chain: &CatalogueChain, pitch: f64) -> Option<Rating> {
+    let own = chain.number(Number::Pitch)?;
+    let is_own = (pitch - own).abs() <= SAME_PITCH * own;
+    let [plates, rollers] = match chain.ansi.as_str() {
+        "25" | "35" => [0.004, 29.0],
+        "41" => [0.0022, 3.4],
+        "40" | "50" | "60" | "80" | "100" | "120" | "140" | "160" | "180" | "200" | "240" => {
+            [0.004, 17.0]
+        }
+        _ => return None,
+    };
+    is_own.then_some(Rating {
+        pitch,
+        plates,
+        rollers,
+    })
+}
+
+/// Difference of pitches, relative, up to which they are the same.
+const SAME_PITCH: f64 = 1e-3;
 
 /// The chain as written, with the values of the catalogue where it has none.
 pub(super) fn completed(
@@ -45,6 +68,12 @@ pub(super) fn completed(
         "plate_height",
         Number::PlateHeight,
         Length,
+    );
+    take.number(
+        &mut text.breaking_load,
+        "breaking_load",
+        Number::BreakingLoad,
+        Force,
     );
     if text.model == ChainModel::Particles {
         if text.masses.is_none() {

@@ -1,6 +1,6 @@
 //! The chain: completed from the catalogue, then lengths, masses, stiffness and damping, link by link.
 
-use chaindrive_mechanics::{Chain, ChainModel, End, Ends};
+use chaindrive_mechanics::{Chain, ChainModel, End, Ends, Strength};
 
 use super::articulation::{self, Joints};
 use super::chains::Described;
@@ -112,22 +112,7 @@ pub(super) fn resolve(
     let mean = stiffness.iter().sum::<f64>() / stiffness.len() as f64;
     let joints = Joints::new(scene, text, known.then_some(mean));
     let articulation = joints.articulation(findings);
-    let damping = if let Some(damping) = text.damping {
-        vec![damping.0; links]
-    } else {
-        let ratio = text.damping_ratio.map(|ratio| ratio.0);
-        let ratio = if matches!(model, ChainModel::Particles) {
-            findings.or_default(ratio, "chain.damping_ratio", &defaults::DAMPING_RATIO)
-        } else {
-            // Rigid links are laid, not damped: whatever damping belongs to the laying stiffness.
-            ratio.unwrap_or(defaults::DAMPING_RATIO.value(findings.version))
-        };
-        // c = 2 ζ √(k m)
-        let pairs = stiffness.iter().zip(&masses);
-        pairs
-            .map(|(k, m)| 2.0 * ratio * (k * m).max(0.0).sqrt())
-            .collect()
-    };
+    let damping = damping(text, &stiffness, &masses, &model, findings);
     let chain = Chain {
         pitch,
         lengths,
@@ -144,12 +129,41 @@ pub(super) fn resolve(
         articulation,
         ends: ends?,
         model,
+        strength: Strength {
+            breaking_load: text.breaking_load.map(|load| load.0),
+            rating: of_type.and_then(|chain| catalogue::rating(chain, pitch)),
+        },
     };
     Some(Resolved {
         chain,
         roller_length,
         uncounted,
     })
+}
+
+/// Damping of every link \[N s/m\].
+fn damping(
+    text: &schema::Chain,
+    stiffness: &[f64],
+    masses: &[f64],
+    model: &ChainModel,
+    findings: &mut Findings<'_>,
+) -> Vec<f64> {
+    if let Some(damping) = text.damping {
+        return vec![damping.0; stiffness.len()];
+    }
+    let ratio = text.damping_ratio.map(|ratio| ratio.0);
+    let ratio = if matches!(model, ChainModel::Particles) {
+        findings.or_default(ratio, "chain.damping_ratio", &defaults::DAMPING_RATIO)
+    } else {
+        // Rigid links are laid, not damped: whatever damping belongs to the laying stiffness.
+        ratio.unwrap_or(defaults::DAMPING_RATIO.value(findings.version))
+    };
+    // c = 2 ζ √(k m)
+    let pairs = stiffness.iter().zip(masses);
+    pairs
+        .map(|(k, m)| 2.0 * ratio * (k * m).max(0.0).sqrt())
+        .collect()
 }
 
 /// What is between the joints.

@@ -53,6 +53,10 @@ pub(crate) struct Chain {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) plate_height: Option<Length>,
+    /// Least breaking load [N]: the verdict says where a link bears more. Nothing yields or breaks for it.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) breaking_load: Option<Force>,
     /// Unstressed length of the inner links, every second one [m]; absent: the pitch.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]

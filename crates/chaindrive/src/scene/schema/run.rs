@@ -6,6 +6,7 @@ use chaindrive_mechanics::EventKinds;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
+use crate::precision::Quantity;
 use crate::scene::quantity::{Length, Ratio, Time};
 use crate::{RunIn, Stepping};
 
@@ -43,11 +44,14 @@ pub(crate) struct Run {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) onset_depth: Option<Length>,
-    /// Relative error of the tension that method, step and onset depth are chosen for, 0 to 1; it takes the
+    /// Relative error of the tension, or of the losses, that method, step and onset depth are chosen for, 0 to 1; it takes the
     /// place of what is said about them. Absent: 0.01, unless one of them or a tolerance is given.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
     pub(crate) accuracy: Option<Ratio>,
+    /// What the accuracy is one of; absent: the tension.
+    #[serde(default)]
+    pub(crate) accuracy_of: Quantity,
     /// Channels to record.
     #[serde(default)]
     pub(crate) record: Option<Vec<String>>,
@@ -134,6 +138,7 @@ impl Run {
             tolerance: self.tolerance.map(|ratio| ratio.0),
             onset_depth: self.onset_depth.map(|depth| depth.0),
             accuracy: self.accuracy.map(|ratio| ratio.0),
+            accuracy_of: self.accuracy_of,
             record: self.record.clone().unwrap_or_default(),
             events: events(&self.events),
         }
@@ -157,8 +162,10 @@ pub struct RunDefaults {
     pub tolerance: Option<f64>,
     /// Deepest penetration at which a contact may begin \[m\].
     pub onset_depth: Option<f64>,
-    /// Relative error of the tension that method and step are to be chosen for \[–\].
+    /// Relative error that method and step are to be chosen for \[–\].
     pub accuracy: Option<f64>,
+    /// Of what.
+    pub accuracy_of: Quantity,
     /// Channels to record; empty when the scene leaves them open.
     pub record: Vec<String>,
     /// Contacts to log.

@@ -8,7 +8,7 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Stepper};
 use chaindrive_mechanics::{
     Chain, ChainModel, Clearance, End, Ends, Guide, Joint, Layout, LinkBody, Motion, Parts,
-    PlacedChain, Record, RigidLinks, RollerModel, Surface, System,
+    PlacedChain, Record, RigidLinks, RollerModel, Strength, Surface, System,
 };
 
 /// A chain of rigid links laid by points. Its fields are open: a case sets what it is about.
@@ -64,6 +64,7 @@ impl Strand {
             masses: vec![0.01; rollers],
             roller_diameter: self.roller_diameter,
             plate_height: self.roller_diameter,
+            strength: Strength::default(),
             articulation: None,
             ends: self.ends.clone(),
             model: ChainModel::Rigid(self.links.clone()),

@@ -10,7 +10,7 @@ use pulp::Simd;
 use serde::{Deserialize, Serialize};
 
 use super::element::{Element, Partner};
-use crate::contact::{FAR, LaneTally, MemoryLanes, SurfaceLaw};
+use crate::contact::{Begun, FAR, LaneTally, MemoryLanes, SurfaceLaw};
 use crate::drive::Surface;
 use crate::lanes::{Lane, Mask, Wide};
 
@@ -52,6 +52,10 @@ pub(crate) struct Tally {
     pub(crate) first_depth: f64,
     /// Smallest share of the step after which such a contact began.
     pub(crate) first_share: f64,
+    /// What began in this step.
+    pub(crate) begun: Begun,
+    /// Deepest penetration of all \[m\].
+    pub(crate) depth: f64,
 }
 
 impl Tally {
@@ -71,13 +75,9 @@ impl Tally {
             friction_loss: lanes.friction_loss.sum(),
             first_depth,
             first_share,
+            begun: lanes.begun(),
+            depth: lanes.deepest(),
         }
-    }
-
-    /// Takes note of how other contacts began.
-    pub(super) fn began(&mut self, other: &Self) {
-        self.first_depth = self.first_depth.max(other.first_depth);
-        self.first_share = self.first_share.min(other.first_share);
     }
 }
 

@@ -37,7 +37,7 @@ impl Linkage {
             let touch = &mut loads.teeth[i];
             let wrench = self.roll(&on.contacts, &frame, i, at, touch, joint_state);
             rates[Flow::ToothLoss as usize] += wrench.normal_loss;
-            rates[Flow::FrictionLoss as usize] += wrench.friction_loss;
+            rates[Flow::ToothFriction as usize] += wrench.friction_loss;
             loads.wheel_wrenches[i] = wrench;
         }
         for (i, on) in contacts.rails.iter().enumerate() {
@@ -57,7 +57,7 @@ impl Linkage {
                 }
             };
             rates[Flow::GuideLoss as usize] += wrench.normal_loss;
-            rates[Flow::FrictionLoss as usize] += wrench.friction_loss;
+            rates[Flow::GuideFriction as usize] += wrench.friction_loss;
             loads.rail_wrenches[i] = wrench;
         }
     }

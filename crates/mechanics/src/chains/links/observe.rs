@@ -4,7 +4,7 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
 
 use super::rates::LinkPlaces;
-use super::{Joining, JointState, Linkage, Mate};
+use super::{Joining, JointState, Linkage, Mate, Partner, free_part};
 use crate::chains::Record;
 use crate::contact::{ContactState, Frame, PlateContact};
 use crate::energy::{Energy, Store};
@@ -42,6 +42,34 @@ impl Linkage {
                 Some([hole, pin]) => angle(pin, at) - angle(hole, at),
                 None => f64::NAN,
             });
+        }
+        self.observe_bushes(at, joint_state, out);
+    }
+
+    /// Appends how every bush stands to its roller, where rollers are free.
+    fn observe_bushes(&self, at: Moment<'_>, joint_state: &JointState, out: &mut Observation) {
+        let mut forces = vec![Vector::zeros(); self.joints.len()];
+        // Only bushes press on another body of the chain here: pins are not among the elements.
+        let bushes = joint_state.elements.iter();
+        for bush in bushes.filter(|element| matches!(element.b, Partner::Body(_))) {
+            forces[bush.joint] = bush.push();
+        }
+        for (index, joint) in self.joints.iter().enumerate() {
+            let free = self.free_rollers.as_ref();
+            let body = free.and_then(|free| free.body[index]);
+            let nothing = Vector::new(f64::NAN, f64::NAN);
+            let (offset, force, depth) = body.map_or((nothing, nothing, f64::NAN), |body| {
+                let bush = self.part(joint.carrier, at, &joint_state.posture);
+                let offset = bush.place - free_part(body, at).place;
+                let gap = joint_state.memory.bushes.gap[index];
+                (offset, forces[index], (-gap).max(0.0))
+            });
+            out.bush_offset_x.push(offset.x);
+            out.bush_offset_y.push(offset.y);
+            out.bush_force_x.push(force.x);
+            out.bush_force_y.push(force.y);
+            out.bush_force.push(force.norm());
+            out.bush_depth.push(depth);
         }
     }
 

@@ -14,7 +14,7 @@ use crate::system::GroupBodies;
 use crate::{
     Adjust, ChainModel, Clearance, Drive, End, Ends, Fit, Flank, FreeRoller, Joint, Layout,
     LinkBody, Motion, Parts, PlacedChain, PretensionAt, Record, RigidLinks, RollerModel, Rotation,
-    Shaft, SpanStart, Sprocket, Stop, Support, Surface, System, Tighten, Torque,
+    Shaft, SpanStart, Sprocket, Stop, Strength, Support, Surface, System, Tighten, Torque,
 };
 
 /// Steel on steel with a little friction, so that normals and tangents take part.
@@ -76,6 +76,7 @@ pub(super) fn bicycle(model: ChainModel) -> Parts {
                 masses: vec![3.81e-3; links],
                 roller_diameter,
                 plate_height: 9.6e-3,
+                strength: Strength::default(),
                 articulation: None,
                 ends: Ends::Closed,
                 model,

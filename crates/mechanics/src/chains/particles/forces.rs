@@ -93,13 +93,13 @@ impl Particles {
                 (contacts, &mut loads.circles[i - wheels])
             };
             let wrench = contacts.act(w, at.t, &loads.frames[i], &mut rollers, touch);
-            let loss = if i < wheels {
-                Flow::ToothLoss
+            let [loss, friction] = if i < wheels {
+                [Flow::ToothLoss, Flow::ToothFriction]
             } else {
-                Flow::GuideLoss
+                [Flow::GuideLoss, Flow::GuideFriction]
             };
             rates[loss as usize] += wrench.normal_loss;
-            rates[Flow::FrictionLoss as usize] += wrench.friction_loss;
+            rates[friction as usize] += wrench.friction_loss;
             if i < wheels {
                 loads.wheel_wrenches[i] = wrench;
             } else {
@@ -130,7 +130,7 @@ impl Particles {
             let touch = &mut loads.plates[i];
             let wrench = plates.act(at.t, frame, &mut pins, self.links.count, touch);
             rates[Flow::GuideLoss as usize] += wrench.normal_loss;
-            rates[Flow::FrictionLoss as usize] += wrench.friction_loss;
+            rates[Flow::GuideFriction as usize] += wrench.friction_loss;
             loads.rail_wrenches[i] = wrench;
         }
     }

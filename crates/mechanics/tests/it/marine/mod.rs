@@ -4,7 +4,7 @@ use chaindrive_contact::{Friction, Law};
 use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
 use chaindrive_mechanics::{
     Adjust, Chain, Ends, Fit, Layout, Motion, Parts, PlacedChain, PretensionAt, Rotation, Shaft,
-    SpanStart, Sprocket, Stop, Support, Surface, Tighten, Torque,
+    SpanStart, Sprocket, Stop, Strength, Support, Surface, Tighten, Torque,
 };
 
 /// Pitch, link mass and stiffness as published; the rest is a reconstruction that closes exactly.
@@ -68,6 +68,7 @@ pub(crate) fn parts(law: Law) -> Parts {
                 masses: vec![mass; links],
                 roller_diameter,
                 plate_height: 0.0778,
+                strength: Strength::default(),
                 articulation: None,
                 ends: Ends::Closed,
                 model: chaindrive_mechanics::ChainModel::Particles,

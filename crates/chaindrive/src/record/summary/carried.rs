@@ -1,0 +1,121 @@
+//! What chains have carried, as the samples see it: tension, power, speed.
+
+use std::ops::Range;
+
+use chaindrive_geometry::mesh_frequency;
+use chaindrive_mechanics::{ChainSize, Observation, PlacedChain, Strength};
+use serde::{Deserialize, Serialize};
+
+use crate::Simulation;
+
+/// Sums over the samples, by chain and by sprocket.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(super) struct Carried {
+    chains: Vec<OfChain>,
+    sprockets: Vec<OfSprocket>,
+    samples: f64,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct OfChain {
+    name: String,
+    strength: Strength,
+    links: Range<usize>,
+    sprockets: Vec<usize>,
+    /// Greatest tension of a link \[N\].
+    greatest: f64,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct OfSprocket {
+    name: String,
+    teeth: u32,
+    /// Σ ω \[rad/s\] and Σ M ω \[W\].
+    speed: f64,
+    power: f64,
+}
+
+/// What one chain has carried, beside what it bears.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Load {
+    /// Name of the chain; empty where there is one only.
+    pub chain: String,
+    /// What is known of its strength.
+    pub strength: Strength,
+    /// Greatest tension of a link \[N\].
+    pub tension: f64,
+    /// Mean power that it has carried to or from a sprocket \[W\].
+    pub power: f64,
+    /// The smallest sprocket that takes a share in it: name, teeth, mean speed \[rad/s\].
+    pub smallest: Option<(String, u32, f64)>,
+}
+
+/// Share of the power of a chain that a sprocket takes part with, at least; idlers do not.
+const TAKES_PART: f64 = 0.1;
+
+impl Carried {
+    pub(super) fn new(simulation: &Simulation) -> Self {
+        let drive = &simulation.assembled().drive;
+        let sizes = simulation.system().chain_sizes();
+        let mut first = 0;
+        let of_chain = |(placed, (name, size)): (&PlacedChain, (String, ChainSize))| {
+            let links = first..first + size.links;
+            first = links.end;
+            OfChain {
+                name,
+                strength: placed.chain.strength,
+                links,
+                sprockets: placed.sprockets.clone(),
+                greatest: f64::NEG_INFINITY,
+            }
+        };
+        let sprockets = drive.sprockets.iter().map(|sprocket| OfSprocket {
+            name: sprocket.name.clone(),
+            teeth: sprocket.gap.teeth,
+            speed: 0.0,
+            power: 0.0,
+        });
+        Self {
+            chains: drive.chains.iter().zip(sizes).map(of_chain).collect(),
+            sprockets: sprockets.collect(),
+            samples: 0.0,
+        }
+    }
+
+    pub(super) fn push(&mut self, sample: &Observation) {
+        for chain in &mut self.chains {
+            let links = sample.link_tension[chain.links.clone()].iter();
+            chain.greatest = links.fold(chain.greatest, |most, tension| most.max(*tension));
+        }
+        let motions = sample.sprocket_speed.iter().zip(&sample.sprocket_torque);
+        for (sprocket, (speed, torque)) in self.sprockets.iter_mut().zip(motions) {
+            sprocket.speed += speed;
+            sprocket.power += speed * torque;
+        }
+        self.samples += 1.0;
+    }
+
+    pub(super) fn loads(&self) -> Vec<Load> {
+        self.chains.iter().map(|chain| self.load(chain)).collect()
+    }
+
+    fn load(&self, chain: &OfChain) -> Load {
+        let own = || chain.sprockets.iter().map(|index| &self.sprockets[*index]);
+        let power = own().map(|it| it.power.abs()).fold(0.0, f64::max);
+        let takes_part = own().filter(|it| it.power.abs() > TAKES_PART * power);
+        let smallest = takes_part.min_by_key(|it| it.teeth);
+        Load {
+            chain: chain.name.clone(),
+            strength: chain.strength,
+            tension: chain.greatest,
+            power: power / self.samples,
+            smallest: smallest.map(|it| (it.name.clone(), it.teeth, it.speed / self.samples)),
+        }
+    }
+
+    pub(super) fn mesh_frequency(&self) -> f64 {
+        let sprockets = self.sprockets.iter();
+        let frequencies = sprockets.map(|it| mesh_frequency(it.teeth, it.speed / self.samples));
+        frequencies.fold(0.0, |most, frequency| most.max(frequency.abs()))
+    }
+}

@@ -1,0 +1,109 @@
+//! Whether a drive could do what the run asks of it, and whether the run asks for what was meant.
+
+use chaindrive_contact::dissipation::FASTEST_IMPACT;
+use chaindrive_mechanics::Struck;
+
+use super::Reason;
+use crate::record::{Ledger, Load};
+use crate::{Simulation, Summary};
+
+/// Samples a tooth passing below which the mesh is seen at another frequency than its own: H. Nyquist, *Trans. AIEE* **47**, 1928,
+/// 617–644.
+const LEAST_SAMPLES: f64 = 2.0;
+/// Share of the energy that loads exchange, above which they drive in the net. *Assumed*: those that swing, as the torque of cams does,
+/// leave less in a run that is cut off at any moment.
+const DRIVES: f64 = 0.25;
+/// Share of the energy moved below which it does not matter who drives. *Assumed*.
+const MATTERS: f64 = 0.01;
+
+/// What speaks against a run by what it asks of the drive.
+pub(super) fn found(summary: &Summary, simulation: &Simulation) -> Vec<Reason> {
+    let mut reasons = Vec::new();
+    let loads = summary.carried();
+    reasons.extend(loads.iter().filter_map(broken));
+    reasons.extend(loads.iter().filter_map(overloaded));
+    let struck = simulation.system().struck();
+    reasons.extend(deepest(&struck));
+    reasons.extend(fastest(&struck));
+    reasons.extend(load_that_drives(&summary.ledger()));
+    if summary.kept {
+        reasons.extend(samples_too_rare(
+            summary.mesh_frequency(),
+            simulation.every(),
+        ));
+    }
+    let drive = &simulation.assembled().drive;
+    let fights = drive.fights(0.0, simulation.time()).into_iter();
+    reasons.extend(fights.map(Reason::MotionsFight));
+    reasons
+}
+
+fn broken(load: &Load) -> Option<Reason> {
+    let breaking = load.strength.breaking_load?;
+    (load.tension > breaking).then(|| Reason::AboveBreakingLoad {
+        chain: load.chain.clone(),
+        tension: load.tension,
+        breaking,
+    })
+}
+
+fn overloaded(load: &Load) -> Option<Reason> {
+    let (sprocket, teeth, speed) = load.smallest.as_ref()?;
+    let rated = load.strength.rating?.power(*teeth, *speed);
+    (load.power > rated && rated > 0.0).then(|| Reason::AboveRating {
+        sprocket: sprocket.clone(),
+        speed: speed.abs(),
+        power: load.power,
+        rated,
+    })
+}
+
+/// The contact that is farthest beyond the reach of its law.
+fn deepest(struck: &[Struck]) -> Option<Reason> {
+    let beyond = struck.iter().filter_map(|it| {
+        let reach = it.reach?;
+        let depth = it.impacts.deepest;
+        (depth > reach).then_some((it, depth / reach))
+    });
+    let (worst, _) = beyond.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some(Reason::DeepContact {
+        place: worst.place.clone(),
+        depth: worst.impacts.deepest,
+        reach: worst.reach?,
+    })
+}
+
+/// The fastest impact, where that is beyond what a restitution stands for.
+fn fastest(struck: &[Struck]) -> Option<Reason> {
+    let mut struck = struck.iter();
+    let first = struck.next()?;
+    let worst = struck.fold(first, |most, it| {
+        if it.impacts.fastest > most.impacts.fastest {
+            it
+        } else {
+            most
+        }
+    });
+    let speed = worst.impacts.fastest;
+    (speed > FASTEST_IMPACT).then(|| Reason::FastImpact {
+        place: worst.place.clone(),
+        speed,
+        limit: FASTEST_IMPACT,
+    })
+}
+
+fn load_that_drives(ledger: &Ledger) -> Option<Reason> {
+    let net = ledger.by_loads;
+    let drives = net > DRIVES * ledger.loads_exchanged && net > MATTERS * ledger.moved;
+    drives.then_some(Reason::LoadDrives { work: net })
+}
+
+/// The mesh of the fastest chain \[Hz\], sampled with an interval \[s\].
+fn samples_too_rare(frequency: f64, every: f64) -> Option<Reason> {
+    let samples = 1.0 / (frequency * every);
+    (samples < LEAST_SAMPLES).then(|| Reason::SamplesRare {
+        samples,
+        every,
+        needed: 1.0 / (LEAST_SAMPLES * frequency),
+    })
+}

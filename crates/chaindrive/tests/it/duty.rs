@@ -1,0 +1,310 @@
+//! What a run asks of a drive: every reason of the verdict that speaks of it, with a run that brings it about and one that does not; and
+//! what is counted for them.
+#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
+
+use chaindrive::{
+    Channel, Description, EventKinds, Given, Judgement, Memory, Reason, Request, Run, Scene,
+    Settings, Simulation, Summary, Trust, Verdict, execute,
+};
+use chaindrive_mechanics::{Energy, Struck};
+
+/// A preset with changes, each `path = value`.
+fn preset(name: &str, changes: &[(&str, &str)]) -> Scene {
+    let scene = Scene::preset(name).unwrap();
+    changes.iter().fold(scene, |scene, (path, value)| {
+        scene.replace(path, value).unwrap()
+    })
+}
+
+/// A chain of the catalogue around two sprockets of 19 teeth, the second of which is given this.
+fn two_sprockets(second: &str) -> Scene {
+    let text = format!(
+        r#"
+        chain = "16A-1"
+        [[sprockets]]
+        name = "driver"
+        teeth = 19
+        centre = ["0 mm", "0 mm"]
+        motion = {{ kind = "constant", speed = "300 rpm" }}
+        [[sprockets]]
+        name = "driven"
+        teeth = 19
+        centre = ["749.3 mm", "0 mm"]
+        {second}
+        [route]
+        pretension = "2 kN"
+        "#
+    );
+    Scene::from_toml(&text, "two_sprockets").unwrap()
+}
+
+fn loaded(torque: &str) -> Scene {
+    two_sprockets(&format!(
+        r#"inertia = "0.5 kg m^2"
+        load = [{{ kind = "constant", torque = "{torque}" }}]"#
+    ))
+}
+
+fn driven(speed: &str) -> Scene {
+    two_sprockets(&format!(
+        r#"motion = {{ kind = "constant", speed = "{speed}" }}"#
+    ))
+}
+
+/// A run to its end, with its contacts.
+fn finished(scene: &Scene, run: &Run) -> (Simulation, Summary) {
+    let mut simulation = Simulation::start(&scene.drive().unwrap(), run).unwrap();
+    let mut summary = Summary::new(&simulation);
+    while simulation.next_sample().unwrap().is_some() {
+        summary.push(simulation.observation());
+        summary.count(simulation.events());
+    }
+    (simulation, summary)
+}
+
+fn verdict(scene: &Scene, run: &Run) -> Verdict {
+    let (simulation, summary) = finished(scene, run);
+    Verdict::of(
+        &summary,
+        &simulation,
+        None,
+        None,
+        Some(&Judgement::SwitchedOff),
+    )
+}
+
+fn run(until: f64) -> Run {
+    Run {
+        until,
+        every: until / 100.0,
+        ..Run::default()
+    }
+}
+
+/// Asserts that the first verdict has a reason of some name, and the second not.
+fn tells_apart(reason: &str, with: &Verdict, without: &Verdict) {
+    let names =
+        |verdict: &Verdict| -> Vec<_> { verdict.reasons.iter().map(Reason::name).collect() };
+    assert!(names(with).contains(&reason), "{with}");
+    assert!(!names(without).contains(&reason), "{without}");
+}
+
+/// The catalogue knows what breaks a 56B, and a scene may say it itself.
+#[test]
+fn a_link_that_bears_more_than_breaks_the_chain_is_distrusted() {
+    let breaks_at = |load: &str| preset("marine_two_sprockets", &[("chain.breaking_load", load)]);
+    let weak = verdict(&breaks_at("15 kN"), &run(0.01));
+    tells_apart(
+        "above-breaking-load",
+        &weak,
+        &verdict(&breaks_at("100 kN"), &run(0.01)),
+    );
+    assert_eq!(weak.trust, Trust::Distrusted);
+    assert!(weak.note().contains("breaks at 15.0 kN"), "{weak}");
+    let known = preset("marine_two_sprockets", &[("chain.type", "56B-1")]);
+    let strength = known.drive().unwrap().chains[0].chain.strength;
+    assert_eq!(strength.breaking_load, Some(850e3));
+    // Of chains of the B series there is no formula for the power.
+    assert_eq!(strength.rating, None);
+}
+
+/// A 16A on 19 teeth at 300 rpm is rated for 12.2 kW: 388 N m.
+#[test]
+fn more_power_than_a_chain_is_rated_for_is_a_caution() {
+    let over = verdict(&loaded("-600 N m"), &run(0.05));
+    tells_apart(
+        "above-rating",
+        &over,
+        &verdict(&loaded("-300 N m"), &run(0.05)),
+    );
+    assert!(over.note().contains("rated for 12.2 kW"), "{over}");
+    assert_ne!(over.trust, Trust::Distrusted, "{over}");
+}
+
+/// A pin that falls through its play at a weight, by the law that ends at half of it.
+fn dropped(gravity: &str, law: &str) -> Verdict {
+    let law = format!("\"{law}\"");
+    let gravity = format!(r#"["0 m/s^2", "{gravity}"]"#);
+    let changes = [
+        ("gravity", gravity.as_str()),
+        ("contact.joints.law", &law),
+        // Plates are rigid.
+        ("defaults", "\"0.1\""),
+    ];
+    let run = Run {
+        step: Some(2e-7),
+        ..run(8e-3)
+    };
+    verdict(&preset("pin_in_bush", &changes), &run)
+}
+
+/// √(2 g · 0.2 mm) is 63 mm/s on earth, and 20 m/s where things weigh a hundred thousand times as much.
+#[test]
+fn contacts_beyond_their_laws_are_a_caution() {
+    let gently = dropped("-9.81 m/s^2", "johnson");
+    let hard = dropped("-1e6 m/s^2", "johnson");
+    tells_apart("deep-contact", &hard, &gently);
+    tells_apart("fast-impact", &hard, &gently);
+    assert!(hard.note().contains("pins in bushes"), "{hard}");
+    // A power goes on.
+    let endless = dropped("-1e6 m/s^2", "cylindrical");
+    tells_apart("deep-contact", &hard, &endless);
+    tells_apart("fast-impact", &endless, &gently);
+}
+
+#[test]
+fn a_load_that_drives_is_a_caution() {
+    let (drives, resists) = (loaded("300 N m"), loaded("-300 N m"));
+    let drives = verdict(&drives, &run(0.05));
+    tells_apart("load-drives", &drives, &verdict(&resists, &run(0.05)));
+    // A torque that swings about what it takes puts nothing in.
+    let swings = two_sprockets(
+        r#"inertia = "0.5 kg m^2"
+        load = [
+            { kind = "constant", torque = "-20 N m" },
+            { kind = "harmonic", amplitude = "200 N m", order = 20 },
+        ]"#,
+    );
+    tells_apart("load-drives", &drives, &verdict(&swings, &run(0.05)));
+}
+
+/// Teeth pass at 95 Hz.
+#[test]
+fn samples_too_rare_for_the_mesh_are_a_caution_where_they_are_kept() {
+    let with = |every: f64, kept: bool| {
+        let settings = Settings::default()
+            .with("until", Given::Number(0.1))
+            .with("every", Given::Number(every));
+        let request = Request::new(&loaded("-300 N m"), &settings).unwrap();
+        let request = request.with_default_step().without_estimate();
+        if kept {
+            return execute(&request, &mut Memory::default(), &|| false)
+                .unwrap()
+                .verdict;
+        }
+        verdict(&request.scene, &request.run)
+    };
+    let rare = with(8e-3, true);
+    tells_apart("samples-rare", &rare, &with(4e-3, true));
+    tells_apart("samples-rare", &rare, &with(8e-3, false));
+    assert!(rare.note().contains("take one in 5.3 ms"), "{rare}");
+}
+
+/// 19 teeth at 330 rpm against 300: a tooth and a half in 0.16 s.
+#[test]
+fn motions_that_fight_are_distrusted_and_told_before_the_run() {
+    let fighting = driven("330 rpm");
+    let fought = verdict(&fighting, &run(0.16));
+    tells_apart(
+        "motions-fight",
+        &fought,
+        &verdict(&driven("300 rpm"), &run(0.16)),
+    );
+    assert_eq!(fought.trust, Trust::Distrusted);
+    // Before the chain is a tooth longer nothing is said.
+    tells_apart("motions-fight", &fought, &verdict(&fighting, &run(0.05)));
+    let warnings = |scene: &Scene, until| {
+        let drive = scene.drive().unwrap();
+        Description::of(&drive, &run(until)).unwrap().warnings
+    };
+    let told = warnings(&fighting, 0.16);
+    assert!(told[0].contains("1.5 teeth of chain apart"), "{told:?}");
+    assert!(warnings(&fighting, 0.05).is_empty());
+}
+
+/// Means of transients, of a start that counts, and of a swing that is too slow: each in a run of its own.
+#[test]
+fn means_that_are_not_those_of_a_steady_state_are_a_caution() {
+    let growing = r#"[{ kind = "time-table", times = [0, 0.1], torques = [5e3, 1e5] }]"#;
+    let growing = preset(
+        "marine_two_sprockets",
+        &[
+            ("sprockets.camshaft.load", growing),
+            ("route.pretension", "150 kN"),
+        ],
+    );
+    let (growing, bare) = (
+        verdict(&growing, &run(0.1)),
+        preset("marine_two_sprockets", &[]),
+    );
+    let short = Run {
+        every: 2e-4,
+        ..run(0.02)
+    };
+    let early = verdict(&bare, &short);
+    let slow = verdict(&preset("industrial_16b", &[]), &short);
+    tells_apart("not-steady", &growing, &early);
+    tells_apart("start-counts", &early, &slow);
+    tells_apart("means-uncertain", &slow, &early);
+}
+
+/// What is counted without a log is what the log has.
+#[test]
+fn impacts_are_counted_as_they_are_logged() {
+    let logged = Run {
+        step: Some(2e-7),
+        events: EventKinds {
+            joints: true,
+            ..EventKinds::default()
+        },
+        ..run(0.05)
+    };
+    let (simulation, summary) = finished(&preset("pin_in_bush", &[]), &logged);
+    let kinds = summary.contacts(&simulation);
+    let events: u64 = kinds.iter().map(|kind| kind.count).sum();
+    let struck = simulation.system().struck();
+    let [Struck { impacts, floor, .. }] = struck.as_slice() else {
+        panic!("{struck:?}");
+    };
+    assert!(
+        events > 3 && impacts.count == events,
+        "{events}, {impacts:?}"
+    );
+    // v = √(2 g · 2 c)
+    assert!((impacts.fastest - 62.6e-3).abs() < 0.1e-3, "{impacts:?}");
+    assert_eq!((impacts.gentle, *floor), (0, 1e-3));
+    let report = summary.report(&simulation).to_string();
+    assert!(report.contains("0 % below 0.001 m/s"), "{report}");
+
+    let gentle = preset("pin_in_bush", &[("contact.joints.onset_floor", "0.06 m/s")]);
+    let (simulation, _) = finished(&gentle, &logged);
+    let impacts = simulation.system().struck()[0].impacts;
+    assert_eq!(impacts.gentle, impacts.count - 1, "{impacts:?}");
+}
+
+/// Teeth, rail, arm and joints that rub: every place has its part, and together they are what is lost.
+#[test]
+fn losses_by_place_add_up() {
+    let friction = "{ coefficient = 0.1 }";
+    let scene = preset(
+        "timing_drive",
+        &[
+            ("contact.teeth.friction", friction),
+            ("contact.guides.friction", friction),
+        ],
+    );
+    let (simulation, summary) = finished(&scene, &run(4e-3));
+    let lost = summary.losses();
+    let names: Vec<_> = lost.iter().map(|(place, _)| place.name()).collect();
+    for place in ["joints", "teeth", "guides", "tensioners"] {
+        assert!(names.contains(&place), "{names:?}");
+    }
+    let sum: f64 = lost.iter().map(|(_, lost)| lost).sum();
+    let all = summary.energy_dissipated();
+    assert!((sum - all).abs() < 1e-12 * all, "{sum} J of {all} J");
+    let (mut by_place, mut whole) = (Vec::new(), Vec::new());
+    let (sample, start) = (simulation.observation(), Energy::default());
+    Channel::EnergyLosses.read(sample, &start, &mut by_place);
+    Channel::EnergyDissipated.read(sample, &start, &mut whole);
+    assert!((by_place.iter().sum::<f64>() - whole[0]).abs() < 1e-12 * whole[0]);
+    let report = summary.report(&simulation).to_string();
+    assert!(
+        report.contains("share") && report.contains("\n  guides "),
+        "{report}"
+    );
+    let [efficiency, uncertain] = summary.ledger().efficiency().unwrap();
+    assert!(
+        efficiency < 1.0 && uncertain > 0.0,
+        "{efficiency} ± {uncertain}"
+    );
+}
