@@ -36,8 +36,7 @@ impl Strength {
 /// ```
 ///
 /// Z and n are those of the smaller sprocket; K is 17, for the smallest chains 29 and for number 41 3.4, whose plates bear 0.0022 in place
-/// of 0.004. The load is smooth and the chain 100 pitches long. Galling at high speed is not in it, and makers rate their chains higher
-/// today.
+/// of 0.004. The load is smooth and the chain 100 pitches long. Galling at high speed is not in it.
 ///
 /// # Source
 /// American Chain Association, *Chains for Power Transmission and Material Handling*, 1982, in the form of R. G. Budynas and
