@@ -1,6 +1,7 @@
 //! What a chain can be made of, as a drive describes it.
 
 use super::links::model::{Joint, RigidLinks};
+use super::particles::points::PointJoints;
 use crate::DriveError;
 
 /// What the chain is made of: model only what a scene needs.
@@ -12,6 +13,8 @@ use crate::DriveError;
 pub enum ChainModel {
     /// Point masses at the rollers, joined by spring-damper links: two coordinates a link.
     Particles,
+    /// The same with roller, bush and pin as points of their own: six coordinates a link.
+    Points(PointJoints),
     /// Rigid links with joints: three coordinates a link, three more for every free roller.
     Rigid(RigidLinks),
 }
@@ -20,7 +23,7 @@ impl ChainModel {
     /// Whether links give when they are pulled, by themselves or at their joints.
     pub(crate) fn stretches(&self) -> bool {
         match self {
-            Self::Particles => true,
+            Self::Particles | Self::Points(_) => true,
             Self::Rigid(links) => links.joint != Joint::Ideal,
         }
     }
@@ -34,6 +37,7 @@ impl ChainModel {
     pub(crate) fn problems(&self) -> Vec<DriveError> {
         match self {
             Self::Particles => Vec::new(),
+            Self::Points(points) => points.problems(),
             Self::Rigid(links) => links.problems(),
         }
     }

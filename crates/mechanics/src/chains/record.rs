@@ -6,6 +6,7 @@ use super::Way;
 use super::joints::Resistance;
 use super::links::{Impulses, JointState};
 use super::particles::Turning;
+use super::particles::points;
 use crate::contact::{ContactMemory, Frame, Touch, Wrench};
 use crate::system::BodyContacts;
 
@@ -35,6 +36,8 @@ pub(crate) struct Record {
     pub(super) joint_state: JointState,
     #[serde(skip)]
     pub(super) impulses: Impulses,
+    /// What is found in joints that are points; empty elsewhere.
+    pub(super) points: points::Found,
     /// What resists in the joints; empty where nothing does.
     pub(super) resistance: Resistance,
     /// How the links of particles turn, where something resists that.
@@ -72,6 +75,6 @@ impl Record {
         let wrenches = wheel_wrenches.iter().chain(rail_wrenches);
         wrenches
             .map(|wrench| (wrench.first_depth, wrench.first_share))
-            .chain([(joints.first_depth, joints.first_share)])
+            .chain([self.points.tally, *joints].map(|tally| (tally.first_depth, tally.first_share)))
     }
 }
