@@ -1,6 +1,6 @@
 //! What a chain can be made of, as a drive describes it.
 
-use super::links::model::{Joint, RigidLinks};
+use super::links::model::{Clearance, FreeRoller, Joint, RigidLinks, RollerModel};
 use super::particles::points::PointJoints;
 use crate::DriveError;
 
@@ -28,8 +28,32 @@ impl ChainModel {
         }
     }
 
-    /// Whether pins have play in their bushes.
-    pub(crate) fn has_clearance(&self) -> bool {
+    /// Pins that have play in their bushes.
+    pub fn clearance(&self) -> Option<&Clearance> {
+        match self {
+            Self::Points(PointJoints { joint, .. })
+            | Self::Rigid(RigidLinks {
+                joint: Joint::Clearance(joint),
+                ..
+            }) => Some(joint),
+            Self::Particles | Self::Rigid(_) => None,
+        }
+    }
+
+    /// Rollers with play on their bushes.
+    pub fn free_roller(&self) -> Option<&FreeRoller> {
+        match self {
+            Self::Points(PointJoints { roller, .. })
+            | Self::Rigid(RigidLinks {
+                rollers: RollerModel::Free(roller),
+                ..
+            }) => Some(roller),
+            Self::Particles | Self::Rigid(_) => None,
+        }
+    }
+
+    /// Whether pins rub by the contact with their bushes.
+    pub(crate) fn rubs_in_bushes(&self) -> bool {
         matches!(self, Self::Rigid(links) if matches!(links.joint, Joint::Clearance(_)))
     }
 
