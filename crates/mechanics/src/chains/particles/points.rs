@@ -90,6 +90,9 @@ pub(crate) struct Found {
     /// Closed contacts of rollers with wheels and rails.
     #[serde(skip)]
     touching: Vec<damp::Touching>,
+    /// Coordinates that each of these moves with.
+    #[serde(skip)]
+    mounts: Vec<[usize; 3]>,
     /// Rollers with them, in the matrix and on the right of an implicit step.
     #[serde(skip)]
     pressed: damp::Pressed,

@@ -21,7 +21,7 @@ use super::{AFTER, BEFORE, Found, Points, ROLLERS};
 use crate::chains::links::{Mount, rail_mount, turned, wheel_mount};
 use crate::chains::{Loads, Record, Surroundings};
 use crate::contact::{Contacts, Frame, Touch};
-use crate::lanes::{Lane, Wide, dispatch, padded};
+use crate::lanes::{LANES, Lane, Wide, dispatch, padded};
 use crate::system::{GroupBodies, RailContact};
 
 /// One direction of a closed contact between a roller and a wheel or rail.
@@ -35,8 +35,8 @@ pub(super) struct Touching {
     /// ∂F/∂δ \[N/m\] and ∂F/∂δ̇ \[N s/m\].
     stiffness: f64,
     pub(super) damping: f64,
-    /// Coordinates of bodies with their c_j; unused ones have none.
-    bodies: [Option<(usize, f64)>; 3],
+    /// c_j of the coordinates that the wheel or rail moves with.
+    shares: [f64; 3],
     /// Σ c_j x_j as it would be without the contact, and D.
     beside: f64,
     weight: f64,
@@ -64,6 +64,7 @@ impl Points {
             contacts,
         } = around;
         found.touching.clear();
+        found.mounts.clear();
         for (i, on) in contacts.teeth.iter().enumerate() {
             let mount = wheel_mount(first, &bodies.wheels[on.wheel], loads.ways[i]);
             let surface = (&on.contacts, &*loads.teeth[i], &loads.frames[i]);
@@ -71,6 +72,7 @@ impl Points {
         }
         for (i, on) in contacts.rails.iter().enumerate() {
             let RailContact::Circles(circles) = &on.contact else {
+                found.mounts.push([0; 3]);
                 continue;
             };
             let number = contacts.teeth.len() + i;
@@ -90,36 +92,44 @@ impl Points {
         found: &mut Found,
     ) {
         let rubs = contacts.surface.friction != Friction::None;
-        contacts.for_each_slot(|slot, roller| {
-            for side in 0..contacts.sides() {
-                let index = side * contacts.slots + slot;
-                if touch.state.inverse_onset[index] <= 0.0 {
+        found.mounts.push(coordinates(mount));
+        for side in 0..contacts.sides() {
+            for (lane, run) in contacts.runs.iter().enumerate() {
+                let slots = side * contacts.slots + lane * LANES;
+                let onsets = &touch.state.inverse_onset[slots..slots + LANES];
+                if onsets.iter().all(|inverse| *inverse <= 0.0) {
                     continue;
                 }
-                let faces = &touch.faces;
-                let joint = roller % self.rollers;
-                let arm = Point::new(at.q[joint], at.q[self.stride + joint]) - frame.origin;
-                let normal = Vector::new(faces.normal_x[index], faces.normal_y[index]);
-                let seen = |along: Vector, lever: f64, stiffness: f64, damping: f64| Touching {
-                    joint,
-                    mount: number,
-                    along,
-                    stiffness,
-                    damping,
-                    bodies: rows(mount, along, arm, lever),
-                    beside: 0.0,
-                    weight: 0.0,
-                };
-                let (stiffness, damping) = (faces.stiffness[index], faces.damping[index]);
-                found.touching.push(seen(normal, 0.0, stiffness, damping));
-                if rubs {
-                    // A secant: a step cannot carry the slip beyond zero.
-                    let tangent = turned(normal);
-                    let rubbing = seen(tangent, contacts.radius, 0.0, faces.secant[index]);
-                    found.touching.push(rubbing);
+                for (k, _) in onsets.iter().enumerate().filter(|(_, it)| **it > 0.0) {
+                    let (faces, index) = (&touch.faces, slots + k);
+                    let joint = (run.start + k) % self.rollers;
+                    let arm = Point::new(at.q[joint], at.q[self.stride + joint]) - frame.origin;
+                    let along = Vector::new(faces.normal_x[index], faces.normal_y[index]);
+                    let normal = Touching {
+                        joint,
+                        mount: number,
+                        along,
+                        stiffness: faces.stiffness[index],
+                        damping: faces.damping[index],
+                        shares: shares(mount, along, arm, 0.0),
+                        beside: 0.0,
+                        weight: 0.0,
+                    };
+                    found.touching.push(normal);
+                    if rubs {
+                        let across = turned(along);
+                        found.touching.push(Touching {
+                            along: across,
+                            stiffness: 0.0,
+                            // A secant: a step cannot carry the slip beyond zero.
+                            damping: faces.secant[index],
+                            shares: shares(mount, across, arm, contacts.radius),
+                            ..normal
+                        });
+                    }
                 }
             }
-        });
+        }
     }
 
     /// x ← (M + c C + k K)⁻¹ M x of the chain and, behind it, the bodies, at the state that the record was left by.
@@ -132,9 +142,13 @@ impl Points {
     ) -> bool {
         let found = &mut record.points;
         let (own, beside) = x.split_at_mut(self.coordinates());
-        found
-            .pressed
-            .collect(&mut found.touching, weights, beside, padded(self.rollers));
+        found.pressed.collect(
+            &mut found.touching,
+            &found.mounts,
+            weights,
+            beside,
+            padded(self.rollers),
+        );
         dispatch(
             self.arch,
             Joints {
@@ -150,19 +164,22 @@ impl Points {
         for touching in &found.touching {
             let moved = self.point(own, ROLLERS, touching.joint).coords;
             let push = touching.weight * (touching.along.dot(&moved) + touching.beside);
-            for (j, share) in touching.bodies.into_iter().flatten() {
-                beside[j] -= share * push / inertias[j];
+            for (j, share) in found.mounts[touching.mount]
+                .into_iter()
+                .zip(touching.shares)
+            {
+                if share != 0.0 {
+                    beside[j] -= share * push / inertias[j];
+                }
             }
         }
-        let mut matrix = DMatrix::from_diagonal(&DVector::from_column_slice(inertias));
         let mut alone = true;
-        bodies.each_own(weights, |[i, j], weighted| {
-            alone &= weighted == 0.0;
-            matrix[(i, j)] += weighted;
-        });
+        bodies.each_own(weights, |_, weighted| alone &= weighted == 0.0);
         if alone {
             return true;
         }
+        let mut matrix = DMatrix::from_diagonal(&DVector::from_column_slice(inertias));
+        bodies.each_own(weights, |[i, j], weighted| matrix[(i, j)] += weighted);
         let right = beside.iter().zip(inertias).map(|(x, inertia)| x * inertia);
         let right = DVector::from_iterator(inertias.len(), right);
         let solution = matrix.lu().solve(&right);
@@ -173,18 +190,27 @@ impl Points {
     }
 }
 
-/// c_j of the coordinates that move a surface: it goes along e with its frame, by −e·(ẑ × d) with the rotation, and a circle that does
-/// not turn is passed by the lever.
-fn rows(mount: &Mount, along: Vector, arm: Vector, lever: f64) -> [Option<(usize, f64)>; 3] {
-    let shift = |at: usize| mount.shifts[at].map(|(j, shift)| (j, -along.dot(&shift)));
-    let turn = |(j, ratio): (usize, f64)| (j, (lever - along.dot(&turned(arm))) * ratio);
-    [shift(0), shift(1), mount.turn.map(turn)]
+/// Coordinates that move a wheel or rail, unused ones zero.
+fn coordinates(mount: &Mount) -> [usize; 3] {
+    let shift = |at: usize| mount.shifts[at].map_or(0, |(j, _)| j);
+    [shift(0), shift(1), mount.turn.map_or(0, |(j, _)| j)]
+}
+
+/// c_j of these coordinates: the surface goes along e with its frame, by −e·(ẑ × d) with the rotation, and a circle that does not turn
+/// is passed by the lever.
+fn shares(mount: &Mount, along: Vector, arm: Vector, lever: f64) -> [f64; 3] {
+    let shift = |at: usize| mount.shifts[at].map_or(0.0, |(_, shift)| -along.dot(&shift));
+    let turn = mount
+        .turn
+        .map_or(0.0, |(_, ratio)| (lever - along.dot(&turned(arm))) * ratio);
+    [shift(0), shift(1), turn]
 }
 
 impl Pressed {
     fn collect(
         &mut self,
         touching: &mut [Touching],
+        mounts: &[[usize; 3]],
         weights: Weights,
         bodies: &[f64],
         count: usize,
@@ -194,8 +220,12 @@ impl Pressed {
             values.resize(count, 0.0);
         }
         for contact in touching {
-            let known = contact.bodies.into_iter().flatten();
-            contact.beside = known.map(|(j, share)| share * bodies[j]).sum();
+            contact.beside = 0.0;
+            for (j, share) in mounts[contact.mount].into_iter().zip(contact.shares) {
+                if share != 0.0 {
+                    contact.beside += share * bodies[j];
+                }
+            }
             contact.weight =
                 weights.damping * contact.damping + weights.stiffness * contact.stiffness;
             let (e, i, weight) = (contact.along, contact.joint, contact.weight);
@@ -237,39 +267,42 @@ impl WithSimd for Joints<'_> {
             ..
         } = found;
         let masses = w.lanes(&chain.masses[ROLLERS][..count]);
-        let of_ends = [BEFORE, AFTER].map(|block| w.lanes(&chain.inverse_masses[block][..count]));
+        let of_before = w.lanes(&chain.inverse_masses[BEFORE][..count]);
+        let of_after = w.lanes(&chain.inverse_masses[AFTER][..count]);
         let bush_after = w.lanes(&chain.bush_after[..count]);
-        let matrix = [0, 1, 2].map(|k| w.lanes(&pressed.matrix[k]));
-        let right = [0, 1].map(|axis| w.lanes(&pressed.right[axis]));
-        let laid = |values| w.lanes(values);
+        let [matrix_xx, matrix_xy, matrix_yy] = [0, 1, 2].map(|k| w.lanes(&pressed.matrix[k]));
+        let [right_x, right_y] = [0, 1].map(|axis| w.lanes(&pressed.right[axis]));
         let [pin_x, pin_y, pin_k, pin_d] = [
             &pins.normal_x,
             &pins.normal_y,
             &pins.stiffness,
             &pins.damping,
         ]
-        .map(|values| laid(values));
+        .map(|values| w.lanes(values));
         let [bush_x, bush_y, bush_k, bush_d] = [
             &bushes.normal_x,
             &bushes.normal_y,
             &bushes.stiffness,
             &bushes.damping,
         ]
-        .map(|values| laid(values));
+        .map(|values| w.lanes(values));
         let [c, k] = [weights.damping, weights.stiffness].map(|weight| w.splat(weight));
-        let one = w.splat(1.0);
+        let (one, half) = (w.splat(1.0), w.splat(0.5));
         for i in 0..count / Wide::<S>::COUNT {
             let start = i * Wide::<S>::COUNT;
-            let load = |x: &[f64], block: usize| {
-                [0, 1].map(|axis| w.load(x, (2 * block + axis) * n + start))
-            };
-            let (b_r, before, after) = (load(x, ROLLERS), load(x, BEFORE), load(x, AFTER));
-            let is_after = bush_after.get(i).greater(w.splat(0.5));
-            let pick = |after: [Lane<S>; 2], before: [Lane<S>; 2]| {
-                [0, 1].map(|axis| is_after.select(after[axis], before[axis]))
-            };
-            let (b_b, b_p) = (pick(after, before), pick(before, after));
-            let [im_before, im_after] = [of_ends[0].get(i), of_ends[1].get(i)];
+            let b_r = [w.load(x, start), w.load(x, n + start)];
+            let before = [w.load(x, 2 * n + start), w.load(x, 3 * n + start)];
+            let after = [w.load(x, 4 * n + start), w.load(x, 5 * n + start)];
+            let is_after = bush_after.get(i).greater(half);
+            let b_b = [
+                is_after.select(after[0], before[0]),
+                is_after.select(after[1], before[1]),
+            ];
+            let b_p = [
+                is_after.select(before[0], after[0]),
+                is_after.select(before[1], after[1]),
+            ];
+            let (im_before, im_after) = (of_before.get(i), of_after.get(i));
             let m_b = is_after.select(im_after, im_before);
             let m_p = is_after.select(im_before, im_after);
             // n₁ from bush to pin, n₂ from roller to bush
@@ -281,22 +314,20 @@ impl WithSimd for Joints<'_> {
             // y = A⁻¹ r,   A = m_r + Σ D e eᵀ
             let m_r = masses.get(i);
             let (xx, xy, yy) = (
-                m_r + matrix[0].get(i),
-                matrix[1].get(i),
-                m_r + matrix[2].get(i),
+                m_r + matrix_xx.get(i),
+                matrix_xy.get(i),
+                m_r + matrix_yy.get(i),
             );
             let inverse = (xx * yy - xy * xy).recip();
-            let apply = |v: [Lane<S>; 2]| {
-                [
-                    (yy * v[0] - xy * v[1]) * inverse,
-                    (xx * v[1] - xy * v[0]) * inverse,
-                ]
-            };
-            let y = apply([
-                m_r * b_r[0] + right[0].get(i),
-                m_r * b_r[1] + right[1].get(i),
-            ]);
-            let through = apply(n2);
+            let right = [m_r * b_r[0] + right_x.get(i), m_r * b_r[1] + right_y.get(i)];
+            let y = [
+                (yy * right[0] - xy * right[1]) * inverse,
+                (xx * right[1] - xy * right[0]) * inverse,
+            ];
+            let through = [
+                (yy * n2[0] - xy * n2[1]) * inverse,
+                (xx * n2[1] - xy * n2[0]) * inverse,
+            ];
             // p₂ = E₂ (w₂ + c p₁),   E₂ = D₂/(1 + D₂ (1/m_b + n₂·A⁻¹ n₂)),   c = n₁·n₂/m_b
             let w2 = dot(n2, [b_b[0] - y[0], b_b[1] - y[1]]);
             let e2 = d2 * (one + d2 * (m_b + dot(n2, through))).recip();
@@ -305,18 +336,17 @@ impl WithSimd for Joints<'_> {
             let w1 = dot(n1, [b_p[0] - b_b[0], b_p[1] - b_b[1]]) + cross * e2 * w2;
             let p1 = d1 * w1 * (one + d1 * (m_p + m_b - cross * cross * e2)).recip();
             let p2 = e2 * (w2 + cross * p1);
-            for axis in 0..2 {
-                let on_bush = (p1 * n1[axis] - p2 * n2[axis]) * m_b;
-                let on_pin = -(p1 * n1[axis]) * m_p;
-                let (on_after, on_before) = (
-                    is_after.select(on_bush, on_pin),
-                    is_after.select(on_pin, on_bush),
-                );
-                let at = |block: usize| (2 * block + axis) * n + start;
-                (y[axis] + through[axis] * p2).store(x, at(ROLLERS));
-                (before[axis] + on_before).store(x, at(BEFORE));
-                (after[axis] + on_after).store(x, at(AFTER));
-            }
+            (y[0] + through[0] * p2).store(x, start);
+            (y[1] + through[1] * p2).store(x, n + start);
+            let on_pin = [-(p1 * n1[0] * m_p), -(p1 * n1[1] * m_p)];
+            let on_bush = [
+                (p1 * n1[0] - p2 * n2[0]) * m_b,
+                (p1 * n1[1] - p2 * n2[1]) * m_b,
+            ];
+            (before[0] + is_after.select(on_pin[0], on_bush[0])).store(x, 2 * n + start);
+            (before[1] + is_after.select(on_pin[1], on_bush[1])).store(x, 3 * n + start);
+            (after[0] + is_after.select(on_bush[0], on_pin[0])).store(x, 4 * n + start);
+            (after[1] + is_after.select(on_bush[1], on_pin[1])).store(x, 5 * n + start);
         }
     }
 }

@@ -242,56 +242,67 @@ impl Points {
         let mut of_bushes = MemoryLanes::new(w, &self.memory.bushes, &mut memory.bushes, count);
         let (mut pins, mut bushes) = (Grips::new(w, pins, count), Grips::new(w, bushes, count));
         let mut tally = LaneTally::new(w);
-        let block =
-            |values, block| [0, 1].map(|axis| w.lanes(&self.column(values, block, axis)[..count]));
-        let (q, v) = (
-            [ROLLERS, BEFORE, AFTER].map(|b| block(at.q, b)),
-            [ROLLERS, BEFORE, AFTER].map(|b| block(at.v, b)),
-        );
-        let inverse_masses =
-            [ROLLERS, BEFORE, AFTER].map(|b| w.lanes(&self.inverse_masses[b][..count]));
+        let block = |values, block| {
+            let column = |axis| w.lanes(&self.column(values, block, axis)[..count]);
+            (column(0), column(1))
+        };
+        let ((rx, ry), (rvx, rvy)) = (block(at.q, ROLLERS), block(at.v, ROLLERS));
+        let ((bx, by), (bvx, bvy)) = (block(at.q, BEFORE), block(at.v, BEFORE));
+        let ((ax, ay), (avx, avy)) = (block(at.q, AFTER), block(at.v, AFTER));
+        let inverse = |block: usize| w.lanes(&self.inverse_masses[block][..count]);
+        let (im_roller, im_before, im_after) = (inverse(ROLLERS), inverse(BEFORE), inverse(AFTER));
         let bush_after = w.lanes(&self.bush_after[..count]);
         let mut columns = a.chunks_exact_mut(self.stride);
         let mut next = || Wide::<S>::lanes_mut(&mut columns.next().unwrap_or_default()[..count]);
-        let mut columns = [next(), next(), next(), next(), next(), next()];
+        let (mut on_rx, mut on_ry) = (next(), next());
+        let (mut on_bx, mut on_by) = (next(), next());
+        let (mut on_ax, mut on_ay) = (next(), next());
         let zero = w.splat(0.0);
         let half = w.splat(0.5);
         for i in 0..count / Wide::<S>::COUNT {
             let present = w.first(self.rollers.saturating_sub(i * Wide::<S>::COUNT));
-            let between = |from: [[Lane<S>; 2]; 2], to: [[Lane<S>; 2]; 2]| Apart {
-                offset: [to[0][0] - from[0][0], to[0][1] - from[0][1]],
-                rate: [to[1][0] - from[1][0], to[1][1] - from[1][1]],
-                spin: [zero; 2],
+            let (before_x, before_y) = (bx.get(i), by.get(i));
+            let (before_vx, before_vy) = (bvx.get(i), bvy.get(i));
+            let (after_x, after_y) = (ax.get(i), ay.get(i));
+            let (after_vx, after_vy) = (avx.get(i), avy.get(i));
+            let apart = Apart {
+                offset: [after_x - before_x, after_y - before_y],
+                rate: [after_vx - before_vx, after_vy - before_vy],
+                spin: [zero, zero],
                 present,
                 pin_after: present,
             };
-            let get = |b: usize| {
-                [
-                    [q[b][0].get(i), q[b][1].get(i)],
-                    [v[b][0].get(i), v[b][1].get(i)],
-                ]
-            };
-            let (roller, before, after) = (get(ROLLERS), get(BEFORE), get(AFTER));
-            let apart = between(before, after);
             let grip = self.pin.grip(w, &mut of_pins, i, &apart, dt, &mut tally);
-            let in_pin = [0, 1].map(|axis| grip.force * grip.normal[axis]);
+            let (pin_x, pin_y) = (grip.force * grip.normal[0], grip.force * grip.normal[1]);
             pins.set(i, &grip);
 
             let is_after = bush_after.get(i).greater(half);
-            let pick =
-                |k: usize| [0, 1].map(|axis| is_after.select(after[k][axis], before[k][axis]));
-            let apart = between(roller, [pick(0), pick(1)]);
+            let apart = Apart {
+                offset: [
+                    is_after.select(after_x, before_x) - rx.get(i),
+                    is_after.select(after_y, before_y) - ry.get(i),
+                ],
+                rate: [
+                    is_after.select(after_vx, before_vx) - rvx.get(i),
+                    is_after.select(after_vy, before_vy) - rvy.get(i),
+                ],
+                spin: [zero, zero],
+                present,
+                pin_after: present,
+            };
             let grip = self.bush.grip(w, &mut of_bushes, i, &apart, dt, &mut tally);
+            let (bush_x, bush_y) = (grip.force * grip.normal[0], grip.force * grip.normal[1]);
             bushes.set(i, &grip);
-            let masses = inverse_masses.map(|masses| masses.get(i));
-            for axis in 0..2 {
-                let in_bush = grip.force * grip.normal[axis];
-                let on_after = is_after.select(in_bush, zero);
-                let on_before = in_bush - on_after;
-                columns[2 * ROLLERS + axis].add(i, in_bush * masses[ROLLERS]);
-                columns[2 * BEFORE + axis].add(i, (in_pin[axis] - on_before) * masses[BEFORE]);
-                columns[2 * AFTER + axis].add(i, -(in_pin[axis] + on_after) * masses[AFTER]);
-            }
+
+            let (m_r, m_b, m_a) = (im_roller.get(i), im_before.get(i), im_after.get(i));
+            let after_bush_x = is_after.select(bush_x, zero);
+            let after_bush_y = is_after.select(bush_y, zero);
+            on_rx.add(i, bush_x * m_r);
+            on_ry.add(i, bush_y * m_r);
+            on_bx.add(i, (pin_x - (bush_x - after_bush_x)) * m_b);
+            on_by.add(i, (pin_y - (bush_y - after_bush_y)) * m_b);
+            on_ax.add(i, -((pin_x + after_bush_x) * m_a));
+            on_ay.add(i, -((pin_y + after_bush_y) * m_a));
         }
         pins.finish();
         bushes.finish();
