@@ -93,6 +93,7 @@ impl Points {
     ) {
         let rubs = contacts.surface.friction != Friction::None;
         found.mounts.push(coordinates(mount));
+        let moves = moves(mount);
         for side in 0..contacts.sides() {
             for (lane, run) in contacts.runs.iter().enumerate() {
                 let slots = side * contacts.slots + lane * LANES;
@@ -111,7 +112,7 @@ impl Points {
                         along,
                         stiffness: faces.stiffness[index],
                         damping: faces.damping[index],
-                        shares: shares(mount, along, arm, 0.0),
+                        shares: shares(&moves, along, arm, 0.0),
                         beside: 0.0,
                         weight: 0.0,
                     };
@@ -123,7 +124,7 @@ impl Points {
                             stiffness: 0.0,
                             // A secant: a step cannot carry the slip beyond zero.
                             damping: faces.secant[index],
-                            shares: shares(mount, across, arm, contacts.radius),
+                            shares: shares(&moves, across, arm, contacts.radius),
                             ..normal
                         });
                     }
@@ -196,14 +197,28 @@ fn coordinates(mount: &Mount) -> [usize; 3] {
     [shift(0), shift(1), mount.turn.map_or(0, |(j, _)| j)]
 }
 
+/// The shifts and the rotation of a wheel or rail per unit of these coordinates, unused ones zero: what an absent one leaves in memory
+/// may be numbers that take a hundred times as long.
+fn moves(mount: &Mount) -> ([Vector; 2], f64) {
+    let shift = |at: usize| match mount.shifts[at] {
+        Some((_, shift)) => shift,
+        None => Vector::zeros(),
+    };
+    let turn = match mount.turn {
+        Some((_, ratio)) => ratio,
+        None => 0.0,
+    };
+    ([shift(0), shift(1)], turn)
+}
+
 /// c_j of these coordinates: the surface goes along e with its frame, by −e·(ẑ × d) with the rotation, and a circle that does not turn
 /// is passed by the lever.
-fn shares(mount: &Mount, along: Vector, arm: Vector, lever: f64) -> [f64; 3] {
-    let shift = |at: usize| mount.shifts[at].map_or(0.0, |(_, shift)| -along.dot(&shift));
-    let turn = mount
-        .turn
-        .map_or(0.0, |(_, ratio)| (lever - along.dot(&turned(arm))) * ratio);
-    [shift(0), shift(1), turn]
+fn shares((shifts, turn): &([Vector; 2], f64), along: Vector, arm: Vector, lever: f64) -> [f64; 3] {
+    [
+        -along.dot(&shifts[0]),
+        -along.dot(&shifts[1]),
+        (lever - along.dot(&turned(arm))) * turn,
+    ]
 }
 
 impl Pressed {
