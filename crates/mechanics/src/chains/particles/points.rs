@@ -17,8 +17,6 @@ mod forces;
 pub(crate) mod model;
 mod observe;
 mod statics;
-#[cfg(test)]
-mod tests;
 
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
@@ -83,15 +81,11 @@ pub(crate) struct Memory {
 pub(crate) struct Found {
     pub(in crate::chains) memory: Memory,
     pub(in crate::chains) tally: Tally,
-    #[serde(skip)]
     pins: Held,
-    #[serde(skip)]
     bushes: Held,
     /// Closed contacts of rollers with wheels and rails.
-    #[serde(skip)]
     touching: Vec<damp::Touching>,
     /// Coordinates that each of these moves with.
-    #[serde(skip)]
     mounts: Vec<[usize; 3]>,
     /// Rollers with them, in the matrix and on the right of an implicit step.
     #[serde(skip)]
@@ -99,7 +93,7 @@ pub(crate) struct Found {
 }
 
 /// Contacts of one kind in all joints, whole lanes.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Held {
     /// n, from the centre of what has the bore to that of what turns in it, or back.
     normal_x: Vec<f64>,

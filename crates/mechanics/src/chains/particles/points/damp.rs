@@ -16,6 +16,7 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Moment, Weights};
 use nalgebra::{DMatrix, DVector};
 use pulp::{Simd, WithSimd};
+use serde::{Deserialize, Serialize};
 
 use super::{AFTER, BEFORE, Found, Points, ROLLERS};
 use crate::chains::links::{Mount, rail_mount, turned, wheel_mount};
@@ -25,7 +26,7 @@ use crate::lanes::{LANES, Lane, Wide, dispatch, padded};
 use crate::system::{GroupBodies, RailContact};
 
 /// One direction of a closed contact between a roller and a wheel or rail.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Touching {
     joint: usize,
     /// Number of the wheel or rail among those of the chain.
