@@ -60,20 +60,25 @@ fn roller(play: f64) -> FreeRoller {
     }
 }
 
+/// What the stiffness of a link leaves beside its joint \[N/m\].
+fn beside(play: f64) -> f64 {
+    let alone = joint(play, None).surface.law.stiffness(1e-6);
+    1.0 / (1.0 / STIFFNESS - 1.0 / alone)
+}
+
+/// Half of it behind the pins, half in the links.
 fn points(play: f64) -> ChainModel {
     ChainModel::Points(PointJoints {
         inner: INNER,
         outer: OUTER,
         outer_first: false,
-        joint: joint(play, None),
+        joint: joint(play, Some(2.0 * beside(play))),
         roller: roller(play),
     })
 }
 
-/// Rigid links with the same plates behind their pins.
+/// Rigid links with all of it behind their pins.
 fn links(play: f64) -> ChainModel {
-    let alone = joint(play, None).surface.law.stiffness(1e-6);
-    let plates = 1.0 / (1.0 / STIFFNESS - 1.0 / alone);
     let body = |mass: f64, inertia: f64| LinkBody {
         mass,
         inertia,
@@ -83,7 +88,7 @@ fn links(play: f64) -> ChainModel {
         inner: body(INNER, 0.005_423),
         outer: body(OUTER, 0.007_835),
         outer_first: false,
-        joint: Joint::Clearance(joint(play, Some(plates))),
+        joint: Joint::Clearance(joint(play, Some(beside(play)))),
         rollers: RollerModel::Free(roller(play)),
     })
 }

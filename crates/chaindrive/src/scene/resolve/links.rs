@@ -342,7 +342,7 @@ fn joint(
     };
     let law = law(said, pair, clearance, "joint", needs.findings);
     let known = Joints::new(scene, text, text.stiffness.map(|stiffness| stiffness.0));
-    // Particles have their friction beside the contact, and their plates in the links.
+    // Particles have their friction beside the contact, and half of their plates in the links.
     let points = are_points(text);
     let friction = if points {
         Some(Friction::None)
@@ -350,8 +350,8 @@ fn joint(
         known.friction(needs.findings)
     };
     let mut law = law?;
-    if law.series.is_none() && !points {
-        law.series = known.plates(&law, route, pin, needs.findings);
+    if law.series.is_none() {
+        law.series = known.plates(&law, route, pin, points, needs.findings);
     }
     Some(Joint::Clearance(Clearance {
         pin_radius: pin,

@@ -12,7 +12,7 @@ use crate::chains::links::model::{Clearance, FreeRoller};
 /// The masses of the chain are shared: the rollers have their own, and what is left at a joint is shared between its bush and its
 /// pin as the masses of inner and outer links are. A link that is struck across at one end answers with half of its mass, since
 /// bushes, pins and the eyes of the plates lie at the ends. Stiffnesses of links are those between their pins under the pretension,
-/// what their joint yields included.
+/// what their joint yields included: what the law of the joint does not is in the links.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointJoints {
     /// Mass of an inner link without its rollers \[kg\], positive.
