@@ -6,6 +6,7 @@ use super::articulation::{self, Joints};
 use super::chains::Described;
 use super::law::Pair;
 use super::scatter::Normal;
+use super::stack::Behind;
 use super::{Findings, catalogue, count, links, motion};
 use crate::scene::defaults;
 use crate::scene::schema::{self, SceneText};
@@ -16,6 +17,8 @@ pub(super) struct Resolved {
     pub(super) chain: Chain,
     /// Length of the rollers on the teeth \[m\], where it is known.
     pub(super) roller_length: Option<f64>,
+    /// What lies behind the surfaces of teeth, where it is known.
+    pub(super) behind_teeth: Option<Behind>,
     /// Why the number of links is a guess that must not be used; the other parts are looked at with it.
     pub(super) uncounted: Option<String>,
 }
@@ -143,6 +146,7 @@ pub(super) fn resolve(
             .map(|(k, m)| 2.0 * ratio * (k * m).max(0.0).sqrt())
             .collect()
     };
+    let behind_teeth = Behind::new(text, &model, findings);
     let chain = Chain {
         pitch,
         lengths,
@@ -163,6 +167,7 @@ pub(super) fn resolve(
     Some(Resolved {
         chain,
         roller_length,
+        behind_teeth,
         uncounted,
     })
 }

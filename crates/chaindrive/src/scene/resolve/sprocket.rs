@@ -73,10 +73,20 @@ fn resolve(
         common: &scene.contact.teeth,
         fallback: contact::TEETH,
     };
-    let surface = said.surface(chain.roller(), findings, |findings| {
+    let mut surface = said.surface(chain.roller(), findings, |findings| {
         let place = format!("{path}.contact.law");
         law(gap.as_ref()?, chain, &place, findings)
     });
+    // The law that particles have where the scene gives none is that of the whole stack.
+    let of_surfaces =
+        chain.is_rigid() || text.contact.law.is_some() || scene.contact.teeth.law.is_some();
+    if let (Some(surface), Some(behind), true) = (&mut surface, &chain.behind_teeth, of_surfaces)
+        && surface.law.series.is_none()
+    {
+        surface.law.series = Some(behind.stiffness);
+        let place = format!("{path}.contact.series");
+        findings.assume(&place, behind.stiffness, &*behind.remark);
+    }
     let flank = gap
         .as_ref()
         .and_then(|gap| flank::resolve(text, path, scene, gap, chain, findings));
