@@ -83,6 +83,11 @@ fn teeth_have_the_stack_of_the_catalogue_behind_them() {
     );
     let given = plain.replace(law, &format!("{law}\nseries = \"2 GN/m\""));
     assert_eq!(behind_teeth(&read(&given)), Some(2e9));
+    // Nothing lies behind where a scene says so, and a scene in full says so.
+    let rigid = plain.replace(law, &format!("{law}\nseries = 0"));
+    assert_eq!(behind_teeth(&read(&rigid)), None);
+    let old = read(&format!("defaults = \"0.1\"\n{plain}"));
+    assert_eq!(behind_teeth(&old.resolved().unwrap()), None);
 }
 
 /// Half of what the stiffness of a link leaves beside its joint lies behind the pin, and a scene that is written out in full has it too.

@@ -350,7 +350,7 @@ fn joint(
         known.friction(needs.findings)
     };
     let mut law = law?;
-    if law.series.is_none() {
+    if said.series().is_none() {
         law.series = known.plates(&law, route, pin, points, needs.findings);
     }
     Some(Joint::Clearance(Clearance {

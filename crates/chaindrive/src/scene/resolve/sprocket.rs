@@ -80,12 +80,15 @@ fn resolve(
     // The law that particles have where the scene gives none is that of the whole stack.
     let of_surfaces =
         chain.is_rigid() || text.contact.law.is_some() || scene.contact.teeth.law.is_some();
-    if let (Some(surface), Some(behind), true) = (&mut surface, &chain.behind_teeth, of_surfaces)
-        && surface.law.series.is_none()
+    if let (Some(surface), Some(behind), None) = (&mut surface, &chain.behind_teeth, said.series())
     {
-        surface.law.series = Some(behind.stiffness);
         let place = format!("{path}.contact.series");
-        findings.assume(&place, behind.stiffness, &*behind.remark);
+        if of_surfaces && behind.stiffness > 0.0 {
+            surface.law.series = Some(behind.stiffness);
+            findings.assume(&place, behind.stiffness, &*behind.remark);
+        } else {
+            findings.assume(&place, 0.0, "nothing lies behind");
+        }
     }
     let flank = gap
         .as_ref()
