@@ -6,10 +6,6 @@ use crate::DriveError;
 
 /// What the chain is made of: model only what a scene needs.
 #[derive(Clone, Debug, PartialEq)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "a drive holds one, and a box would show in every scene"
-)]
 pub enum ChainModel {
     /// Point masses at the rollers, joined by spring-damper links: two coordinates a link.
     Particles,
