@@ -322,7 +322,7 @@ fn model(drive: &Drive, assembled: &Assembled) -> Model {
     let contacts = links::contacts(drive);
     let mut chains = drive.chains.iter();
     let undamped = chains.all(|placed| {
-        let particles = placed.chain.model == ChainModel::Particles;
+        let particles = !matches!(placed.chain.model, ChainModel::Rigid(_));
         particles && placed.chain.damping.iter().all(|d| *d <= 0.0)
     });
     let lacks = [

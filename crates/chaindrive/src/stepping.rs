@@ -19,9 +19,9 @@ pub enum Stepping {
     Rk4,
     /// The Dormand–Prince pair of order 5(4), step under error control.
     DormandPrince,
-    /// Damping implicit and stiffness explicit, order 1, fixed step; for rigid links only.
+    /// Damping implicit and stiffness explicit, order 1, fixed step; for rigid links and free rollers.
     ImplicitDamping,
-    /// The implicit generalized-α method of order 2, fixed step; for rigid links only.
+    /// The implicit generalized-α method of order 2, fixed step; for rigid links and free rollers.
     GeneralizedAlpha,
 }
 

@@ -36,7 +36,7 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "TIME")]
     every: Option<String>,
 
-    /// Method of time stepping; implicit-damping and generalized-alpha are for rigid links only
+    /// Method of time stepping; implicit-damping and generalized-alpha are for rigid links and free rollers
     #[arg(long, value_parser = Stepping::ALL.map(Stepping::name))]
     method: Option<String>,
 

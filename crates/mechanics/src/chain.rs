@@ -164,9 +164,23 @@ impl Chain {
         }
         problems.extend(self.model.problems());
         problems.extend(self.strength.problems());
+        if let ChainModel::Points(points) = &self.model {
+            let conflict = |path: &str, problem: &str| DriveError::Conflict {
+                path: path.into(),
+                problem: problem.into(),
+            };
+            if !self.is_closed() || !self.links().is_multiple_of(2) {
+                let problem = "rollers, bushes and pins are points in closed chains of an even number of links only";
+                problems.push(conflict("chain.links", problem));
+            }
+            if self.masses.iter().any(|mass| *mass <= points.roller.mass) {
+                let problem = "the roller is heavier than the whole joint";
+                problems.push(conflict("chain.roller.mass", problem));
+            }
+        }
         problems.extend(self.articulation.iter().flat_map(Articulation::problems));
         let rubs = |it: &Articulation| it.friction != Friction::None;
-        if self.model.has_clearance() && self.articulation.as_ref().is_some_and(rubs) {
+        if self.model.rubs_in_bushes() && self.articulation.as_ref().is_some_and(rubs) {
             problems.push(DriveError::Conflict {
                 path: "chain.joint.contact.friction".into(),
                 problem: "pins with clearance rub by the contact with their bushes".into(),

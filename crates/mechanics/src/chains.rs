@@ -23,6 +23,7 @@ pub(crate) use balance::{Balance, Load, Moving, Sum, Unknown, Way};
 use links::Linkage;
 pub use model::ChainModel;
 use particles::Particles;
+use particles::points::{self, Points};
 pub(crate) use record::{Loads, Record};
 
 use crate::contact::{ContactState, Frame, PlateContact};
@@ -36,6 +37,8 @@ use crate::{End, Ends, MemoryError};
 pub(crate) enum Chain {
     /// Point masses at the rollers.
     Particles(Box<Particles>),
+    /// Point masses at rollers, bushes and pins.
+    Points(Box<Points>),
     /// Rigid links.
     Links(Box<Linkage>),
 }
@@ -45,6 +48,8 @@ pub(crate) enum Chain {
 pub(crate) enum ChainMemory {
     /// The friction of its joints, if there is any.
     Particles(Option<joints::Stick>),
+    /// The contacts in its joints, and their friction.
+    Points(Box<points::Memory>, Option<joints::Stick>),
     /// The contacts in its joints, and the friction of those without clearance.
     Links(Box<links::Memory>, Option<joints::Stick>),
 }
@@ -87,6 +92,7 @@ macro_rules! ask {
     ($chain:expr, $member:ident => $answer:expr) => {
         match $chain {
             Chain::Particles($member) => $answer,
+            Chain::Points($member) => $answer,
             Chain::Links($member) => $answer,
         }
     };
@@ -109,13 +115,28 @@ impl Chain {
         laid: &LaidAs<'_>,
         at: Moment<'_>,
     ) -> Option<(Self, [Vec<f64>; 2])> {
-        let (Self::Particles(particles), ChainModel::Rigid(links)) = (self, &laid.chain.model)
-        else {
+        let Self::Particles(particles) = self else {
             return None;
         };
-        let replacement = links::build::replace(particles, entries, bodies, laid, links, at);
-        let chain = Self::Links(Box::new(replacement.linkage));
-        Some((chain, [replacement.q, replacement.v]))
+        match &laid.chain.model {
+            ChainModel::Particles => None,
+            ChainModel::Points(joints) => {
+                let own = Moment {
+                    t: at.t,
+                    q: &at.q[entries.clone()],
+                    v: &at.v[entries],
+                    z: &[],
+                };
+                let (points, state) = Points::replace(particles, laid, joints, own);
+                Some((Self::Points(Box::new(points)), state))
+            }
+            ChainModel::Rigid(links) => {
+                let replacement =
+                    links::build::replace(particles, entries, bodies, laid, links, at);
+                let chain = Self::Links(Box::new(replacement.linkage));
+                Some((chain, [replacement.q, replacement.v]))
+            }
+        }
     }
 
     /// Brings velocities of the chain and, behind it, the bodies to where no joint opens.
@@ -127,7 +148,7 @@ impl Chain {
         v: &mut [f64],
     ) {
         match self {
-            Self::Particles(_) => {}
+            Self::Particles(_) | Self::Points(_) => {}
             Self::Links(chain) => chain.close_in_motion(begin, bodies, q, v),
         }
     }
@@ -172,6 +193,7 @@ impl Chain {
     pub(crate) fn joints(&self) -> usize {
         match self {
             Self::Particles(_) => 0,
+            Self::Points(chain) => chain.joints(),
             Self::Links(chain) => chain.joints(),
         }
     }
@@ -180,6 +202,7 @@ impl Chain {
     pub(crate) fn bearing_laws(&self) -> [Option<Prepared>; 2] {
         match self {
             Self::Particles(_) => [None, None],
+            Self::Points(chain) => chain.bearing_laws(),
             Self::Links(chain) => chain.bearing_laws(),
         }
     }
@@ -220,6 +243,10 @@ impl Chain {
     pub(crate) fn set_clock(&mut self, t: f64) {
         let resisting = match self {
             Self::Particles(chain) => chain.joints.as_mut(),
+            Self::Points(chain) => {
+                chain.memory.time = t;
+                chain.joints.as_mut()
+            }
             Self::Links(chain) => {
                 chain.memory.time = t;
                 chain.resisting.as_mut()
@@ -243,7 +270,7 @@ impl Chain {
     /// Frequency \[1/s\] of what every method takes explicitly, beside the mode above.
     pub(crate) fn stabilisation(&self) -> f64 {
         match self {
-            Self::Particles(_) => 0.0,
+            Self::Particles(_) | Self::Points(_) => 0.0,
             Self::Links(chain) => chain.stabilisation(),
         }
     }
@@ -257,7 +284,7 @@ impl Chain {
     pub(crate) fn can_solve(&self) -> bool {
         match self {
             Self::Particles(_) => false,
-            Self::Links(_) => true,
+            Self::Points(_) | Self::Links(_) => true,
         }
     }
 
@@ -266,7 +293,7 @@ impl Chain {
     pub(crate) fn prefers_implicit_damping(&self) -> bool {
         match self {
             Self::Particles(_) => false,
-            Self::Links(_) => true,
+            Self::Points(_) | Self::Links(_) => true,
         }
     }
 
@@ -280,6 +307,7 @@ impl Chain {
     ) -> bool {
         match self {
             Self::Particles(_) => false,
+            Self::Points(chain) => chain.solve(bodies, weights, record, x),
             Self::Links(chain) => chain.solve(bodies, weights, record, x),
         }
     }
@@ -288,6 +316,7 @@ impl Chain {
     pub(crate) fn compute_by_twos(&mut self) {
         match self {
             Self::Particles(chain) => chain.compute_by_twos(),
+            Self::Points(chain) => chain.compute_by_twos(),
             Self::Links(_) => {}
         }
     }
@@ -305,6 +334,10 @@ impl Chain {
         let stick = |joints: Option<&joints::Joints>| joints.map(|joints| joints.memory.clone());
         match self {
             Self::Particles(chain) => ChainMemory::Particles(stick(chain.joints.as_ref())),
+            Self::Points(chain) => {
+                let memory = Box::new(chain.memory.clone());
+                ChainMemory::Points(memory, stick(chain.joints.as_ref()))
+            }
             Self::Links(chain) => {
                 let memory = Box::new(chain.memory.clone());
                 ChainMemory::Links(memory, stick(chain.resisting.as_ref()))
@@ -318,12 +351,15 @@ impl Chain {
             (Self::Particles(chain), ChainMemory::Particles(memory)) => {
                 joints::remember(chain.joints.as_mut(), memory)
             }
+            (Self::Points(chain), ChainMemory::Points(memory, stick)) => {
+                joints::remember(chain.joints.as_mut(), stick)?;
+                chain.remember(*memory)
+            }
             (Self::Links(chain), ChainMemory::Links(memory, stick)) => {
                 joints::remember(chain.resisting.as_mut(), stick)?;
                 chain.remember(*memory)
             }
-            (Self::Particles(_), ChainMemory::Links(..))
-            | (Self::Links(_), ChainMemory::Particles(_)) => Err(MemoryError::Model),
+            (Self::Particles(_) | Self::Points(_) | Self::Links(_), _) => Err(MemoryError::Model),
         }
     }
 }
@@ -361,6 +397,7 @@ impl Chain {
     pub(crate) fn contacts_of(&self, joint: usize) -> [Option<ContactState>; 2] {
         match self {
             Self::Particles(_) => [None; 2],
+            Self::Points(chain) => chain.contacts_of(joint),
             Self::Links(chain) => chain.contacts_of(joint),
         }
     }
@@ -371,7 +408,7 @@ impl Chain {
     /// Whether they must: those with play lie somewhere in their bushes.
     pub(crate) fn has_play(&self) -> bool {
         match self {
-            Self::Particles(_) => false,
+            Self::Particles(_) | Self::Points(_) => false,
             Self::Links(chain) => chain.has_play(),
         }
     }
@@ -459,6 +496,7 @@ impl Chain {
     pub(crate) fn copy_ghosts(&self, values: &mut [f64]) {
         match self {
             Self::Particles(chain) => chain.copy_ghosts(values),
+            Self::Points(chain) => chain.copy_ghosts(values),
             Self::Links(_) => {}
         }
     }
@@ -471,7 +509,7 @@ impl Chain {
     /// Visits the joints that no energy but a condition holds together: the pin and its hole, where they move.
     pub(crate) fn each_hinge(&self, q: &[f64], visit: impl FnMut([Moving; 2])) {
         match self {
-            Self::Particles(_) => {}
+            Self::Particles(_) | Self::Points(_) => {}
             Self::Links(chain) => chain.each_hinge(q, visit),
         }
     }

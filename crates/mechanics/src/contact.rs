@@ -117,7 +117,7 @@ pub(crate) struct Touch {
     pub(crate) state: ContactMemory,
     /// Until when \[s\] nothing can touch in the lane that begins with this slot.
     pub(crate) wake: Vec<f64>,
-    /// What implicit steps want to know; kept for rigid links only, and valid where a contact is closed.
+    /// What implicit steps want to know; kept for chains that solve equations only, and valid where a contact is closed.
     pub(crate) faces: Faces,
 }
 

@@ -7,6 +7,7 @@
 //! | model | file | degrees of freedom |
 //! |---|---|---|
 //! | particle chain | [`ChainModel::Particles`] | 2 per roller |
+//! | roller, bush and pin as points | [`ChainModel::Points`] | 6 per roller |
 //! | rigid links, ideal joints or clearance | [`ChainModel::Rigid`] | 3 per link |
 //! | free rollers on them | [`RollerModel::Free`] | 3 per roller |
 //! | shaft, free to turn, with its sprockets | [`Shaft`] | 1 |
@@ -48,6 +49,7 @@ pub use assembly::{Assembled, Fitting, RollerLayout, Statics};
 pub use chain::{Chain, End, Ends};
 pub use chains::ChainModel;
 pub use chains::links::model::{Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel};
+pub use chains::particles::points::PointJoints;
 pub use contact::Impacts;
 pub use drive::{
     Adjust, Coupling, Drive, Fit, Flank, GearPair, Guide, GuideSupport, Layout, Parts, PlacedChain,

@@ -6,7 +6,6 @@ use chaindrive::catalogue::{CatalogueChain, Number};
 use chaindrive::describe::{spans_at_rest, static_stages};
 use chaindrive::scene::{self, Scene};
 use chaindrive::{Channel, Description, Mode, Run};
-use chaindrive_mechanics::{ChainModel, Joint, RollerModel};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
@@ -219,12 +218,10 @@ impl Drive {
             };
             let mut chains = self.drive.chains.iter();
             let placed = chains.find(|placed| placed.name.as_deref() == chain)?;
-            let ChainModel::Rigid(links) = &placed.chain.model else {
-                return None;
-            };
-            match (contact, &links.joint, &links.rollers) {
-                ("joints", Joint::Clearance(joint), _) => Some(&joint.surface),
-                ("rollers", _, RollerModel::Free(roller)) => Some(&roller.surface),
+            let model = &placed.chain.model;
+            match contact {
+                "joints" => model.clearance().map(|joint| &joint.surface),
+                "rollers" => model.free_roller().map(|roller| &roller.surface),
                 _ => None,
             }
         });

@@ -1,7 +1,9 @@
 //! Links, joints and rollers of the chain, and the laws of their contacts.
 
 use chaindrive_contact::Friction;
-use chaindrive_mechanics::{Chain, ChainModel, Drive, Joint, RollerModel, Surface};
+use chaindrive_mechanics::{
+    Chain, ChainModel, Clearance, Drive, FreeRoller, Joint, RollerModel, Surface,
+};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -10,7 +12,7 @@ use serde_json::Value;
 pub struct LinkFacts {
     /// Model, as scenes name it.
     pub model: &'static str,
-    /// Rollers of rigid links: lumped, free or none.
+    /// Rollers, where they are told apart: lumped, free or none.
     pub rollers: Option<&'static str>,
     /// Joints between links, and between links and supports.
     pub joints: usize,
@@ -44,33 +46,32 @@ impl LinkFacts {
             None => (None, None),
         };
         let joint_damping = resisting.map_or(0.0, |it| it.damping);
-        let ChainModel::Rigid(links) = &chain.model else {
-            return Self {
-                model: "particles",
-                rollers: None,
-                joints: 0,
-                joint_clearance: None,
-                roller_clearance: None,
-                joint_friction,
-                pin_diameter,
-                joint_damping,
-            };
-        };
-        let (model, joint_clearance) = match &links.joint {
-            Joint::Ideal => ("ideal-joints", None),
-            Joint::Clearance(joint) => ("clearance-joints", Some(joint.gap())),
-        };
-        let (rollers, roller_clearance) = match &links.rollers {
-            RollerModel::Lumped { .. } => ("lumped", None),
-            RollerModel::Free(roller) => ("free", Some(roller.gap())),
-            RollerModel::Bush => ("none", None),
+        let (model, rollers) = match &chain.model {
+            ChainModel::Particles => ("particles", None),
+            ChainModel::Points(_) => ("particles", Some("free")),
+            ChainModel::Rigid(links) => {
+                let model = match &links.joint {
+                    Joint::Ideal => "ideal-joints",
+                    Joint::Clearance(_) => "clearance-joints",
+                };
+                let rollers = match &links.rollers {
+                    RollerModel::Lumped { .. } => "lumped",
+                    RollerModel::Free(_) => "free",
+                    RollerModel::Bush => "none",
+                };
+                (model, Some(rollers))
+            }
         };
         Self {
             model,
-            rollers: Some(rollers),
-            joints: chain.rollers(),
-            joint_clearance,
-            roller_clearance,
+            rollers,
+            joints: if rollers.is_some() {
+                chain.rollers()
+            } else {
+                0
+            },
+            joint_clearance: chain.model.clearance().map(Clearance::gap),
+            roller_clearance: chain.model.free_roller().map(FreeRoller::gap),
             joint_friction,
             pin_diameter,
             joint_damping,
@@ -99,14 +100,10 @@ pub(super) fn contacts(drive: &Drive) -> Vec<ContactFacts> {
     let guides = drive.guides.iter().map(|guide| ("guides", &guide.surface));
     let mut surfaces: Vec<(&'static str, &Surface)> = teeth.chain(guides).collect();
     for placed in &drive.chains {
-        if let ChainModel::Rigid(links) = &placed.chain.model {
-            if let Joint::Clearance(joint) = &links.joint {
-                surfaces.push(("joints", &joint.surface));
-            }
-            if let RollerModel::Free(roller) = &links.rollers {
-                surfaces.push(("rollers", &roller.surface));
-            }
-        }
+        let model = &placed.chain.model;
+        let joints = model.clearance().map(|it| ("joints", &it.surface));
+        let rollers = model.free_roller().map(|it| ("rollers", &it.surface));
+        surfaces.extend(joints.into_iter().chain(rollers));
     }
     let mut found: Vec<ContactFacts> = Vec::new();
     for (pair, surface) in surfaces {

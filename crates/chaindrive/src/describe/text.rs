@@ -275,7 +275,12 @@ impl fmt::Display for Model {
 impl fmt::Display for LinkFacts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(rollers) = self.rollers {
-            write!(f, "{}: rigid links, {} joints", self.model, self.joints)?;
+            let made = if self.model == "particles" {
+                "point masses at rollers, bushes and pins, links as springs"
+            } else {
+                "rigid links"
+            };
+            write!(f, "{}: {made}, {} joints", self.model, self.joints)?;
             if let Some(gap) = self.joint_clearance {
                 write!(f, " with {:.1} µm of radial play", gap * 1e6)?;
             }

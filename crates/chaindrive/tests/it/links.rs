@@ -270,6 +270,8 @@ fn heavy_impacts_do_not_feed_themselves() {
 fn ideal_joints_step_by_implicit_damping() {
     for name in ["bicycle", "bicycle_slack"] {
         let scene = preset(name).replace("chain.model", "ideal-joints").unwrap();
+        // Bare seats: behind softer ones so little is open at the default step that chance decides whether it halves.
+        let scene = scene.replace("contact.teeth.series", "0").unwrap();
         let coarse = open_share(&scene, 10e-3, None);
         assert!(coarse < 5e-3, "{name}: {coarse}");
         let fine = open_share(&scene, 10e-3, Some(1e-6));

@@ -15,6 +15,15 @@ fn preset(name: &str) -> Scene {
     Scene::preset(name).unwrap()
 }
 
+/// Roller, bush and pin of particles as points of their own.
+fn loose() -> Scene {
+    let scene = preset("industrial_16b");
+    let scene = scene.replace("chain.rollers", "free").unwrap();
+    scene
+        .replace("chain.roller.clearance", "\"0.05 mm\"")
+        .unwrap()
+}
+
 /// Joints that rub after `LuGre`: the bristles remember.
 fn rubbing() -> Scene {
     let friction = "{ kind = \"lugre\", static_coefficient = 0.15, coefficient = 0.1, slip_speed = 0.01, stiffness = 1e5 }";
@@ -94,6 +103,7 @@ fn a_run_in_a_hundred_pieces_is_the_run_in_one() {
         preset("marine_engine"),
         preset("bicycle"),
         rubbing(),
+        loose(),
         oiled(),
     ] {
         for stepping in METHODS {
@@ -177,6 +187,7 @@ fn a_run_by_snapshots_is_the_run_in_one() {
     for (scene, solves) in [
         (preset("marine_engine"), false),
         (rubbing(), true),
+        (loose(), true),
         (ideal, true),
         (particles, false),
     ] {

@@ -24,6 +24,7 @@ mod robust_scenes;
 mod run_in;
 mod scenes;
 mod several_chains;
+mod stack;
 mod sweep;
 mod tooth_gaps;
 mod validation_contact;

@@ -292,7 +292,9 @@ fn results_carry_the_verdict() {
         .with("until", Given::Number(1e-4))
         .with("every", Given::Number(1e-5))
         .with("method", Given::Text("implicit-damping".to_owned()));
-    let request = Request::new(&scene("motorcycle", &[]), &settings).unwrap();
+    // Bare seats strike harder than a run of a tenth of a millisecond accounts for.
+    let bare = scene("motorcycle", &[("contact.teeth.series", "0")]);
+    let request = Request::new(&bare, &settings).unwrap();
     let mut memory = Memory::default();
     let told = execute(&request, &mut memory, &|| false).unwrap();
     let mut store = InStore::new(path.clone(), Existing::Keep);

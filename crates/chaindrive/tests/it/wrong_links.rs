@@ -61,6 +61,7 @@ const CASES: &[Mistake] = &[
     ("length = \"5.56 mm\"\n", "", "contact.joints.law.length", 22, "missing; give the length of the contact"),
     ("length = \"3.3 mm\"\n", "", "chain.roller.length", 14, "give the length of the contact, or `contact.rollers.law`"),
     ("links = 78", "links = 77", "chain.links", 4, "needs an even number"),
+    ("model = \"clearance-joints\"", "model = \"particles\"", "chain.inner.inertia", 8, "the particle chain has its masses at the joints"),
     // Masses.
     ("mass = \"0.465 g\"\n", "", "chain.roller.mass", 14, "missing; give the mass of a roller"),
     ("mass = \"0.465 g\"", "mass = \"0 g\"", "chain.roller.mass", 15, "0, must be positive [kg]"),
@@ -71,8 +72,8 @@ const CASES: &[Mistake] = &[
     ("outer = { mass = \"3.8 g\"", "outer = { mass = \"0 g\"", "chain.outer.mass", 9, "0, must be positive [kg]"),
     // Models.
     ("model = \"clearance-joints\"", "model = \"ideal\"", "chain.model", 5, "known are particles, ideal-joints, clearance-joints"),
-    ("model = \"clearance-joints\"", "model = \"particles\"", "chain.joint.clearance", 12, "only pins with clearance have one; take `model = \"clearance-joints\"`"),
-    ("model = \"clearance-joints\"", "model = \"particles\"", "chain.rollers", 6, "the particle chain has none"),
+    ("model = \"clearance-joints\"\nrollers = \"free\"", "model = \"particles\"\nrollers = \"lumped\"", "chain.joint.clearance", 12, "only pins with clearance have one; take `model = \"clearance-joints\"`"),
+    ("model = \"clearance-joints\"\nrollers = \"free\"", "model = \"particles\"\nrollers = \"lumped\"", "chain.rollers", 6, "the particle chain has none"),
     ("model = \"clearance-joints\"", "model = \"ideal-joints\"", "chain.joint.length", 13, "only pins with clearance have one"),
     ("rollers = \"free\"", "rollers = \"none\"", "chain.roller", 14, "this chain has no rollers"),
     ("rollers = \"free\"", "rollers = \"loose\"", "chain.rollers", 6, "known are lumped, free, none"),

@@ -39,11 +39,14 @@ use nalgebra::Vector3;
 use pulp::Arch;
 use serde::{Deserialize, Serialize};
 
+pub(super) use balance::add_joint;
+pub(super) use bearing::{Apart, Grip};
 pub(crate) use bearing::{Bearing, Part, Tally};
 pub(crate) use blocks::Blocks;
 pub(crate) use element::{Element, Mount, Partner, cross, turned};
 pub(crate) use hinge::Hinges;
 pub(crate) use impulses::Impulses;
+pub(super) use meshing::{rail_mount, wheel_mount};
 pub(crate) use pins::{Pairs, Pins};
 pub(crate) use posture::{Posture, Shapes, free_part};
 

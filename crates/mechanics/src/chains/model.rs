@@ -1,17 +1,16 @@
 //! What a chain can be made of, as a drive describes it.
 
-use super::links::model::{Joint, RigidLinks};
+use super::links::model::{Clearance, FreeRoller, Joint, RigidLinks, RollerModel};
+use super::particles::points::PointJoints;
 use crate::DriveError;
 
 /// What the chain is made of: model only what a scene needs.
 #[derive(Clone, Debug, PartialEq)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "a drive holds one, and a box would show in every scene"
-)]
 pub enum ChainModel {
     /// Point masses at the rollers, joined by spring-damper links: two coordinates a link.
     Particles,
+    /// The same with roller, bush and pin as points of their own: six coordinates a link.
+    Points(PointJoints),
     /// Rigid links with joints: three coordinates a link, three more for every free roller.
     Rigid(RigidLinks),
 }
@@ -20,13 +19,37 @@ impl ChainModel {
     /// Whether links give when they are pulled, by themselves or at their joints.
     pub(crate) fn stretches(&self) -> bool {
         match self {
-            Self::Particles => true,
+            Self::Particles | Self::Points(_) => true,
             Self::Rigid(links) => links.joint != Joint::Ideal,
         }
     }
 
-    /// Whether pins have play in their bushes.
-    pub(crate) fn has_clearance(&self) -> bool {
+    /// Pins that have play in their bushes.
+    pub fn clearance(&self) -> Option<&Clearance> {
+        match self {
+            Self::Points(PointJoints { joint, .. })
+            | Self::Rigid(RigidLinks {
+                joint: Joint::Clearance(joint),
+                ..
+            }) => Some(joint),
+            Self::Particles | Self::Rigid(_) => None,
+        }
+    }
+
+    /// Rollers with play on their bushes.
+    pub fn free_roller(&self) -> Option<&FreeRoller> {
+        match self {
+            Self::Points(PointJoints { roller, .. })
+            | Self::Rigid(RigidLinks {
+                rollers: RollerModel::Free(roller),
+                ..
+            }) => Some(roller),
+            Self::Particles | Self::Rigid(_) => None,
+        }
+    }
+
+    /// Whether pins rub by the contact with their bushes.
+    pub(crate) fn rubs_in_bushes(&self) -> bool {
         matches!(self, Self::Rigid(links) if matches!(links.joint, Joint::Clearance(_)))
     }
 
@@ -34,6 +57,7 @@ impl ChainModel {
     pub(crate) fn problems(&self) -> Vec<DriveError> {
         match self {
             Self::Particles => Vec::new(),
+            Self::Points(points) => points.problems(),
             Self::Rigid(links) => links.problems(),
         }
     }

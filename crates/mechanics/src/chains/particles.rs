@@ -13,6 +13,7 @@ mod build;
 mod ends;
 mod forces;
 mod observe;
+pub(crate) mod points;
 mod set_off;
 mod springs;
 mod statics;

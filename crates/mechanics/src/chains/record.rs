@@ -6,6 +6,7 @@ use super::Way;
 use super::joints::Resistance;
 use super::links::{Impulses, JointState};
 use super::particles::Turning;
+use super::particles::points;
 use crate::contact::{Begun, ContactMemory, Frame, Touch, Wrench};
 use crate::system::BodyContacts;
 
@@ -35,6 +36,8 @@ pub(crate) struct Record {
     pub(super) joint_state: JointState,
     #[serde(skip)]
     pub(super) impulses: Impulses,
+    /// What is found in joints that are points; empty elsewhere.
+    pub(super) points: points::Found,
     /// What resists in the joints; empty where nothing does.
     pub(super) resistance: Resistance,
     /// How the links of particles turn, where something resists that.
@@ -68,7 +71,7 @@ impl Record {
             rail_wrenches,
             ..
         } = &self.loads;
-        let joints = self.joint_state.tallies.iter();
+        let joints = self.joint_state.tallies.iter().chain(&self.points.tallies);
         let wrenches = wheel_wrenches.iter().chain(rail_wrenches);
         wrenches
             .map(|wrench| (wrench.first_depth, wrench.first_share))
@@ -77,7 +80,11 @@ impl Record {
 
     /// What began in the joints, and how deep they are: pins in bushes, bushes in rollers.
     pub(crate) fn joints(&self) -> [(Begun, f64); 2] {
-        let tallies = &self.joint_state.tallies;
-        [&tallies[0], &tallies[1]].map(|tally| (tally.begun, tally.depth))
+        // A chain has links or points.
+        let [links, points] = [&self.joint_state.tallies, &self.points.tallies];
+        [0, 1].map(|k| {
+            let begun = links[k].begun.and(points[k].begun);
+            (begun, links[k].depth.max(points[k].depth))
+        })
     }
 }

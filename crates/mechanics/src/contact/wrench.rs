@@ -40,6 +40,17 @@ pub(crate) struct Begun {
     pub(crate) fastest: f64,
 }
 
+impl Begun {
+    /// With those of others.
+    pub(crate) fn and(self, others: Self) -> Self {
+        Self {
+            count: self.count + others.count,
+            gentle: self.gentle + others.gentle,
+            fastest: self.fastest.max(others.fastest),
+        }
+    }
+}
+
 /// What contacts cost, and how they began, lane by lane.
 pub(crate) struct LaneTally<S: Simd> {
     /// Power lost along the normals \[W\].

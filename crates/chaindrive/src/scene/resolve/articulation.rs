@@ -99,7 +99,7 @@ impl<'a> Joints<'a> {
     }
 
     /// Stiffness \[N/m\] of what yields in a link beside its joint with clearance, where that of the whole link is known and the joint
-    /// alone is stiffer.
+    /// alone is stiffer; or of the part of it that lies behind the pins, where links are springs.
     ///
     /// ```text
     /// 1/k_s = 1/k − 1/k_joint
@@ -109,9 +109,15 @@ impl<'a> Joints<'a> {
         joint: &Law,
         route: Option<&Route>,
         radius: f64,
+        springs: bool,
         findings: &mut Findings<'_>,
     ) -> Option<f64> {
-        let share = defaults::PLATES.value(findings.version);
+        let default = if springs {
+            &defaults::PINS
+        } else {
+            &defaults::PLATES
+        };
+        let share = default.value(findings.version);
         let compliance =
             1.0 / self.link_stiffness? - 1.0 / stiffness_under_pretension(joint, route, radius);
         let stiffness = 1.0 / (share * compliance);
@@ -122,7 +128,7 @@ impl<'a> Joints<'a> {
         let place = findings
             .chain
             .map_or(common, |_| "chain.joint.contact.series");
-        let remark = defaults::PLATES.basis.remark();
+        let remark = default.basis.remark();
         findings.assume(place, stiffness, &*remark);
         Some(stiffness)
     }

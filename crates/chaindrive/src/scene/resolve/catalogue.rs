@@ -87,6 +87,15 @@ pub(super) fn completed(
                 Stiffness,
             );
         }
+        if text.rollers != Some(Rollers::Free) {
+            return text;
+        }
+        let inner = text.inner.get_or_insert_default();
+        take.number(&mut inner.mass, "inner.mass", Number::InnerMass, Mass);
+        let outer = text.outer.get_or_insert_default();
+        take.number(&mut outer.mass, "outer.mass", Number::OuterMass, Mass);
+        take.roller(&mut text);
+        take.joint(&mut text);
         return text;
     }
     let inner = text.inner.get_or_insert_default();
@@ -110,43 +119,10 @@ pub(super) fn completed(
         take.value(&mut text.rollers, "rollers", none, Status::Dimensions);
     }
     if text.rollers != Some(Rollers::None) {
-        let roller = text.roller.get_or_insert_default();
-        take.number(&mut roller.mass, "roller.mass", Number::RollerMass, Mass);
-        take.number(
-            &mut roller.inertia,
-            "roller.inertia",
-            Number::RollerInertia,
-            Inertia,
-        );
-        take.number(
-            &mut roller.bush_diameter,
-            "roller.bush_diameter",
-            Number::BushDiameter,
-            Length,
-        );
+        take.roller(&mut text);
     }
     if text.model == ChainModel::ClearanceJoints {
-        let joint = text.joint.get_or_insert_default();
-        take.number(
-            &mut joint.pin_diameter,
-            "joint.pin_diameter",
-            Number::PinDiameter,
-            Length,
-        );
-        let clearance = chain.joint_clearance().map(Length);
-        take.value(
-            &mut joint.clearance,
-            "joint.clearance",
-            clearance,
-            Status::Bore,
-        );
-        let length = chain.joint_length().map(Length);
-        take.value(
-            &mut joint.length,
-            "joint.length",
-            length,
-            Status::Dimensions,
-        );
+        take.joint(&mut text);
     }
     text
 }
@@ -158,6 +134,47 @@ struct Taking<'c, 'f, 't> {
 }
 
 impl Taking<'_, '_, '_> {
+    fn roller(&mut self, text: &mut schema::Chain) {
+        let roller = text.roller.get_or_insert_default();
+        self.number(&mut roller.mass, "roller.mass", Number::RollerMass, Mass);
+        self.number(
+            &mut roller.inertia,
+            "roller.inertia",
+            Number::RollerInertia,
+            Inertia,
+        );
+        self.number(
+            &mut roller.bush_diameter,
+            "roller.bush_diameter",
+            Number::BushDiameter,
+            Length,
+        );
+    }
+
+    fn joint(&mut self, text: &mut schema::Chain) {
+        let joint = text.joint.get_or_insert_default();
+        self.number(
+            &mut joint.pin_diameter,
+            "joint.pin_diameter",
+            Number::PinDiameter,
+            Length,
+        );
+        let clearance = self.chain.joint_clearance().map(Length);
+        self.value(
+            &mut joint.clearance,
+            "joint.clearance",
+            clearance,
+            Status::Bore,
+        );
+        let length = self.chain.joint_length().map(Length);
+        self.value(
+            &mut joint.length,
+            "joint.length",
+            length,
+            Status::Dimensions,
+        );
+    }
+
     fn number<T: Serialize>(
         &mut self,
         place: &mut Option<T>,

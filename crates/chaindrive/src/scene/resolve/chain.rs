@@ -6,6 +6,7 @@ use super::articulation::{self, Joints};
 use super::chains::Described;
 use super::law::Pair;
 use super::scatter::Normal;
+use super::stack::Behind;
 use super::{Findings, catalogue, count, links, motion};
 use crate::scene::defaults;
 use crate::scene::schema::{self, SceneText};
@@ -16,6 +17,8 @@ pub(super) struct Resolved {
     pub(super) chain: Chain,
     /// Length of the rollers on the teeth \[m\], where it is known.
     pub(super) roller_length: Option<f64>,
+    /// What lies behind the surfaces of teeth, where it is known.
+    pub(super) behind_teeth: Option<Behind>,
     /// Why the number of links is a guess that must not be used; the other parts are looked at with it.
     pub(super) uncounted: Option<String>,
 }
@@ -56,7 +59,7 @@ pub(super) fn resolve(
     if written.model == schema::ChainModel::Particles {
         links::refuse_on_particles(written, findings);
     }
-    if written.model != schema::ChainModel::ClearanceJoints {
+    if written.model != schema::ChainModel::ClearanceJoints && !links::are_points(written) {
         articulation::refuse_play(written, findings);
     }
     let text = &match of_type {
@@ -67,8 +70,11 @@ pub(super) fn resolve(
         findings.refuse_with("chain.pitch", "missing", "give the nominal pitch");
         return None;
     };
-    let count::Count { links, uncounted } = count::links(scene, described, text, pitch, findings)?;
-    let lengths = lengths(text, pitch, links, findings);
+    let count::Count {
+        links: number,
+        uncounted,
+    } = count::links(scene, described, text, pitch, findings)?;
+    let lengths = lengths(text, pitch, number, findings);
     let roller_diameter = match text.roller_diameter {
         Some(diameter) => diameter.0,
         None if touched => {
@@ -86,10 +92,22 @@ pub(super) fn resolve(
     let roller_length = roller_length.or(of_type.and_then(catalogue::roller_length));
     let ends = ends(text, scene, findings);
     let body = if text.model == schema::ChainModel::Particles {
-        particles(text, links, findings)
+        let body = particles(text, number, findings);
+        if links::are_points(text) {
+            let all = (scene, described.route);
+            let model = links::points(all, text, roller_diameter, roller_length, findings);
+            body.and_then(|body| {
+                Some(Body {
+                    model: model?,
+                    ..body
+                })
+            })
+        } else {
+            body
+        }
     } else {
         let all = (scene, described.route);
-        links::resolve(all, text, links, roller_diameter, roller_length, findings)
+        links::resolve(all, text, number, roller_diameter, roller_length, findings)
     };
 
     let scatter = text.scatter.clone().unwrap_or_default();
@@ -108,11 +126,12 @@ pub(super) fn resolve(
     } = body?;
     let masses = vary(masses, scatter.mass.0, 1, None);
     let stiffness = vary(stiffness, scatter.stiffness.0, 2, None);
-    let known = matches!(model, ChainModel::Particles);
+    let springs = !matches!(model, ChainModel::Rigid(_));
     let mean = stiffness.iter().sum::<f64>() / stiffness.len() as f64;
-    let joints = Joints::new(scene, text, known.then_some(mean));
+    let joints = Joints::new(scene, text, springs.then_some(mean));
     let articulation = joints.articulation(findings);
     let damping = damping(text, &stiffness, &masses, &model, findings);
+    let behind_teeth = Behind::new(text, &model, findings);
     let chain = Chain {
         pitch,
         lengths,
@@ -137,6 +156,7 @@ pub(super) fn resolve(
     Some(Resolved {
         chain,
         roller_length,
+        behind_teeth,
         uncounted,
     })
 }
@@ -153,7 +173,7 @@ fn damping(
         return vec![damping.0; stiffness.len()];
     }
     let ratio = text.damping_ratio.map(|ratio| ratio.0);
-    let ratio = if matches!(model, ChainModel::Particles) {
+    let ratio = if !matches!(model, ChainModel::Rigid(_)) {
         findings.or_default(ratio, "chain.damping_ratio", &defaults::DAMPING_RATIO)
     } else {
         // Rigid links are laid, not damped: whatever damping belongs to the laying stiffness.
@@ -232,7 +252,10 @@ fn lengths(
     let inner = text.inner_pitch.map_or(pitch, |length| length.0);
     let outer = text.outer_pitch.map_or(pitch, |length| length.0);
     let rigid = text.model != schema::ChainModel::Particles;
-    let alternating = rigid || text.inner_pitch.is_some() || text.outer_pitch.is_some();
+    let alternating = rigid
+        || links::are_points(text)
+        || text.inner_pitch.is_some()
+        || text.outer_pitch.is_some();
     if alternating && text.ends.is_none() && links % 2 == 1 {
         let message = format!("{links} links, but inner and outer links alternate");
         let hint = "a closed chain of both needs an even number";

@@ -104,10 +104,16 @@ impl Said<'_> {
         let onset_floor = findings.or_default(floor, &place, &defaults::ONSET_FLOOR);
         Some(Law {
             elastic: elastic?,
-            series: own.series.or(common.series).map(|stiffness| stiffness.0),
+            series: self.series().filter(|stiffness| *stiffness > 0.0),
             dissipation: dissipation?,
             onset_floor,
         })
+    }
+
+    /// Stiffness \[N/m\] of what lies behind, where the scene says something of it; zero is rigid.
+    pub(super) fn series(&self) -> Option<f64> {
+        let given = self.own.series.or(self.common.series);
+        given.map(|stiffness| stiffness.0)
     }
 
     fn dissipation(&self, findings: &mut Findings<'_>) -> Option<Dissipation> {

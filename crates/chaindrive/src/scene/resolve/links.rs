@@ -1,11 +1,13 @@
 //! Rigid links: bodies, joints and rollers.
 
 use chaindrive_contact::Elastic;
+use chaindrive_contact::Friction;
 use chaindrive_contact::Law;
 use chaindrive_contact::elastic::{ElasticLaw, Johnson};
 use chaindrive_geometry::Vector;
 use chaindrive_mechanics::{
-    ChainModel, Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel, Surface,
+    ChainModel, Clearance, FreeRoller, Joint, LinkBody, PointJoints, RigidLinks, RollerModel,
+    Surface,
 };
 
 use serde_json::json;
@@ -20,8 +22,30 @@ use crate::scene::schema::{self, Rollers, Route, SceneText};
 /// Indentation \[m\] at which a contact counts as pressed, where no pretension says how far.
 const PRESSED: f64 = 1e-6;
 
+/// Whether roller, bush and pin of a particle chain are points of their own.
+pub(super) fn are_points(text: &schema::Chain) -> bool {
+    text.model == schema::ChainModel::Particles && text.rollers == Some(Rollers::Free)
+}
+
 /// Keys of rigid links have no meaning for particles.
 pub(super) fn refuse_on_particles(text: &schema::Chain, findings: &mut Findings<'_>) {
+    if are_points(text) {
+        let inertia = |link: Option<schema::Link>| link.is_some_and(|it| it.inertia.is_some());
+        let given = [
+            ("inner.inertia", inertia(text.inner)),
+            ("outer.inertia", inertia(text.outer)),
+        ];
+        for (key, _) in given.iter().filter(|(_, given)| *given) {
+            let message = "the particle chain has its masses at the joints";
+            findings.refuse_with(&format!("chain.{key}"), message, "leave it out");
+        }
+        if text.ends.is_some() {
+            let message = "free rollers of a particle chain need a closed chain";
+            let hint = "leave `rollers` out, or take `model = \"clearance-joints\"`";
+            findings.refuse_with("chain.rollers", message, hint);
+        }
+        return;
+    }
     let given = [
         ("rollers", text.rollers.is_some()),
         ("outer_first", text.outer_first),
@@ -30,7 +54,7 @@ pub(super) fn refuse_on_particles(text: &schema::Chain, findings: &mut Findings<
         ("roller", text.roller.is_some()),
     ];
     for (key, _) in given.iter().filter(|(_, given)| *given) {
-        let hint = "take `model = \"clearance-joints\"` or `\"ideal-joints\"`, or leave it out";
+        let hint = "take `model = \"clearance-joints\"` or `\"ideal-joints\"`, or `rollers = \"free\"`, or leave it out";
         let message = "the particle chain has none";
         findings.refuse_with(&format!("chain.{key}"), message, hint);
     }
@@ -138,6 +162,43 @@ pub(super) fn resolve(
         stiffness: vec![stiffness; count],
         model: ChainModel::Rigid(links),
     })
+}
+
+/// Rollers, bushes and pins of a particle chain as points of their own. `text` is the chain completed from the catalogue.
+pub(super) fn points(
+    (scene, route): (&SceneText, Option<&Route>),
+    text: &schema::Chain,
+    roller_diameter: f64,
+    roller_length: Option<f64>,
+    findings: &mut Findings<'_>,
+) -> Option<ChainModel> {
+    let mut needs = Needs {
+        findings,
+        of_type: text.of_type.clone(),
+    };
+    let mut mass = |text: Option<schema::Link>, name: &str| {
+        let mass = text.and_then(|link| link.mass).map(|mass| mass.0);
+        let what = format!("mass of an {name} link");
+        needs.value(mass, &format!("{name}.mass"), &what)
+    };
+    let (inner, outer) = (mass(text.inner, "inner"), mass(text.outer, "outer"));
+    let rollers = rollers(scene, text, roller_diameter, roller_length, &mut needs);
+    let joint = joint((scene, route), text, roller_diameter, &mut needs);
+    let (Some(RollerModel::Free(roller)), Some(Joint::Clearance(joint))) = (rollers, joint) else {
+        return None;
+    };
+    if roller.surface.friction != Friction::None {
+        let message = "free rollers of a particle chain do not turn";
+        let hint = "leave it out, or take `model = \"clearance-joints\"`";
+        findings.refuse_with("contact.rollers.friction", message, hint);
+    }
+    Some(ChainModel::Points(PointJoints {
+        inner: inner?,
+        outer: outer?,
+        outer_first: text.outer_first,
+        joint,
+        roller,
+    }))
 }
 
 fn link(text: Option<schema::Link>, name: &str, needs: &mut Needs<'_, '_>) -> Option<LinkBody> {
@@ -281,10 +342,16 @@ fn joint(
     };
     let law = law(said, pair, clearance, "joint", needs.findings);
     let known = Joints::new(scene, text, text.stiffness.map(|stiffness| stiffness.0));
-    let friction = known.friction(needs.findings);
+    // Particles have their friction beside the contact, and half of their plates in the links.
+    let points = are_points(text);
+    let friction = if points {
+        Some(Friction::None)
+    } else {
+        known.friction(needs.findings)
+    };
     let mut law = law?;
-    if law.series.is_none() {
-        law.series = known.plates(&law, route, pin, needs.findings);
+    if said.series().is_none() {
+        law.series = known.plates(&law, route, pin, points, needs.findings);
     }
     Some(Joint::Clearance(Clearance {
         pin_radius: pin,

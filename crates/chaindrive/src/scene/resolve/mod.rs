@@ -15,6 +15,7 @@ mod route;
 mod scatter;
 mod shafts;
 mod sprocket;
+mod stack;
 mod start;
 mod tensioner;
 mod tooth;

@@ -73,10 +73,23 @@ fn resolve(
         common: &scene.contact.teeth,
         fallback: contact::TEETH,
     };
-    let surface = said.surface(chain.roller(), findings, |findings| {
+    let mut surface = said.surface(chain.roller(), findings, |findings| {
         let place = format!("{path}.contact.law");
         law(gap.as_ref()?, chain, &place, findings)
     });
+    // The law that particles have where the scene gives none is that of the whole stack.
+    let of_surfaces =
+        chain.is_rigid() || text.contact.law.is_some() || scene.contact.teeth.law.is_some();
+    if let (Some(surface), Some(behind), None) = (&mut surface, &chain.behind_teeth, said.series())
+    {
+        let place = format!("{path}.contact.series");
+        if of_surfaces && behind.stiffness > 0.0 {
+            surface.law.series = Some(behind.stiffness);
+            findings.assume(&place, behind.stiffness, &*behind.remark);
+        } else {
+            findings.assume(&place, 0.0, "nothing lies behind");
+        }
+    }
     let flank = gap
         .as_ref()
         .and_then(|gap| flank::resolve(text, path, scene, gap, chain, findings));

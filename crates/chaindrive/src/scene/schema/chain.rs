@@ -16,7 +16,7 @@ pub(crate) struct Chain {
     #[serde(default, rename = "type")]
     pub(crate) of_type: Option<String>,
     /// What it is made of; absent: particles, and all below from `rollers` to `roller`, but for what `joint` says of friction and
-    /// damping, is for rigid links only.
+    /// damping, is for rigid links and free rollers only.
     #[serde(default)]
     pub(crate) model: ChainModel,
     /// Nominal pitch [m]: what the sprockets are cut for.
@@ -81,7 +81,8 @@ pub(crate) struct Chain {
     /// Stiffness of every link [N/m], instead of `stiffness`.
     #[serde(default)]
     pub(crate) stiffnesses: Option<Vec<Stiffness>>,
-    /// What runs on the teeth; absent: lumped, or none for a bush chain of the catalogue.
+    /// What runs on the teeth; absent: lumped, or none for a bush chain of the catalogue. On particles `free` makes roller, bush and
+    /// pin of every joint points of their own, with play between them.
     #[serde(default)]
     pub(crate) rollers: Option<Rollers>,
     /// Whether the first link is an outer one, with pins; absent: an inner one, with bushes.

@@ -54,9 +54,10 @@ pub(crate) struct Contact {
     #[serde(default)]
     pub(crate) law: Option<Elastic>,
     /// Stiffness [N/m] of what lies behind the surfaces and bears their force, such as plates behind a pin; absent: rigid, but in
-    /// joints with clearance of links whose stiffness is known: what leaves the links that stiffness between their pins.
+    /// joints with clearance of links whose stiffness is known: what leaves the links that stiffness between their pins; and on teeth
+    /// with a law, under chains of the catalogue: what roller on bush and bush on pin yield, where they do not move by themselves; 0: rigid.
     #[serde(default)]
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("minimum" = 0))]
     pub(crate) series: Option<Stiffness>,
     /// Coefficient of restitution of an impact [–]; absent, without `damping`: 0.8 on teeth, 0.5 on
     /// guides, 0.7 in joints and rollers.

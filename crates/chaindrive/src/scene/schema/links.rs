@@ -19,13 +19,13 @@ pub(crate) enum ChainModel {
     ClearanceJoints,
 }
 
-/// What runs on the teeth of a chain of rigid links.
+/// What runs on the teeth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Rollers {
     /// Rollers that move with their bush.
     Lumped,
-    /// Rollers as bodies of their own, with play on their bush.
+    /// Rollers as bodies, or as points, of their own, with play on their bush.
     Free,
     /// No rollers: the bush meets the teeth.
     None,

@@ -120,7 +120,7 @@ fn on_body(q: &[f64], body: usize, at: Vector) -> Moving {
 /// ```text
 /// ∂U/∂e = F n,   ∂²U/∂e² = k n nᵀ + F/|e| t tᵀ,   e = P_pin − P_hole
 /// ```
-fn add_joint(bearing: &Bearing, [hole, pin]: [Moving; 2], sum: &mut Sum<'_>) {
+pub(in crate::chains) fn add_joint(bearing: &Bearing, [hole, pin]: [Moving; 2], sum: &mut Sum<'_>) {
     let offset = pin.place - hole.place;
     let eccentricity = offset.norm();
     let depth = eccentricity - bearing.clearance;

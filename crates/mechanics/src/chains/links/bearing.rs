@@ -68,7 +68,7 @@ impl Tally {
 
     /// The sums of a tally by lanes.
     #[inline(always)]
-    pub(super) fn of<S: Simd>(lanes: &LaneTally<S>) -> Self {
+    pub(in crate::chains) fn of<S: Simd>(lanes: &LaneTally<S>) -> Self {
         let [first_depth, first_share] = lanes.first();
         Self {
             normal_loss: lanes.normal_loss.sum(),
@@ -82,16 +82,16 @@ impl Tally {
 }
 
 /// How the two sides of the joints of a lane stand to each other: the side after, seen from the side before.
-pub(super) struct Apart<S: Simd> {
+pub(in crate::chains) struct Apart<S: Simd> {
     /// Eccentricity \[m\] and its rate \[m/s\].
-    pub(super) offset: [Lane<S>; 2],
-    pub(super) rate: [Lane<S>; 2],
+    pub(in crate::chains) offset: [Lane<S>; 2],
+    pub(in crate::chains) rate: [Lane<S>; 2],
     /// Angular speeds of the bodies before and after \[rad/s\]; nothing where nothing rubs.
-    pub(super) spin: [Lane<S>; 2],
+    pub(in crate::chains) spin: [Lane<S>; 2],
     /// Where there is a pin in a bore at all.
-    pub(super) present: Mask<S>,
+    pub(in crate::chains) present: Mask<S>,
     /// Where the side after has the pin.
-    pub(super) pin_after: Mask<S>,
+    pub(in crate::chains) pin_after: Mask<S>,
 }
 
 /// What the side after feels; the side before feels the opposite.
@@ -99,23 +99,23 @@ pub(super) struct Apart<S: Simd> {
 /// ```text
 /// −F n + R t,   t = ẑ × n,   slip = t·(v_after − v_before) + ℓ_after ω_after − ℓ_before ω_before
 /// ```
-pub(super) struct Grip<S: Simd> {
-    pub(super) gap: Lane<S>,
+pub(in crate::chains) struct Grip<S: Simd> {
+    pub(in crate::chains) gap: Lane<S>,
     /// n, zero for concentric circles.
-    pub(super) normal: [Lane<S>; 2],
+    pub(in crate::chains) normal: [Lane<S>; 2],
     /// Normal force F and friction R \[N\].
-    pub(super) force: Lane<S>,
-    pub(super) rub: Lane<S>,
+    pub(in crate::chains) force: Lane<S>,
+    pub(in crate::chains) rub: Lane<S>,
     /// ∂F/∂δ \[N/m\] and ∂F/∂δ̇ \[N s/m\].
-    pub(super) stiffness: Lane<S>,
-    pub(super) damping: Lane<S>,
+    pub(in crate::chains) stiffness: Lane<S>,
+    pub(in crate::chains) damping: Lane<S>,
     /// −∂R/∂slip, and the secant |R/slip| \[N s/m\].
-    pub(super) drag: Lane<S>,
-    pub(super) secant: Lane<S>,
+    pub(in crate::chains) drag: Lane<S>,
+    pub(in crate::chains) secant: Lane<S>,
     /// Stiffness across, F/|e| \[N/m\].
-    pub(super) across: Lane<S>,
+    pub(in crate::chains) across: Lane<S>,
     /// From the centres of the sides before and after along n to where they touch \[m\].
-    pub(super) levers: [Lane<S>; 2],
+    pub(in crate::chains) levers: [Lane<S>; 2],
 }
 
 /// Eccentricity below which a pin has no direction \[m\].
@@ -133,7 +133,7 @@ impl Bearing {
 
     /// The contacts of a lane of joints, `dt` after the accepted state.
     #[inline(always)]
-    pub(super) fn grip<S: Simd>(
+    pub(in crate::chains) fn grip<S: Simd>(
         &self,
         w: Wide<S>,
         memory: &mut MemoryLanes<'_, S>,
@@ -273,7 +273,7 @@ impl Bearing {
 
 impl Bearing {
     /// Answer of a contact that neither closes nor opens.
-    pub(super) fn at_rest(&self, depth: f64) -> Response {
+    pub(in crate::chains) fn at_rest(&self, depth: f64) -> Response {
         self.law.respond(Approach {
             penetration: depth,
             rate: 0.0,

@@ -32,7 +32,7 @@ impl Linkage {
         for (i, on) in contacts.teeth.iter().enumerate() {
             let frame = loads.frames[i];
             let wheel = &bodies.wheels[on.wheel];
-            let mount = Self::wheel_mount(first, wheel, loads.ways[i]);
+            let mount = wheel_mount(first, wheel, loads.ways[i]);
             joint_state.mounts.push(mount);
             let touch = &mut loads.teeth[i];
             let wrench = self.roll(&on.contacts, &frame, i, at, touch, joint_state);
@@ -44,7 +44,7 @@ impl Linkage {
             let number = contacts.teeth.len() + i;
             let frame = loads.frames[number];
             let support = &bodies.rails[on.rail].support;
-            let mount = Self::rail_mount((bodies, first), support, loads.ways[number]);
+            let mount = rail_mount((bodies, first), support, loads.ways[number]);
             joint_state.mounts.push(mount);
             let wrench = match &on.contact {
                 RailContact::Circles(contacts) => {
@@ -61,36 +61,38 @@ impl Linkage {
             loads.rail_wrenches[i] = wrench;
         }
     }
+}
 
-    fn wheel_mount(first: usize, wheel: &Wheel, way: Option<Way>) -> Mount {
-        let border = |dof: usize| dof - first;
-        let turned = wheel.turn.turned_by();
-        let turn = turned.map(|(dof, ratio)| (border(dof), ratio));
-        let shifts = match &wheel.support {
-            WheelSupport::Fixed | WheelSupport::Prescribed { .. } => [None; 2],
-            WheelSupport::Springs { dof, .. } => [
-                Some((border(*dof), Vector::x())),
-                Some((border(dof + 1), Vector::y())),
-            ],
-            WheelSupport::Carried(_) => [way.map(|way| (border(way.entry), way.first)), None],
-        };
-        Mount { shifts, turn }
-    }
+/// How a wheel can move.
+pub(in crate::chains) fn wheel_mount(first: usize, wheel: &Wheel, way: Option<Way>) -> Mount {
+    let border = |dof: usize| dof - first;
+    let turned = wheel.turn.turned_by();
+    let turn = turned.map(|(dof, ratio)| (border(dof), ratio));
+    let shifts = match &wheel.support {
+        WheelSupport::Fixed | WheelSupport::Prescribed { .. } => [None; 2],
+        WheelSupport::Springs { dof, .. } => [
+            Some((border(*dof), Vector::x())),
+            Some((border(dof + 1), Vector::y())),
+        ],
+        WheelSupport::Carried(_) => [way.map(|way| (border(way.entry), way.first)), None],
+    };
+    Mount { shifts, turn }
+}
 
-    fn rail_mount(
-        (bodies, first): (&Bodies, usize),
-        support: &RailSupport,
-        way: Option<Way>,
-    ) -> Mount {
-        let border = |dof: usize| dof - first;
-        let turn = match support {
-            RailSupport::Carried(index) => bodies.slides[*index].turn(),
-            RailSupport::Fixed | RailSupport::Prescribed { .. } => None,
-        };
-        Mount {
-            shifts: [way.map(|way| (border(way.entry), way.first)), None],
-            turn: turn.map(|(dof, ratio)| (border(dof), ratio)),
-        }
+/// How a rail can move.
+pub(in crate::chains) fn rail_mount(
+    (bodies, first): (&Bodies, usize),
+    support: &RailSupport,
+    way: Option<Way>,
+) -> Mount {
+    let border = |dof: usize| dof - first;
+    let turn = match support {
+        RailSupport::Carried(index) => bodies.slides[*index].turn(),
+        RailSupport::Fixed | RailSupport::Prescribed { .. } => None,
+    };
+    Mount {
+        shifts: [way.map(|way| (border(way.entry), way.first)), None],
+        turn: turn.map(|(dof, ratio)| (border(dof), ratio)),
     }
 }
 

@@ -99,12 +99,35 @@ impl Clearance {
     pub fn gap(&self) -> f64 {
         self.bore_radius - self.pin_radius
     }
+
+    /// Names every parameter out of range.
+    pub(crate) fn problems(&self) -> Vec<DriveError> {
+        let names = ["chain.joint.pin_radius", "chain.joint.bore_radius"];
+        let mut problems = fit([self.pin_radius, self.bore_radius], names);
+        problems.extend(self.surface.problems("chain.joint"));
+        problems
+    }
 }
 
 impl FreeRoller {
     /// Radial clearance \[m\].
     pub fn gap(&self) -> f64 {
         self.bore_radius - self.bush_radius
+    }
+
+    /// Names every parameter out of range.
+    pub(crate) fn problems(&self) -> Vec<DriveError> {
+        let names = ["chain.roller.bush_radius", "chain.roller.bore_radius"];
+        let mut problems = fit([self.bush_radius, self.bore_radius], names);
+        for (path, value, allowed) in [
+            ("chain.roller.mass", self.mass, "positive [kg]"),
+            ("chain.roller.inertia", self.inertia, "positive [kg m²]"),
+        ] {
+            let positive = value > 0.0 && value.is_finite();
+            problems.extend(DriveError::require(positive, path, value, allowed).err());
+        }
+        problems.extend(self.surface.problems("chain.roller"));
+        problems
     }
 }
 
@@ -152,47 +175,27 @@ impl RigidLinks {
                 "not negative [kg]",
             );
         }
-        let mut fits = |inside: f64, outside: f64, names: [&str; 2]| {
-            need(positive(inside), names[0], inside, "positive [m]");
-            need(
-                outside.is_finite() && outside > inside,
-                names[1],
-                outside,
-                "larger than what turns in it [m]",
-            );
-        };
         if let Joint::Clearance(joint) = &self.joint {
-            fits(
-                joint.pin_radius,
-                joint.bore_radius,
-                ["chain.joint.pin_radius", "chain.joint.bore_radius"],
-            );
+            problems.extend(joint.problems());
         }
         if let RollerModel::Free(roller) = &self.rollers {
-            fits(
-                roller.bush_radius,
-                roller.bore_radius,
-                ["chain.roller.bush_radius", "chain.roller.bore_radius"],
-            );
-            need(
-                positive(roller.mass),
-                "chain.roller.mass",
-                roller.mass,
-                "positive [kg]",
-            );
-            need(
-                positive(roller.inertia),
-                "chain.roller.inertia",
-                roller.inertia,
-                "positive [kg m²]",
-            );
-        }
-        if let Joint::Clearance(joint) = &self.joint {
-            problems.extend(joint.surface.problems("chain.joint"));
-        }
-        if let RollerModel::Free(roller) = &self.rollers {
-            problems.extend(roller.surface.problems("chain.roller"));
+            problems.extend(roller.problems());
         }
         problems
     }
+}
+
+/// Names what is wrong with the radii of something that turns in a bore.
+fn fit([inside, outside]: [f64; 2], names: [&str; 2]) -> Vec<DriveError> {
+    let fits = outside.is_finite() && outside > inside;
+    let found = [
+        DriveError::require(
+            inside > 0.0 && inside.is_finite(),
+            names[0],
+            inside,
+            "positive [m]",
+        ),
+        DriveError::require(fits, names[1], outside, "larger than what turns in it [m]"),
+    ];
+    found.into_iter().filter_map(Result::err).collect()
 }

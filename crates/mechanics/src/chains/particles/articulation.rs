@@ -55,6 +55,28 @@ pub(super) fn act<S: Simd>(
     (turning, found): (&mut Turning, &mut Resistance),
     rollers: &mut Rollers<'_>,
 ) -> f64 {
+    let count = links.count;
+    let power = torques(joints, w, t, links, turning, found);
+    let behind = [rollers.ax[count], rollers.ay[count]];
+    pass_on(w, &found.torque, &turning.across, rollers);
+    if links.closed {
+        // The roller behind the last link is the first one again.
+        rollers.ax[0] += rollers.ax[count] - behind[0];
+        rollers.ay[0] += rollers.ay[count] - behind[1];
+    }
+    power
+}
+
+/// Finds the torques of all joints from how the links turn; returns the power \[W\] that goes into the joints.
+#[inline(always)]
+pub(super) fn torques<S: Simd>(
+    joints: &Joints,
+    w: Wide<S>,
+    t: f64,
+    links: &Links,
+    turning: &mut Turning,
+    found: &mut Resistance,
+) -> f64 {
     let n = links.rest.len();
     let count = links.count;
     let Turning {
@@ -80,13 +102,6 @@ pub(super) fn act<S: Simd>(
     if links.closed {
         // Behind the last link is the first joint again.
         found.torque[count] = found.torque[0];
-    }
-    let behind = [rollers.ax[count], rollers.ay[count]];
-    pass_on(w, &found.torque, across, rollers);
-    if links.closed {
-        // The roller behind the last link is the first one again.
-        rollers.ax[0] += rollers.ax[count] - behind[0];
-        rollers.ay[0] += rollers.ay[count] - behind[1];
     }
     power
 }

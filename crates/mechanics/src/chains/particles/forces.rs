@@ -7,9 +7,10 @@ use super::articulation::{self, Turning};
 use super::{Particles, Pins};
 use crate::chains::joints::Resistance;
 use crate::chains::{Loads, Record, Surroundings};
+use crate::contact::{PlatePins, Rollers};
 use crate::energy::Flow;
 use crate::lanes::Wide;
-use crate::system::RailContact;
+use crate::system::{BodyContacts, RailContact};
 
 /// What bodies feel, how links turn, and what resists in the joints.
 type Found<'a> = (&'a mut Loads, &'a mut Turning, &'a mut Resistance);
@@ -42,7 +43,12 @@ impl Particles {
                 found: (&mut *loads, turning, resistance),
             });
         }
-        self.plate_forces(around, at, a, rates, loads);
+        let mut rollers = self.view(at.q, at.v, a);
+        let mut pins = Pins {
+            rollers: &mut rollers,
+            count: self.rollers,
+        };
+        plate_forces(around, at.t, &mut pins, self.links.count, rates, loads);
         let n = self.stride;
         if self.links.closed {
             // A ghost behind the first turn copies one of the turn before.
@@ -81,58 +87,66 @@ impl Particles {
             links.act::<S, false>(w, &mut rollers, gravity, turning)
         };
         rates[Flow::LinkLoss as usize] += loss;
-        // One call of the kernel serves wheels and rails: it is inlined, and long.
-        let wheels = contacts.teeth.len();
-        for i in 0..wheels + contacts.rails.len() {
-            let (contacts, touch) = if i < wheels {
-                (&contacts.teeth[i].contacts, &mut loads.teeth[i])
-            } else {
-                let RailContact::Circles(contacts) = &contacts.rails[i - wheels].contact else {
-                    continue;
-                };
-                (contacts, &mut loads.circles[i - wheels])
-            };
-            let wrench = contacts.act(w, at.t, &loads.frames[i], &mut rollers, touch);
-            let [loss, friction] = if i < wheels {
-                [Flow::ToothLoss, Flow::ToothFriction]
-            } else {
-                [Flow::GuideLoss, Flow::GuideFriction]
-            };
-            rates[loss as usize] += wrench.normal_loss;
-            rates[friction as usize] += wrench.friction_loss;
-            if i < wheels {
-                loads.wheel_wrenches[i] = wrench;
-            } else {
-                loads.rail_wrenches[i - wheels] = wrench;
-            }
-        }
+        touch_bodies(w, contacts, at.t, &mut rollers, rates, loads);
     }
+}
 
-    /// Contacts of link plates with guides.
-    fn plate_forces(
-        &self,
-        around: Surroundings<'_>,
-        at: Moment<'_>,
-        a: &mut [f64],
-        rates: &mut [f64],
-        loads: &mut Loads,
-    ) {
-        let mut rollers = self.view(at.q, at.v, a);
-        let frames = &loads.frames[around.contacts.teeth.len()..];
-        for (i, (on, frame)) in around.contacts.rails.iter().zip(frames).enumerate() {
-            let RailContact::Plates(plates) = &on.contact else {
+/// Contacts of the rollers with wheels and guides.
+#[inline(always)]
+pub(super) fn touch_bodies<S: Simd>(
+    w: Wide<S>,
+    contacts: &BodyContacts,
+    t: f64,
+    rollers: &mut Rollers<'_>,
+    rates: &mut [f64],
+    loads: &mut Loads,
+) {
+    // One call of the kernel serves wheels and rails: it is inlined, and long.
+    let wheels = contacts.teeth.len();
+    for i in 0..wheels + contacts.rails.len() {
+        let (contacts, touch) = if i < wheels {
+            (&contacts.teeth[i].contacts, &mut loads.teeth[i])
+        } else {
+            let RailContact::Circles(contacts) = &contacts.rails[i - wheels].contact else {
                 continue;
             };
-            let mut pins = Pins {
-                rollers: &mut rollers,
-                count: self.rollers,
-            };
-            let touch = &mut loads.plates[i];
-            let wrench = plates.act(at.t, frame, &mut pins, self.links.count, touch);
-            rates[Flow::GuideLoss as usize] += wrench.normal_loss;
-            rates[Flow::GuideFriction as usize] += wrench.friction_loss;
-            loads.rail_wrenches[i] = wrench;
+            (contacts, &mut loads.circles[i - wheels])
+        };
+        let wrench = contacts.act(w, t, &loads.frames[i], rollers, touch);
+        let [loss, friction] = if i < wheels {
+            [Flow::ToothLoss, Flow::ToothFriction]
+        } else {
+            [Flow::GuideLoss, Flow::GuideFriction]
+        };
+        rates[loss as usize] += wrench.normal_loss;
+        rates[friction as usize] += wrench.friction_loss;
+        if i < wheels {
+            loads.wheel_wrenches[i] = wrench;
+        } else {
+            loads.rail_wrenches[i - wheels] = wrench;
         }
+    }
+}
+
+/// Contacts of link plates with guides.
+pub(super) fn plate_forces(
+    around: Surroundings<'_>,
+    t: f64,
+    pins: &mut impl PlatePins,
+    links: usize,
+    rates: &mut [f64],
+    loads: &mut Loads,
+) {
+    let frames = &loads.frames[around.contacts.teeth.len()..];
+    for (i, (on, frame)) in around.contacts.rails.iter().zip(frames).enumerate() {
+        let RailContact::Plates(plates) = &on.contact else {
+            continue;
+        };
+        let touch = &mut loads.plates[i];
+        let wrench = plates.act(t, frame, pins, links, touch);
+        rates[Flow::GuideLoss as usize] += wrench.normal_loss;
+        rates[Flow::GuideFriction as usize] += wrench.friction_loss;
+        loads.rail_wrenches[i] = wrench;
     }
 }
 

@@ -1,0 +1,373 @@
+//! The contacts of every joint in an implicit step, joint by joint.
+//!
+//! ```text
+//! D = c ∂F/∂δ̇ + k ∂F/∂δ of every contact:
+//! m_r x_r + D₃ n₃ (n₃·x_r − x_w) − p₂ n₂ = m_r b_r       roller between tooth and bush
+//! m_b x_b + p₂ n₂ − p₁ n₁ = m_b b_b,   p₂ = D₂ n₂·(x_b − x_r)
+//! m_p x_p + p₁ n₁ = m_p b_p,           p₁ = D₁ n₁·(x_p − x_b)
+//! ```
+//!
+//! The roller is eliminated first, as a matrix of two by two, then p₂, then p₁. Links are not in the matrix: methods take
+//! them explicitly. Nor is the way in which wheels yield: contacts see wheels as they would move under the forces at the beginning, and
+//! wheels receive exactly what the contacts lose, so that momentum is kept.
+
+use chaindrive_contact::Friction;
+use chaindrive_geometry::{Point, Vector};
+use chaindrive_integrate::{Moment, Weights};
+use nalgebra::{DMatrix, DVector};
+use pulp::{Simd, WithSimd};
+use serde::{Deserialize, Serialize};
+
+use super::{AFTER, BEFORE, Found, Points, ROLLERS};
+use crate::chains::links::{Mount, rail_mount, turned, wheel_mount};
+use crate::chains::{Loads, Record, Surroundings};
+use crate::contact::{Contacts, Frame, Touch};
+use crate::lanes::{LANES, Lane, Wide, dispatch, padded};
+use crate::system::{GroupBodies, RailContact};
+
+/// One direction of a closed contact between a roller and a wheel or rail.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) struct Touching {
+    joint: usize,
+    /// Number of the wheel or rail among those of the chain.
+    pub(super) mount: usize,
+    /// Unit vector e: the contact resists e·x_r + Σ c_j x_j.
+    along: Vector,
+    /// ∂F/∂δ \[N/m\] and ∂F/∂δ̇ \[N s/m\].
+    stiffness: f64,
+    pub(super) damping: f64,
+    /// c_j of the coordinates that the wheel or rail moves with.
+    shares: [f64; 3],
+    /// Σ c_j x_j as it would be without the contact, and D.
+    beside: f64,
+    weight: f64,
+}
+
+/// Σ D e eᵀ of every roller, and −Σ D e (Σ c_j x_j), whole lanes.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Pressed {
+    matrix: [Vec<f64>; 3],
+    right: [Vec<f64>; 2],
+}
+
+impl Points {
+    /// Writes down the closed contacts of rollers with wheels and rails.
+    pub(super) fn list_touching(
+        &self,
+        around: Surroundings<'_>,
+        at: Moment<'_>,
+        loads: &Loads,
+        found: &mut Found,
+    ) {
+        let Surroundings {
+            bodies,
+            first,
+            contacts,
+        } = around;
+        found.touching.clear();
+        found.mounts.clear();
+        for (i, on) in contacts.teeth.iter().enumerate() {
+            let mount = wheel_mount(first, &bodies.wheels[on.wheel], loads.ways[i]);
+            let surface = (&on.contacts, &*loads.teeth[i], &loads.frames[i]);
+            self.list(surface, i, &mount, at, found);
+        }
+        for (i, on) in contacts.rails.iter().enumerate() {
+            let RailContact::Circles(circles) = &on.contact else {
+                found.mounts.push([0; 3]);
+                continue;
+            };
+            let number = contacts.teeth.len() + i;
+            let support = &bodies.rails[on.rail].support;
+            let mount = rail_mount((bodies, first), support, loads.ways[number]);
+            let surface = (circles, &*loads.circles[i], &loads.frames[number]);
+            self.list(surface, number, &mount, at, found);
+        }
+    }
+
+    fn list(
+        &self,
+        (contacts, touch, frame): (&Contacts, &Touch, &Frame),
+        number: usize,
+        mount: &Mount,
+        at: Moment<'_>,
+        found: &mut Found,
+    ) {
+        let rubs = contacts.surface.friction != Friction::None;
+        found.mounts.push(coordinates(mount));
+        let moves = moves(mount);
+        for side in 0..contacts.sides() {
+            for (lane, run) in contacts.runs.iter().enumerate() {
+                let slots = side * contacts.slots + lane * LANES;
+                let onsets = &touch.state.inverse_onset[slots..slots + LANES];
+                if onsets.iter().all(|inverse| *inverse <= 0.0) {
+                    continue;
+                }
+                for (k, _) in onsets.iter().enumerate().filter(|(_, it)| **it > 0.0) {
+                    let (faces, index) = (&touch.faces, slots + k);
+                    let joint = (run.start + k) % self.rollers;
+                    let arm = Point::new(at.q[joint], at.q[self.stride + joint]) - frame.origin;
+                    let along = Vector::new(faces.normal_x[index], faces.normal_y[index]);
+                    let normal = Touching {
+                        joint,
+                        mount: number,
+                        along,
+                        stiffness: faces.stiffness[index],
+                        damping: faces.damping[index],
+                        shares: shares(&moves, along, arm, 0.0),
+                        beside: 0.0,
+                        weight: 0.0,
+                    };
+                    found.touching.push(normal);
+                    if rubs {
+                        let across = turned(along);
+                        found.touching.push(Touching {
+                            along: across,
+                            stiffness: 0.0,
+                            // A secant: a step cannot carry the slip beyond zero.
+                            damping: faces.secant[index],
+                            shares: shares(&moves, across, arm, contacts.radius),
+                            ..normal
+                        });
+                    }
+                }
+            }
+        }
+    }
+
+    /// x ← (M + c C + k K)⁻¹ M x of the chain and, behind it, the bodies, at the state that the record was left by.
+    pub(in crate::chains) fn solve(
+        &self,
+        bodies: GroupBodies<'_>,
+        weights: Weights,
+        record: &mut Record,
+        x: &mut [f64],
+    ) -> bool {
+        let found = &mut record.points;
+        let (own, beside) = x.split_at_mut(self.coordinates());
+        found.pressed.collect(
+            &mut found.touching,
+            &found.mounts,
+            weights,
+            beside,
+            padded(self.rollers),
+        );
+        dispatch(
+            self.arch,
+            Joints {
+                chain: self,
+                weights,
+                found,
+                x: own,
+            },
+        );
+        self.copy_ghosts(own);
+        // M x: what the contacts lose, the bodies receive.
+        let inertias = bodies.inertias();
+        for touching in &found.touching {
+            let moved = self.point(own, ROLLERS, touching.joint).coords;
+            let push = touching.weight * (touching.along.dot(&moved) + touching.beside);
+            for (j, share) in found.mounts[touching.mount]
+                .into_iter()
+                .zip(touching.shares)
+            {
+                if share != 0.0 {
+                    beside[j] -= share * push / inertias[j];
+                }
+            }
+        }
+        let mut alone = true;
+        bodies.each_own(weights, |_, weighted| alone &= weighted == 0.0);
+        if alone {
+            return true;
+        }
+        let mut matrix = DMatrix::from_diagonal(&DVector::from_column_slice(inertias));
+        bodies.each_own(weights, |[i, j], weighted| matrix[(i, j)] += weighted);
+        let right = beside.iter().zip(inertias).map(|(x, inertia)| x * inertia);
+        let right = DVector::from_iterator(inertias.len(), right);
+        let solution = matrix.lu().solve(&right);
+        if let Some(solution) = &solution {
+            beside.copy_from_slice(solution.as_slice());
+        }
+        solution.is_some()
+    }
+}
+
+/// Coordinates that move a wheel or rail, unused ones zero.
+fn coordinates(mount: &Mount) -> [usize; 3] {
+    let shift = |at: usize| mount.shifts[at].map_or(0, |(j, _)| j);
+    [shift(0), shift(1), mount.turn.map_or(0, |(j, _)| j)]
+}
+
+/// The shifts and the rotation of a wheel or rail per unit of these coordinates, unused ones zero: what an absent one leaves in memory
+/// may be numbers that take a hundred times as long.
+fn moves(mount: &Mount) -> ([Vector; 2], f64) {
+    let shift = |at: usize| match mount.shifts[at] {
+        Some((_, shift)) => shift,
+        None => Vector::zeros(),
+    };
+    let turn = match mount.turn {
+        Some((_, ratio)) => ratio,
+        None => 0.0,
+    };
+    ([shift(0), shift(1)], turn)
+}
+
+/// c_j of these coordinates: the surface goes along e with its frame, by −e·(ẑ × d) with the rotation, and a circle that does not turn
+/// is passed by the lever.
+fn shares((shifts, turn): &([Vector; 2], f64), along: Vector, arm: Vector, lever: f64) -> [f64; 3] {
+    [
+        -along.dot(&shifts[0]),
+        -along.dot(&shifts[1]),
+        (lever - along.dot(&turned(arm))) * turn,
+    ]
+}
+
+impl Pressed {
+    fn collect(
+        &mut self,
+        touching: &mut [Touching],
+        mounts: &[[usize; 3]],
+        weights: Weights,
+        bodies: &[f64],
+        count: usize,
+    ) {
+        for values in self.matrix.iter_mut().chain(&mut self.right) {
+            values.clear();
+            values.resize(count, 0.0);
+        }
+        for contact in touching {
+            contact.beside = 0.0;
+            for (j, share) in mounts[contact.mount].into_iter().zip(contact.shares) {
+                if share != 0.0 {
+                    contact.beside += share * bodies[j];
+                }
+            }
+            contact.weight =
+                weights.damping * contact.damping + weights.stiffness * contact.stiffness;
+            let (e, i, weight) = (contact.along, contact.joint, contact.weight);
+            self.matrix[0][i] += weight * e.x * e.x;
+            self.matrix[1][i] += weight * e.x * e.y;
+            self.matrix[2][i] += weight * e.y * e.y;
+            self.right[0][i] -= weight * contact.beside * e.x;
+            self.right[1][i] -= weight * contact.beside * e.y;
+        }
+    }
+}
+
+/// The equations of all joints as one call, compiled for every kind of processor.
+struct Joints<'a> {
+    chain: &'a Points,
+    weights: Weights,
+    found: &'a Found,
+    x: &'a mut [f64],
+}
+
+impl WithSimd for Joints<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let w = Wide(simd);
+        let Self {
+            chain,
+            weights,
+            found,
+            x,
+        } = self;
+        let count = padded(chain.rollers);
+        let n = chain.stride;
+        let Found {
+            pins,
+            bushes,
+            pressed,
+            ..
+        } = found;
+        let masses = w.lanes(&chain.masses[ROLLERS][..count]);
+        let of_before = w.lanes(&chain.inverse_masses[BEFORE][..count]);
+        let of_after = w.lanes(&chain.inverse_masses[AFTER][..count]);
+        let bush_after = w.lanes(&chain.bush_after[..count]);
+        let [matrix_xx, matrix_xy, matrix_yy] = [0, 1, 2].map(|k| w.lanes(&pressed.matrix[k]));
+        let [right_x, right_y] = [0, 1].map(|axis| w.lanes(&pressed.right[axis]));
+        let [pin_x, pin_y, pin_k, pin_d] = [
+            &pins.normal_x,
+            &pins.normal_y,
+            &pins.stiffness,
+            &pins.damping,
+        ]
+        .map(|values| w.lanes(values));
+        let [bush_x, bush_y, bush_k, bush_d] = [
+            &bushes.normal_x,
+            &bushes.normal_y,
+            &bushes.stiffness,
+            &bushes.damping,
+        ]
+        .map(|values| w.lanes(values));
+        let [c, k] = [weights.damping, weights.stiffness].map(|weight| w.splat(weight));
+        let (one, half) = (w.splat(1.0), w.splat(0.5));
+        for i in 0..count / Wide::<S>::COUNT {
+            let start = i * Wide::<S>::COUNT;
+            let b_r = [w.load(x, start), w.load(x, n + start)];
+            let before = [w.load(x, 2 * n + start), w.load(x, 3 * n + start)];
+            let after = [w.load(x, 4 * n + start), w.load(x, 5 * n + start)];
+            let is_after = bush_after.get(i).greater(half);
+            let b_b = [
+                is_after.select(after[0], before[0]),
+                is_after.select(after[1], before[1]),
+            ];
+            let b_p = [
+                is_after.select(before[0], after[0]),
+                is_after.select(before[1], after[1]),
+            ];
+            let (im_before, im_after) = (of_before.get(i), of_after.get(i));
+            let m_b = is_after.select(im_after, im_before);
+            let m_p = is_after.select(im_before, im_after);
+            // n₁ from bush to pin, n₂ from roller to bush
+            let sense = is_after.select(-one, one);
+            let n1 = [sense * pin_x.get(i), sense * pin_y.get(i)];
+            let n2 = [bush_x.get(i), bush_y.get(i)];
+            let d1 = c * pin_d.get(i) + k * pin_k.get(i);
+            let d2 = c * bush_d.get(i) + k * bush_k.get(i);
+            // y = A⁻¹ r,   A = m_r + Σ D e eᵀ
+            let m_r = masses.get(i);
+            let (xx, xy, yy) = (
+                m_r + matrix_xx.get(i),
+                matrix_xy.get(i),
+                m_r + matrix_yy.get(i),
+            );
+            let inverse = (xx * yy - xy * xy).recip();
+            let right = [m_r * b_r[0] + right_x.get(i), m_r * b_r[1] + right_y.get(i)];
+            let y = [
+                (yy * right[0] - xy * right[1]) * inverse,
+                (xx * right[1] - xy * right[0]) * inverse,
+            ];
+            let through = [
+                (yy * n2[0] - xy * n2[1]) * inverse,
+                (xx * n2[1] - xy * n2[0]) * inverse,
+            ];
+            // p₂ = E₂ (w₂ + c p₁),   E₂ = D₂/(1 + D₂ (1/m_b + n₂·A⁻¹ n₂)),   c = n₁·n₂/m_b
+            let w2 = dot(n2, [b_b[0] - y[0], b_b[1] - y[1]]);
+            let e2 = d2 * (one + d2 * (m_b + dot(n2, through))).recip();
+            let cross = dot(n1, n2) * m_b;
+            // p₁ = D₁ (w₁ + c E₂ w₂)/(1 + D₁ (1/m_p + 1/m_b − c² E₂))
+            let w1 = dot(n1, [b_p[0] - b_b[0], b_p[1] - b_b[1]]) + cross * e2 * w2;
+            let p1 = d1 * w1 * (one + d1 * (m_p + m_b - cross * cross * e2)).recip();
+            let p2 = e2 * (w2 + cross * p1);
+            (y[0] + through[0] * p2).store(x, start);
+            (y[1] + through[1] * p2).store(x, n + start);
+            let on_pin = [-(p1 * n1[0] * m_p), -(p1 * n1[1] * m_p)];
+            let on_bush = [
+                (p1 * n1[0] - p2 * n2[0]) * m_b,
+                (p1 * n1[1] - p2 * n2[1]) * m_b,
+            ];
+            (before[0] + is_after.select(on_pin[0], on_bush[0])).store(x, 2 * n + start);
+            (before[1] + is_after.select(on_pin[1], on_bush[1])).store(x, 3 * n + start);
+            (after[0] + is_after.select(on_bush[0], on_pin[0])).store(x, 4 * n + start);
+            (after[1] + is_after.select(on_bush[1], on_pin[1])).store(x, 5 * n + start);
+        }
+    }
+}
+
+#[inline(always)]
+fn dot<S: Simd>(a: [Lane<S>; 2], b: [Lane<S>; 2]) -> Lane<S> {
+    a[0] * b[0] + a[1] * b[1]
+}

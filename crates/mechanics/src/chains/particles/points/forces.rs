@@ -1,0 +1,478 @@
+//! One evaluation of a chain of points: links, joints, teeth, guides.
+
+use chaindrive_integrate::Moment;
+use pulp::{Scalar128b, Simd, WithSimd};
+
+use super::{AFTER, BEFORE, Ends, Found, Held, Points, ROLLERS};
+use crate::chains::joints::Resistance;
+use crate::chains::links::{Apart, Bearing, Grip, Tally};
+use crate::chains::particles::articulation::{self, Turning};
+use crate::chains::particles::forces::{plate_forces, touch_bodies};
+use crate::chains::{Loads, Record, Surroundings};
+use crate::contact::{LaneTally, MemoryLanes, Rollers};
+use crate::energy::Flow;
+use crate::lanes::{LANES, Lane, Wide, padded};
+
+/// Depth at which contacts that are open now are reckoned with \[m\].
+const SHALLOW: f64 = 1e-7;
+
+/// Steps take the damping of bodies by the contacts explicitly, and shall be at most so long in units of its time.
+const OF_BODIES: f64 = 4.0;
+
+/// What one evaluation fills in.
+type Filled<'a> = (
+    &'a mut Loads,
+    &'a mut Turning,
+    &'a mut Resistance,
+    &'a mut Found,
+);
+
+impl Points {
+    pub(in crate::chains) fn evaluate(
+        &self,
+        around: Surroundings<'_>,
+        at: Moment<'_>,
+        a: &mut [f64],
+        rates: &mut [f64],
+        record: &mut Record,
+    ) {
+        let Record {
+            loads,
+            resistance,
+            turning,
+            points,
+            ..
+        } = record;
+        points.memory.time = at.t;
+        let all = Forces {
+            chain: self,
+            around,
+            at,
+            a: &mut *a,
+            rates: &mut *rates,
+            filled: (&mut *loads, turning, resistance, &mut *points),
+        };
+        if self.oldest {
+            all.with_simd(Scalar128b);
+        } else {
+            self.arch.dispatch(all);
+        }
+        let mut ends = Ends {
+            chain: self,
+            q: at.q,
+            v: at.v,
+            a: &mut *a,
+        };
+        plate_forces(around, at.t, &mut ends, self.links.count, rates, loads);
+        self.list_touching(around, at, loads, points);
+        self.copy_ghosts(a);
+    }
+
+    #[inline(always)]
+    fn forces<S: Simd>(
+        &self,
+        w: Wide<S>,
+        around: Surroundings<'_>,
+        at: Moment<'_>,
+        a: &mut [f64],
+        rates: &mut [f64],
+        (loads, turning, resistance, found): Filled<'_>,
+    ) {
+        let gravity = [around.bodies.gravity.x, around.bodies.gravity.y];
+        rates[Flow::LinkLoss as usize] += self.pull(w, at, a, gravity, turning);
+        if let Some(joints) = &self.joints {
+            let power = articulation::torques(joints, w, at.t, &self.links, turning, resistance);
+            rates[Flow::ArticulationLoss as usize] += power;
+            self.turn(w, a, &resistance.torque, turning);
+        }
+        found.tallies = self.bear(w, at, a, found);
+        rates[Flow::JointLoss as usize] += found.tallies[0].normal_loss;
+        rates[Flow::RollerLoss as usize] += found.tallies[1].normal_loss;
+        let n = self.stride;
+        let (ax, rest) = a.split_at_mut(n);
+        let mut rollers = Rollers {
+            x: &at.q[..n],
+            y: &at.q[n..2 * n],
+            vx: &at.v[..n],
+            vy: &at.v[n..2 * n],
+            ax,
+            ay: &mut rest[..n],
+            inverse_mass: &self.inverse_masses[ROLLERS],
+            spin: &[],
+        };
+        touch_bodies(w, around.contacts, at.t, &mut rollers, rates, loads);
+    }
+
+    /// One coordinate of a block.
+    #[inline(always)]
+    fn column<'a>(&self, values: &'a [f64], block: usize, axis: usize) -> &'a [f64] {
+        let first = (2 * block + axis) * self.stride;
+        &values[first..first + self.stride]
+    }
+
+    /// Sets all accelerations to gravity and the pull of the links; returns the power \[W\] lost in their dampers.
+    #[inline(always)]
+    fn pull<S: Simd>(
+        &self,
+        w: Wide<S>,
+        at: Moment<'_>,
+        a: &mut [f64],
+        gravity: [f64; 2],
+        turning: &mut Turning,
+    ) -> f64 {
+        let links = &self.links;
+        let n = links.rest.len();
+        let articulated = self.joints.is_some();
+        if articulated {
+            turning.make_room(links);
+        }
+        let [rest, stiffness, damping] =
+            [&links.rest, &links.stiffness, &links.damping].map(|values| w.lanes(values));
+        let first = |values| [0, 1].map(|axis| w.lanes(&self.column(values, AFTER, axis)[..n]));
+        let second = |values| [0, 1].map(|axis| w.lanes(&self.column(values, BEFORE, axis)[1..=n]));
+        let ([x, y], [vx, vy]) = (first(at.q), first(at.v));
+        let ([x_next, y_next], [vx_next, vy_next]) = (second(at.q), second(at.v));
+        let im_before = w.lanes(&self.inverse_masses[BEFORE][..n]);
+        let im_after = w.lanes(&self.inverse_masses[AFTER][..n]);
+        let (on_rollers, ends) = a.split_at_mut(2 * self.stride);
+        for (column, g) in on_rollers.chunks_exact_mut(self.stride).zip(gravity) {
+            column.fill(g);
+        }
+        let mut columns = ends.chunks_exact_mut(self.stride);
+        let mut next = || Wide::<S>::lanes_mut(&mut columns.next().unwrap_or_default()[..n]);
+        let (mut bx, mut by, mut ax, mut ay) = (next(), next(), next(), next());
+        let [gx, gy] = gravity.map(|g| w.splat(g));
+        let zero = w.splat(0.0);
+        let [turns, pulls] = [&mut turning.rate, &mut turning.tension].map(|values| {
+            if articulated {
+                &mut values[LANES..]
+            } else {
+                &mut []
+            }
+        });
+        let (mut turns, mut pulls) = (Wide::<S>::lanes_mut(turns), Wide::<S>::lanes_mut(pulls));
+        let [across_x, across_y] = &mut turning.across;
+        let (mut across_x, mut across_y) = (
+            Wide::<S>::lanes_mut(across_x),
+            Wide::<S>::lanes_mut(across_y),
+        );
+        let (mut loss, mut before) = (zero, [zero; 2]);
+        for i in 0..n / Wide::<S>::COUNT {
+            let (dx, dy) = (x_next.get(i) - x.get(i), y_next.get(i) - y.get(i));
+            let (ux, uy) = (vx_next.get(i) - vx.get(i), vy_next.get(i) - vy.get(i));
+            let square = dx * dx + dy * dy;
+            let inverse = square.inverse_root();
+            // ℓ̇ = d·u/ℓ
+            let rate = (dx * ux + dy * uy) * inverse;
+            let drag = damping.get(i) * rate;
+            // T = k (ℓ − p) + d ℓ̇
+            let tension = stiffness.get(i) * (square * inverse - rest.get(i)) + drag;
+            let scale = tension * inverse;
+            let pull = [scale * dx, scale * dy];
+            loss += drag * rate;
+            if articulated {
+                let inverse_square = inverse * inverse;
+                // ω = d × u/ℓ²
+                turns.set(i, (dx * uy - dy * ux) * inverse_square);
+                pulls.set(i, tension);
+                across_x.set(i, -dy * inverse_square);
+                across_y.set(i, dx * inverse_square);
+            }
+            let (im_a, im_b) = (im_after.get(i), im_before.get(i));
+            ax.set(i, pull[0] * im_a + gx);
+            ay.set(i, pull[1] * im_a + gy);
+            bx.set(i, gx - pull[0].after(before[0]) * im_b);
+            by.set(i, gy - pull[1].after(before[1]) * im_b);
+            before = pull;
+        }
+        // The joint behind the last link is the first one.
+        for axis in [2 * BEFORE, 2 * BEFORE + 1] {
+            let column = &mut a[axis * self.stride..(axis + 1) * self.stride];
+            column[0] = column[links.count];
+        }
+        loss.sum()
+    }
+
+    /// Turns the torques on the links into forces at their ends.
+    #[inline(always)]
+    fn turn<S: Simd>(&self, w: Wide<S>, a: &mut [f64], torque: &[f64], turning: &Turning) {
+        let n = self.links.rest.len();
+        let (here, next) = (w.lanes(&torque[..n]), w.lanes(&torque[1..=n]));
+        let (across_x, across_y) = (w.lanes(&turning.across[0]), w.lanes(&turning.across[1]));
+        let im_before = w.lanes(&self.inverse_masses[BEFORE][..n]);
+        let im_after = w.lanes(&self.inverse_masses[AFTER][..n]);
+        let ends = &mut a[2 * self.stride..];
+        let count = self.links.count;
+        let behind = [ends[count], ends[self.stride + count]];
+        let mut columns = ends.chunks_exact_mut(self.stride);
+        let mut next_column = || Wide::<S>::lanes_mut(&mut columns.next().unwrap_or_default()[..n]);
+        let (mut bx, mut by) = (next_column(), next_column());
+        let (mut ax, mut ay) = (next_column(), next_column());
+        let zero = w.splat(0.0);
+        let mut before: [Lane<S>; 2] = [zero; 2];
+        for i in 0..n / Wide::<S>::COUNT {
+            // F = (M_i − M_{i+1}) n/ℓ at the second end, −F at the first
+            let couple = here.get(i) - next.get(i);
+            let push = [couple * across_x.get(i), couple * across_y.get(i)];
+            ax.add(i, -push[0] * im_after.get(i));
+            ay.add(i, -push[1] * im_after.get(i));
+            bx.add(i, push[0].after(before[0]) * im_before.get(i));
+            by.add(i, push[1].after(before[1]) * im_before.get(i));
+            before = push;
+        }
+        for (axis, behind) in behind.into_iter().enumerate() {
+            let first = axis * self.stride;
+            ends[first] += ends[first + count] - behind;
+        }
+    }
+
+    /// Pins in bushes and bushes in rollers.
+    #[inline(always)]
+    fn bear<S: Simd>(
+        &self,
+        w: Wide<S>,
+        at: Moment<'_>,
+        a: &mut [f64],
+        found: &mut Found,
+    ) -> [Tally; 2] {
+        let count = padded(self.rollers);
+        let dt = at.t - self.memory.time;
+        let Found {
+            memory,
+            pins,
+            bushes,
+            ..
+        } = found;
+        memory.pins.resize(count);
+        memory.bushes.resize(count);
+        let mut of_pins = MemoryLanes::new(w, &self.memory.pins, &mut memory.pins, count);
+        let mut of_bushes = MemoryLanes::new(w, &self.memory.bushes, &mut memory.bushes, count);
+        let (mut pins, mut bushes) = (Grips::new(w, pins, count), Grips::new(w, bushes, count));
+        let (mut in_bushes, mut in_rollers) = (LaneTally::new(w), LaneTally::new(w));
+        let block = |values, block| {
+            let column = |axis| w.lanes(&self.column(values, block, axis)[..count]);
+            (column(0), column(1))
+        };
+        let ((rx, ry), (rvx, rvy)) = (block(at.q, ROLLERS), block(at.v, ROLLERS));
+        let ((bx, by), (bvx, bvy)) = (block(at.q, BEFORE), block(at.v, BEFORE));
+        let ((ax, ay), (avx, avy)) = (block(at.q, AFTER), block(at.v, AFTER));
+        let inverse = |block: usize| w.lanes(&self.inverse_masses[block][..count]);
+        let (im_roller, im_before, im_after) = (inverse(ROLLERS), inverse(BEFORE), inverse(AFTER));
+        let bush_after = w.lanes(&self.bush_after[..count]);
+        let mut columns = a.chunks_exact_mut(self.stride);
+        let mut next = || Wide::<S>::lanes_mut(&mut columns.next().unwrap_or_default()[..count]);
+        let (mut on_rx, mut on_ry) = (next(), next());
+        let (mut on_bx, mut on_by) = (next(), next());
+        let (mut on_ax, mut on_ay) = (next(), next());
+        let zero = w.splat(0.0);
+        let half = w.splat(0.5);
+        for i in 0..count / Wide::<S>::COUNT {
+            let present = w.first(self.rollers.saturating_sub(i * Wide::<S>::COUNT));
+            let (before_x, before_y) = (bx.get(i), by.get(i));
+            let (before_vx, before_vy) = (bvx.get(i), bvy.get(i));
+            let (after_x, after_y) = (ax.get(i), ay.get(i));
+            let (after_vx, after_vy) = (avx.get(i), avy.get(i));
+            let apart = Apart {
+                offset: [after_x - before_x, after_y - before_y],
+                rate: [after_vx - before_vx, after_vy - before_vy],
+                spin: [zero, zero],
+                present,
+                pin_after: present,
+            };
+            let grip = self
+                .pin
+                .grip(w, &mut of_pins, i, &apart, dt, &mut in_bushes);
+            let (pin_x, pin_y) = (grip.force * grip.normal[0], grip.force * grip.normal[1]);
+            pins.set(i, &grip);
+
+            let is_after = bush_after.get(i).greater(half);
+            let apart = Apart {
+                offset: [
+                    is_after.select(after_x, before_x) - rx.get(i),
+                    is_after.select(after_y, before_y) - ry.get(i),
+                ],
+                rate: [
+                    is_after.select(after_vx, before_vx) - rvx.get(i),
+                    is_after.select(after_vy, before_vy) - rvy.get(i),
+                ],
+                spin: [zero, zero],
+                present,
+                pin_after: present,
+            };
+            let grip = self
+                .bush
+                .grip(w, &mut of_bushes, i, &apart, dt, &mut in_rollers);
+            let (bush_x, bush_y) = (grip.force * grip.normal[0], grip.force * grip.normal[1]);
+            bushes.set(i, &grip);
+
+            let (m_r, m_b, m_a) = (im_roller.get(i), im_before.get(i), im_after.get(i));
+            let after_bush_x = is_after.select(bush_x, zero);
+            let after_bush_y = is_after.select(bush_y, zero);
+            on_rx.add(i, bush_x * m_r);
+            on_ry.add(i, bush_y * m_r);
+            on_bx.add(i, (pin_x - (bush_x - after_bush_x)) * m_b);
+            on_by.add(i, (pin_y - (bush_y - after_bush_y)) * m_b);
+            on_ax.add(i, -((pin_x + after_bush_x) * m_a));
+            on_ay.add(i, -((pin_y + after_bush_y) * m_a));
+        }
+        pins.finish();
+        bushes.finish();
+        [Tally::of(&in_bushes), Tally::of(&in_rollers)]
+    }
+
+    /// ω² and D as estimated from the links, the contacts in the joints, the deepest contact with a body, and the damping.
+    ///
+    /// ```text
+    /// ω² = max over rollers, bushes and pins of Σ 2 k/m
+    /// ```
+    ///
+    /// What implicit steps take explicitly (dampers of links, viscous joints, and what contacts do to the bodies) counts as
+    /// frequency too.
+    pub(in crate::chains) fn rates(
+        &self,
+        around: Surroundings<'_>,
+        record: &mut Record,
+    ) -> [f64; 2] {
+        let Surroundings {
+            bodies, contacts, ..
+        } = around;
+        let found = &record.points;
+        let bear = |bearing: &Bearing, held: &Held| {
+            let damping = held.damping.iter().copied().fold(0.0, f64::max);
+            [held.stiffest.max(bearing.stiffness(SHALLOW)), damping]
+        };
+        let (pin, bush) = (
+            bear(&self.pin, &found.pins),
+            bear(&self.bush, &found.bushes),
+        );
+        let (mut tooth, mut of_bodies) = ([0.0_f64; 2], 0.0_f64);
+        for (mount, (on, wrench)) in contacts
+            .teeth
+            .iter()
+            .zip(&record.loads.wheel_wrenches)
+            .enumerate()
+        {
+            let mobility = bodies.mobility(on.wheel);
+            let here = found
+                .touching
+                .iter()
+                .filter(|touching| touching.mount == mount);
+            let (seated, damped) = here.fold((0.0, 0.0), |(seated, damped), touching| {
+                (seated + 1.0, damped + touching.damping)
+            });
+            of_bodies = of_bodies.max(damped * mobility);
+            // As if the mass of the roller were less by what the body yields.
+            let share = 1.0 + mobility * seated / self.lightest[ROLLERS];
+            tooth[0] = tooth[0].max(on.contacts.surface.stiffness(wrench.depth) * share);
+            tooth[1] = tooth[1].max(wrench.damping * share);
+        }
+        let mut plates = 0.0_f64;
+        for (on, wrench) in contacts.rails.iter().zip(&record.loads.rail_wrenches) {
+            tooth[0] = tooth[0].max(on.contact.surface().stiffness(wrench.depth));
+            if matches!(on.contact, crate::system::RailContact::Plates(_)) {
+                plates = plates.max(wrench.damping);
+            } else {
+                tooth[1] = tooth[1].max(wrench.damping);
+            }
+        }
+        let lightest_end = self.lightest[BEFORE].max(self.lightest[AFTER]);
+        let row = |k: usize| {
+            let roller = self.lightest[ROLLERS] * (2.0 * bush[k] + tooth[k]);
+            let end = lightest_end * 2.0 * (pin[k] + bush[k]) + self.link_rates[k];
+            roller.max(end)
+        };
+        let damping = row(1) + lightest_end * plates;
+        let turns = |slope: f64| 8.0 * slope * lightest_end / (self.pitch * self.pitch);
+        let [across, drag] = record.resistance.slopes.map(turns);
+        let explicit = self.link_rates[1] + drag + lightest_end * plates;
+        // ω = D + √(D² + ω²) of what damps explicitly
+        let stiff = row(0) + across;
+        let frequency = explicit + (explicit * explicit + stiff).sqrt();
+        let frequency = frequency.max(OF_BODIES * of_bodies);
+        [frequency * frequency, damping + drag]
+    }
+
+    /// Largest Gershgorin row of M⁻¹K and of M⁻¹D over the ends of the links.
+    pub(super) fn rates_of_links(&self) -> [f64; 2] {
+        let links = &self.links;
+        [&links.stiffness, &links.damping].map(|values| {
+            let row = |link: usize| {
+                let lighter =
+                    self.inverse_masses[AFTER][link].max(self.inverse_masses[BEFORE][link + 1]);
+                2.0 * values[link] * lighter
+            };
+            (0..links.count).map(row).fold(0.0, f64::max)
+        })
+    }
+}
+
+/// Writes what joints of one kind exert, lane by lane.
+struct Grips<'a, S: Simd> {
+    normal: [crate::lanes::LanesMut<'a, S>; 2],
+    force: crate::lanes::LanesMut<'a, S>,
+    stiffness: crate::lanes::LanesMut<'a, S>,
+    damping: crate::lanes::LanesMut<'a, S>,
+    greatest: Lane<S>,
+    stiffest: &'a mut f64,
+}
+
+impl<'a, S: Simd> Grips<'a, S> {
+    #[inline(always)]
+    fn new(w: Wide<S>, held: &'a mut Held, count: usize) -> Self {
+        held.resize(count);
+        Self {
+            normal: [
+                Wide::<S>::lanes_mut(&mut held.normal_x),
+                Wide::<S>::lanes_mut(&mut held.normal_y),
+            ],
+            force: Wide::<S>::lanes_mut(&mut held.force),
+            stiffness: Wide::<S>::lanes_mut(&mut held.stiffness),
+            damping: Wide::<S>::lanes_mut(&mut held.damping),
+            greatest: w.splat(0.0),
+            stiffest: &mut held.stiffest,
+        }
+    }
+
+    #[inline(always)]
+    fn set(&mut self, i: usize, grip: &Grip<S>) {
+        self.normal[0].set(i, grip.normal[0]);
+        self.normal[1].set(i, grip.normal[1]);
+        self.force.set(i, grip.force);
+        self.stiffness.set(i, grip.stiffness);
+        self.damping.set(i, grip.damping);
+        self.greatest = self.greatest.max(grip.stiffness);
+    }
+
+    #[inline(always)]
+    fn finish(self) {
+        *self.stiffest = self.greatest.largest();
+    }
+}
+
+/// The kernels as one call, compiled for every kind of processor.
+struct Forces<'a> {
+    chain: &'a Points,
+    around: Surroundings<'a>,
+    at: Moment<'a>,
+    a: &'a mut [f64],
+    rates: &'a mut [f64],
+    filled: Filled<'a>,
+}
+
+impl WithSimd for Forces<'_> {
+    type Output = ();
+
+    // A call that is not inlined would be compiled for the oldest processor only.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self {
+            chain,
+            around,
+            at,
+            a,
+            rates,
+            filled,
+        } = self;
+        chain.forces(Wide(simd), around, at, a, rates, filled);
+    }
+}
