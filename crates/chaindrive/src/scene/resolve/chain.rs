@@ -91,24 +91,8 @@ pub(super) fn resolve(
     let roller_length = roller_length.map(|length| length.0);
     let roller_length = roller_length.or(of_type.and_then(catalogue::roller_length));
     let ends = ends(text, scene, findings);
-    let body = if text.model == schema::ChainModel::Particles {
-        let body = particles(text, number, findings);
-        if links::are_points(text) {
-            let all = (scene, described.route);
-            let model = links::points(all, text, roller_diameter, roller_length, findings);
-            body.and_then(|body| {
-                Some(Body {
-                    model: model?,
-                    ..body
-                })
-            })
-        } else {
-            body
-        }
-    } else {
-        let all = (scene, described.route);
-        links::resolve(all, text, number, roller_diameter, roller_length, findings)
-    };
+    let widths = (roller_diameter, roller_length);
+    let body = body((scene, described.route), text, number, widths, findings);
 
     let scatter = text.scatter.clone().unwrap_or_default();
     let vary = |values: Vec<f64>, deviation: f64, stream: u32, scale: Option<f64>| -> Vec<f64> {
@@ -161,6 +145,26 @@ pub(super) fn resolve(
     })
 }
 
+/// What is between the joints, by the model that a text names.
+fn body(
+    all: (&SceneText, Option<&schema::Route>),
+    text: &schema::Chain,
+    links: usize,
+    (roller_diameter, roller_length): (f64, Option<f64>),
+    findings: &mut Findings<'_>,
+) -> Option<Body> {
+    if text.model != schema::ChainModel::Particles {
+        return links::resolve(all, text, links, roller_diameter, roller_length, findings);
+    }
+    let body = particles(text, links, findings);
+    if !links::are_points(text) {
+        return body;
+    }
+    let model = links::points(all, text, roller_diameter, roller_length, findings);
+    let (body, model) = body.zip(model)?;
+    Some(Body { model, ..body })
+}
+
 /// Damping of every link \[N s/m\].
 fn damping(
     text: &schema::Chain,
@@ -173,11 +177,11 @@ fn damping(
         return vec![damping.0; stiffness.len()];
     }
     let ratio = text.damping_ratio.map(|ratio| ratio.0);
-    let ratio = if !matches!(model, ChainModel::Rigid(_)) {
-        findings.or_default(ratio, "chain.damping_ratio", &defaults::DAMPING_RATIO)
-    } else {
+    let ratio = if matches!(model, ChainModel::Rigid(_)) {
         // Rigid links are laid, not damped: whatever damping belongs to the laying stiffness.
         ratio.unwrap_or(defaults::DAMPING_RATIO.value(findings.version))
+    } else {
+        findings.or_default(ratio, "chain.damping_ratio", &defaults::DAMPING_RATIO)
     };
     // c = 2 ζ √(k m)
     let pairs = stiffness.iter().zip(masses);
