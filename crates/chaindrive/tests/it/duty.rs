@@ -223,19 +223,17 @@ fn means_that_are_not_those_of_a_steady_state_are_a_caution() {
             ("route.pretension", "150 kN"),
         ],
     );
-    let (growing, bare) = (
-        verdict(&growing, &run(0.1)),
-        preset("marine_two_sprockets", &[]),
-    );
+    let growing = verdict(&growing, &run(0.1));
+    let bare = preset("marine_engine_bare", &[]);
     let short = Run {
         every: 2e-4,
         ..run(0.02)
     };
     let early = verdict(&bare, &short);
-    let slow = verdict(&preset("industrial_16b", &[]), &short);
+    let late = verdict(&bare, &run(0.1));
     tells_apart("not-steady", &growing, &early);
-    tells_apart("start-counts", &early, &slow);
-    tells_apart("means-uncertain", &slow, &early);
+    tells_apart("start-counts", &early, &late);
+    tells_apart("means-uncertain", &early, &late);
 }
 
 /// What is counted without a log is what the log has.

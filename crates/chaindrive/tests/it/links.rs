@@ -294,13 +294,19 @@ fn joints_are_recorded_where_there_are_any() {
         .copied()
         .filter(|channel| !channels.contains(channel))
         .collect();
-    // This bicycle has neither shafts of their own names nor couplings.
-    let of_shafts = [
+    // This bicycle has neither free rollers nor shafts of their own names nor couplings.
+    let absent = [
+        Channel::BushForce,
+        Channel::BushForceX,
+        Channel::BushForceY,
+        Channel::BushDepth,
+        Channel::BushOffsetX,
+        Channel::BushOffsetY,
         Channel::ShaftAngle,
         Channel::ShaftSpeed,
         Channel::CouplingTorque,
     ];
-    assert_eq!(missing, of_shafts);
+    assert_eq!(missing, absent);
     let mut recording = Recording::new(&channels, simulation.system());
     while let Some(sample) = simulation.next_sample().unwrap() {
         recording.push(sample);

@@ -256,10 +256,10 @@ fn a_twin_starts_a_picometre_away() {
 /// Followed for longer, the extrapolated horizon of the marine engine becomes a measured one of the same size.
 #[test]
 fn extrapolation_finds_the_size_of_the_horizon() {
-    let start = Scene::preset("marine_engine_bare")
-        .unwrap()
-        .drive()
-        .unwrap();
+    let scene = Scene::preset("marine_engine_bare").unwrap();
+    // With the other pretension twins part too late for the short time to tell.
+    let scene = scene.replace("route.pretension_at", "\"phase\"").unwrap();
+    let start = scene.drive().unwrap();
     let start = start.assemble().unwrap();
     let run = Run::default();
     let short = horizon(&start, &run, 0.07, &never).unwrap();

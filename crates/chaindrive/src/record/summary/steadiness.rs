@@ -177,13 +177,17 @@ fn half_width(values: &[f64]) -> f64 {
 /// Student's t that is exceeded in 2.5 % of cases, of some degrees of freedom.
 ///
 /// # Source
-/// Abramowitz and Stegun, *Handbook of Mathematical Functions*, 26.7.5; 1e-3 for 3 degrees and more.
+/// Abramowitz and Stegun, *Handbook of Mathematical Functions*, 26.7.5; to 1e-3 from 4 degrees on.
 fn students(freedom: f64) -> f64 {
     let z = NORMAL;
     let terms = [
         (z.powi(3) + z) / 4.0,
         (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / 96.0,
         (3.0 * z.powi(7) + 19.0 * z.powi(5) + 17.0 * z.powi(3) - 15.0 * z) / 384.0,
+        (79.0 * z.powi(9) + 776.0 * z.powi(7) + 1482.0 * z.powi(5)
+            - 1920.0 * z.powi(3)
+            - 945.0 * z)
+            / 92_160.0,
     ];
     let powers = (1..).zip(terms);
     z + powers.map(|(k, term)| term / freedom.powi(k)).sum::<f64>()
