@@ -8,4 +8,5 @@ mod marine;
 mod marine_statics;
 mod modes_of_links;
 mod oil;
+mod plucked;
 mod several_chains;
