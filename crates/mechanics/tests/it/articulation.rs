@@ -83,6 +83,7 @@ fn chain(
         plate_height: 0.08,
         strength: Strength::default(),
         articulation,
+        drag: 0.0,
         ends,
         model: ChainModel::Particles,
     }

@@ -10,9 +10,9 @@ use chaindrive_contact::{Dissipation, Elastic, Friction, Law};
 use chaindrive_geometry::{ArcSpline, Point, Segment, Vector};
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State};
 use chaindrive_mechanics::{
-    Articulation, Assembled, Chain, ChainModel, Clearance, Drive, End, Ends, Energy, Guide,
-    GuideSupport, Joint, Layout, LinkBody, Observation, Parts, PlacedChain, RigidLinks,
-    RollerModel, Strength, Surface, Touches,
+    Articulation, Assembled, Chain, ChainModel, Clearance, Drive, End, Ends, Energy, Flow, Guide,
+    GuideSupport, Harmonic, Joint, Layout, LinkBody, Motion, Observation, Parts, Place,
+    PlacedChain, RigidLinks, RollerModel, Strength, Surface, Touches,
 };
 
 /// A chain of a marine engine, 56B: pitch \[m\], mass of a link \[kg\], radius of a roller \[m\].
@@ -39,6 +39,8 @@ struct Span {
     /// Greatest displacement across at the start \[m\].
     amplitude: f64,
     articulation: Option<Articulation>,
+    /// Drag across the links \[N s/m²\].
+    drag: f64,
 }
 
 fn surface(dissipation: Dissipation, friction: Friction) -> Surface {
@@ -108,7 +110,16 @@ impl Span {
         }
     }
 
+    /// Pulled apart by its ends, each between two rails.
     fn assembled(&self) -> Assembled {
+        let pulled = |force: f64| End::Pulled {
+            force: Vector::new(force, 0.0),
+        };
+        let ends = Ends::Open([pulled(-TENSION), pulled(TENSION)]);
+        self.held(ends, |place| rails(place.x).into())
+    }
+
+    fn held(&self, ends: Ends, around: impl Fn(&Point) -> Vec<Guide>) -> Assembled {
         let n = self.links;
         let mut positions = vec![Point::origin()];
         for i in 0..n {
@@ -121,9 +132,6 @@ impl Span {
         for end in [0, n] {
             masses[end] *= 0.5;
         }
-        let pulled = |force: f64| End::Pulled {
-            force: Vector::new(force, 0.0),
-        };
         let chain = Chain {
             pitch: PITCH,
             lengths: vec![PITCH; n],
@@ -134,10 +142,11 @@ impl Span {
             plate_height: 0.08,
             strength: Strength::default(),
             articulation: self.articulation,
-            ends: Ends::Open([pulled(-TENSION), pulled(TENSION)]),
+            drag: self.drag,
+            ends,
             model: self.model.clone(),
         };
-        let guides: Vec<Guide> = [0, n].iter().flat_map(|&i| rails(positions[i].x)).collect();
+        let guides: Vec<Guide> = [0, n].iter().flat_map(|&i| around(&positions[i])).collect();
         let parts = Parts {
             chains: vec![PlacedChain {
                 name: None,
@@ -225,6 +234,22 @@ impl Span {
         instants
     }
 
+    /// Start and end of a run of Verlet's method with ends that are moved.
+    fn shaken(&self, ends: Ends, until: f64, step: f64) -> [Instant; 2] {
+        let mut assembled = self.held(ends, |_| Vec::new());
+        let mut state = State::new(0.0, assembled.q.clone(), assembled.v.clone());
+        let mut stepper = Method::Verlet { step }
+            .start(&mut assembled.system, &mut state)
+            .unwrap_or_else(|error| panic!("{error}"));
+        let start = self.instant(&assembled, &state);
+        while state.t < until {
+            stepper
+                .advance(&mut assembled.system, &mut state)
+                .expect("stays finite");
+        }
+        [start, self.instant(&assembled, &state)]
+    }
+
     fn instant(&self, assembled: &Assembled, state: &State) -> Instant {
         let system = &assembled.system;
         let at = Moment {
@@ -288,6 +313,7 @@ fn particles(links: usize) -> Span {
         links,
         amplitude: 25.0 * LEVER,
         articulation: None,
+        drag: 0.0,
     }
 }
 
@@ -438,5 +464,80 @@ fn viscous_joints_damp_a_strand_as_their_closed_form_says() {
             (found / zeta - 1.0).abs() < 2e-3,
             "{name}: {found}, not {zeta}"
         );
+    }
+}
+
+/// Drag across a span damps its first mode, and takes what the ledger says.
+///
+/// ```text
+/// ζ = b/(2 m′ ω),   m′ = m/p
+/// ```
+#[test]
+fn drag_across_a_span_damps_it_as_its_closed_form_says() {
+    for (name, model, step) in [
+        ("particles", ChainModel::Particles, 1e-5),
+        ("ideal", rigid(Joint::Ideal), 1e-5),
+        ("clearance", rigid(clearance(1e-4, Friction::None)), 2e-6),
+    ] {
+        let span = Span {
+            model,
+            drag: 40.0,
+            ..particles(30)
+        };
+        let zeta = span.drag * PITCH / (2.0 * MASS * span.omega());
+        let instants = span.cycles(4, step);
+        let decrement = (instants[0].amplitude / instants[4].amplitude).ln() / 4.0;
+        let found = decrement / (TAU * TAU + decrement * decrement).sqrt();
+        println!("{name}: ζ = {found:.6}, {zeta:.6}");
+        assert!(
+            (found / zeta - 1.0).abs() < 0.01,
+            "{name}: {found}, not {zeta}"
+        );
+        for pair in instants.array_windows() {
+            let [from, to] = pair.map(|it| it.energy);
+            let drag = to.flow(Flow::DragLoss) - from.flow(Flow::DragLoss);
+            let spans = to.losses()[Place::Spans as usize] - from.losses()[Place::Spans as usize];
+            assert!(
+                drag > 1.0 && (spans - drag).abs() < 1e-12 * drag,
+                "{name}: {drag} J"
+            );
+            let open = Instant::open(pair);
+            assert!(open < 1e-3, "{name}: {open}");
+        }
+    }
+}
+
+/// Supports that move the ends of a span feel what its joints and what drags do to its last links.
+#[test]
+fn driven_ends_pay_for_friction_and_drag() {
+    for (drag, friction) in [(400.0, false), (0.0, true)] {
+        let mut span = particles(6);
+        span.drag = drag;
+        span.amplitude = 0.0;
+        if friction {
+            span.articulation = Some(Articulation {
+                friction: Friction::None,
+                radius: RADIUS,
+                damping: 300.0,
+            });
+        }
+        let shake = |frequency: f64| End::Driven {
+            x: Motion::Held,
+            y: Motion::Harmonics {
+                rate: 0.0,
+                terms: vec![Harmonic {
+                    amplitude: 0.005,
+                    frequency,
+                    // From rest.
+                    phase: 0.5 * PI,
+                }],
+            },
+        };
+        let ends = Ends::Open([shake(40.0), shake(55.0)]);
+        let instants = span.shaken(ends, 0.1, 2e-6);
+        let lost = instants[1].lost(&instants[0]);
+        let open = Instant::open(&instants);
+        println!("{lost} J, {open:.1e} of it open");
+        assert!(lost > 1.0 && open < 1e-3, "drag {drag}: {lost} J, {open}");
     }
 }

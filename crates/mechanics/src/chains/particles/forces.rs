@@ -30,7 +30,7 @@ impl Particles {
             ..
         } = record;
         if self.oldest {
-            let found = (&mut *loads, turning, resistance);
+            let found = (&mut *loads, &mut *turning, &mut *resistance);
             self.forces(Wide(Scalar128b), around, at, a, rates, found);
         } else {
             self.arch.dispatch(Forces {
@@ -39,7 +39,7 @@ impl Particles {
                 at,
                 a: &mut *a,
                 rates: &mut *rates,
-                found: (&mut *loads, turning, resistance),
+                found: (&mut *loads, &mut *turning, &mut *resistance),
             });
         }
         self.plate_forces(around, at, a, rates, loads);
@@ -51,7 +51,8 @@ impl Particles {
                 a[n + ghost] = a[n + ghost - self.rollers];
             }
         } else {
-            self.hold_ends(around.bodies.gravity, at, a, rates);
+            let joints = (&*turning, &*resistance);
+            self.hold_ends(around.bodies.gravity, at, a, rates, joints);
             a[self.rollers..n].fill(0.0);
             a[n + self.rollers..2 * n].fill(0.0);
         }
@@ -81,6 +82,9 @@ impl Particles {
             links.act::<S, false>(w, &mut rollers, gravity, turning)
         };
         rates[Flow::LinkLoss as usize] += loss;
+        if let Some(drag) = &self.drag {
+            rates[Flow::DragLoss as usize] += drag.act(w, links, &mut rollers);
+        }
         // One call of the kernel serves wheels and rails: it is inlined, and long.
         let wheels = contacts.teeth.len();
         for i in 0..wheels + contacts.rails.len() {
