@@ -15,7 +15,8 @@ use crate::DriveError;
 /// keeps their ends together. Joints with clearance rub in the contact of pin and bush, and have only c here.
 ///
 /// The work of one articulation through the angle 2π/z is μ r T 2π/z; a plucked strand comes to rest within a few cycles,
-/// since each takes some 4.5 μ r from its amplitude.
+/// since each takes some 4.5 μ r from its amplitude. Pins with clearance c roll by μ (c + δ)/r before they slide, and lose nothing by
+/// that.
 ///
 /// # Source
 /// C. J. Lodge and S. C. Burgess, *Proc. IMechE C* **216**, 2002, 1067–1078 (losses of articulation).

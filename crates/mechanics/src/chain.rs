@@ -69,6 +69,15 @@ pub struct Chain {
     pub plate_height: f64,
     /// What resists in the joints, if anything. Joints with clearance have their friction in the contact of pin and bush.
     pub articulation: Option<Articulation>,
+    /// Drag b of oil or air across every link per length \[N s/m²\], not negative.
+    ///
+    /// ```text
+    /// f = −b v_n    on every piece of a link, v_n its velocity across the link
+    /// ```
+    ///
+    /// Together −b ℓ v_n in the middle of a link, and −b ℓ³ ω/12 against its turning. The first mode of a span, m′ its mass per
+    /// length, has ζ = b/(2 m′ ω).
+    pub drag: f64,
     /// How the ends are joined.
     pub ends: Ends,
     /// What it is made of. Rigid links take their lengths from `lengths`; stiffness, damping and
@@ -132,6 +141,12 @@ impl Chain {
             self.plate_height,
             "positive [m]",
         );
+        need(
+            self.drag >= 0.0 && self.drag.is_finite(),
+            "chain.drag".into(),
+            self.drag,
+            "not negative [N s/m²]",
+        );
         let counts = [
             ("stiffness", self.stiffness.len(), self.links()),
             ("damping", self.damping.len(), self.links()),
@@ -172,6 +187,10 @@ impl Chain {
             if !self.is_closed() || !self.links().is_multiple_of(2) {
                 let problem = "rollers, bushes and pins are points in closed chains of an even number of links only";
                 problems.push(conflict("chain.links", problem));
+            }
+            if self.drag > 0.0 {
+                let problem = "points have no drag; take rigid links with free rollers";
+                problems.push(conflict("chain.drag", problem));
             }
             if self.masses.iter().any(|mass| *mass <= points.roller.mass) {
                 let problem = "the roller is heavier than the whole joint";

@@ -39,6 +39,8 @@ pub enum Store {
 pub enum Flow {
     /// Loss in the link dampers.
     LinkLoss,
+    /// Loss by drag of oil or air across the links.
+    DragLoss,
     /// Loss in impacts of pins in bushes.
     JointLoss,
     /// Loss where links turn against each other: friction of pins in bushes, and viscous damping there.
@@ -80,7 +82,7 @@ pub enum Place {
     Teeth,
     /// Chain on guides.
     Guides,
-    /// Links between their joints, damped along themselves.
+    /// Links between their joints, damped along themselves and dragged across.
     Spans,
     /// Tensioners.
     Tensioners,
@@ -153,8 +155,9 @@ impl Store {
 
 impl Flow {
     /// All flows, in the order of [`Energy::flows`].
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::LinkLoss,
+        Self::DragLoss,
         Self::JointLoss,
         Self::ArticulationLoss,
         Self::RollerLoss,
@@ -183,7 +186,7 @@ impl Flow {
             Self::RollerLoss | Self::RollerFriction => Some(Place::Rollers),
             Self::ToothLoss | Self::ToothFriction => Some(Place::Teeth),
             Self::GuideLoss | Self::GuideFriction => Some(Place::Guides),
-            Self::LinkLoss => Some(Place::Spans),
+            Self::LinkLoss | Self::DragLoss => Some(Place::Spans),
             Self::TensionerLoss => Some(Place::Tensioners),
             Self::SupportLoss => Some(Place::Supports),
             Self::Driver | Self::Motions | Self::DriveTorque | Self::Load => None,
@@ -194,6 +197,7 @@ impl Flow {
     pub fn name(self) -> &'static str {
         match self {
             Self::LinkLoss => "links_dissipated",
+            Self::DragLoss => "drag_dissipated",
             Self::JointLoss => "joints_dissipated",
             Self::ArticulationLoss => "articulation_dissipated",
             Self::RollerLoss => "rollers_dissipated",

@@ -92,6 +92,8 @@ quantities! {
     Stiffness, "a stiffness", "N/m", "815 MN/m", [0.0, 1.0, -2.0, 0.0], true;
     /// A damping coefficient \[N s/m\].
     Damping, "a damping", "N s/m", "2.97 kN s/m", [0.0, 1.0, -1.0, 0.0], true;
+    /// A drag per length \[N s/m²\].
+    Drag, "a drag per length", "N s/m^2", "0.5 N s/m^2", [-1.0, 1.0, -1.0, 0.0], true;
     /// A moment of inertia \[kg m²\].
     Inertia, "a moment of inertia", "kg m^2", "251 kg m^2", [2.0, 1.0, 0.0, 0.0], true;
     /// A torque \[N m\].

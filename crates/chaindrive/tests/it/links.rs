@@ -323,7 +323,7 @@ fn joints_are_recorded_where_there_are_any() {
     let ring = Simulation::start(&ring, &run).unwrap();
     let all = Channel::chosen(&["all"], ring.system()).unwrap();
     // Nor has the ring joints with a state.
-    assert_eq!(all.len(), Channel::ALL.len() - of_shafts.len() - 8);
+    assert_eq!(all.len(), Channel::ALL.len() - absent.len() - 8);
     let error = Channel::chosen(&["joint_force"], ring.system()).unwrap_err();
     assert!(matches!(
         error,

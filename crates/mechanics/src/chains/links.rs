@@ -13,6 +13,7 @@ mod balance;
 mod bearing;
 mod blocks;
 pub(crate) mod build;
+mod drag;
 mod element;
 mod held;
 mod hinge;
@@ -120,6 +121,8 @@ pub(crate) struct Linkage {
     pub(crate) joining: Joining,
     /// What resists in the joints beside the contact of pin and bush, if anything.
     pub(super) resisting: Option<Joints>,
+    /// Drag across the links per length \[N s/m²\].
+    drag: f64,
     pub(crate) free_rollers: Option<FreeRollers>,
     /// Whether what runs on the teeth turns with its link: a bush.
     pub(crate) bush_turns: bool,
@@ -206,6 +209,9 @@ impl Linkage {
         joint_state.memory.time = at.t;
         joint_state.tallies = [self.joint_forces(at, rates, joint_state), Tally::new()];
         self.body_forces(around.bodies.gravity, joint_state);
+        if self.drag > 0.0 {
+            rates[Flow::DragLoss as usize] += self.drag_forces(joint_state);
+        }
         self.roller_forces(at, rates, joint_state);
         self.end_loads(rates, joint_state);
         self.mesh(around, at, rates, loads, joint_state);

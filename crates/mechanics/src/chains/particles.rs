@@ -10,6 +10,7 @@
 
 mod articulation;
 mod build;
+mod drag;
 mod ends;
 mod forces;
 mod observe;
@@ -28,6 +29,7 @@ use crate::contact::Rollers;
 use crate::contact::{PlatePins, PlatePlaces};
 use crate::system::HeldEnd;
 pub(super) use articulation::Turning;
+use drag::Drag;
 pub(super) use springs::Links;
 
 /// Rollers as point masses, links as spring-dampers.
@@ -36,6 +38,8 @@ pub(crate) struct Particles {
     pub(super) links: Links,
     /// What resists in the joints, if anything.
     pub(super) joints: Option<Joints>,
+    /// What drags across the links, if anything.
+    drag: Option<Drag>,
     pub(super) rollers: usize,
     /// Distance from the x to the y block of the state.
     pub(super) stride: usize,
@@ -173,7 +177,9 @@ impl Particles {
         // Across the links, where these have no stiffness of their own: the stiffer of both counts.
         let [across, drag] = self.joint_rates(&record.resistance);
         squared = squared.max(across);
-        damping = damping.max(drag);
+        let dragged = self.drag.as_ref();
+        let dragged = dragged.map_or(0.0, |it| it.rate(&self.links, self.lightest));
+        damping = damping.max(drag + dragged);
         let (mut contact, mut drag) = (0.0_f64, 0.0_f64);
         for (on, wrench) in contacts.teeth.iter().zip(&record.loads.wheel_wrenches) {
             let stiffness = on.contacts.surface.stiffness(wrench.depth);

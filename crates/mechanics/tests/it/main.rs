@@ -8,5 +8,6 @@ mod marine;
 mod marine_statics;
 mod modes_of_links;
 mod oil;
+mod plucked;
 mod points;
 mod several_chains;

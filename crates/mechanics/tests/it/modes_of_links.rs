@@ -73,6 +73,7 @@ fn alone(
         plate_height: 9.6e-3,
         strength: Strength::default(),
         articulation: None,
+        drag: 0.0,
         ends,
         model,
     };

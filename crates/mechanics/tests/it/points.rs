@@ -104,6 +104,7 @@ fn chain(model: ChainModel, links: usize) -> Chain {
         plate_height: 77.8e-3,
         articulation: None,
         strength: Strength::default(),
+        drag: 0.0,
         ends: Ends::Closed,
         model,
     }

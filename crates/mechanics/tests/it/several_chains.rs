@@ -61,6 +61,7 @@ pub(crate) fn chain(links: usize, stops: [usize; 2]) -> PlacedChain {
             plate_height: 9.6e-3,
             strength: Strength::default(),
             articulation: None,
+            drag: 0.0,
             ends: Ends::Closed,
             model: ChainModel::Particles,
         },

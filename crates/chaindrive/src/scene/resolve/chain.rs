@@ -130,6 +130,7 @@ pub(super) fn resolve(
             roller_diameter,
         ),
         articulation,
+        drag: text.drag.map_or(0.0, |drag| drag.0),
         ends: ends?,
         model,
         strength: Strength {

@@ -4,7 +4,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{ChainModel, Joint, Link, Motion, Roller, Rollers, Route};
-use crate::scene::quantity::{AngularSpeed, Damping, Force, Length, Mass, Ratio, Speed, Stiffness};
+use crate::scene::quantity::{
+    AngularSpeed, Damping, Drag, Force, Length, Mass, Ratio, Speed, Stiffness,
+};
 
 /// The chain. Written as a text, `chain = "16B-1"`, it is a chain of the catalogue in which
 /// nothing is changed.
@@ -44,6 +46,10 @@ pub(crate) struct Chain {
     #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) damping_ratio: Option<Ratio>,
+    /// Drag of oil or air across every link, per length and speed [N s/m²]; absent: none.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0))]
+    pub(crate) drag: Option<Drag>,
     /// Roller (or bush) diameter [m]. A strand that touches nothing may leave it out.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]

@@ -66,6 +66,7 @@ impl Strand {
             plate_height: self.roller_diameter,
             strength: Strength::default(),
             articulation: None,
+            drag: 0.0,
             ends: self.ends.clone(),
             model: ChainModel::Rigid(self.links.clone()),
         };

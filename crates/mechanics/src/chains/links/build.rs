@@ -370,6 +370,7 @@ fn compile(particles: &Particles, laid: &LaidAs<'_>, links: &RigidLinks) -> Link
         },
         pairs: Pairs::of(&joints),
         resisting: Joints::new(chain, padded(joints.len())),
+        drag: chain.drag,
         joints,
         joining,
         free_rollers,

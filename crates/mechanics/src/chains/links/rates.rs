@@ -70,7 +70,7 @@ impl Linkage {
         }
         let [turning, drag] = self.joint_rates(record.resistance.slopes);
         squared = squared.max(turning);
-        damping = damping.max(drag);
+        damping = damping.max(drag + self.drag_rate());
         if let Joining::Hinges(hinges) = &self.joining {
             damping = damping.max(hinges.rate);
             squared = squared.max(self.pulled(joint_state));
@@ -78,13 +78,14 @@ impl Linkage {
         [squared, damping]
     }
 
-    /// Frequency \[1/s\] of the stabilisation of ideal joints and of torques in joints, which every method takes explicitly.
+    /// Frequency \[1/s\] of the stabilisation of ideal joints, of torques in joints and of drag, which every method takes explicitly.
     ///
     /// The stabilisation is a damper and a spring of rate α: symplectic Euler takes steps up to 0.83/α with it, and this is 0.41/α.
     /// Torques are reckoned with as explicit methods do, by D + √(D² + ω²).
     pub(crate) fn stabilisation(&self) -> f64 {
         let joints = self.resisting.as_ref();
         let [squared, damping] = self.joint_rates(joints.map_or([0.0; 2], Joints::slopes));
+        let damping = damping + self.drag_rate();
         let torques = damping + (damping * damping + squared).sqrt();
         match &self.joining {
             Joining::Hinges(hinges) => torques.max((1.0 + std::f64::consts::SQRT_2) * hinges.rate),

@@ -78,6 +78,7 @@ pub(super) fn bicycle(model: ChainModel) -> Parts {
                 plate_height: 9.6e-3,
                 strength: Strength::default(),
                 articulation: None,
+                drag: 0.0,
                 ends: Ends::Closed,
                 model,
             },

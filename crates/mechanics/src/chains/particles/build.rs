@@ -3,6 +3,7 @@
 use chaindrive_geometry::{Point, Vector};
 use pulp::Arch;
 
+use super::drag::Drag;
 use super::{Links, Particles};
 use crate::chains::held_ends;
 use crate::chains::joints::Joints;
@@ -29,6 +30,7 @@ impl Particles {
             lightest: inverse_masses.iter().copied().fold(0.0, f64::max),
             link_rates: link_rates(&links, &inverse_masses, rollers),
             joints: Joints::new(chain, links.rest.len()),
+            drag: Drag::new(chain, links.rest.len()),
             links,
             rollers,
             stride,

@@ -3,8 +3,9 @@
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
 
-use super::Particles;
+use super::{Particles, Turning};
 use crate::chains::Record;
+use crate::chains::joints::Resistance;
 use crate::energy::Flow;
 use crate::motion::Kinematics;
 use crate::system::HeldEnd;
@@ -35,6 +36,7 @@ impl Particles {
         at: Moment<'_>,
         a: &mut [f64],
         rates: &mut [f64],
+        joints: (&Turning, &Resistance),
     ) {
         let n = self.stride;
         for held in &self.ends {
@@ -49,9 +51,9 @@ impl Particles {
                     let (x, y) = (x.at(at.t), y.at(at.t));
                     a[i] = x.acceleration;
                     a[n + i] = y.acceleration;
-                    // F = m (a − g) − T
+                    // F = m (a − g) − T − what turns and drags
                     let over = Vector::new(x.acceleration, y.acceleration) - gravity;
-                    let needed = self.end_force(at, held, over);
+                    let needed = self.end_force(at, held, over) - self.beside(at, held, joints);
                     rates[Flow::Motions as usize] += needed.x * x.rate + needed.y * y.rate;
                 }
                 End::Pulled { force } => {
@@ -61,6 +63,32 @@ impl Particles {
                 }
             }
         }
+    }
+
+    /// What the joint at the other end of the last link, and drag, do to an end roller \[N\].
+    fn beside(
+        &self,
+        at: Moment<'_>,
+        held: &HeldEnd,
+        (turning, found): (&Turning, &Resistance),
+    ) -> Vector {
+        let [link, end] = if held.roller == 0 {
+            [0, 0]
+        } else {
+            [held.roller - 1, 1]
+        };
+        let mut force = Vector::zeros();
+        if let Some(drag) = &self.drag {
+            force += drag.at_end(self, at, [link, end]);
+        }
+        if self.joints.is_some() {
+            // F = ± (M_i − M_{i+1}) n_i/ℓ_i
+            let couple = found.torque[link] - found.torque[link + 1];
+            let [x, y] = &turning.across;
+            let sign = if end == 0 { -couple } else { couple };
+            force += Vector::new(x[link], y[link]) * sign;
+        }
+        force
     }
 
     /// Force that a support exerts on an end roller which is accelerated by `over` more than its weight does \[N\].

@@ -31,7 +31,7 @@ impl Particles {
             ..
         } = record;
         if self.oldest {
-            let found = (&mut *loads, turning, resistance);
+            let found = (&mut *loads, &mut *turning, &mut *resistance);
             self.forces(Wide(Scalar128b), around, at, a, rates, found);
         } else {
             self.arch.dispatch(Forces {
@@ -40,7 +40,7 @@ impl Particles {
                 at,
                 a: &mut *a,
                 rates: &mut *rates,
-                found: (&mut *loads, turning, resistance),
+                found: (&mut *loads, &mut *turning, &mut *resistance),
             });
         }
         let mut rollers = self.view(at.q, at.v, a);
@@ -57,7 +57,8 @@ impl Particles {
                 a[n + ghost] = a[n + ghost - self.rollers];
             }
         } else {
-            self.hold_ends(around.bodies.gravity, at, a, rates);
+            let joints = (&*turning, &*resistance);
+            self.hold_ends(around.bodies.gravity, at, a, rates, joints);
             a[self.rollers..n].fill(0.0);
             a[n + self.rollers..2 * n].fill(0.0);
         }
@@ -87,6 +88,9 @@ impl Particles {
             links.act::<S, false>(w, &mut rollers, gravity, turning)
         };
         rates[Flow::LinkLoss as usize] += loss;
+        if let Some(drag) = &self.drag {
+            rates[Flow::DragLoss as usize] += drag.act(w, links, &mut rollers);
+        }
         touch_bodies(w, contacts, at.t, &mut rollers, rates, loads);
     }
 }

@@ -70,6 +70,7 @@ pub(crate) fn parts(law: Law) -> Parts {
                 plate_height: 0.0778,
                 strength: Strength::default(),
                 articulation: None,
+                drag: 0.0,
                 ends: Ends::Closed,
                 model: chaindrive_mechanics::ChainModel::Particles,
             },
