@@ -73,8 +73,8 @@ def simulate(
         of the direction of links belong to rigid links.
     method
         ``"verlet"``, ``"rk4"`` or ``"dormand-prince"``; the implicit methods
-        ``"implicit-damping"`` and ``"generalized-alpha"`` are for rigid links and free rollers. ``"auto"``
-        takes implicit damping for them, and Verlet for particles.
+        ``"implicit-damping"`` and ``"generalized-alpha"`` are for rigid links and free rollers.
+        ``"auto"`` takes implicit damping for them, and Verlet for particles.
     step
         Step of the fixed-step methods, longest step of the adaptive one [s]; chosen from the
         stiffest mode when neither the scene nor the caller gives it.

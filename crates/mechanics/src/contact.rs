@@ -22,7 +22,6 @@ mod windows;
 mod wrench;
 
 use chaindrive_contact::Law;
-use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
 
@@ -208,6 +207,7 @@ impl Contacts {
     /// Sum of the elastic energies of all closed slots \[J\].
     pub(crate) fn stored(&self, touch: &Touch) -> f64 {
         let law = &self.surface.law;
+        let of_flank = self.flank.as_ref().map(|flank| flank.law(&self.surface));
         let closed = touch
             .state
             .gap
@@ -215,11 +215,9 @@ impl Contacts {
             .zip(&touch.state.share)
             .filter(|(gap, _)| **gap < 0.0);
         closed
-            .map(|(&gap, &share)| match &self.flank {
+            .map(|(&gap, &share)| match &of_flank {
                 None => law.energy(-gap),
-                Some(flank) => {
-                    (1.0 - share) * law.energy(-gap) + share * flank.elastic.energy(-gap)
-                }
+                Some(flank) => (1.0 - share) * law.energy(-gap) + share * flank.energy(-gap),
             })
             .sum()
     }

@@ -1,6 +1,5 @@
 //! Contact terms of the static balance, from the scalar form of the profiles.
 
-use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
 
@@ -108,8 +107,9 @@ fn add_circles(
                     let share = flank.share(probe.beyond);
                     let mix = |a: f64, b: f64| (1.0 - share) * a + share * b;
                     let depth = -probe.gap;
-                    push.force = mix(push.force, flank.elastic.force(depth));
-                    push.stiffness = mix(push.stiffness, flank.elastic.stiffness(depth));
+                    let law = flank.law(&contacts.surface);
+                    push.force = mix(push.force, law.elastic_force(depth));
+                    push.stiffness = mix(push.stiffness, law.stiffness(depth));
                 }
                 add_one(
                     &circle,
