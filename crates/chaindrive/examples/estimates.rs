@@ -46,7 +46,7 @@ const CASES: [Case; 40] = [
             r#"{ kind = "coulomb", coefficient = 0.1, slip_speed = "1 mm/s" }"#,
         )],
     ),
-    ("marine_two_sprockets", &[("chain.type", r#""56B-1""#)]),
+    ("marine_two_sprockets", &[("route.pretension", r#""50 kN""#)]),
     ("industrial_16b", &[]),
     ("industrial_16b", &[("route.phase", "0.25")]),
     (
