@@ -46,7 +46,10 @@ const CASES: [Case; 40] = [
             r#"{ kind = "coulomb", coefficient = 0.1, slip_speed = "1 mm/s" }"#,
         )],
     ),
-    ("marine_two_sprockets", &[("route.pretension", r#""50 kN""#)]),
+    (
+        "marine_two_sprockets",
+        &[("route.pretension", r#""50 kN""#)],
+    ),
     ("industrial_16b", &[]),
     ("industrial_16b", &[("route.phase", "0.25")]),
     (
