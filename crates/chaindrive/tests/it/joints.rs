@@ -222,6 +222,59 @@ fn links_with_play_have_the_stiffness_of_the_catalogue() {
     assert!(under(&rigid, 500.0) > 450e6);
 }
 
+/// Rigid links whose pins have no play, and yield as the catalogue says, are the particle chain but for their moments of inertia: the
+/// spans have the same tension at rest, and in the mean of six teeth. Ideal joints, whose links do not yield, have hundreds of newtons more.
+#[test]
+fn joints_without_play_are_those_of_the_elastic_chain() {
+    let bicycle = Scene::preset("bicycle").unwrap();
+    let without_play = bicycle.replace("chain.joint.clearance", "\"0 mm\"");
+    let without_play = without_play.unwrap();
+    let particles = bicycle.replace("chain.model", "particles").unwrap();
+    let spans = |scene: &Scene| {
+        let run = Run {
+            until: 0.15,
+            every: 5e-5,
+            ..Run::default()
+        };
+        let mut simulation = Simulation::start(&scene.drive().unwrap(), &run).unwrap();
+        let (mut at_rest, mut sums, mut samples) = (None, [0.0; 2], 0.0);
+        while let Some(sample) = simulation.next_sample().unwrap() {
+            at_rest.get_or_insert([sample.span_tension[0], sample.span_tension[1]]);
+            // The last six teeth, of which 66 pass in a second.
+            if sample.time > 0.15 - 6.0 / 66.0 {
+                samples += 1.0;
+                sums[0] += sample.span_tension[0];
+                sums[1] += sample.span_tension[1];
+            }
+        }
+        (at_rest.unwrap(), sums.map(|sum| sum / samples))
+    };
+    let (rest, mean) = spans(&without_play);
+    let (as_rest, as_mean) = spans(&particles);
+    for span in 0..2 {
+        assert!(
+            (rest[span] / as_rest[span] - 1.0).abs() < 0.01,
+            "{rest:?} {as_rest:?}"
+        );
+        assert!(
+            (mean[span] / as_mean[span] - 1.0).abs() < 0.01,
+            "{mean:?} {as_mean:?}"
+        );
+    }
+    let ChainModel::Rigid(links) = &without_play.drive().unwrap().chains[0].chain.model else {
+        panic!("rigid links");
+    };
+    let Joint::Clearance(joint) = &links.joint else {
+        panic!("pins that yield");
+    };
+    assert_eq!((joint.gap(), under(&joint.surface.law, 60.0)), (0.0, 47.65e6));
+    let written_out = without_play.resolved().unwrap().drive().unwrap();
+    assert_eq!(
+        written_out.chains[0].chain,
+        without_play.drive().unwrap().chains[0].chain
+    );
+}
+
 /// A free roller is light: what the tooth presses on it, it presses on its bush, which lies as deep in it as its law says.
 #[test]
 fn bushes_in_free_rollers_are_told_of() {

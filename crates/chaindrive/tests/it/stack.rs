@@ -1,4 +1,4 @@
-//! What lies behind teeth and pins, as scenes describe it: lumped under the teeth, or points of their own.
+//! The stack behind teeth and pins, as scenes describe it: lumped under the teeth, or points of their own.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use std::f64::consts::PI;
@@ -115,7 +115,7 @@ fn pins_of_points_bend() {
     assert_eq!(again.chains[0].chain, drive.chains[0].chain);
 }
 
-/// What has no meaning for free rollers of particles is told in its place.
+/// Keys without a meaning for free rollers of particles are told in their place.
 #[test]
 fn free_rollers_of_particles_are_refused_where_they_cannot_be() {
     const FREE: &str = "rollers = \"free\"";
@@ -140,6 +140,13 @@ fn free_rollers_of_particles_are_refused_where_they_cannot_be() {
             "contact.rollers.friction",
             8,
             "do not turn",
+        ),
+        (
+            FREE,
+            "rollers = \"free\"\njoint = { clearance = \"0 mm\" }",
+            "chain.joint.clearance",
+            7,
+            "need pins with play",
         ),
         (
             FREE,

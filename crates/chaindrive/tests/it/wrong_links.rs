@@ -50,7 +50,8 @@ const NAMED: &str = "[chain]\ntype = \"081\"\nlinks = 78\nmodel = \"clearance-jo
 #[rustfmt::skip]
 const CASES: &[Mistake] = &[
     // Dimensions.
-    ("clearance = \"0.025 mm\"", "clearance = \"-0.025 mm\"", "chain.joint.clearance", 12, "must be positive [m]"),
+    ("clearance = \"0.025 mm\"", "clearance = \"-0.025 mm\"", "chain.joint.clearance", 12, "must be not negative [m]"),
+    ("clearance = \"0.025 mm\"", "clearance = \"0 mm\"", "contact.joints.law", 23, "pins without play have no contact of their own"),
     ("clearance = \"0.025 mm\"", "clearance = \"1 µm\"", "contact.joints.law.clearance", 23, "in [5e-6, 0.01] [m] for the internal cylindrical law"),
     ("clearance = \"0.025 mm\"", "", "chain.joint.clearance", 10, "missing; give the radial clearance between pin and bush, such as"),
     ("pin_diameter = \"4.09 mm\"", "pin_diameter = \"5.7 mm\"", "chain.joint.pin_diameter", 11, "must be less; the bush around it has a diameter of 0.00566 m"),

@@ -38,6 +38,11 @@ impl<'a> Joints<'a> {
         }
     }
 
+    /// Stiffness of a link \[N/m\], where it is known.
+    pub(super) fn link_stiffness(&self) -> Option<f64> {
+        self.link_stiffness
+    }
+
     /// Radius of the pin \[m\]: as given, or that of the catalogue.
     fn pin(&self) -> Option<f64> {
         let given = self.text.joint.as_ref().and_then(|it| it.pin_diameter);
@@ -190,7 +195,7 @@ pub(super) fn refuse_play(text: &schema::Chain, findings: &mut Findings<'_>) {
         ("contact.onset_floor", contact.onset_floor.is_some()),
     ];
     for (key, _) in given.iter().filter(|(_, given)| *given) {
-        let hint = "take `model = \"clearance-joints\"`, or leave it out";
+        let hint = "take `model = \"clearance-joints\"` (of clearance 0: joints without play, links that yield), or leave it out";
         let message = "only pins with clearance have one";
         findings.refuse_with(&format!("chain.joint.{key}"), message, hint);
     }

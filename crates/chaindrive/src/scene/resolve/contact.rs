@@ -110,6 +110,13 @@ impl Said<'_> {
         })
     }
 
+    /// Where the scene gives a law, if it does.
+    pub(super) fn law_path(&self) -> Option<String> {
+        let own = self.own.law.is_some().then_some(self.path);
+        let common = self.common.law.is_some().then_some(self.fallback.path);
+        own.or(common).map(|path| format!("{path}.law"))
+    }
+
     /// Stiffness \[N/m\] of what lies behind, where the scene says something of it; zero is rigid.
     pub(super) fn series(&self) -> Option<f64> {
         let given = self.own.series.or(self.common.series);

@@ -3,7 +3,7 @@
 use chaindrive_contact::Elastic;
 use chaindrive_contact::Friction;
 use chaindrive_contact::Law;
-use chaindrive_contact::elastic::{ElasticLaw, Johnson};
+use chaindrive_contact::elastic::{ElasticLaw, Johnson, Power};
 use chaindrive_geometry::Vector;
 use chaindrive_mechanics::{
     ChainModel, Clearance, FreeRoller, Joint, LinkBody, PointJoints, RigidLinks, RollerModel,
@@ -340,7 +340,6 @@ fn joint(
         common: &scene.contact.joints,
         fallback: contact::JOINTS,
     };
-    let law = law(said, pair, clearance, "joint", needs.findings);
     let known = Joints::new(scene, text, text.stiffness.map(|stiffness| stiffness.0));
     // Particles have their friction beside the contact, and half of their plates in the links.
     let points = are_points(text);
@@ -349,10 +348,19 @@ fn joint(
     } else {
         known.friction(needs.findings)
     };
-    let mut law = law?;
-    if said.series().is_none() {
-        law.series = known.plates(&law, route, pin, points, needs.findings);
-    }
+    let law = if clearance == 0.0 {
+        without_play(said, pair, &known, points, needs)
+    } else {
+        let law = law(said, pair, clearance, "joint", needs.findings);
+        law.map(|law| match said.series() {
+            Some(_) => law,
+            None => Law {
+                series: known.plates(&law, route, pin, points, needs.findings),
+                ..law
+            },
+        })
+    };
+    let law = law?;
     Some(Joint::Clearance(Clearance {
         pin_radius: pin,
         bore_radius: bore,
@@ -361,6 +369,41 @@ fn joint(
             friction: friction?,
         },
     }))
+}
+
+/// Law of pins that fill their bores: they touch all around, and only the link beside them yields.
+fn without_play(
+    said: contact::Said<'_>,
+    pair: Pair,
+    known: &Joints<'_>,
+    points: bool,
+    needs: &mut Needs<'_, '_>,
+) -> Option<Law> {
+    if points {
+        let message = "free rollers of a particle chain need pins with play";
+        let hint = "give a clearance, or take `model = \"clearance-joints\"`";
+        needs
+            .findings
+            .refuse_with("chain.joint.clearance", message, hint);
+        return None;
+    }
+    if let Some(path) = said.law_path() {
+        let message = "pins without play have no contact of their own";
+        let hint = "leave it out: `series` is the stiffness of the joint then, or give a clearance";
+        needs.findings.refuse_with(&path, message, hint);
+        return None;
+    }
+    let series = said.series().filter(|stiffness| *stiffness > 0.0);
+    let stiffness = series.or(known.link_stiffness());
+    let what = "stiffness of a link between its pins, or take `model = \"ideal-joints\"`";
+    let stiffness = needs.value(stiffness, "stiffness", what)?;
+    let law = said.law(pair, needs.findings, |_| {
+        Some(Elastic::Power(Power::linear(stiffness)))
+    })?;
+    Some(Law {
+        series: None,
+        ..law
+    })
 }
 
 /// Law of what turns in a bore; steel, and the enhanced cylindrical law, unless the scene says more.

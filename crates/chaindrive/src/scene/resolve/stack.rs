@@ -1,4 +1,4 @@
-//! What lies behind a tooth: the roller on its bush and the bush on its pin, where they do not move by themselves.
+//! The stack behind a tooth: the roller on its bush and the bush on its pin, where they do not move by themselves.
 //!
 //! ```text
 //! 1/k_s = δ_roller(F)/F + δ_pin(F)/F,   F: a stated share of the breaking load
@@ -65,7 +65,7 @@ fn compliance(
     };
     let number = |given: Option<f64>, of| given.or_else(|| chain.number(of));
     let joint = text.joint.clone().unwrap_or_default();
-    let play = joint.clearance.map(|it| it.0);
+    let play = joint.clearance.map(|it| it.0).filter(|play| *play > 0.0);
     let play = play.or_else(|| chain.joint_clearance())?;
     let mut compliance = 0.0;
     if on_bush {

@@ -19,7 +19,7 @@ pub(crate) enum ChainModel {
     ClearanceJoints,
 }
 
-/// What runs on the teeth.
+/// Rollers on the teeth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Rollers {
@@ -57,9 +57,10 @@ pub(crate) struct Joint {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) pin_diameter: Option<Length>,
-    /// Radial clearance [m]: radius of the bore less radius of the pin; for clearance joints.
+    /// Radial clearance [m]: radius of the bore less radius of the pin; for clearance joints. At 0 pins have no play, and
+    /// the link beside them yields: with `contact.series`, or with the stiffness of the link.
     #[serde(default)]
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("minimum" = 0))]
     pub(crate) clearance: Option<Length>,
     /// Length on which pin and bush touch [m]; for clearance joints.
     #[serde(default)]

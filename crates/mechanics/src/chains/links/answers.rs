@@ -140,8 +140,9 @@ impl Linkage {
     /// Share of a step that moves no body farther than the clearance.
     pub(crate) fn reach(&self, step: &[f64]) -> f64 {
         let cap = match &self.joining {
-            Joining::Clearance(bearing) => bearing.clearance.max(1e-6),
-            Joining::Hinges(_) => 1e-4,
+            Joining::Clearance(bearing) if bearing.clearance > 0.0 => bearing.clearance.max(1e-6),
+            // Without play there is no gap that a step could jump.
+            Joining::Clearance(_) | Joining::Hinges(_) => 1e-4,
         };
         let lever = 0.5 * self.pitch;
         let mut farthest = 0.0_f64;

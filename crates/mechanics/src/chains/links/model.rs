@@ -59,7 +59,7 @@ pub enum Joint {
 pub struct Clearance {
     /// Radius of the pin \[m\], positive.
     pub pin_radius: f64,
-    /// Radius of the bore \[m\], larger than the pin's.
+    /// Radius of the bore \[m\], at least the pin's: equal radii are a joint without play, whose law is that of the link that yields.
     pub bore_radius: f64,
     /// Contact of pin and bush.
     pub surface: Surface,
@@ -103,7 +103,7 @@ impl Clearance {
     /// Names every parameter out of range.
     pub(crate) fn problems(&self) -> Vec<DriveError> {
         let names = ["chain.joint.pin_radius", "chain.joint.bore_radius"];
-        let mut problems = fit([self.pin_radius, self.bore_radius], names);
+        let mut problems = fit([self.pin_radius, self.bore_radius], names, Play::MayLack);
         problems.extend(self.surface.problems("chain.joint"));
         problems
     }
@@ -118,7 +118,7 @@ impl FreeRoller {
     /// Names every parameter out of range.
     pub(crate) fn problems(&self) -> Vec<DriveError> {
         let names = ["chain.roller.bush_radius", "chain.roller.bore_radius"];
-        let mut problems = fit([self.bush_radius, self.bore_radius], names);
+        let mut problems = fit([self.bush_radius, self.bore_radius], names, Play::Must);
         for (path, value, allowed) in [
             ("chain.roller.mass", self.mass, "positive [kg]"),
             ("chain.roller.inertia", self.inertia, "positive [kg m²]"),
@@ -185,9 +185,22 @@ impl RigidLinks {
     }
 }
 
+/// Whether something that turns in a bore has play in it.
+#[derive(Clone, Copy)]
+enum Play {
+    /// It must have play.
+    Must,
+    /// With play or without.
+    MayLack,
+}
+
 /// Names what is wrong with the radii of something that turns in a bore.
-fn fit([inside, outside]: [f64; 2], names: [&str; 2]) -> Vec<DriveError> {
-    let fits = outside.is_finite() && outside > inside;
+fn fit([inside, outside]: [f64; 2], names: [&'static str; 2], play: Play) -> Vec<DriveError> {
+    let (fits, allowed) = match play {
+        Play::Must => (outside > inside, "larger than what turns in it [m]"),
+        Play::MayLack => (outside >= inside, "as large as the pin or larger [m]"),
+    };
+    let fits = outside.is_finite() && fits;
     let found = [
         DriveError::require(
             inside > 0.0 && inside.is_finite(),
@@ -195,7 +208,7 @@ fn fit([inside, outside]: [f64; 2], names: [&str; 2]) -> Vec<DriveError> {
             inside,
             "positive [m]",
         ),
-        DriveError::require(fits, names[1], outside, "larger than what turns in it [m]"),
+        DriveError::require(fits, names[1], outside, allowed),
     ];
     found.into_iter().filter_map(Result::err).collect()
 }

@@ -45,6 +45,14 @@ impl PointJoints {
         });
         let mut problems: Vec<DriveError> = masses.into_iter().flatten().collect();
         problems.extend(self.joint.problems());
+        let bore = self.joint.bore_radius;
+        let play = DriveError::require(
+            bore > self.joint.pin_radius,
+            "chain.joint.bore_radius",
+            bore,
+            "larger than the pin, which is a point of its own [m]",
+        );
+        problems.extend(play.err());
         problems.extend(self.roller.problems());
         problems
     }
