@@ -1,4 +1,4 @@
-//! What a chain bears, for those who judge a motion: nothing in the model yields or breaks.
+//! The strength of a chain, for those who judge a motion: nothing in the model yields or breaks.
 
 use std::f64::consts::TAU;
 
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::DriveError;
 
-/// What is known of the strength of a chain.
+/// Strength of a chain, as far as it is known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Strength {
     /// Least breaking load \[N\], positive.
@@ -76,25 +76,46 @@ impl Rating {
 mod tests {
     use super::*;
 
-    /// Shigley, table 17–20: single strands on 17 teeth.
+    /// Shigley, table 17–20, and the tables of the association for numbers 40 and 41 (*Machinery's Handbook*): single strands.
     #[test]
     fn published_ratings_are_met() {
-        for (pitch, rpm, horsepower) in [
-            (0.5, 50.0, 0.37),
-            (0.625, 50.0, 0.72),
-            (0.75, 50.0, 1.24),
+        for (pitch, teeth, rpm, horsepower) in [
+            (0.5, 17, 50.0, 0.37),
+            (0.625, 17, 50.0, 0.72),
+            (0.75, 17, 50.0, 1.24),
+            (0.5, 11, 50.0, 0.23),
+            (0.5, 11, 1600.0, 5.22),
+            (0.5, 16, 500.0, 2.75),
+            (0.5, 16, 1000.0, 5.13),
             // Impacts limit it.
-            (0.5, 1800.0, 8.96),
+            (0.5, 11, 1800.0, 4.66),
+            (0.5, 17, 1800.0, 8.96),
         ] {
             let rating = Rating {
                 pitch: pitch * INCH,
                 plates: 0.004,
                 rollers: 17.0,
             };
-            let found = rating.power(17, -rpm * TAU / 60.0) / HORSEPOWER;
+            let found = rating.power(teeth, -rpm * TAU / 60.0) / HORSEPOWER;
             assert!(
                 (found - horsepower).abs() < 0.006,
-                "{pitch}, {rpm}: {found}"
+                "{pitch}, {teeth}, {rpm}: {found}"
+            );
+        }
+        let light = Rating {
+            pitch: 0.5 * INCH,
+            plates: 0.0022,
+            rollers: 3.4,
+        };
+        for (teeth, rpm, horsepower) in [
+            (11, 500.0, 1.01),
+            (15, 1000.0, 2.63),
+            (18, 1400.0, 2.85),
+        ] {
+            let found = light.power(teeth, rpm * TAU / 60.0) / HORSEPOWER;
+            assert!(
+                (found - horsepower).abs() < 0.006,
+                "41, {teeth}, {rpm}: {found}"
             );
         }
     }
