@@ -1,4 +1,4 @@
-"""What can go wrong, as exceptions under `ChaindriveError`, and warnings.
+"""Faults as exceptions under `ChaindriveError`, and warnings.
 
 Every exception carries `path`, the place it speaks of, and `hint`, what to try, where they are
 known; otherwise they are None.

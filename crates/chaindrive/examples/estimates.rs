@@ -1,4 +1,4 @@
-//! What runs say of their own error, held against a reference method, for forty drives:
+//! Stated errors of runs, held against a reference method, for forty drives:
 //! `make estimates` writes the page `docs/estimates.md`, and fails where they do not hold.
 //!
 //! Every drive is given the method and step that it gets by default. The reference, Runge–Kutta of fourth order with steps that
@@ -8,8 +8,11 @@
 use std::io::Write;
 
 use chaindrive::precision::{ACCURACY, Estimate, Strands, choose, estimate};
-use chaindrive::{Assembled, Run, Scene, Simulation, SimulationError, Stepping};
-use chaindrive_integrate::SecondOrderSystem;
+use chaindrive::{Run, Scene, SimulationError};
+
+#[path = "../tests/it/against_reference.rs"]
+mod against_reference;
+use against_reference::{errors, horizon, reference, rms, tensions};
 
 type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
 
@@ -99,14 +102,12 @@ const SAMPLES: f64 = 1024.0;
 const LARGE: f64 = 1.5;
 /// A stated horizon may lie this much later than the true one, in [`AGREEING`] drives.
 const LATE: f64 = 1.2;
-/// Error at which a horizon lies \[–\].
-const HORIZON: f64 = 0.01;
 /// Drives of the forty that have to agree.
 const AGREEING: usize = 38;
 /// Where the median of true over stated error has to lie.
 const MEDIAN: [f64; 2] = [0.7, 1.3];
 
-/// What stands above the table.
+/// The text above the table.
 const HEAD: &str = "\
 # Estimates
 
@@ -155,10 +156,15 @@ impl Line {
             every: stated.window / SAMPLES,
             ..run
         };
-        let strands = stated.strands;
-        let found = tensions(&start, &over(run.clone()), strands)?;
-        let exact = tensions(&start, &over(reference(&start, 1.0)), strands)?;
-        let sharper = tensions(&start, &over(reference(&start, 0.5)), strands)?;
+        let strand = match stated.strands {
+            Strands::Spans => 0,
+            Strands::Links => 1,
+        };
+        let tensions =
+            |run| Ok::<_, SimulationError>(tensions(&start, &over(run))?[strand].clone());
+        let found = tensions(run.clone())?;
+        let exact = tensions(reference(&start, 1.0))?;
+        let sharper = tensions(reference(&start, 0.5))?;
         let every = stated.window / SAMPLES;
         let end = stated.horizon.all.time().unwrap_or(f64::INFINITY);
         let inside = |errors: &[f64]| {
@@ -166,23 +172,14 @@ impl Line {
             let inside = inside.filter(|(sample, _)| *sample as f64 * every <= end);
             rms(inside.map(|(_, error)| *error))
         };
-        let errors = errors(&found, &sharper);
-        let width = stated.period.map_or(1.0, |period| period / every).max(1.0);
-        let moving = (1..=errors.len()).map(|last| {
-            let first = (last as f64 - width).max(0.0);
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "a sample"
-            )]
-            rms(errors[first as usize..last].iter().copied())
-        });
-        let first = moving.into_iter().position(|error| error >= HORIZON);
+        let errors = |of: &[Vec<f64>]| errors(of, &sharper, sharper.len());
+        let (error, doubt) = (errors(&found), errors(&exact));
+        let first = horizon(&error, stated.period.map_or(1.0, |period| period / every));
         Ok(Self {
             case,
             run,
-            error: inside(&errors),
-            doubt: inside(&self::errors(&exact, &sharper)),
+            error: inside(&error),
+            doubt: inside(&doubt),
             horizon: first.map(|sample| sample as f64 * every),
             stated,
         })
@@ -226,50 +223,6 @@ impl Line {
             mark(self.horizon_holds()),
         )
     }
-}
-
-fn reference(start: &Assembled, factor: f64) -> Run {
-    let particles = !start.system.prefers_implicit_damping();
-    let steps = if particles { 0.0625 } else { 0.5 };
-    Run {
-        stepping: Stepping::Rk4,
-        step: Some(factor * steps * start.system.time_scale()),
-        onset_depth: particles.then_some(factor * 1e-8),
-        ..Run::default()
-    }
-}
-
-/// Tensions of spans or links, sample by sample \[N\].
-fn tensions(
-    start: &Assembled,
-    run: &Run,
-    strands: Strands,
-) -> Result<Vec<Vec<f64>>, SimulationError> {
-    let mut simulation = Simulation::from_assembled(start.clone(), run)?;
-    let mut samples = Vec::new();
-    while let Some(sample) = simulation.next_sample()? {
-        samples.push(match strands {
-            Strands::Spans => sample.span_tension.clone(),
-            Strands::Links => sample.link_tension.clone(),
-        });
-    }
-    Ok(samples)
-}
-
-/// Root mean square over the strands, over the mean tension, sample by sample \[–\].
-fn errors(of: &[Vec<f64>], exact: &[Vec<f64>]) -> Vec<f64> {
-    let all = exact.concat();
-    let mean = all.iter().map(|tension| tension.abs()).sum::<f64>() / all.len() as f64;
-    let pairs = of.iter().zip(exact);
-    let pairs = pairs.map(|(a, b)| rms(a.iter().zip(b).map(|(a, b)| a - b)) / mean);
-    pairs.collect()
-}
-
-fn rms(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| {
-        (sum + value * value, count + 1.0)
-    });
-    f64::sqrt(sum / f64::max(count, 1.0))
 }
 
 fn main() -> Outcome<()> {

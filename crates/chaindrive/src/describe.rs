@@ -193,7 +193,7 @@ impl Description {
     }
 }
 
-/// What can be said against a drive before it runs.
+/// Objections to a drive before it runs.
 fn warnings(drive: &Drive, assembled: &Assembled, run: &Run) -> Vec<String> {
     let clashes = assembled.warnings.iter().map(Clash::to_string);
     let fights = drive.fights(0.0, run.until);

@@ -178,7 +178,7 @@ fn hint(suggestion: Option<&str>) -> String {
     suggestion.map_or_else(String::new, |name| format!(" (did you mean `{name}`?)"))
 }
 
-/// What gives a chain a channel that it has not.
+/// Keys that would give a chain a channel that it lacks.
 fn way_to(channel: &str) -> &'static str {
     if channel.starts_with("bush_") {
         "its rollers are no bodies of their own; set `chain.rollers` to `free` on rigid links"

@@ -57,7 +57,7 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "RATIO", conflicts_with_all = ["method", "step", "tolerance", "onset_depth"])]
     accuracy: Option<String>,
 
-    /// What the accuracy is one of: the tension, or the losses and with them the efficiency
+    /// Quantity that the accuracy is one of: the tension, or the losses and with them the efficiency
     #[arg(long, value_name = "QUANTITY", value_parser = ["tension", "losses"], conflicts_with_all = ["method", "step", "tolerance", "onset_depth"])]
     accuracy_of: Option<String>,
 

@@ -83,7 +83,7 @@ pub struct Chain {
     /// What it is made of. Rigid links take their lengths from `lengths`; stiffness, damping and
     /// masses are then those of the particle chain that serves to lay and settle them.
     pub model: ChainModel,
-    /// What it bears, as far as that is known. Nothing follows from it but what is said of the result.
+    /// Its strength, as far as that is known. Nothing follows from it but what is said of the result.
     pub strength: Strength,
 }
 

@@ -116,7 +116,7 @@ pub(crate) struct Touch {
     pub(crate) state: ContactMemory,
     /// Until when \[s\] nothing can touch in the lane that begins with this slot.
     pub(crate) wake: Vec<f64>,
-    /// What implicit steps want to know; kept for chains that solve equations only, and valid where a contact is closed.
+    /// Stiffness and damping for implicit steps; kept for chains that solve equations only, and valid where a contact is closed.
     pub(crate) faces: Faces,
 }
 

@@ -1,4 +1,4 @@
-//! What of a drive has touched since the start.
+//! Impacts in a drive since the start.
 //!
 //! Counted on accepted states, whether contacts are logged or not. A contact that is lost and found again within one step was never seen
 //! to end; where a tooth gap touches a roller at two places these are two.
@@ -7,12 +7,12 @@ use crate::System;
 use crate::contact::Impacts;
 use crate::system::Member;
 
-/// What parts of one kind, of one body, have done to each other.
+/// Impacts between parts of one kind, of one body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Struck {
     /// In words, such as "teeth of crank".
     pub place: String,
-    /// What is counted.
+    /// The kind that is counted.
     pub impacts: Impacts,
     /// Depth \[m\] from which on the law is no more than its own tangent, where there is one.
     pub reach: Option<f64>,
@@ -28,7 +28,7 @@ impl System {
         }
     }
 
-    /// What has touched since the start, of every sprocket, guide and chain where anything can.
+    /// Impacts since the start, of every sprocket, guide and chain where anything can touch.
     pub fn struck(&self) -> Vec<Struck> {
         let mut all = Vec::new();
         for member in &self.chains {

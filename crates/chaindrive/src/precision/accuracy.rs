@@ -1,4 +1,4 @@
-//! What method and step are chosen to keep, and how well.
+//! The accuracy that method and step are chosen to keep, and how well they keep it.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// *Assumed*.
 pub(crate) const LEAST_LOSSES: f64 = 1e-4;
 
-/// What an accuracy is one of.
+/// The quantity that an accuracy is one of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Quantity {

@@ -35,7 +35,7 @@ pub(super) struct Trace {
     pub(super) statistics: Statistics,
 }
 
-/// What a run has lost, and what of its energy is unaccounted for.
+/// Losses of a run, and the part of its energy that is unaccounted for.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Lost {
     /// Energy lost \[J\].
@@ -97,7 +97,7 @@ impl Lost {
         }
     }
 
-    /// What relative errors of losses are relative to \[J\]: the losses, or what cannot be told from none.
+    /// Scale of relative errors of losses \[J\]: the losses, or the least that can be told from none.
     pub(super) fn scale(&self) -> f64 {
         self.losses.max(LEAST_LOSSES * self.supplied)
     }

@@ -386,7 +386,7 @@ impl Summary {
         lost.filter(|(_, lost)| *lost != 0.0).collect()
     }
 
-    /// What each chain has carried.
+    /// Duty of each chain.
     pub fn carried(&self) -> Vec<Load> {
         self.carried.loads()
     }

@@ -16,7 +16,7 @@ pub struct Request {
     pub record: Vec<String>,
     /// Accuracy \[–\] that method, step and onset depth are to be chosen for.
     pub accuracy: Option<f64>,
-    /// What that is one of.
+    /// The quantity that it is one of.
     pub accuracy_of: Quantity,
     /// Whether the run ends with an estimate of its numerical error.
     pub estimate: bool,

@@ -148,7 +148,7 @@ defaults! {
     LAYING_STIFFNESS = always(10.0), "stiffnesses of a tooth", Assumed("their stretch must not show beside the indentation of the teeth"), ["Chain.stiffness"];
     /// What links yield beside their joints with clearance.
     PLATES = [(Version::V0_1, 0.0), (Version::V0_2, 1.0)], "of what the stiffness of a link leaves beside its joint", Source("the stiffness of a link is that between its pins, joints included"), ["Contact.series"];
-    /// What pins yield of that where roller, bush and pin are points: the rest is in the links.
+    /// Compliance of pins where roller, bush and pin are points: the rest is in the links.
     PINS = always(0.5), "of what the stiffness of a link leaves beside its joint", Assumed("half of it is in the pins, which bend whichever way they are pushed, and half in plates; impacts are then those of rigid links with the whole behind their pins"), ["Contact.series"];
     /// Load at which what lies behind teeth is reckoned.
     BEHIND_TEETH = [(Version::V0_1, 0.0), (Version::V0_2, 0.1)], "breaking loads", Assumed("roller on bush and bush on pin as secants of their conformal laws at a load that strikes; the play of rollers as that of pins"), ["Contact.series"];

@@ -16,7 +16,7 @@ const DRIVES: f64 = 0.25;
 /// Share of the energy moved below which it does not matter who drives. *Assumed*.
 const MATTERS: f64 = 0.01;
 
-/// What speaks against a run by what it asks of the drive.
+/// Reasons against a run from the duty that it asks of the drive.
 pub(super) fn found(summary: &Summary, simulation: &Simulation) -> Vec<Reason> {
     let mut reasons = Vec::new();
     let loads = summary.carried();

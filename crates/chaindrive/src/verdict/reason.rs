@@ -121,7 +121,7 @@ pub enum Reason {
     },
     /// A contact is deeper than its law reaches.
     DeepContact {
-        /// What touches what.
+        /// The two that touch.
         place: String,
         /// Deepest indentation \[m\].
         depth: f64,
@@ -130,7 +130,7 @@ pub enum Reason {
     },
     /// An impact is faster than a restitution stands for.
     FastImpact {
-        /// What strikes what.
+        /// The two that strike.
         place: String,
         /// Closing speed \[m/s\].
         speed: f64,

@@ -1,20 +1,14 @@
-//! What a run asks of a drive: every reason of the verdict that speaks of it, with a run that brings it about and one that does not; and
-//! what is counted for them.
+//! The duty that a run asks of a drive: every reason of the verdict that speaks of it, with a run that brings it about and one that
+//! does not; and the counts behind them.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use chaindrive::{
-    Channel, Description, EventKinds, Given, Judgement, Memory, Reason, Request, Run, Scene,
-    Settings, Simulation, Summary, Trust, Verdict, execute,
+    Channel, Description, EventKinds, Given, Memory, Request, Run, Scene, Settings, Trust, Verdict,
+    execute,
 };
 use chaindrive_mechanics::{Energy, Struck};
 
-/// A preset with changes, each `path = value`.
-fn preset(name: &str, changes: &[(&str, &str)]) -> Scene {
-    let scene = Scene::preset(name).unwrap();
-    changes.iter().fold(scene, |scene, (path, value)| {
-        scene.replace(path, value).unwrap()
-    })
-}
+use crate::judged::{finished, names, preset, run, verdict};
 
 /// A chain of the catalogue around two sprockets of 19 teeth, the second of which is given this.
 fn two_sprockets(second: &str) -> Scene {
@@ -51,40 +45,8 @@ fn driven(speed: &str) -> Scene {
     ))
 }
 
-/// A run to its end, with its contacts.
-fn finished(scene: &Scene, run: &Run) -> (Simulation, Summary) {
-    let mut simulation = Simulation::start(&scene.drive().unwrap(), run).unwrap();
-    let mut summary = Summary::new(&simulation);
-    while simulation.next_sample().unwrap().is_some() {
-        summary.push(simulation.observation());
-        summary.count(simulation.events());
-    }
-    (simulation, summary)
-}
-
-fn verdict(scene: &Scene, run: &Run) -> Verdict {
-    let (simulation, summary) = finished(scene, run);
-    Verdict::of(
-        &summary,
-        &simulation,
-        None,
-        None,
-        Some(&Judgement::SwitchedOff),
-    )
-}
-
-fn run(until: f64) -> Run {
-    Run {
-        until,
-        every: until / 100.0,
-        ..Run::default()
-    }
-}
-
 /// Asserts that the first verdict has a reason of some name, and the second not.
 fn tells_apart(reason: &str, with: &Verdict, without: &Verdict) {
-    let names =
-        |verdict: &Verdict| -> Vec<_> { verdict.reasons.iter().map(Reason::name).collect() };
     assert!(names(with).contains(&reason), "{with}");
     assert!(!names(without).contains(&reason), "{without}");
 }
@@ -93,11 +55,11 @@ fn tells_apart(reason: &str, with: &Verdict, without: &Verdict) {
 #[test]
 fn a_link_that_bears_more_than_breaks_the_chain_is_distrusted() {
     let breaks_at = |load: &str| preset("marine_two_sprockets", &[("chain.breaking_load", load)]);
-    let weak = verdict(&breaks_at("15 kN"), &run(0.01));
+    let weak = verdict(&breaks_at("15 kN"), &run(0.01, 100.0));
     tells_apart(
         "above-breaking-load",
         &weak,
-        &verdict(&breaks_at("100 kN"), &run(0.01)),
+        &verdict(&breaks_at("100 kN"), &run(0.01, 100.0)),
     );
     assert_eq!(weak.trust, Trust::Distrusted);
     assert!(weak.note().contains("breaks at 15.0 kN"), "{weak}");
@@ -111,11 +73,11 @@ fn a_link_that_bears_more_than_breaks_the_chain_is_distrusted() {
 /// A 16A on 19 teeth at 300 rpm is rated for 12.2 kW: 388 N m.
 #[test]
 fn more_power_than_a_chain_is_rated_for_is_a_caution() {
-    let over = verdict(&loaded("-600 N m"), &run(0.05));
+    let over = verdict(&loaded("-600 N m"), &run(0.05, 100.0));
     tells_apart(
         "above-rating",
         &over,
-        &verdict(&loaded("-300 N m"), &run(0.05)),
+        &verdict(&loaded("-300 N m"), &run(0.05, 100.0)),
     );
     assert!(over.note().contains("rated for 12.2 kW"), "{over}");
     assert_ne!(over.trust, Trust::Distrusted, "{over}");
@@ -133,7 +95,7 @@ fn dropped(gravity: &str, law: &str) -> Verdict {
     ];
     let run = Run {
         step: Some(2e-7),
-        ..run(8e-3)
+        ..run(8e-3, 100.0)
     };
     verdict(&preset("pin_in_bush", &changes), &run)
 }
@@ -155,8 +117,12 @@ fn contacts_beyond_their_laws_are_a_caution() {
 #[test]
 fn a_load_that_drives_is_a_caution() {
     let (drives, resists) = (loaded("300 N m"), loaded("-300 N m"));
-    let drives = verdict(&drives, &run(0.05));
-    tells_apart("load-drives", &drives, &verdict(&resists, &run(0.05)));
+    let drives = verdict(&drives, &run(0.05, 100.0));
+    tells_apart(
+        "load-drives",
+        &drives,
+        &verdict(&resists, &run(0.05, 100.0)),
+    );
     // A torque that swings about what it takes puts nothing in.
     let swings = two_sprockets(
         r#"inertia = "0.5 kg m^2"
@@ -165,7 +131,7 @@ fn a_load_that_drives_is_a_caution() {
             { kind = "harmonic", amplitude = "200 N m", order = 20 },
         ]"#,
     );
-    tells_apart("load-drives", &drives, &verdict(&swings, &run(0.05)));
+    tells_apart("load-drives", &drives, &verdict(&swings, &run(0.05, 100.0)));
 }
 
 /// Teeth pass at 95 Hz.
@@ -194,18 +160,24 @@ fn samples_too_rare_for_the_mesh_are_a_caution_where_they_are_kept() {
 #[test]
 fn motions_that_fight_are_distrusted_and_told_before_the_run() {
     let fighting = driven("330 rpm");
-    let fought = verdict(&fighting, &run(0.16));
+    let fought = verdict(&fighting, &run(0.16, 100.0));
     tells_apart(
         "motions-fight",
         &fought,
-        &verdict(&driven("300 rpm"), &run(0.16)),
+        &verdict(&driven("300 rpm"), &run(0.16, 100.0)),
     );
     assert_eq!(fought.trust, Trust::Distrusted);
     // Before the chain is a tooth longer nothing is said.
-    tells_apart("motions-fight", &fought, &verdict(&fighting, &run(0.05)));
+    tells_apart(
+        "motions-fight",
+        &fought,
+        &verdict(&fighting, &run(0.05, 100.0)),
+    );
     let warnings = |scene: &Scene, until| {
         let drive = scene.drive().unwrap();
-        Description::of(&drive, &run(until)).unwrap().warnings
+        Description::of(&drive, &run(until, 100.0))
+            .unwrap()
+            .warnings
     };
     let told = warnings(&fighting, 0.16);
     assert!(told[0].contains("1.5 teeth of chain apart"), "{told:?}");
@@ -223,20 +195,20 @@ fn means_that_are_not_those_of_a_steady_state_are_a_caution() {
             ("route.pretension", "150 kN"),
         ],
     );
-    let growing = verdict(&growing, &run(0.1));
+    let growing = verdict(&growing, &run(0.1, 100.0));
     let bare = preset("marine_engine_bare", &[]);
     let short = Run {
         every: 2e-4,
-        ..run(0.02)
+        ..run(0.02, 100.0)
     };
     let early = verdict(&bare, &short);
-    let late = verdict(&bare, &run(0.1));
+    let late = verdict(&bare, &run(0.1, 100.0));
     tells_apart("not-steady", &growing, &early);
     tells_apart("start-counts", &early, &late);
     tells_apart("means-uncertain", &early, &late);
 }
 
-/// What is counted without a log is what the log has.
+/// Impacts counted without a log are those of the log.
 #[test]
 fn impacts_are_counted_as_they_are_logged() {
     let logged = Run {
@@ -245,7 +217,7 @@ fn impacts_are_counted_as_they_are_logged() {
             joints: true,
             ..EventKinds::default()
         },
-        ..run(0.05)
+        ..run(0.05, 100.0)
     };
     let (simulation, summary) = finished(&preset("pin_in_bush", &[]), &logged);
     let kinds = summary.contacts(&simulation);
@@ -281,7 +253,7 @@ fn losses_by_place_add_up() {
             ("contact.guides.friction", friction),
         ],
     );
-    let (simulation, summary) = finished(&scene, &run(4e-3));
+    let (simulation, summary) = finished(&scene, &run(4e-3, 100.0));
     let lost = summary.losses();
     let names: Vec<_> = lost.iter().map(|(place, _)| place.name()).collect();
     for place in ["joints", "teeth", "guides", "tensioners"] {

@@ -3,8 +3,9 @@
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use chaindrive::precision::{Strands, estimate};
-use chaindrive::{Assembled, Run, Scene, Simulation, Stepping};
-use chaindrive_integrate::SecondOrderSystem;
+use chaindrive::{Assembled, Run, Scene};
+
+use crate::against_reference::{errors, horizon, reference, rms, tensions};
 
 /// A drive, changed in one value, the length of the run \[s\], and its step in those that it would choose.
 struct Case {
@@ -46,54 +47,6 @@ impl Case {
     }
 }
 
-/// Runge–Kutta of fourth order with steps that follow the damping and contacts that begin at most ten nanometres deep.
-fn reference(start: &Assembled) -> Run {
-    let particles = !start.system.prefers_implicit_damping();
-    let factor = if particles { 0.0625 } else { 0.5 };
-    Run {
-        stepping: Stepping::Rk4,
-        step: Some(factor * start.system.time_scale()),
-        onset_depth: particles.then_some(1e-8),
-        ..Run::default()
-    }
-}
-
-/// Tensions of spans and of links, sample by sample \[N\].
-fn tensions(start: &Assembled, run: &Run) -> [Vec<Vec<f64>>; 2] {
-    let mut simulation = Simulation::from_assembled(start.clone(), run).unwrap();
-    let [mut spans, mut links] = [Vec::new(), Vec::new()];
-    while let Some(sample) = simulation.next_sample().unwrap() {
-        spans.push(sample.span_tension.clone());
-        links.push(sample.link_tension.clone());
-    }
-    [spans, links]
-}
-
-/// Root mean square over the strands, over the mean tension of the first samples, sample by sample \[–\].
-fn errors(of: &[Vec<f64>], exact: &[Vec<f64>], first: usize) -> Vec<f64> {
-    let all = exact[..first].concat();
-    let mean = all.iter().map(|tension| tension.abs()).sum::<f64>() / all.len() as f64;
-    let pairs = of.iter().zip(exact);
-    pairs
-        .map(|(a, b)| {
-            let square: f64 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
-            (square / b.len() as f64).sqrt() / mean
-        })
-        .collect()
-}
-
-/// Root mean square of each error and those before it, over some number of samples.
-fn moving(errors: &[f64], over: f64) -> Vec<f64> {
-    let last = 1..=errors.len();
-    let squares = last.map(|last| {
-        let window = errors[..last].iter().rev().enumerate();
-        let window = window.take_while(|(back, _)| *back == 0 || ((*back + 1) as f64) <= over);
-        let (count, sum) = window.fold((0.0, 0.0), |(n, sum), (_, e)| (n + 1.0, sum + e * e));
-        f64::sqrt(sum / count)
-    });
-    squares.collect()
-}
-
 /// A stated horizon may lie this much later than the true one: in all but one of the drives here, as in 38 of the forty of
 /// `examples/estimates.rs`.
 const LATE: f64 = 1.2;
@@ -117,9 +70,10 @@ fn check(case: &Case) -> (String, f64) {
     let exact = Run {
         until: run.until,
         every: run.every,
-        ..reference(&start)
+        ..reference(&start, 1.0)
     };
-    let (found, exact) = (tensions(&start, &run), tensions(&start, &exact));
+    let found = tensions(&start, &run).unwrap();
+    let exact = tensions(&start, &exact).unwrap();
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -137,11 +91,8 @@ fn check(case: &Case) -> (String, f64) {
         .window
         .min(stated.horizon.all.time().unwrap_or(f64::INFINITY));
     let inside = compared.iter().enumerate();
-    let inside: Vec<f64> = inside
-        .filter(|(sample, _)| *sample as f64 * run.every <= end)
-        .map(|(_, error)| error * error)
-        .collect();
-    let error = (inside.iter().sum::<f64>() / inside.len() as f64).sqrt();
+    let inside = inside.filter(|(sample, _)| *sample as f64 * run.every <= end);
+    let error = rms(inside.map(|(_, error)| *error));
     let name = format!("{} {:?}", case.preset, case.change);
     let line = format!(
         "{name}: factor {:.2}, error {:.1e} stated {:.1e}",
@@ -151,8 +102,7 @@ fn check(case: &Case) -> (String, f64) {
 
     let (mut line, mut late) = (line, 0.0_f64);
     for (errors, at) in [(compared, stated.waveform), (&links, stated.link_waveform)] {
-        let first = moving(errors, stated.period.unwrap_or(0.0) / run.every);
-        let first = first.iter().position(|error| *error >= 0.01);
+        let first = horizon(errors, stated.period.unwrap_or(0.0) / run.every);
         let first = first.map(|sample| sample as f64 * run.every);
         line = format!("{line}, horizon {first:?} stated {at:?}");
         if let Some(first) = first {

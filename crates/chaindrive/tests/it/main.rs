@@ -1,5 +1,6 @@
 //! Integration tests in one binary: linking dozens of them takes longer than running them.
 
+mod against_reference;
 mod architecture;
 mod choice;
 mod choice_statistics;
@@ -9,6 +10,7 @@ mod dynamics;
 mod energy;
 mod horizons;
 mod joints;
+mod judged;
 mod linkage;
 mod linkages;
 mod links;

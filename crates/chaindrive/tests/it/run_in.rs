@@ -10,12 +10,7 @@ use chaindrive::{
     Request, Run, RunError, RunIn, Scene, Settings, Simulation, SimulationError, execute, run_in,
 };
 
-fn preset(name: &str, changes: &[(&str, &str)]) -> Scene {
-    let scene = Scene::preset(name).unwrap();
-    changes.iter().fold(scene, |scene, (path, value)| {
-        scene.replace(path, value).unwrap()
-    })
-}
+use crate::judged::preset;
 
 fn ran(scene: &Scene, settings: &[(&str, &str)]) -> (Report, Memory) {
     let settings = settings

@@ -4,47 +4,11 @@
 use chaindrive::precision::choose;
 use chaindrive::record::{Existing, InStore};
 use chaindrive::{
-    Choice, Given, Judgement, Memory, Reason, Request, Run, Scene, Settings, Simulation, Stepping,
-    Summary, Trust, Verdict, execute,
+    Choice, Given, Judgement, Memory, Request, Run, Scene, Settings, Simulation, Stepping, Summary,
+    Trust, Verdict, execute,
 };
 
-/// A preset with changes, each `path = value`.
-fn scene(preset: &str, changes: &[(&str, &str)]) -> Scene {
-    let scene = Scene::preset(preset).unwrap();
-    changes.iter().fold(scene, |scene, (path, value)| {
-        scene.replace(path, value).unwrap()
-    })
-}
-
-fn run(until: f64, samples: f64) -> Run {
-    Run {
-        until,
-        every: until / samples,
-        ..Run::default()
-    }
-}
-
-/// A run to its end.
-fn finished(scene: &Scene, run: &Run) -> (Simulation, Summary) {
-    let mut simulation = Simulation::start(&scene.drive().unwrap(), run).unwrap();
-    let mut summary = Summary::new(&simulation);
-    while let Some(sample) = simulation.next_sample().unwrap() {
-        summary.push(sample);
-    }
-    (simulation, summary)
-}
-
-/// The verdict on a run whose error nobody estimated.
-fn verdict(scene: &Scene, run: &Run) -> Verdict {
-    let (simulation, summary) = finished(scene, run);
-    Verdict::of(
-        &summary,
-        &simulation,
-        None,
-        None,
-        Some(&Judgement::SwitchedOff),
-    )
-}
+use crate::judged::{finished, names, preset, run, verdict};
 
 /// The verdict on the estimate of a run alone: it is not carried out.
 fn examined(scene: &Scene, run: &Run) -> Verdict {
@@ -54,19 +18,15 @@ fn examined(scene: &Scene, run: &Run) -> Verdict {
     Verdict::of(&summary, &simulation, None, None, Some(&judgement))
 }
 
-fn names(verdict: &Verdict) -> Vec<&'static str> {
-    verdict.reasons.iter().map(Reason::name).collect()
-}
-
 /// The crank of the marine drive, driven at some speed.
 fn marine(speed: &str) -> Scene {
     let change = [("sprockets.crank.motion.speed", speed)];
-    scene("marine_two_sprockets", &change)
+    preset("marine_two_sprockets", &change)
 }
 
 #[test]
 fn a_run_examined_to_its_end_is_trusted() {
-    let ring = scene("spinning_ring", &[]);
+    let ring = preset("spinning_ring", &[]);
     let run = run(0.02, 20.0);
     let (simulation, summary) = finished(&ring, &run);
     let judgement = Judgement::of(&simulation, &run, &|| false);
@@ -82,7 +42,7 @@ const BARE: (&str, &str) = ("defaults", "\"0.1\"");
 #[test]
 fn energy_that_does_not_add_up_is_distrusted() {
     let change = [BARE, ("sprockets.chainring.motion.speed", "-5000 rpm")];
-    let verdict = verdict(&scene("bicycle", &change), &run(3e-3, 300.0));
+    let verdict = verdict(&preset("bicycle", &change), &run(3e-3, 300.0));
     assert_eq!(verdict.trust, Trust::Distrusted);
     assert!(names(&verdict).contains(&"energy-missing"), "{verdict}");
     assert!(verdict.warning().unwrap().contains("does not add up"));
@@ -91,12 +51,12 @@ fn energy_that_does_not_add_up_is_distrusted() {
 /// Defect A5: of the energy moved 1 % is missing, which is more than all that is lost.
 #[test]
 fn losses_that_are_wrong_are_distrusted() {
-    let rough = verdict(&scene("motorcycle", &[BARE]), &run(1e-4, 10.0));
+    let rough = verdict(&preset("motorcycle", &[BARE]), &run(1e-4, 10.0));
     assert_eq!(rough.trust, Trust::Distrusted, "{rough}");
     let found = names(&rough);
     assert!(found.contains(&"losses-wrong") && found.contains(&"efficiency-above-one"));
 
-    let fine = verdict(&scene("industrial_16b", &[]), &run(2e-3, 10.0));
+    let fine = verdict(&preset("industrial_16b", &[]), &run(2e-3, 10.0));
     assert_eq!(names(&fine), ["not-estimated"], "{fine}");
 }
 
@@ -166,7 +126,7 @@ fn losses_that_are_uncertain_are_a_caution() {
         step: Some(2.3e-5),
         ..run(0.05, 50.0)
     };
-    let found = verdict(&scene("marine_engine_bare", &[]), &coarse);
+    let found = verdict(&preset("marine_engine_bare", &[]), &coarse);
     assert!(names(&found).contains(&"losses-uncertain"), "{found}");
     assert_eq!(found.trust, Trust::Caution);
 }
@@ -174,7 +134,7 @@ fn losses_that_are_uncertain_are_a_caution() {
 /// Defect D: a window of a microsecond was distrusted for the error of its first step.
 #[test]
 fn a_run_of_a_step_is_too_short_to_judge() {
-    let found = verdict(&scene("motorcycle", &[]), &run(1e-6, 1.0));
+    let found = verdict(&preset("motorcycle", &[]), &run(1e-6, 1.0));
     assert_eq!(names(&found), ["too-short", "not-estimated"], "{found}");
 }
 
@@ -200,7 +160,7 @@ fn a_span_without_a_tension_is_named() {
 
 #[test]
 fn a_force_that_is_not_a_number_is_distrusted() {
-    let ring = scene("spinning_ring", &[]);
+    let ring = preset("spinning_ring", &[]);
     let (simulation, mut summary) = finished(&ring, &run(5e-3, 5.0));
     let mut sample = simulation.observation().clone();
     sample.link_tension[3] = f64::NAN;
@@ -223,7 +183,7 @@ fn where_a_span_has_no_tension_links_are_examined() {
 
 #[test]
 fn an_accuracy_that_is_missed_is_a_caution() {
-    let ring = scene("spinning_ring", &[]);
+    let ring = preset("spinning_ring", &[]);
     let start = ring.drive().unwrap().assemble().unwrap();
     let settings = run(5e-3, 5.0);
     let (simulation, summary) = finished(&ring, &settings);
@@ -247,18 +207,18 @@ fn waveforms_that_end_within_the_run_are_a_caution() {
         step: Some(2e-6),
         ..run(6e-3, 6.0)
     };
-    let found = examined(&scene("bicycle_slack", &[BARE]), &settings);
+    let found = examined(&preset("bicycle_slack", &[BARE]), &settings);
     assert_eq!(found.trust, Trust::Caution);
     assert!(names(&found).contains(&"horizon-within-run"), "{found}");
     assert!(found.note().contains("of link tensions to"), "{found}");
-    let found = examined(&scene("spinning_ring", &[]), &run(6e-3, 6.0));
+    let found = examined(&preset("spinning_ring", &[]), &run(6e-3, 6.0));
     assert!(!names(&found).contains(&"horizon-within-run"), "{found}");
 }
 
 /// Defect A8: 1.2 ms of 50 ms were looked at, and the rest was said to be fine.
 #[test]
 fn what_was_not_looked_at_is_said() {
-    let timing = scene("timing_drive", &[("defaults", "\"0.1\"")]);
+    let timing = preset("timing_drive", &[("defaults", "\"0.1\"")]);
     let found = examined(&timing, &run(0.05, 50.0));
     assert_eq!(names(&found), ["not-examined"], "{found}");
     assert_eq!(found.note(), "not examined beyond 1.2 ms of 50 ms");
@@ -269,7 +229,7 @@ fn what_was_not_looked_at_is_said() {
 
 #[test]
 fn an_estimate_that_was_not_made_is_a_caution() {
-    let ring = scene("spinning_ring", &[]);
+    let ring = preset("spinning_ring", &[]);
     let (simulation, summary) = finished(&ring, &run(5e-3, 5.0));
     for judgement in [
         None,
@@ -293,7 +253,7 @@ fn results_carry_the_verdict() {
         .with("every", Given::Number(1e-5))
         .with("method", Given::Text("implicit-damping".to_owned()));
     // Bare seats strike harder than a run of a tenth of a millisecond accounts for.
-    let bare = scene("motorcycle", &[("contact.teeth.series", "0")]);
+    let bare = preset("motorcycle", &[("contact.teeth.series", "0")]);
     let request = Request::new(&bare, &settings).unwrap();
     let mut memory = Memory::default();
     let told = execute(&request, &mut memory, &|| false).unwrap();

@@ -38,7 +38,7 @@ pub(crate) struct Particles {
     pub(super) links: Links,
     /// What resists in the joints, if anything.
     pub(super) joints: Option<Joints>,
-    /// What drags across the links, if anything.
+    /// Drag across the links, if any.
     drag: Option<Drag>,
     pub(super) rollers: usize,
     /// Distance from the x to the y block of the state.

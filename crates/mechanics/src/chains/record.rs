@@ -36,7 +36,7 @@ pub(crate) struct Record {
     pub(super) joint_state: JointState,
     #[serde(skip)]
     pub(super) impulses: Impulses,
-    /// What is found in joints that are points; empty elsewhere.
+    /// Findings in joints that are points; empty elsewhere.
     pub(super) points: points::Found,
     /// What resists in the joints; empty where nothing does.
     pub(super) resistance: Resistance,
@@ -78,7 +78,7 @@ impl Record {
             .chain(joints.map(|tally| (tally.first_depth, tally.first_share)))
     }
 
-    /// What began in the joints, and how deep they are: pins in bushes, bushes in rollers.
+    /// Contacts that began in the joints, and their depths: pins in bushes, bushes in rollers.
     pub(crate) fn joints(&self) -> [(Begun, f64); 2] {
         // A chain has links or points.
         let [links, points] = [&self.joint_state.tallies, &self.points.tallies];

@@ -1,4 +1,4 @@
-//! What has touched since the start: how often, how fast, how deep.
+//! Impacts since the start: how often, how fast, how deep.
 
 use serde::{Deserialize, Serialize};
 

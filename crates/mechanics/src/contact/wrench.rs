@@ -25,7 +25,7 @@ pub(crate) struct Wrench {
     pub(crate) first_depth: f64,
     /// Smallest share of the step after which such a contact began.
     pub(crate) first_share: f64,
-    /// What began in this step.
+    /// The contact that began in this step.
     pub(crate) begun: Begun,
 }
 
@@ -112,7 +112,7 @@ impl<S: Simd> LaneTally<S> {
         self.depth.largest()
     }
 
-    /// What began.
+    /// The contact that began.
     #[inline(always)]
     pub(crate) fn begun(&self) -> Begun {
         if self.fresh {

@@ -26,7 +26,7 @@ pub(crate) struct OnWheel {
     pub(crate) contacts: Contacts,
     /// An angle of the sprocket with known cosine and sine, renewed with the windows.
     pub(crate) anchor: Anchor,
-    /// What has touched since the start.
+    /// Impacts since the start.
     pub(crate) impacts: Impacts,
 }
 
@@ -38,7 +38,7 @@ pub(crate) struct OnRail {
     /// Whether no chain before this one touches it.
     pub(crate) first: bool,
     pub(crate) contact: RailContact,
-    /// What has touched since the start.
+    /// Impacts since the start.
     pub(crate) impacts: Impacts,
 }
 

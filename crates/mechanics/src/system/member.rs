@@ -25,7 +25,7 @@ pub(crate) struct Member {
     pub(super) renew: (f64, u32),
     /// ω² and damping rate of the stiffest mode.
     pub(crate) rates: [f64; 2],
-    /// What has touched since the start: pins in bushes, bushes in rollers.
+    /// Impacts since the start: pins in bushes, bushes in rollers.
     pub(crate) joint_impacts: [Impacts; 2],
 }
 
@@ -141,7 +141,7 @@ impl Member {
         );
     }
 
-    /// What is counted of the chain, in one order.
+    /// The counts of the chain, in one order.
     pub(crate) fn impacts(&self) -> impl Iterator<Item = &Impacts> {
         let teeth = self.contacts.teeth.iter().map(|on| &on.impacts);
         let rails = self.contacts.rails.iter().map(|on| &on.impacts);

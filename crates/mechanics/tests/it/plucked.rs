@@ -27,7 +27,7 @@ const LEVER: f64 = FRICTION * RADIUS;
 const TENSION: f64 = 20e3;
 /// Stiffness of links that give, of pins in bushes and of rails \[N/m\].
 const STIFFNESS: f64 = 1e10;
-/// What a span loses, in μ r a cycle.
+/// Loss of a span, in μ r a cycle.
 const LOSS: f64 = 4.5;
 
 /// A span whose first and last roller are pulled apart by a constant force, each between two smooth rails: pins at the ends that

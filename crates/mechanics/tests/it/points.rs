@@ -60,7 +60,7 @@ fn roller(play: f64) -> FreeRoller {
     }
 }
 
-/// What the stiffness of a link leaves beside its joint \[N/m\].
+/// Stiffness that a link needs beside its joint \[N/m\].
 fn beside(play: f64) -> f64 {
     let alone = joint(play, None).surface.law.stiffness(1e-6);
     1.0 / (1.0 / STIFFNESS - 1.0 / alone)

@@ -1,4 +1,4 @@
-//! What chains have carried, as the samples see it: tension, power, speed.
+//! The duty of chains, as the samples see it: tension, power, speed.
 
 use std::ops::Range;
 
@@ -35,12 +35,12 @@ struct OfSprocket {
     power: f64,
 }
 
-/// What one chain has carried, beside what it bears.
+/// Duty of one chain, beside its strength.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Load {
     /// Name of the chain; empty where there is one only.
     pub chain: String,
-    /// What is known of its strength.
+    /// Its strength, as far as that is known.
     pub strength: Strength,
     /// Greatest tension of a link \[N\].
     pub tension: f64,

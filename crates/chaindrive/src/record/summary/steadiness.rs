@@ -268,6 +268,10 @@ fn correlation_time(values: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
+    /// Mean half width over the true standard error of the mean: t exp(−C/8), with C = 0.645 (1/12 + 625/2288) = 0.230 for 12 pairs,
+    /// t = 2.32 for 2/(exp C − 1) = 7.7 degrees of freedom, and exp(−C/8) the mean of √p₀ whose logarithm is normal.
+    const MEAN_WIDTH: f64 = 2.254;
+
     /// Numbers that look normal and are the same every time.
     struct Noise(u64);
 
@@ -322,10 +326,10 @@ mod tests {
         for (phi, count) in [(0.0_f64, 2000_u32), (0.9, 20_000)] {
             let widths = (1..=200).map(|seed| of(series(seed, phi, count as usize)).unwrap());
             let mean = widths.map(|found| found.half_width).sum::<f64>() / 200.0;
-            // σ_x̄ = σ_e/(1 − φ)/√n
-            let theory = 2.05 / (1.0 - phi) / f64::from(count).sqrt();
+            // t exp(−C/8) σ_e/(1 − φ)/√n
+            let theory = MEAN_WIDTH / (1.0 - phi) / f64::from(count).sqrt();
             assert!(
-                (mean / theory - 1.0).abs() < 0.15,
+                (mean / theory - 1.0).abs() < 0.05,
                 "{phi}: {mean}, {theory}"
             );
         }
@@ -343,10 +347,13 @@ mod tests {
             held += usize::from(found.mean.abs() < found.half_width);
             width += found.half_width / 200.0;
         }
-        // σ_x̄ = σ_e/(1 − φ)/√n of the noise alone
-        let theory = 1.96 / 0.5 / f64::sqrt(4000.0);
+        // t exp(−C/8) σ_e/(1 − φ)/√n of the noise alone
+        let theory = MEAN_WIDTH / 0.5 / f64::sqrt(4000.0);
         assert!(held >= 176, "{held}");
-        assert!((0.8..1.6).contains(&(width / theory)), "{width}, {theory}");
+        assert!(
+            (0.95..1.15).contains(&(width / theory)),
+            "{width}, {theory}"
+        );
     }
 
     #[test]

@@ -17,7 +17,7 @@ pub(super) struct Resolved {
     pub(super) chain: Chain,
     /// Length of the rollers on the teeth \[m\], where it is known.
     pub(super) roller_length: Option<f64>,
-    /// What lies behind the surfaces of teeth, where it is known.
+    /// Stack behind the surfaces of teeth, where it is known.
     pub(super) behind_teeth: Option<Behind>,
     /// Why the number of links is a guess that must not be used; the other parts are looked at with it.
     pub(super) uncounted: Option<String>,
@@ -146,7 +146,7 @@ pub(super) fn resolve(
     })
 }
 
-/// What is between the joints, by the model that a text names.
+/// Parts between the joints, by the model that a text names.
 fn body(
     all: (&SceneText, Option<&schema::Route>),
     text: &schema::Chain,

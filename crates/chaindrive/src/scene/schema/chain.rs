@@ -87,7 +87,7 @@ pub(crate) struct Chain {
     /// Stiffness of every link [N/m], instead of `stiffness`.
     #[serde(default)]
     pub(crate) stiffnesses: Option<Vec<Stiffness>>,
-    /// What runs on the teeth; absent: lumped, or none for a bush chain of the catalogue. On particles `free` makes roller, bush and
+    /// Rollers on the teeth; absent: lumped, or none for a bush chain of the catalogue. On particles `free` makes roller, bush and
     /// pin of every joint points of their own, with play between them.
     #[serde(default)]
     pub(crate) rollers: Option<Rollers>,

@@ -49,7 +49,7 @@ pub(crate) struct Run {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
     pub(crate) accuracy: Option<Ratio>,
-    /// What the accuracy is one of; absent: the tension.
+    /// Quantity that the accuracy is one of; absent: the tension.
     #[serde(default)]
     pub(crate) accuracy_of: Quantity,
     /// Channels to record.

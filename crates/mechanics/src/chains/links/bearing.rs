@@ -52,7 +52,7 @@ pub(crate) struct Tally {
     pub(crate) first_depth: f64,
     /// Smallest share of the step after which such a contact began.
     pub(crate) first_share: f64,
-    /// What began in this step.
+    /// The contact that began in this step.
     pub(crate) begun: Begun,
     /// Deepest penetration of all \[m\].
     pub(crate) depth: f64,

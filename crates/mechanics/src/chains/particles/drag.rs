@@ -76,7 +76,7 @@ impl Drag {
         loss.sum()
     }
 
-    /// What the drag of a link does to the roller at its first (0) or second (1) end \[N\].
+    /// Force of the drag of a link on the roller at its first (0) or second (1) end \[N\].
     pub(super) fn at_end(
         &self,
         chain: &Particles,

@@ -65,7 +65,7 @@ impl Particles {
         }
     }
 
-    /// What the joint at the other end of the last link, and drag, do to an end roller \[N\].
+    /// Force of the joint at the other end of the last link, and of drag, on an end roller \[N\].
     fn beside(
         &self,
         at: Moment<'_>,

@@ -36,7 +36,7 @@ use crate::system::HeldEnd;
 #[derive(Clone, Debug)]
 pub(crate) struct Points {
     pub(super) links: Links,
-    /// What resists in the joints beside the contacts, if anything.
+    /// Resistance in the joints beside the contacts, if any.
     pub(in crate::chains) joints: Option<Joints>,
     /// Pins in bushes, and bushes in rollers.
     pin: Bearing,
@@ -53,7 +53,7 @@ pub(crate) struct Points {
     lightest: [f64; 3],
     /// ω² of the links alone and twice their damping rate.
     link_rates: [f64; 2],
-    /// What the joints remember of the last accepted state.
+    /// Memory of the joints of the last accepted state.
     pub(in crate::chains) memory: Memory,
     /// None: the chain is closed.
     pub(in crate::chains) ends: Vec<HeldEnd>,
@@ -76,7 +76,7 @@ pub(crate) struct Memory {
     pub(in crate::chains) bushes: ContactMemory,
 }
 
-/// What one evaluation finds in the joints.
+/// Findings of one evaluation in the joints.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Found {
     pub(in crate::chains) memory: Memory,

@@ -19,7 +19,7 @@ const SHALLOW: f64 = 1e-7;
 /// Steps take the damping of bodies by the contacts explicitly, and shall be at most so long in units of its time.
 const OF_BODIES: f64 = 4.0;
 
-/// What one evaluation fills in.
+/// Arrays that one evaluation fills in.
 type Filled<'a> = (
     &'a mut Loads,
     &'a mut Turning,
@@ -326,7 +326,7 @@ impl Points {
     /// ω² = max over rollers, bushes and pins of Σ 2 k/m
     /// ```
     ///
-    /// What implicit steps take explicitly (dampers of links, viscous joints, and what contacts do to the bodies) counts as
+    /// The part that implicit steps take explicitly (dampers of links, viscous joints, and what contacts do to the bodies) counts as
     /// frequency too.
     pub(in crate::chains) fn rates(
         &self,

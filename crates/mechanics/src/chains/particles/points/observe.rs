@@ -1,4 +1,4 @@
-//! What can be read off a chain of points.
+//! Observations of a chain of points.
 
 use chaindrive_contact::Prepared;
 use chaindrive_geometry::Vector;

@@ -1,0 +1,44 @@
+//! Runs of presets to their end, and the verdict on them.
+
+#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
+
+use chaindrive::{Judgement, Reason, Run, Scene, Simulation, Summary, Verdict};
+
+/// A preset with changes, each `path = value`.
+pub(crate) fn preset(name: &str, changes: &[(&str, &str)]) -> Scene {
+    let scene = Scene::preset(name).unwrap();
+    changes.iter().fold(scene, |scene, (path, value)| {
+        scene.replace(path, value).unwrap()
+    })
+}
+
+/// A run of so many samples.
+pub(crate) fn run(until: f64, samples: f64) -> Run {
+    Run {
+        until,
+        every: until / samples,
+        ..Run::default()
+    }
+}
+
+/// A run to its end, with its contacts.
+pub(crate) fn finished(scene: &Scene, run: &Run) -> (Simulation, Summary) {
+    let mut simulation = Simulation::start(&scene.drive().unwrap(), run).unwrap();
+    let mut summary = Summary::new(&simulation);
+    while simulation.next_sample().unwrap().is_some() {
+        summary.push(simulation.observation());
+        summary.count(simulation.events());
+    }
+    (simulation, summary)
+}
+
+/// The verdict on a run whose error nobody estimated.
+pub(crate) fn verdict(scene: &Scene, run: &Run) -> Verdict {
+    let (simulation, summary) = finished(scene, run);
+    let unknown = Judgement::SwitchedOff;
+    Verdict::of(&summary, &simulation, None, None, Some(&unknown))
+}
+
+pub(crate) fn names(verdict: &Verdict) -> Vec<&'static str> {
+    verdict.reasons.iter().map(Reason::name).collect()
+}
