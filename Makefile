@@ -14,7 +14,7 @@ SOURCES := Cargo.toml Cargo.lock pyproject.toml \
 export PYO3_PYTHON := $(abspath $(BIN)/python)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check check-rust check-python test-rust test-python bench report estimates validation docs clean
+.PHONY: help setup run test check check-rust check-python test-rust test-python bench report estimates how-real validation docs clean
 # A build that failed leaves no stamp behind.
 .DELETE_ON_ERROR:
 
@@ -55,6 +55,9 @@ report: setup ## Measure speed and error on this machine, and write docs/how-fas
 
 estimates: ## Hold what runs say of their error against a reference, and write docs/estimates.md
 	cargo run --release --quiet -p chaindrive --example estimates > docs/estimates.md
+
+how-real: setup ## Try the assumptions and models of presets, and write docs/how-real.md
+	$(BIN)/python benchmarks/how_real
 
 validation: setup ## Run the slow studies as well
 	cargo test --release -- --include-ignored

@@ -1,0 +1,59 @@
+"""Write the tables and the diagram of docs/how-real.md: assumptions, and models side by side.
+
+Run it as ``make how-real``, or ``python benchmarks/how_real [PRESET …] [--quick]``, which prints
+what it would write. It takes some twenty minutes on two cores.
+"""
+
+import argparse
+from pathlib import Path
+
+import matplotlib as mpl
+
+import models
+import tornado
+from assumptions import cases
+
+mpl.use("Agg")
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+
+
+def write_into(text: str, mark: str, lines: list[str]) -> str:
+    """Return the text with lines between the marks of that name."""
+    begin, end = f"<!-- {mark}: begin -->", f"<!-- {mark}: end -->"
+    before, rest = text.split(begin)
+    _, after = rest.split(end)
+    return before + "\n".join([begin, "", *lines, end]) + after
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="Try the assumptions and the models of presets.")
+    every = cases()
+    names = [case.preset for case in every]
+    parser.add_argument("presets", nargs="*", metavar="PRESET", help=f"of {', '.join(names)}; all")
+    parser.add_argument("--quick", action="store_true", help="short runs, two assumptions each")
+    arguments = parser.parse_args()
+    unknown = set(arguments.presets) - set(names)
+    if unknown:
+        parser.error(f"unknown preset {', '.join(sorted(unknown))}; there are {', '.join(names)}")
+    whole = not (arguments.presets or arguments.quick)
+    wanted = arguments.presets or names
+    chosen = [case for case in every if case.preset in wanted]
+    if arguments.quick:
+        chosen = [case.shortened() for case in chosen]
+    drives = [drive for drive in models.DRIVES if drive[0] in wanted]
+    share = 0.02 if arguments.quick else 1.0
+    by_model = [line for drive in drives for line in models.table(*drive, share)]
+    results = [(case, *tornado.effects(case)) for case in chosen]
+    effects = [line for result in results for line in tornado.table(*result)]
+    if not whole:
+        print("\n".join([*effects, *by_model]))
+        return
+    page = DOCS / "how-real.md"
+    text = write_into(page.read_text(encoding="utf-8"), "assumptions", effects)
+    page.write_text(write_into(text, "models", by_model), encoding="utf-8")
+    tornado.draw(results, DOCS / "how-real.png")
+
+
+if __name__ == "__main__":
+    main()
