@@ -4,7 +4,7 @@ use super::suggest::one_of;
 use super::{Problem, Scene, SceneError};
 
 /// Name, one-line description and text of every embedded scene.
-const PRESETS: [(&str, &str, &str); 14] = [
+const PRESETS: [(&str, &str, &str); 15] = [
     (
         "marine_engine",
         "Camshaft drive of a large two-stroke engine under its pumps and valves: four sprockets, three guide bars, tensioner",
@@ -64,6 +64,11 @@ const PRESETS: [(&str, &str, &str); 14] = [
         "pendulum_in_bush",
         "A link that swings by its pin in a bush, with play and friction",
         include_str!("../../scenes/pendulum_in_bush.toml"),
+    ),
+    (
+        "chain_pendulum",
+        "A pendulum on a chainring over which a chain is drawn: its swing dies by the friction of the joints alone",
+        include_str!("../../scenes/chain_pendulum.toml"),
     ),
     (
         "hanging_chain",

@@ -1,0 +1,233 @@
+"""Published measurements of losses: what the program says of them, agreement and miss alike."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from verdicts import MeasuredCase
+
+import chaindrive as cd
+
+PITCH = 12.7e-3
+FRICTION = "contact.joints.friction.coefficient"
+FAST = {"error": False}
+"""Numerical errors are estimated elsewhere."""
+
+
+def losses(run: xr.Dataset) -> float:
+    """Mean power lost in joints, on teeth and along spans [W], not in the damper of a rig."""
+    lost = run["energy_losses"].sel(place=["joints", "rollers", "teeth", "spans"]).sum("place")
+    duration = float(run["time"][-1] - run["time"][0])
+    return float(lost[-1] - lost[0]) / duration
+
+
+def tensioned(
+    rig: cd.Drive, teeth: tuple[int, int], links: int, tension: float, **changes: Any
+) -> cd.Drive:
+    """Give the full-tension rig other sprockets and another tension [N]."""
+    chainring, cog = teeth
+    centres = cd.kinematics.centre_distance(chainring, cog, PITCH, links)
+    return rig.replace(
+        {
+            "sprockets.chainring.teeth": chainring,
+            "sprockets.cog.teeth": cog,
+            "sprockets.cog.centre": [-centres, 0.0],
+            "chain.links": links,
+            "route.pretension": tension,
+        }
+        | changes
+    )
+
+
+def transmitting(
+    rig: cd.Drive, teeth: tuple[int, int], links: int, power: float, rpm: float
+) -> cd.Drive:
+    """Let the rig transmit a power [W], with 15 N in both spans beside half the useful tension."""
+    chainring, cog = teeth
+    # P = T v,   v = z p n
+    useful = power / (chainring * PITCH * rpm / 60)
+    # M = T z p/2π in the mean over a tooth
+    torque = useful * cog * PITCH / math.tau
+    changes = {
+        "sprockets.chainring.motion.speed": f"-{rpm} rpm",
+        "sprockets.cog.load": [{"kind": "constant", "torque": torque}],
+    }
+    return tensioned(rig, teeth, links, useful / 2 + 15, **changes)
+
+
+def corners(drive: cd.Drive, vary: dict[str, list[float]]) -> list[float]:
+    """Power lost at every combination of values [W]."""
+    stacked = cd.sweep(drive, vary, record=["energy_losses"])
+    keys = [name for name in stacked["energy_losses"].dims if name not in ("time", "place")]
+    variants = stacked.stack(variant=keys)
+    return [losses(variants.isel(variant=i)) for i in range(variants.sizes["variant"])]
+
+
+def efficiency(
+    rig: cd.Drive, teeth: tuple[int, int], links: int, power: float, rpm: float
+) -> float:
+    """Efficiency of the rig that transmits a power [W]: [–]."""
+    lost = losses(cd.simulate(transmitting(rig, teeth, links, power, rpm), **FAST))
+    return power / (power + lost)
+
+
+@pytest.mark.slow
+def test_m01_loss_of_bicycle_chains() -> None:
+    with MeasuredCase("M01") as case:
+        rig = case.drive()
+        found = losses(cd.simulate(rig, **FAST))
+        pins = {FRICTION: [0.10, 0.15], "chain.joint.pin_diameter": [3.5e-3, 3.7e-3]}
+        powers = corners(rig, pins)
+        note = f"{min(powers):.2f} to {max(powers):.2f} W over the range of friction and pins."
+        hours = np.array(case.data["measured"]["hours"])
+        for chain in "ABC":
+            mean = np.mean(np.array(case.data["measured"][chain])[hours >= 1])
+            quantity = f"loss of chain {chain}, mean of 1 to 8 h"
+            row = case.row(quantity)
+            assert row["expected"] == pytest.approx(mean, abs=1e-3)
+            case.number(quantity, found, note)
+
+
+@pytest.mark.slow
+def test_m04_efficiency_over_tension_and_sprocket() -> None:
+    with MeasuredCase("M04") as case:
+        rig = case.drive()
+        powers = [50.0, 100.0, 175.0]
+        small = [efficiency(rig, (52, 11), 108, power, 60) for power in powers]
+        middle, large = (efficiency(rig, (52, cog), 108, 100.0, 60) for cog in (15, 21))
+        inverse = 1 / np.array(powers)  # as 1/T: the speed of the chain is the same
+        correlation = float(np.corrcoef(inverse, small)[0, 1])
+        percent = ", ".join(f"{100 * it:.2f}" for it in small)
+        case.trend(
+            "efficiency over 1/tension, 52 to 11 teeth",
+            correlation < -0.95 and small[0] < small[1] < small[2],
+            f"{percent} % at 50, 100, 175 W; correlation {correlation:.3f}",
+        )
+        case.trend(
+            "order of the rear sprockets",
+            large > middle > small[1],
+            f"{100 * large:.2f}, {100 * middle:.2f}, {100 * small[1]:.2f} %",
+        )
+        frictions = {FRICTION: [0.10, 0.15]}
+        worst, best = (
+            corners(transmitting(rig, (52, cog), 108, 100.0, 60), frictions) for cog in (11, 21)
+        )
+        low, high = (100 * (bad - good) / 100.0 for bad, good in zip(worst, best, strict=True))
+        case.number(
+            "efficiency of 52 to 21 less that of 52 to 11 teeth, 100 W",
+            100 * (large - small[1]),
+            f"{low:.2f} to {high:.2f} points over the range of friction.",
+        )
+
+
+@pytest.mark.slow
+def test_m17_small_sprockets_at_the_same_ratio() -> None:
+    with MeasuredCase("M17") as case:
+        rig = case.drive()
+
+        def extra(coefficient: float) -> float:
+            both = []
+            for teeth, links in (((39, 11), 102), ((53, 15), 110)):
+                tension = 250 / (teeth[0] * PITCH * 95 / 60)
+                friction = {FRICTION: coefficient}
+                drive = tensioned(rig, teeth, links, tension, **friction)
+                both.append(losses(cd.simulate(drive, **FAST)))
+            return both[0] - both[1]
+
+        found, least = extra(0.125), extra(0.10)
+        case.trend("order of the two pairs", found > 0 and least > 0, f"{found:+.2f} W")
+        case.number(
+            "loss of 39 to 11 less that of 53 to 15 teeth",
+            found,
+            f"{least:.2f} W at a friction of 0.1.",
+        )
+
+
+@pytest.mark.slow
+def test_m18_worn_chains() -> None:
+    with MeasuredCase("M18") as case:
+        rig = case.drive()
+
+        def worn(elongation: float) -> float:
+            centres = cd.kinematics.centre_distance(53, 11, PITCH * (1 + elongation), 108)
+            push = {"kind": "spring", "preload": 469.2, "stiffness": 1e4, "damping": 500.0}
+            carrier = {"kind": "slider", "direction": [-1, 0], "mass": 5.0}
+            drive = rig.replace(
+                {
+                    "chain.elongation": elongation,
+                    "sprockets.cog.centre": [-centres, 0.0],
+                    "sprockets.cog.mass": 0.2,
+                    "sprockets.cog.support": {"kind": "tensioner", "name": "carriage"},
+                    "tensioners": [{"name": "carriage", "carrier": carrier, "push": push}],
+                    "route.adjust": {
+                        "kind": "sprocket",
+                        "name": "cog",
+                        "direction": [-1, 0],
+                        "within": 0.02,
+                    },
+                }
+            )
+            run = cd.simulate(drive, **FAST)
+            tension = run["span_tension"].mean("time").to_numpy()
+            assert np.all(abs(tension - 234.6) < 0.03 * 234.6), tension
+            return losses(run)
+
+        new, half, one = (worn(it) for it in (0.0, 0.005, 0.01))
+        case.number("loss of a new chain", new)
+        # Loss is nearly proportional to friction.
+        needed = 0.125 * (new + 2.02) / one
+        case.number(
+            "rise of the loss for 1 % of elongation",
+            one - new,
+            f"The measured rise would take a friction of {needed:.2f} in the worn joints.",
+        )
+        case.trend(
+            "sign of the change with elongation",
+            new < half < one,
+            f"{new:.2f}, {half:.2f}, {one:.2f} W at 0, 0.5, 1 %",
+        )
+
+
+@pytest.mark.slow
+def test_m19_single_speed() -> None:
+    with MeasuredCase("M19") as case:
+        rig = case.drive()
+        found = efficiency(rig, (52, 15), 108, 250.0, 90)
+        drive = transmitting(rig, (52, 15), 108, 250.0, 90)
+        useful = 250.0 / (52 * PITCH * 90 / 60)
+        powers = corners(
+            drive, {FRICTION: [0.1, 0.15], "route.pretension": [useful / 2, useful / 2 + 50]}
+        )
+        least, most = (100 * 250 / (250 + it) for it in (max(powers), min(powers)))
+        case.number("efficiency", 100 * found, f"{least:.2f} to {most:.2f} % over the range.")
+
+
+@pytest.mark.slow
+def test_m20_sprockets_of_a_racer() -> None:
+    with MeasuredCase("M20") as case:
+        rig = case.drive()
+        cogs = [efficiency(rig, (60, cog), 116, 450.0, 100) for cog in (13, 16, 24)]
+        rings = [efficiency(rig, (ring, 16), 116, 450.0, 100) for ring in (58, 62)]
+        case.trend(
+            "order of the sprockets, chainring of 60",
+            cogs[0] < cogs[1] < cogs[2],
+            ", ".join(f"{100 * it:.2f}" for it in cogs) + " % with 13, 16, 24 teeth",
+        )
+        useful = 450 / (60 * PITCH * 100 / 60)
+        slack = [
+            corners(
+                transmitting(rig, (ring, 16), 116, 450.0, 100),
+                {"route.pretension": [useful * 30 / ring + 5, useful * 30 / ring + 30]},
+            )
+            for ring in (58, 62)
+        ]
+        signs = ", ".join(f"{it:+.3f} W" for it in np.subtract(slack[1], slack[0]))
+        by_ring, by_cog = abs(rings[1] - rings[0]), cogs[2] - cogs[0]
+        case.trend(
+            "chainring against sprocket",
+            by_ring < 0.2 * by_cog,
+            f"{100 * by_ring:.3f} points from 58 to 62, {100 * by_cog:.2f} from 13 to 24 teeth; "
+            f"62 against 58 with 5 and 30 N of slack tension: {signs}",
+        )
