@@ -41,7 +41,7 @@ def test_m06_timing_chains() -> None:
                         {
                             f"sprockets.{shaft}.load": [
                                 {"kind": "constant", "torque": 2.0},
-                                {"kind": "harmonic", "amplitude": amplitude, "order": 2} | phase,
+                                {"kind": "harmonic", "amplitude": amplitude, "order": 4} | phase,
                             ]
                             for shaft, phase in (
                                 ("exhaust", {}),
