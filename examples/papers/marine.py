@@ -44,6 +44,7 @@ import chaindrive as cd
 mpl.use("Agg")
 from matplotlib import pyplot as plt
 
+DISTANCE = 2.4725  # m, of crank and camshaft
 SPROCKETS = ("crank", "camshaft", "tensioner", "idler")
 CONTACT = {
     "tight": ("tight span, mean [kN]", 1e3),
@@ -357,14 +358,16 @@ def speeds(page: Page, length: Length) -> None:
         "ripple": ("camshaft speed, std [%]", 1e-2),
         "tight_std": ("tight span, std [kN]", 1e3),
         **{f"swing {span}": (f"swing of {span}, std [mm]", 1e-3) for span in SPANS},
-        "arrival": ("rollers arrive with, median [m/s]", 1.0),
+        "arrival": ("rollers arrive with, median (kinematics) [m/s]", 1.0),
         "loss": ("lost [kW]", 1e3),
     }
     lines = ["| crank [r/min] | " + " | ".join(name for name, _ in columns.values()) + " |"]
     lines.append("|---|" + "---|" * len(columns))
     for name, case in cases.items():
-        row = " | ".join(mean(case[key], unit) for key, (_, unit) in columns.items())
-        lines.append(f"| {name} | {row} |")
+        cells = {key: mean(case[key], unit) for key, (_, unit) in columns.items()}
+        exact = cd.kinematics.seating_speed(TEETH, TEETH, PITCH, DISTANCE, float(name) * RPM)
+        cells["arrival"] += f" ({exact:.3f})"
+        lines.append(f"| {name} | " + " | ".join(cells.values()) + " |")
     page.add("speeds", "\n".join(lines))
 
     figure, axes = plt.subplots(1, 3, figsize=(13, 4.2), layout="constrained")
@@ -441,7 +444,7 @@ def camshaft_mode(drive: cd.Drive) -> float:
     """Return the frequency of the mode at rest in which the camshaft turns most [Hz]."""
     modes = drive.modes()
     turn = np.abs(modes["sprocket_angle"].sel(sprocket="camshaft"))
-    return float(modes["frequency"][int(turn.argmax())])
+    return float(modes["frequency"][int(np.argmax(turn.values))])
 
 
 def bands(frequency: np.ndarray, amplitude: np.ndarray, mesh: float) -> list[float]:

@@ -17,8 +17,8 @@ import xarray as xr
 import chaindrive as cd
 
 PHASES = (0.1, 0.3, 0.5, 0.7, 0.9)
-# Student's t with four degrees of freedom, 99 %: as many as Welch's test of five against five has
-# at least, so that one of a hundred comparisons of equal drives, or fewer, finds a difference.
+# Student's t with four degrees of freedom, 99 %: one of a hundred comparisons of equal drives finds
+# a difference by chance.
 CHANCE = 4.604
 JOBS = 2
 
@@ -46,24 +46,26 @@ def half_width(values: np.ndarray) -> float:
 
 
 def difference(base: np.ndarray, other: np.ndarray) -> tuple[float, float]:
-    """Return by how much the mean of `other` is larger, and half of its 99 % interval."""
-    return float(other.mean() - base.mean()), float(np.hypot(half_width(base), half_width(other)))
+    """Return by how much `other` is larger in the mean, and half of the 99 % interval.
+
+    Replicates that began alike are compared with each other.
+    """
+    apart = other - base
+    return float(apart.mean()), half_width(apart)
 
 
 def verdict(base: np.ndarray, other: np.ndarray) -> str:
     """Say by how much `other` differs from `base`, in per cent of it, or that chance may do it."""
     by, scatter = difference(base, other)
-    scale = 100.0 / abs(base.mean()) if base.mean() != 0.0 else np.inf
+    if not np.isfinite(by):
+        return "not comparable"
+    if base.mean() == 0.0:
+        return "only here" if abs(by) > scatter else "≈"
+    scale = 100.0 / abs(base.mean())
     if abs(by) <= scatter:
-        return f"≈ (± {scale * scatter:.2g} %)"
-    if not np.isfinite(scale):
-        return "only here"
-    return f"**{scale * by:+.{_digits(scale * scatter)}f} ± {scale * scatter:.2g} %**"
-
-
-def _digits(scatter: float) -> int:
-    """Digits behind the point that a number with such a scatter deserves, two at most."""
-    return int(np.clip(1 - np.floor(np.log10(max(scatter, 1e-3))), 0, 2))
+        return f"≈ (± {_short(scale * scatter)} %)"
+    digits = int(np.clip(1 - np.floor(np.log10(max(scale * scatter, 1e-3))), 0, 2))
+    return f"**{scale * by:+.{digits}f} ± {_short(scale * scatter)} %**"
 
 
 def mean(values: np.ndarray, unit: float = 1.0) -> str:
@@ -72,11 +74,12 @@ def mean(values: np.ndarray, unit: float = 1.0) -> str:
     if not np.isfinite(middle):
         return "none"
     digits = int(np.clip(2 - np.floor(np.log10(abs(middle) + 1e-12)), 0, 4))
-    return (
-        f"{middle:.{digits}f} ± {scatter:.1g}"
-        if scatter < 1
-        else f"{middle:.{digits}f} ± {scatter:.0f}"
-    )
+    return f"{middle:.{digits}f} ± {_short(scatter, 1)}"
+
+
+def _short(value: float, digits: int = 2) -> str:
+    """Write a number without exponent in so many digits, or more where it is large."""
+    return f"{value:.0f}" if value >= 10.0 ** (digits - 1) else f"{value:.{digits}g}"
 
 
 def table(
