@@ -17,16 +17,11 @@ import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from marine_drive import (
-    EVERY,
-    MASS,
     PITCH,
-    RPM,
     SPANS,
-    SPEED,
     TEETH,
     TIGHT,
     Length,
-    half_pitch,
     locked,
     measure,
     nearer,
@@ -34,17 +29,16 @@ from marine_drive import (
     offset,
     paper,
     rubbing,
-    tangent,
     with_play,
 )
-from replicates import JOBS, PHASES, Case, Page, harmonics, mean, spectrum, study, table
+from marine_waves import polygon, vibration
+from matplotlib import pyplot as plt
+from replicates import JOBS, Case, Page, starts, study, table
 
 import chaindrive as cd
 
 mpl.use("Agg")
-from matplotlib import pyplot as plt
 
-DISTANCE = 2.4725  # m, of crank and camshaft
 SPROCKETS = ("crank", "camshaft", "tensioner", "idler")
 CONTACT = {
     "tight": ("tight span, mean [kN]", 1e3),
@@ -62,39 +56,40 @@ def every_tooth(kind: str) -> dict[str, object]:
 
 def profiles(page: Page, length: Length) -> None:
     """Compare circular and real profiles."""
-    drives = {
-        "real: ISO 606, mid": paper(),
-        "real: ASME type II": paper().replace(every_tooth("asa-type-ii")),
-        "circular": paper().replace(every_tooth("circular")),
-    }
-    page.add("profile", table(study(drives, partial(measure, length=length)), CONTACT, "profile"))
-
-    figure, (left, right) = plt.subplots(1, 2, figsize=(12, 4.6), layout="constrained")
-    for number, (name, drive) in enumerate(drives.items()):
-        outline = drive.profile("crank", settled=False).outline(1e-5)
-        radius = 0.5 * PITCH / np.sin(np.pi / TEETH)
-        x, y = gap_upward(outline, radius)
-        left.plot(1e3 * x, 1e3 * y, label=name, linewidth=1.2, color=f"C{number}")
-        run = observe(drive, Length(max(length.until, 0.3), length.run_in))
-        time, force = visit(run, radius)
-        right.plot(1e3 * time, force / 1e3, label=name, linewidth=0.7, color=f"C{number}")
+    figure, axes = plt.subplots(1, 3, figsize=(14, 4.6), layout="constrained")
+    radius = 0.5 * PITCH / np.sin(np.pi / TEETH)
+    bases = (("profile", paper()), ("profile, default", cd.scenes.marine_engine()))
+    for (title, base), axis in zip(bases, axes[1:], strict=True):
+        drives = {
+            "real: ISO 606, mid": base,
+            "real: ASME type II": base.replace(every_tooth("asa-type-ii")),
+            "circular": base.replace(every_tooth("circular")),
+        }
+        page.add(title, table(study(drives, partial(measure, length=length)), CONTACT, "profile"))
+        for number, (name, drive) in enumerate(drives.items()):
+            angle, mean_force, high = along_the_wrap(observe(drive, length), radius)
+            axis.plot(angle, mean_force / 1e3, color=f"C{number}", label=name)
+            axis.plot(angle, high / 1e3, color=f"C{number}", linewidth=0.7, linestyle="--")
+            if axis is axes[1]:
+                outline = drive.profile("crank", settled=False).outline(1e-5)
+                x, y = gap_upward(outline, radius)
+                axes[0].plot(1e3 * x, 1e3 * y, linewidth=1.2, color=f"C{number}")
+        axis.set(
+            xlabel="angle on the crank, from the tight span on [°]",
+            ylabel="force of the teeth on a roller [kN]",
+            title=f"{title.partition(', ')[2] or 'as in the paper'}: mean, dashed 99 %",
+        )
+        axis.legend(fontsize="small")
     roller = plt.Circle((0.0, 0.0), 26.99, fill=False, linestyle="--", linewidth=0.8)
-    left.add_patch(roller)
-    left.set(
+    axes[0].add_patch(roller)
+    axes[0].set(
         aspect="equal",
         xlim=(-50, 50),
         ylim=(-32, 32),
         xlabel="from the middle of the gap [mm]",
         ylabel="from the pitch circle [mm]",
-        title="gaps of the crank's sprocket; dashed: a seated roller",
+        title="gaps of the crank; dashed: a seated roller",
     )
-    left.legend(fontsize="small", loc="upper center")
-    right.set(
-        xlabel="time since the roller came within half a pitch of the pitch circle [ms]",
-        ylabel="force of the teeth [kN]",
-        title="one roller on its way around the crank",
-    )
-    right.legend(fontsize="small")
     page.save(figure, "profiles")
 
 
@@ -104,25 +99,34 @@ def gap_upward(outline: np.ndarray, radius: float) -> tuple[np.ndarray, np.ndarr
     angle = np.arctan2(outline[:, 1], outline[:, 0])
     near = np.abs(angle - 0.5 * np.pi) < 1.1 * np.pi / TEETH
     lowest = angle[near][distance[near].argmin()]
-    turn = np.abs(np.angle(np.exp(1j * (angle - lowest)))) < 1.25 * np.pi / TEETH
-    turned = distance[turn] * np.exp(1j * (angle[turn] - lowest + 0.5 * np.pi))
+    # Its middle is that of the arc that it cuts out of the pitch circle.
+    cut = angle[(distance < radius) & (np.abs(angle - lowest) < np.pi / TEETH)]
+    middle = 0.5 * (cut.min() + cut.max())
+    shown = np.abs(angle - middle) < 1.25 * np.pi / TEETH
+    turned = distance[shown] * np.exp(1j * (angle[shown] - middle + 0.5 * np.pi))
     order = np.argsort(-np.angle(turned))
     return turned.real[order], turned.imag[order] - radius
 
 
-def visit(run: xr.Dataset, radius: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return time [s] and force [N] of the roller that stays longest at the crank."""
+def along_the_wrap(run: xr.Dataset, radius: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return angles on the crank [°], and mean and 99 % of the force there on a roller [N]."""
     crank = run.sel(sprocket="crank")
-    distance = np.hypot(
-        run["roller_x"] - crank["sprocket_x"], run["roller_y"] - crank["sprocket_y"]
-    )
-    there = (distance < radius + 0.5 * PITCH).values
-    # Whole visits: away at both ends of the record.
-    whole = ~there[0] & ~there[-1] & there.any(axis=0)
-    roller = int((there.sum(axis=0) * (whole if whole.any() else True)).argmax())
-    shown = there[:, roller]
-    time = run["time"].values[shown]
-    return time - time[0], run["contact_force"].values[shown, roller]
+    x = (run["roller_x"] - crank["sprocket_x"]).values
+    y = (run["roller_y"] - crank["sprocket_y"]).values
+    near = np.abs(np.hypot(x, y) - radius) < 0.3 * PITCH
+    # Clockwise from the lower right, where the tight span ends.
+    angle = np.degrees(np.mod(-np.arctan2(y, x)[near] + np.pi / 4.0, 2.0 * np.pi)) - 45.0
+    force = run["contact_force"].values[near]
+    edges = np.arange(10.0, 205.0, 5.0)
+    groups = np.digitize(angle, edges)
+    middle, means, high = [], [], []
+    for k in range(1, len(edges)):
+        here = force[groups == k]
+        if here.size:
+            middle.append(0.5 * (edges[k - 1] + edges[k]))
+            means.append(here.mean())
+            high.append(np.percentile(here, 99))
+    return np.array(middle), np.array(means), np.array(high)
 
 
 def guides(page: Page, length: Length) -> None:
@@ -234,7 +238,6 @@ def active(page: Page, length: Length) -> None:
         "locked": lambda it: controlled(locked(it), length, None),
         "active": lambda it: controlled(it, length, wanted),
     }
-    starts = [drive.replace({"route.phase": phase}) for phase in PHASES]
     windows = {
         "before": (0.05, 0.2),
         "camshaft 1 mm out": (0.5, 0.7),
@@ -244,8 +247,8 @@ def active(page: Page, length: Length) -> None:
     traces = {}
     with ThreadPoolExecutor(JOBS) as pool:
         for name, run in kinds.items():
-            rows = list(pool.map(run, starts))
-            traces[name] = rows[2]
+            rows = list(pool.map(run, starts(drive)))
+            traces[name] = rows[-1]
             cases[name] = {
                 window: np.array([mean_between(row, *edges, length.until) for row in rows])
                 for window, edges in windows.items()
@@ -282,190 +285,6 @@ def active(page: Page, length: Length) -> None:
 def mean_between(rows: np.ndarray, first: float, last: float, until: float) -> float:
     inside = (rows[:, 0] >= first * until) & (rows[:, 0] <= last * until)
     return float(rows[inside, 1].mean())
-
-
-def polygon(page: Page, length: Length) -> None:
-    """Compare the motion of the driven sprocket with the kinematics of polygons."""
-    slow(page, length)
-    halves(page, length)
-    speeds(page, length)
-
-
-def slow(page: Page, length: Length) -> None:
-    """Turn the crank so slowly that nothing but kinematics is left."""
-    speed = 2.0 * RPM
-    taut = cd.scenes.marine_two_sprockets().replace({"contact.joints.friction": {"kind": "none"}})
-    drives = {
-        "four sprockets, 48 to 48 teeth": paper(),
-        "two sprockets, 60 to 40, both spans taut": taut,
-        "two sprockets, centres 3 mm nearer: one span slack": taut.replace(
-            {"sprockets.camshaft.centre": [0.0, 2.7382651], "route.pretension": 0.0}
-        ),
-    }
-    lines = [
-        "| drive, crank at 2 r/min | swing of the camshaft at the mesh [µrad] "
-        "| closed form [µrad] |",
-        "|---|---|---|",
-    ]
-    for name, drive in drives.items():
-        crank, camshaft = drive.resolved().to_dict()["sprockets"][:2]
-        distance = float(np.hypot(*np.subtract(crank["centre"], camshaft["centre"])))
-        exact = cd.kinematics.polygon_action(crank["teeth"], camshaft["teeth"], PITCH, distance)
-        closed = exact["transmission_error"].values[:-1]
-        theory = 2.0 * abs(np.fft.fft(closed)[1]) / len(closed)
-        moving = drive.replace({"sprockets.crank.motion": {"kind": "constant", "speed": -speed}})
-        mesh = crank["teeth"] * speed / (2.0 * np.pi)
-
-        def swing(it: cd.Drive, mesh: float = mesh) -> dict[str, float]:
-            run = observe(it, Length(2.0 * length.until, length.run_in), every=1e-3)
-            angle = run["sprocket_angle"].sel(sprocket="camshaft").values
-            return {"swing": abs(harmonics(run["time"].values, angle, mesh, 3)[0])}
-
-        values = study({name: moving}, swing)[name]["swing"]
-        lines.append(f"| {name} | {mean(values, 1e-6)} | {1e6 * theory:.1f} |")
-    page.add("slow", "\n".join(lines))
-
-
-def halves(page: Page, length: Length) -> None:
-    """Halve the pitch and double the teeth: a quarter of the chordal action, the same drive."""
-    drives = {
-        "pitch 88.9 mm, 48 teeth": paper().replace({"guides": []}),
-        "pitch 44.45 mm, 96 teeth": half_pitch(),
-    }
-    columns = {
-        "tight_std": ("tight span, std [kN]", 1e3),
-        "slack_std": ("tensioner-idler, std [kN]", 1e3),
-        **{f"swing {span}": (f"swing of {span}, std [mm]", 1e-3) for span in SPANS},
-        "ripple": ("camshaft speed, std [%]", 1e-2),
-        "arrival": ("rollers arrive with, median [m/s]", 1.0),
-        "contact_p99": ("roller on tooth, 99 % [kN]", 1e3),
-        "loss": ("lost [kW]", 1e3),
-    }
-    page.add("pitch", table(study(drives, partial(measure, length=length)), columns, "chain"))
-
-
-def speeds(page: Page, length: Length) -> None:
-    """Sweep the speed: what the polygon does to camshaft, tension and spans."""
-    rounds = np.arange(30.0, 171.0, 20.0)
-    drives = {
-        f"{n:g}": paper().replace(
-            {"sprockets.crank.motion": {"kind": "constant", "speed": -n * RPM}, "guides": []}
-        )
-        for n in rounds
-    }
-    cases = study(drives, partial(measure, length=length))
-    columns = {
-        "ripple": ("camshaft speed, std [%]", 1e-2),
-        "tight_std": ("tight span, std [kN]", 1e3),
-        **{f"swing {span}": (f"swing of {span}, std [mm]", 1e-3) for span in SPANS},
-        "arrival": ("rollers arrive with, median (kinematics) [m/s]", 1.0),
-        "loss": ("lost [kW]", 1e3),
-    }
-    lines = ["| crank [r/min] | " + " | ".join(name for name, _ in columns.values()) + " |"]
-    lines.append("|---|" + "---|" * len(columns))
-    for name, case in cases.items():
-        cells = {key: mean(case[key], unit) for key, (_, unit) in columns.items()}
-        exact = cd.kinematics.seating_speed(TEETH, TEETH, PITCH, DISTANCE, float(name) * RPM)
-        cells["arrival"] += f" ({exact:.3f})"
-        lines.append(f"| {name} | " + " | ".join(cells.values()) + " |")
-    page.add("speeds", "\n".join(lines))
-
-    figure, axes = plt.subplots(1, 3, figsize=(13, 4.2), layout="constrained")
-    groups = [
-        (["ripple"], "camshaft speed, std [%]", 1e-2),
-        (["tight_std", "slack_std"], "tension of a span, std [kN]", 1e3),
-        ([f"swing {span}" for span in SPANS], "swing of the middle of a span, std [mm]", 1e-3),
-    ]
-    names = {"tight_std": TIGHT, "slack_std": "tensioner-idler"}
-    for axis, (keys, label, unit) in zip(axes, groups, strict=True):
-        for key in keys:
-            rows = np.array([cases[name][key] for name in drives]) / unit
-            name = names.get(key, key.removeprefix("swing "))
-            axis.errorbar(rounds, rows.mean(1), np.ptp(rows, axis=1) / 2, capsize=3, label=name)
-        axis.set(xlabel="crank speed [r/min]", ylabel=label, ylim=(0, None))
-        axis.axvline(SPEED, color="0.7", linestyle=":", zorder=0)
-        if len(keys) > 1:
-            axis.legend(fontsize="small")
-    page.save(figure, "speeds")
-
-
-def vibration(page: Page, length: Length) -> None:
-    """Split longitudinal and transverse vibration by frequency."""
-    drive = paper()
-    mesh = TEETH * SPEED / 60.0
-    starts = [drive.replace({"route.phase": phase}) for phase in PHASES]
-    with ThreadPoolExecutor(JOBS) as pool:
-        runs = list(pool.map(partial(observe, length=length), starts))
-    lines = [
-        "| signal | below half the mesh frequency [%] | at the mesh and its multiples, ± 3 Hz [%] "
-        "| all else [%] |",
-        "|---|---|---|---|",
-    ]
-    figure, axes = plt.subplots(len(SPANS), 2, figsize=(13, 8), sharex="col", layout="constrained")
-    for row, span in enumerate(SPANS):
-        tensions = [run["span_tension"].sel(span=span).values for run in runs]
-        swings = [offset(drive, span, run) for run in runs]
-        string = string_frequencies(drive, span, runs[0], float(np.mean(tensions)))
-        kinds = [("tension", tensions, 1e3, "kN"), ("swing", swings, 1e-3, "mm")]
-        for column, (kind, signals, unit, name) in enumerate(kinds):
-            spectra = [spectrum(signal, EVERY) for signal in signals]
-            shares = np.array([bands(*it, mesh) for it in spectra])
-            cells = " | ".join(mean(shares[:, k], 1e-2) for k in range(3))
-            lines.append(f"| {kind} of {span} | {cells} |")
-            axis = axes[row, column]
-            level = np.sqrt(np.mean([it[1] ** 2 for it in spectra], axis=0)) / unit
-            axis.semilogy(spectra[0][0], level, linewidth=0.8)
-            for order in range(1, 5):
-                axis.axvline(order * mesh, color="C3", linestyle=":", linewidth=1.0, zorder=0)
-            if kind == "swing":
-                for number, value in enumerate(string):
-                    label = "moving string" if number == 0 else None
-                    axis.axvline(value, color="C2", linewidth=0.8, zorder=0, label=label)
-                axis.legend(fontsize="small", loc="upper right")
-            top = level[spectra[0][0] > 1.0].max()
-            widest, deepest = (450.0, 2e-2) if kind == "tension" else (150.0, 3e-3)
-            axis.set(xlim=(0.0, widest), ylim=(deepest * top, 2.0 * top))
-            axis.set_ylabel(f"{kind} of {span} [{name}]", fontsize=9)
-    for axis in axes[-1]:
-        axis.set_xlabel("frequency [Hz]")
-    axes[0, 0].set_title("longitudinal: dotted the mesh and its multiples")
-    axes[0, 1].set_title("transverse: green the modes of a moving string")
-    turning = camshaft_mode(drive)
-    for axis in axes[:, 0]:
-        axis.axvline(
-            turning, color="C1", linewidth=0.8, zorder=0, label=f"camshaft turns, {turning:.1f} Hz"
-        )
-    axes[0, 0].legend(fontsize="small", loc="lower right")
-    page.add("vibration", "\n".join(lines))
-    page.save(figure, "vibration")
-
-
-def camshaft_mode(drive: cd.Drive) -> float:
-    """Return the frequency of the mode at rest in which the camshaft turns most [Hz]."""
-    modes = drive.modes()
-    turn = np.abs(modes["sprocket_angle"].sel(sprocket="camshaft"))
-    return float(modes["frequency"][int(np.argmax(turn.values))])
-
-
-def bands(frequency: np.ndarray, amplitude: np.ndarray, mesh: float) -> list[float]:
-    """Shares of the variance: below half the mesh frequency, at its multiples, elsewhere."""
-    power = amplitude**2
-    order = np.round(frequency / mesh)
-    at = (order >= 1) & (np.abs(frequency - order * mesh) <= 3.0)
-    low = frequency < 0.5 * mesh
-    parts = [power[low].sum(), power[at].sum(), power[~low & ~at].sum()]
-    return [part / power.sum() for part in parts]
-
-
-def string_frequencies(drive: cd.Drive, span: str, run: xr.Dataset, tension: float) -> list[float]:
-    """First natural frequencies of a string that moves along itself [Hz]."""
-    ends, _ = tangent(drive, span, run)
-    span_length = np.hypot(*(ends[1] - ends[0]))
-    squared = tension * PITCH / MASS  # c² = T/m′
-    speed = SPEED * RPM * 0.5 * PITCH / np.sin(np.pi / TEETH)
-    # f = n (c² − v²)/(2 ℓ c)
-    first = (squared - speed**2) / (2.0 * span_length * np.sqrt(squared))
-    return [n * first for n in range(1, 8)]
 
 
 def models(page: Page, length: Length) -> None:
@@ -515,7 +334,6 @@ def main(arguments: list[str] | None = None) -> None:
     page = Page(given.results, "marine-paper")
     for name in given.parts:
         PARTS[name](page, Length(given.until, given.run_in))
-    page.write()
 
 
 if __name__ == "__main__":

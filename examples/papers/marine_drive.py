@@ -192,7 +192,8 @@ def measure(drive: cd.Drive, length: Length) -> dict[str, float]:
         "ripple": float(camshaft.std() / abs(camshaft.mean())),
         "loss": float(lost[-1] - lost[0]) / length.until,
         "waves": sum(taken_by_waves(drive, span, run) for span in ALL_SPANS),
-        "blows": float((run["event_kind"] == "guide").sum()) / length.until,
+        "blows": float(((run["event_kind"] == "guide") & (run["event_start"] > 0.0)).sum())
+        / length.until,
         "guide": 0.0,
     }
     if drive.guides:

@@ -5,7 +5,6 @@ tooth (`route.phase`). Means do not depend on it, waveforms do, and beyond the h
 five runs are as good as independent.
 """
 
-import re
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -27,17 +26,23 @@ Case = dict[str, np.ndarray]
 """Quantities by name, each (replicates,)."""
 
 
+def starts(drive: cd.Drive) -> list[cd.Drive]:
+    """Return the replicates of a drive."""
+    return [drive.replace({"route.phase": phase}) for phase in PHASES]
+
+
 def study(drives: Mapping[str, cd.Drive], measure: Measure) -> dict[str, Case]:
     """Measure five replicates of every drive, two at a time."""
-    names = list(drives)
-    starts = [drives[name].replace({"route.phase": phase}) for name in names for phase in PHASES]
     with ThreadPoolExecutor(JOBS) as pool:
-        rows = list(pool.map(measure, starts))
-    found = {}
-    for i, name in enumerate(names):
-        five = rows[i * len(PHASES) : (i + 1) * len(PHASES)]
-        found[name] = {key: np.array([row[key] for row in five]) for key in five[0]}
-    return found
+        rows = {
+            name: [pool.submit(measure, start) for start in starts(drive)]
+            for name, drive in drives.items()
+        }
+        five = {name: [row.result() for row in several] for name, several in rows.items()}
+    return {
+        name: {key: np.array([row[key] for row in several]) for key in several[0]}
+        for name, several in five.items()
+    }
 
 
 def half_width(values: np.ndarray) -> float:
@@ -140,37 +145,26 @@ def spectrum(values: np.ndarray, every: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 class Page:
-    """Tables and figures of one page: printed, saved, and put between their marks in the page."""
+    """Tables and figures of one page: printed, and put between their marks in its text."""
 
     def __init__(self, results: Path, stem: str) -> None:
         results.mkdir(parents=True, exist_ok=True)
         self.results, self.stem = results, stem
-        self.tables: dict[str, str] = {}
 
-    def add(self, name: str, text: str) -> None:
-        """Print a table and keep it for the page."""
-        self.tables[name] = text
-        print(f"\n## {name}\n\n{text}", flush=True)
+    def add(self, name: str, table: str) -> None:
+        """Print a table and put it into the page of the folder, which begins empty."""
+        print(f"\n## {name}\n\n{table}", flush=True)
+        path = self.results / f"{self.stem}.md"
+        text = path.read_text(encoding="utf-8") if path.exists() else ""
+        mark = f"<!-- {name} -->\n"
+        if mark not in text:
+            text += f"\n{mark}<!-- end -->\n"
+        before, _, after = text.partition(mark)
+        after = after[after.index("<!-- end -->") :]
+        path.write_text(f"{before}{mark}\n{table}\n\n{after}", encoding="utf-8")
 
     def save(self, figure: Any, name: str) -> None:
         """Write a figure beside the page."""
         path = self.results / f"{self.stem}_{name}.png"
         figure.savefig(path, dpi=80)
         print(f"written: {path}", flush=True)
-
-    def write(self) -> None:
-        """Put the tables into the page of the folder if there is one, else into a new file."""
-        path = self.results / f"{self.stem}.md"
-        if path.exists():
-            text = path.read_text(encoding="utf-8")
-        else:
-            text = "\n\n".join(f"<!-- {name} -->\n<!-- end -->" for name in self.tables)
-        for name, new in self.tables.items():
-            pattern = rf"(<!-- {re.escape(name)} -->\n).*?(<!-- end -->)"
-            text, count = re.subn(
-                pattern, lambda m, new=new: f"{m[1]}\n{new}\n\n{m[2]}", text, flags=re.DOTALL
-            )
-            if count != 1:
-                raise SystemExit(f"{path} has {count} places for the table `{name}`, needed is one")
-        path.write_text(text, encoding="utf-8")
-        print(f"written: {path}")
