@@ -159,7 +159,7 @@ def guides(page: Page, length: Length) -> None:
     for axis in axes:
         for clear, number in ((5.0, 0), (1.0, 1)):
             axis.axhline(clear, color=f"C{number}", linestyle="--", linewidth=0.8)
-    axes[0].legend(fontsize="small", ncols=3, loc="lower right")
+    axes[1].legend(fontsize="small", ncols=3, loc="center")
     axes[0].set_title(
         "marine_engine: offset of the middle of a span, outward; dashed: faces of the bars"
     )
