@@ -80,26 +80,23 @@ def observe(drive: cd.Drive, length: Length, **options: Any) -> xr.Dataset:
     ideal = drive.resolved().to_dict()["chain"]["model"] == "ideal-joints"
     joints = [] if particles or ideal else ["joint_force", "joint_depth"]
     settings = {"method": "auto"} | options
-    with warnings.catch_warnings():
-        # Verdicts are a column of the tables; errors are not estimated in every one of the runs.
-        warnings.simplefilter("ignore", cd.VerdictWarning)
-        return cd.simulate(
-            drive,
-            run_in=length.run_in,
-            until=length.until,
-            every=5e-5,
-            error=False,
-            events=["teeth"] if particles or ideal else ["teeth", "joints"],
-            record=[
-                "span_tension",
-                "contact_force",
-                "roller_x",
-                "roller_y",
-                "sprocket_speed",
-                *joints,
-            ],
-            **settings,
-        )
+    return cd.simulate(
+        drive,
+        run_in=length.run_in,
+        until=length.until,
+        every=5e-5,
+        error=False,
+        events=["teeth"] if particles or ideal else ["teeth", "joints"],
+        record=[
+            "span_tension",
+            "contact_force",
+            "roller_x",
+            "roller_y",
+            "sprocket_speed",
+            *joints,
+        ],
+        **settings,
+    )
 
 
 def seated(run: xr.Dataset, drive: cd.Drive, sprocket: str) -> np.ndarray:
@@ -328,8 +325,8 @@ def rollers(page: Page, length: Length) -> None:
         "particles": {"chain.model": "particles"},
     }
     columns = FORCES | {"step_time": ("cost [ns a link and step]", 1.0)}
-    # Free rollers are laid tighter, by as much in both spans at rest.
-    looser = {"free rollers, laid 15 N looser": free | {"route.pretension": "45 N"}}
+    # At rest free rollers hold 15 N more in both spans than lumped ones with the same pretension.
+    looser = {"free rollers, as tight at rest": free | {"route.pretension": "30 N"}}
     for title, base, more in (
         ("rollers", tight(), {}),
         ("rollers, default", cd.scenes.bicycle(), looser),
@@ -456,17 +453,15 @@ def begin(depth: float | None) -> str:
 
 def rebound(drive: cd.Drive, method: str, step: float, depth: float | None) -> float:
     """Return closing speed of the second impact over that of the first."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", cd.VerdictWarning)
-        run = cd.simulate(
-            drive,
-            until=1e-3,
-            every=1e-4,
-            method=method,
-            step=step,
-            onset_depth=depth,
-            error=False,
-        )
+    run = cd.simulate(
+        drive,
+        until=1e-3,
+        every=1e-4,
+        method=method,
+        step=step,
+        onset_depth=depth,
+        error=False,
+    )
     speeds = run["event_onset_speed"].values
     # The pin begins at the top of its play, and may touch the bush there.
     first, second = speeds[speeds > 0.1][:2]
@@ -489,6 +484,8 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--results", type=Path, default=Path("results"), help="folder to write to")
     parser.add_argument("--parts", nargs="+", default=list(PARTS), choices=list(PARTS))
     given = parser.parse_args(arguments)
+    # Rigid links lose too little for their ledger, and some runs are meant to fail: see the page.
+    warnings.simplefilter("ignore", cd.VerdictWarning)
     page = Page(given.results, "bicycle-paper")
     for name in given.parts:
         PARTS[name](page, Length(given.until, given.run_in))
