@@ -1,0 +1,86 @@
+"""The two papers: their scripts run from end to end, and their verdicts are those of statistics."""
+
+import importlib
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+FOLDER = ROOT / "examples" / "papers"
+
+
+@pytest.fixture
+def papers(monkeypatch):
+    """Import a module of examples/papers."""
+    monkeypatch.syspath_prepend(FOLDER)
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    replicates = importlib.import_module("replicates")
+    monkeypatch.setattr(replicates, "PHASES", (0.3, 0.7))
+    return importlib.import_module
+
+
+@pytest.mark.parametrize(
+    ("script", "stem", "short"),
+    [
+        ("marine", "marine-paper", ["--until", "0.02", "--run-in", "0"]),
+        ("bicycle", "bicycle-paper", ["--until", "0.001", "--run-in", "0"]),
+    ],
+)
+def test_scripts_run_and_fill_their_pages(papers, tmp_path, script, stem, short):
+    page = (ROOT / "docs" / f"{stem}.md").read_text(encoding="utf-8")
+    (tmp_path / f"{stem}.md").write_text(page, encoding="utf-8")
+    module = papers(script)
+    module.main([*short, "--results", str(tmp_path)])
+    written = (tmp_path / f"{stem}.md").read_text(encoding="utf-8")
+    # Every table of the page is new, and no prose between them is.
+    tables = re.compile(r"(<!-- (?!end)[^>]+ -->\n).*?(<!-- end -->)", re.DOTALL)
+    assert tables.sub(r"\1\2", written) == tables.sub(r"\1\2", page)
+    assert len(tables.findall(written)) >= 10
+    figures = re.findall(r"\]\((\S+\.png)\)", page)
+    assert len(figures) >= 4
+    for name in figures:
+        assert (tmp_path / name).stat().st_size > 10_000
+        assert (ROOT / "docs" / name).stat().st_size < 300_000
+
+
+def test_verdicts_find_what_is_there_and_one_in_a_hundred_that_is_not(papers):
+    """Student's t of five differences, against noise of which the truth is known."""
+    replicates = papers("replicates")
+    noise = np.random.default_rng(11)
+    found = 0
+    for _ in range(2000):
+        base, other = 100.0 + noise.standard_normal((2, 5))
+        by, scatter = replicates.difference(base, other)
+        found += abs(by) > scatter
+    # 20 expected, standard deviation 4.4.
+    assert 6 <= found <= 34
+    base = np.array([100.0, 101.0, 99.0, 100.5, 99.5])
+    assert replicates.verdict(base, base + 10.0).startswith("**+10.00 ± 0")
+    assert replicates.verdict(base, base[::-1]).startswith("≈")
+
+
+def test_harmonics_are_those_of_a_known_wave(papers):
+    times = np.linspace(0.0, 1.0, 400)
+    wave = 3.0 + 2.0 * times + 0.5 * np.cos(2.0 * math.pi * 7.0 * times + 0.3)
+    found = papers("replicates").harmonics(times, wave, 7.0, 2)
+    assert found[0] == pytest.approx(0.5 * np.exp(0.3j), abs=1e-9)
+    assert abs(found[1]) < 1e-9
+
+
+def test_the_offset_of_a_span_is_its_sag(papers):
+    """A chain at rest: gravity bends the middle of a span by m′ g⊥ ℓ²/(8 T), outward."""
+    drive_of = papers("marine_drive")
+    drive = drive_of.paper().replace(
+        {"guides": [], "sprockets.crank.motion": {"kind": "constant", "speed": 0.0}}
+    )
+    run = drive_of.observe(drive, drive_of.Length(0.01, 0.0), every=1e-3)
+    ends, normal = drive_of.tangent(drive, drive_of.TIGHT, run)
+    length = np.hypot(*(ends[1] - ends[0]))
+    tension = float(run["span_tension"].sel(span=drive_of.TIGHT)[0])
+    across = -9.81 * normal[1] * drive_of.MASS / drive_of.PITCH
+    sag = across * length**2 / (8.0 * tension)
+    found = drive_of.offset(drive, drive_of.TIGHT, run)[0]
+    assert found == pytest.approx(sag, rel=0.15)
