@@ -16,7 +16,7 @@ use chaindrive_integrate::{Moment, SecondOrderSystem, State};
 
 use crate::chains::LaidAs;
 use crate::check::clash::clashes;
-use crate::drive::{Layout, Parts};
+use crate::drive::{Layout, Parts, PretensionAt};
 use crate::groups::groups;
 use crate::standing::Standing;
 use crate::system::{Laid, Member};
@@ -153,6 +153,13 @@ impl Assembled {
     }
 }
 
+/// Mean tension \[N\] of some links under the pretension alone, where it was found.
+fn carried(statics: &[Statics], links: std::ops::Range<usize>) -> Option<f64> {
+    let taut = statics.first().filter(|it| it.stage == "pretension")?;
+    let tensions = taut.tensions.get(links)?;
+    Some(tensions.iter().sum::<f64>() / tensions.len() as f64)
+}
+
 impl Drive {
     /// Lays the chain, finds the static state where asked, and sets everything going at the
     /// speed of the first driven sprocket.
@@ -192,7 +199,7 @@ impl Drive {
         let mut v = vec![0.0; q.len()];
         let layouts: Vec<&Layout> = self.chains.iter().map(|placed| &placed.layout).collect();
         setting_off::set_off(&system, &layouts, &q, &mut v);
-        self.put_in_place(&mut system, &laid.parts, &mut q, &mut v)?;
+        self.put_in_place(&mut system, &laid.parts, &statics, [&mut q, &mut v])?;
         let z = system.settled_states(&q);
         system.start(self.begin, &mut q, &mut v, &z);
         Ok(Assembled {
@@ -214,8 +221,8 @@ impl Drive {
         &self,
         system: &mut System,
         parts: &Parts,
-        q: &mut Vec<f64>,
-        v: &mut Vec<f64>,
+        statics: &[Statics],
+        [q, v]: [&mut Vec<f64>; 2],
     ) -> Result<(), AssemblyError> {
         let mut replaced = false;
         for (index, placed) in parts.chains.iter().enumerate() {
@@ -240,11 +247,20 @@ impl Drive {
             .iter()
             .enumerate()
             .filter(|(index, _)| loose(index))
-            .map(|(index, placed)| Tightening {
-                chain: index,
-                pretension: placed.layout.pretension(),
-                stiffness: placed.chain.stiffness[0],
-                at: placed.layout.pretension_at(),
+            .map(|(index, placed)| {
+                let of_layout = (placed.layout.pretension(), placed.layout.pretension_at());
+                // Bushes on smaller circles have the pitch of a worn chain: free rollers ride up the flanks, and a length does not tell how
+                // tight that is. They carry what the lumped ones do at this phase.
+                let as_lumped = carried(statics, hard::links_of(&parts.chains, index))
+                    .filter(|_| placed.chain.model.free_roller().is_some())
+                    .map(|tension| (tension, PretensionAt::Phase));
+                let (pretension, at) = as_lumped.unwrap_or(of_layout);
+                Tightening {
+                    chain: index,
+                    pretension,
+                    stiffness: placed.chain.stiffness[0],
+                    at,
+                }
             })
             .collect();
         if self.settle && !tightenings.is_empty() {

@@ -107,11 +107,8 @@ mod tests {
             plates: 0.0022,
             rollers: 3.4,
         };
-        for (teeth, rpm, horsepower) in [
-            (11, 500.0, 1.01),
-            (15, 1000.0, 2.63),
-            (18, 1400.0, 2.85),
-        ] {
+        for (teeth, rpm, horsepower) in [(11, 500.0, 1.01), (15, 1000.0, 2.63), (18, 1400.0, 2.85)]
+        {
             let found = light.power(teeth, rpm * TAU / 60.0) / HORSEPOWER;
             assert!(
                 (found - horsepower).abs() < 0.006,

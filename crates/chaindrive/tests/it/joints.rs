@@ -74,7 +74,7 @@ fn a_plucked_strand_comes_to_rest() {
     let joint = r#"joint.contact.friction = { kind = "spring-slider", coefficient = 0.1, stiffness = "5 GN/m" }"#;
     let (peaks, lost) = swings(&strand(joint));
     let found = (peaks[2] - peaks[6]) / 2.0 / LEVER;
-    assert!((found - 4.5).abs() < 0.25, "{found} μ r a cycle, {peaks:?}");
+    assert!((found - 4.5).abs() < 0.15, "{found} μ r a cycle, {peaks:?}");
     assert!(lost > 10.0, "{lost} J");
     let (peaks, lost) = swings(&format!("defaults = \"0.1\"\n{}", strand("")));
     assert!(
@@ -267,12 +267,55 @@ fn joints_without_play_are_those_of_the_elastic_chain() {
     let Joint::Clearance(joint) = &links.joint else {
         panic!("pins that yield");
     };
-    assert_eq!((joint.gap(), under(&joint.surface.law, 60.0)), (0.0, 47.65e6));
+    assert_eq!(
+        (joint.gap(), under(&joint.surface.law, 60.0)),
+        (0.0, 47.65e6)
+    );
     let written_out = without_play.resolved().unwrap().drive().unwrap();
     assert_eq!(
         written_out.chains[0].chain,
         without_play.drive().unwrap().chains[0].chain
     );
+}
+
+/// Play between bushes and rollers makes the circles smaller on which the bushes run, and the chain so much shorter: in the mean of its links
+/// it is as tight as that of lumped rollers, as long as neither load nor weight moves the bushes. The spans are a little tighter, as rollers
+/// that climb the flanks take tension off the links between them. Version 0.1 laid half a newton a µm of play into this chain.
+#[test]
+fn chains_of_free_rollers_are_as_tight_as_those_of_lumped_ones() {
+    let lumped = Scene::preset("bicycle").unwrap();
+    let lumped = lumped.replace("sprockets.rear.load", "[]").unwrap();
+    let lumped = lumped.replace("gravity", "[0, 0]").unwrap();
+    let at_rest = |scene: &Scene| {
+        let run = Run {
+            until: 1e-6,
+            every: 1e-6,
+            ..Run::default()
+        };
+        let mut simulation = Simulation::start(&scene.drive().unwrap(), &run).unwrap();
+        let sample = simulation.next_sample().unwrap().unwrap();
+        let links = sample.link_tension.iter().sum::<f64>() / sample.link_tension.len() as f64;
+        [links, sample.span_tension[0], sample.span_tension[1]]
+    };
+    let known = at_rest(&lumped);
+    for play in ["10 um", "50 um", "200 um"] {
+        let free = lumped
+            .replace("chain.rollers", "free")
+            .and_then(|scene| scene.replace("chain.roller", &format!("{{ clearance = '{play}' }}")))
+            .unwrap();
+        let found = at_rest(&free);
+        println!("{play}: {found:?} N, {known:?} N");
+        assert!(
+            (found[0] / known[0] - 1.0).abs() < 0.02,
+            "{play}: {found:?} N, {known:?} N"
+        );
+        for span in 1..3 {
+            assert!(
+                (found[span] / known[span] - 1.0).abs() < 0.15,
+                "{play}: {found:?} N, {known:?} N"
+            );
+        }
+    }
 }
 
 /// A free roller is light: what the tooth presses on it, it presses on its bush, which lies as deep in it as its law says.

@@ -1,5 +1,6 @@
 //! Chains whose links do not stretch: laid with links that hardly do.
 
+use super::carried;
 use crate::drive::{Layout, Parts, PlacedChain, PretensionAt};
 use crate::{Assembled, AssemblyError, Drive};
 
@@ -70,17 +71,12 @@ impl Drive {
                 begin: self.begin,
             }
             .assemble_as_is()?;
-            let taut = assembled
-                .statics
-                .first()
-                .filter(|statics| statics.stage == "pretension");
-            let Some(taut) = taut else {
-                return self.laid_by(parts, assembled);
-            };
             let mut met = true;
             for search in &mut searches {
-                let tensions = &taut.tensions[links_of(&parts.chains, search.chain)];
-                let found = tensions.iter().sum::<f64>() / tensions.len() as f64;
+                let links = links_of(&parts.chains, search.chain);
+                let Some(found) = carried(&assembled.statics, links) else {
+                    return self.laid_by(parts, assembled);
+                };
                 met &= search.meets(found);
             }
             if met {
@@ -142,7 +138,7 @@ impl Search {
 }
 
 /// Where the links of a chain stand among those of all.
-fn links_of(chains: &[PlacedChain], index: usize) -> std::ops::Range<usize> {
+pub(super) fn links_of(chains: &[PlacedChain], index: usize) -> std::ops::Range<usize> {
     let first = chains[..index]
         .iter()
         .map(|placed| placed.chain.links())

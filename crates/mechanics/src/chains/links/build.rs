@@ -37,12 +37,16 @@ pub(crate) fn replace(
 ) -> Replacement {
     let (q, v) = (&at.q[entries.clone()], &at.v[entries]);
     let n = particles.stride;
-    let (inward, shorter) = bush_shifts(particles, (bodies.all, laid.sprockets), links, at, q);
+    let inward = bush_shifts(particles, (bodies.all, laid.sprockets), links, at, q);
     let place = |k: usize| Point::new(q[k], q[n + k]) + inward[k];
     let velocity = |k: usize| Vector::new(v[k], v[n + k]);
     let count = particles.rollers;
     let mut linkage = compile(particles, laid, links);
-    linkage.lengthen(-shorter / linkage.links as f64);
+    let laid_at: Vec<Point> = (0..count).map(|k| particles.place(q, k)).collect();
+    let places: Vec<Point> = (0..count).map(place).collect();
+    // Bushes at the bottom of their rollers run on a smaller circle: so much shorter is the chain that is as tight there.
+    let change = way(&places, linkage.links) - way(&laid_at, linkage.links);
+    linkage.lengthen(change / linkage.links as f64);
     let after = |link: usize| (link + 1) % count;
     if links.joint == Joint::Ideal && laid.on_route {
         // The chain was settled with links that hardly stretch; what is left of that is theirs.
@@ -68,7 +72,6 @@ pub(crate) fn replace(
         }
     }
     let mut chain_v = vec![0.0; linkage.coordinates()];
-    let places: Vec<Point> = (0..count).map(place).collect();
     let velocities: Vec<Vector> = (0..count).map(velocity).collect();
     linkage.set_off(&places, &velocities, &mut chain_v);
     if !laid.on_route {
@@ -255,30 +258,27 @@ fn pulls(particles: &Particles, places: &[Point]) -> Vec<Vector> {
 }
 
 /// Where free rollers let the bushes be: on a wheel they lie deeper by the clearance, in a span the rollers
-/// hang. Returns the shift of every bush from the particle, and by how much their way around the
-/// wheels is shorter \[m\].
+/// hang. Returns the shift of every bush from the particle \[m\].
 fn bush_shifts(
     particles: &Particles,
     (bodies, sprockets): (&Bodies, &[usize]),
     links: &RigidLinks,
     at: Moment<'_>,
     q: &[f64],
-) -> (Vec<Vector>, f64) {
+) -> Vec<Vector> {
     let count = particles.rollers;
     let RollerModel::Free(roller) = &links.rollers else {
-        return (vec![Vector::zeros(); count], 0.0);
+        return vec![Vector::zeros(); count];
     };
-    let mut shorter = 0.0;
     let seats: Vec<Option<Vector>> = (0..count)
         .map(|joint| {
             let place = particles.place(q, joint);
-            let (wheel, d) = sprockets.iter().find_map(|&index| {
+            let d = sprockets.iter().find_map(|&index| {
                 let wheel = &bodies.wheels[index];
                 let d = place - bodies.wheel_centre(index, at);
                 let seat = wheel.pitch_radius.hypot(0.5 * wheel.pitch);
-                (d.norm() < 0.5 * (wheel.pitch_radius + seat)).then_some((wheel, d))
+                (d.norm() < 0.5 * (wheel.pitch_radius + seat)).then_some(d)
             })?;
-            shorter += roller.gap() * std::f64::consts::TAU / f64::from(wheel.teeth);
             Some(-d.normalize() * roller.gap())
         })
         .collect();
@@ -295,7 +295,17 @@ fn bush_shifts(
             _ => Vector::zeros(),
         })
     });
-    (shifts.collect(), shorter)
+    shifts.collect()
+}
+
+/// Length of a chain of so many links through its joints \[m\]; a closed one has as many joints as links.
+pub(in crate::chains) fn way(joints: &[Point], links: usize) -> f64 {
+    let ends = |link: usize| [joints[link], joints[(link + 1) % joints.len()]];
+    let lengths = (0..links).map(|link| {
+        let [a, b] = ends(link);
+        (b - a).norm()
+    });
+    lengths.sum()
 }
 
 fn compile(particles: &Particles, laid: &LaidAs<'_>, links: &RigidLinks) -> Linkage {

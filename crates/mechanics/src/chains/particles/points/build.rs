@@ -9,6 +9,7 @@ use super::{AFTER, BEFORE, Memory, PointJoints, Points, ROLLERS};
 use crate::chains::LaidAs;
 use crate::chains::joints::Joints;
 use crate::chains::links::Bearing;
+use crate::chains::links::build::way;
 use crate::chains::particles::Particles;
 use crate::contact::ContactMemory;
 use crate::drive::Surface;
@@ -150,12 +151,8 @@ impl Points {
         }
         // Bushes at the bottom of their rollers run on a smaller circle: so much shorter is the chain that is as tight there.
         if laid.on_route {
-            let around = |points: &[Point]| -> f64 {
-                let next = |i: usize| points[(i + 1) % count];
-                (0..count).map(|i| (next(i) - points[i]).norm()).sum()
-            };
             let laid_at: Vec<Point> = (0..count).map(place).collect();
-            let change = (around(&bushes) - around(&laid_at)) / count as f64;
+            let change = (way(&bushes, count) - way(&laid_at, count)) / count as f64;
             self.lengthen(change);
         }
         let mut q = vec![0.0; self.coordinates()];
