@@ -72,7 +72,7 @@ def test_a_case_may_say_why_it_has_no_verdict(tmp_path, write):
     assert (code, message) == (0, "")
     [row] = rows(page, "X09")
     assert "its teeth are chords" in row
-    assert "and 1 whole cases" in page
+    assert "whole cases: 1." in page
     # Once it is judged it needs no excuse.
     code, message, _ = write([verdict("K01"), verdict("X09")])
     assert code != 0
@@ -115,7 +115,7 @@ def test_the_worst_value_stands_for_a_quantity(tmp_path, write):
         verdict("K01", "turn", found=None, agrees=False),
     ]
     _, _, page = write(values)
-    _, speed, order, turn = rows(page, "K01")
+    _, order, speed, turn = rows(page, "K01")
     assert "| 2.015 m/s | +0.75 % | ± 1 % | 3 |" in speed
     assert "| 3.8 m/s | −0.2 | −0.3 | 2 |" in order
     assert "not a number" in turn

@@ -422,7 +422,7 @@ fn v15_forced_vibration_of_the_driven_wheel() {
     }
     let rows = case.table("inputs.rows");
     let tolerance = Relative(case.number("tolerance.relative"));
-    let [mut motions, mut ripples, mut listed] = [const { Vec::new() }; 3];
+    let (mut motions, mut ripples, mut listed) = (Vec::new(), Vec::new(), Vec::new());
     for (row, expected) in rows.iter().zip(case.table("expected.rows")) {
         // Taut at any moment; no tighter where the ripple is small, for the load's stretch of the
         // links disturbs the polygon.

@@ -134,7 +134,7 @@ fn swings_of_a_hanging_chain() {
         ));
         let expected = case.list(&format!("expected.frequency.{i}"));
         let lowest = &found.frequencies()[..expected.len()];
-        let quantity = format!("frequencies of {masses} masses");
+        let quantity = format!("frequencies, masses: {masses}");
         let tolerance = Relative(case.number("tolerance"));
         case.judge_each(&quantity, "Hz", lowest, &expected, tolerance);
     }

@@ -226,7 +226,7 @@ fn wrapping_length_over_a_tooth() {
         let drive = drive(&case);
         let judge = |quantity: &str, found, expected| {
             let tolerance = Absolute(case.number("tolerance"));
-            case.judge(quantity, "m", found, expected, tolerance);
+            case.judge(quantity, "p", found, expected, tolerance);
         };
         for (i, row) in (0_u32..).zip(case.table("expected.table_f_L")) {
             let length = drive.wrapping_length(f64::from(i) / 12.0).unwrap();
