@@ -57,7 +57,10 @@ def rows(page, start):
 
 def test_a_case_without_verdict_is_an_error_that_names_it(tmp_path, write):
     for name in ("K01", "K02", "V07"):
-        case(tmp_path / "cases", name, carried=[{"quantity": "sag", "reason": "unknown"}])
+        quantities = ("sag", "pull")
+        carried = [{"quantity": quantity, "reason": "unknown"} for quantity in quantities]
+        case(tmp_path / "cases", name, carried=carried)
+    # Of V07 its test saw a part only.
     code, message, page = write([verdict("K02"), verdict("V07", "sag", judged="carried")])
     assert code != 0
     assert "K01, V07" in message
@@ -73,8 +76,15 @@ def test_a_case_may_say_why_it_has_no_verdict(tmp_path, write):
     [row] = rows(page, "X09")
     assert "its teeth are chords" in row
     assert "whole cases: 1." in page
+    # So may one whose test finds nothing that it can judge.
+    case(tmp_path / "cases", "M07", carried=[{"quantity": "noise", "reason": "no sound"}])
+    seen = {"judged": "carried", "found": None, "expected": None, "agrees": False}
+    code, message, page = write([verdict("K01"), verdict("M07", "noise", **seen)])
+    assert (code, message) == (0, "")
+    assert rows(page, "M07") == ["| M07 | noise |  |  |  | ± 1 % | no sound |"]
+    assert "whole cases: 2." in page
     # Once it is judged it needs no excuse.
-    code, message, _ = write([verdict("K01"), verdict("X09")])
+    code, message, _ = write([verdict("K01"), verdict("M07", "noise", **seen), verdict("X09")])
     assert code != 0
     assert "X09" in message
 

@@ -182,6 +182,12 @@ def read_verdicts(path: Path) -> list[Row]:
     return list(rows.values())
 
 
+def is_excused(case: Case, rows: list[Row]) -> bool:
+    """Whether the case says why there is no verdict: on the whole, or on all that its test saw."""
+    seen = {row.quantity for row in rows if row.case == case.name and row.judged == "carried"}
+    return bool(case.not_judged or (case.carried and seen == set(case.carried)))
+
+
 def check(cases: dict[str, Case], rows: list[Row]) -> None:
     """Every case has a verdict or says why not, and every verdict belongs to a case."""
     strange = sorted({row.case for row in rows} - set(cases))
@@ -191,8 +197,7 @@ def check(cases: dict[str, Case], rows: list[Row]) -> None:
         if row.judged == "carried" and row.quantity not in cases[row.case].carried:
             raise ReportError(f"{row.case} gives no reason in `carried` for: {row.quantity}")
     judged = {row.case for row in rows if row.judged != "carried"}
-    excused = {name for name, case in cases.items() if case.not_judged}
-    without = [name for name in cases if name not in judged | excused]
+    without = [name for name in cases if name not in judged and not is_excused(cases[name], rows)]
     if without:
         raise ReportError(
             f"no verdict on {', '.join(without)}: judge them in a test, "
@@ -284,8 +289,8 @@ def summary(cases: dict[str, Case], rows: list[Row]) -> list[str]:
                 ]
             )
     head = ["", "cases that agree", "cases that miss", "quantities that agree", "that miss"]
-    whole = sum(case.not_judged is not None for case in cases.values())
-    carried = sum(len(case.carried) for case in cases.values())
+    judged = {row.case for row in rows if row.judged != "carried"}
+    carried = sum(len(case.carried) for name, case in cases.items() if name in judged)
     return [
         f"{len(cases)} cases. A case that is judged by numbers and by trends counts in both lines; "
         "it agrees when all of its quantities do.",
@@ -293,7 +298,7 @@ def summary(cases: dict[str, Case], rows: list[Row]) -> list[str]:
         *table(head, lines),
         "",
         f"Carried without a verdict: quantities of cases that are judged: {carried}; whole "
-        f"cases: {whole}.",
+        f"cases: {len(cases) - len(judged)}.",
     ]
 
 

@@ -424,7 +424,7 @@ fn quarter(fraction: f64) -> bool {
 
 /// Rows of K14 that are judged as runs; the case says why the others are not.
 fn is_judged(teeth: u32, fraction: f64) -> bool {
-    teeth > 13 || quarter(fraction) || (teeth == 9 && fraction > 0.4)
+    teeth > 13 || fraction > 0.0
 }
 
 /// Runs the wanted rows of K14, and judges them within 2 %.

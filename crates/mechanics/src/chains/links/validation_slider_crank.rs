@@ -257,7 +257,7 @@ fn s05_statistics_of_a_slider_crank() {
         sums[2] += counted / (revolutions - skipped);
         let mean = |k: usize| peaks.iter().map(|peak| peak[k]).sum::<f64>() / peaks.len() as f64;
         sums[3] += mean(0);
-        sums[4] += peaks.iter().fold(0.0, |most, peak| most.max(peak[0]));
+        sums[4] += peaks.iter().fold(0.0, |most: f64, peak| most.max(peak[0]));
         sums[5] += mean(1);
     }
     for ((name, unit, key), sum) in [
