@@ -221,6 +221,8 @@ def show(value: object, unit: str) -> str:
     """A value with its unit."""
     if value is None:
         return "not a number"
+    if unit in ("1", "-", "–"):
+        unit = ""
     if is_number(value):
         return f"{sign(f'{value + 0.0:.6g}')} {escape(unit)}".rstrip()
     if isinstance(value, list):
@@ -234,7 +236,8 @@ def show_error(row: Row) -> str:
     if off is None:
         return ""
     if percentage(row.tolerance) is not None and row.expected:
-        return sign(f"{100.0 * off / abs(float(row.expected)):+.2g} %")  # type: ignore[arg-type]
+        percent = 100.0 * off / abs(float(row.expected))  # type: ignore[arg-type]
+        return sign(f"{percent:+.0f} %" if abs(percent) >= 10.0 else f"{percent:+.2g} %")
     return sign(f"{off:+.2g}") if off else "0"
 
 
@@ -345,7 +348,7 @@ def group(name: str, cases: list[Case], rows: list[Row]) -> list[str]:
         line = [*cells(row), str(row.values)]
         if measured:
             verdict = "agrees" if row.agrees else "**misses**"
-            line.append(f"{verdict}: {escape(row.note)}" if row.note else verdict)
+            line.append(f"{verdict}: {escape(row.note)}" if row.note.strip() else verdict)
         body.append(line)
     lines += table(head, body) if body else ["No quantity of these cases is judged."]
     lines += ["", *(f"- {c.name}, {escape(c.title)}: {escape(c.source)}" for c in cases)]
