@@ -14,6 +14,7 @@ import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeGuard
 
 HERE = Path(__file__).resolve().parent
 KEYS = (
@@ -94,14 +95,14 @@ class Row:
         return off / allowed if allowed > 0.0 else math.inf
 
 
-def is_number(value: object) -> bool:
+def is_number(value: object) -> TypeGuard[float]:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def deviation(found: object, expected: object) -> float | None:
     """Found less expected, where both are numbers."""
     if is_number(found) and is_number(expected):
-        return float(found) - float(expected)  # type: ignore[arg-type]
+        return found - expected
     return None
 
 
@@ -114,10 +115,10 @@ def percentage(tolerance: object) -> float | None:
 def allowance(row: Row) -> float | None:
     """How far off is allowed, in the unit of the quantity."""
     if is_number(row.tolerance):
-        return float(row.tolerance)  # type: ignore[arg-type]
+        return float(row.tolerance)
     percent = percentage(row.tolerance)
     if percent is not None and is_number(row.expected):
-        return 0.01 * percent * abs(float(row.expected))  # type: ignore[arg-type]
+        return 0.01 * percent * abs(row.expected)
     if isinstance(row.tolerance, str) and re.fullmatch(r"-[\d.e+-]+", row.tolerance):
         return -float(row.tolerance)
     return None
@@ -235,8 +236,8 @@ def show_error(row: Row) -> str:
     off = deviation(row.found, row.expected)
     if off is None:
         return ""
-    if percentage(row.tolerance) is not None and row.expected:
-        percent = 100.0 * off / abs(float(row.expected))  # type: ignore[arg-type]
+    if percentage(row.tolerance) is not None and is_number(row.expected) and row.expected:
+        percent = 100.0 * off / abs(row.expected)
         return sign(f"{percent:+.0f} %" if abs(percent) >= 10.0 else f"{percent:+.2g} %")
     return sign(f"{off:+.2g}") if off else "0"
 
@@ -292,8 +293,8 @@ def summary(cases: dict[str, Case], rows: list[Row]) -> list[str]:
                 ]
             )
     head = ["", "cases that agree", "cases that miss", "quantities that agree", "that miss"]
-    judged = {row.case for row in rows if row.judged != "carried"}
-    carried = sum(len(case.carried) for name, case in cases.items() if name in judged)
+    decided = {row.case for row in rows if row.judged != "carried"}
+    carried = sum(len(case.carried) for name, case in cases.items() if name in decided)
     return [
         f"{len(cases)} cases. A case that is judged by numbers and by trends counts in both lines; "
         "it agrees when all of its quantities do.",
@@ -301,7 +302,7 @@ def summary(cases: dict[str, Case], rows: list[Row]) -> list[str]:
         *table(head, lines),
         "",
         f"Carried without a verdict: quantities of cases that are judged: {carried}; whole "
-        f"cases: {len(cases) - len(judged)}.",
+        f"cases: {len(cases) - len(decided)}.",
     ]
 
 
