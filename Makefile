@@ -10,16 +10,19 @@ SOURCES := Cargo.toml Cargo.lock pyproject.toml \
 	$(shell find crates -type f \( -path '*/src/*' -o -path '*/scenes/*' -o -name Cargo.toml \)) \
 	$(shell find python -type f \( -name '*.py' -o -name '*.pyi' -o -name py.typed \))
 
+# Every test that judges a validation case appends to it.
+VERDICTS := $(abspath target/verdicts.jsonl)
+
 # Cargo builds the bindings for the interpreter in .venv, whatever else is on the path.
 export PYO3_PYTHON := $(abspath $(BIN)/python)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check check-rust check-python test-rust test-python bench report estimates how-real validation docs clean
+.PHONY: help setup run test check check-rust check-python test-rust test-python bench report estimates how-real validation validation-report docs clean
 # A build that failed leaves no stamp behind.
 .DELETE_ON_ERROR:
 
 help: ## Show this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-13s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-18s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 setup: $(VENV)/installed ## Make .venv and build and install the package in it
 
@@ -62,6 +65,14 @@ how-real: setup ## Try the assumptions and models of presets, and write docs/how
 validation: setup ## Run the slow studies as well
 	cargo test --release -- --include-ignored
 	$(BIN)/pytest -m 'slow or not slow'
+
+validation-report: setup ## Run the tests that judge validation cases, and write docs/validation.md
+	rm -f $(VERDICTS)
+	@# A test that fails has left its miss behind: the report comes before the failure.
+	export CHAINDRIVE_VERDICTS=$(VERDICTS); failed=0; \
+	cargo test --release --quiet --no-fail-fast -- --include-ignored validation || failed=1; \
+	$(BIN)/pytest -m 'slow or not slow' -k 'measured or validation_report' || failed=1; \
+	$(BIN)/python tests/validation/report.py $(VERDICTS) && exit $$failed
 
 docs: ## Build the reference of the Rust crates in target/doc
 	RUSTDOCFLAGS='-D warnings' cargo doc --workspace --no-deps

@@ -37,7 +37,8 @@ fn project_files() -> Vec<PathBuf> {
 /// Which crates of the workspace each crate may name.
 #[test]
 fn arrows_point_down() {
-    let allowed: [(&str, &[&str]); 6] = [
+    let allowed: [(&str, &[&str]); 7] = [
+        ("validation", &[]),
         ("geometry", &[]),
         ("contact", &[]),
         ("integrate", &[]),
@@ -48,6 +49,7 @@ fn arrows_point_down() {
         ),
         ("cli", &["chaindrive"]),
     ];
+    // `validation` judges, so nothing but tests may ask for it: it stands in nobody's list.
     for (folder, may) in allowed {
         let manifest = fs::read_to_string(root().join("crates").join(folder).join("Cargo.toml"))
             .expect("every crate has a manifest");
@@ -68,6 +70,25 @@ fn arrows_point_down() {
             };
             assert!(may.contains(&short), "{folder} must not depend on {short}");
         }
+    }
+}
+
+/// A row that a test compares by itself would be missing in the report.
+#[test]
+fn validation_cases_are_read_in_one_place() {
+    let place = root().join("crates/validation");
+    for path in sources(&root().join("crates")) {
+        if path.starts_with(&place)
+            || path == root().join("crates/chaindrive/tests/it/architecture.rs")
+        {
+            continue;
+        }
+        let text = fs::read_to_string(&path).expect("sources are text");
+        assert!(
+            !text.contains("reference.json") && !text.contains("tests/validation\""),
+            "{} reads a validation case by itself: use `chaindrive_validation::Case`",
+            path.display()
+        );
     }
 }
 

@@ -18,7 +18,6 @@ mod live;
 mod loads;
 mod mistakes;
 mod precision;
-mod reference;
 mod reproducible;
 mod requests;
 mod resolved;

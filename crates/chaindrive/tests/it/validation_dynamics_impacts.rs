@@ -1,13 +1,12 @@
 //! Rollers that fall on guides (validation cases E07, I07).
-#![allow(clippy::print_stdout, reason = "measured errors are worth a look")]
 
 use crate::dynamics;
-use crate::reference;
 
 use std::f64::consts::PI;
 
-use dynamics::{brief, energy, run, start};
-use reference::Reference;
+use chaindrive_validation::Case;
+use chaindrive_validation::Tolerance::{Absolute, Relative};
+use dynamics::{energy, run, start};
 
 /// Two rollers on one link, a height above a bar, on which they bounce without loss.
 fn bouncing(gravity: f64, row: &[f64], run: &str) -> String {
@@ -43,7 +42,7 @@ fn bouncing(gravity: f64, row: &[f64], run: &str) -> String {
 
 #[test]
 fn e07_a_link_bounces_without_loss() {
-    let case = Reference::read("E07");
+    let case = Case::read("E07");
     let gravity = case.number("inputs.g");
     let rows = case.table("inputs.rows");
     for (row, expected) in rows.iter().zip(case.table("expected.rows")) {
@@ -78,19 +77,11 @@ fn e07_a_link_bounces_without_loss() {
             passages[1] - passages[0] - contact,
             passages[2] - second,
         ];
-        let depth = depth / deepest - 1.0;
-        println!(
-            "E07: n = {}: times {} s, depth {depth:.1e}",
-            row[1],
-            brief(&times)
-        );
-        assert!(
-            times
-                .iter()
-                .all(|t| t.abs() < case.number("tolerance.times")),
-            "{times:?}"
-        );
-        assert!(depth.abs() < 1e-4, "{depth}");
+        let tolerance = Absolute(case.number("tolerance.times"));
+        let name = "errors of the times of contact, a link on a bar";
+        case.judge_each(name, "s", &times, &[0.0; 3], tolerance);
+        let name = "penetration, a link on a bar";
+        case.judge(name, "m", depth, deepest, Relative(1e-4));
 
         // The energy after a hundred bounces is that of the apex.
         let until = first + 99.5 * period;
@@ -110,14 +101,9 @@ fn e07_a_link_bounces_without_loss() {
             *apex = y + 0.5 * v * v / gravity;
         }
         let error = apex[1] / apex[0] - 1.0;
-        println!(
-            "     apex {error:.1e}, {} steps",
-            simulation.statistics().steps
-        );
-        assert!(
-            error.abs() < case.number("tolerance.apex_after_100_bounces"),
-            "{error}"
-        );
+        let tolerance = Absolute(case.number("tolerance.apex_after_100_bounces"));
+        let name = "change of the height in 100 bounces, a link on a bar";
+        case.judge(name, "", error, 0.0, tolerance);
     }
 }
 
@@ -147,7 +133,7 @@ fn touch(a: (f64, f64, f64), b: (f64, f64, f64)) -> f64 {
 /// restitution that it is measured to have.
 #[test]
 fn i07_a_hinged_link_falls_on_a_seat() {
-    let case = Reference::read("I07");
+    let case = Case::read("I07");
     let rows = case.table("inputs.rows");
     let allowed = case.number("tolerance.relative");
     for (row, expected) in rows.iter().zip(case.table("expected.rows")) {
@@ -204,15 +190,10 @@ fn i07_a_hinged_link_falls_on_a_seat() {
             let speed = sample.roller_vx[1].hypot(sample.roller_vy[1]);
             seen.push((speed * sample.roller_vy[1].signum(), energy(sample)));
         }
-        let errors = [
-            mass * (seen[1].0 - seen[0].0) / impulse - 1.0,
-            (seen[0].1 - seen[1].1) / loss - 1.0,
-        ];
-        println!("I07: e = {e}: {}", brief(&errors));
-        assert!(
-            errors.iter().all(|error| error.abs() < allowed),
-            "{errors:?}"
-        );
+        let found = mass * (seen[1].0 - seen[0].0);
+        case.judge("impulse", "N s", found, impulse, Relative(allowed));
+        let found = seen[0].1 - seen[1].1;
+        case.judge("energy lost", "J", found, loss, Relative(allowed));
     }
 }
 

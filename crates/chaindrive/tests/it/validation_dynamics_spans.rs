@@ -1,16 +1,15 @@
 //! Spans that are pumped, spans that move, and wheels on two spans (validation cases V05, V06,
 //! V13).
-#![allow(clippy::print_stdout, reason = "measured errors are worth a look")]
 
 use crate::dynamics;
-use crate::reference;
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Write as _;
 
 use chaindrive::Scene;
-use dynamics::{mean, numbers, pairs, run, strongest};
-use reference::Reference;
+use chaindrive_validation::Case;
+use chaindrive_validation::Tolerance::{Absolute, Relative};
+use dynamics::{numbers, pairs, run, strongest};
 
 /// Share of the first mode in the transverse motion of a strand with both ends on the x axis.
 fn first_mode(y: &[f64]) -> f64 {
@@ -81,7 +80,7 @@ fn growth(f1: f64, depth: f64, ratio: f64) -> f64 {
 
 #[test]
 fn v13_growth_of_a_pumped_span() {
-    let case = Reference::read("V13");
+    let case = Case::read("V13");
     let f1 = case.number("inputs.f1");
     let allowed = case.number("tolerance.relative");
     let rows = case.table("inputs.rows");
@@ -89,12 +88,13 @@ fn v13_growth_of_a_pumped_span() {
         let (depth, ratio, expected) = (row[0], row[1], expected[0]);
         let found = growth(f1, depth, ratio);
         let largest = 0.25 * depth * TAU * f1;
-        let scale = if expected > 0.0 { expected } else { largest };
-        let error = (found - expected) / scale;
-        println!(
-            "V13: depth {depth}, Ω = {ratio} ω₁: {found:.4}/s for {expected:.4}/s, {error:.1e}"
-        );
-        assert!(error.abs() < allowed, "{error}");
+        let tolerance = if expected > 0.0 {
+            Relative(allowed)
+        } else {
+            Absolute(allowed * largest)
+        };
+        let quantity = format!("growth rate, depth {depth}, Ω = {ratio} ω₁");
+        case.judge(&quantity, "1/s", found, expected, tolerance);
     }
 }
 
@@ -198,20 +198,19 @@ fn moving(length: f64, tension: f64, line_mass: f64, v: f64, expected: f64) -> f
 
 #[test]
 fn v05_frequencies_of_a_moving_span() {
-    let case = Reference::read("V05");
+    let case = Case::read("V05");
     let rows = case.table("inputs.rows");
     for (row, expected) in rows.iter().zip(case.table("expected.rows")) {
         let expected = expected[0];
         let found = moving(row[0], row[1], row[2], row[3], expected);
-        let error = found / expected - 1.0;
-        println!("V05: {row:?}: {found:.3} Hz for {expected:.3} Hz, {error:.1e}");
-        assert!(error.abs() < case.number("tolerance.relative"), "{error}");
+        let tolerance = Relative(case.number("tolerance.relative"));
+        case.judge("first frequency", "Hz", found, expected, tolerance);
     }
 }
 
 #[test]
 fn v06_two_free_wheels_twist_on_a_taut_chain() {
-    let case = Reference::read("V06");
+    let case = Case::read("V06");
     let input = |name: &str| case.number(&format!("inputs.{name}"));
     let expected = case.number("expected.f_Hz");
     // Seventeen teeth at R₁; the second wheel of twice as many is 0.4 % smaller than 2 R₁.
@@ -303,10 +302,6 @@ fn v06_two_free_wheels_twist_on_a_taut_chain() {
         assert!(least > 0.0, "a link is slack: {least} N");
     });
     let found = strongest(&twist, 0.01 / expected, (0.8 * expected, 1.2 * expected));
-    let error = found / expected - 1.0;
-    println!(
-        "V06: {found:.2} Hz for {expected:.2} Hz, {error:.1e}, mean {:.1e}",
-        mean(&twist)
-    );
-    assert!(error.abs() < case.number("tolerance.relative"), "{error}");
+    let tolerance = Relative(case.number("tolerance.relative"));
+    case.judge("frequency of the twist", "Hz", found, expected, tolerance);
 }

@@ -1,12 +1,11 @@
 //! Losses of a drive whose joints rub (validation case F02).
-#![allow(clippy::print_stdout, reason = "measured errors are worth a look")]
 
 use crate::dynamics;
-use crate::reference;
 
 use chaindrive::Flow;
+use chaindrive_validation::Case;
+use chaindrive_validation::Tolerance::Relative;
 use dynamics::run;
-use reference::Reference;
 
 /// The chain of F02 in a model, with the diameter of its pins \[m\] and a coefficient of friction.
 fn chain(model: &str, [links, pitch]: [f64; 2], pin: f64, friction: f64) -> String {
@@ -49,7 +48,7 @@ fn f02_friction_of_the_joints() {
 }
 
 fn joints_of(model: &str) {
-    let case = Reference::read("F02");
+    let case = Case::read("F02");
     for row in case.table("expected.rows") {
         let [z1, z2, p, r, mu, tight, slack, _] = row[..] else {
             panic!("eight columns")
@@ -109,13 +108,8 @@ fn joints_of(model: &str) {
             * (tensions[0] + tensions[1])
             * pitches;
         let found = end.1 - start.1;
-        let error = found / expected - 1.0;
-        println!(
-            "F02, {model}: {z1}/{z2}, {tensions:.0?} N: {found:.4} J against {expected:.4}: {error:+.3}"
-        );
-        assert!(
-            error.abs() < case.number("tolerance.relative"),
-            "{model}, {row:?}: {error}"
-        );
+        let tolerance = Relative(case.number("tolerance.relative"));
+        let quantity = format!("loss of the joints, {model}");
+        case.judge(&quantity, "J", found, expected, tolerance);
     }
 }

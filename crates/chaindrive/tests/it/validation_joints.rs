@@ -2,17 +2,17 @@
 #![allow(clippy::print_stdout, reason = "measured errors are worth a look")]
 
 use crate::dynamics;
-use crate::reference;
 
 use std::f64::consts::{PI, TAU};
 
 use chaindrive::{ContactEvent, Flow, Observation};
+use chaindrive_validation::Case;
+use chaindrive_validation::Tolerance::{Absolute, Relative};
 use dynamics::run;
-use reference::Reference;
 
 /// Largest distance \[m\] of a pin of five falling bars from its reference.
 fn falling_bars(id: &str, method: &str, step: f64) -> f64 {
-    let case = Reference::read(id);
+    let case = Case::read(id);
     let input = |name: &str| case.number(&format!("inputs.{name}"));
     let (n, p) = (input("N"), input("pitch"));
     let body = format!("{{ mass = {}, inertia = {} }}", input("m"), input("J"));
@@ -63,10 +63,11 @@ fn falling_bars(id: &str, method: &str, step: f64) -> f64 {
 #[test]
 fn e02_x01_hinged_bars_let_go_from_the_horizontal() {
     for id in ["E02", "X01"] {
-        let case = Reference::read(id);
+        let case = Case::read(id);
         let worst = falling_bars(id, "rk4", 1e-4);
-        println!("{id}: {worst:.1e} m");
-        assert!(worst < case.number("tolerance.position"), "{id}: {worst}");
+        let tolerance = Absolute(case.number("tolerance.position"));
+        let quantity = "largest distance of a pin from its place";
+        case.judge(quantity, "m", worst, 0.0, tolerance);
     }
 }
 
@@ -96,7 +97,7 @@ fn one_link(what: &str) -> String {
 
 #[test]
 fn s13_static_offset_of_a_pin() {
-    let case = Reference::read("S13");
+    let case = Case::read("S13");
     for row in case.table("expected.rows") {
         let [c, force, k, n, offset] = row[..] else {
             panic!("five columns")
@@ -123,12 +124,8 @@ fn s13_static_offset_of_a_pin() {
                 found = sample.joint_offset_x[0];
             }
         });
-        let error = (found / offset - 1.0).abs();
-        println!("S13: c = {c}, {error:.1e}");
-        assert!(
-            error < case.number("tolerance.relative"),
-            "{found} {offset}"
-        );
+        let tolerance = Relative(case.number("tolerance.relative"));
+        case.judge("offset of the pin", "m", found, offset, tolerance);
     }
 }
 
@@ -151,7 +148,7 @@ fn frequency(signal: &[(f64, f64)]) -> f64 {
 }
 
 /// The pendulum of case S11: angle of the link from the vertical, and the eccentricity across, over time.
-fn pendulum(case: &Reference, until: f64, rates: [f64; 2], friction: &str) -> [Vec<(f64, f64)>; 2] {
+fn pendulum(case: &Case, until: f64, rates: [f64; 2], friction: &str) -> [Vec<(f64, f64)>; 2] {
     let input = |name: &str| case.number(&format!("inputs.{name}"));
     // An outer link is shorter than the pitch by its play at both ends.
     let (c, l) = (input("c"), input("l"));
@@ -197,7 +194,7 @@ fn pendulum(case: &Reference, until: f64, rates: [f64; 2], friction: &str) -> [V
 
 #[test]
 fn s11_pendulum_in_an_oversize_bush() {
-    let case = Reference::read("S11");
+    let case = Case::read("S11");
     let input = |name: &str| case.number(&format!("inputs.{name}"));
     let expected = |name: &str| case.number(&format!("expected.{name}"));
     // Rates of link and eccentricity in a mode: φ/α = (g/ω² − c)/l
@@ -211,12 +208,9 @@ fn s11_pendulum_in_an_oversize_bush() {
         let rates = [alpha * TAU * f * 0.1, alpha * TAU * f * 0.1 * shape(f)];
         let signals = pendulum(&case, until, rates, "");
         let found = frequency(&signals[signal]);
-        println!("S11 {name}: {found:.5} Hz against {f:.5}");
-        let error = (found / f - 1.0).abs();
-        assert!(
-            error < case.number(&format!("tolerance.{tolerance}")),
-            "{name}: {found}"
-        );
+        let tolerance = Relative(case.number(&format!("tolerance.{tolerance}")));
+        let quantity = format!("{name} frequency");
+        case.judge(&quantity, "Hz", found, f, tolerance);
     }
     // Rolling: c α' = −R_j φ' without slip; LuGre's bristles hold.
     let friction = r#"friction = { kind = "lugre", static_coefficient = 2.0, coefficient = 2.0, stiffness = 1e6, damping = 300 }"#;
@@ -225,16 +219,13 @@ fn s11_pendulum_in_an_oversize_bush() {
     let alpha = -phi * input("R_journal") / input("c");
     let signals = pendulum(&case, 1.5, [alpha, phi], friction);
     let found = frequency(&signals[0]);
-    println!("S11 rolling: {found:.5} Hz against {f:.5}");
-    assert!(
-        (found / f - 1.0).abs() < case.number("tolerance.rolling"),
-        "{found}"
-    );
+    let tolerance = Relative(case.number("tolerance.rolling"));
+    case.judge("frequency of rolling", "Hz", found, f, tolerance);
 }
 
 #[test]
 fn s09_free_pin_in_a_shaken_bush() {
-    let case = Reference::read("S09");
+    let case = Case::read("S09");
     let input = |name: &str| case.number(&format!("inputs.{name}"));
     let expected = |name: &str| case.number(&format!("expected.{name}"));
     let (amplitude, f, c) = (input("A"), input("f"), input("c"));
@@ -292,20 +283,16 @@ fn s09_free_pin_in_a_shaken_bush() {
         "{} impacts in twenty cycles",
         events.len()
     );
-    let mut worst = [0.0_f64; 2];
+    let tolerance = Relative(case.number("tolerance.relative"));
     for event in &events[events.len() - 20..] {
         // Half-way through the contact, on either side.
         let at = 0.5 * (event.start + event.end);
-        let found = (omega * at + begin - phase).rem_euclid(PI);
-        let error = found.min(PI - found) / phase;
-        worst[0] = worst[0].max(error);
-        worst[1] = worst[1].max((event.onset_speed / expected("approach_speed") - 1.0).abs());
+        let after = (omega * at + begin - phase).rem_euclid(PI);
+        let found = phase + if after < 0.5 * PI { after } else { after - PI };
+        case.judge("phase of an impact", "rad", found, phase, tolerance);
+        let (found, expected) = (event.onset_speed, expected("approach_speed"));
+        case.judge("approach speed", "m/s", found, expected, tolerance);
     }
-    println!("S09: phase {:.1e}, speed {:.1e}", worst[0], worst[1]);
-    assert!(
-        worst.iter().all(|e| *e < case.number("tolerance.relative")),
-        "{worst:?}"
-    );
 }
 
 /// A disc on a flat guide: one link of a bush chain whose mass is all at its first bush.
@@ -354,7 +341,7 @@ fn disc(
 
 #[test]
 fn c07_oblique_impact_of_a_disc() {
-    let case = Reference::read("C07");
+    let case = Case::read("C07");
     for row in case.table("expected.rows") {
         let [
             m,
@@ -405,20 +392,20 @@ fn c07_oblique_impact_of_a_disc() {
         });
         let [(t0, a0), (t1, a1)] = [angles[angles.len() - 2], angles[angles.len() - 1]];
         after[2] = (a1 - a0) / (t1 - t0);
-        for (found, expected) in after.into_iter().zip([vn_after, vt_after, spin_after]) {
-            let error = (found / expected - 1.0).abs();
-            println!("C07: {found:.5} against {expected:.5}: {error:.1e}");
-            assert!(
-                error < case.number("tolerance.relative"),
-                "{found} {expected}"
-            );
+        let tolerance = Relative(case.number("tolerance.relative"));
+        for (quantity, unit, found, expected) in [
+            ("normal speed after", "m/s", after[0], vn_after),
+            ("tangential speed after", "m/s", after[1], vt_after),
+            ("spin after", "rad/s", after[2], spin_after),
+        ] {
+            case.judge(quantity, unit, found, expected, tolerance);
         }
     }
 }
 
 #[test]
 fn c08_disc_slides_until_it_rolls() {
-    let case = Reference::read("C08");
+    let case = Case::read("C08");
     let g = case.number("inputs.g");
     for row in case.table("expected.rows") {
         let [kappa, v0, mu, v_roll, t_slip, x_slip] = row[..] else {
@@ -466,20 +453,20 @@ fn c08_disc_slides_until_it_rolls() {
             .find(|(t, _, _)| *t <= slipped)
             .expect("it began to slip");
         let way = place.1 + rolling * (slipped - place.0);
-        for (found, expected) in [(rolling, v_roll), (slipped, t_slip), (way, x_slip)] {
-            let error = (found / expected - 1.0).abs();
-            println!("C08: {found:.6} against {expected:.6}: {error:.1e}");
-            assert!(
-                error < case.number("tolerance.relative"),
-                "{found} {expected}"
-            );
+        let tolerance = Relative(case.number("tolerance.relative"));
+        for (quantity, unit, found, expected) in [
+            ("speed of rolling", "m/s", rolling, v_roll),
+            ("time of slipping", "s", slipped, t_slip),
+            ("way of slipping", "m", way, x_slip),
+        ] {
+            case.judge(quantity, unit, found, expected, tolerance);
         }
     }
 }
 
 #[test]
 fn f01_friction_work_of_one_articulation() {
-    let case = Reference::read("F01");
+    let case = Case::read("F01");
     for row in case.table("expected.rows") {
         let [tension, radius, mu, _, angle, work] = row[..] else {
             panic!("six columns")
@@ -527,15 +514,9 @@ fn f01_friction_work_of_one_articulation() {
         });
         // Two joints, and the tension that the run really had.
         let expected = 2.0 * work * (sum / count) / tension;
-        let error = (lost / expected - 1.0).abs();
-        println!(
-            "F01: {lost:.5e} J against {expected:.5e}: {error:.1e}, {:.1} N",
-            sum / count
-        );
-        assert!(
-            error < case.number("tolerance.relative"),
-            "{lost} {expected}"
-        );
+        let tolerance = Relative(case.number("tolerance.relative"));
+        let quantity = "work of two articulations at the tension of the run";
+        case.judge(quantity, "J", lost, expected, tolerance);
         assert!((sum / count / tension - 1.0).abs() < 0.05);
     }
 }

@@ -1,18 +1,15 @@
 //! Rigid links as uniform bars: a spinning ring (T01), the slider-crank (S07), and taut spans (V01, V02).
-#![allow(clippy::print_stdout, reason = "measured errors are worth a look")]
 
-use crate::dynamics;
 use crate::linkages;
-use crate::reference;
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem};
 use chaindrive_mechanics::{End, LinkBody};
-use dynamics::brief;
+use chaindrive_validation::Case;
+use chaindrive_validation::Tolerance::{Absolute, Relative};
 use linkages::{Bench, Strand, body, circle, clearance, harmonic, surface};
 use nalgebra::DMatrix;
-use reference::Reference;
 
 /// A count that the reference lists as a number.
 #[allow(
@@ -27,7 +24,7 @@ fn whole(count: f64) -> usize {
 /// T01, uniform bars: the hinge force is along the tangent, and the bars feel its part along them.
 #[test]
 fn a_ring_of_bars_carries_its_centrifugal_tension() {
-    let case = Reference::read("T01");
+    let case = Case::read("T01");
     let rings = case.table("expected.rows");
     let expected = case.table("bars.expected.rows");
     let mut worst = [0.0_f64; 4];
@@ -58,18 +55,21 @@ fn a_ring_of_bars_carries_its_centrifugal_tension() {
             }
         }
     }
-    println!("T01, bars: hinge, tension, radius, speed {}", brief(&worst));
-    assert!(
-        worst.iter().all(|&worst| worst < case.number("tolerance")),
-        "{worst:?}"
-    );
+    let tolerance = Absolute(case.number("tolerance"));
+    for (name, worst) in ["hinge force", "link tension", "radius", "speed"]
+        .into_iter()
+        .zip(worst)
+    {
+        let quantity = format!("largest relative error of the {name}, bars");
+        case.judge(&quantity, "", worst, 0.0, tolerance);
+    }
 }
 
 /// The crank pin is a driven end, and the slider a body at the end of a link so long that it moves on a
 /// straight line to 5e-9 m.
 #[test]
 fn s07_an_ideal_slider_crank() {
-    let case = Reference::read("S07");
+    let case = Case::read("S07");
     let input = |name: &str| case.number(&format!("inputs.{name}"));
     let (r, l, turns) = (input("r"), input("l"), input("rpm") / 60.0);
     let mass = input("m_slider");
@@ -108,18 +108,22 @@ fn s07_an_ideal_slider_crank() {
         bench.advance();
     }
     let tolerance = case.number("tolerance.relative");
-    let errors = [
-        least / case.number("expected.a_min") - 1.0,
-        most / case.number("expected.a_max") - 1.0,
-        squares.sqrt() / case.number("expected.rms") - 1.0,
-        -least * mass / case.number("expected.F_x_slider_max") - 1.0,
-        place,
-    ];
-    println!("S07: least, greatest, rms, force, place {}", brief(&errors));
-    assert!(
-        errors.iter().all(|error| error.abs() < tolerance),
-        "{errors:?}"
-    );
+    for (quantity, unit, found, key) in [
+        ("least acceleration", "m/s²", least, "a_min"),
+        ("greatest acceleration", "m/s²", most, "a_max"),
+        (
+            "root mean square of the acceleration",
+            "m/s²",
+            squares.sqrt(),
+            "rms",
+        ),
+        ("greatest force", "N", -least * mass, "F_x_slider_max"),
+    ] {
+        let expected = case.number(&format!("expected.{key}"));
+        case.judge(quantity, unit, found, expected, Relative(tolerance));
+    }
+    let quantity = "largest relative error of the place";
+    case.judge(quantity, "", place, 0.0, Absolute(tolerance));
 }
 
 /// Frequencies \[Hz\] of small motions about a state at rest, from forces on both sides of it.
@@ -166,8 +170,7 @@ fn frequencies(strand: &Strand, masses: [f64; 3]) -> Vec<f64> {
 }
 
 /// A span with its ends held, in which every joint is pressed by the tension of the case.
-fn bars_of(id: &str, links: usize, shorten: f64) -> (Vec<f64>, Vec<f64>, f64) {
-    let case = Reference::read(id);
+fn bars_of(case: &Case, links: usize, shorten: f64) -> Vec<f64> {
     let input = |name: &str| case.number(&format!("inputs.{name}"));
     let (pitch, tension, mass) = (input("pitch"), input("tension"), input("mass"));
     let inertia = case.number("bars.inputs.inertia");
@@ -194,25 +197,20 @@ fn bars_of(id: &str, links: usize, shorten: f64) -> (Vec<f64>, Vec<f64>, f64) {
         scale < 1.001 * fastest && scale > 0.3 * fastest,
         "{scale:e} {fastest:e}"
     );
-    (
-        found,
-        case.list("bars.expected.frequency"),
-        case.number("tolerance"),
-    )
+    found
 }
 
 #[test]
 fn v01_v02_transverse_modes_of_spans_of_bars() {
-    let elastic = Reference::read("V02");
+    let elastic = Case::read("V02");
     let stretch = elastic.number("inputs.tension") / elastic.number("inputs.stiffness");
     for (id, links, shorten) in [("V01", 20, 0.0), ("V02", 40, -stretch)] {
-        let (found, expected, tolerance) = bars_of(id, links, shorten);
-        let mut worst = 0.0_f64;
-        for (found, expected) in found.iter().zip(&expected) {
-            worst = worst.max((found / expected - 1.0).abs());
-        }
-        println!("{id}, bars: {worst:.1e} in {} frequencies", expected.len());
-        assert!(worst < tolerance, "{id}: {worst:e}");
-        assert!(found[expected.len()] > 10.0 * expected[expected.len() - 1]);
+        let case = Case::read(id);
+        let found = bars_of(&case, links, shorten);
+        let expected = case.list("bars.expected.frequency");
+        let (listed, others) = found.split_at(expected.len());
+        let tolerance = Relative(case.number("tolerance"));
+        case.judge_each("frequencies, bars", "Hz", listed, &expected, tolerance);
+        assert!(others[0] > 10.0 * expected[expected.len() - 1]);
     }
 }

@@ -1,14 +1,13 @@
 //! Natural frequencies from scene texts against closed forms: cases V01, V02, V08 and V12, and
 //! spinning rings, T01 and T02.
 
-use crate::reference;
-
 use std::f64::consts::TAU;
 
 use chaindrive::{Drive, Modes, Run, Scene, Simulation, Stepping};
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 use chaindrive_mechanics::{Motion, Rotation};
-use reference::Reference;
+use chaindrive_validation::Case;
+use chaindrive_validation::Tolerance::Relative;
 
 #[track_caller]
 fn drive(scene: &str) -> Drive {
@@ -22,21 +21,6 @@ fn modes(scene: &str) -> Modes {
         .assemble()
         .unwrap_or_else(|error| panic!("{error}"));
     assembled.modes().unwrap_or_else(|error| panic!("{error}"))
-}
-
-#[track_caller]
-fn compare(what: &str, got: &[f64], expected: &[f64], tolerance: f64) {
-    assert_eq!(got.len(), expected.len(), "{what}");
-    let mut worst = 0.0_f64;
-    for (i, (got, expected)) in got.iter().zip(expected).enumerate() {
-        let error = (got / expected - 1.0).abs();
-        worst = worst.max(error);
-        assert!(
-            error <= tolerance,
-            "{what}[{i}]: got {got}, expected {expected}: error {error:.2e}, allowed {tolerance:.0e}"
-        );
-    }
-    eprintln!("{what}: deviation {worst:.1e}, tolerance {tolerance:.0e}");
 }
 
 /// A straight span of `links` between two fixed ends, `length` long.
@@ -59,17 +43,13 @@ fn span(links: f64, pitch: f64, elongation: f64, mass: f64, stiffness: f64, leng
 
 /// The lowest modes of a taut span are transverse, one for every roller between the ends.
 #[track_caller]
-fn transverse(id: &str, scene: &str) {
-    let case = Reference::read(id);
+fn transverse(case: &Case, scene: &str) {
     let expected = case.list("expected.frequency");
     let found = modes(scene);
     assert!(found.is_stable());
-    compare(
-        id,
-        &found.frequencies()[..expected.len()],
-        &expected,
-        case.number("tolerance"),
-    );
+    let lowest = &found.frequencies()[..expected.len()];
+    let tolerance = Relative(case.number("tolerance"));
+    case.judge_each("frequencies", "Hz", lowest, &expected, tolerance);
     for mode in &found.modes[..expected.len()] {
         assert!(mode.roller_x.iter().all(|x| x.abs() < 1e-6));
     }
@@ -77,7 +57,7 @@ fn transverse(id: &str, scene: &str) {
 
 #[test]
 fn transverse_modes_of_a_span_of_rigid_links() {
-    let case = Reference::read("V01");
+    let case = Case::read("V01");
     let input = |key: &str| case.number(&format!("inputs.{key}"));
     let (links, pitch) = (input("links"), input("pitch"));
     // Links that are too short by T / k have the pitch under T, whatever their stiffness.
@@ -91,12 +71,12 @@ fn transverse_modes_of_a_span_of_rigid_links() {
         stiffness,
         links * pitch,
     );
-    transverse("V01", &scene);
+    transverse(&case, &scene);
 }
 
 #[test]
 fn transverse_modes_of_a_span_of_elastic_links() {
-    let case = Reference::read("V02");
+    let case = Case::read("V02");
     let input = |key: &str| case.number(&format!("inputs.{key}"));
     let (links, pitch, stiffness) = (input("links"), input("pitch"), input("stiffness"));
     let stretched = pitch + input("tension") / stiffness;
@@ -108,13 +88,13 @@ fn transverse_modes_of_a_span_of_elastic_links() {
         stiffness,
         links * stretched,
     );
-    transverse("V02", &scene);
+    transverse(&case, &scene);
 }
 
 /// Without tension nothing opposes a motion across the links: half of the modes are zero.
 #[test]
 fn longitudinal_modes_of_a_span() {
-    let case = Reference::read("V08");
+    let case = Case::read("V08");
     for (i, input) in case.table("inputs.rows").iter().enumerate() {
         let (links, pitch) = (input[0], 0.0127);
         let found = modes(&span(links, pitch, 0.0, input[2], input[1], links * pitch));
@@ -123,7 +103,8 @@ fn longitudinal_modes_of_a_span() {
         assert!(across.iter().all(|f| f.abs() < 1e-3), "{across:?}");
         let expected = case.list(&format!("expected.frequency.{i}"));
         let lowest = &along[..expected.len()];
-        compare("V08", lowest, &expected, case.number("tolerance"));
+        let tolerance = Relative(case.number("tolerance"));
+        case.judge_each("frequencies", "Hz", lowest, &expected, tolerance);
         for mode in &found.modes[across.len()..] {
             let moved: f64 = mode.roller_x.iter().map(|x| x * x).sum();
             assert!((moved * input[2] - 1.0).abs() < 1e-9, "unit modal mass");
@@ -133,7 +114,7 @@ fn longitudinal_modes_of_a_span() {
 
 #[test]
 fn swings_of_a_hanging_chain() {
-    let case = Reference::read("V12");
+    let case = Case::read("V12");
     let input = |key: &str| case.number(&format!("inputs.{key}"));
     let (pitch, gravity) = (input("pitch"), input("gravity"));
     for (i, masses) in case.list("expected.masses").into_iter().enumerate() {
@@ -152,12 +133,10 @@ fn swings_of_a_hanging_chain() {
             masses * pitch,
         ));
         let expected = case.list(&format!("expected.frequency.{i}"));
-        compare(
-            &format!("V12, {masses} masses"),
-            &found.frequencies()[..expected.len()],
-            &expected,
-            case.number("tolerance"),
-        );
+        let lowest = &found.frequencies()[..expected.len()];
+        let quantity = format!("frequencies, masses: {masses}");
+        let tolerance = Relative(case.number("tolerance"));
+        case.judge_each(&quantity, "Hz", lowest, &expected, tolerance);
     }
 }
 
@@ -178,13 +157,11 @@ fn a_chain_standing_on_its_end_is_unstable() {
         "#;
     let found = modes(scene);
     assert!(!found.is_stable());
-    let expected = Reference::read("V12").list("expected.frequency.0");
-    compare(
-        "V12, upside down",
-        &[-found.modes[0].frequency],
-        &expected,
-        1e-5,
-    );
+    let case = Case::read("V12");
+    let expected = case.list("expected.frequency.0");
+    let quantity = "frequency of one mass, upside down and with its sign turned";
+    let frequency = -found.modes[0].frequency;
+    case.judge_each(quantity, "Hz", &[frequency], &expected, Relative(1e-5));
 }
 
 #[test]
@@ -202,6 +179,9 @@ struct Ring {
     stiffness: f64,
     speed: f64,
 }
+
+/// The quantities that `spin` looks at.
+const RING: [(&str, &str); 3] = [("radius", "m"), ("speed", "m/s"), ("tension", "N")];
 
 /// Distances of the rollers from the centre, their speeds and the link tensions, of ten samples
 /// by `step` \[√(m/k)\].
@@ -252,7 +232,7 @@ fn spin(ring: &Ring, step: f64, until: f64) -> [Vec<f64>; 3] {
 /// rounding adds up, and the strain to be kept is 10⁻¹³.
 #[test]
 fn a_rigid_ring_carries_its_centrifugal_tension() {
-    let case = Reference::read("T01");
+    let case = Case::read("T01");
     let expected = case.table("expected.rows");
     for (input, expected) in case.table("inputs.rows").iter().zip(expected) {
         let [count, pitch, mass, speed] = input[..] else {
@@ -267,25 +247,16 @@ fn a_rigid_ring_carries_its_centrifugal_tension() {
             speed,
         };
         let found = spin(&ring, 0.05, 50.0 * (mass / ring.stiffness).sqrt());
-        for ((what, got), expected) in ["radius", "speed", "tension"]
-            .iter()
-            .zip(found)
-            .zip(expected)
-        {
-            let what = format!("T01, {count} links, {what}");
-            compare(
-                &what,
-                &got,
-                &vec![expected; got.len()],
-                case.number("tolerance"),
-            );
+        for (((quantity, unit), got), expected) in RING.into_iter().zip(found).zip(expected) {
+            let (all, tolerance) = (vec![expected; got.len()], case.number("tolerance"));
+            case.judge_each(quantity, unit, &got, &all, Relative(tolerance));
         }
     }
 }
 
 #[test]
 fn an_elastic_ring_stretches_by_its_rotation() {
-    let case = Reference::read("T02");
+    let case = Case::read("T02");
     let input = |key: &str| case.number(&format!("inputs.{key}"));
     let ring = Ring {
         count: input("N"),
@@ -295,10 +266,10 @@ fn an_elastic_ring_stretches_by_its_rotation() {
         speed: input("omega"),
     };
     let found = spin(&ring, 0.05, TAU / ring.speed);
-    for (what, got) in ["radius", "speed", "tension"].iter().zip(found) {
-        let expected = case.number(&format!("expected.{what}"));
-        let all = vec![expected; got.len()];
-        compare(&format!("T02 {what}"), &got, &all, case.number("tolerance"));
+    for ((quantity, unit), got) in RING.into_iter().zip(found) {
+        let expected = case.number(&format!("expected.{quantity}"));
+        let (all, tolerance) = (vec![expected; got.len()], case.number("tolerance"));
+        case.judge_each(quantity, unit, &got, &all, Relative(tolerance));
     }
 }
 

@@ -1,13 +1,12 @@
 //! Static states from scene texts against closed forms and an independent energy minimisation:
 //! cases L01 to L10, V09 and V10.
 
-use crate::reference;
-
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write as _;
 
 use chaindrive::{Observation, Run, Scene, Simulation};
-use reference::Reference;
+use chaindrive_validation::Case;
+use chaindrive_validation::Tolerance::{Absolute, Relative};
 
 /// The settled state of a scene.
 #[track_caller]
@@ -24,25 +23,8 @@ fn settled(scene: &str) -> Observation {
     first.expect("a run begins with a sample").clone()
 }
 
-/// Asserts |got − expected| ≤ tolerance · scale for every value; the scale is the value itself
-/// unless another one is given.
-#[track_caller]
-fn compare(what: &str, got: &[f64], expected: &[f64], scale: Option<f64>, tolerance: f64) {
-    assert_eq!(got.len(), expected.len(), "{what}");
-    let mut worst = 0.0_f64;
-    for (i, (got, expected)) in got.iter().zip(expected).enumerate() {
-        let error = (got - expected).abs() / scale.unwrap_or(expected.abs());
-        worst = worst.max(error);
-        assert!(
-            error <= tolerance,
-            "{what}[{i}]: got {got}, expected {expected}: error {error:.2e}, allowed {tolerance:.0e}"
-        );
-    }
-    eprintln!("{what}: deviation {worst:.1e}, tolerance {tolerance:.0e}");
-}
-
 /// Ten rollers on a locked sprocket, pulled at both ends.
-fn engaged(case: &Reference) -> String {
+fn engaged(case: &Case) -> String {
     let input = |key: &str| case.number(&format!("inputs.{key}"));
     let (teeth, rollers) = (input("teeth"), input("rollers"));
     let pitch = input("sprocket_pitch");
@@ -94,50 +76,27 @@ fn engaged(case: &Reference) -> String {
 #[test]
 fn engaged_rollers_share_the_load_as_the_energy_minimum_does() {
     for id in ["L03", "L04", "L05", "L06", "L07", "L10"] {
-        let case = Reference::read(id);
+        let case = Case::read(id);
         let found = settled(&engaged(&case));
         let tolerance = case.number("tolerance");
-        let list = |key: &str| case.list(&format!("expected.{key}"));
-        compare(
-            &format!("{id} link tension"),
-            &found.link_tension,
-            &list("link_tension"),
-            None,
-            tolerance,
-        );
-        compare(
-            &format!("{id} contact force"),
-            &found.contact_force,
-            &list("contact_force"),
-            None,
-            tolerance,
-        );
+        let relative = Relative(tolerance);
+        let expected = case.list("expected.link_tension");
+        let tensions = &found.link_tension;
+        case.judge_each("link tensions", "N", tensions, &expected, relative);
+        let expected = case.list("expected.contact_force");
+        let forces = &found.contact_force;
+        case.judge_each("contact forces", "N", forces, &expected, relative);
         let places = case.table("expected.roller_xy");
         let [x, y] = [0, 1].map(|axis| places.iter().map(|p| p[axis]).collect::<Vec<_>>());
         let pitch = case.number("inputs.sprocket_pitch");
-        compare(
-            &format!("{id} x"),
-            &found.roller_x,
-            &x,
-            Some(pitch),
-            tolerance,
-        );
-        compare(
-            &format!("{id} y"),
-            &found.roller_y,
-            &y,
-            Some(pitch),
-            tolerance,
-        );
+        let places = Absolute(tolerance * pitch);
+        case.judge_each("places along x", "m", &found.roller_x, &x, places);
+        case.judge_each("places along y", "m", &found.roller_y, &y, places);
         // Nothing remains of the torque where the pulls are equal.
         let pull = case.number("inputs.T0") * x[0].hypot(y[0]);
-        compare(
-            &format!("{id} torque"),
-            &found.sprocket_torque,
-            &[case.number("expected.sprocket_torque")],
-            Some(pull),
-            tolerance,
-        );
+        let expected = [case.number("expected.sprocket_torque")];
+        let (torque, allowed) = (&found.sprocket_torque, Absolute(tolerance * pull));
+        case.judge_each("torque", "N m", torque, &expected, allowed);
     }
 }
 
@@ -227,28 +186,31 @@ fn straight_flanks(teeth: f64, phi: f64, pulls: [f64; 2], links: usize) -> Strin
 
 #[test]
 fn tension_falls_geometrically_over_straight_flanks() {
-    let case = Reference::read("L02");
+    let case = Case::read("L02");
     for (i, input) in case.table("inputs.rows").iter().enumerate() {
         let tensions = case.list(&format!("expected.{i}.link_tension"));
         let forces = case.list(&format!("expected.{i}.contact_force"));
         let rollers = forces.len();
         let phi = input[1].to_radians();
-        let tolerance = case.number("tolerance");
-        let what = format!("L02.{i}");
+        let tolerance = Relative(case.number("tolerance"));
+        let judge = |quantity: &str, found: &[f64], expected: &[f64]| {
+            case.judge_each(quantity, "N", found, expected, tolerance);
+        };
         let pulls = [input[2], tensions[rollers]];
         let found = settled(&straight_flanks(input[0], phi, pulls, rollers - 1));
         let inner = &tensions[1..rollers];
-        compare(&what, &found.link_tension, inner, None, tolerance);
-        compare(&what, &found.contact_force, &forces, None, tolerance);
+        judge("link tensions", &found.link_tension, inner);
+        judge("contact forces", &found.contact_force, &forces);
         // Held instead of pulled, the last roller asks for the same pull.
         let held = settled(&straight_flanks(input[0], phi, [input[2], 0.0], rollers));
-        compare(&what, &held.link_tension, &tensions[1..], None, tolerance);
+        let quantity = "link tensions, the last roller held";
+        judge(quantity, &held.link_tension, &tensions[1..]);
     }
 }
 
 #[test]
 fn tension_falls_geometrically_at_the_standard_pressure_angles() {
-    let case = Reference::read("L01");
+    let case = Case::read("L01");
     let expected = case.table("expected.rows");
     for (input, expected) in case.table("inputs.rows").iter().zip(expected) {
         let teeth = input[0];
@@ -266,8 +228,8 @@ fn tension_falls_geometrically_at_the_standard_pressure_angles() {
         ));
         let tension = |k: usize| found.link_tension[k - 1];
         let got = [1, 2, 3, 5, around].map(tension);
-        let what = format!("L01 z = {teeth}, {:.2}°", input[1]);
-        compare(&what, &got, &expected, None, case.number("tolerance"));
+        let tolerance = Relative(case.number("tolerance"));
+        case.judge_each("link tensions", "T₀", &got, &expected, tolerance);
     }
 }
 
@@ -275,7 +237,7 @@ fn tension_falls_geometrically_at_the_standard_pressure_angles() {
 #[test]
 fn slack_strands_hang_as_hinged_links() {
     for id in ["V09", "V10"] {
-        let case = Reference::read(id);
+        let case = Case::read(id);
         let input = |key: &str| case.number(&format!("inputs.{key}"));
         let (mass, gravity) = (input("mass"), input("gravity"));
         let found = settled(&format!(
@@ -300,31 +262,31 @@ fn slack_strands_hang_as_hinged_links() {
             .map(|i| (y[i + 1] - y[i]).atan2(x[i + 1] - x[i]))
             .collect();
         let expected = case.list("expected.link_angle");
-        compare(
-            &format!("{id} angles"),
+        let allowed = Absolute(tolerance);
+        case.judge_each(
+            "directions of the links",
+            "rad",
             &angles,
             &expected,
-            Some(1.0),
-            tolerance,
+            allowed,
         );
         let sag = y.iter().fold(0.0_f64, |lowest, y| lowest.min(*y));
         let pull = found.link_tension[0] * angles[0].cos();
         // Half of the first link hangs from the pin itself.
         let vertical = found.link_tension[0] * angles[0].sin() - 0.5 * mass * gravity;
-        for (what, got, key) in [
-            ("sag", -sag, "sag"),
-            ("pull", pull, "horizontal_pull"),
-            ("vertical", vertical, "first_pin_vertical"),
-            ("at the pin", pull.hypot(vertical), "end_tension"),
+        for (quantity, unit, got, key) in [
+            ("sag", "m", -sag, "sag"),
+            ("horizontal pull", "N", pull, "horizontal_pull"),
+            (
+                "vertical force at the pin",
+                "N",
+                vertical,
+                "first_pin_vertical",
+            ),
+            ("force at the pin", "N", pull.hypot(vertical), "end_tension"),
         ] {
             let expected = case.number(&format!("expected.{key}"));
-            compare(
-                &format!("{id} {what}"),
-                &[got],
-                &[expected],
-                None,
-                tolerance,
-            );
+            case.judge(quantity, unit, got, expected, Relative(tolerance));
         }
     }
 }
@@ -355,8 +317,11 @@ fn a_worn_chain_settles() {
             .and_then(|scene| scene.replace_json("chain.elongation", &elongation.into()))
             .unwrap_or_else(|error| panic!("{error}"));
         let state = settled(scene.text());
-        let what = format!("torque at {elongation} and {pretension} N");
-        compare(&what, &state.sprocket_torque[1..], &[1433.0], None, 1e-4);
+        let torque = state.sprocket_torque[1];
+        assert!(
+            (torque / 1433.0 - 1.0).abs() <= 1e-4,
+            "torque {torque} N m at {elongation} and {pretension} N"
+        );
     }
 }
 

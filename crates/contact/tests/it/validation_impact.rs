@@ -4,7 +4,8 @@ use chaindrive_contact::dissipation::LankaraniNikravesh;
 use chaindrive_contact::elastic::{ElasticLaw, Johnson, Power};
 use chaindrive_contact::restitution::delivered;
 use chaindrive_contact::{Approach, Dissipation, Elastic, Law};
-use serde_json::Value;
+use chaindrive_validation::Case;
+use chaindrive_validation::Tolerance::{Absolute, Relative};
 
 /// What an impact leaves behind.
 #[derive(Clone, Copy, Debug)]
@@ -88,68 +89,46 @@ fn lankarani_nikravesh(restitution: f64) -> Dissipation {
     Dissipation::LankaraniNikravesh(LankaraniNikravesh { restitution })
 }
 
-fn case(text: &str) -> Value {
-    serde_json::from_str(text).expect("the reference is JSON")
-}
-
-fn rows(table: &Value) -> Vec<Vec<f64>> {
-    serde_json::from_value(table.clone()).expect("a table of numbers")
-}
-
-#[track_caller]
-fn assert_close(got: f64, expected: f64, tolerance: f64, what: &str) {
-    let error = got / expected - 1.0;
-    assert!(
-        error.abs() <= tolerance,
-        "{what}: got {got}, expected {expected}, error {error:e}"
-    );
-}
-
 #[test]
 fn c01_undamped_impact() {
-    let case = case(include_str!(
-        "../../../../tests/validation/C01/reference.json"
-    ));
-    let tolerance = case["tolerance"]["relative"].as_f64().unwrap();
-    let inputs = rows(&case["inputs"]["rows"]);
-    for (input, expected) in inputs.iter().zip(rows(&case["expected"]["rows"])) {
+    let case = Case::read("C01");
+    let tolerance = Relative(case.number("tolerance.relative"));
+    let inputs = case.table("inputs.rows");
+    for (input, expected) in inputs.iter().zip(case.table("expected.rows")) {
         let [stiffness, exponent, mass, speed] = input[..] else {
             panic!("four inputs")
         };
         let law = power(stiffness, exponent, Dissipation::None);
         let found = impact(law, mass, speed);
-        assert_close(found.penetration, expected[0], tolerance, "C01 penetration");
-        assert_close(found.force, expected[1], tolerance, "C01 force");
-        assert_close(found.duration, expected[2], tolerance, "C01 duration");
-        assert_close(found.exit_speed, speed, tolerance, "C01 exit speed");
+        let judge = |quantity: &str, unit: &str, found, expected| {
+            case.judge(quantity, unit, found, expected, tolerance);
+        };
+        judge("penetration", "m", found.penetration, expected[0]);
+        judge("greatest force", "N", found.force, expected[1]);
+        judge("duration", "s", found.duration, expected[2]);
+        judge("exit speed", "m/s", found.exit_speed, speed);
     }
 }
 
 /// The factor alone decides: the closed form for every published factor.
 #[test]
 fn c02_closed_form() {
-    let case = case(include_str!(
-        "../../../../tests/validation/C02/reference.json"
-    ));
-    for (name, expected) in case["expected"]["rows"].as_object().unwrap() {
-        let expected: Vec<f64> = serde_json::from_value(expected.clone()).unwrap();
-        let inputs = rows(&case["inputs"]["rows"][name]);
-        assert_eq!(inputs.len(), expected.len());
-        for (input, expected) in inputs.iter().zip(expected) {
-            assert_close(delivered(input[1]), expected, 1e-10, &format!("C02 {name}"));
-        }
+    let case = Case::read("C02");
+    for name in case.names("expected.rows") {
+        let inputs = case.table(&format!("inputs.rows.{name}"));
+        let found: Vec<f64> = inputs.iter().map(|input| delivered(input[1])).collect();
+        let expected = case.list(&format!("expected.rows.{name}"));
+        let quantity = format!("restitution by the factor of {}", name.replace('_', " "));
+        case.judge_each(&quantity, "", &found, &expected, Relative(1e-10));
     }
 }
 
 /// The same by integration, for elastic laws that have nothing in common.
 #[test]
 fn c02_restitution_of_lankarani_and_nikravesh() {
-    let case = case(include_str!(
-        "../../../../tests/validation/C02/reference.json"
-    ));
-    let tolerance = case["tolerance"]["absolute"].as_f64().unwrap();
-    let expected = &case["expected"]["rows"]["lankarani_nikravesh"];
-    let expected: Vec<f64> = serde_json::from_value(expected.clone()).unwrap();
+    let case = Case::read("C02");
+    let tolerance = Absolute(case.number("tolerance.absolute"));
+    let expected = case.list("expected.rows.lankarani_nikravesh");
     let elastic = [
         Elastic::Power(Power::linear(1e8)),
         Elastic::Power(Power {
@@ -158,8 +137,7 @@ fn c02_restitution_of_lankarani_and_nikravesh() {
         }),
         Elastic::Johnson(Johnson::external(3.875e-3, 18.6e-3, 2.2e-3, 113.7e9)),
     ];
-    let inputs = rows(&case["inputs"]["rows"]["lankarani_nikravesh"]);
-    let mut worst: f64 = 0.0;
+    let inputs = case.table("inputs.rows.lankarani_nikravesh");
     for (input, expected) in inputs.iter().zip(expected) {
         for elastic in elastic {
             let law = Law {
@@ -169,45 +147,29 @@ fn c02_restitution_of_lankarani_and_nikravesh() {
                 onset_floor: 1e-6,
             };
             let speed = 0.5;
-            let error = impact(law, 5e-3, speed).exit_speed / speed - expected;
-            worst = worst.max(error.abs());
-            assert!(error.abs() < tolerance, "e = {}: {error:e}", input[0]);
+            let found = impact(law, 5e-3, speed).exit_speed / speed;
+            case.judge("restitution by integration", "", found, expected, tolerance);
         }
     }
-    println!("C02 by integration: worst error {worst:.1e}");
 }
 
 #[test]
 fn c03_history_of_an_impact() {
-    let case = case(include_str!(
-        "../../../../tests/validation/C03/reference.json"
-    ));
-    let number = |part: &str, key: &str| case[part][key].as_f64().unwrap();
-    let input = |key: &str| number("inputs", key);
+    let case = Case::read("C03");
+    let input = |key: &str| case.number(&format!("inputs.{key}"));
     let law = power(input("K"), input("n"), lankarani_nikravesh(input("e")));
     let found = impact(law, input("m"), input("v0"));
-    let tolerance = number("tolerance", "relative");
-    let tight = number("tolerance", "delta_max");
-    let expected = |key: &str| number("expected", key);
-    assert_close(
-        found.penetration,
-        expected("delta_max"),
-        tight,
-        "C03 penetration",
-    );
-    assert_close(found.force, expected("F_max"), tolerance, "C03 force");
-    assert_close(
-        found.duration,
-        expected("t_contact"),
-        tolerance,
-        "C03 duration",
-    );
-    assert_close(
-        found.exit_speed,
-        expected("exit_speed"),
-        tight,
-        "C03 exit speed",
-    );
+    let judge = |quantity: &str, unit: &str, found, key: &str, tolerance: &str| {
+        let expected = case.number(&format!("expected.{key}"));
+        let tolerance = Relative(case.number(&format!("tolerance.{tolerance}")));
+        case.judge(quantity, unit, found, expected, tolerance);
+    };
+    let depth = found.penetration;
+    judge("penetration", "m", depth, "delta_max", "delta_max");
+    judge("greatest force", "N", found.force, "F_max", "relative");
+    judge("duration", "s", found.duration, "t_contact", "relative");
+    let speed = found.exit_speed;
+    judge("exit speed", "m/s", speed, "exit_speed", "exit_speed");
 }
 
 /// The upper limit on the hysteretic factor is out of reach of a free impact.

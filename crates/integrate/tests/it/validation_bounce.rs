@@ -4,8 +4,9 @@
 use crate::problems;
 
 use chaindrive_integrate::{Method, State, Stepper};
+use chaindrive_validation::Case;
+use chaindrive_validation::Tolerance::{Absolute, Relative};
 use problems::bounce::Bounce;
-use serde_json::Value;
 
 /// One row of the reference: inputs and expectations.
 struct Row {
@@ -20,13 +21,8 @@ struct Row {
     second_contact: f64,
 }
 
-fn reference() -> Vec<Row> {
-    let text = include_str!("../../../../tests/validation/E07/reference.json");
-    let case: Value = serde_json::from_str(text).expect("the reference is JSON");
-    let table = |part: &str| -> Vec<Vec<f64>> {
-        serde_json::from_value(case[part]["rows"].clone()).expect("a table of numbers")
-    };
-    let (inputs, expected) = (table("inputs"), table("expected"));
+fn rows(case: &Case) -> Vec<Row> {
+    let (inputs, expected) = (case.table("inputs.rows"), case.table("expected.rows"));
     let rows = inputs.iter().zip(&expected);
     rows.map(|(i, e)| Row {
         stiffness: i[0],
@@ -97,20 +93,22 @@ fn bounce(row: &Row, method: Method, tolerance: f64, bounces: usize) -> Found {
     }
 }
 
-fn assert_times(row: &Row, found: &Found, tolerance: f64) {
+fn judge_times(case: &Case, method: &str, row: &Row, found: &Found) {
+    let tolerance = Relative(case.number("tolerance.times"));
     let p = &found.passages;
     for (name, got, expected) in [
         ("first contact", p[0], row.first_contact),
         ("contact time", p[1] - p[0], row.contact_time),
         ("second contact", p[2], row.second_contact),
     ] {
-        let error = got / expected - 1.0;
-        println!("  {name}: {error:.1e}");
-        assert!(
-            error.abs() < tolerance,
-            "{name}: {got} for {expected}, {error:e}"
-        );
+        let quantity = format!("{name}, {method}");
+        case.judge(&quantity, "s", got, expected, tolerance);
     }
+}
+
+fn judge_apex(case: &Case, method: &str, found: &Found, tolerance: f64) {
+    let quantity = format!("change of the height in 100 bounces, {method}");
+    case.judge(&quantity, "", found.apex_error, 0.0, Absolute(tolerance));
 }
 
 fn report(name: &str, row: &Row, found: &Found) {
@@ -123,20 +121,28 @@ fn report(name: &str, row: &Row, found: &Found) {
 /// Fixed steps of a 270th of the contact, no rejection.
 #[test]
 fn height_after_a_hundred_bounces_with_fixed_steps() {
-    let row = &reference()[0];
+    let case = Case::read("E07");
+    let row = &rows(&case)[0];
     let method = Method::Rk4 { step: 1e-6 };
     let found = bounce(row, method, f64::INFINITY, 100);
     report("Runge-Kutta 4", row, &found);
-    assert!(found.apex_error.abs() < 1e-6);
-    assert!(found.onset_error.abs() < 1e-7);
-    assert!((found.deepest / row.penetration - 1.0).abs() < 1e-5);
-    assert_times(row, &found, 1e-7);
+    let name = "Runge-Kutta of order 4";
+    let apex = case.number("tolerance.apex_after_100_bounces");
+    judge_apex(&case, name, &found, apex);
+    let speed = row.impact_speed * (1.0 + found.onset_error);
+    let quantity = format!("impact speed, {name}");
+    case.judge(&quantity, "m/s", speed, row.impact_speed, Relative(1e-7));
+    let quantity = format!("penetration, {name}");
+    let depth = found.deepest;
+    case.judge(&quantity, "m", depth, row.penetration, Relative(1e-5));
+    judge_times(&case, name, row, &found);
 }
 
 /// Error control and rejected first penetrations: the same for all rows at a fraction of the cost.
 #[test]
 fn height_after_a_hundred_bounces_with_error_control() {
-    for row in reference() {
+    let case = Case::read("E07");
+    for row in rows(&case) {
         let method = Method::DormandPrince {
             relative: 0.0,
             absolute: 1e-9 * row.penetration,
@@ -145,16 +151,19 @@ fn height_after_a_hundred_bounces_with_error_control() {
         };
         let found = bounce(&row, method, 1e-3 * row.penetration, 100);
         report("Dormand-Prince", &row, &found);
-        assert!(found.apex_error.abs() < 1e-6);
-        assert_times(&row, &found, 1e-7);
+        let name = "error control";
+        let apex = case.number("tolerance.apex_after_100_bounces");
+        judge_apex(&case, name, &found, apex);
+        judge_times(&case, name, &row, &found);
     }
 }
 
 /// Verlet loses nothing either: it conserves a neighbouring energy.
 #[test]
 fn height_after_a_hundred_bounces_with_verlet() {
-    let row = &reference()[0];
+    let case = Case::read("E07");
+    let row = &rows(&case)[0];
     let found = bounce(row, Method::Verlet { step: 2e-6 }, f64::INFINITY, 100);
     report("Verlet", row, &found);
-    assert!(found.apex_error.abs() < 1e-3);
+    judge_apex(&case, "Verlet", &found, 1e-3);
 }

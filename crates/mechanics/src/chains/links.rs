@@ -29,9 +29,9 @@ pub(crate) mod rates;
 mod reactions;
 mod resist;
 #[cfg(test)]
-mod slider_crank;
-#[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod validation_slider_crank;
 
 use chaindrive_contact::Prepared;
 use chaindrive_geometry::Vector;
