@@ -74,7 +74,7 @@ fn a_plucked_strand_comes_to_rest() {
     let joint = r#"joint.contact.friction = { kind = "spring-slider", coefficient = 0.1, stiffness = "5 GN/m" }"#;
     let (peaks, lost) = swings(&strand(joint));
     let found = (peaks[2] - peaks[6]) / 2.0 / LEVER;
-    assert!((found - 4.5).abs() < 0.15, "{found} μ r a cycle, {peaks:?}");
+    assert!((found - 4.5).abs() < 0.25, "{found} μ r a cycle, {peaks:?}");
     assert!(lost > 10.0, "{lost} J");
     let (peaks, lost) = swings(&format!("defaults = \"0.1\"\n{}", strand("")));
     assert!(
