@@ -35,7 +35,7 @@ pub(crate) use windows::{PlateMemory, Windows};
 pub(crate) use wrench::{Begun, LaneTally, Wrench};
 
 use crate::drive::{Flank, Surface};
-use crate::profile::{GapFace, Profile};
+use crate::profile::{GapFace, RailFace};
 
 /// The position and motion of the frame in which a profile is given.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -55,10 +55,10 @@ pub(crate) struct Frame {
 pub(crate) enum Shape {
     /// z equal gaps around a wheel; the frame's origin is the wheel centre.
     Teeth(Teeth),
-    /// One row of features, given about the frame's reference origin.
+    /// The face of a guide, given about the frame's reference origin.
     Rail {
-        profile: Profile,
-        /// Where the frame's origin lies in the profile's own coordinates.
+        face: RailFace,
+        /// Where the frame's origin lies in the face's own coordinates.
         reference: Point,
         /// Box around the face in its own coordinates (low, high).
         bounds: [Point; 2],

@@ -15,11 +15,13 @@
 
 mod gap;
 mod lookup;
+mod rail;
 
 use chaindrive_geometry::{Piece, Point, Vector};
 use pulp::Simd;
 
 pub(crate) use gap::{Extent, GapFace, Stretch};
+pub(crate) use rail::RailFace;
 
 use crate::lanes::{Lane, Wide};
 
@@ -262,14 +264,6 @@ impl Profile {
         let f = &self.features[index];
         (x - w.splat(f.start.x)) * w.splat(f.along.x)
             + (y - w.splat(f.start.y)) * w.splat(f.along.y)
-    }
-
-    /// The surface that a circle of radius `radius` at `q` faces: one lane of one.
-    pub(crate) fn probe(&self, q: Point, radius: f64) -> Probe {
-        let w = Wide(pulp::Scalar);
-        let at = [w.splat(q.x), w.splat(q.y)];
-        let Nearest { gap, nx, ny, bend } = self.nearest(w, at, radius);
-        Probe::of([gap, nx, ny, bend, self.beyond_hollow(w, at)])
     }
 }
 

@@ -1,8 +1,11 @@
-//! The energy ledger of the marine drive: every joule is accounted for.
+//! The energy ledger: every joule is accounted for.
 
 use std::error::Error;
+use std::f64::consts::PI;
 
 use chaindrive::{Run, Scene, Simulation, Summary, Verdict};
+
+use crate::dynamics::{pairs, run};
 
 /// Whether the verdict on a run that is over distrusts it.
 fn is_distrusted(summary: &Summary, simulation: &Simulation) -> bool {
@@ -105,4 +108,75 @@ fn a_driver_that_reverses_has_moved_energy() -> Result<(), Box<dyn Error>> {
     assert!(moved > 2.0 * supplied, "{moved} of {supplied}");
     assert!(!is_distrusted(&summary, &simulation));
     Ok(())
+}
+
+/// A chain without friction slides off a fixed pulley of half a turn and more, and its energy adds up: rollers and plates find the
+/// face all the way round, and the edges at its ends.
+#[test]
+fn a_chain_slides_over_half_a_turn_and_its_energy_adds_up() {
+    let (pitch, half, around) = (0.0127, 0.004, 12);
+    let circle = 0.5 * pitch / (0.5 * PI / f64::from(around)).sin();
+    let mut places = Vec::new();
+    places.extend((1..=9).rev().map(|k| [circle, -pitch * f64::from(k)]));
+    places.extend((0..=around).map(|k| {
+        let (y, x) = (PI * f64::from(k) / f64::from(around)).sin_cos();
+        [circle * x, circle * y]
+    }));
+    places.extend((1..=3).map(|k| [-circle, -pitch * f64::from(k)]));
+    // Between their pins the plates are nearer to the middle.
+    let across = circle * (0.5 * PI / f64::from(around)).cos();
+    for (touches, nearest) in [("rollers", circle), ("plates", across)] {
+        for beyond in [0.0, 0.3, 30.0, 85.0_f64] {
+            let face = nearest - half;
+            let text = format!(
+                r#"
+                settle = false
+                [chain]
+                pitch = {pitch}
+                links = {links}
+                mass = 0.004
+                stiffness = 1e6
+                roller_diameter = {height}
+                plate_height = {height}
+                ends = [{{ kind = "free" }}, {{ kind = "free" }}]
+                [chain.start]
+                kind = "points"
+                positions = {positions}
+                [contact.guides]
+                law = {{ kind = "linear", stiffness = 1e6 }}
+                damping = 0
+                friction = "none"
+                [contact.joints]
+                friction = "none"
+                [[guides]]
+                name = "pulley"
+                touches = "{touches}"
+                face = {{ kind = "arc", centre = [0, 0], radius = {face}, from = "{from} deg", to = "{to} deg" }}
+                [run]
+                until = 0.2
+                step = 4e-6
+                every = 1e-3
+                "#,
+                links = places.len() - 1,
+                height = 2.0 * half,
+                positions = pairs(places.iter().copied()),
+                from = -beyond,
+                to = 180.0 + beyond,
+            );
+            let (mut start, mut moving) = (None, 0.0_f64);
+            let (mut missing, mut deepest) = (0.0_f64, f64::MAX);
+            run(&text, |sample| {
+                let start = start.get_or_insert(sample.energy);
+                missing = missing.max(sample.energy.residual(start).abs());
+                moving = moving.max(sample.energy.kinetic());
+                let places = sample.roller_x.iter().zip(&sample.roller_y);
+                let above = places.filter(|(_, y)| **y > 0.0);
+                deepest = above.map(|(x, y)| x.hypot(*y)).fold(deepest, f64::min);
+            });
+            println!("{touches}, {beyond}° beyond: {missing:.1e} of {moving:.3} J, {deepest} m");
+            assert!(moving > 0.01, "{moving} J");
+            assert!(missing < 1e-5 * moving, "{missing} of {moving} J");
+            assert!(deepest > face + 0.9 * half, "{deepest} m from the middle");
+        }
+    }
 }

@@ -129,7 +129,7 @@ impl Contacts {
                 let close = w.splat(CLOSE * self.radius).greater(faced.gap) & slot.valid;
                 (close.any(), false)
             }
-            Shape::Rail { profile, .. } => (false, profile.bulges && frame.spin == 0.0),
+            Shape::Rail { face, .. } => (false, face.bulges() && frame.spin == 0.0),
         };
         let rest = if close {
             0.0

@@ -17,7 +17,7 @@ use pulp::{Simd, WithSimd};
 
 use super::{Contacts, Frame, Shape, Teeth};
 use crate::lanes::{LANES, Lane, Mask, Wide};
-use crate::profile::{Extent, Nearest, Probe, Profile, Stretch};
+use crate::profile::{Extent, Nearest, Probe, Profile, RailFace, Stretch};
 
 /// Roller centres in gap frames, and the gap axes in the world.
 pub(super) struct Place<S: Simd> {
@@ -31,7 +31,7 @@ pub(super) struct Place<S: Simd> {
 /// What one side of the slots looks at.
 #[derive(Clone, Copy)]
 pub(super) enum View<'a> {
-    Rail(&'a Profile),
+    Rail(&'a RailFace),
     /// A stretch of the remembered gap.
     Gap(&'a [Stretch], usize),
 }
@@ -213,10 +213,7 @@ impl View<'_> {
         measured: bool,
     ) -> FacedSurface<S> {
         let faced = match self {
-            View::Rail(profile) => {
-                let sign = w.splat(1.0);
-                face(w, profile, place.at, sign, radius, measured)
-            }
+            View::Rail(face) => FacedSurface::whole(w, face.nearest(w, place.at, radius)),
             View::Gap(stretches, side) => {
                 let faced = stretches[side].face(w, place.at, radius, measured);
                 if place.needs_more(w, stretches, side) {
@@ -302,6 +299,18 @@ fn face<S: Simd>(
 }
 
 impl<S: Simd> FacedSurface<S> {
+    /// Of a face without a hollow to be beyond.
+    #[inline(always)]
+    fn whole(w: Wide<S>, Nearest { gap, nx, ny, bend }: Nearest<S>) -> Self {
+        Self {
+            gap,
+            nx,
+            ny,
+            bend,
+            beyond: w.splat(f64::MAX),
+        }
+    }
+
     #[inline(always)]
     fn lanes(self) -> [Lane<S>; 5] {
         [self.gap, self.nx, self.ny, self.bend, self.beyond]
@@ -335,7 +344,7 @@ impl Contacts {
     #[inline(always)]
     pub(super) fn view(&self, side: usize) -> View<'_> {
         match &self.shape {
-            Shape::Rail { profile, .. } => View::Rail(profile),
+            Shape::Rail { face, .. } => View::Rail(face),
             Shape::Teeth(teeth) => View::Gap(&teeth.face.stretches, side),
         }
     }

@@ -10,7 +10,7 @@ use super::window::FAR;
 use super::{ContactMemory, Frame, LaneTally, MemoryLanes, SurfaceLaw, Wrench};
 use crate::drive::Surface;
 use crate::lanes::Wide;
-use crate::profile::{Probe, Profile};
+use crate::profile::{Probe, RailFace};
 
 /// Where the pins of the link plates are, whatever the chain is made of.
 pub(crate) trait PlatePlaces {
@@ -29,8 +29,8 @@ pub(crate) trait PlatePins: PlatePlaces {
 /// Contacts of all links with one rail.
 #[derive(Clone, Debug)]
 pub(crate) struct PlateContact {
-    pub(crate) profile: Profile,
-    /// Where the frame's origin lies in the profile's own coordinates.
+    pub(crate) face: RailFace,
+    /// Where the frame's origin lies in the face's own coordinates.
     pub(crate) reference: Point,
     /// Box around the face (low, high).
     pub(crate) bounds: [Point; 2],
@@ -58,7 +58,7 @@ pub(crate) struct PlatePoint {
 
 impl PlateContact {
     pub(crate) fn new(
-        profile: Profile,
+        face: RailFace,
         reference: Point,
         bounds: [Point; 2],
         surface: Surface,
@@ -66,7 +66,7 @@ impl PlateContact {
         links: usize,
     ) -> Self {
         Self {
-            profile,
+            face,
             reference,
             bounds,
             surface,
@@ -77,18 +77,19 @@ impl PlateContact {
         }
     }
 
-    /// Where a plate between pins `a` and `b`, in the profile's coordinates, comes nearest.
+    /// Where a plate between pins `a` and `b`, in the face's coordinates, comes nearest.
     pub(crate) fn nearest(&self, a: Point, b: Point) -> PlatePoint {
         let edge = b - a;
         let length_squared = edge.norm_squared().max(f64::MIN_POSITIVE);
         let at = |share: f64| PlatePoint {
             share,
-            probe: self.profile.probe(a + edge * share, self.half_height),
+            probe: self.face.probe(a + edge * share, self.half_height),
             weight: if share > 0.0 && share < 1.0 { 1.0 } else { 0.5 },
         };
         let ends = [0.0, 1.0].into_iter();
-        let feet = self.profile.features[self.profile.features_along(a, b)]
-            .iter()
+        let feet = self
+            .face
+            .features_along(a, b)
             .filter(|f| f.sign > 0.0 && f.straight == Vector::zeros());
         let feet = feet.map(|f| ((f.centre - a).dot(&edge) / length_squared).clamp(0.0, 1.0));
         ends.chain(feet)

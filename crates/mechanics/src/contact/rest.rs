@@ -75,7 +75,7 @@ mod tests {
     use super::*;
     use crate::contact::{Contacts, Frame, Places, Rollers, Shape, Teeth, Touch};
     use crate::drive::Surface;
-    use crate::profile::{GapFace, Profile};
+    use crate::profile::{GapFace, RailFace};
 
     struct Look<'a> {
         contacts: &'a Contacts,
@@ -181,10 +181,10 @@ mod tests {
                 end: ends[1],
             })
         });
-        let profile = Profile::new(&pieces.collect::<Vec<_>>(), true, true);
-        assert!(profile.bulges);
+        let face = RailFace::new(&pieces.collect::<Vec<_>>());
+        assert!(face.bulges());
         let mut contacts = contacts(Shape::Rail {
-            profile,
+            face,
             reference: Point::origin(),
             bounds: [Point::new(-0.4, -0.05), Point::new(0.4, 0.0)],
         });

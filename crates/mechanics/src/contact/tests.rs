@@ -454,7 +454,7 @@ fn a_contact_begins_without_bristles() {
     let rail = || {
         Contacts::new(
             Shape::Rail {
-                profile: Profile::new(&[Piece::Segment(line)], true, true),
+                face: RailFace::new(&[Piece::Segment(line)]),
                 reference: Point::origin(),
                 bounds: [line.end, line.start],
             },

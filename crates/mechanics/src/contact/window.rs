@@ -234,7 +234,7 @@ mod tests {
 
     use super::*;
     use crate::drive::Surface;
-    use crate::profile::Profile;
+    use crate::profile::RailFace;
 
     /// Runs hold every roller once, in lanes of eight, and those that are likely to touch in as few lanes as can be.
     #[test]
@@ -242,7 +242,7 @@ mod tests {
         let ends = [[1.0, 0.0], [0.0, 0.0]].map(|[x, y]| Point::new(x, y));
         let face = [Piece::Segment(Segment::new(ends[0], ends[1]))];
         let shape = Shape::Rail {
-            profile: Profile::new(&face, true, true),
+            face: RailFace::new(&face),
             reference: Point::origin(),
             bounds: [ends[1], ends[0]],
         };

@@ -271,6 +271,7 @@ mod tests {
     use chaindrive_geometry::{ArcSpline, Seat, Tip, ToothForm, ToothGap};
 
     use super::*;
+    use crate::lanes::Wide;
 
     /// Points on a grid over one gap, from the root to above the tips.
     fn grid(gap: &ToothGap) -> Vec<Point> {
@@ -331,15 +332,16 @@ mod tests {
                         continue;
                     }
                     compared += 1;
-                    let probe = profile.probe(Point::new(q.x.abs(), q.y), 0.0);
-                    let error = (probe.gap - foot.distance).abs();
+                    let w = Wide(pulp::Scalar);
+                    let found = profile.nearest(w, [w.splat(q.x.abs()), w.splat(q.y)], 0.0);
+                    let error = (found.gap.sum() - foot.distance).abs();
                     assert!(error < 1e-12, "{form:?}, {teeth} teeth, {q:?}: {error}");
                     // On the axis both halves are equally near.
                     if q.x.abs() < 1e-9 {
                         continue;
                     }
                     let side = q.x.signum();
-                    let normal = Vector::new(side * probe.normal.x, probe.normal.y);
+                    let normal = Vector::new(side * found.nx.sum(), found.ny.sum());
                     assert!(
                         (normal - foot.normal).norm() < 1e-9,
                         "{form:?}, {teeth}, {q:?}"

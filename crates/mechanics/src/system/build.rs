@@ -13,7 +13,7 @@ use crate::contact::Impacts;
 use crate::contact::{Contacts, PlateContact, Shape, Teeth};
 use crate::drive::{Guide, GuideSupport, Parts, PlacedChain, Rotation, Sprocket, Support, Touches};
 use crate::groups::groups;
-use crate::profile::{GapFace, Profile};
+use crate::profile::{GapFace, RailFace};
 use crate::tensioner::Weight;
 use crate::trains::{InTrain, trains};
 use crate::{AssemblyError, Chain, Motion, Push};
@@ -376,22 +376,22 @@ fn teeth(sprocket: &Sprocket, chain: &Chain) -> Contacts {
 
 /// Contacts of a chain with a guide.
 fn face(guide: &Guide, chain: &Chain, parts: &Parts) -> Result<RailContact, AssemblyError> {
-    let profile = Profile::new(guide.face.pieces(), true, true);
+    let face = RailFace::new(guide.face.pieces());
     let reference = parts.reference(&guide.support);
     let bounds = bounds(guide);
     let radius = match guide.touches {
         Touches::Rollers => 0.5 * chain.roller_diameter,
         Touches::Eyes | Touches::Plates => 0.5 * chain.plate_height,
     };
-    confirm(guide, &profile, radius)?;
+    confirm(guide, &face, radius)?;
     if guide.touches == Touches::Plates {
         let (surface, links) = (guide.surface, chain.links());
         return Ok(RailContact::Plates(PlateContact::new(
-            profile, reference, bounds, surface, radius, links,
+            face, reference, bounds, surface, radius, links,
         )));
     }
     let shape = Shape::Rail {
-        profile,
+        face,
         reference,
         bounds,
     };
@@ -411,7 +411,7 @@ fn bounds(guide: &Guide) -> [Point; 2] {
 }
 
 /// Checks that passing from feature to feature finds the nearest one all along the face.
-fn confirm(guide: &Guide, profile: &Profile, radius: f64) -> Result<(), AssemblyError> {
+fn confirm(guide: &Guide, face: &RailFace, radius: f64) -> Result<(), AssemblyError> {
     let reach = 4.0 * radius;
     for (i, piece) in guide.face.pieces().iter().enumerate() {
         for k in 0..=8 {
@@ -421,7 +421,7 @@ fn confirm(guide: &Guide, profile: &Profile, radius: f64) -> Result<(), Assembly
                 .face
                 .nearest(at, reach)
                 .map_or(f64::INFINITY, |foot| foot.distance);
-            let found = profile.probe(at, 0.0).gap;
+            let found = face.probe(at, 0.0).gap;
             if (exact - found).abs() > 1e-6 * radius {
                 return Err(AssemblyError::Guide {
                     guide: guide.name.clone(),

@@ -63,7 +63,7 @@ pub(crate) enum Face {
         #[serde(default)]
         material: TravelSide,
     },
-    /// A convex circular arc.
+    /// A convex circular arc of up to a full turn, with a sharp edge at either end.
     Arc {
         /// Centre (x, y) [m].
         centre: [Length; 2],
