@@ -251,8 +251,10 @@ impl Drive {
                 let of_layout = (placed.layout.pretension(), placed.layout.pretension_at());
                 // Bushes on smaller circles have the pitch of a worn chain: free rollers ride up the flanks, and a length does not tell how
                 // tight that is. They carry what the lumped ones do at this phase.
+                let free = placed.chain.model.free_roller().is_some()
+                    && of_layout.1 == PretensionAt::MeanPhase;
                 let as_lumped = carried(statics, hard::links_of(&parts.chains, index))
-                    .filter(|_| placed.chain.model.free_roller().is_some())
+                    .filter(|_| free)
                     .map(|tension| (tension, PretensionAt::Phase));
                 let (pretension, at) = as_lumped.unwrap_or(of_layout);
                 Tightening {
