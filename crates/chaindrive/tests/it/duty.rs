@@ -246,16 +246,19 @@ fn impacts_are_counted_as_they_are_logged() {
 #[test]
 fn losses_by_place_add_up() {
     let friction = "{ coefficient = 0.1 }";
+    let load = r#"[{ kind = "constant", torque = "8 N m" }]"#;
     let scene = preset(
         "timing_drive",
         &[
             ("contact.teeth.friction", friction),
             ("contact.guides.friction", friction),
-            // An efficiency needs power that flows one way, as it does in so short a time from an even crank only.
+            // An efficiency needs power that flows one way: an even crank, and camshafts that do not drive for half of the time.
             (
                 "sprockets.crank.motion",
                 r#"{ kind = "constant", speed = "-3000 rpm" }"#,
             ),
+            ("sprockets.exhaust.load", load),
+            ("sprockets.intake.load", load),
         ],
     );
     let (simulation, summary) = finished(&scene, &run(4e-3, 100.0));
