@@ -1,5 +1,6 @@
 //! Stated errors of runs, held against a reference method, for forty drives:
-//! `make estimates` writes the page `docs/estimates.md`, and fails where they do not hold.
+//! `make estimates` writes the page `docs/estimates.md`, and fails where they do not hold. With names of presets, only the
+//! lines of these are printed.
 //!
 //! Every drive is given the method and step that it gets by default. The reference, Runge–Kutta of fourth order with steps that
 //! follow the damping and contacts that begin at most ten nanometres deep, has no part in the estimate; how far it is from
@@ -229,7 +230,11 @@ fn main() -> Outcome<()> {
     let mut out = std::io::stdout();
     writeln!(out, "{HEAD}")?;
     let mut lines = Vec::new();
-    for case in &CASES {
+    let named: Vec<String> = std::env::args().skip(1).collect();
+    for case in CASES
+        .iter()
+        .filter(|case| named.is_empty() || named.iter().any(|name| name == case.0))
+    {
         match Line::of(*case) {
             Ok(line) => {
                 line.print(&mut out)?;
@@ -237,6 +242,9 @@ fn main() -> Outcome<()> {
             }
             Err(why) => writeln!(out, "| {case:?} | failed: {why} |")?,
         }
+    }
+    if !named.is_empty() {
+        return Ok(());
     }
     let mut ratios: Vec<f64> = lines.iter().map(Line::ratio).collect();
     ratios.sort_unstable_by(f64::total_cmp);
