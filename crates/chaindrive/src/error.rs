@@ -88,7 +88,7 @@ pub enum SimulationError {
     #[error("until = {until} s is past: the run has samples up to {reached} s")]
     Ended { until: f64, reached: f64 },
 
-    /// What cannot be set while a drive moves.
+    /// A control that cannot be set while a drive moves.
     #[error("{what} `{name}` cannot be set: {reason}")]
     Control {
         what: &'static str,
@@ -156,7 +156,7 @@ impl SimulationError {
     }
 }
 
-/// What there is none of.
+/// The thing that is missing, in words.
 fn nothing(setting: &str) -> &'static str {
     match setting {
         "events" => "no contacts are",

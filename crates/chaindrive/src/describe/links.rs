@@ -82,7 +82,7 @@ impl LinkFacts {
 /// The law of a kind of contact.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ContactFacts {
-    /// What touches: teeth, guides, joints or rollers.
+    /// The parts that touch: teeth, guides, joints or rollers.
     pub pair: &'static str,
     /// Kind of the elastic law.
     pub elastic: String,

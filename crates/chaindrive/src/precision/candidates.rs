@@ -33,7 +33,7 @@ const RK4: [(f64, f64); 4] = [(0.5, 1e-5), (0.25, 1e-6), (0.125, 1e-7), (0.0625,
 /// Steps with implicit damping in units of 1/ω without damping; each is compared with the next.
 const IMPLICIT_DAMPING: [f64; 5] = [1.4, 0.7, 0.35, 0.175, 0.0875];
 
-/// What suits a drive, from the cheapest to the dearest.
+/// Candidates that suit a drive, from the cheapest to the dearest.
 ///
 /// Particles: Verlet, then Runge–Kutta with rejection. Rigid links: implicit damping, whose error
 /// falls to 0.01 % before explicit methods, which have to follow the damping, become cheaper.
@@ -86,7 +86,7 @@ impl Candidate {
 }
 
 impl Entry {
-    /// What turns the difference from the judge into a bound of the error.
+    /// Factor that turns the difference from the judge into a bound of the error.
     ///
     /// ```text
     /// e(h) = |u(h) − u(h′)| / (1 − h′/h)     first order, the least that contacts leave

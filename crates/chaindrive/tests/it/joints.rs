@@ -304,7 +304,6 @@ fn chains_of_free_rollers_are_as_tight_as_those_of_lumped_ones() {
             .and_then(|scene| scene.replace("chain.roller", &format!("{{ clearance = '{play}' }}")))
             .unwrap();
         let found = at_rest(&free);
-        println!("{play}: {found:?} N, {known:?} N");
         assert!(
             (found[0] / known[0] - 1.0).abs() < 0.02,
             "{play}: {found:?} N, {known:?} N"
