@@ -13,71 +13,102 @@ units throughout; scene files may carry units of their own. Counter-clockwise an
 penetrations are positive.
 """
 
-from chaindrive import errors, kinematics, plot, scenes
-from chaindrive._core import __version__
-from chaindrive.catalogue import catalogue
-from chaindrive.channels import channels
-from chaindrive.drive import Difference, Drive, diff, load, schema
-from chaindrive.errors import (
-    AssemblyError,
-    CautiousResultWarning,
-    ChaindriveError,
-    ClashWarning,
-    DistrustedResultWarning,
-    IntegrationError,
-    ParameterError,
-    ResultWarning,
-    ResumeError,
-    SceneError,
-    SimulationError,
-    VerdictWarning,
-    WriteError,
-)
-from chaindrive.friction import Friction, friction
-from chaindrive.law import Law, law
-from chaindrive.live import Simulation, Snapshot
-from chaindrive.precision import work_precision
-from chaindrive.profile import Profile
-from chaindrive.results import open_result
-from chaindrive.simulation import resume, simulate
-from chaindrive.sweeping import sweep
+import sys
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
-__all__ = [
-    "AssemblyError",
-    "CautiousResultWarning",
-    "ChaindriveError",
-    "ClashWarning",
-    "Difference",
-    "DistrustedResultWarning",
-    "Drive",
-    "Friction",
-    "IntegrationError",
-    "Law",
-    "ParameterError",
-    "Profile",
-    "ResultWarning",
-    "ResumeError",
-    "SceneError",
-    "Simulation",
-    "SimulationError",
-    "Snapshot",
-    "VerdictWarning",
-    "WriteError",
-    "__version__",
-    "catalogue",
-    "channels",
-    "diff",
-    "errors",
-    "friction",
-    "kinematics",
-    "law",
-    "load",
-    "open_result",
-    "plot",
-    "resume",
-    "scenes",
-    "schema",
-    "simulate",
-    "sweep",
-    "work_precision",
-]
+from chaindrive._core import __version__ as __version__
+
+if TYPE_CHECKING:
+    from chaindrive import errors as errors
+    from chaindrive import kinematics as kinematics
+    from chaindrive import plot as plot
+    from chaindrive import scenes as scenes
+    from chaindrive.chain_catalogue import catalogue as catalogue
+    from chaindrive.channel import Channel as Channel
+    from chaindrive.channel import channels as channels
+    from chaindrive.contact_law import Law as Law
+    from chaindrive.contact_law import law as law
+    from chaindrive.drive import Description as Description
+    from chaindrive.drive import Difference as Difference
+    from chaindrive.drive import Drive as Drive
+    from chaindrive.drive import diff as diff
+    from chaindrive.drive import load as load
+    from chaindrive.drive import schema as schema
+    from chaindrive.errors import AssemblyError as AssemblyError
+    from chaindrive.errors import CautiousResultWarning as CautiousResultWarning
+    from chaindrive.errors import ChaindriveError as ChaindriveError
+    from chaindrive.errors import ClashWarning as ClashWarning
+    from chaindrive.errors import DistrustedResultWarning as DistrustedResultWarning
+    from chaindrive.errors import IntegrationError as IntegrationError
+    from chaindrive.errors import ParameterError as ParameterError
+    from chaindrive.errors import ResultWarning as ResultWarning
+    from chaindrive.errors import ResumeError as ResumeError
+    from chaindrive.errors import SceneError as SceneError
+    from chaindrive.errors import SimulationError as SimulationError
+    from chaindrive.errors import VerdictWarning as VerdictWarning
+    from chaindrive.errors import WriteError as WriteError
+    from chaindrive.friction_law import Friction as Friction
+    from chaindrive.friction_law import friction as friction
+    from chaindrive.live import Simulation as Simulation
+    from chaindrive.live import Snapshot as Snapshot
+    from chaindrive.precision import work_precision as work_precision
+    from chaindrive.profile import Profile as Profile
+    from chaindrive.results import open_result as open_result
+    from chaindrive.simulation import resume as resume
+    from chaindrive.simulation import simulate as simulate
+    from chaindrive.sweeping import sweep as sweep
+
+# What is imported when it is first asked for: xarray alone takes longer than all of a short
+# command. No name is that of a module that defines something else, which the import would hide.
+_MODULES = ("errors", "kinematics", "plot", "scenes")
+_DEFINED_IN = {
+    "chain_catalogue": ("catalogue",),
+    "channel": ("Channel", "channels"),
+    "contact_law": ("Law", "law"),
+    "drive": ("Description", "Difference", "Drive", "diff", "load", "schema"),
+    "errors": (
+        "AssemblyError",
+        "CautiousResultWarning",
+        "ChaindriveError",
+        "ClashWarning",
+        "DistrustedResultWarning",
+        "IntegrationError",
+        "ParameterError",
+        "ResultWarning",
+        "ResumeError",
+        "SceneError",
+        "SimulationError",
+        "VerdictWarning",
+        "WriteError",
+    ),
+    "friction_law": ("Friction", "friction"),
+    "live": ("Simulation", "Snapshot"),
+    "precision": ("work_precision",),
+    "profile": ("Profile",),
+    "results": ("open_result",),
+    "simulation": ("resume", "simulate"),
+    "sweeping": ("sweep",),
+}
+_HOME = {name: module for module, names in _DEFINED_IN.items() for name in names}
+
+__all__ = sorted(["__version__", *_MODULES, *_HOME])
+
+
+# Type checkers know the names above, and would take any name for one of these.
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> Any:
+        if name in _MODULES:
+            return import_module(f"chaindrive.{name}")
+        if name in _HOME:
+            value = getattr(import_module(f"chaindrive.{_HOME[name]}"), name)
+            globals()[name] = value
+            return value
+        # With the module at hand Python adds which name may have been meant.
+        message = f"module 'chaindrive' has no attribute {name!r}"
+        raise AttributeError(message, name=name, obj=sys.modules[__name__])
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -9,18 +9,19 @@ from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
-import xarray as xr
-from numpy.typing import NDArray
 
 from chaindrive import _core
+from chaindrive.contact_law import Law
 from chaindrive.errors import ParameterError, SceneError
-from chaindrive.law import Law
 from chaindrive.profile import Profile
 
 if TYPE_CHECKING:
     from typing import Self
 
-__all__ = ["Difference", "Drive", "diff", "load", "schema"]
+    import xarray as xr
+    from numpy.typing import NDArray
+
+__all__ = ["Description", "Difference", "Drive", "diff", "load", "schema"]
 
 
 class Drive:
@@ -217,6 +218,8 @@ class Drive:
         AssemblyError
             The drive does not close or settle.
         """
+        import xarray as xr
+
         spans, stages = self._inner.statics()
         span_tensions = [tensions for _, _, tensions, _ in stages]
         count = len(stages)
@@ -279,6 +282,8 @@ class Drive:
         AssemblyError
             The drive does not close or settle, or starts without settling.
         """
+        import xarray as xr
+
         found = self._inner.modes()
         frequency = found.pop("frequency")
         about = {"units": "Hz", "long_name": "natural frequency"}
@@ -407,12 +412,14 @@ def diff(
 def _drive(of: Drive | xr.Dataset | str | PathLike[str]) -> _core.Drive:
     if isinstance(of, Drive):
         return of._inner
-    if isinstance(of, xr.Dataset):
-        text = of.attrs.get("resolved_scene", of.attrs.get("scene"))
+    # Not by its class: xarray takes half a second to import.
+    attributes = getattr(of, "attrs", None)
+    if attributes is not None:
+        text = attributes.get("resolved_scene", attributes.get("scene"))
         if text is None:
             raise SceneError("the dataset carries no scene: it is no result of `simulate`")
-        return _core.Drive.from_text(text, of.attrs.get("scene_name", "result"))
-    return _core.Drive.read(fspath(of))
+        return _core.Drive.from_text(text, attributes.get("scene_name", "result"))
+    return _core.Drive.read(fspath(cast("str | PathLike[str]", of)))
 
 
 def load(path: str | PathLike[str]) -> Drive:
@@ -469,8 +476,10 @@ def _json(value: Any, path: str) -> str:
 def _plain(value: object) -> object:
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
-    if isinstance(value, xr.DataArray):
-        return value.to_numpy().tolist()
     if isinstance(value, PathLike):
         return fspath(value)
+    import xarray as xr
+
+    if isinstance(value, xr.DataArray):
+        return value.to_numpy().tolist()
     raise TypeError(f"{type(value).__name__} has no place in a scene")

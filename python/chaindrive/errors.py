@@ -13,6 +13,7 @@ __all__ = [
     "AssemblyError",
     "CautiousResultWarning",
     "ChaindriveError",
+    "ClashWarning",
     "DistrustedResultWarning",
     "IntegrationError",
     "ParameterError",
@@ -146,3 +147,7 @@ class CautiousResultWarning(VerdictWarning):
     Most short runs are, so that nothing is said unless there is a filter for it, or for
     `VerdictWarning`: ``warnings.simplefilter("default", chaindrive.CautiousResultWarning)``.
     """
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -157,3 +157,7 @@ def centre_distance(teeth1: int, teeth2: int, pitch: float, links: float) -> flo
         Numbers out of range, or fewer links than wheels that touch need.
     """
     return _core.centre_distance_for([teeth1, teeth2], pitch, links)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -315,3 +315,7 @@ def _turn(
     # The outline has a gap on its y axis; the mean phase of the rollers within a tooth decides.
     phases = np.exp(1j * wheel["teeth"] * (np.arctan2(y, x)[seated] - 0.5 * np.pi))
     return float(np.angle(phases.mean()) / wheel["teeth"])
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

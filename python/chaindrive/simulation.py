@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from chaindrive import _core
-from chaindrive.channels import channels
+from chaindrive.channel import channels
 from chaindrive.drive import Drive, _needed
 from chaindrive.errors import (
     CautiousResultWarning,

@@ -46,6 +46,12 @@ def test_all_names_are_there():
         assert getattr(cd, name) is not None
 
 
+def test_functions_and_presets_are_the_same():
+    assert set(cd.scenes.__all__) == {"presets", *cd.scenes.presets()}
+    with pytest.raises(AttributeError, match="no scene `marine_engin`; there are marine_engine,"):
+        _ = cd.scenes.marine_engin
+
+
 @pytest.mark.parametrize("name", cd.scenes.presets())
 def test_every_preset_has_a_function(name):
     preset = getattr(cd.scenes, name)
@@ -54,7 +60,11 @@ def test_every_preset_has_a_function(name):
     assert drive.name == name
     assert drive.title
     assert name in repr(drive)
-    assert cd.scenes.presets()[name] in preset.__doc__
+    # Written out as functions, which editors and type checkers know, they are those of the core.
+    assert preset.__name__ == name
+    summary, description = preset.__doc__.split("\n\n")
+    assert summary == f"{drive.title}."
+    assert " ".join(description.split()) == f"{cd.scenes.presets()[name]}."
     scene = drive.to_dict()
     chains = scene.get("chains") or [scene["chain"]]
     assert sum(chain["links"] for chain in chains) == drive.links

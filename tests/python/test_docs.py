@@ -18,7 +18,7 @@ BLOCK = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 TOML = re.compile(r"^```toml\n(.*?)^```", re.MULTILINE | re.DOTALL)
 MODULES = [
     "chaindrive",
-    *(f"chaindrive.{module.name}" for module in pkgutil.iter_modules(cd.__path__)),
+    *(module.name for module in pkgutil.walk_packages(cd.__path__, "chaindrive.")),
 ]
 
 

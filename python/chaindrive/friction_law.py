@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from chaindrive import _core
 from chaindrive.arrays import Values, flatten, shaped
-from chaindrive.law import json_of, named
+from chaindrive.contact_law import json_of, named
 
 __all__ = ["Friction", "Rub", "friction"]
 
