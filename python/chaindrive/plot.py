@@ -6,13 +6,14 @@ new ones, and returns them; nothing is shown or saved.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
 from chaindrive.drive import Drive, _from_text
+from chaindrive.extras import extra
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -190,13 +191,8 @@ def work_precision(table: xr.Dataset, *, ax: Axes | None = None, cost: str = "wa
 def _axes(ax: Axes | None) -> Axes:
     if ax is not None:
         return ax
-    try:
-        from matplotlib import pyplot
-    except ImportError as error:
-        message = "plots take the package matplotlib: pip install 'chaindrive[plot]'"
-        raise ImportError(message) from error
-    _, ax = pyplot.subplots(layout="constrained")
-    return ax
+    _, ax = extra("matplotlib.pyplot", "plots").subplots(layout="constrained")
+    return cast("Axes", ax)
 
 
 def _finish(ax: Axes) -> Axes:

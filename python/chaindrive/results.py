@@ -9,7 +9,7 @@ import xarray as xr
 
 from chaindrive import _core
 from chaindrive.errors import ResultWarning
-from chaindrive.simulation import _require_zarr
+from chaindrive.extras import extra
 
 __all__ = ["open_result"]
 
@@ -53,7 +53,7 @@ def open_result(path: str | PathLike[str]) -> xr.Dataset:
     ...     cd.open_result(f"{folder}/ring.zarr").attrs["status"]
     'complete'
     """
-    _require_zarr()
+    extra("zarr", "stores on disk")
     name = fspath(path)
     # A writer says how it ended before it gives its claim back: looked at again, a result that
     # nobody writes has ended, or its writer was killed.

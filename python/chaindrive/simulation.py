@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import json
-import sys
-import time
 import warnings
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, nullcontext
+from collections.abc import Callable, Iterable
+from contextlib import nullcontext
 from os import PathLike, fspath
 from typing import Any
 
@@ -24,6 +22,8 @@ from chaindrive.errors import (
     ParameterError,
     VerdictWarning,
 )
+from chaindrive.extras import extra
+from chaindrive.progress import told
 from chaindrive.signals import heard
 
 __all__ = ["resume", "simulate"]
@@ -109,8 +109,9 @@ def simulate(
         40 000 steps of the default length, whatever the length of the run; more if its own steps
         are shorter.
     progress
-        True for a line on stderr, or a function called with the share done, 0 to 1; while the drive
-        is run in, with 0, or its method ``run_in``, if it has one, with the share of that.
+        True for a bar with the time left, in a terminal or a notebook, which takes the extra
+        ``progress``; or a function called with the share done, 0 to 1; while the drive is run in,
+        with 0, or its method ``run_in``, if it has one, with the share of that.
 
     Returns
     -------
@@ -187,7 +188,7 @@ def simulate(
     """
     _needed(drive)
     if output is not None:
-        _require_zarr()
+        extra("zarr", "stores on disk")
     elif checkpoint_every is not None:
         message = "checkpoint_every: nothing is written; give `output`, a Zarr store"
         raise ParameterError(message, "checkpoint_every", "give `output`")
@@ -205,7 +206,7 @@ def simulate(
         "events": None if events is None else _listed(events),
     }
     # What is in memory only is lost with the program anyway.
-    with _told(progress) as tell, nullcontext() if output is None else heard():
+    with told(progress, "run") as tell, nullcontext() if output is None else heard():
         result = _core.simulate(
             drive._inner,
             [(key, value) for key, value in given.items() if value is not None],
@@ -267,22 +268,10 @@ def resume(
     >>> cd.resume(path, until=4e-3).sizes["time"]
     5
     """
-    _require_zarr()
-    with _told(progress) as tell, heard():
+    extra("zarr", "stores on disk")
+    with told(progress, "run") as tell, heard():
         result = _core.resume(fspath(path), until=until, progress=tell)
     return _concluded(result, path)
-
-
-@contextmanager
-def _told(
-    progress: bool | Callable[[float], object],
-) -> Iterator[Callable[[float], object] | None]:
-    """Yield what is to be told how far a run is."""
-    line = _Line()
-    try:
-        yield progress if callable(progress) else line if progress else None
-    finally:
-        line.close()
 
 
 def _concluded(result: Any, output: str | PathLike[str] | None) -> xr.Dataset:
@@ -342,37 +331,3 @@ def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:
 
 def _listed(names: str | Iterable[str]) -> list[str]:
     return list(dict.fromkeys([names] if isinstance(names, str) else names))
-
-
-def _require_zarr() -> None:
-    try:
-        import zarr  # noqa: F401
-    except ImportError as error:
-        message = "`output` takes the package zarr: pip install 'chaindrive[zarr]'"
-        raise ImportError(message) from error
-
-
-class _Line:
-    """One line on stderr, rewritten in place; silent when stderr is not a terminal."""
-
-    def __init__(self) -> None:
-        self._visible = sys.stderr.isatty()
-        self._start = time.perf_counter()
-        self._begun = False
-
-    def __call__(self, share: float) -> None:
-        self._write(f"{share:6.1%}        ")
-
-    def run_in(self, share: float) -> None:
-        self._write(f"{share:6.1%} run-in ")
-
-    def _write(self, text: str) -> None:
-        if self._visible:
-            self._begun = True
-            elapsed = time.perf_counter() - self._start
-            sys.stderr.write(f"\r{text}{elapsed:6.1f} s")
-            sys.stderr.flush()
-
-    def close(self) -> None:
-        if self._begun:
-            sys.stderr.write("\n")

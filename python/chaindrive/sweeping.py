@@ -15,7 +15,8 @@ import xarray as xr
 from chaindrive import _core
 from chaindrive.drive import Drive, _json, _needed
 from chaindrive.errors import DistrustedResultWarning, ParameterError, SimulationError
-from chaindrive.simulation import _Line, _listed
+from chaindrive.progress import told
+from chaindrive.simulation import _listed
 
 __all__ = ["sweep"]
 
@@ -79,7 +80,8 @@ def sweep(
         Who computes instead of threads of this process: any `concurrent.futures.Executor`, such as
         a ``ProcessPoolExecutor``, or ``client.get_executor()`` of a Dask cluster.
     progress
-        True for a line on stderr, or a function called with the share of variants done, 0 to 1.
+        True for a bar with the time left, in a terminal or a notebook, which takes the extra
+        ``progress``; or a function called with the share of variants done, 0 to 1.
 
     Returns
     -------
@@ -160,16 +162,12 @@ def sweep(
     given = [(path, path.removeprefix("run.")) for path in settings]
     core = _core.Sweep(*recipe, given)
     start = time.perf_counter()
-    line = _Line()
-    tell = progress if callable(progress) else line if progress else None
-    try:
+    with told(progress, "sweep") as tell:
         if executor is None:
             result = core.run(jobs, tell)
         else:
             outcomes, interrupt = _spread(recipe, len(core), executor, tell)
             result = core.stack(outcomes) | {"stop": interrupt}
-    finally:
-        line.close()
     stop: Any = result["stop"]
     attributes = {
         "title": base.title,

@@ -1,0 +1,93 @@
+"""Extras: asked for by name where they are missing, and progress bars, which are one."""
+
+import os
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from chaindrive.extras import _BRINGS, extra
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def test_every_extra_is_one_that_the_wheel_has() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    extras = project["optional-dependencies"]
+    for package, name in _BRINGS.items():
+        assert any(needed.partition(">")[0] == package for needed in extras[name]), package
+
+
+@pytest.mark.parametrize(
+    ("package", "name", "code"),
+    [
+        ("matplotlib", "plot", "cd.plot.layout(ring)"),
+        ("zarr", "zarr", "cd.simulate(ring, output='ring.zarr')"),
+        ("zarr", "zarr", "cd.open_result('ring.zarr')"),
+        ("tqdm", "progress", "cd.simulate(ring, progress=True)"),
+    ],
+)
+def test_a_missing_extra_is_asked_for_by_name(package: str, name: str, code: str) -> None:
+    script = (
+        f"import sys; sys.modules[{package!r}] = None\n"
+        f"import chaindrive as cd; ring = cd.scenes.spinning_ring()\n{code}"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert done.returncode == 1
+    told = done.stderr.splitlines()[-1]
+    assert f"take the package {package}: pip install 'chaindrive[{name}]'" in told
+
+
+def test_a_broken_package_gives_its_own_reason(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "tqdm_broken.py").write_text("import no_such_package\n", encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(ModuleNotFoundError, match="No module named 'no_such_package'"):
+        extra("tqdm_broken", "bars")
+
+
+RUN = (
+    "import chaindrive as cd\n"
+    "drive = cd.scenes.marine_two_sprockets()\n"
+    "cd.simulate(drive, run_in=0.5, until=0.3, every=1e-2, method='verlet', error=False,"
+    " progress=True)\n"
+    "cd.sweep(drive, {'chain.mass': ['8 kg', '9 kg']}, until=1e-3, every=1e-3, progress=True)\n"
+)
+
+
+def test_a_pipe_shows_no_bar() -> None:
+    done = subprocess.run([sys.executable, "-c", RUN], capture_output=True, text=True, check=True)
+    assert (done.stdout, done.stderr) == ("", "")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="terminals of Windows cannot be looked at")
+def test_a_terminal_shows_run_in_run_and_sweep_with_the_time_left() -> None:
+    import pty
+    import termios
+
+    ours, theirs = pty.openpty()
+    termios.tcsetwinsize(theirs, (24, 80))
+    with subprocess.Popen([sys.executable, "-c", RUN], stderr=theirs) as process:
+        os.close(theirs)
+        shown = b""
+        while True:
+            try:
+                read = os.read(ours, 4096)
+            except OSError:  # Linux says so when the other end is closed.
+                break
+            if not read:
+                break
+            shown += read
+    os.close(ours)
+    assert process.returncode == 0
+    lines = [line.strip() for line in shown.decode().replace("\r", "\n").splitlines()]
+    phases = [line.partition(":")[0] for line in lines if line]
+    assert list(dict.fromkeys(phases)) == ["run", "run-in", "sweep"]
+    # The run begins the bar anew, and every bar ends full.
+    last = {line.partition(":")[0]: line for line in lines if line}
+    assert "100 %" in last["run"]
+    assert "100 %" in last["sweep"]
+    assert last["run"].endswith("00:00 left")
