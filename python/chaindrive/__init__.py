@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from chaindrive import kinematics as kinematics
     from chaindrive import plot as plot
     from chaindrive import scenes as scenes
+    from chaindrive import settings as settings
     from chaindrive.chain_catalogue import catalogue as catalogue
     from chaindrive.channel import Channel as Channel
     from chaindrive.channel import channels as channels
@@ -61,7 +62,7 @@ if TYPE_CHECKING:
 
 # What is imported when it is first asked for: xarray alone takes longer than all of a short
 # command. No name is that of a module that defines something else, which the import would hide.
-_MODULES = ("errors", "kinematics", "plot", "scenes")
+_MODULES = ("errors", "kinematics", "plot", "scenes", "settings")
 _DEFINED_IN = {
     "chain_catalogue": ("catalogue",),
     "channel": ("Channel", "channels"),

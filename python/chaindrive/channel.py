@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 from chaindrive import _core
+from chaindrive.settings import ChannelName
 
 __all__ = ["Channel", "channels"]
 
@@ -22,12 +23,12 @@ class Channel(NamedTuple):
     """Whether a run records it unless told otherwise."""
 
 
-def channels() -> dict[str, Channel]:
+def channels() -> dict[ChannelName, Channel]:
     """Everything a run can record, by name.
 
     Returns
     -------
-    dict of str to Channel
+    dict of ChannelName to Channel
         Unit, dimensions and description of every channel.
 
     Examples
@@ -37,6 +38,8 @@ def channels() -> dict[str, Channel]:
     'N'
     """
     return {
-        name: Channel(unit, ("time",) if dim is None else ("time", dim), description, default)
+        cast("ChannelName", name): Channel(
+            unit, ("time",) if dim is None else ("time", dim), description, default
+        )
         for name, unit, dim, description, default in _core.channels()
     }

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from chaindrive import _core
 from chaindrive.arrays import Values, flatten, shaped
 from chaindrive.errors import ParameterError
+from chaindrive.settings import DissipationKind, LawKind
 
 __all__ = ["Law", "Response", "json_of", "law"]
 
@@ -133,11 +134,11 @@ class Law:
 
 
 def law(
-    kind: str,
+    kind: LawKind,
     *,
     restitution: float | None = None,
     damping: float | None = None,
-    dissipation: str | Mapping[str, Any] | None = None,
+    dissipation: DissipationKind | Mapping[str, Any] | None = None,
     onset_floor: float = 0.05,
     **parameters: float,
 ) -> Law:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
-from chaindrive import _core
+from chaindrive import _core, data_sheet
 from chaindrive.contact_law import Law
 from chaindrive.errors import ParameterError, SceneError
 from chaindrive.profile import Profile
@@ -338,8 +338,13 @@ class Drive:
         return Profile._of(self._inner.profile(name, settled), name)
 
     def __repr__(self) -> str:
-        bodies = ", ".join([*self.sprockets, *self.guides, *self.tensioners]) or "nothing around it"
-        return f"<chaindrive.Drive {self.name!r}: {self.links} links; {bodies}>"
+        return data_sheet.text(self.name, self.title, self._rows())
+
+    def _repr_html_(self) -> str:
+        return data_sheet.html(self.name, self.title, self._rows(), None)
+
+    def _rows(self) -> list[data_sheet.Row]:
+        return data_sheet.rows(self.resolved().to_dict())
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Drive) and (self.name, self.text) == (other.name, other.text)

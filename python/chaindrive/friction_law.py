@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from chaindrive import _core
 from chaindrive.arrays import Values, flatten, shaped
 from chaindrive.contact_law import json_of, named
+from chaindrive.settings import FrictionKind
 
 __all__ = ["Friction", "Rub", "friction"]
 
@@ -84,7 +85,7 @@ class Friction:
         return f"<chaindrive.Friction {self.parameters}>"
 
 
-def friction(kind: str, **parameters: float) -> Friction:
+def friction(kind: FrictionKind, **parameters: float) -> Friction:
     """Make a friction law by its name.
 
     Parameters

@@ -10,6 +10,7 @@ import xarray as xr
 from chaindrive import _core
 from chaindrive.channel import channels
 from chaindrive.drive import Drive, _needed
+from chaindrive.settings import ChannelName, MethodName, Quantity, Target
 
 __all__ = ["Simulation", "Snapshot"]
 
@@ -58,16 +59,16 @@ class Simulation:
         self,
         drive: Drive,
         *,
-        run_in: float | str | None = None,
-        method: str | None = None,
-        step: float | str | None = None,
-        tolerance: float | str | None = None,
-        onset_depth: float | str | None = None,
-        accuracy: float | str | None = None,
-        accuracy_of: str | None = None,
+        run_in: Quantity | None = None,
+        method: MethodName | None = None,
+        step: Quantity | None = None,
+        tolerance: Quantity | None = None,
+        onset_depth: Quantity | None = None,
+        accuracy: Quantity | None = None,
+        accuracy_of: Target | None = None,
     ) -> None:
         _needed(drive)
-        given = {
+        given: dict[str, Any] = {
             "run_in": run_in,
             "method": method,
             "step": step,
@@ -105,7 +106,7 @@ class Simulation:
         """
         self._inner.advance_to(time)
 
-    def __getitem__(self, channel: str) -> xr.DataArray:
+    def __getitem__(self, channel: ChannelName) -> xr.DataArray:
         """Return a channel at the last reading: a number, or one a label; see `channels`."""
         values: Any = self._inner.channel(channel)
         about = channels()[channel]

@@ -11,6 +11,7 @@ import xarray as xr
 from chaindrive import _core
 from chaindrive.drive import Drive, _needed, _number
 from chaindrive.errors import ParameterError
+from chaindrive.settings import MethodName, Quantity
 
 __all__ = ["work_precision"]
 
@@ -18,11 +19,11 @@ __all__ = ["work_precision"]
 def work_precision(
     drive: Drive,
     *,
-    methods: str | Iterable[str] = (),
-    steps: Iterable[float | str] = (),
-    tolerances: Iterable[float | str] = (),
-    onset_depth: float | str | None = None,
-    until: float | str | None = None,
+    methods: MethodName | Iterable[MethodName] = (),
+    steps: Iterable[Quantity] = (),
+    tolerances: Iterable[Quantity] = (),
+    onset_depth: Quantity | None = None,
+    until: Quantity | None = None,
     repeats: int = 5,
     replicates: int = 2,
 ) -> xr.Dataset:

@@ -24,6 +24,7 @@ from chaindrive.errors import (
 )
 from chaindrive.extras import extra
 from chaindrive.progress import told
+from chaindrive.settings import ContactPlace, MethodName, Quantity, Recorded, Target
 from chaindrive.signals import heard
 
 __all__ = ["resume", "simulate"]
@@ -32,20 +33,20 @@ __all__ = ["resume", "simulate"]
 def simulate(
     drive: Drive,
     *,
-    until: float | str | None = None,
-    run_in: float | str | None = None,
-    every: float | str | None = None,
-    record: str | Iterable[str] | None = None,
-    method: str | None = None,
-    step: float | str | None = None,
-    tolerance: float | str | None = None,
-    onset_depth: float | str | None = None,
-    accuracy: float | str | None = None,
-    accuracy_of: str | None = None,
-    events: str | Iterable[str] | None = None,
+    until: Quantity | None = None,
+    run_in: Quantity | None = None,
+    every: Quantity | None = None,
+    record: Recorded | Iterable[Recorded] | None = None,
+    method: MethodName | None = None,
+    step: Quantity | None = None,
+    tolerance: Quantity | None = None,
+    onset_depth: Quantity | None = None,
+    accuracy: Quantity | None = None,
+    accuracy_of: Target | None = None,
+    events: ContactPlace | Iterable[ContactPlace] | None = None,
     output: str | PathLike[str] | None = None,
     overwrite: bool = False,
-    checkpoint_every: float | str | None = None,
+    checkpoint_every: Quantity | None = None,
     error: bool = True,
     progress: bool | Callable[[float], object] = False,
 ) -> xr.Dataset:
@@ -222,7 +223,7 @@ def simulate(
 def resume(
     path: str | PathLike[str],
     *,
-    until: float | str | None = None,
+    until: Quantity | None = None,
     progress: bool | Callable[[float], object] = False,
 ) -> xr.Dataset:
     """Carry on a run that was stopped or killed, or a complete one to a later end.

@@ -16,6 +16,7 @@ from chaindrive import _core
 from chaindrive.drive import Drive, _json, _needed
 from chaindrive.errors import DistrustedResultWarning, ParameterError, SimulationError
 from chaindrive.progress import told
+from chaindrive.settings import Quantity, Recorded
 from chaindrive.simulation import _listed
 
 __all__ = ["sweep"]
@@ -33,10 +34,10 @@ def sweep(
     drive: Drive,
     vary: Mapping[str, Any],
     *,
-    until: float | str | None = None,
-    every: float | str | None = None,
-    record: str | Iterable[str] = (),
-    accuracy: float | str | None = None,
+    until: Quantity | None = None,
+    every: Quantity | None = None,
+    record: Recorded | Iterable[Recorded] = (),
+    accuracy: Quantity | None = None,
     jobs: int | None = None,
     executor: Executor | None = None,
     progress: bool | Callable[[float], object] = False,
