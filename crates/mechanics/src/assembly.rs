@@ -49,7 +49,7 @@ pub struct Assembled {
     /// Bodies that take the same room in the plane, and are in each other's way unless they pass side by side.
     pub warnings: Vec<Clash>,
     /// The parts as they were laid.
-    parts: Parts,
+    pub(crate) parts: Parts,
 }
 
 /// How a closed chain was fitted.
@@ -275,6 +275,11 @@ impl Drive {
         }
         system.close_in_motion(q, v);
         Ok(())
+    }
+
+    /// The drive with its chains laid.
+    pub(crate) fn laid(&self) -> Result<Laid, AssemblyError> {
+        Ok(lay::lay(self)?.0)
     }
 
     /// Lays the chains only, without settling.

@@ -35,6 +35,7 @@ mod modes;
 mod motion;
 mod nudge;
 mod observe;
+mod pose;
 mod profile;
 mod standing;
 mod strength;
@@ -62,6 +63,9 @@ pub use fights::Fight;
 pub use modes::{Mode, Modes};
 pub use motion::{Harmonic, Kinematics, Motion, Table};
 pub use observe::{ChainSize, Observation};
+pub use pose::{
+    Body, BodyKind, Figure, FigureChain, Instant, MissingChannel, Placement, PlateShape, Pose,
+};
 pub use strength::{Rating, Strength};
 pub use struck::Struck;
 pub use system::{Input, Record, System, SystemMemory};
