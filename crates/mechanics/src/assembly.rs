@@ -4,6 +4,7 @@ mod apart;
 mod beginning;
 mod hard;
 mod lay;
+mod part_way;
 mod relax;
 mod setting_off;
 mod settle;
@@ -24,6 +25,7 @@ use crate::{AssemblyError, Clash, Drive, System};
 use crate::{MemoryError, SystemMemory};
 use settle::Tightening;
 
+pub use part_way::Gap;
 pub use relax::Statics;
 pub(crate) use relax::{Curvature, curvature};
 
@@ -275,11 +277,6 @@ impl Drive {
         }
         system.close_in_motion(q, v);
         Ok(())
-    }
-
-    /// The drive with its chains laid.
-    pub(crate) fn laid(&self) -> Result<Laid, AssemblyError> {
-        Ok(lay::lay(self)?.0)
     }
 
     /// Lays the chains only, without settling.

@@ -46,7 +46,7 @@ mod torque;
 mod trains;
 
 pub use articulation::Articulation;
-pub use assembly::{Assembled, Fitting, RollerLayout, Statics};
+pub use assembly::{Assembled, Fitting, Gap, RollerLayout, Statics};
 pub use chain::{Chain, End, Ends};
 pub use chains::ChainModel;
 pub use chains::links::model::{Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel};

@@ -9,9 +9,10 @@ mod bodies;
 mod carried;
 mod chains;
 mod places;
+mod plate;
 
 use chaindrive_geometry::{ArcSpline, Point};
-use chaindrive_integrate::Moment;
+use chaindrive_integrate::{Moment, SecondOrderSystem};
 
 pub use chains::{FigureChain, PlateShape};
 pub use places::{Instant, MissingChannel};
@@ -19,8 +20,7 @@ pub use places::{Instant, MissingChannel};
 use crate::check::clash::clashes;
 use crate::drive::{Parts, Touches};
 use crate::standing::Standing;
-use crate::system::{Laid, Wheel};
-use crate::{Assembled, AssemblyError, Clash, Drive};
+use crate::{Assembled, AssemblyError, Clash, Drive, Flow, Gap, Observation};
 
 /// All of a drive that does not change while it moves.
 #[derive(Clone, Debug)]
@@ -31,6 +31,10 @@ pub struct Figure {
     pub chains: Vec<FigureChain>,
     /// Bodies in each other's way at the start, those that may pass side by side included.
     pub clashes: Vec<Clash>,
+    /// Where chains do not close.
+    pub gaps: Vec<Gap>,
+    /// Why the drive cannot run as it stands, if it cannot.
+    pub problem: Option<String>,
     /// The drive as it was laid: centres and tensioners where the chains close.
     parts: Parts,
     /// Angle of one gap axis of every sprocket as laid \[rad\].
@@ -39,15 +43,13 @@ pub struct Figure {
     start: Start,
 }
 
-/// Where everything stands at the start: rollers \[m\], and bodies as a record would have them.
+/// Where everything stands at the start.
 #[derive(Clone, Debug)]
 struct Start {
-    time: f64,
+    /// Bodies, as a run would show them.
+    seen: Observation,
+    /// Roller centres of every chain \[m\].
     rollers: Vec<Vec<Point>>,
-    sprocket_angle: Vec<f64>,
-    sprocket_x: Vec<f64>,
-    sprocket_y: Vec<f64>,
-    tensioner_position: Vec<f64>,
 }
 
 /// A rigid body of a picture.
@@ -138,96 +140,103 @@ impl Assembled {
     /// # Errors
     /// An outline that is none, which checked drives do not bring about.
     pub fn figure(&self) -> Result<Figure, AssemblyError> {
-        let bodies = &self.system.bodies;
         let at = Moment {
             t: self.time,
             q: &self.q,
             v: &self.v,
             z: &self.z,
         };
-        let wheels = || bodies.wheels.iter();
-        let centres: Vec<Point> = (0..bodies.wheels.len())
-            .map(|index| bodies.wheel_centre(index, at))
-            .collect();
-        let turned = |wheel: &Wheel| wheel.kinematics(at.t, at.q, at.v).position - wheel.angle;
-        let slides = bodies.slides.iter();
+        let mut seen = Observation::default();
+        let mut record = self.system.new_record();
+        self.system
+            .observe(at, &[0.0; Flow::ALL.len()], &mut record, &mut seen);
         let start = Start {
-            time: self.time,
+            seen,
             rollers: self.system.roller_places(at),
-            sprocket_angle: wheels().map(turned).collect(),
-            sprocket_x: centres.iter().map(|centre| centre.x).collect(),
-            sprocket_y: centres.iter().map(|centre| centre.y).collect(),
-            tensioner_position: slides
-                .map(|slide| slide.pose(at.q, at.v).coordinate)
-                .collect(),
         };
-        let gap_angles = wheels().map(|wheel| wheel.angle).collect();
-        Figure::new(&self.parts, gap_angles, start, self.warnings.clone())
+        let wheels = self.system.bodies.wheels.iter();
+        let gap_angles = wheels.map(|wheel| wheel.angle).collect();
+        let mut figure = Figure::new(&self.parts, gap_angles, start)?;
+        figure.clashes.clone_from(&self.warnings);
+        Ok(figure)
     }
 }
 
 impl Drive {
-    /// The figure of the drive as its chains are laid, before it settles.
+    /// The figure of the drive as its chains are laid, before it settles. A chain that does not close is laid from the first
+    /// stop of its route as far as it reaches, and the figure says so.
     ///
     /// # Errors
-    /// [`AssemblyError`] when a chain does not close.
+    /// An outline that is none, which checked drives do not bring about.
     pub fn figure_as_laid(&self) -> Result<Figure, AssemblyError> {
-        let laid = self.laid()?;
-        let rollers: Vec<_> = laid.chains.iter().map(|it| it.positions.clone()).collect();
-        let found = clashes(&laid.parts, &Standing::laid(&laid), &rollers);
-        Figure::laid(&laid, found)
+        let (laid, gaps, problem) = self.laid_part_way();
+        let parts = &laid.parts;
+        let centres = || parts.sprockets.iter().map(|sprocket| sprocket.centre);
+        let seen = Observation {
+            time: laid.begin,
+            sprocket_angle: vec![0.0; parts.sprockets.len()],
+            sprocket_x: centres().map(|centre| centre.x).collect(),
+            sprocket_y: centres().map(|centre| centre.y).collect(),
+            tensioner_position: vec![0.0; parts.tensioners.len()],
+            ..Observation::default()
+        };
+        let chains = laid.chains.iter();
+        let rollers: Vec<_> = chains.map(|chain| chain.positions.clone()).collect();
+        let found = clashes(parts, &Standing::laid(&laid), &rollers);
+        let start = Start { seen, rollers };
+        let mut figure = Figure::new(parts, laid.gap_angles.clone(), start)?;
+        for (chain, places) in figure.chains.iter_mut().zip(&figure.start.rollers) {
+            // What does not close is a strand.
+            chain.closed &= places.len() == chain.rollers;
+        }
+        let certain = found.iter().find(|clash| !clash.may_pass());
+        figure.problem = problem
+            .map(|problem| problem.to_string())
+            .or_else(|| certain.map(Clash::to_string));
+        figure.clashes = found;
+        figure.gaps = gaps;
+        Ok(figure)
+    }
+
+    /// The figure of the drive in static equilibrium, or as it is laid where it has none, with the reason.
+    ///
+    /// # Errors
+    /// As [`figure_as_laid`](Self::figure_as_laid).
+    pub fn figure(&self) -> Result<Figure, AssemblyError> {
+        match self.assemble() {
+            Ok(assembled) => assembled.figure(),
+            Err(error) => {
+                let mut figure = self.figure_as_laid()?;
+                figure.problem = Some(error.to_string());
+                Ok(figure)
+            }
+        }
     }
 }
 
 impl Figure {
-    fn new(
-        parts: &Parts,
-        gap_angles: Vec<f64>,
-        start: Start,
-        clashes: Vec<Clash>,
-    ) -> Result<Self, AssemblyError> {
+    fn new(parts: &Parts, gap_angles: Vec<f64>, start: Start) -> Result<Self, AssemblyError> {
         Ok(Self {
             bodies: bodies::of(parts)?,
             chains: chains::of(parts),
-            clashes,
+            clashes: Vec::new(),
+            gaps: Vec::new(),
+            problem: None,
             parts: parts.clone(),
             gap_angles,
             start,
         })
     }
 
-    /// The drive as its chains were laid, before it settles.
-    fn laid(laid: &Laid, clashes: Vec<Clash>) -> Result<Self, AssemblyError> {
-        let parts = &laid.parts;
-        let centres = || parts.sprockets.iter().map(|sprocket| sprocket.centre);
-        let chains = laid.chains.iter();
-        let start = Start {
-            time: laid.begin,
-            rollers: chains.map(|chain| chain.positions.clone()).collect(),
-            sprocket_angle: vec![0.0; parts.sprockets.len()],
-            sprocket_x: centres().map(|centre| centre.x).collect(),
-            sprocket_y: centres().map(|centre| centre.y).collect(),
-            tensioner_position: vec![0.0; parts.tensioners.len()],
-        };
-        Self::new(parts, laid.gap_angles.clone(), start, clashes)
-    }
-
     /// The pose at the start.
     pub fn start(&self) -> Pose {
-        let start = &self.start;
-        let at = Instant {
-            time: start.time,
-            sprocket_angle: Some(&start.sprocket_angle),
-            sprocket_x: Some(&start.sprocket_x),
-            sprocket_y: Some(&start.sprocket_y),
-            tensioner_position: Some(&start.tensioner_position),
-            ..Instant::default()
-        };
+        let Start { seen, rollers } = &self.start;
+        let at = Instant::of(seen);
         Pose {
             // A start lacks nothing that places bodies.
             placements: self.placements(&at).unwrap_or_default(),
-            rollers: start.rollers.clone(),
-            plates: self.plates(&start.rollers, &at),
+            rollers: rollers.clone(),
+            plates: self.plates(rollers, &at),
         }
     }
 }

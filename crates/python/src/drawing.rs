@@ -2,8 +2,10 @@
 
 use std::collections::HashMap;
 
-use chaindrive::{BodyKind, Drive, Figure as CoreFigure, Instant, Placement, Run, Simulation};
-use chaindrive_geometry::{ArcSpline, Point};
+use chaindrive::{
+    BodyKind, Drive, Figure as CoreFigure, Instant, Placement, Pose, Run, Simulation,
+};
+use chaindrive_geometry::{ArcSpline, Point, Vector};
 use numpy::ndarray::ArrayView2;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyKeyError;
@@ -139,6 +141,18 @@ impl Figure {
             drawn.set_item("pin_diameter", chain.pin_diameter)?;
             drawn.set_item("plate_height", chain.plate_height)?;
             drawn.set_item("plates", chain.plates.name())?;
+            // Halves of the outline, each seen from its own end.
+            let plate = chain.plate(chain.pitch).or_raise()?;
+            let mut outline = plate.polyline(COARSE * chain.pitch).or_raise()?;
+            // From the middle on top: first half, then second half.
+            let ahead = outline.iter().rev().take_while(|p| p.x < 0.5 * chain.pitch);
+            let ahead = ahead.count();
+            outline.rotate_right(ahead);
+            let (first, second): (Vec<Point>, Vec<Point>) =
+                outline.iter().partition(|p| p.x < 0.5 * chain.pitch);
+            let end = Vector::new(chain.pitch, 0.0);
+            let second: Vec<Point> = second.into_iter().map(|p| p - end).collect();
+            drawn.set_item("plate", (points(py, &first)?, points(py, &second)?))?;
             drawn.set_item("outer_first", chain.outer_first)?;
             drawn.set_item("spans", &chain.spans)?;
             drawn.set_item("sprockets", &chain.sprockets)?;
@@ -156,25 +170,19 @@ impl Figure {
 
     /// The pose at the start: placements (bodies, 3), rollers (rollers, 2) and plates (links, 4) of every chain.
     fn start<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let pose = self.0.start();
-        let answer = PyDict::new(py);
-        let count = pose.placements.len();
-        let flat: Vec<f64> = pose.placements.iter().flat_map(numbers).collect();
-        let placements = PyArray1::from_vec(py, flat).reshape([count, 3])?;
-        answer.set_item("placements", placements)?;
-        let rollers = PyList::empty(py);
-        let plates = PyList::empty(py);
-        for (places, ends) in pose.rollers.iter().zip(&pose.plates) {
-            rollers.append(points(py, places)?)?;
-            let flat: Vec<f64> = ends
-                .iter()
-                .flat_map(|[from, to]| [from.x, from.y, to.x, to.y])
-                .collect();
-            plates.append(PyArray1::from_vec(py, flat).reshape([ends.len(), 4])?)?;
-        }
-        answer.set_item("rollers", rollers)?;
-        answer.set_item("plates", plates)?;
-        Ok(answer)
+        told(py, &self.0.start())
+    }
+
+    /// The pose at a time, as `start` has it; channels are (entries,).
+    fn pose<'py>(
+        &self,
+        py: Python<'py>,
+        time: f64,
+        channels: HashMap<String, PyReadonlyArray1<'py, f64>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let values = |name: &str| channels.get(name).and_then(|it| it.as_slice().ok());
+        let pose = self.0.pose(&instant(time, values)).map_err(missing)?;
+        told(py, &pose)
     }
 
     /// Where all bodies are at every time (times,): x, y and angle, (times, bodies, 3). Channels are (times, entries).
@@ -184,12 +192,19 @@ impl Figure {
         time: PyReadonlyArray1<'py, f64>,
         channels: HashMap<String, PyReadonlyArray2<'py, f64>>,
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let channels = Channels::new(&channels);
         let times = time.as_array();
+        let views = channels
+            .iter()
+            .map(|(name, it)| (name.as_str(), it.as_array()));
+        let views: HashMap<&str, ArrayView2<'_, f64>> = views.collect();
         let mut flat = Vec::with_capacity(times.len() * self.0.bodies.len() * 3);
         for (index, &time) in times.iter().enumerate() {
-            let instant = channels.instant(index, time);
-            let placements = self.0.placements(&instant).map_err(missing)?;
+            let row = |name: &str| {
+                let values = views.get(name).filter(|it| index < it.nrows())?;
+                // Rows of arrays in the order of C lie in one piece.
+                values.row(index).to_slice()
+            };
+            let placements = self.0.placements(&instant(time, row)).map_err(missing)?;
             flat.extend(placements.iter().flat_map(numbers));
         }
         PyArray1::from_vec(py, flat).reshape([times.len(), self.0.bodies.len(), 3])
@@ -204,41 +219,40 @@ fn missing(error: chaindrive::MissingChannel) -> PyErr {
     PyKeyError::new_err(error.to_string())
 }
 
-/// Recorded channels by name, (times, entries) each.
-struct Channels<'a>(HashMap<&'a str, ArrayView2<'a, f64>>);
-
-impl<'a> Channels<'a> {
-    fn new(given: &'a HashMap<String, PyReadonlyArray2<'_, f64>>) -> Self {
-        let views = given.iter();
-        Self(
-            views
-                .map(|(name, it)| (name.as_str(), it.as_array()))
-                .collect(),
-        )
+/// The instant that has these values of channels.
+fn instant<'a>(time: f64, values: impl Fn(&str) -> Option<&'a [f64]>) -> Instant<'a> {
+    Instant {
+        time,
+        roller_x: values("roller_x"),
+        roller_y: values("roller_y"),
+        sprocket_angle: values("sprocket_angle"),
+        sprocket_x: values("sprocket_x"),
+        sprocket_y: values("sprocket_y"),
+        tensioner_position: values("tensioner_position"),
+        joint_offset_x: values("joint_offset_x"),
+        joint_offset_y: values("joint_offset_y"),
+        bush_offset_x: values("bush_offset_x"),
+        bush_offset_y: values("bush_offset_y"),
     }
+}
 
-    /// The instant of one sample.
-    fn instant(&'a self, index: usize, time: f64) -> Instant<'a> {
-        let of = |name: &str| {
-            let values = self.0.get(name)?;
-            let rows = (index < values.nrows()).then(|| values.row(index));
-            // Rows of arrays in the order of C lie in one piece.
-            rows.and_then(|row| row.to_slice())
-        };
-        Instant {
-            time,
-            roller_x: of("roller_x"),
-            roller_y: of("roller_y"),
-            sprocket_angle: of("sprocket_angle"),
-            sprocket_x: of("sprocket_x"),
-            sprocket_y: of("sprocket_y"),
-            tensioner_position: of("tensioner_position"),
-            joint_offset_x: of("joint_offset_x"),
-            joint_offset_y: of("joint_offset_y"),
-            bush_offset_x: of("bush_offset_x"),
-            bush_offset_y: of("bush_offset_y"),
-        }
+fn told<'py>(py: Python<'py>, pose: &Pose) -> PyResult<Bound<'py, PyDict>> {
+    let answer = PyDict::new(py);
+    let count = pose.placements.len();
+    let flat: Vec<f64> = pose.placements.iter().flat_map(numbers).collect();
+    let placements = PyArray1::from_vec(py, flat).reshape([count, 3])?;
+    answer.set_item("placements", placements)?;
+    let rollers = PyList::empty(py);
+    let plates = PyList::empty(py);
+    for (places, ends) in pose.rollers.iter().zip(&pose.plates) {
+        rollers.append(points(py, places)?)?;
+        let pairs = ends.iter();
+        let flat: Vec<f64> = pairs.flat_map(|[a, b]| [a.x, a.y, b.x, b.y]).collect();
+        plates.append(PyArray1::from_vec(py, flat).reshape([ends.len(), 4])?)?;
     }
+    answer.set_item("rollers", rollers)?;
+    answer.set_item("plates", plates)?;
+    Ok(answer)
 }
 
 fn polyline(curve: &ArcSpline) -> PyResult<Vec<Point>> {

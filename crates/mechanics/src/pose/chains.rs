@@ -18,6 +18,8 @@ pub struct FigureChain {
     pub rollers: usize,
     /// Number of links.
     pub links: usize,
+    /// Number of joints with a state of their own: one a roller, or none.
+    pub joints: usize,
     /// Nominal pitch \[m\].
     pub pitch: f64,
     /// Diameter of the rollers \[m\].
@@ -81,6 +83,10 @@ fn chain(parts: &Parts, placed: &PlacedChain) -> FigureChain {
         closed: placed.chain.is_closed(),
         rollers: placed.chain.rollers(),
         links: placed.chain.links(),
+        joints: match placed.chain.model {
+            ChainModel::Particles => 0,
+            ChainModel::Points(_) | ChainModel::Rigid(_) => placed.chain.rollers(),
+        },
         pitch,
         roller_diameter,
         pin_diameter: pin.map(|joint| 2.0 * joint.pin_radius),
@@ -128,6 +134,9 @@ impl Figure {
         let mut plates = Vec::with_capacity(rollers.len());
         for (chain, places) in self.chains.iter().zip(rollers) {
             let end = |joint: usize, outer: bool| {
+                if chain.joints == 0 {
+                    return places[joint];
+                }
                 let bush =
                     places[joint] + offset(at.bush_offset_x, at.bush_offset_y, first + joint);
                 if outer {
@@ -150,7 +159,7 @@ impl Figure {
                     })
                     .collect(),
             );
-            first += places.len();
+            first += chain.joints;
         }
         plates
     }
