@@ -34,8 +34,9 @@ pub mod verdict;
 pub use catalogue::CatalogueChain;
 pub use chaindrive_integrate::{Method, Statistics};
 pub use chaindrive_mechanics::{
-    Assembled, ContactEvent, ContactPair, Drive, Energy, EventKinds, Flow, Mode, Modes,
-    Observation, Store,
+    Assembled, Body, BodyKind, Clash, ContactEvent, ContactPair, Drive, Energy, EventKinds, Figure,
+    FigureChain, Flow, Instant, MissingChannel, Mode, Modes, Observation, Placement, PlateShape,
+    Pose, Store,
 };
 pub use describe::Description;
 pub use error::SimulationError;

@@ -4,6 +4,7 @@ mod apart;
 mod beginning;
 mod hard;
 mod lay;
+mod part_way;
 mod relax;
 mod setting_off;
 mod settle;
@@ -24,6 +25,7 @@ use crate::{AssemblyError, Clash, Drive, System};
 use crate::{MemoryError, SystemMemory};
 use settle::Tightening;
 
+pub use part_way::Gap;
 pub use relax::Statics;
 pub(crate) use relax::{Curvature, curvature};
 
@@ -49,7 +51,7 @@ pub struct Assembled {
     /// Bodies that take the same room in the plane, and are in each other's way unless they pass side by side.
     pub warnings: Vec<Clash>,
     /// The parts as they were laid.
-    parts: Parts,
+    pub(crate) parts: Parts,
 }
 
 /// How a closed chain was fitted.

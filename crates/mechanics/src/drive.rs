@@ -182,6 +182,17 @@ pub enum Touches {
     Plates,
 }
 
+impl Touches {
+    /// Its name, in one word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rollers => "rollers",
+            Self::Eyes => "eyes",
+            Self::Plates => "plates",
+        }
+    }
+}
+
 /// One body that a closed chain wraps, in path order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Stop {

@@ -35,6 +35,7 @@ mod modes;
 mod motion;
 mod nudge;
 mod observe;
+mod pose;
 mod profile;
 mod standing;
 mod strength;
@@ -45,7 +46,7 @@ mod torque;
 mod trains;
 
 pub use articulation::Articulation;
-pub use assembly::{Assembled, Fitting, RollerLayout, Statics};
+pub use assembly::{Assembled, Fitting, Gap, RollerLayout, Statics};
 pub use chain::{Chain, End, Ends};
 pub use chains::ChainModel;
 pub use chains::links::model::{Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel};
@@ -62,6 +63,9 @@ pub use fights::Fight;
 pub use modes::{Mode, Modes};
 pub use motion::{Harmonic, Kinematics, Motion, Table};
 pub use observe::{ChainSize, Observation};
+pub use pose::{
+    Body, BodyKind, Figure, FigureChain, Instant, MissingChannel, Placement, PlateShape, Pose,
+};
 pub use strength::{Rating, Strength};
 pub use struck::Struck;
 pub use system::{Input, Record, System, SystemMemory};

@@ -294,6 +294,24 @@ impl Drive {
         Ok(answer)
     }
 
+    /// What stays the same while the drive moves, settled or as it was laid; of a drive that was run in for a time.
+    fn figure(&self, py: Python<'_>, settled: bool, run_in: f64) -> PyResult<drawing::Figure> {
+        let drive = self.drive.clone();
+        let figure = patiently(py, move || {
+            let drive = if run_in > 0.0 {
+                drive.beginning(-run_in)?
+            } else {
+                drive
+            };
+            if settled {
+                drive.assemble()?.figure()
+            } else {
+                drive.figure_as_laid()
+            }
+        })?;
+        Ok(drawing::Figure(figure.or_raise()?))
+    }
+
     /// Polylines of what can be drawn.
     fn drawing<'py>(&self, py: Python<'py>, settled: bool) -> PyResult<Bound<'py, PyDict>> {
         drawing::of(py, &self.drive, settled)

@@ -34,6 +34,8 @@ mod core {
     use pyo3::prelude::*;
 
     #[pymodule_export]
+    use crate::drawing::Figure;
+    #[pymodule_export]
     use crate::drive::{Drive, catalogue, diff, presets, schema};
     #[pymodule_export]
     use crate::friction::Friction;

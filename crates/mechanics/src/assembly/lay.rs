@@ -16,46 +16,54 @@ const SLACK: f64 = -1e-6;
 
 /// Lays the chains as their layouts say, one after the other; what an earlier one has moved stays where it is.
 pub(super) fn lay(drive: &Drive) -> Result<(Laid, Vec<Option<Fitting>>), AssemblyError> {
+    let mut laid = laid_nothing(drive);
+    let chains = 0..laid.parts.chains.len();
+    let fittings: Result<_, _> = chains.map(|index| lay_one(&mut laid, index)).collect();
+    Ok((laid, fittings?))
+}
+
+/// A drive before its chains are laid.
+pub(super) fn laid_nothing(drive: &Drive) -> Laid {
     let parts = drive.parts().clone();
-    let mut laid = Laid {
+    Laid {
         gap_angles: parts.sprockets.iter().map(|s| s.gap_angle).collect(),
         chains: Vec::new(),
         parts,
         begin: drive.begin,
-    };
-    let mut fittings = Vec::new();
-    for index in 0..laid.parts.chains.len() {
-        let layout = laid.parts.chains[index].layout.clone();
-        fittings.push(match &layout {
-            Layout::Points { positions, .. } => {
-                laid.chains.push(LaidChain {
-                    route: Vec::new(),
-                    positions: positions.clone(),
-                });
-                None
-            }
-            Layout::Route {
-                stops, phase, fit, ..
-            } => {
-                let sprockets = laid.parts.sprockets.iter().map(|s| s.name.clone());
-                let guides = laid.parts.guides.iter().map(|g| g.name.clone());
-                let (sprockets, guides): (Vec<_>, Vec<_>) = (sprockets.collect(), guides.collect());
-                let name = |stop: usize| match stops.get(stop) {
-                    Some(Stop::Sprocket(index)) => format!("`{}`", sprockets[*index]),
-                    Some(Stop::Guide(index)) => format!("`{}`", guides[*index]),
-                    None => format!("stop {stop}"),
-                };
-                let fitting = around(&mut laid, index, stops, *phase, fit);
-                let called = laid.parts.chains[index].name.clone();
-                let told = |error: AssemblyError| {
-                    let named = error.with_names(&name);
-                    named.of_chains(std::iter::once(called.as_ref()))
-                };
-                Some(fitting.map_err(told)?)
-            }
-        });
     }
-    Ok((laid, fittings))
+}
+
+/// Lays the next chain.
+pub(super) fn lay_one(laid: &mut Laid, index: usize) -> Result<Option<Fitting>, AssemblyError> {
+    let layout = laid.parts.chains[index].layout.clone();
+    match &layout {
+        Layout::Points { positions, .. } => {
+            laid.chains.push(LaidChain {
+                route: Vec::new(),
+                positions: positions.clone(),
+            });
+            Ok(None)
+        }
+        Layout::Route {
+            stops, phase, fit, ..
+        } => {
+            let sprockets = laid.parts.sprockets.iter().map(|s| s.name.clone());
+            let guides = laid.parts.guides.iter().map(|g| g.name.clone());
+            let (sprockets, guides): (Vec<_>, Vec<_>) = (sprockets.collect(), guides.collect());
+            let name = |stop: usize| match stops.get(stop) {
+                Some(Stop::Sprocket(index)) => format!("`{}`", sprockets[*index]),
+                Some(Stop::Guide(index)) => format!("`{}`", guides[*index]),
+                None => format!("stop {stop}"),
+            };
+            let fitting = around(laid, index, stops, *phase, fit);
+            let called = laid.parts.chains[index].name.clone();
+            let told = |error: AssemblyError| {
+                let named = error.with_names(&name);
+                named.of_chains(std::iter::once(called.as_ref()))
+            };
+            Ok(Some(fitting.map_err(told)?))
+        }
+    }
 }
 
 fn around(
@@ -169,7 +177,11 @@ fn mean_of_phases(
 }
 
 /// The stops as wheels of the route.
-fn wheels(parts: &Parts, chain: &Chain, stops: &[Stop]) -> Result<Vec<Wheel>, AssemblyError> {
+pub(super) fn wheels(
+    parts: &Parts,
+    chain: &Chain,
+    stops: &[Stop],
+) -> Result<Vec<Wheel>, AssemblyError> {
     let centre = |stop: &Stop| match stop {
         Stop::Sprocket(i) => parts.sprockets[*i].centre,
         Stop::Guide(i) => {

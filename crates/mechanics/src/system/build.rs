@@ -32,7 +32,7 @@ pub(crate) struct Laid {
 }
 
 /// Where a chain lies.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct LaidChain {
     /// Roller positions.
     pub(crate) positions: Vec<Point>,

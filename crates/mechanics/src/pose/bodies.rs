@@ -1,0 +1,85 @@
+//! Bodies of a figure: outlines in frames of their own.
+
+use chaindrive_geometry::{ArcSpline, GeometryError, Piece, Point, Segment, Vector};
+
+use super::{Body, BodyKind, backing, carried};
+use crate::Carrier;
+use crate::drive::Parts;
+
+/// Length of a drawn plunger in pitches: long enough to show which way it pushes.
+const PLUNGER: f64 = 3.0;
+
+/// The bodies of some parts, in the order of [`Figure::bodies`](super::Figure::bodies).
+pub(super) fn of(parts: &Parts) -> Result<Vec<Body>, GeometryError> {
+    let pitches = parts.chains.iter().map(|placed| placed.chain.pitch);
+    let pitch = pitches.fold(0.0, f64::max);
+    let mut bodies = Vec::new();
+    for sprocket in &parts.sprockets {
+        bodies.push(Body {
+            name: sprocket.name.clone(),
+            kind: BodyKind::Sprocket {
+                teeth: sprocket.gap.teeth,
+                pitch_radius: sprocket.gap.pitch_radius,
+                tip_radius: sprocket.gap.tip_radius,
+            },
+            outlines: vec![sprocket.gap.outline()?],
+            backing: Vec::new(),
+        });
+    }
+    for guide in &parts.guides {
+        let reference = parts.reference(&guide.support);
+        let face = seen_from(&guide.face, reference)?;
+        bodies.push(Body {
+            name: guide.name.clone(),
+            kind: BodyKind::Guide {
+                touches: guide.touches,
+            },
+            backing: backing::behind(&face, pitch)?,
+            outlines: vec![face],
+        });
+    }
+    for (index, tensioner) in parts.tensioners.iter().enumerate() {
+        let origin = tensioner.carrier.origin();
+        let lines = carried::lines(parts, index, pitch);
+        let lines = lines
+            .into_iter()
+            .map(|line| line.map(|p| p - origin.coords));
+        let outlines: Result<_, _> = lines.filter_map(straight).collect();
+        let (kind, plunger) = match &tensioner.carrier {
+            Carrier::Slider(_) => (BodyKind::Slider, false),
+            Carrier::Arm(arm) => (BodyKind::Arm, arm.plunger.is_some()),
+        };
+        bodies.push(Body {
+            name: tensioner.name.clone(),
+            kind,
+            outlines: outlines?,
+            backing: Vec::new(),
+        });
+        if plunger {
+            let rod = [Point::new(-PLUNGER * pitch, 0.0), Point::origin()];
+            bodies.push(Body {
+                name: tensioner.name.clone(),
+                kind: BodyKind::Plunger,
+                outlines: straight(rod).into_iter().collect::<Result<_, _>>()?,
+                backing: Vec::new(),
+            });
+        }
+    }
+    Ok(bodies)
+}
+
+/// A face seen from a point of its body.
+fn seen_from(face: &ArcSpline, reference: Point) -> Result<ArcSpline, GeometryError> {
+    if reference.coords == Vector::zeros() {
+        return Ok(face.clone());
+    }
+    let pieces = face.pieces().iter();
+    let pieces = pieces.map(|piece| piece.translated(-reference.coords));
+    ArcSpline::open(&pieces.collect::<Vec<_>>())
+}
+
+/// A straight line; none between points in one place.
+fn straight([from, to]: [Point; 2]) -> Option<Result<ArcSpline, GeometryError>> {
+    let apart = (to - from).norm() > 1e-9;
+    apart.then(|| ArcSpline::open(&[Piece::from(Segment::new(from, to))]))
+}

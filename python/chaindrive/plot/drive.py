@@ -1,0 +1,284 @@
+"""A drive as it stands at an instant: bodies, rollers and plates to scale."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chaindrive.drive import Drive, _from_text
+from chaindrive.plot.axes import given_or_new
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+    from chaindrive import _core
+
+_Floats = NDArray[np.float64]
+
+_STEEL = "#b9c2cb"
+_OUTLINE = "#3c4650"
+_PLATES = "#4a7ba6"
+_GUIDE = "#b5651d"
+_CARRIER = "#6b7a4b"
+_MARK = "#c8102e"
+
+# Chords of drawn outlines stand off by less than a hundredth of what can be seen in a drive of a
+# metre on a thousand pixels.
+_TOLERANCE = 1e-5
+
+# Channels by which bodies and plates follow, where they were recorded.
+_PLACING = (
+    "roller_x",
+    "roller_y",
+    "sprocket_angle",
+    "sprocket_x",
+    "sprocket_y",
+    "tensioner_position",
+    "joint_offset_x",
+    "joint_offset_y",
+    "bush_offset_x",
+    "bush_offset_y",
+)
+
+
+def layout(
+    drive: Drive, *, ax: Axes | None = None, names: bool = True, settled: bool = True
+) -> Axes:
+    """Draw a drive as it stands at the start: teeth, rollers, plates, guides and tensioners.
+
+    All outlines are those that the simulation touches, in their places. The material behind
+    guides, the carriers of tensioners and the waists of plates have no shape in a scene; they
+    are drawn for the eye.
+
+    Parameters
+    ----------
+    drive
+        What to draw.
+    ax
+        Where to draw; new axes when absent.
+    names
+        Whether to write the names of sprockets and guides.
+    settled
+        Whether the chain hangs and stretches as in static equilibrium, or lies as it was laid
+        (which also shows drives that do not settle).
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    AssemblyError
+        The drive does not close, or settle if asked to.
+    """
+    figure = drive._inner.figure(settled, 0.0)
+    ax = given_or_new(ax)
+    _Picture(ax, figure, _Pose(**figure.start())).draw(names=names)
+    ax.set_title(drive.title)
+    return _finish(ax)
+
+
+def frame(
+    run: xr.Dataset, time: float, *, ax: Axes | None = None, drive: Drive | None = None
+) -> Axes:
+    """Draw a recorded drive at an instant, links coloured by their tension if it was recorded.
+
+    Parameters
+    ----------
+    run
+        A run with the channels ``roller_x``, ``roller_y`` and ``sprocket_angle``; with
+        ``tensioner_position`` if there are tensioners, with ``sprocket_x`` and ``sprocket_y`` if
+        centres stand on springs; with ``link_tension`` for colour.
+    time
+        When [s]; the nearest sample is taken.
+    ax
+        Where to draw; new axes when absent.
+    drive
+        What was run; read from the attribute ``scene`` of the run when absent.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    KeyError
+        A channel that places something was not recorded.
+    """
+    figure = _figure_of(run, drive)
+    now = run.sel(time=time, method="nearest")
+    ax = given_or_new(ax)
+    tensions = now["link_tension"].to_numpy() if "link_tension" in now else None
+    _Picture(ax, figure, _pose_of(figure, now), tensions).draw(names=False)
+    ax.set_title(f"t = {float(now['time']):.4g} s")
+    return _finish(ax)
+
+
+@dataclass
+class _Pose:
+    """Places: of bodies (bodies, 3), of rollers (rollers, 2) and plate ends (links, 4) a chain."""
+
+    placements: _Floats
+    rollers: list[_Floats]
+    plates: list[_Floats]
+
+
+def _figure_of(run: xr.Dataset, drive: Drive | None) -> _core.Figure:
+    """Return the figure of the drive that was run, assembled as it was for the run."""
+    drive = drive or _from_text(run.attrs["scene"], run.attrs.get("scene_name", "scene"))
+    return drive._inner.figure(True, float(run.attrs.get("run_in", 0.0)))
+
+
+def _pose_of(figure: _core.Figure, now: xr.Dataset) -> _Pose:
+    absent = [name for name in figure.needs if name not in now]
+    if absent:
+        names = ", ".join(repr(name) for name in absent)
+        raise KeyError(f"{absent[0]} was not recorded: simulate(…, record=[…, {names}])")
+    given = {name: _row(now[name]) for name in _PLACING if name in now}
+    pose = figure.pose(float(now["time"]), given)
+    return _Pose(**pose)
+
+
+def _row(values: xr.DataArray) -> _Floats:
+    return np.ascontiguousarray(values.to_numpy(), dtype=np.float64)
+
+
+class _Picture:
+    """A pose drawn into axes."""
+
+    def __init__(
+        self,
+        ax: Axes,
+        figure: _core.Figure,
+        pose: _Pose,
+        tensions: _Floats | None = None,
+    ) -> None:
+        self.ax = ax
+        self.bodies = figure.bodies(_TOLERANCE)
+        self.chains = figure.chains
+        self.pose = pose
+        self.tensions = tensions
+
+    def draw(self, *, names: bool) -> None:
+        for body, placement in zip(self.bodies, self.pose.placements, strict=True):
+            self._body(body, placement)
+        self._chains()
+        if names:
+            self._names()
+
+    def _body(self, body: dict[str, Any], placement: _Floats) -> None:
+        from matplotlib.patches import Polygon
+
+        outlines = [_placed(outline, placement) for outline in body["outlines"]]
+        x, y, _ = placement
+        if body["kind"] == "sprocket":
+            face = {"facecolor": _STEEL, "edgecolor": _OUTLINE, "linewidth": 0.6}
+            self.ax.add_patch(Polygon(outlines[0], zorder=2, **face))
+            # The spoke shows how far the sprocket has turned.
+            spoke = _placed(np.array([[0.0, 0.0], [0.0, 0.4 * body["pitch_radius"]]]), placement)
+            self.ax.plot(*spoke.T, color=_OUTLINE, linewidth=0.8, zorder=2.1)
+            self.ax.plot(x, y, "o", color=_OUTLINE, markersize=2.5, zorder=2.1)
+        elif body["kind"] == "guide":
+            backing = _placed(body["backing"], placement)
+            face = {"facecolor": _GUIDE, "edgecolor": "none", "alpha": 0.45}
+            self.ax.add_patch(Polygon(backing, zorder=1.5, **face))
+            self.ax.plot(*outlines[0].T, color=_GUIDE, linewidth=1.0, zorder=3)
+        else:
+            wide = 1.5 if body["kind"] == "plunger" else 3.0
+            look = {"color": _CARRIER, "linewidth": wide, "solid_capstyle": "round"}
+            for outline in outlines:
+                self.ax.plot(*outline.T, zorder=1.4, alpha=0.7, **look)
+            if body["kind"] == "arm":
+                self.ax.plot(x, y, "o", mfc="white", mec=_CARRIER, markersize=5, zorder=3.1)
+
+    def _chains(self) -> None:
+        from matplotlib.collections import PatchCollection, PolyCollection
+        from matplotlib.patches import Circle
+
+        shapes: list[_Floats] = []
+        for chain, ends in zip(self.chains, self.pose.plates, strict=True):
+            shapes.extend(_plates(chain["plate"], ends))
+        look: dict[str, Any] = {"edgecolors": _OUTLINE, "linewidths": 0.4, "zorder": 4}
+        if self.tensions is not None and len(self.tensions) == len(shapes):
+            plates = PolyCollection(shapes, array=self.tensions, cmap="viridis", **look)
+            self.ax.figure.colorbar(plates, ax=self.ax, label="link tension [N]", shrink=0.8)
+        else:
+            plates = PolyCollection(shapes, facecolors=_PLATES, **look)
+        plates.set_alpha(0.75)
+        self.ax.add_collection(plates)
+        for chain, places in zip(self.chains, self.pose.rollers, strict=True):
+            radius = 0.5 * chain["roller_diameter"]
+            circles = PatchCollection([Circle((x, y), radius) for x, y in places], zorder=3.5)
+            circles.set(facecolor="white", edgecolor=_OUTLINE, linewidth=0.5)
+            self.ax.add_collection(circles)
+            # Rollers lie between the plates; their rims are seen all the same.
+            rims = PatchCollection([Circle((x, y), radius) for x, y in places], zorder=5)
+            rims.set(facecolor="none", edgecolor=_OUTLINE, linewidth=0.4, alpha=0.8)
+            self.ax.add_collection(rims)
+
+    def _names(self) -> None:
+        named: list[_Floats] = []
+        middle = np.concatenate(self.pose.rollers)[:, 0].mean()
+        for body, placement in zip(self.bodies, self.pose.placements, strict=True):
+            centre = placement[:2]
+            if body["kind"] == "sprocket":
+                # Names of sprockets on one axis stand above each other.
+                above = sum(bool(np.hypot(*(centre - other)) < 1e-6) for other in named)
+                named.append(centre)
+                self.ax.annotate(
+                    body["name"],
+                    (centre[0], centre[1]),
+                    xytext=(0, 6 + 9 * above),
+                    textcoords="offset points",
+                    ha="center",
+                    fontsize=8,
+                    zorder=6,
+                )
+            elif body["kind"] == "guide":
+                # Halfway along the face, on the side away from the loop.
+                face = _placed(body["outlines"][0], placement)
+                length = np.insert(np.cumsum(np.hypot(*np.diff(face, axis=0).T)), 0, 0.0)
+                x, y = (float(np.interp(0.5 * length[-1], length, axis)) for axis in face.T)
+                right = x > middle
+                self.ax.annotate(
+                    body["name"],
+                    (x, y),
+                    xytext=(10 if right else -10, 0),
+                    textcoords="offset points",
+                    color=_GUIDE,
+                    fontsize=7,
+                    ha="left" if right else "right",
+                    va="center",
+                    zorder=6,
+                )
+
+
+def _placed(points: _Floats, placement: _Floats) -> _Floats:
+    """Put points of a body (points, 2) where its placement (3,) has them."""
+    x, y, angle = placement
+    turned = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    placed: _Floats = points @ turned + (x, y)
+    return placed
+
+
+def _plates(halves: tuple[_Floats, _Floats], ends: _Floats) -> list[_Floats]:
+    """Put the outline of a plate, in two halves seen from their ends, at every link (links, 4)."""
+    shapes = []
+    for x0, y0, x1, y1 in ends:
+        angle = np.arctan2(y1 - y0, x1 - x0)
+        first = _placed(halves[0], np.array([x0, y0, angle]))
+        second = _placed(halves[1], np.array([x1, y1, angle]))
+        shapes.append(np.concatenate([first, second]))
+    return shapes
+
+
+def _finish(ax: Axes) -> Axes:
+    ax.set_aspect("equal")
+    ax.set_xlabel("x [m]")
+    ax.set_ylabel("y [m]")
+    ax.autoscale_view()
+    return ax
