@@ -35,3 +35,7 @@ __all__ = [
     "speed_ripple",
     "transmission_error",
 ]
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -14,6 +14,10 @@ from chaindrive.analysis import orders, running, spans, spectra, transmission
 __all__ = ["DriveAccessor"]
 
 
+def __dir__() -> list[str]:
+    return list(__all__)
+
+
 @xr.register_dataset_accessor("drive")  # type: ignore[no-untyped-call]
 class DriveAccessor:
     """Analysis of a run; every method stands for the function of the same name in `analysis`.

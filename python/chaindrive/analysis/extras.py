@@ -8,6 +8,10 @@ from typing import Any
 __all__ = ["needed"]
 
 
+def __dir__() -> list[str]:
+    return list(__all__)
+
+
 def needed(module: str) -> Any:
     """Return a module of the extra ``analysis``.
 

@@ -17,6 +17,10 @@ from chaindrive.errors import ParameterError
 __all__ = ["campbell", "mesh_orders", "order_map", "order_slice", "order_spectrum"]
 
 
+def __dir__() -> list[str]:
+    return list(__all__)
+
+
 def order_map(
     run: xr.Dataset,
     channel: str | xr.DataArray,
@@ -320,5 +324,4 @@ def _amplitudes(
         part = samples[start : start + size]
         # A(o) = 2 |Σ w x e^(−2πi o φ)| / Σ w
         amplitude[row] = 2.0 * np.abs(np.fft.rfft(weights * (part - part.mean()))) / weights.sum()
-    line: NDArray[np.float64] = np.fft.rfftfreq(size, 1.0 / rate)
-    return line, amplitude
+    return np.arange(size // 2 + 1) * (rate / size), amplitude

@@ -18,6 +18,10 @@ from chaindrive.errors import ParameterError
 __all__ = ["moving_string", "running_modes", "span_frequencies"]
 
 
+def __dir__() -> list[str]:
+    return list(__all__)
+
+
 def moving_string(
     tension: ArrayLike, mass_per_length: float, length: ArrayLike, speed: ArrayLike, mode: int = 1
 ) -> NDArray[np.float64]:

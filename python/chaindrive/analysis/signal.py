@@ -14,6 +14,10 @@ from chaindrive.errors import ParameterError
 __all__ = ["drive_of", "label", "recorded", "sample_rate", "signal", "turning"]
 
 
+def __dir__() -> list[str]:
+    return list(__all__)
+
+
 _NAMED = ("chain", "span", "sprocket", "shaft", "guide", "tensioner", "link", "roller", "joint")
 
 

@@ -15,6 +15,11 @@ from chaindrive.errors import ParameterError
 
 __all__ = ["Stations", "span_envelope", "span_lines", "span_motion", "stations"]
 
+
+def __dir__() -> list[str]:
+    return list(__all__)
+
+
 # Samples that are interpolated at a time.
 _CHUNK = 4096
 

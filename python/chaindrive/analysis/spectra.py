@@ -15,6 +15,10 @@ from chaindrive.errors import ParameterError
 __all__ = ["peaks", "spectrum"]
 
 
+def __dir__() -> list[str]:
+    return list(__all__)
+
+
 def spectrum(
     run: xr.Dataset,
     channel: str | xr.DataArray,

@@ -12,6 +12,10 @@ from chaindrive.errors import ParameterError
 __all__ = ["speed_ripple", "transmission_error"]
 
 
+def __dir__() -> list[str]:
+    return list(__all__)
+
+
 def transmission_error(
     run: xr.Dataset, driver: str, driven: str, *, after: float = 0.0
 ) -> xr.Dataset:
