@@ -324,4 +324,5 @@ def _amplitudes(
         part = samples[start : start + size]
         # A(o) = 2 |Σ w x e^(−2πi o φ)| / Σ w
         amplitude[row] = 2.0 * np.abs(np.fft.rfft(weights * (part - part.mean()))) / weights.sum()
-    return np.arange(size // 2 + 1) * (rate / size), amplitude
+    line = np.asarray(np.fft.rfftfreq(size, 1.0 / rate), dtype=np.float64)
+    return line, amplitude
