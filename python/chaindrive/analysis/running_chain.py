@@ -69,6 +69,13 @@ class RunningChain:
         self._static: NDArray[np.float64] = static.isel(stage=-1).to_numpy()
         links = np.roll(self.places.rollers, -1, axis=0) - self.places.rollers
         self._length = np.hypot(*links.T)
+        # Between two tangent points lie L / p links in the mean, and not the whole number of the
+        # instant that is looked at: the places of a span stand h = L / n apart.
+        self._spacing = np.full(len(links), self.pitch)
+        for name in self.places.spans:
+            first, count = self.places.begin[name], self.places.links[name]
+            within = np.arange(first, first + count) % len(links)
+            self._spacing[within] = self.places.length(name) / count
         self._tangent = links / self._length[:, None]
         self._stiffness = float(scene["chain"]["stiffness"])
 
@@ -122,20 +129,23 @@ class RunningChain:
         kept = self._square < (2 * np.pi * _BASIS * up_to) ** 2
         shapes, count = self._shapes[:, kept], int(np.count_nonzero(kept))
         gain = self.gained_tension(v) if tension is None else tension - self._static
-        ahead, behind = np.roll(shapes, -1, axis=2), np.roll(shapes, 1, axis=2)
-        # G = m (u_{j+1} − u_{j−1}) / 2p,   H = m (u_{j+1} − 2 u_j + u_{j−1}) / p²
-        coriolis = np.einsum("amj,anj->mn", shapes, ahead - behind) * self.mass / (2 * self.pitch)
-        bent = ahead - 2.0 * shapes + behind
-        centrifugal = np.einsum("amj,anj->mn", shapes, bent) * self.mass / self.pitch**2
-        # ΔK = ΔT / ℓ (1 − t tᵀ), link by link, on the difference of its ends
+        step = np.roll(shapes, -1, axis=2) - shapes
+        # G = ½ ρ (u_{j+1} − u_{j−1}),   H = ρ ((u_{j+1} − u_j) / h_j − (u_j − u_{j−1}) / h_{j−1})
+        density = self.mass / self.pitch
+        coriolis = 0.5 * density * np.einsum("amj,anj->mn", shapes, step + np.roll(step, 1, axis=2))
+        centrifugal = -density * np.einsum("amj,anj,j->mn", step, step, 1.0 / self._spacing)
+        # ΔK = (T / h − T₀ / ℓ) n nᵀ, link by link, on the difference of its ends
         normal = np.stack([-self._tangent[:, 1], self._tangent[:, 0]])
-        turn = np.einsum("amj,aj->mj", ahead - shapes, normal)
-        tight = np.einsum("mj,nj,j->mn", turn, turn, gain / self._length)
+        turn = np.einsum("amj,aj->mj", step, normal)
+        change = (self._static + gain) / self._spacing - self._static / self._length
+        tight = np.einsum("mj,nj,j->mn", turn, turn, change)
+        # ΔM = ρ ½ (h_{j−1} + h_j) − m, place by place
+        heavier = 0.5 * density * (self._spacing + np.roll(self._spacing, 1)) - self.mass
+        mass = np.eye(count) + np.einsum("amj,anj,j->mn", shapes, shapes, heavier)
         stiffness = np.diag(self._square[kept]) + tight + v * v * centrifugal
-        # q̇ = w,   ẇ = −(K + ΔK + v² H) q − 2 v G w
-        first_order = np.block(
-            [[np.zeros((count, count)), np.eye(count)], [-stiffness, -2.0 * v * coriolis]]
-        )
+        # q̇ = w,   (M + ΔM) ẇ = −(K + ΔK + v² H) q − 2 v G w
+        rates = -linalg.solve(mass, np.hstack([stiffness, 2.0 * v * coriolis]), assume_a="pos")
+        first_order = np.vstack([np.eye(count, 2 * count, count), rates])
         values, vectors = linalg.eig(first_order)
         frequency = values.imag / (2 * np.pi)
         chosen = np.flatnonzero((frequency > 1e-6 * up_to) & (frequency <= up_to))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,10 @@ def __dir__() -> list[str]:
     return list(__all__)
 
 
+# A guide of a larger radius counts as straight [pitches]: the chain leaves it where it ends.
+_STRAIGHT = 1000.0
+# Least force that pushes a roller, in fractions of the largest tension.
+_PUSHED = 1e-4
 # Samples that are interpolated at a time.
 _CHUNK = 4096
 
@@ -36,10 +41,31 @@ class Stations:
         self.rollers: NDArray[np.float64] = self.chain["rollers"]
         self.pitch = float(self.chain["pitch"])
         self.spans = [str(it) for it in spans]
-        ends = np.cumsum([[0, 0], *np.transpose([seated, free])], axis=0)
-        # A stop begins where the span before it ends.
-        self.begin = {name: int(ends[i].sum() + seated[i]) for i, name in enumerate(self.spans)}
-        self.links = {name: int(free[i]) for i, name in enumerate(self.spans)}
+        pushed = _pushed(drive, self.rollers)
+        count, stops = len(self.rollers), len(self.spans)
+        # Where the stops begin and end, in the order of the route: s₀ e₀ s₁ e₁ …
+        edges = np.insert(np.cumsum(np.ravel(np.transpose([seated, free]))), 0, 0)
+        ends: list[tuple[int, int]] = []
+        for i in range(stops):
+            first, last = int(edges[2 * i + 1]), int(edges[2 * i + 2])
+            third = (last - first) // 3
+            # The layout counts pitches; the chain rests on a guide somewhat further or less far.
+            while pushed[(first + 1) % count] and first - edges[2 * i + 1] < third:
+                first += 1
+            while not pushed[first % count] and first > edges[2 * i]:
+                first -= 1
+            while pushed[(last - 1) % count] and edges[2 * i + 2] - last < third:
+                last -= 1
+            while not pushed[last % count] and last < edges[2 * i + 2] + seated[(i + 1) % stops]:
+                last += 1
+            ends.append((first, last))
+        self.begin = {name: ends[i][0] for i, name in enumerate(self.spans)}
+        self.links = {name: ends[i][1] - ends[i][0] for i, name in enumerate(self.spans)}
+        # Rollers at the stops on either side of a span, by the first and last roller of the span.
+        self.resting: dict[int, int] = {}
+        for i, (first, _) in enumerate(ends):
+            resting = (first - ends[i - 1][1]) % count + 1
+            self.resting[first % count] = self.resting[ends[i - 1][1] % count] = resting
 
     def free(self, span: str) -> NDArray[np.int64]:
         """Return the rollers between the stops of a span."""
@@ -68,7 +94,7 @@ class Stations:
         first = self.begin[span]
         last = first + self.links[span]
         ends = [self.rollers[first % count], self.rollers[last % count]]
-        left, reached = (self._wheel(index, centres) for index in (first, last))
+        left, reached = self._round(first, -1, centres), self._round(last, 1, centres)
         if left is None or reached is None:
             return ends[0], ends[1]
         (from_, radius1, sense1), (to, radius2, sense2) = left, reached
@@ -80,22 +106,44 @@ class Stations:
         normal = np.array([-np.sin(direction), np.cos(direction)])
         return from_ - sense1 * radius1 * normal, to - sense2 * radius2 * normal
 
-    def _wheel(
-        self, index: int, centres: dict[str, NDArray[np.float64]]
+    def length(self, span: str) -> float:
+        """Return the length of the line of a span at the start [m]."""
+        start, end = self.line(span, {})
+        return float(np.hypot(*(end - start)))
+
+    def _round(
+        self, index: int, before: int, centres: dict[str, NDArray[np.float64]]
     ) -> tuple[NDArray[np.float64], float, float] | None:
-        """Return centre, pitch radius and sense of the sprocket that a roller sits on."""
+        """Return centre, radius and sense of what the rollers rest on up to or from a roller.
+
+        `before` is −1 where the stop lies before the roller, 1 where it lies behind.
+        """
         count = len(self.rollers)
         place = self.rollers[index % count]
+        along = self.rollers[(index + 1) % count] - self.rollers[(index - 1) % count]
         for name in self.chain["sprockets"]:
             wheel = self.sprockets[name]
-            centre = np.asarray(wheel["centre"], dtype=float)
+            centre = np.asarray(wheel["centre"], dtype=float).ravel()
             radius = float(wheel["pitch_radius"])
             arm = place - centre
             if abs(np.hypot(*arm) - radius) < 0.05 * self.pitch:
-                along = self.rollers[(index + 1) % count] - self.rollers[(index - 1) % count]
                 sense = np.sign(arm[0] * along[1] - arm[1] * along[0])
                 return centres.get(name, centre), radius, float(sense)
-        return None
+        # On a guide: the circle through rollers that rest on it, but for the last, which hardly does.
+        behind = min(self.resting[index % count] - 2, 8)
+        if behind < 3:
+            return None
+        x, y = self.rollers[(index + before * np.arange(1, behind + 1)) % count].T
+        # x² + y² = 2 a x + 2 b y + c, the circle about (a, b), in pitches about the last roller
+        x, y = (x - place[0]) / self.pitch, (y - place[1]) / self.pitch
+        columns = np.column_stack([2 * x, 2 * y, np.ones_like(x)])
+        a, b, c = np.linalg.lstsq(columns, x * x + y * y)[0]
+        radius = self.pitch * float(np.sqrt(c + a * a + b * b))
+        if radius > _STRAIGHT * self.pitch:
+            return None
+        arm = -self.pitch * np.array([a, b])
+        sense = np.sign(arm[0] * along[1] - arm[1] * along[0])
+        return place - arm, radius, float(sense)
 
 
 def stations(source: Drive | xr.Dataset) -> Stations:
@@ -103,16 +151,37 @@ def stations(source: Drive | xr.Dataset) -> Stations:
     if isinstance(source, Drive):
         facts = source.describe()
         stops, spans = facts["stops"], facts["spans"]
-        return Stations(
-            source,
-            [int(stop["pitches"]) for stop in stops],
-            [int(span["pitches"]) for span in spans],
-            [str(span["name"]) for span in spans],
-        )
-    run = source
-    seated = np.atleast_1d(run.attrs["pitches_seated"]).tolist()
-    free = np.atleast_1d(run.attrs["pitches_in_spans"]).tolist()
-    return Stations(drive_of(run), seated, free, run["span"].to_numpy().tolist())
+        seated = [int(stop["pitches"]) for stop in stops]
+        free = [int(span["pitches"]) for span in spans]
+        names = [str(span["name"]) for span in spans]
+        return _kept(source, tuple(seated), tuple(free), tuple(names))
+    seated = [int(it) for it in np.atleast_1d(source.attrs["pitches_seated"])]
+    free = [int(it) for it in np.atleast_1d(source.attrs["pitches_in_spans"])]
+    names = [str(it) for it in drive_of(source).statics()["span"].to_numpy()]
+    return _kept(drive_of(source), tuple(seated), tuple(free), tuple(names))
+
+
+# To settle a drive takes longer than most of what is asked about it afterwards.
+@lru_cache(maxsize=4)
+def _kept(
+    drive: Drive, seated: tuple[int, ...], free: tuple[int, ...], spans: tuple[str, ...]
+) -> Stations:
+    return Stations(drive, list(seated), list(free), list(spans))
+
+
+def _pushed(drive: Drive, rollers: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return which rollers of a settled chain something pushes, (roller,)."""
+    scene = drive.resolved().to_dict()
+    if "mass" not in scene.get("chain", {}):
+        raise ParameterError("spans are looked at of a chain of particles", "chain.model")
+    tension = drive.statics()["link_tension"].isel(stage=-1).to_numpy()
+    links = np.roll(rollers, -1, axis=0) - rollers
+    pull = (tension / np.hypot(*links.T))[:, None] * links
+    weight = float(scene["chain"]["mass"]) * np.asarray(scene["gravity"], dtype=float)
+    # F = −(T_j t_j − T_{j−1} t_{j−1}) − m g
+    force = np.roll(pull, 1, axis=0) - pull - weight
+    pushed: NDArray[np.bool_] = np.hypot(*force.T) > _PUSHED * tension.max()
+    return pushed
 
 
 def span_lines(run: xr.Dataset) -> xr.Dataset:
