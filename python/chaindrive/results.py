@@ -73,6 +73,8 @@ def open_result(path: str | PathLike[str]) -> xr.Dataset:
 
 
 def _open(name: str) -> xr.Dataset:
+    import chaindrive.analysis.accessor  # noqa: F401  registers `run.drive`
+
     stored: xr.Dataset = xr.open_zarr(name, chunks=None)
     if stored.attrs.get("format") != "chaindrive" or "status" not in stored.attrs:
         raise ValueError(

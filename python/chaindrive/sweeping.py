@@ -282,6 +282,8 @@ def _made(recipe: _Recipe) -> _core.Sweep:
 
 
 def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:
+    import chaindrive.analysis.accessor  # noqa: F401  registers `run.drive`
+
     coordinates: dict[str, Any] = {}
     swept = [name for name, *_ in result["swept"]]
     for name, path, unit, values in result["swept"]:

@@ -1,0 +1,41 @@
+"""Analysis of runs: spectra, orders, running modes, transmission error, spans.
+
+Every function takes a run, the `xarray.Dataset` of `chaindrive.simulate`, and returns labelled
+arrays in SI units. The same functions are methods of ``run.drive``, see `accessor`. SciPy does the
+mathematics: the extra ``analysis``.
+
+    >>> import chaindrive as cd
+    >>> run = cd.simulate(cd.scenes.spinning_ring(), until=0.02, record=["link_tension"])
+    >>> run.drive.spectrum("link_tension", link=3).dims
+    ('frequency',)
+"""
+
+from chaindrive.analysis.orders import campbell, mesh_orders, order_map, order_slice, order_spectrum
+from chaindrive.analysis.ramps import run_up
+from chaindrive.analysis.running import moving_string, running_modes, span_frequencies
+from chaindrive.analysis.spans import span_envelope, span_lines, span_motion
+from chaindrive.analysis.spectra import peaks, spectrum
+from chaindrive.analysis.transmission import speed_ripple, transmission_error
+
+__all__ = [
+    "campbell",
+    "mesh_orders",
+    "moving_string",
+    "order_map",
+    "order_slice",
+    "order_spectrum",
+    "peaks",
+    "run_up",
+    "running_modes",
+    "span_envelope",
+    "span_frequencies",
+    "span_lines",
+    "span_motion",
+    "spectrum",
+    "speed_ripple",
+    "transmission_error",
+]
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

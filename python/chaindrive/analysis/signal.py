@@ -1,0 +1,99 @@
+"""A channel of a run as a uniform signal over time, and the turning of a shaft beside it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from chaindrive.drive import Drive, _from_text
+from chaindrive.errors import ParameterError
+
+__all__ = ["drive_of", "label", "recorded", "sample_rate", "signal", "turning"]
+
+
+def __dir__() -> list[str]:
+    return list(__all__)
+
+
+_NAMED = ("chain", "span", "sprocket", "shaft", "guide", "tensioner", "link", "roller", "joint")
+
+
+def recorded(run: xr.Dataset, *channels: str) -> None:
+    """Raise unless all of these channels were recorded."""
+    missing = [name for name in channels if name not in run]
+    if missing:
+        asked = ", ".join(repr(name) for name in missing)
+        raise ParameterError(
+            f"{', '.join(missing)} not in the run: simulate(…, record=[…, {asked}])", missing[0]
+        )
+
+
+def drive_of(run: xr.Dataset) -> Drive:
+    """Return the drive that a run was made of."""
+    return _from_text(run.attrs["scene"], run.attrs.get("scene_name", "scene"))
+
+
+def signal(run: xr.Dataset, channel: str | xr.DataArray, at: dict[str, Any]) -> xr.DataArray:
+    """Return a channel at the labels asked for, (…, time), or a signal over time as it is.
+
+    Raises
+    ------
+    ParameterError
+        The channel was not recorded, or a label does not exist.
+    """
+    if isinstance(channel, str):
+        recorded(run, channel)
+        chosen = run[channel]
+    else:
+        chosen = channel
+    for dim, wanted in at.items():
+        if dim not in chosen.dims:
+            held = ", ".join(map(str, chosen.dims))
+            raise ParameterError(f"{chosen.name} has no dimension {dim!r}: it has {held}", dim)
+        held = chosen[dim].to_numpy().tolist()
+        asked = wanted if isinstance(wanted, list | tuple) else [wanted]
+        strange = [it for it in asked if it not in held]
+        if strange:
+            listed = ", ".join(map(str, held[:12])) + (", …" if len(held) > 12 else "")
+            raise ParameterError(f"there is no {dim} {strange[0]!r}: there are {listed}", dim)
+    chosen = chosen.sel(at)
+    if "time" not in chosen.dims:
+        raise ParameterError(f"{chosen.name} is no signal over time", str(chosen.name))
+    return chosen.transpose(..., "time")
+
+
+def sample_rate(values: xr.DataArray) -> float:
+    """Return the samples a second [Hz] of a signal sampled at equal intervals."""
+    time = values["time"].to_numpy()
+    if time.size < 8:
+        raise ParameterError(f"{time.size} samples are too few: record at least 8", "time")
+    intervals = np.diff(time)
+    # The last sample stands where the run ended, up to a step behind its place.
+    mean = float(time[-2] - time[0]) / (time.size - 2)
+    if np.abs(intervals[:-1] - mean).max() > 1e-3 * mean:
+        raise ParameterError("the samples are not at equal intervals: interpolate first", "time")
+    return 1.0 / mean
+
+
+def turning(run: xr.Dataset, shaft: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the angle that a shaft or sprocket has turned by [rad], and its speed [rad/s].
+
+    Both (time,), positive in the direction in which it turns in the mean.
+    """
+    kind = "shaft" if "shaft" in run.dims and shaft in run["shaft"].to_numpy() else "sprocket"
+    name = f"{kind}_angle"
+    angle = signal(run, name, {kind: shaft}).to_numpy().astype(float)
+    angle = (angle - angle[0]) * (1.0 if angle[-1] >= angle[0] else -1.0)
+    return angle, np.gradient(angle, run["time"].to_numpy())
+
+
+def label(values: xr.DataArray) -> str:
+    """Return a short label of a signal: its channel, and what it was chosen at."""
+    name = str(values.name or "signal").replace("_", " ")
+    picked = [
+        str(it.to_numpy()) for dim, it in values.coords.items() if it.ndim == 0 and dim in _NAMED
+    ]
+    return ", ".join([name, *picked])
