@@ -1,4 +1,4 @@
-"""Analysis of runs: spectra, orders, running modes, transmission error, spans.
+"""Analysis of runs: spectra and modes, contacts and losses, wear and fatigue.
 
 Every function takes a run, the `xarray.Dataset` of `chaindrive.simulate`, and returns labelled
 arrays in SI units. The same functions are methods of ``run.drive``, see `accessor`. SciPy does the
@@ -10,21 +10,35 @@ mathematics: the extra ``analysis``.
     ('frequency',)
 """
 
+from chaindrive.analysis.around import tension_around_loop
+from chaindrive.analysis.dissipation import losses
+from chaindrive.analysis.duty import utilisation
+from chaindrive.analysis.elongation import wear, worn
+from chaindrive.analysis.engagement import decay, tooth_load
+from chaindrive.analysis.fatigue import cycles, rainflow
+from chaindrive.analysis.joints import joint_work
 from chaindrive.analysis.orders import campbell, mesh_orders, order_map, order_slice, order_spectrum
 from chaindrive.analysis.ramps import run_up
 from chaindrive.analysis.running import moving_string, running_modes, span_frequencies
+from chaindrive.analysis.seating import impacts
 from chaindrive.analysis.spans import span_envelope, span_lines, span_motion
 from chaindrive.analysis.spectra import peaks, spectrum
 from chaindrive.analysis.transmission import speed_ripple, transmission_error
 
 __all__ = [
     "campbell",
+    "cycles",
+    "decay",
+    "impacts",
+    "joint_work",
+    "losses",
     "mesh_orders",
     "moving_string",
     "order_map",
     "order_slice",
     "order_spectrum",
     "peaks",
+    "rainflow",
     "run_up",
     "running_modes",
     "span_envelope",
@@ -33,7 +47,12 @@ __all__ = [
     "span_motion",
     "spectrum",
     "speed_ripple",
+    "tension_around_loop",
+    "tooth_load",
     "transmission_error",
+    "utilisation",
+    "wear",
+    "worn",
 ]
 
 

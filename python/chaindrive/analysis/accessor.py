@@ -9,7 +9,21 @@ from typing import Any
 
 import xarray as xr
 
-from chaindrive.analysis import orders, running, spans, spectra, transmission
+from chaindrive.analysis import (
+    around,
+    dissipation,
+    duty,
+    elongation,
+    engagement,
+    fatigue,
+    joints,
+    orders,
+    running,
+    seating,
+    spans,
+    spectra,
+    transmission,
+)
 
 __all__ = ["DriveAccessor"]
 
@@ -68,3 +82,35 @@ class DriveAccessor:
     def span_motion(self, span: str, **options: Any) -> xr.DataArray:
         """See `chaindrive.analysis.span_motion`."""
         return spans.span_motion(self._run, span, **options)
+
+    def tension_around_loop(self, **options: Any) -> xr.Dataset:
+        """See `chaindrive.analysis.tension_around_loop`."""
+        return around.tension_around_loop(self._run, **options)
+
+    def tooth_load(self, sprocket: str, **options: Any) -> xr.Dataset:
+        """See `chaindrive.analysis.tooth_load`."""
+        return engagement.tooth_load(self._run, sprocket, **options)
+
+    def impacts(self, **options: Any) -> xr.Dataset:
+        """See `chaindrive.analysis.impacts`."""
+        return seating.impacts(self._run, **options)
+
+    def losses(self, **options: Any) -> xr.Dataset:
+        """See `chaindrive.analysis.losses`."""
+        return dissipation.losses(self._run, **options)
+
+    def joint_work(self, **options: Any) -> xr.Dataset:
+        """See `chaindrive.analysis.joint_work`."""
+        return joints.joint_work(self._run, **options)
+
+    def wear(self, **options: Any) -> xr.Dataset:
+        """See `chaindrive.analysis.wear`."""
+        return elongation.wear(self._run, **options)
+
+    def rainflow(self, **options: Any) -> xr.Dataset:
+        """See `chaindrive.analysis.rainflow`."""
+        return fatigue.rainflow(self._run, **options)
+
+    def utilisation(self, **options: Any) -> xr.Dataset:
+        """See `chaindrive.analysis.utilisation`."""
+        return duty.utilisation(self._run, **options)

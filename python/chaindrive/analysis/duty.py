@@ -1,0 +1,160 @@
+"""How far a drive is used: its loads over what its chain is made for."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from chaindrive.analysis.joints import joint_work
+from chaindrive.analysis.parts import one_chain, sprockets
+from chaindrive.analysis.seating import swing_speed
+from chaindrive.analysis.signal import recorded
+from chaindrive.errors import ParameterError
+
+__all__ = ["BEARING_PRESSURE", "ENDURANCE_FACTOR", "SEATING_SPEED", "STATIC_FACTOR", "utilisation"]
+
+STATIC_FACTOR = 7.0
+"""Breaking load over largest tension [–]: assumed, 7 is usual in the selection of chains."""
+ENDURANCE_FACTOR = 8.0
+"""Breaking load over the tension that recurs [–], below which plates do not tire."""
+BEARING_PRESSURE = 30e6
+"""Bearing pressure that oiled joints bear for long [Pa]: assumed."""
+SEATING_SPEED = 4.0
+"""Speed p ω at which rollers are seated that rollers and bushes bear for long [m/s]: assumed."""
+
+_RENOLD = "Renold, Transmission Chain Designer Guide: 8 : 1 keeps below the endurance limit"
+
+
+class _Check(NamedTuple):
+    name: str
+    value: float
+    limit: float
+    unit: str
+    source: str
+
+
+def utilisation(
+    run: xr.Dataset,
+    *,
+    chain: str | None = None,
+    breaking_load: float | None = None,
+    static_factor: float = STATIC_FACTOR,
+    endurance_factor: float = ENDURANCE_FACTOR,
+    bearing_pressure: float = BEARING_PRESSURE,
+    seating_speed: float = SEATING_SPEED,
+    pin_diameter: float | None = None,
+    bush_length: float | None = None,
+) -> xr.Dataset:
+    """Return loads of a run over what the chain is made for; above 1 is too much.
+
+    ========= ================================== ================================
+    check     load                               limit
+    ========= ================================== ================================
+    static    largest tension of a link          F_u / 7, assumed
+    endurance largest mean tension of a span     F_u / 8 (Renold)
+    pressure  mean bearing pressure of joints    30 MPa, assumed
+    seating   largest p ω of a sprocket          4 m/s, assumed
+    ========= ================================== ================================
+
+    F_u is the breaking load of the scene. Power ratings are not among them: the verdict of a run
+    says ``above-rating`` where the chain carries more than the formula of the American Chain
+    Association allows. What is assumed is a place to put limits of your own.
+
+    Parameters
+    ----------
+    run
+        A run as for `joint_work`, with ``span_tension`` and ``sprocket_angle``.
+    chain
+        Name of the chain, where there are several.
+    breaking_load
+        F_u [N]; that of the scene when absent.
+    static_factor, endurance_factor, bearing_pressure, seating_speed
+        Limits of your own.
+    pin_diameter, bush_length
+        As for `joint_work`.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``load``, ``limit``, ``utilisation``, ``unit`` and ``source`` (check,).
+
+    Raises
+    ------
+    ParameterError
+        A channel was not recorded, the breaking load is not known, or a limit is not positive.
+    """
+    recorded(run, "span_tension", "link_tension", "sprocket_angle")
+    for name, value in {
+        "static_factor": static_factor,
+        "endurance_factor": endurance_factor,
+        "bearing_pressure": bearing_pressure,
+        "seating_speed": seating_speed,
+    }.items():
+        if not value > 0.0:
+            raise ParameterError(f"{name} = {value}, must be positive", name)
+    which = one_chain(run, chain)
+    strength = breaking_load or which.scene.get("breaking_load")
+    if strength is None:
+        raise ParameterError(
+            f"{which.title} has no breaking load in its scene: give breaking_load= [N], "
+            "or name a chain of the catalogue, `type`",
+            "breaking_load",
+        )
+    own = slice(which.first, which.first + which.links)
+    spans = run["span_tension"]
+    if "span_chain" in run.coords and which.name:
+        spans = spans.isel(span=np.flatnonzero(run["span_chain"] == which.name))
+    work = joint_work(run, chain=chain, pin_diameter=pin_diameter, bush_length=bush_length)
+    pressure = float(work["load_work"].sum() / work["sliding"].sum()) / work.attrs["area"]
+    wheels = [it for it in sprockets(run).values() if it.chain.name == which.name]
+
+    def said(value: float, usual: float, source: str) -> str:
+        return source if math.isclose(value, usual) else "given"
+
+    assumed = "assumed"
+    checks = [
+        _Check(
+            "static",
+            float(run["link_tension"].isel(link=own).max()),
+            float(strength) / static_factor,
+            "N",
+            said(static_factor, STATIC_FACTOR, assumed),
+        ),
+        _Check(
+            "endurance",
+            float(spans.mean("time").max()),
+            float(strength) / endurance_factor,
+            "N",
+            said(endurance_factor, ENDURANCE_FACTOR, _RENOLD),
+        ),
+        _Check(
+            "pressure",
+            pressure,
+            bearing_pressure,
+            "Pa",
+            said(bearing_pressure, BEARING_PRESSURE, assumed),
+        ),
+        _Check(
+            "seating",
+            max((swing_speed(run, it) for it in wheels), default=0.0),
+            seating_speed,
+            "m/s",
+            said(seating_speed, SEATING_SPEED, assumed),
+        ),
+    ]
+    names, loads, limits, units, sources = zip(*checks, strict=True)
+    load, limit = np.asarray(loads), np.asarray(limits)
+    return xr.Dataset(
+        {
+            "load": ("check", load, {"long_name": "load"}),
+            "limit": ("check", limit, {"long_name": "limit"}),
+            "utilisation": ("check", load / limit, {"units": "1", "long_name": "utilisation"}),
+            "unit": ("check", np.asarray(units, dtype=np.str_), {"long_name": "unit"}),
+            "source": ("check", np.asarray(sources, dtype=np.str_), {"long_name": "source"}),
+        },
+        coords={"check": np.asarray(names, dtype=np.str_)},
+        attrs={"chain": which.name, "breaking_load": float(strength)},
+    )
