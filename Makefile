@@ -17,7 +17,7 @@ VERDICTS := $(abspath target/verdicts.jsonl)
 export PYO3_PYTHON := $(abspath $(BIN)/python)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check check-rust check-python test-rust test-python bench report estimates how-real validation validation-report docs clean
+.PHONY: help setup run test check check-rust check-python test-rust test-python bench report estimates how-real validation validation-report docs pages site wheels clean
 # A build that failed leaves no stamp behind.
 .DELETE_ON_ERROR:
 
@@ -77,6 +77,15 @@ validation-report: setup ## Run the tests that judge validation cases, and write
 docs: ## Build the reference of the Rust crates in target/doc
 	RUSTDOCFLAGS='-D warnings' cargo doc --workspace --no-deps
 
+pages: setup $(VENV)/site-ready docs ## Build the documentation in target/site; tutorials are run
+	rm -rf target/site
+	$(BIN)/sphinx-build -W --keep-going -q -d target/site-trees docs target/site
+	cp -r target/doc target/site/rust
+
+site: pages ## Build the documentation, and test its replays in a browser
+	$(BIN)/python tests/site/browser.py
+	$(BIN)/pytest tests/site
+
 clean: ## Remove everything that was built
 	rm -rf $(VENV) target results dist
 
@@ -89,6 +98,11 @@ $(VENV)/ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
 	$(BIN)/python -m pip install --quiet --group dev
+	@touch $@
+
+# Beside them, the tools of the documentation.
+$(VENV)/site-ready: $(VENV)/ready
+	$(BIN)/python -m pip install --quiet --group site
 	@touch $@
 
 # The wheel, as a user would get it. The stamp is as old as the start of the build: what changes
