@@ -82,9 +82,18 @@ pages: setup $(VENV)/site-ready docs ## Build the documentation in target/site; 
 	$(BIN)/sphinx-build -W --keep-going -q -d target/site-trees docs target/site
 	cp -r target/doc target/site/rust
 
-site: pages ## Build the documentation, and test its replays in a browser
-	$(BIN)/python tests/site/browser.py
+site: browser pages ## Build the documentation, and test replays in a browser
 	$(BIN)/pytest tests/site
+
+wheels: $(VENV)/wheels-ready ## Build a wheel for Linux and the source distribution in dist, and try them
+	rm -rf dist
+	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/maturin build --release --sdist --zig --compatibility manylinux2014 --out dist
+	$(BIN)/python tests/wheels/fresh.py dist
+
+.PHONY: browser
+browser:
+	@command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null || { \
+		echo "Chromium is missing, in which replays are tested: install the package chromium (Debian: apt-get install chromium), or build without the test: make pages" >&2; exit 1; }
 
 clean: ## Remove everything that was built
 	rm -rf $(VENV) target results dist
@@ -103,6 +112,11 @@ $(VENV)/ready: pyproject.toml
 # Beside them, the tools of the documentation.
 $(VENV)/site-ready: $(VENV)/ready
 	$(BIN)/python -m pip install --quiet --group site
+	@touch $@
+
+# Beside them, what links a wheel for old machines.
+$(VENV)/wheels-ready: $(VENV)/ready
+	$(BIN)/python -m pip install --quiet --group wheels
 	@touch $@
 
 # The wheel, as a user would get it. The stamp is as old as the start of the build: what changes

@@ -24,7 +24,8 @@ extensions = [
     "scene_reference",
     "validation_cases",
 ]
-exclude_patterns = ["_ext", "_static", "README.md"]
+# The description of the package is for its index.
+exclude_patterns = ["_ext", "_static", "package.md"]
 # Two hyphens are the beginning of an option here.
 smartquotes = False
 
