@@ -17,7 +17,7 @@ VERDICTS := $(abspath target/verdicts.jsonl)
 export PYO3_PYTHON := $(abspath $(BIN)/python)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check check-rust check-python test-rust test-python bench report estimates how-real validation validation-report docs clean
+.PHONY: help setup run test check check-rust check-python test-rust test-python bench report estimates how-real validation validation-report docs pages site wheels clean
 # A build that failed leaves no stamp behind.
 .DELETE_ON_ERROR:
 
@@ -77,6 +77,24 @@ validation-report: setup ## Run the tests that judge validation cases, and write
 docs: ## Build the reference of the Rust crates in target/doc
 	RUSTDOCFLAGS='-D warnings' cargo doc --workspace --no-deps
 
+pages: setup $(VENV)/site-ready docs ## Build the documentation in target/site; tutorials are run
+	rm -rf target/site
+	$(BIN)/sphinx-build -W --keep-going -q -d target/site-trees docs target/site
+	cp -r target/doc target/site/rust
+
+site: browser pages ## Build the documentation, and test replays in a browser
+	$(BIN)/pytest tests/site
+
+wheels: $(VENV)/wheels-ready ## Build a wheel for Linux and the source distribution in dist, and try them
+	rm -rf dist
+	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/maturin build --release --sdist --zig --compatibility manylinux2014 --out dist
+	$(BIN)/python tests/wheels/fresh.py dist
+
+.PHONY: browser
+browser:
+	@command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null || { \
+		echo "Chromium is missing, in which replays are tested: install the package chromium (Debian: apt-get install chromium), or build without the test: make pages" >&2; exit 1; }
+
 clean: ## Remove everything that was built
 	rm -rf $(VENV) target results dist
 
@@ -89,6 +107,16 @@ $(VENV)/ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
 	$(BIN)/python -m pip install --quiet --group dev
+	@touch $@
+
+# Beside them, the tools of the documentation.
+$(VENV)/site-ready: $(VENV)/ready
+	$(BIN)/python -m pip install --quiet --group site
+	@touch $@
+
+# Beside them, what links a wheel for old machines.
+$(VENV)/wheels-ready: $(VENV)/ready
+	$(BIN)/python -m pip install --quiet --group wheels
 	@touch $@
 
 # The wheel, as a user would get it. The stamp is as old as the start of the build: what changes

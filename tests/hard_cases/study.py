@@ -82,7 +82,7 @@ def main():
         ("Clearance joints", cases.CLEARANCE, judge.CLEARANCE_METHODS),
     ]:
         found = study(rows, methods, arguments.only)
-        parts.append(f"### {title}\n\n{table(rows, methods, found)}")
+        parts.append(f"## {title}\n\n{table(rows, methods, found)}")
     text = "\n\n".join(parts)
     if arguments.only:
         print(text)

@@ -47,6 +47,28 @@ def test_docstring_examples(name):
     assert failed == 0
 
 
+def test_description_of_the_package_stands_alone():
+    """A package index shows it without the files beside it, and the project has no address yet."""
+    text = (ROOT / "docs" / "package.md").read_text(encoding="utf-8")
+    targets = re.findall(r"\]\(([^)]*)\)", text)
+    assert all(target.startswith("https://") for target in targets), targets
+
+
+def test_pages_link_to_what_exists():
+    """Links of the README and of the documentation lead to files of the repository."""
+    pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
+    dead = []
+    for page in pages:
+        if page.parent.name == "scene":
+            continue  # made with the site, which checks its own links
+        for target in re.findall(r"\]\(([^)\s]+)\)", page.read_text(encoding="utf-8")):
+            place = target.split("#")[0]
+            made = "/scene/" in f"/{place}"
+            if place and not made and "://" not in place and not (page.parent / place).exists():
+                dead.append(f"{page.relative_to(ROOT)}: {target}")
+    assert not dead
+
+
 def test_tables_of_the_contact_laws_are_current():
     """The tables in docs/contact-laws.md are what examples/contact_laws.py computes now."""
     place = ROOT / "examples" / "contact_laws.py"

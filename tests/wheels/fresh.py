@@ -1,0 +1,70 @@
+"""Try the wheel of a folder in a fresh environment, the way a user gets it.
+
+    python tests/wheels/fresh.py dist
+
+Makes a virtual environment, installs the wheel with its extras, imports it, simulates a preset and
+calls the command. Needs nothing but Python; what the wheel depends on comes from the index of pip.
+"""
+
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+import venv
+from pathlib import Path
+
+SCRIPT = """
+import sys
+import chaindrive as cd
+
+assert "site-packages" in cd.__file__, cd.__file__
+run = cd.simulate(cd.scenes.industrial_16b(), until=0.01, every=1e-3, record="span_tension")
+tension = run["span_tension"]
+assert tension.shape[0] == 11 and bool((tension > 0).any()), tension
+print(f"chaindrive {cd.__version__} on Python {sys.version.split()[0]}: simulates")
+"""
+
+
+def newest(folder: Path) -> Path:
+    """Return the wheel of a folder that was built last."""
+    wheels = sorted(folder.glob("chaindrive-*.whl"), key=lambda wheel: wheel.stat().st_mtime)
+    if not wheels:
+        sys.exit(f"{folder} has no wheel of chaindrive")
+    return wheels[-1]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="Try a wheel in a fresh environment.")
+    parser.add_argument("folder", type=Path, help="folder with the wheel")
+    wheel = newest(parser.parse_args().folder).resolve()
+    with tempfile.TemporaryDirectory() as name:
+        place = Path(name)
+        venv.create(place / "env", with_pip=True)
+        scripts = place / "env" / ("Scripts" if os.name == "nt" else "bin")
+        python = scripts / "python"
+        # Nothing of the sources may be found by chance.
+        clean = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+
+        def call(*command: str | Path) -> str:
+            told = subprocess.run(
+                [str(part) for part in command],
+                cwd=place,
+                env=clean,
+                check=True,
+                stdout=subprocess.PIPE,
+                text=True,
+            )
+            return told.stdout.strip()
+
+        call(python, "-m", "pip", "install", "--quiet", f"{wheel}[plot,zarr]")
+        print(call(python, "-c", SCRIPT))
+        command = scripts / "chaindrive"
+        print(call(command, "--version"))
+        call(command, "run", "industrial_16b", "--until", "10ms", "-o", "out.zarr", "-q")
+        assert (place / "out.zarr").is_dir()
+        print(f"{wheel.name}: imported, simulated, and its command wrote a result")
+
+
+if __name__ == "__main__":
+    main()
