@@ -20,11 +20,14 @@ from typing import TYPE_CHECKING, Any
 from chaindrive._core import __version__ as __version__
 
 if TYPE_CHECKING:
+    from chaindrive import analysis as analysis
     from chaindrive import errors as errors
     from chaindrive import kinematics as kinematics
     from chaindrive import plot as plot
     from chaindrive import scenes as scenes
     from chaindrive import settings as settings
+    from chaindrive.analysis.elongation import worn as worn
+    from chaindrive.analysis.ramps import run_up as run_up
     from chaindrive.chain_catalogue import catalogue as catalogue
     from chaindrive.channel import Channel as Channel
     from chaindrive.channel import channels as channels
@@ -62,8 +65,10 @@ if TYPE_CHECKING:
 
 # What is imported when it is first asked for: xarray alone takes longer than all of a short
 # command. No name is that of a module that defines something else, which the import would hide.
-_MODULES = ("errors", "kinematics", "plot", "scenes", "settings")
+_MODULES = ("analysis", "errors", "kinematics", "plot", "scenes", "settings")
 _DEFINED_IN = {
+    "analysis.elongation": ("worn",),
+    "analysis.ramps": ("run_up",),
     "chain_catalogue": ("catalogue",),
     "channel": ("Channel", "channels"),
     "contact_law": ("Law", "law"),

@@ -15,6 +15,8 @@ _BRINGS = {
     "h5netcdf": "netcdf",
     "matplotlib": "plot",
     "pyarrow": "parquet",
+    "rainflow": "analysis",
+    "scipy": "analysis",
     "tqdm": "progress",
     "zarr": "zarr",
 }

@@ -6,10 +6,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from chaindrive.analysis.extras import needed
 from chaindrive.analysis.parts import circuits, one_chain
 from chaindrive.analysis.signal import recorded
 from chaindrive.errors import ParameterError
+from chaindrive.extras import extra
 
 __all__ = ["cycles", "rainflow"]
 
@@ -38,7 +38,9 @@ def cycles(values: ArrayLike) -> NDArray[np.float64]:
     >>> cycles([-2, 1, -3, 5, -1, 3, -4, 4, -2]).tolist()[0]
     [3.0, -0.5, 0.5]
     """
-    counted = needed("rainflow").extract_cycles(_turning_points(np.asarray(values, dtype=float)))
+    counted = extra("rainflow", "cycle counts").extract_cycles(
+        _turning_points(np.asarray(values, dtype=float))
+    )
     return np.array([cycle[:3] for cycle in counted], dtype=float).reshape(-1, 3)
 
 

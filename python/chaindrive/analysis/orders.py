@@ -9,10 +9,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from chaindrive.analysis.extras import needed
 from chaindrive.analysis.running import running_modes
 from chaindrive.analysis.signal import drive_of, label, sample_rate, signal, turning
 from chaindrive.errors import ParameterError
+from chaindrive.extras import extra
 
 __all__ = ["campbell", "mesh_orders", "order_map", "order_slice", "order_spectrum"]
 
@@ -291,7 +291,7 @@ def _over_angle(
     values: xr.DataArray, angle: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
     """Return revolutions at equal steps, the signal there, and the samples a revolution."""
-    cubic = needed("scipy.interpolate").CubicSpline
+    cubic = extra("scipy.interpolate", "order maps").CubicSpline
     steps = np.diff(angle)
     if (steps <= 0.0).any():
         raise ParameterError(
@@ -318,7 +318,7 @@ def _amplitudes(
     window: str,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return lines, and the amplitudes (window, line) of windows that begin at `starts`."""
-    weights = needed("scipy.signal").get_window(window, size)
+    weights = extra("scipy.signal", "order maps").get_window(window, size)
     amplitude = np.empty((starts.size, size // 2 + 1))
     for row, start in enumerate(starts):
         part = samples[start : start + size]

@@ -6,11 +6,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from chaindrive.analysis.extras import needed
 from chaindrive.analysis.signal import signal, turning
 from chaindrive.analysis.spans import Stations, stations
 from chaindrive.drive import Drive
 from chaindrive.errors import ParameterError
+from chaindrive.extras import extra
 
 __all__ = ["RunningChain", "RunningState", "samples_near"]
 
@@ -125,7 +125,7 @@ class RunningChain:
 
         `tension` is that of the links when the chain runs, by centrifugal forces when absent.
         """
-        linalg = needed("scipy.linalg")
+        linalg = extra("scipy.linalg", "modes of running chains")
         kept = self._square < (2 * np.pi * _BASIS * up_to) ** 2
         shapes, count = self._shapes[:, kept], int(np.count_nonzero(kept))
         gain = self.gained_tension(v) if tension is None else tension - self._static

@@ -8,9 +8,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from chaindrive.analysis.extras import needed
 from chaindrive.analysis.signal import label, sample_rate, signal
 from chaindrive.errors import ParameterError
+from chaindrive.extras import extra
 
 __all__ = ["peaks", "spectrum"]
 
@@ -70,7 +70,7 @@ def spectrum(
     G. Heinzel, A. Rüdiger, R. Schilling, *Spectrum and spectral density estimation by the
     discrete Fourier transform*, Max-Planck-Institut für Gravitationsphysik, 2002.
     """
-    scipy_signal = needed("scipy.signal")
+    scipy_signal = extra("scipy.signal", "spectra")
     values = signal(run, channel, at)
     values = values.isel(time=slice(int(np.searchsorted(values["time"], after)), None))
     rate = sample_rate(values)
@@ -141,7 +141,7 @@ def peaks(
     xarray.Dataset
         ``amplitude`` and ``frequency`` or ``order`` (peak,), the highest first.
     """
-    find_peaks = needed("scipy.signal").find_peaks
+    find_peaks = extra("scipy.signal", "spectra").find_peaks
     axis = over or str(spread.dims[-1])
     if spread.dims != (axis,):
         raise ParameterError(
