@@ -129,7 +129,7 @@ class Stations:
             if abs(np.hypot(*arm) - radius) < 0.05 * self.pitch:
                 sense = np.sign(arm[0] * along[1] - arm[1] * along[0])
                 return centres.get(name, centre), radius, float(sense)
-        # On a guide: the circle through rollers that rest on it, but for the last, which hardly does.
+        # On a guide: the circle through rollers that rest on it, but for the last: it hardly does.
         behind = min(self.resting[index % count] - 2, 8)
         if behind < 3:
             return None
