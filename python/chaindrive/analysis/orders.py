@@ -227,9 +227,13 @@ def campbell(
     starts = _starts(samples.size, size, overlap)
     line, amplitude = _amplitudes(samples, starts, size, rate, "hann")
     middle = (starts + 0.5 * size) / rate + float(values["time"][0])
-    time = run["time"].to_numpy()
-    _, speed_then = turning(run, shaft)
-    speed = np.interp(middle, time, speed_then)
+    # The mean speed of a window: the ripple within it is not what the abscissa shows.
+    angle, _ = turning(run, shaft)
+    begin, end = (
+        np.interp(middle + half * size / rate, run["time"].to_numpy(), angle)
+        for half in (-0.5, 0.5)
+    )
+    speed = (end - begin) * rate / size
     teeth = mesh_orders(run)
     chosen = list(orders) if orders is not None else [1.0, *_mesh_of(teeth, shaft)]
     top = up_to or min(0.5 * rate, 2.2 * max(chosen) * float(speed.max()) / (2 * np.pi))

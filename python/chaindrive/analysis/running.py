@@ -90,8 +90,10 @@ def span_frequencies(
     drive = drive_of(run)
     shaft = shaft or prescribed(drive, None)[1]
     near = samples_near(run, shaft, speed)
-    tension = signal(run, "span_tension", {}).isel(time=near).mean("time").to_numpy()
     chain = RunningChain(drive, run)
+    strands = signal(run, "span_tension", {}).isel(time=near).mean("time").to_numpy()
+    # A strand over a guide is one span to the run, and several to the eye.
+    tension = strands[[chain.places.strand(name) for name in chain.places.spans]]
     v = chain.speed(shaft, float(turning(run, shaft)[1][near].mean()))
     lines = span_lines(run)
     waves = np.arange(1, modes + 1)

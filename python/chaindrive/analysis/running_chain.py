@@ -109,7 +109,8 @@ class RunningChain:
         name = shaft if shaft in self.teeth else self._axles[shaft][0]
         angle = signal(run, "sprocket_angle", {"sprocket": name}).to_numpy()
         tension = signal(run, "link_tension", {}).transpose("time", "link").to_numpy()
-        passed = self.places.sense(name) * (angle - angle[0]) * self.teeth[name] / (2 * np.pi)
+        # Angles count from where the drive was assembled, before it was run in.
+        passed = self.places.sense(name) * angle * self.teeth[name] / (2 * np.pi)
         count = tension.shape[1]
         total = np.zeros(count)
         for row in np.flatnonzero(near):

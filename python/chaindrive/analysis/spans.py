@@ -111,6 +111,22 @@ class Stations:
         start, end = self.line(span, {})
         return float(np.hypot(*(end - start)))
 
+    def strand(self, span: str) -> int:
+        """Return which strand from sprocket to sprocket, in the order of the route, has a span."""
+        on_wheel = [self._sprocket(self.begin[name]) is not None for name in self.spans]
+        before = sum(on_wheel[: self.spans.index(span) + 1]) - 1
+        return before % max(sum(on_wheel), 1)
+
+    def _sprocket(self, index: int) -> str | None:
+        """Return the sprocket that a roller sits on."""
+        place = self.rollers[index % len(self.rollers)]
+        for name in self.chain["sprockets"]:
+            wheel = self.sprockets[name]
+            apart = np.hypot(*(place - np.ravel(wheel["centre"]))) - float(wheel["pitch_radius"])
+            if abs(apart) < 0.05 * self.pitch:
+                return str(name)
+        return None
+
     def _round(
         self, index: int, before: int, centres: dict[str, NDArray[np.float64]]
     ) -> tuple[NDArray[np.float64], float, float] | None:
@@ -121,15 +137,14 @@ class Stations:
         count = len(self.rollers)
         place = self.rollers[index % count]
         along = self.rollers[(index + 1) % count] - self.rollers[(index - 1) % count]
-        for name in self.chain["sprockets"]:
+        name = self._sprocket(index)
+        if name is not None:
             wheel = self.sprockets[name]
             centre = np.asarray(wheel["centre"], dtype=float).ravel()
-            radius = float(wheel["pitch_radius"])
             arm = place - centre
-            if abs(np.hypot(*arm) - radius) < 0.05 * self.pitch:
-                sense = np.sign(arm[0] * along[1] - arm[1] * along[0])
-                return centres.get(name, centre), radius, float(sense)
-        # On a guide: the circle through rollers that rest on it, but for the last: it hardly does.
+            sense = np.sign(arm[0] * along[1] - arm[1] * along[0])
+            return centres.get(name, centre), float(wheel["pitch_radius"]), float(sense)
+        # On a guide: the circle through rollers that rest on it; the last one hardly does.
         behind = min(self.resting[index % count] - 2, 8)
         if behind < 3:
             return None
