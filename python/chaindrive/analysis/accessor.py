@@ -47,15 +47,21 @@ class DriveAccessor:
     def __init__(self, run: xr.Dataset) -> None:
         self._run = run
 
-    def spectrum(self, channel: str, **options: Any) -> xr.DataArray:
+    def spectrum(self, channel: str | xr.DataArray, **options: Any) -> xr.DataArray:
         """See `chaindrive.analysis.spectrum`."""
         return spectra.spectrum(self._run, channel, **options)
 
-    def order_map(self, channel: str, shaft: str, **options: Any) -> xr.DataArray:
+    def order_map(self, channel: str | xr.DataArray, shaft: str, **options: Any) -> xr.DataArray:
         """See `chaindrive.analysis.order_map`."""
         return orders.order_map(self._run, channel, shaft, **options)
 
-    def campbell(self, channel: str, shaft: str, **options: Any) -> xr.Dataset:
+    def order_spectrum(
+        self, channel: str | xr.DataArray, shaft: str, **options: Any
+    ) -> xr.DataArray:
+        """See `chaindrive.analysis.order_spectrum`."""
+        return orders.order_spectrum(self._run, channel, shaft, **options)
+
+    def campbell(self, channel: str | xr.DataArray, shaft: str, **options: Any) -> xr.Dataset:
         """See `chaindrive.analysis.campbell`."""
         return orders.campbell(self._run, channel, shaft, **options)
 
@@ -67,13 +73,13 @@ class DriveAccessor:
         """See `chaindrive.analysis.span_frequencies`."""
         return running.span_frequencies(self._run, **options)
 
-    def transmission_error(self, driver: str, driven: str) -> xr.Dataset:
+    def transmission_error(self, driver: str, driven: str, **options: Any) -> xr.Dataset:
         """See `chaindrive.analysis.transmission_error`."""
-        return transmission.transmission_error(self._run, driver, driven)
+        return transmission.transmission_error(self._run, driver, driven, **options)
 
-    def speed_ripple(self) -> xr.Dataset:
+    def speed_ripple(self, **options: Any) -> xr.Dataset:
         """See `chaindrive.analysis.speed_ripple`."""
-        return transmission.speed_ripple(self._run)
+        return transmission.speed_ripple(self._run, **options)
 
     def span_envelope(self, span: str, **options: Any) -> xr.Dataset:
         """See `chaindrive.analysis.span_envelope`."""

@@ -1,0 +1,253 @@
+"""Spectra, orders, running modes, transmission error and spans against closed forms."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import chaindrive as cd
+from chaindrive import analysis
+
+TAU = 2.0 * np.pi
+
+
+@pytest.fixture(scope="module")
+def two_sprockets() -> xr.Dataset:
+    """Run a drive of two sprockets up in two seconds."""
+    drive = cd.scenes.marine_two_sprockets()
+    record = ["span_tension", "link_tension", "roller_x", "roller_y", "sprocket_speed"]
+    return cd.run_up(
+        drive,
+        "60 rpm",
+        "100 rpm",
+        until=2.0,
+        every="1 ms",
+        record=record,
+        error=False,
+        method="verlet",
+    )
+
+
+def signal(values: np.ndarray, time: np.ndarray, angle: np.ndarray | None = None) -> xr.Dataset:
+    """Make a run of one channel, and of the angle of a wheel."""
+    variables = {"span_tension": (("time", "span"), values[:, None], {"units": "N"})}
+    if angle is not None:
+        variables["sprocket_angle"] = (("time", "sprocket"), angle[:, None], {"units": "rad"})
+    return xr.Dataset(variables, coords={"time": time, "span": ["tight"], "sprocket": ["crank"]})
+
+
+def test_a_line_between_two_lines_keeps_its_place_and_height() -> None:
+    time = np.arange(4000) * 1e-3
+    run = signal(5.0 + 3.0 * np.sin(TAU * 101.137 * time + 0.4), time)
+    spread = analysis.spectrum(run, "span_tension", span="tight")
+    assert float(spread.max()) < 0.99 * 3.0
+    found = analysis.peaks(spread, count=1)
+    assert float(found["frequency"][0]) == pytest.approx(101.137, abs=0.05 * 0.25)
+    assert float(found["amplitude"][0]) == pytest.approx(3.0, rel=0.02)
+    assert spread.attrs["units"] == "N"
+
+
+def test_the_density_holds_the_variance() -> None:
+    time = np.arange(20000) * 1e-3
+    noise = np.random.default_rng(3).normal(scale=2.0, size=time.size)
+    spread = analysis.spectrum(
+        signal(noise, time), "span_tension", kind="density", segments=40, span="tight"
+    )
+    variance = float(spread.integrate("frequency"))
+    assert variance == pytest.approx(4.0, rel=0.03)
+    assert spread.attrs["units"] == "(N)²/Hz"
+
+
+def test_an_order_stands_still_while_the_speed_doubles() -> None:
+    time = np.arange(20000) * 5e-4
+    angle = -(20.0 * time + 1.0 * time**2)
+    run = signal(2.0 * np.sin(18 * angle) + np.sin(TAU * 90.0 * time), time, angle)
+    orders = analysis.order_map(run, "span_tension", "crank", turns=6, span="tight")
+    assert np.ptp(orders["speed"]) > 14.0
+    tops = orders.sel(order=slice(17, 19))
+    assert np.abs(tops["order"][tops.argmax("order")] - 18.0).max() < 0.1
+    np.testing.assert_allclose(tops.max("order"), 2.0, rtol=0.05)
+    whole = analysis.order_spectrum(run, "span_tension", "crank", span="tight")
+    mesh = analysis.peaks(whole, count=1)
+    assert float(mesh["order"][0]) == pytest.approx(18.0, rel=1e-3)
+    cut = analysis.order_slice(orders, 18)
+    np.testing.assert_allclose(cut["frequency"], 18 * cut["speed"] / TAU)
+
+
+def test_a_run_up_keeps_the_orders_of_the_crank() -> None:
+    drive = cd.scenes.marine_engine()
+    settings = {"until": 0.2, "every": 1e-3, "error": False, "method": "verlet"}
+    run = cd.run_up(drive, "100 rpm", "127 rpm", record="span_tension", **settings)
+    time = run["time"].to_numpy()
+    s = time / 0.2
+    start, change = 100 * TAU / 60, 27 * TAU / 60
+    smooth = start * time + change * 0.2 * (s**3 - 0.5 * s**4)
+    # The motion of the scene: orders 4 and 7, clockwise.
+    expected = -smooth + 0.2e-3 * np.sin(-4 * smooth) + 0.28e-3 * np.sin(-7 * smooth)
+    found = run["sprocket_angle"].sel(sprocket="crank")
+    np.testing.assert_allclose(found, expected, atol=2e-7)
+    np.testing.assert_allclose(run["speed"], start + change * s * s * (3 - 2 * s))
+    assert run.attrs["run_up"] == "crank"
+
+
+def test_a_run_up_says_what_it_cannot_do() -> None:
+    with pytest.raises(cd.ParameterError, match="nothing has none"):
+        cd.run_up(cd.scenes.spinning_ring(), 1.0, 2.0, until=1.0)
+    with pytest.raises(cd.ParameterError, match="the drive keeps its direction"):
+        cd.run_up(cd.scenes.marine_two_sprockets(), "-10 rpm", "20 rpm", until=1.0)
+
+
+@pytest.mark.parametrize("speed", [0.0, 5.0, 10.0, 20.0])
+def test_running_modes_are_those_of_moving_strings(speed: float) -> None:
+    """Theory: f = n (c² − v²) / (2 L c) between the tangent points, see R. Skutsch, 1897."""
+    drive = cd.scenes.marine_two_sprockets()
+    modes = analysis.running_modes(drive, speeds=speed, up_to=25.0)
+    chain = drive.describe()["chain"]
+    rho, v = chain["mass_per_length"], float(modes["chain_speed"][0])
+    assert v == pytest.approx(60 * 0.0889 * speed / TAU)
+    # Equal tangents: L² = D² − (r₁ − r₂)²
+    radii = [0.0889 / (2 * np.sin(np.pi / z)) for z in (60, 40)]
+    length = np.sqrt(2.7412651200728666**2 - (radii[0] - radii[1]) ** 2)
+    tensions = drive.statics()["span_tension"].isel(stage=-1)
+    # Fixed centres: the chain takes up 6 % of the centrifugal tension by its own stretch.
+    held = 0.0626 * rho * v * v
+    for span in ("crank-camshaft", "camshaft-crank"):
+        tension = float(tensions.sel(span=span)) + held
+        mine = modes["frequency"][0][modes["share"][0].sel(part=span) > 0.8]
+        for waves in (1, 2, 3):
+            string = analysis.moving_string(tension, rho, length, v, waves)
+            sag = 0.02 if (span, waves) == ("camshaft-crank", 1) else 0.01
+            assert float(mine[waves - 1]) == pytest.approx(string, rel=sag), (span, waves)
+    assert float(np.abs(modes["growth"]).max()) < 1e-6
+
+
+def test_a_moving_string_stands_still_at_its_wave_speed() -> None:
+    assert analysis.moving_string(400.0, 1.0, 2.0, 0.0) == pytest.approx(5.0)
+    assert analysis.moving_string(400.0, 1.0, 2.0, 20.0) == 0.0
+    assert analysis.moving_string(400.0, 1.0, 2.0, 10.0, 2) == pytest.approx(7.5)
+
+
+def test_shares_of_a_mode_add_up(two_sprockets: xr.Dataset) -> None:
+    modes = two_sprockets.drive.running_modes(speeds=[7.0, 9.0], up_to=20.0)
+    np.testing.assert_allclose(modes["share"].sum("part"), 1.0, atol=1e-9)
+    # What grows with the tension that was recorded does so in the strings too.
+    spans = two_sprockets.drive.span_frequencies(speed=9.0)
+    for span in ("crank-camshaft", "camshaft-crank"):
+        mine = modes["frequency"].sel(speed=9.0)[modes["share"].sel(speed=9.0, part=span) > 0.8]
+        string = float(spans["frequency"].sel(span=span, half_waves=2))
+        assert float(mine[1]) == pytest.approx(string, rel=0.02)
+
+
+def test_mesh_order_of_a_drive_that_runs_up(two_sprockets: xr.Dataset) -> None:
+    assert analysis.mesh_orders(two_sprockets) == {"crank": 60.0, "camshaft": 40.0}
+    motion = two_sprockets.drive.span_motion("crank-camshaft", places=0.37)
+    spread = two_sprockets.drive.order_spectrum(motion, "crank")
+    mesh = analysis.peaks(spread.sel(order=slice(40, 80)), count=1)
+    assert float(mesh["order"][0]) == pytest.approx(60.0, rel=5e-3)
+
+
+def test_transmission_error_of_a_polygon_is_the_kinematic_one(two_sprockets: xr.Dataset) -> None:
+    """The exact kinematics of two wheels put in place of what was computed."""
+    distance = 2.7412651200728666
+    tooth = TAU / 60
+    count = two_sprockets.sizes["time"]
+    driver = np.linspace(0.0, 20 * tooth, count)
+    action = cd.kinematics.polygon_action(
+        60, 40, 0.0889, distance, driver_angle=np.mod(driver, tooth)
+    )
+    driven = action["driven_angle"].to_numpy() + np.floor(driver / tooth) * TAU / 40
+    run = two_sprockets.copy()
+    run["sprocket_angle"] = (("time", "sprocket"), np.column_stack([driver, driven]))
+    found = analysis.transmission_error(run, "crank", "camshaft")
+    assert found.attrs["error_range"] == pytest.approx(found.attrs["kinematic_range"], rel=0.01)
+    assert float(abs(found["error"].mean())) < 1e-12
+
+
+def test_ripple_of_an_even_and_of_a_swinging_wheel(two_sprockets: xr.Dataset) -> None:
+    run = two_sprockets.copy()
+    time = run["time"].to_numpy()
+    speed = np.column_stack([np.full(time.size, -10.0), -15.0 - 0.3 * np.sin(TAU * 10 * time)])
+    run["sprocket_speed"] = (("time", "sprocket"), speed)
+    found = run.drive.speed_ripple()
+    np.testing.assert_allclose(found["irregularity"], [0.0, 0.6 / 15.0], rtol=1e-3)
+    np.testing.assert_allclose(found["rms_ripple"], [0.0, 0.3 / np.sqrt(2) / 15], rtol=1e-3)
+
+
+def test_motion_at_a_fixed_point_is_that_of_the_line(two_sprockets: xr.Dataset) -> None:
+    """Rollers that run along a line which swings: the point does not see which roller it is."""
+    run = two_sprockets.isel(time=slice(0, 400)).copy(deep=True)
+    time = run["time"].to_numpy()
+    line = analysis.span_lines(run).sel(span="crank-camshaft")
+    start = np.array([float(line["start_x"]), float(line["start_y"])])
+    d = np.array([float(line["end_x"]), float(line["end_y"])]) - start
+    length = float(np.hypot(*d))
+    assert length == pytest.approx(float(line["length"]))
+    d, n = d / length, np.array([-d[1], d[0]]) / length
+    along = np.arange(112)[None, :] * 0.0889 - 0.5 + np.mod(0.8 * time, 0.0889)[:, None]
+    swing = 2e-3 * np.sin(np.pi * along / length) * np.cos(TAU * 5 * time)[:, None]
+    swing[(along < 0) | (along > length)] = 0.0
+    run["roller_x"][:] = start[0] + along * d[0] + swing * n[0]
+    run["roller_y"][:] = start[1] + along * d[1] + swing * n[1]
+    motion = run.drive.span_motion("crank-camshaft", places=[0.25, 0.5])
+    expected = 2e-3 * np.outer(np.sin(np.pi * np.array([0.25, 0.5])), np.cos(TAU * 5 * time))
+    np.testing.assert_allclose(motion, expected, atol=3e-6)
+    envelope = run.drive.span_envelope("crank-camshaft", places=9)
+    assert float(envelope["greatest"].max()) == pytest.approx(2e-3, rel=0.01)
+    np.testing.assert_allclose(envelope["least"], -envelope["greatest"], atol=1e-5)
+
+
+def test_every_plot_names_its_axes(two_sprockets: xr.Dataset) -> None:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    run = two_sprockets.drive
+    orders = run.order_map("span_tension", "crank", turns=0.5, span="crank-camshaft")
+    diagram = run.campbell(
+        "span_tension", "crank", span="crank-camshaft", window_time=0.4, modes=False
+    )
+    drawn = [
+        cd.plot.spectrum(run.spectrum("span_tension")),
+        cd.plot.order_map(orders, up_to=150),
+        cd.plot.order_slice(analysis.order_slice(orders, 60)),
+        cd.plot.campbell(diagram),
+        cd.plot.transmission_error(run.transmission_error("crank", "camshaft")),
+        cd.plot.speed_ripple(run.speed_ripple()),
+        cd.plot.span_motion(run.span_motion("camshaft-crank", places=[0.25, 0.5])),
+        cd.plot.span_envelope(run.span_envelope("camshaft-crank")),
+        cd.plot.running_modes(run.running_modes(speeds=[7.0, 9.0], up_to=20.0)),
+    ]
+    for axes in drawn:
+        figure = axes.figure
+        figure.canvas.draw()
+        frame = figure.bbox
+        for text in (axes.xaxis.label, axes.yaxis.label, axes.title):
+            box = text.get_window_extent()
+            assert box.x0 >= frame.x0 - 1, text
+            assert box.y0 >= frame.y0 - 1, text
+            assert box.x1 <= frame.x1 + 1, text
+            assert box.y1 <= frame.y1 + 1, text
+        assert "[" in axes.get_ylabel()
+        pyplot.close(figure)
+
+
+def test_what_is_missing_is_named(two_sprockets: xr.Dataset) -> None:
+    with pytest.raises(cd.ParameterError, match="contact_force not in the run"):
+        two_sprockets.drive.spectrum("contact_force")
+    with pytest.raises(cd.ParameterError, match="there is no span 'top'"):
+        two_sprockets.drive.spectrum("span_tension", span="top")
+    with pytest.raises(cd.ParameterError, match="there is no span 'top'"):
+        two_sprockets.drive.span_motion("top")
+    with pytest.raises(cd.ParameterError, match="span left"):
+        two_sprockets.drive.order_map("span_tension", "crank", turns=0.5)
+    script = (
+        "import sys; sys.modules['scipy'] = None; sys.modules['scipy.signal'] = None\n"
+        "import chaindrive as cd\n"
+        "run = cd.simulate(cd.scenes.spinning_ring(), until=0.02, record='link_tension')\n"
+        "run.drive.spectrum('link_tension', link=3)"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert "take the package scipy: pip install 'chaindrive[analysis]'" in done.stderr
