@@ -1,4 +1,4 @@
-"""Plots: a drive, its chain at an instant, tensions over time, work against precision.
+"""Plots: a drive, its chain at an instant, and what a run or its analysis shows.
 
 Needs the extra ``plot`` (matplotlib). Every function draws into the axes it is given, or into
 new ones, and returns them; nothing is shown or saved.
@@ -8,8 +8,31 @@ from __future__ import annotations
 
 from chaindrive.plot.curves import tension, work_precision
 from chaindrive.plot.drive import frame, layout
+from chaindrive.plot.wear import (
+    elongation,
+    impacts,
+    joint_work,
+    losses,
+    rainflow,
+    tension_around_loop,
+    tooth_load,
+    utilisation,
+)
 
-__all__ = ["frame", "layout", "tension", "work_precision"]
+__all__ = [
+    "elongation",
+    "frame",
+    "impacts",
+    "joint_work",
+    "layout",
+    "losses",
+    "rainflow",
+    "tension",
+    "tension_around_loop",
+    "tooth_load",
+    "utilisation",
+    "work_precision",
+]
 
 
 def __dir__() -> list[str]:
