@@ -39,7 +39,7 @@ def industrial() -> xr.Dataset:
 @pytest.fixture(scope="module")
 def bicycle() -> xr.Dataset:
     more = ("joint_angle", "joint_force")
-    return run_of(cd.scenes.bicycle(), more, until=0.1, run_in=0.1, every=1e-4)
+    return run_of(cd.scenes.bicycle(), more, until=0.05, run_in=0.05, every=1e-4)
 
 
 # Tension around the loop.
@@ -256,6 +256,37 @@ def test_wear_goes_on_and_several_chains_are_told_apart():
         analysis.worn(cd.scenes.timing_drive(), 0.01)
     with pytest.raises(cd.ParameterError, match=r"0\.03 is 3 %"):
         analysis.worn(cd.scenes.bicycle(), 3.0)
+
+
+# Pictures.
+
+
+def test_pictures_have_labels_that_fit(industrial, monkeypatch):
+    """Every label stands inside its figure, and axes say what they show, with a unit."""
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    view = industrial.drive
+    for draw, result in [
+        (cd.plot.tension_around_loop, view.tension_around_loop()),
+        (cd.plot.tooth_load, view.tooth_load("driver")),
+        (cd.plot.impacts, view.impacts()),
+        (cd.plot.losses, view.losses()),
+        (cd.plot.joint_work, view.joint_work()),
+        (cd.plot.elongation, view.wear()),
+        (cd.plot.rainflow, view.rainflow()),
+        (cd.plot.utilisation, view.utilisation()),
+    ]:
+        ax = draw(result)
+        figure = ax.get_figure()
+        figure.canvas.draw()
+        inside = figure.bbox
+        tight = figure.get_tightbbox().transformed(figure.dpi_scale_trans)
+        assert inside.x0 - 1 <= tight.x0, draw.__name__
+        assert tight.x1 <= inside.x1 + 1, draw.__name__
+        assert inside.y0 - 1 <= tight.y0, draw.__name__
+        assert tight.y1 <= inside.y1 + 1, draw.__name__
+        assert "[" in ax.get_xlabel() or ax.get_xlabel() == "joint", draw.__name__
+        pyplot.close(figure)
 
 
 # Fatigue.

@@ -1,4 +1,4 @@
-"""Plots: a drive, its chain at an instant, tensions, spectra and orders, work against precision.
+"""Plots: a drive, its chain at an instant, and what a run or its analysis shows.
 
 Needs the extra ``plot`` (matplotlib). Every function draws into the axes it is given, or into
 new ones, and returns them; nothing is shown or saved.
@@ -19,20 +19,38 @@ from chaindrive.plot.spectra import (
     speed_ripple,
     transmission_error,
 )
+from chaindrive.plot.wear import (
+    elongation,
+    impacts,
+    joint_work,
+    losses,
+    rainflow,
+    tension_around_loop,
+    tooth_load,
+    utilisation,
+)
 
 __all__ = [
     "campbell",
+    "elongation",
     "frame",
+    "impacts",
+    "joint_work",
     "layout",
+    "losses",
     "order_map",
     "order_slice",
+    "rainflow",
     "running_modes",
     "span_envelope",
     "span_motion",
     "spectrum",
     "speed_ripple",
     "tension",
+    "tension_around_loop",
+    "tooth_load",
     "transmission_error",
+    "utilisation",
     "work_precision",
 ]
 
