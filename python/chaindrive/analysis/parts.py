@@ -13,7 +13,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from chaindrive.analysis.signal import recorded
-from chaindrive.catalogue import catalogue
+from chaindrive.chain_catalogue import catalogue
 from chaindrive.errors import ParameterError
 
 __all__ = [
