@@ -26,8 +26,8 @@ extensions = [
 ]
 # The description of the package is for its index.
 exclude_patterns = ["_ext", "_static", "package.md"]
-# Two hyphens are the beginning of an option here.
-smartquotes = False
+# Two hyphens between words are a dash; quotation marks stay as they are.
+smartquotes_action = "D"
 
 # Tutorials are run while the site is built, and an error in one fails the build. CHAINDRIVE_PAGES
 # can be "off", for whoever writes text, and "cache", which runs what was edited.

@@ -1,4 +1,4 @@
-"""What numbers and arrays have in common: broadcast, computed flat, given their shape back."""
+"""Numbers and arrays alike: broadcast, computed flat, given their shape back."""
 
 from __future__ import annotations
 

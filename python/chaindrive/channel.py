@@ -1,4 +1,4 @@
-"""What a run can record."""
+"""Channels: the quantities that a run can record."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ _GEOMETRY = ("hole", "pin", "radius", "other", "curvature", "depth_cap", "length
 
 
 class Response(NamedTuple):
-    """What a contact answers to an approach."""
+    """Force of a contact under an approach, and its derivatives."""
 
     force: Values
     """Normal force [N], compressive, never negative."""

@@ -16,7 +16,7 @@ class Row(NamedTuple):
     """One kind of part."""
 
     kind: str
-    """What the parts are, in the plural."""
+    """Name of the parts, in the plural."""
     parts: list[str]
     """Every part in a few words."""
 

@@ -61,7 +61,7 @@ class Drive:
         text
             The scene.
         name
-            What messages call it.
+            Name of the scene in messages.
 
         Raises
         ------
@@ -81,7 +81,7 @@ class Drive:
             scalars stand for lists and numbers, so that a measured motion or profile can be put
             in as it is.
         name
-            What messages call it.
+            Name of the scene in messages.
 
         Raises
         ------
@@ -130,12 +130,12 @@ class Drive:
 
     @property
     def name(self) -> str:
-        """What messages call the drive: its file or preset."""
+        """Name of the drive in messages: its file or preset."""
         return self._inner.name
 
     @property
     def title(self) -> str:
-        """What the scene shows, in a line; may be empty."""
+        """Title of the scene, in a line; may be empty."""
         return self._inner.title
 
     @property
@@ -175,7 +175,7 @@ class Drive:
 
     @property
     def run_defaults(self) -> dict[str, Any]:
-        """What `simulate` does unless told otherwise: the values of its settings, by name."""
+        """Settings that `simulate` takes unless others are given, by name."""
         return self._inner.run_defaults()
 
     def to_dict(self) -> dict[str, Any]:
@@ -378,9 +378,9 @@ class Difference(NamedTuple):
     path: str
     """Place in the scenes, with entries of lists by name."""
     first: str | None
-    """What the first drive has there, in SI units; None for nothing."""
+    """Value of the first drive, in SI units; None for nothing."""
     second: str | None
-    """What the second drive has there."""
+    """Value of the second drive, likewise."""
 
 
 def diff(

@@ -35,9 +35,9 @@ class Problem(NamedTuple):
     line: int | None
     """Line of the text, counted from 1; None in JSON, which carries no lines."""
     message: str
-    """What is wrong, with the offending value."""
+    """The mistake, with the offending value."""
     hint: str | None
-    """What is allowed, or what to try."""
+    """The values that are allowed, or something to try."""
 
 
 class ChaindriveError(Exception):
@@ -48,7 +48,7 @@ class ChaindriveError(Exception):
     path : str or None
         The place: a path in a scene, a parameter, a file.
     hint : str or None
-        What is allowed, or what to try.
+        The values that are allowed, or something to try.
     """
 
     path: str | None

@@ -30,7 +30,7 @@ def extra(module: str, what: str) -> Any:
     module
         The module: ``"matplotlib.pyplot"``.
     what
-        What takes it, as the subject of a sentence in the plural: ``"plots"``.
+        The feature that takes it, as the subject of a sentence in the plural: ``"plots"``.
 
     Raises
     ------

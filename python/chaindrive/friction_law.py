@@ -16,7 +16,7 @@ __all__ = ["Friction", "Rub", "friction"]
 
 
 class Rub(NamedTuple):
-    """What a rubbing contact answers over a step."""
+    """Force and state of a rubbing contact over a step."""
 
     force: Values
     """Tangential force [N] at the end of the step; opposes the slip."""

@@ -31,7 +31,7 @@ class Simulation:
     Parameters
     ----------
     drive
-        What moves.
+        The drive to move.
     run_in, method, step, tolerance, onset_depth, accuracy, accuracy_of
         As in `simulate`, but for one thing: method and step are chosen for an accuracy only where
         one is asked for, here or in the scene.

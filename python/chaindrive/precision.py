@@ -1,4 +1,4 @@
-"""What methods and steps cost, and how exact they are."""
+"""Cost and error of methods and steps."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def work_precision(
     Parameters
     ----------
     drive
-        What to simulate.
+        The drive to simulate.
     methods
         Names of methods, see `simulate`; empty for the usual ones with the usual steps.
     steps

@@ -25,7 +25,7 @@ def told(
     progress
         True for a bar, in a terminal or a notebook, and nothing in a pipe.
     what
-        What is done, as the bar shall call it.
+        Name of the work, as the bar shows it.
     """
     if callable(progress) or not progress:
         yield progress if callable(progress) else None

@@ -25,10 +25,10 @@ def open_result(path: str | PathLike[str]) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        What `simulate` and `sweep` return, read from the store on demand. Its attribute ``status``
-        is ``"complete"``, ``"running"`` while a process writes it, ``"interrupted"``,
-        ``"failed"``, with the reason in ``failure``, or ``"killed"``: the process that wrote it is
-        gone without a word.
+        The dataset that `simulate` or `sweep` returned, read from the store on demand. Its
+        attribute ``status`` is ``"complete"``, ``"running"`` while a process writes it,
+        ``"interrupted"``, ``"failed"``, with the reason in ``failure``, or ``"killed"``: the
+        process that wrote it is gone without a word.
 
     Raises
     ------

@@ -58,12 +58,12 @@ def simulate(
     Parameters
     ----------
     drive
-        What to simulate.
+        The drive to simulate.
     until
         End of the run [s], or a text with a unit, as all quantities here may be. This and the next
         nine come from the scene when absent.
     run_in
-        What is simulated before t = 0, so that the record begins where the motion is steady: a time
+        Time simulated before t = 0, so that the record begins where the motion is steady: seconds
         [s], turns of a sprocket (``"5 turns"`` of the first one, ``"5 turns of camshaft"``), or
         ``"auto"``: until the tension of every span is steady, at most 32 circuits of the chain.
     every
@@ -91,7 +91,7 @@ def simulate(
         when neither the scene nor the caller gives one of them or a tolerance: unlike `sweep`,
         which chooses only where it is asked to. Not together with these.
     accuracy_of
-        What the accuracy is one of: ``"tension"``, which it is by default, or ``"losses"``, and
+        Quantity to which the accuracy applies: ``"tension"``, the default, or ``"losses"``, and
         with them the efficiency.
     events
         Contacts to log from touch to parting: of ``"teeth"``, ``"guides"``, ``"joints"``.

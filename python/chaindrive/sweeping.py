@@ -22,7 +22,7 @@ from chaindrive.simulation import _listed
 __all__ = ["sweep"]
 
 _Recipe: TypeAlias = tuple[str, str, tuple[tuple[str, tuple[str, ...]], ...], tuple[str, ...]]
-"""What a sweep is made of: text and name of the scene, paths with values as JSON, channels."""
+"""Parts of a sweep: text and name of the scene, paths with values as JSON, channels."""
 
 # An executor gets so many chunks that its workers end at about the same time.
 _CHUNKS = 128
@@ -56,7 +56,7 @@ def sweep(
     Parameters
     ----------
     drive
-        What is varied.
+        The drive to vary.
     vary
         Values by dotted path, see `Drive.replace`; the last path varies fastest. Values are numbers
         in SI units, texts with units, or whatever else stands at the path: a list, an array

@@ -20,14 +20,14 @@ pub(crate) struct SceneArguments {
     set: Vec<String>,
 }
 
-/// What to run; absent settings are those of the scene.
+/// Settings of a run; absent ones are those of the scene.
 #[derive(Debug, Default, Args)]
 pub(crate) struct RunArguments {
     /// End of the run, such as "1 s" or 1
     #[arg(long, value_name = "TIME")]
     until: Option<String>,
 
-    /// What is simulated before t = 0: a time, turns of a sprocket such as "5 turns of camshaft", or auto, until the
+    /// Time simulated before t = 0: seconds, turns of a sprocket such as "5 turns of camshaft", or auto, until the
     /// tensions are steady
     #[arg(long, value_name = "TIME|TURNS|auto")]
     run_in: Option<String>,

@@ -28,7 +28,7 @@ pub(crate) struct Diff {
     #[arg(value_name = "SCENE|PRESET|RESULT")]
     first: String,
 
-    /// What to compare it with
+    /// The other scene, preset or result
     #[arg(value_name = "SCENE|PRESET|RESULT")]
     second: String,
 }

@@ -17,8 +17,8 @@ pub(crate) struct Chain {
     /// Name in the catalogue, such as "16B-1"; whatever is absent below comes from there.
     #[serde(default, rename = "type")]
     pub(crate) of_type: Option<String>,
-    /// What it is made of; absent: particles, and all below from `rollers` to `roller`, but for what `joint` says of friction and
-    /// damping, is for rigid links and free rollers only.
+    /// Model of the chain; absent: particles. The keys from `rollers` to `roller`, but for friction and damping in `joint`, are for
+    /// rigid links and free rollers only.
     #[serde(default)]
     pub(crate) model: ChainModel,
     /// Nominal pitch [m]: what the sprockets are cut for.
@@ -106,7 +106,7 @@ pub(crate) struct Chain {
     /// Rollers on their bushes.
     #[serde(default)]
     pub(crate) roller: Option<Roller>,
-    /// What happens at the first and last roller: this makes the chain an open strand.
+    /// Conditions at the first and last roller: they make the chain an open strand.
     #[serde(default)]
     pub(crate) ends: Option<[End; 2]>,
     /// Where the chain lies at the start; absent: along the route.
@@ -151,7 +151,7 @@ pub(crate) struct Scatter {
     pub(crate) seed: u32,
 }
 
-/// What happens at one end of an open strand.
+/// Condition at one end of an open strand.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum End {

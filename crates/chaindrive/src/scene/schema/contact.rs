@@ -15,7 +15,7 @@ pub(crate) struct Contacts {
     /// Contact of rollers with teeth.
     #[serde(default)]
     pub(crate) teeth: Contact,
-    /// What is different on the flanks of all teeth; absent: nothing, but for rigid links that leave the
+    /// Differences on the flanks of all teeth; absent: none, but for rigid links that leave the
     /// law of their teeth open, where seat and flank follow from their own curvatures.
     #[serde(default)]
     pub(crate) flanks: Option<Flank>,

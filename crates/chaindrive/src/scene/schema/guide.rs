@@ -21,7 +21,7 @@ pub(crate) struct Guide {
     /// Which part of the chain touches it; absent: the rollers.
     #[serde(default)]
     pub(crate) touches: Touches,
-    /// What holds it; absent: bolted to the frame.
+    /// Its support; absent: bolted to the frame.
     #[serde(default)]
     pub(crate) support: Option<GuideSupport>,
     /// Contact with the chain, where it differs from `contact.guides`.
@@ -88,7 +88,7 @@ pub(crate) enum TravelSide {
     Right,
 }
 
-/// What holds a guide.
+/// Support of a guide.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum GuideSupport {

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::Contact;
 use crate::scene::quantity::{AngularDamping, Inertia, Length, Mass};
 
-/// What the chain is made of.
+/// Model of a chain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum ChainModel {

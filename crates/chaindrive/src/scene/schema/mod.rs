@@ -55,7 +55,7 @@ pub(crate) struct SceneText {
     /// Version whose defaults hold for whatever the scene leaves open; absent: the present one.
     #[serde(default, skip_serializing)]
     pub(crate) defaults: Option<Version>,
-    /// What the scene shows, in a line.
+    /// Title of the scene, in a line.
     #[serde(default)]
     pub(crate) title: String,
     /// Acceleration of gravity (x, y) [m/s²]; absent: 9.81 m/s² downward.
@@ -87,7 +87,7 @@ pub(crate) struct SceneText {
     #[serde(default)]
     #[schemars(extend("maxItems" = 1000))]
     pub(crate) tensioners: Vec<Tensioner>,
-    /// What turns, where a sprocket does not turn by itself.
+    /// Shafts, where a sprocket does not turn by itself.
     #[serde(default)]
     #[schemars(extend("maxItems" = 1000))]
     pub(crate) shafts: Vec<Shaft>,
@@ -102,7 +102,7 @@ pub(crate) struct SceneText {
     /// How a closed chain lies around its sprockets; absent: around all sprockets, in file order.
     #[serde(default)]
     pub(crate) route: Option<Route>,
-    /// What the front ends run and record unless told otherwise.
+    /// Settings of a run and channels to record, unless the caller gives others.
     #[serde(default)]
     pub(crate) run: Run,
 }

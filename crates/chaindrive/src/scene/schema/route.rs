@@ -31,12 +31,12 @@ pub(crate) struct Route {
     /// How the spans set off; absent: quiet.
     #[serde(default)]
     pub(crate) start: Option<SpanStart>,
-    /// What is moved until the links close without stress; absent: nothing.
+    /// The body that is moved until the links close without stress; absent: none.
     #[serde(default)]
     pub(crate) adjust: Option<Adjust>,
 }
 
-/// What is moved until the given number of links closes without stress.
+/// The body that is moved until the given number of links closes without stress.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum Adjust {

@@ -10,7 +10,7 @@ use crate::precision::Quantity;
 use crate::scene::quantity::{Length, Ratio, Time};
 use crate::{RunIn, Stepping};
 
-/// What a front end runs and records unless told otherwise.
+/// Settings of a run and channels to record, unless the caller gives others.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[expect(clippy::struct_field_names, reason = "a run-in is called so in scenes")]
@@ -19,7 +19,7 @@ pub(crate) struct Run {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) until: Option<Time>,
-    /// What is simulated before t = 0, so that the record begins where the motion is steady: a time [s], turns of a
+    /// Time simulated before t = 0, so that the record begins where the motion is steady: seconds [s], turns of a
     /// sprocket ("5 turns" of the first one, "5 turns of camshaft"), or "auto"; absent: nothing.
     #[serde(default)]
     pub(crate) run_in: Option<RunInText>,
@@ -65,7 +65,7 @@ pub(crate) struct Run {
 #[serde(try_from = "Written", into = "Written")]
 pub(crate) struct RunInText(pub(crate) RunIn);
 
-/// What stands in a scene.
+/// A run-in as a scene writes it.
 #[derive(Deserialize, Serialize)]
 #[serde(untagged)]
 enum Written {
@@ -145,12 +145,12 @@ impl Run {
     }
 }
 
-/// What a scene suggests to run and record.
+/// Settings and channels that a scene suggests.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RunDefaults {
     /// Duration of the run \[s\].
     pub until: Option<f64>,
-    /// What is simulated before t = 0.
+    /// Time simulated before t = 0.
     pub run_in: RunIn,
     /// Time between two samples \[s\].
     pub every: Option<f64>,

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{Motion, Torque};
 use crate::scene::quantity::{Angle, AngularDamping, AngularSpeed, AngularStiffness, Inertia};
 
-/// What turns about one axis: it carries sprockets of any chains, rigidly, or none, such as a wheel behind a coupling.
+/// A body that turns about one axis: it carries sprockets of any chains, rigidly, or none, such as a wheel behind a coupling.
 ///
 /// A sprocket that no shaft names has a shaft of its own, which its `motion`, `drive`, `load` and `inertia` mean.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]

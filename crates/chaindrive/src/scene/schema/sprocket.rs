@@ -50,13 +50,13 @@ pub(crate) struct Sprocket {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) mass: Option<Mass>,
-    /// What holds the centre; absent: a fixed bearing.
+    /// Support of the centre; absent: a fixed bearing.
     #[serde(default)]
     pub(crate) support: Option<Support>,
     /// Contact with the rollers, where it differs from `contact.teeth`.
     #[serde(default)]
     pub(crate) contact: Contact,
-    /// What is different on the flanks of the teeth, instead of `contact.flanks`.
+    /// Differences on the flanks of the teeth, instead of `contact.flanks`.
     #[serde(default)]
     pub(crate) flank: Option<Flank>,
     /// Angle of one tooth gap [rad], for a wheel that no route passes; absent: 90°, upward.
@@ -217,7 +217,7 @@ pub(crate) enum PathPiece {
     },
 }
 
-/// What holds the centre of a sprocket.
+/// Support of the centre of a sprocket.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum Support {

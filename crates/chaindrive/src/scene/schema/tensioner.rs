@@ -16,7 +16,7 @@ pub(crate) struct Tensioner {
     pub(crate) name: String,
     /// How it moves.
     pub(crate) carrier: Carrier,
-    /// What pushes it.
+    /// Its push.
     pub(crate) push: Push,
 }
 
@@ -68,7 +68,7 @@ pub(crate) struct Plunger {
     pub(crate) direction: [Ratio; 2],
 }
 
-/// What pushes a tensioner.
+/// Push of a tensioner.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum Push {
