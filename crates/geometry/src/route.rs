@@ -241,6 +241,22 @@ impl Route {
         straight + wrapped
     }
 
+    /// How the route grows when a wheel moves, its gradient by the centre \[–\]: the direction of the greatest effect.
+    ///
+    /// ```text
+    /// dL/dc_i = u_in − u_out        |dL/dc_i| = 2 sin(w_i / 2)
+    /// ```
+    ///
+    /// A chain under tension T pulls the wheel the other way, with T times this.
+    ///
+    /// # Panics
+    /// There is no such wheel.
+    pub fn lengthening(&self, wheel: usize) -> Vector {
+        let arriving = &self.spans[(wheel + self.spans.len() - 1) % self.spans.len()];
+        // dL/dc_i = u_in − u_out
+        arriving.along() - self.spans[wheel].along()
+    }
+
     /// Length of the smooth curve, Σ L + Σ w R \[m\]: longer than [`pitches`](Self::pitches) × pitch.
     pub fn length(&self) -> f64 {
         let straight: f64 = self.spans.iter().map(|span| span.length).sum();

@@ -1,6 +1,9 @@
 //! What makes a chain of given length close: its strain, or a motion of the wheels.
 
 use super::Closing;
+use super::nearest::{Outcome, Search, outward};
+use crate::error::Remedy;
+use crate::route::WheelKind;
 use crate::{GeometryError, Route, Wheel};
 
 /// Slack or shortness beyond which a chain is the wrong one rather than a strained one, in pitches.
@@ -105,7 +108,7 @@ pub fn closing_strains(
 }
 
 /// Root of a function between two places of opposite sign, with what else it returned there.
-fn bisect<T>(
+pub(super) fn bisect<T>(
     trial: &mut impl FnMut(f64) -> Result<(f64, T), GeometryError>,
     (mut low, mut high): (f64, f64),
 ) -> Result<Option<(f64, T)>, GeometryError> {
@@ -142,13 +145,14 @@ fn bisect<T>(
     Ok(Some((best.1, best.2)))
 }
 
-/// The message for a designer: how far off, and which counts fit better.
-fn does_not_close(
+/// The message for a designer: how far off, which counts fit better, and where a wheel would have to stand.
+pub(super) fn does_not_close(
     wheels: &[Wheel],
     pitch: f64,
     links: u32,
 ) -> Result<GeometryError, GeometryError> {
-    let taut = Route::taut(wheels)?.pitches(pitch);
+    let route = Route::taut(wheels)?;
+    let taut = route.pitches(pitch);
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -164,5 +168,43 @@ fn does_not_close(
         short: (taut - f64::from(below)) * pitch,
         above,
         long: (f64::from(above) - taut) * pitch,
+        remedy: remedy(&route, pitch, links).map(Box::new),
     })
+}
+
+/// The wheel behind the first one that has the greatest effect, where the links asked for close; of two, along the line of
+/// centres.
+fn remedy(route: &Route, pitch: f64, links: u32) -> Option<Remedy> {
+    let wheels = &route.wheels;
+    let toothed = |wheel: &Wheel| matches!(wheel.kind, WheelKind::Toothed { .. });
+    let effect = |wheel: usize| route.lengthening(wheel).norm();
+    let candidates = (1..wheels.len()).filter(|&wheel| toothed(&wheels[wheel]));
+    let wheel = candidates.max_by(|&i, &j| effect(i).total_cmp(&effect(j)))?;
+    let two = wheels.len() == 2;
+    let direction = if two {
+        wheels[1].centre - wheels[0].centre
+    } else {
+        route.lengthening(wheel)
+    };
+    let direction = direction.try_normalize(0.0)?;
+    let mut moving = |travel: f64| {
+        let mut wheels = wheels.clone();
+        wheels[wheel].centre += direction * travel;
+        wheels
+    };
+    let missing = (f64::from(links) - route.pitches(pitch)).abs() * pitch;
+    let search = Search {
+        start: 0.0,
+        step: 0.25 * pitch,
+        within: 4.0 * missing + pitch,
+    };
+    match outward(pitch, links, 0.5, &mut moving, search).ok()? {
+        Outcome::Closes(travel, moved, _) => Some(Remedy {
+            wheel,
+            travel,
+            centre: moved[wheel].centre,
+            centre_distance: two.then(|| (moved[1].centre - moved[0].centre).norm()),
+        }),
+        Outcome::Nearest(_) => None,
+    }
 }
