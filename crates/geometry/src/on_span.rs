@@ -175,7 +175,10 @@ impl IdlerByWrap {
             match wrap(high) {
                 Some(angle) if angle < self.wrap => {
                     (low, reached) = (high, angle);
-                    high = refused.map_or(2.0 * high, |refused| low.midpoint(refused));
+                    // By no more than it is thick, so that it does not step through a span.
+                    high = refused.map_or(high + high.min(idler.radius), |refused| {
+                        low.midpoint(refused)
+                    });
                 }
                 Some(_) => {
                     refused = None;
