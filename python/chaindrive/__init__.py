@@ -13,7 +13,7 @@ units throughout; scene files may carry units of their own. Counter-clockwise an
 penetrations are positive.
 """
 
-from chaindrive import errors, kinematics, plot, scenes
+from chaindrive import design, errors, kinematics, plot, scenes
 from chaindrive._core import __version__
 from chaindrive.catalogue import catalogue
 from chaindrive.channels import channels
@@ -66,6 +66,7 @@ __all__ = [
     "__version__",
     "catalogue",
     "channels",
+    "design",
     "diff",
     "errors",
     "friction",

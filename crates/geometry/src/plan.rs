@@ -1,6 +1,6 @@
 //! A drive as a designer says it: sprockets in their places, guides and idlers by the spans that they work on.
 
-use crate::{CurvedGuide, GeometryError, IdlerByWrap, Route, Wheel};
+use crate::{Arc, CurvedGuide, GeometryError, IdlerByWrap, Route, Vector, Wheel};
 
 /// One stop of the chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,6 +66,24 @@ impl Plan {
             .collect()
     }
 
+    /// The faces of its guides, each with the number of its stop.
+    ///
+    /// # Errors
+    /// As [`lay`](Self::lay).
+    pub fn faces(&self) -> Result<Vec<(usize, Arc)>, GeometryError> {
+        let bare = self.bare()?;
+        let spans = self.spans(bare.spans.len());
+        let stops = self.stops.iter().zip(spans).enumerate();
+        stops
+            .filter_map(|(index, (stop, span))| match stop {
+                Station::Guide(guide) => {
+                    Some(guide.on(&bare.spans[span]).map(|face| (index, face)))
+                }
+                Station::Wheel(_) | Station::Idler { .. } => None,
+            })
+            .collect()
+    }
+
     /// The taut route around the wheels with places of their own.
     ///
     /// # Errors
@@ -76,6 +94,22 @@ impl Plan {
             Station::Guide(_) | Station::Idler { .. } => None,
         });
         Route::taut(&own.collect::<Vec<_>>())
+    }
+
+    /// The plan with one stop changed by `travel`: a wheel moved along a direction \[m\], the bow of a guide \[m\], the wrap of an
+    /// idler \[rad\]. No such stop: the plan as it is.
+    pub fn moved(&self, stop: usize, direction: Vector, travel: f64) -> Self {
+        let mut plan = self.clone();
+        match plan.stops.get_mut(stop) {
+            Some(Station::Wheel(wheel)) => {
+                let along = direction.try_normalize(0.0).unwrap_or_default();
+                wheel.centre += along * travel;
+            }
+            Some(Station::Guide(guide)) => guide.bow += travel,
+            Some(Station::Idler { wrap, .. }) => *wrap += travel,
+            None => {}
+        }
+        plan
     }
 
     /// The bare span that every stop lies on, or begins with it.

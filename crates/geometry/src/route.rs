@@ -257,6 +257,20 @@ impl Route {
         arriving.along() - self.spans[wheel].along()
     }
 
+    /// The sprocket behind the first stop that changes the length most when it moves, and the direction: of two the line of
+    /// centres. None where there is no other sprocket.
+    pub fn most_effective(&self) -> Option<(usize, Vector)> {
+        let toothed = |wheel: &usize| matches!(self.wheels[*wheel].kind, WheelKind::Toothed { .. });
+        let effect = |wheel: usize| self.lengthening(wheel).norm();
+        let candidates = (1..self.wheels.len()).filter(toothed);
+        let wheel = candidates.max_by(|&i, &j| effect(i).total_cmp(&effect(j)))?;
+        let direction = match self.wheels.as_slice() {
+            [first, second] => second.centre - first.centre,
+            _ => self.lengthening(wheel),
+        };
+        Some((wheel, direction.try_normalize(0.0)?))
+    }
+
     /// Length of the smooth curve, Σ L + Σ w R \[m\]: longer than [`pitches`](Self::pitches) × pitch.
     pub fn length(&self) -> f64 {
         let straight: f64 = self.spans.iter().map(|span| span.length).sum();

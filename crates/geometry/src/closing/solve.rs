@@ -3,7 +3,6 @@
 use super::Closing;
 use super::nearest::{Outcome, Search, outward};
 use crate::error::Remedy;
-use crate::route::WheelKind;
 use crate::{GeometryError, Route, Wheel};
 
 /// Slack or shortness beyond which a chain is the wrong one rather than a strained one, in pitches.
@@ -172,21 +171,11 @@ pub(super) fn does_not_close(
     })
 }
 
-/// The wheel behind the first one that has the greatest effect, where the links asked for close; of two, along the line of
-/// centres.
+/// The most effective wheel, where the links asked for close.
 fn remedy(route: &Route, pitch: f64, links: u32) -> Option<Remedy> {
     let wheels = &route.wheels;
-    let toothed = |wheel: &Wheel| matches!(wheel.kind, WheelKind::Toothed { .. });
-    let effect = |wheel: usize| route.lengthening(wheel).norm();
-    let candidates = (1..wheels.len()).filter(|&wheel| toothed(&wheels[wheel]));
-    let wheel = candidates.max_by(|&i, &j| effect(i).total_cmp(&effect(j)))?;
+    let (wheel, direction) = route.most_effective()?;
     let two = wheels.len() == 2;
-    let direction = if two {
-        wheels[1].centre - wheels[0].centre
-    } else {
-        route.lengthening(wheel)
-    };
-    let direction = direction.try_normalize(0.0)?;
     let mut moving = |travel: f64| {
         let mut wheels = wheels.clone();
         wheels[wheel].centre += direction * travel;
