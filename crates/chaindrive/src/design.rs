@@ -6,7 +6,8 @@
 mod text;
 
 use chaindrive_geometry::{
-    Closing, GeometryError, LinkCounts, Plan, Point, Route, Search, Side, Station, Vector, Wheel,
+    Closing, GeometryError, LinkCounts, Plan, Point, Route, Search, Side, Station, TwoWheels, Vector,
+    Wheel,
     WheelKind, close_nearest,
 };
 use chaindrive_mechanics::{Adjust, AssemblyError, Clash, Drive, Layout, PlacedChain, Stop};
@@ -376,6 +377,47 @@ pub fn of_plan(
         })
         .collect();
     Ok(layout)
+}
+
+/// The layout of an open drive: two sprockets, first and second, at a distance of their centres \[m\].
+///
+/// With a number of links the distance is that at which they close, nearest to the one that is given.
+///
+/// # Errors
+/// Numbers out of range; neither a distance nor a number of links; links that close nowhere near.
+///
+/// # Example
+///
+/// ```
+/// let layout = chaindrive::design::of_two_sprockets([19, 57], 25.4e-3, None, Some(120))?;
+/// assert!((layout.fits[0].centre_distance.unwrap() - 1.029929958).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn of_two_sprockets(
+    teeth: [u32; 2],
+    pitch: f64,
+    distance: Option<f64>,
+    links: Option<u32>,
+) -> Result<ChainLayout, GeometryError> {
+    let distance = match (distance, links) {
+        (Some(distance), _) => distance,
+        // The smooth formula is some (π/z)² of a pitch off: where the search begins.
+        (None, links) => {
+            let links = f64::from(links.unwrap_or(0));
+            TwoWheels { teeth, pitch }.centre_distance(links)?
+        }
+    };
+    let sprocket =
+        |x, teeth| Station::Wheel(Wheel::toothed(Point::new(x, 0.0), teeth, pitch, Side::Left));
+    let plan = Plan {
+        stops: vec![sprocket(0.0, teeth[0]), sprocket(distance, teeth[1])],
+    };
+    let names = ["first".to_owned(), "second".to_owned()];
+    let movement = Movement {
+        stop: Some(1),
+        direction: Some(Vector::x()),
+    };
+    of_plan(&plan, &names, pitch, links, 0.5, links.map(|_| movement))
 }
 
 /// Length that turns a change of a stop into metres \[m\].

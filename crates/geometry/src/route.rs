@@ -318,6 +318,18 @@ fn check_wheels(wheels: &[Wheel]) -> Result<(), GeometryError> {
     Ok(())
 }
 
+impl Span {
+    /// The straight span from one wheel to another, whatever else the chain passes.
+    ///
+    /// # Errors
+    /// Wheels with impossible numbers, or without a common tangent on their sides.
+    pub fn between(from: &Wheel, to: &Wheel) -> Result<Self, GeometryError> {
+        from.check(0)?;
+        to.check(1)?;
+        tangent(&[*from, *to], 0, 1)
+    }
+}
+
 /// The common tangent from wheel i to wheel j.
 fn tangent(wheels: &[Wheel], i: usize, j: usize) -> Result<Span, GeometryError> {
     let (a, b) = (&wheels[i], &wheels[j]);
