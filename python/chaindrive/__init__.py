@@ -21,6 +21,7 @@ from chaindrive._core import __version__ as __version__
 
 if TYPE_CHECKING:
     from chaindrive import analysis as analysis
+    from chaindrive import design as design
     from chaindrive import errors as errors
     from chaindrive import kinematics as kinematics
     from chaindrive import plot as plot
@@ -65,7 +66,7 @@ if TYPE_CHECKING:
 
 # What is imported when it is first asked for: xarray alone takes longer than all of a short
 # command. No name is that of a module that defines something else, which the import would hide.
-_MODULES = ("analysis", "errors", "kinematics", "plot", "scenes", "settings")
+_MODULES = ("analysis", "design", "errors", "kinematics", "plot", "scenes", "settings")
 _DEFINED_IN = {
     "analysis.elongation": ("worn",),
     "analysis.ramps": ("run_up",),

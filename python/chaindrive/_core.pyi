@@ -24,6 +24,8 @@ __all__ = [
     "channels",
     "diff",
     "is_being_written",
+    "layout_around",
+    "layouts_of",
     "links_for",
     "methods",
     "polygon_action",
@@ -216,3 +218,12 @@ def polygon_action(
 def links_for(teeth: Sequence[int], pitch: float, centre_distance: float) -> float: ...
 def centre_distance_for(teeth: Sequence[int], pitch: float, links: float) -> float: ...
 def _cli(arguments: Sequence[str]) -> int: ...
+
+def layouts_of(drive: Drive) -> tuple[str, list[str]]: ...
+def layout_around(
+    stops: Sequence[object],
+    pitch: float,
+    links: int | None,
+    phase: float,
+    moved: tuple[int | None, tuple[float, float] | None] | None,
+) -> str: ...

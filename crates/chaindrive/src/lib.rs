@@ -20,6 +20,7 @@
 
 pub mod catalogue;
 pub mod describe;
+pub mod design;
 mod error;
 pub mod precision;
 pub mod record;

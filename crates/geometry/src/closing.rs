@@ -19,8 +19,10 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use crate::route::WheelKind;
 use crate::{GeometryError, Point, Route, Wheel};
 
+mod nearest;
 mod solve;
 
+pub use nearest::{LinkCounts, Search, close_nearest};
 pub use solve::{close_by_motion, close_by_strain, closing_strains};
 
 /// The rollers that one wheel carries.

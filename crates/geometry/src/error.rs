@@ -1,5 +1,7 @@
 //! What can be wrong with a shape.
 
+use crate::Point;
+
 /// Why a shape cannot be built. Every message says what, where, and what is allowed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -126,6 +128,12 @@ pub enum GeometryError {
     #[error("{}", turns_wrongly(&number, *.turns, *.wheel, *.wrap))]
     RouteTurns { turns: f64, wheel: usize, wrap: f64 },
 
+    /// An idler cannot be wrapped as far as asked for.
+    #[error(
+        "the chain wraps the idler by {reached:.1} degrees at most, asked were {asked:.1}; ask for less, take a smaller wheel, or another place on the span"
+    )]
+    Wrap { asked: f64, reached: f64 },
+
     /// Fewer links than a drive needs.
     #[error("{links} links are too few, these wheels need more than {least:.2}")]
     TooFewLinks { links: f64, least: f64 },
@@ -135,10 +143,7 @@ pub enum GeometryError {
     NoSeat { from: usize, to: usize },
 
     /// The number of links does not fit the wheels.
-    #[error(
-        "{links} links do not close: the taut route takes {taut:.3}, so that the chain would be {} (slack {:+.3} mm); {below} links are {:.3} mm too short, {above} are {:.3} mm too long; take one of these, or move a wheel",
-        if *.slack > 0.0 { "too long" } else { "too short" }, .slack * 1e3, .short * 1e3, .long * 1e3
-    )]
+    #[error("{}", does_not_close(&number, self))]
     DoesNotClose {
         /// Links asked for.
         links: u32,
@@ -152,7 +157,22 @@ pub enum GeometryError {
         /// Next count above, and by how much it is too long \[m\].
         above: u32,
         long: f64,
+        /// Where a wheel would have to stand for the links asked for; none where moving one alone does not do it.
+        remedy: Option<Box<Remedy>>,
     },
+}
+
+/// A wheel, and where it would have to stand for a chain to close.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Remedy {
+    /// The wheel, by its place on the route.
+    pub wheel: usize,
+    /// How far it would move \[m\].
+    pub travel: f64,
+    /// Where its centre would be \[m\].
+    pub centre: Point,
+    /// Distance of the centres \[m\], where there are two wheels.
+    pub centre_distance: Option<f64>,
 }
 
 impl GeometryError {
@@ -183,6 +203,7 @@ impl GeometryError {
             } => no_tangent(name, [*from, *to], *distance, *least),
             Self::RouteTurns { turns, wheel, wrap } => turns_wrongly(name, *turns, *wheel, *wrap),
             Self::NoSeat { from, to } => no_seat(name, [*from, *to]),
+            Self::DoesNotClose { .. } => does_not_close(name, self),
             other => other.to_string(),
         }
     }
@@ -248,5 +269,46 @@ fn no_seat(name: Name<'_>, [from, to]: [usize; 2]) -> String {
     let (from, to) = (name(from), name(to));
     format!(
         "no link count reaches from {from} into a seat of {to}; move one of them apart, or compare the pitch with the teeth"
+    )
+}
+
+fn does_not_close(name: Name<'_>, error: &GeometryError) -> String {
+    let GeometryError::DoesNotClose {
+        links,
+        taut,
+        slack,
+        below,
+        short,
+        above,
+        long,
+        remedy,
+    } = error
+    else {
+        return String::new();
+    };
+    let is = if *slack > 0.0 {
+        "too long"
+    } else {
+        "too short"
+    };
+    let odd = if below % 2 == 1 { below } else { above };
+    let moved = remedy.as_deref().map_or_else(
+        || "move a wheel".to_owned(),
+        |remedy| match remedy.centre_distance {
+            Some(distance) => format!("a centre distance of {:.4} mm", distance * 1e3),
+            None => format!(
+                "move {} by {:.3} mm to ({:.3}, {:.3}) mm",
+                name(remedy.wheel),
+                remedy.travel.abs() * 1e3,
+                remedy.centre.x * 1e3,
+                remedy.centre.y * 1e3
+            ),
+        },
+    );
+    format!(
+        "{links} links do not close: the taut route takes {taut:.3}, so that the chain would be {is} (slack {:+.3} mm); {below} links are {:.3} mm too short, {above} are {:.3} mm too long ({odd} need an offset link); take one of these, or for {links} links {moved}",
+        slack * 1e3,
+        short * 1e3,
+        long * 1e3
     )
 }

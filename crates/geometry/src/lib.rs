@@ -59,7 +59,7 @@ pub use area::AreaMoments;
 pub use clearance::Clearance;
 pub use closest::Foot;
 pub use crossings::Crossing;
-pub use error::GeometryError;
+pub use error::{GeometryError, Remedy};
 pub use fit::fit_arcs;
 pub use piece::{BoundingBox, Piece};
 pub use rail::{bar, rail};
@@ -68,11 +68,18 @@ pub use tooth::{Seat, Tip, ToothForm, ToothGap};
 
 // Routes, link counts and polygonal kinematics.
 mod closing;
+mod on_span;
+mod plan;
 mod polygon_action;
 mod route;
 mod two_wheels;
 
-pub use closing::{Closing, Place, Seating, close_by_motion, close_by_strain, closing_strains};
+pub use closing::{
+    Closing, LinkCounts, Place, Search, Seating, close_by_motion, close_by_strain, close_nearest,
+    closing_strains,
+};
+pub use on_span::{CurvedGuide, IdlerByWrap};
+pub use plan::{Plan, Station};
 pub use polygon_action::{
     ChordalAction, Driven, PolygonAction, PressureAngles, SeatingVelocity, mesh_frequency,
 };

@@ -241,6 +241,36 @@ impl Route {
         straight + wrapped
     }
 
+    /// How the route grows when a wheel moves, its gradient by the centre \[–\]: the direction of the greatest effect.
+    ///
+    /// ```text
+    /// dL/dc_i = u_in − u_out        |dL/dc_i| = 2 sin(w_i / 2)
+    /// ```
+    ///
+    /// A chain under tension T pulls the wheel the other way, with T times this.
+    ///
+    /// # Panics
+    /// There is no such wheel.
+    pub fn lengthening(&self, wheel: usize) -> Vector {
+        let arriving = &self.spans[(wheel + self.spans.len() - 1) % self.spans.len()];
+        // dL/dc_i = u_in − u_out
+        arriving.along() - self.spans[wheel].along()
+    }
+
+    /// The sprocket behind the first stop that changes the length most when it moves, and the direction: of two the line of
+    /// centres. None where there is no other sprocket.
+    pub fn most_effective(&self) -> Option<(usize, Vector)> {
+        let toothed = |wheel: &usize| matches!(self.wheels[*wheel].kind, WheelKind::Toothed { .. });
+        let effect = |wheel: usize| self.lengthening(wheel).norm();
+        let candidates = (1..self.wheels.len()).filter(toothed);
+        let wheel = candidates.max_by(|&i, &j| effect(i).total_cmp(&effect(j)))?;
+        let direction = match self.wheels.as_slice() {
+            [first, second] => second.centre - first.centre,
+            _ => self.lengthening(wheel),
+        };
+        Some((wheel, direction.try_normalize(0.0)?))
+    }
+
     /// Length of the smooth curve, Σ L + Σ w R \[m\]: longer than [`pitches`](Self::pitches) × pitch.
     pub fn length(&self) -> f64 {
         let straight: f64 = self.spans.iter().map(|span| span.length).sum();
@@ -286,6 +316,18 @@ fn check_wheels(wheels: &[Wheel]) -> Result<(), GeometryError> {
         }
     }
     Ok(())
+}
+
+impl Span {
+    /// The straight span from one wheel to another, whatever else the chain passes.
+    ///
+    /// # Errors
+    /// Wheels with impossible numbers, or without a common tangent on their sides.
+    pub fn between(from: &Wheel, to: &Wheel) -> Result<Self, GeometryError> {
+        from.check(0)?;
+        to.check(1)?;
+        tangent(&[*from, *to], 0, 1)
+    }
 }
 
 /// The common tangent from wheel i to wheel j.

@@ -9,10 +9,11 @@ mod relax;
 mod setting_off;
 mod settle;
 mod slack;
+mod wheels;
 
 use std::f64::consts::TAU;
 
-use chaindrive_geometry::{ArcSpline, Point};
+use chaindrive_geometry::{ArcSpline, Point, Wheel};
 use chaindrive_integrate::{Moment, SecondOrderSystem, State};
 
 use crate::chains::LaidAs;
@@ -65,6 +66,8 @@ pub struct Fitting {
     pub strain: f64,
     /// Travel of the adjusted body \[m, or rad\].
     pub travel: f64,
+    /// The stops as wheels, where they stand.
+    pub wheels: Vec<Wheel>,
 }
 
 /// Where the rollers of a chain lie before anything pulls at them.

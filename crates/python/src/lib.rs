@@ -8,6 +8,7 @@
     reason = "Python hands over its arguments; references to them cannot be extracted"
 )]
 
+mod design;
 mod drawing;
 mod drive;
 mod errors;
@@ -33,6 +34,8 @@ mod core {
 
     use pyo3::prelude::*;
 
+    #[pymodule_export]
+    use crate::design::{layout_around, layouts_of};
     #[pymodule_export]
     use crate::drawing::Figure;
     #[pymodule_export]

@@ -135,6 +135,17 @@ pub(crate) fn read_time(text: &str) -> Result<f64, String> {
     time.read(text, None).map_err(|complaint| complaint.message)
 }
 
+/// A length \[m\] from a number and a unit, such as `"12.7 mm"`, or from a bare number of metres.
+///
+/// # Errors
+/// What is wrong with the text.
+pub fn read_length(text: &str) -> Result<f64, String> {
+    let length = DIMENSIONS.iter().find(|dimension| dimension.unit == "m");
+    let length = length.expect("lengths are quantities");
+    let read = length.read(text, None);
+    read.map_err(|complaint| format!("{}; {}", complaint.message, complaint.hint))
+}
+
 impl Dimension {
     /// The dimension called so in the schema.
     pub(crate) fn named(name: &str) -> Option<&'static Self> {

@@ -1,6 +1,8 @@
 //! What makes a chain of given length close: its strain, or a motion of the wheels.
 
 use super::Closing;
+use super::nearest::{Outcome, Search, outward};
+use crate::error::Remedy;
 use crate::{GeometryError, Route, Wheel};
 
 /// Slack or shortness beyond which a chain is the wrong one rather than a strained one, in pitches.
@@ -105,7 +107,7 @@ pub fn closing_strains(
 }
 
 /// Root of a function between two places of opposite sign, with what else it returned there.
-fn bisect<T>(
+pub(super) fn bisect<T>(
     trial: &mut impl FnMut(f64) -> Result<(f64, T), GeometryError>,
     (mut low, mut high): (f64, f64),
 ) -> Result<Option<(f64, T)>, GeometryError> {
@@ -142,13 +144,14 @@ fn bisect<T>(
     Ok(Some((best.1, best.2)))
 }
 
-/// The message for a designer: how far off, and which counts fit better.
-fn does_not_close(
+/// The message for a designer: how far off, which counts fit better, and where a wheel would have to stand.
+pub(super) fn does_not_close(
     wheels: &[Wheel],
     pitch: f64,
     links: u32,
 ) -> Result<GeometryError, GeometryError> {
-    let taut = Route::taut(wheels)?.pitches(pitch);
+    let route = Route::taut(wheels)?;
+    let taut = route.pitches(pitch);
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -164,5 +167,33 @@ fn does_not_close(
         short: (taut - f64::from(below)) * pitch,
         above,
         long: (f64::from(above) - taut) * pitch,
+        remedy: remedy(&route, pitch, links).map(Box::new),
     })
+}
+
+/// The most effective wheel, where the links asked for close.
+fn remedy(route: &Route, pitch: f64, links: u32) -> Option<Remedy> {
+    let wheels = &route.wheels;
+    let (wheel, direction) = route.most_effective()?;
+    let two = wheels.len() == 2;
+    let mut moving = |travel: f64| {
+        let mut wheels = wheels.clone();
+        wheels[wheel].centre += direction * travel;
+        wheels
+    };
+    let missing = (f64::from(links) - route.pitches(pitch)).abs() * pitch;
+    let search = Search {
+        start: 0.0,
+        step: 0.25 * pitch,
+        within: 4.0 * missing + pitch,
+    };
+    match outward(pitch, links, 0.5, &mut moving, search).ok()? {
+        Outcome::Closes(travel, moved, _) => Some(Remedy {
+            wheel,
+            travel,
+            centre: moved[wheel].centre,
+            centre_distance: two.then(|| (moved[1].centre - moved[0].centre).norm()),
+        }),
+        Outcome::Nearest(_) => None,
+    }
 }

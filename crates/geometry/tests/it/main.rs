@@ -5,6 +5,7 @@ mod closing;
 mod crossings;
 mod drives;
 mod fitting;
+mod layouts;
 mod nearest_is_nearest;
 mod parry;
 mod polygon_hull;

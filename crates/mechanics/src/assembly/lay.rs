@@ -1,15 +1,12 @@
 //! Where the rollers lie before anything pulls at them.
 
-use chaindrive_geometry::{
-    Closing, Piece, Side, Vector, Wheel, WheelKind, close_by_motion, close_by_strain,
-};
+use chaindrive_geometry::{Closing, close_by_motion, close_by_strain};
 
+use super::wheels::{shifted, wheels};
 use super::{Fitting, slack};
-use crate::drive::{
-    Adjust, Fit, Guide, GuideSupport, Layout, Parts, PretensionAt, Stop, Support, Tighten, Touches,
-};
+use crate::drive::{Adjust, Fit, Layout, PretensionAt, Stop, Tighten};
 use crate::system::{Laid, LaidChain};
-use crate::{AssemblyError, Chain, Drive};
+use crate::{AssemblyError, Drive};
 
 /// Strain of a chain laid straight below which it is taken as slack rather than compressed.
 const SLACK: f64 = -1e-6;
@@ -159,6 +156,7 @@ fn around(
         spans: closing.spans.clone(),
         strain,
         travel,
+        wheels,
     })
 }
 
@@ -174,105 +172,4 @@ fn mean_of_phases(
         sum += value((f64::from(place) + 0.5) / f64::from(PHASES))?;
     }
     Ok(sum / f64::from(PHASES))
-}
-
-/// The stops as wheels of the route.
-pub(super) fn wheels(
-    parts: &Parts,
-    chain: &Chain,
-    stops: &[Stop],
-) -> Result<Vec<Wheel>, AssemblyError> {
-    let centre = |stop: &Stop| match stop {
-        Stop::Sprocket(i) => parts.sprockets[*i].centre,
-        Stop::Guide(i) => {
-            let pieces = parts.guides[*i].face.pieces();
-            pieces[pieces.len() / 2].point(0.5)
-        }
-    };
-    stops
-        .iter()
-        .enumerate()
-        .map(|(place, stop)| match stop {
-            Stop::Sprocket(index) => {
-                let sprocket = &parts.sprockets[*index];
-                Ok(Wheel {
-                    centre: sprocket.centre,
-                    radius: sprocket.gap.pitch_radius,
-                    side: sprocket.side,
-                    kind: WheelKind::Toothed {
-                        teeth: sprocket.gap.teeth,
-                    },
-                })
-            }
-            Stop::Guide(index) => {
-                let before = centre(&stops[(place + stops.len() - 1) % stops.len()]);
-                let after = centre(&stops[(place + 1) % stops.len()]);
-                guide_wheel(&parts.guides[*index], chain, after - before)
-            }
-        })
-        .collect()
-}
-
-/// The longest bulging arc of a guide as a smooth wheel of the route.
-fn guide_wheel(guide: &Guide, chain: &Chain, travel: Vector) -> Result<Wheel, AssemblyError> {
-    let arcs = guide.face.pieces().iter().filter_map(|piece| match piece {
-        Piece::Arc(arc) if arc.sweep > 0.0 => Some(arc),
-        _ => None,
-    });
-    let longest = arcs.max_by(|a, b| (a.radius * a.sweep).total_cmp(&(b.radius * b.sweep)));
-    let arc = longest.ok_or_else(|| AssemblyError::Guide {
-        guide: guide.name.clone(),
-        problem: "has no bulging arc that a chain could follow; give its face one, or take it off the route".into(),
-    })?;
-    let half_pitch = 0.5 * chain.pitch;
-    let radius = match guide.touches {
-        Touches::Rollers => arc.radius + 0.5 * chain.roller_diameter,
-        Touches::Eyes => arc.radius + 0.5 * chain.plate_height,
-        // R_v = √((R_g + h/2)² + (p/2)²)
-        Touches::Plates => (arc.radius + 0.5 * chain.plate_height).hypot(half_pitch),
-    };
-    let middle = arc.start_angle + 0.5 * arc.sweep;
-    let normal = Vector::new(middle.cos(), middle.sin());
-    // The chain passes on the side of the normal: the wheel lies left where that is the right.
-    let normal_is_left = travel.x * normal.y - travel.y * normal.x > 0.0;
-    Ok(Wheel {
-        centre: arc.centre,
-        radius,
-        side: if normal_is_left {
-            Side::Right
-        } else {
-            Side::Left
-        },
-        kind: WheelKind::Smooth,
-    })
-}
-
-/// The parts with the adjusted body, and all it carries, moved by `travel`.
-fn shifted(parts: &Parts, adjust: &Adjust, travel: f64) -> Result<Parts, AssemblyError> {
-    let mut parts = parts.clone();
-    match adjust {
-        Adjust::Nothing => {}
-        Adjust::Sprocket {
-            sprocket,
-            direction,
-            ..
-        } => {
-            parts.sprockets[*sprocket].centre += direction.normalize() * travel;
-        }
-        Adjust::Tensioner { tensioner, .. } => {
-            let carrier = parts.tensioners[*tensioner].carrier;
-            for sprocket in &mut parts.sprockets {
-                if sprocket.support == Support::Tensioner(*tensioner) {
-                    sprocket.centre = carrier.carry(travel, sprocket.centre).0;
-                }
-            }
-            for guide in &mut parts.guides {
-                if guide.support == GuideSupport::Tensioner(*tensioner) {
-                    guide.face = carrier.carry_face(travel, &guide.face)?;
-                }
-            }
-            parts.tensioners[*tensioner].carrier = carrier.assembled_at(travel);
-        }
-    }
-    Ok(parts)
 }

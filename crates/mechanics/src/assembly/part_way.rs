@@ -2,7 +2,8 @@
 
 use chaindrive_geometry::{Closing, Point};
 
-use super::lay::{laid_nothing, lay_one, wheels};
+use super::lay::{laid_nothing, lay_one};
+use super::wheels::wheels;
 use crate::drive::Layout;
 use crate::system::{Laid, LaidChain};
 use crate::{AssemblyError, Drive};

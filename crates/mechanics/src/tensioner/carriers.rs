@@ -144,7 +144,7 @@ impl Carrier {
     }
 
     /// Length that turns its coordinate into metres \[m\]; 1 for a travel.
-    pub(crate) fn reach(&self) -> f64 {
+    pub fn reach(&self) -> f64 {
         ask!(self, carrier => carrier.reach())
     }
 

@@ -1,9 +1,11 @@
 //! The number of links: as given, or from the route for a chain of the catalogue.
 
-use chaindrive_geometry::{Closing, Side, Wheel};
+use chaindrive_geometry::{Closing, Route, Search, Wheel, close_nearest};
 
+use super::Findings;
 use super::chains::Described;
-use super::{Findings, point};
+use super::on_span::Passing;
+use crate::scene::defaults;
 use crate::scene::schema::{self, SceneText};
 
 /// Links of a chain whose number cannot be found: the rest of the scene is checked with it.
@@ -42,78 +44,108 @@ pub(super) fn links(
         findings.refuse_with("chain.links", "missing", "give the number of links");
         return None;
     }
-    Some(match around(scene, described, pitch) {
-        Ok(links) => {
-            findings.assume("chain.links", links, "follows from the taut route");
-            Count {
-                links,
-                uncounted: None,
+    let roller_diameter = text.roller_diameter.map(|diameter| diameter.0);
+    let roller_diameter = roller_diameter
+        .unwrap_or_else(|| pitch * defaults::ROLLER_DIAMETER.value(findings.version));
+    let plate_height = text.plate_height.map(|height| height.0);
+    let plate_height = plate_height
+        .unwrap_or_else(|| roller_diameter * defaults::PLATE_HEIGHT.value(findings.version));
+    Some(
+        match around(scene, described, [pitch, roller_diameter, plate_height]) {
+            Ok(links) => {
+                findings.assume("chain.links", links, "follows from the taut route");
+                Count {
+                    links,
+                    uncounted: None,
+                }
             }
-        }
-        Err(reason) => Count {
-            links: text.pitches.as_ref().map_or(GUESS, Vec::len),
-            uncounted: Some(reason),
+            Err(reason) => Count {
+                links: text.pitches.as_ref().map_or(GUESS, Vec::len),
+                uncounted: Some(reason),
+            },
         },
-    })
+    )
 }
 
 /// The number of links of the taut route, or why there is none.
 ///
 /// It is even, because inner and outer links alternate. A chain that nothing adjusts and nothing tightens must
-/// not be short, for want of a link would stretch all others; elsewhere the nearest number will do.
-fn around(scene: &SceneText, described: &Described<'_>, pitch: f64) -> Result<usize, String> {
+/// not be short, for want of a link would stretch all others; elsewhere the nearest number will do, where one is near enough.
+fn around(scene: &SceneText, described: &Described<'_>, size: [f64; 3]) -> Result<usize, String> {
     let route = described.route;
-    let stops = route.and_then(|route| route.stops.as_ref());
-    let names: Vec<&str> = match stops {
-        None => {
-            let own = described.sprockets.iter();
-            own.map(|&i| scene.sprockets[i].name.as_str()).collect()
-        }
-        Some(names) => names.iter().map(String::as_str).collect(),
-    };
-    let wheels: Result<Vec<Wheel>, String> =
-        names.iter().map(|name| wheel(scene, name, pitch)).collect();
-    let phase = route.and_then(|route| route.phase).map_or(0.5, |p| p.0);
-    let name = |wheel: usize| format!("`{}`", names.get(wheel).unwrap_or(&"?"));
-    let closing = Closing::march(&wheels?, pitch, phase).map_err(|e| e.with_names(&name))?;
+    let passing = Passing::new(scene, described, size);
+    let [pitch, ..] = size;
+    let phase = passing.phase().unwrap_or(0.5);
+    let name = |wheel: usize| format!("`{}`", passing.stops.get(wheel).unwrap_or(&"?"));
+    let wheels = passing.plan()?.lay().map_err(|e| e.with_names(&name))?;
+    let closing = Closing::march(&wheels, pitch, phase).map_err(|e| e.with_names(&name))?;
     // e(0) = (Σm + Σk) p + residual
     let pitches = closing.excess(0) / pitch;
-    let fitted = route.is_some_and(|route| {
-        let moves = !matches!(route.adjust, None | Some(schema::Adjust::Nothing));
-        moves || route.pretension.0 > 0.0
-    });
-    let pairs = if fitted {
+    let moves =
+        route.is_some_and(|route| !matches!(route.adjust, None | Some(schema::Adjust::Nothing)));
+    let tightened = route.is_some_and(|route| route.pretension.0 > 0.0);
+    let pairs = if moves || tightened {
         (0.5 * pitches).round()
     } else {
         (0.5 * (pitches - SHORTAGE)).ceil()
     };
+    // A tightened chain is made to fit, but not by the better part of a link.
     let excess = 2.0 * pairs - pitches;
-    if !fitted && excess > EXCESS {
+    if !moves && excess.abs() > EXCESS {
+        let few = if excess > 0.0 { pairs - 1.0 } else { pairs };
+        let counts = [few, few + 1.0].map(even);
+        let [few, many] = counts;
+        let places = counts.map(|links| place(&wheels, pitch, links, phase, &name));
+        let places: Vec<_> = places.into_iter().flatten().collect();
         return Err(format!(
-            "the taut route takes {pitches:.3} pitches, for which {} links are too few and {} too many; \
-             move a sprocket, or say in `route.adjust` what moves",
-            2.0 * pairs - 2.0,
-            2.0 * pairs
+            "the taut route takes {pitches:.3} pitches, for which {few} links are too few and {many} too many; {}, \
+             or say in `route.adjust` what moves",
+            if places.is_empty() {
+                "move a sprocket".to_owned()
+            } else {
+                places.join(" or ")
+            }
         ));
     }
+    Ok(even(pairs) as usize)
+}
+
+/// Where a sprocket would have to stand for a number of links.
+fn place(
+    wheels: &[Wheel],
+    pitch: f64,
+    links: u32,
+    phase: f64,
+    name: &dyn Fn(usize) -> String,
+) -> Option<String> {
+    let (wheel, direction) = Route::taut(wheels).ok()?.most_effective()?;
+    let mut moving = |travel: f64| {
+        let mut wheels = wheels.to_vec();
+        wheels[wheel].centre += direction * travel;
+        wheels
+    };
+    let search = Search {
+        start: 0.0,
+        step: 0.1 * pitch,
+        within: 4.0 * pitch,
+    };
+    let (_, moved, _) = close_nearest(pitch, 0.0, links, phase, &mut moving, search).ok()?;
+    let centre = moved[wheel].centre;
+    Some(format!(
+        "move {} to ({:.4}, {:.4}) mm for {links}",
+        name(wheel),
+        centre.x * 1e3,
+        centre.y * 1e3
+    ))
+}
+
+/// Links of so many pairs.
+fn even(pairs: f64) -> u32 {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "between 2 and 50 000"
     )]
-    Ok(2 * pairs.clamp(2.0, 50_000.0) as usize)
-}
-
-/// A stop of the route as a wheel.
-fn wheel(scene: &SceneText, name: &str, pitch: f64) -> Result<Wheel, String> {
-    let sprocket = scene.sprockets.iter().find(|s| s.name == name);
-    let sprocket = sprocket.ok_or_else(|| {
-        format!("it follows from routes around sprockets alone, and `{name}` is none")
-    })?;
-    let side = match sprocket.side {
-        schema::Side::Left => Side::Left,
-        schema::Side::Right => Side::Right,
-    };
-    let centre = point(sprocket.centre);
-    Ok(Wheel::toothed(centre, sprocket.teeth, pitch, side))
+    let pairs = pairs.clamp(2.0, 50_000.0) as u32;
+    2 * pairs
 }

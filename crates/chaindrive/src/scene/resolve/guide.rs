@@ -7,8 +7,10 @@ use chaindrive_mechanics::{Guide, GuideSupport};
 
 use super::chain::Resolved;
 use super::law::linear;
+use super::on_span::{self, Passing};
 use super::{Findings, Names, contact, motion, point};
 use crate::scene::defaults;
+use crate::scene::quantity::{Angle, Length};
 use crate::scene::schema::{self, Face, SceneText, TravelSide};
 
 /// All guides, each with the chain that it belongs to.
@@ -16,7 +18,7 @@ pub(super) fn resolve_all<'c>(
     scene: &SceneText,
     names: &Names<'_>,
     findings: &mut Findings<'_>,
-    chain_of: impl Fn(usize) -> &'c Resolved,
+    chain_of: impl Fn(usize) -> (&'c Resolved, Passing<'c>),
 ) -> Option<Vec<Guide>> {
     let guides: Vec<_> = scene
         .guides
@@ -35,12 +37,17 @@ fn resolve(
     path: &str,
     scene: &SceneText,
     names: &Names<'_>,
-    chain: &Resolved,
+    (chain, passing): (&Resolved, Passing<'_>),
     findings: &mut Findings<'_>,
 ) -> Option<Guide> {
     let place = format!("{path}.face");
-    let face = face(&text.face, &place, findings);
-    let face = findings.keep(&place, face);
+    let face = match &text.face {
+        Face::OnSpan { .. } => on_span(text, &place, (chain, &passing), findings),
+        face => {
+            let face = placed(face, &place, findings);
+            findings.keep(&place, face)
+        }
+    };
     let support = support(text, path, scene, names, findings);
     let said = contact::Said {
         own: &text.contact,
@@ -63,9 +70,93 @@ fn resolve(
     })
 }
 
-/// Working face with its material on the left of travel.
-fn face(face: &Face, path: &str, findings: &mut Findings<'_>) -> Result<ArcSpline, GeometryError> {
+/// Working face on a span.
+fn on_span(
+    guide: &schema::Guide,
+    path: &str,
+    (chain, passing): (&Resolved, &Passing<'_>),
+    findings: &mut Findings<'_>,
+) -> Option<ArcSpline> {
+    let Face::OnSpan {
+        between,
+        from,
+        to,
+        radius,
+        bow,
+        end_radius,
+        end_angle,
+        material,
+        ..
+    } = &guide.face
+    else {
+        return None;
+    };
+    let span = passing.span(guide, between.as_ref());
+    let span = findings.keep(path, span)?;
+    let place = format!("{path}.bow");
+    if radius.is_none() {
+        let Some(bow) = bow else {
+            let hint =
+                "say how far a straight face pushes the chain, less than zero where it keeps clear";
+            findings.refuse_with(&place, "missing", hint);
+            return None;
+        };
+        let side = on_span::side(*material);
+        let across = span.away_from(side) * (bow.0 - on_span::above(guide.touches, passing.size));
+        let ends = [from.0, to.0].map(|share| span.at(share) + across);
+        let face = straight(ends, (end_radius, end_angle, *material), path, findings);
+        return findings.keep(path, face);
+    }
+    let bow = match bow {
+        Some(bow) => bow.0,
+        // With a number of links that is a guess nothing closes; it is refused elsewhere.
+        None if chain.uncounted.is_some() => return None,
+        None => {
+            let links = chain.chain.links();
+            let phase = passing.phase();
+            let phase = phase.unwrap_or(defaults::PHASE.value(findings.version));
+            let found = passing.closing_bow(guide, links, phase);
+            let found = findings.keep(&place, found)?;
+            let remark = format!("computed: {links} links close without stress");
+            findings.assume(&place, found, remark);
+            found
+        }
+    };
+    let face = on_span::curved(guide, bow, passing.size)?.on(&span);
+    let arc = findings.keep(path, face)?;
+    findings.keep(path, ArcSpline::open(&[Piece::Arc(arc)]))
+}
+
+/// A straight face between two ends \[m\] in the order of travel, with what a scene says of its curved ends.
+fn straight(
+    [start, end]: [Point; 2],
+    (end_radius, end_angle, material): (&Option<Length>, &Option<Angle>, TravelSide),
+    path: &str,
+    findings: &mut Findings<'_>,
+) -> Result<ArcSpline, GeometryError> {
+    let (start, end) = match material {
+        TravelSide::Left => (start, end),
+        TravelSide::Right => (end, start),
+    };
+    let radius = end_radius.map(|radius| radius.0);
+    let place = format!("{path}.end_radius");
+    let length = (end - start).norm();
+    let radius = findings.or_multiple(radius, &place, &defaults::END_RADIUS, length);
+    let angle = end_angle.map(|angle| angle.0);
+    let place = format!("{path}.end_angle");
+    let angle = findings.or_default(angle, &place, &defaults::END_ANGLE);
+    bar(start, end, radius, angle)
+}
+
+/// Working face in a place of its own, with its material on the left of travel.
+fn placed(
+    face: &Face,
+    path: &str,
+    findings: &mut Findings<'_>,
+) -> Result<ArcSpline, GeometryError> {
     match face {
+        // The span is somebody else's.
+        Face::OnSpan { .. } => Err(GeometryError::NoPieces),
         Face::Bar {
             start,
             end,
@@ -73,18 +164,8 @@ fn face(face: &Face, path: &str, findings: &mut Findings<'_>) -> Result<ArcSplin
             end_angle,
             material,
         } => {
-            let (start, end) = match material {
-                TravelSide::Left => (point(*start), point(*end)),
-                TravelSide::Right => (point(*end), point(*start)),
-            };
-            let radius = end_radius.map(|radius| radius.0);
-            let place = format!("{path}.end_radius");
-            let straight = (end - start).norm();
-            let radius = findings.or_multiple(radius, &place, &defaults::END_RADIUS, straight);
-            let angle = end_angle.map(|angle| angle.0);
-            let place = format!("{path}.end_angle");
-            let angle = findings.or_default(angle, &place, &defaults::END_ANGLE);
-            bar(start, end, radius, angle)
+            let ends = [point(*start), point(*end)];
+            straight(ends, (end_radius, end_angle, *material), path, findings)
         }
         Face::Points {
             points,

@@ -11,6 +11,7 @@ mod guide;
 mod law;
 mod links;
 mod motion;
+mod on_span;
 mod route;
 mod scatter;
 mod shafts;
@@ -26,6 +27,8 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_mechanics::{Drive, DriveError, Parts, PlacedChain};
 use serde::Serialize;
 use serde_json::{Value as Json, json};
+
+use on_span::Passing;
 
 use super::defaults::{self, Choice, Default};
 use super::error::{Problem, Problems};
@@ -93,7 +96,12 @@ fn parts(
         owner(described.iter().position(|it| it.sprockets.contains(&body)))
     });
     let guides = guide::resolve_all(scene, names, findings, |body| {
-        owner(described.iter().position(|it| it.guides.contains(&body)))
+        let index = described.iter().position(|it| it.guides.contains(&body));
+        let chain = owner(index);
+        let made = &chain.chain;
+        let size = [made.pitch, made.roller_diameter, made.plate_height];
+        let passing = Passing::new(scene, &described[index.unwrap_or(0)], size);
+        (chain, passing)
     });
     let mut layouts = Vec::new();
     for (index, (chain, resolved)) in described.iter().zip(&resolved).enumerate() {

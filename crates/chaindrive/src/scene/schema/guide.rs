@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Contact, Motion};
-use crate::scene::quantity::{Angle, Length, Speed};
+use crate::scene::quantity::{Angle, Length, Ratio, Speed};
 
 /// A rail.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
@@ -74,6 +74,38 @@ pub(crate) enum Face {
         from: Angle,
         /// Angle at which it ends [rad], counter-clockwise from `from`.
         to: Angle,
+    },
+    /// On the straight span between two sprockets, placed by shares of its length: convex by a radius, or a straight bar.
+    OnSpan {
+        /// Names of the sprockets before and behind, in the order of travel; absent: those beside it among the stops of the route.
+        #[serde(default)]
+        between: Option<[String; 2]>,
+        /// Share of the span at which the face begins, from 0 where the chain leaves the sprocket before [–].
+        from: Ratio,
+        /// Share of the span at which it ends [–].
+        to: Ratio,
+        /// Radius of the face [m]; absent: straight, with ends that curve away from the chain.
+        #[serde(default)]
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        radius: Option<Length>,
+        /// Share of the span at which a convex face bends the chain most, as where a shoe touches; absent: half-way from `from` to `to` [–].
+        #[serde(default)]
+        crest: Option<Ratio>,
+        /// How far the face pushes the chain across the straight span [m], less than zero where it keeps clear; absent: as far
+        /// as makes the links close without stress, for one convex face that is a stop of the route.
+        #[serde(default)]
+        bow: Option<Length>,
+        /// Radius of the ends of a straight face [m]; absent: a quarter of its length.
+        #[serde(default)]
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        end_radius: Option<Length>,
+        /// Angle of the ends of a straight face [rad]; absent: 10°.
+        #[serde(default)]
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        end_angle: Option<Angle>,
+        /// Side of the chain on which the material lies; absent: right, which is the outside of a counter-clockwise chain.
+        #[serde(default)]
+        material: TravelSide,
     },
 }
 

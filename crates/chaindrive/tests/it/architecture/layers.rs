@@ -53,7 +53,7 @@ const CRATES: [Storeys; 4] = [
     Storeys {
         folder: "chaindrive",
         layers: &[
-            &["catalogue", "seal", "stepping"],
+            &["catalogue", "design", "seal", "stepping"],
             &["error", "scene"],
             &["run"],
             &["simulate"],
@@ -124,7 +124,7 @@ const CRATES: [Storeys; 4] = [
             &["drawing", "kinematics", "law"],
             &["friction", "profile"],
             &["drive"],
-            &["run"],
+            &["design", "run"],
             &["live", "precision", "sweep"],
         ],
         exceptions: &[(

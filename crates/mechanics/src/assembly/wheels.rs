@@ -1,0 +1,157 @@
+//! The stops of a route as wheels, at rest and moved.
+
+use chaindrive_geometry::{Piece, Side, Vector, Wheel, WheelKind};
+
+use super::lay;
+use crate::check::clash::clashes;
+use crate::drive::{Adjust, Guide, GuideSupport, Layout, Parts, Stop, Support, Touches};
+use crate::standing::Standing;
+use crate::{AssemblyError, Chain, Clash, Drive};
+
+impl Drive {
+    /// The stops of a chain's route as wheels, with a body moved by `travel` \[m, or rad for an arm\] from where it is described.
+    ///
+    /// None for a chain that lies along no route. What earlier chains adjust stands where it is described.
+    ///
+    /// # Errors
+    /// A guide on the route that has no bulging arc.
+    ///
+    /// # Panics
+    /// There is no such chain.
+    pub fn wheels(
+        &self,
+        chain: usize,
+        moved: &Adjust,
+        travel: f64,
+    ) -> Result<Option<Vec<Wheel>>, AssemblyError> {
+        let placed = &self.parts().chains[chain];
+        let Layout::Route { stops, .. } = &placed.layout else {
+            return Ok(None);
+        };
+        let parts = shifted(self.parts(), moved, travel)?;
+        wheels(&parts, &placed.chain, stops).map(Some)
+    }
+
+    /// What is in each other's way when the chains have been laid, without settling.
+    ///
+    /// # Errors
+    /// [`AssemblyError`] when a chain does not close.
+    pub fn clashes_as_laid(&self) -> Result<Vec<Clash>, AssemblyError> {
+        let (laid, _) = lay::lay(self)?;
+        let rollers: Vec<_> = laid.chains.iter().map(|c| c.positions.clone()).collect();
+        Ok(clashes(&laid.parts, &Standing::laid(&laid), &rollers))
+    }
+}
+
+impl Touches {
+    /// Radius \[m\] of the circle that the centres of the rollers ride on over an arc of radius `face` \[m\]; `size`: pitch, roller
+    /// diameter and plate height of the chain \[m\].
+    ///
+    /// ```text
+    /// rollers R + d/2        eyes R + h/2        plates √((R + h/2)² + (p/2)²)
+    /// ```
+    pub fn ride(self, face: f64, [pitch, roller_diameter, plate_height]: [f64; 3]) -> f64 {
+        match self {
+            Self::Rollers => face + 0.5 * roller_diameter,
+            Self::Eyes => face + 0.5 * plate_height,
+            // R_v = √((R + h/2)² + (p/2)²): the straight edge touches between the eyes.
+            Self::Plates => (face + 0.5 * plate_height).hypot(0.5 * pitch),
+        }
+    }
+}
+
+/// The stops as wheels of the route.
+pub(super) fn wheels(
+    parts: &Parts,
+    chain: &Chain,
+    stops: &[Stop],
+) -> Result<Vec<Wheel>, AssemblyError> {
+    let centre = |stop: &Stop| match stop {
+        Stop::Sprocket(i) => parts.sprockets[*i].centre,
+        Stop::Guide(i) => {
+            let pieces = parts.guides[*i].face.pieces();
+            pieces[pieces.len() / 2].point(0.5)
+        }
+    };
+    stops
+        .iter()
+        .enumerate()
+        .map(|(place, stop)| match stop {
+            Stop::Sprocket(index) => {
+                let sprocket = &parts.sprockets[*index];
+                Ok(Wheel {
+                    centre: sprocket.centre,
+                    radius: sprocket.gap.pitch_radius,
+                    side: sprocket.side,
+                    kind: WheelKind::Toothed {
+                        teeth: sprocket.gap.teeth,
+                    },
+                })
+            }
+            Stop::Guide(index) => {
+                let before = centre(&stops[(place + stops.len() - 1) % stops.len()]);
+                let after = centre(&stops[(place + 1) % stops.len()]);
+                guide_wheel(&parts.guides[*index], chain, after - before)
+            }
+        })
+        .collect()
+}
+
+/// The longest bulging arc of a guide as a smooth wheel of the route.
+fn guide_wheel(guide: &Guide, chain: &Chain, travel: Vector) -> Result<Wheel, AssemblyError> {
+    let arcs = guide.face.pieces().iter().filter_map(|piece| match piece {
+        Piece::Arc(arc) if arc.sweep > 0.0 => Some(arc),
+        _ => None,
+    });
+    let longest = arcs.max_by(|a, b| (a.radius * a.sweep).total_cmp(&(b.radius * b.sweep)));
+    let arc = longest.ok_or_else(|| AssemblyError::Guide {
+        guide: guide.name.clone(),
+        problem: "has no bulging arc that a chain could follow; give its face one, or take it off the route".into(),
+    })?;
+    let size = [chain.pitch, chain.roller_diameter, chain.plate_height];
+    let radius = guide.touches.ride(arc.radius, size);
+    let middle = arc.start_angle + 0.5 * arc.sweep;
+    let normal = Vector::new(middle.cos(), middle.sin());
+    // The chain passes on the side of the normal: the wheel lies left where that is the right.
+    let normal_is_left = travel.x * normal.y - travel.y * normal.x > 0.0;
+    Ok(Wheel {
+        centre: arc.centre,
+        radius,
+        side: if normal_is_left {
+            Side::Right
+        } else {
+            Side::Left
+        },
+        kind: WheelKind::Smooth,
+    })
+}
+
+/// The parts with the adjusted body, and all it carries, moved by `travel`.
+pub(super) fn shifted(parts: &Parts, adjust: &Adjust, travel: f64) -> Result<Parts, AssemblyError> {
+    let mut parts = parts.clone();
+    match adjust {
+        Adjust::Nothing => {}
+        Adjust::Sprocket {
+            sprocket,
+            direction,
+            ..
+        } => {
+            parts.sprockets[*sprocket].centre += direction.normalize() * travel;
+        }
+        Adjust::Tensioner { tensioner, .. } => {
+            let carrier = parts.tensioners[*tensioner].carrier;
+            for sprocket in &mut parts.sprockets {
+                if sprocket.support == Support::Tensioner(*tensioner) {
+                    sprocket.centre = carrier.carry(travel, sprocket.centre).0;
+                }
+            }
+            for guide in &mut parts.guides {
+                if guide.support == GuideSupport::Tensioner(*tensioner) {
+                    guide.face = carrier.carry_face(travel, &guide.face)?;
+                }
+            }
+            parts.tensioners[*tensioner].carrier = carrier.assembled_at(travel);
+        }
+    }
+    Ok(parts)
+}

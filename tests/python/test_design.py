@@ -1,0 +1,134 @@
+"""Layouts: numbers of links, guides by share, places that close, and the scenes that say so."""
+
+import json
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import chaindrive as cd
+from chaindrive import design
+from chaindrive.design import Guide, Idler, Sprocket
+
+PITCH = 8e-3
+PLATE = 7.11e-3
+
+TIMING = [
+    Sprocket("crank", 18, (0.0, 0.0)),
+    Guide("fixed", 2.2, 3e-3, (0.25, 0.75), height=PLATE, touches="plates"),
+    Sprocket("exhaust", 36, (0.056, 0.297)),
+    Sprocket("intake", 36, (-0.056, 0.297)),
+    Guide("shoe", 0.45, 12e-3, (0.19, 0.81), height=PLATE, touches="plates"),
+]
+
+
+def test_a_timing_drive_is_laid_out_without_a_pocket_calculator():
+    """Centre of the shoe and bow as an earlier layout by hand had them."""
+    laid = design.close(TIMING, PITCH, 118, move="shoe")
+    assert 12e-3 + laid.travel == pytest.approx(12.795304822057858e-3, abs=1e-12)
+    assert abs(laid.misfit) < 1e-12
+    faces = {face.name: face for face in laid.faces}
+    np.testing.assert_allclose(
+        faces["fixed"].centre, (2.1867088471534073, -0.43055664370824526), atol=1e-12
+    )
+    np.testing.assert_allclose(
+        faces["shoe"].centre, (-0.4870151800010447, 0.02537279371044686), atol=1e-12
+    )
+    assert [stop.name for stop in laid.stops] == [stop.name for stop in TIMING]
+    assert sum(span.links for span in laid.spans) + sum(s.seated - 1 for s in laid.stops) == 118
+    turned = sum(math.copysign(s.wrap, 1 if s.side == "left" else -1) for s in laid.stops)
+    assert turned == pytest.approx(2 * math.pi)
+    for span in laid.spans:
+        along = np.subtract(span.arrives, span.leaves)
+        assert np.hypot(*along) == pytest.approx(span.length)
+        assert math.remainder(math.atan2(along[1], along[0]) - span.direction, 2 * math.pi) == (
+            pytest.approx(0, abs=1e-12)
+        )
+    # A worn chain is longer: the shoe goes on, and ever further.
+    travels = [worn.travel for worn in laid.wear]
+    assert travels[0] == pytest.approx(laid.travel)
+    assert all(np.diff(travels) > 0)
+
+
+def test_numbers_of_links_and_distances_belong_to_each_other():
+    stops = [Sprocket("driver", 19, (0, 0)), Sprocket("driven", 38, (0.4, 0))]
+    laid = design.layout(stops, 12.7e-3, 92)
+    counts = laid.counts
+    assert counts.below < counts.pitches < counts.above == counts.below + 1
+    assert {counts.even_below, counts.even_above} >= {92}
+    assert laid.misfit == pytest.approx((counts.pitches - 92) * 12.7e-3)
+    for fit in laid.fits:
+        assert fit.offset_link == (fit.links % 2 == 1)
+        moved = [stops[0], stops[1]._replace(centre=fit.centre)]
+        again = design.layout(moved, 12.7e-3, fit.links)
+        assert abs(again.misfit) < 1e-12
+        assert again.counts.below == again.counts.above == fit.links
+        smooth = cd.kinematics.centre_distance(19, 38, 12.7e-3, fit.links)
+        assert fit.centre_distance == pytest.approx(smooth, abs=1e-4)
+
+
+def test_an_idler_is_wrapped_as_asked():
+    stops = [
+        Sprocket("a", 30, (0, 0)),
+        Sprocket("b", 30, (0.5, 0)),
+        Idler("idler", 12, math.radians(40)),
+    ]
+    laid = design.layout(stops, PITCH)
+    assert laid.stops[2].wrap == pytest.approx(math.radians(40), abs=1e-9)
+    # The upper span runs back: the idler lies above and pushes down, half-way.
+    assert laid.stops[2].centre[0] == pytest.approx(0.25)
+    with pytest.raises(cd.ParameterError, match="wraps the idler by"):
+        design.layout([*stops[:2], Idler("idler", 12, math.radians(170))], PITCH)
+
+
+def test_mistakes_are_named():
+    with pytest.raises(cd.ParameterError, match="`a` and `b` overlap"):
+        design.layout([Sprocket("a", 18, (0, 0)), Sprocket("b", 18, (0.01, 0))], PITCH)
+    with pytest.raises(cd.ParameterError, match="no stop has this name"):
+        design.close(TIMING, PITCH, 118, move="rail")
+    with pytest.raises(cd.ParameterError, match="do not close"):
+        design.close(TIMING, PITCH, 90, move="shoe")
+    with pytest.raises(cd.ParameterError, match='"left" or "right"'):
+        design.layout([TIMING[0], TIMING[2]._replace(side="up")], PITCH)
+
+
+def test_presets_are_laid_out_as_they_run():
+    for name in ["timing_drive", "two_stage_timing", "marine_engine", "bicycle_crank"]:
+        drive = getattr(cd.scenes, name)()
+        layouts = design.of(drive)
+        assert sum(laid.links for laid in layouts) == drive.links
+        for laid in layouts:
+            assert abs(laid.misfit) < 1e-6, name
+    assert design.clashes(cd.scenes.marine_engine()) == ()
+
+
+def test_a_chain_that_does_not_close_is_laid_out_all_the_same():
+    drive = cd.scenes.industrial_16b().replace(chain__links=118)
+    (laid,) = design.of(drive)
+    assert laid.links == 118
+    assert laid.misfit == pytest.approx(2 * 25.4e-3, rel=1e-6)
+    (fit,) = [fit for fit in laid.fits if fit.links == 118]
+    with pytest.raises(cd.AssemblyError, match=f"{fit.centre_distance * 1e3:.2f}"):
+        drive.layout() if hasattr(drive, "layout") else drive.statics()
+
+
+def test_the_command_prints_what_the_module_says():
+    command = [sys.executable, "-m", "chaindrive", "design"]
+
+    def told(*arguments):
+        done = subprocess.run([*command, *arguments], capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    found = json.loads(told("timing_drive", "--json"))
+    (laid,) = design.of(cd.scenes.timing_drive())
+    assert [span["name"] for span in found["chains"][0]["spans"]] == [s.name for s in laid.spans]
+    assert found["chains"][0]["counts"]["pitches"] == laid.counts.pitches
+    text = told("--sprockets", "19,38", "--pitch", "12.7mm", "--centre-distance", "400mm")
+    assert "92" in text and "would close" in text
+    text = told("--sprockets", "19,57", "--pitch", "25.4 mm", "--links", "120")
+    assert "1029.929958" in text
+    wrong = subprocess.run([*command, "--sprockets", "19"], capture_output=True, text=True)
+    assert wrong.returncode == 2
