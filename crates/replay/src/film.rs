@@ -30,6 +30,8 @@ pub struct About {
     pub failure: String,
     /// Whether the result is to be trusted, in a word; empty where nobody judged.
     pub verdict: String,
+    /// What speaks against it, in a line.
+    pub note: String,
     /// The account of the run, verdict first.
     pub summary: String,
     /// The program that made the page.
@@ -75,6 +77,10 @@ pub struct Chain {
     pub roller_radius: f64,
     /// Height of a plate \[m\].
     pub plate_height: f64,
+    /// Whether the plates have a waist between the eyes.
+    pub is_waisted: bool,
+    /// Whether link 0 is an outer one.
+    pub is_outer_first: bool,
 }
 
 /// The motion, frame by frame.

@@ -14,5 +14,4 @@ mod stream;
 
 pub use film::{About, Body, Chain, Contact, Curve, Film, Frames, Outline};
 pub use page::page;
-pub use recorded::{FilmError, Selection, film};
-pub use stream::{DISTANCE, LEVELS};
+pub use recorded::{FilmError, MOST_FRAMES, Selection, film};

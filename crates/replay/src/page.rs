@@ -5,7 +5,7 @@ use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
 
 use crate::film::{About, Chain, Film};
-use crate::stream::{DISTANCE, LEVELS, Stream, Streams};
+use crate::stream::{LEVELS, Stream, Streams};
 
 const PAGE: &str = include_str!("../page/page.html");
 const STYLE: &str = include_str!("../page/style.css");
@@ -18,6 +18,15 @@ const PROGRAMS: [&str; 6] = [
     include_str!("../page/controls.js"),
     include_str!("../page/start.js"),
 ];
+
+/// Largest quantum of places \[m\].
+const DISTANCE: f64 = 1e-4;
+
+/// Quanta of places in a pitch, at least: small chains are looked at from nearer.
+const IN_A_PITCH: f64 = 400.0;
+
+/// Quantum of outlines \[m\]: they cost little, and facets would be seen.
+const OUTLINES: f64 = 1e-6;
 
 /// All of a film but the numbers.
 #[derive(Debug, Serialize)]
@@ -85,7 +94,7 @@ pub fn page(film: &Film) -> String {
             })
             .collect(),
         quanta: Quanta {
-            distance: DISTANCE,
+            distance: distance(film),
             channel: 1.0 / LEVELS,
         },
         streams: &streams.index,
@@ -106,7 +115,14 @@ pub fn page(film: &Film) -> String {
         .replace("{{index}}", &index)
 }
 
+/// Quantum of the places of a film \[m\].
+fn distance(film: &Film) -> f64 {
+    let pitches = film.chains.iter().map(|chain| chain.pitch / IN_A_PITCH);
+    pitches.fold(DISTANCE, f64::min)
+}
+
 fn packed(film: &Film) -> Streams {
+    let distance = distance(film);
     let mut streams = Streams::default();
     let frames = &film.frames;
     let times = &frames.times;
@@ -118,24 +134,23 @@ fn packed(film: &Film) -> Streams {
     let corners = || film.bodies.iter().flat_map(|it| &it.outlines).flat_map(|it| &it.points);
     for (name, axis) in [("outline_x", 0), ("outline_y", 1)] {
         let values: Vec<f64> = corners().map(|point| point[axis]).collect();
-        // Lines of one body are to fit each other better than bodies fit rollers.
-        streams.push(name, &values, 1, 0.1 * DISTANCE);
+        streams.push(name, &values, 1, OUTLINES);
     }
 
     let bodies = film.bodies.len();
     let placed = |axis: usize| frames.placements.iter().skip(axis).step_by(3).copied();
     for (name, axis) in [("body_x", 0), ("body_y", 1)] {
-        streams.push(name, &placed(axis).collect::<Vec<_>>(), bodies, DISTANCE);
+        streams.push(name, &placed(axis).collect::<Vec<_>>(), bodies, distance);
     }
     let size = corners().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
     let angles: Vec<f64> = placed(2).collect();
     // No corner is off by more than a place is: angle = distance / radius.
-    streams.push("body_angle", &angles, bodies, DISTANCE / size.max(DISTANCE));
+    streams.push("body_angle", &angles, bodies, distance / size.max(distance));
 
     let rollers: usize = film.chains.iter().map(|chain| chain.rollers).sum();
     let links: usize = film.chains.iter().map(|chain| chain.links).sum();
-    streams.push("roller_x", &frames.roller_x, rollers, DISTANCE);
-    streams.push("roller_y", &frames.roller_y, rollers, DISTANCE);
+    streams.push("roller_x", &frames.roller_x, rollers, distance);
+    streams.push("roller_y", &frames.roller_y, rollers, distance);
     if let Some(values) = &frames.link_tension {
         streams.push_channel("link_tension", values, links);
     }

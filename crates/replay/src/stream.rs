@@ -13,11 +13,8 @@ use flate2::Compression;
 use flate2::write::DeflateEncoder;
 use serde::Serialize;
 
-/// Quantum of places \[m\]: rollers, centres, and outlines as far as bodies turn.
-pub const DISTANCE: f64 = 1e-4;
-
 /// Quanta between zero and the largest magnitude of a channel.
-pub const LEVELS: f64 = 400.0;
+pub(crate) const LEVELS: f64 = 400.0;
 
 /// What to undo, and where the bytes are.
 #[derive(Clone, Debug, Serialize)]
