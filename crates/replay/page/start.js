@@ -12,19 +12,20 @@ function describe(film) {
   };
   if (about.verdict) part(about.verdict, about.verdict);
   if (about.status !== 'complete') {
-    part(about.failure ? `${about.status}: ${about.failure}` : about.status, about.status === 'running' ? 'cautious' : 'distrusted');
+    part(about.failure ? `${about.status}: ${about.failure}` : about.status, about.status === 'running' ? 'caution' : 'distrusted');
   }
   const frames = about.stride > 1
     ? `${film.frames} of ${about.samples} samples, one in ${about.stride}`
     : `${film.frames} samples`;
   part(frames);
   part(about.version);
+  if (about.note) parts[0].title = about.note;
   parts.forEach((span, i) => byId('subtitle').append(i ? ' · ' : '', span));
 
   byId('account').hidden = !about.summary;
   byId('story').querySelector('pre').textContent = about.summary;
   const { distance, channel } = film.quanta;
-  const exact = `exact to ±${quantity(0.5 * distance, 'm')} and ±${+(50 * channel).toPrecision(2)} % of the largest value`;
+  const exact = `exact to ±${quantity(0.5 * distance, 'm')} and ±${+(50 * channel).toPrecision(3)} % of the largest value`;
   byId('quantum').textContent = exact;
   const names = KEYS.map(([key]) => key);
   byId('help').querySelector('table').append(...KEYS.map(([, text], i) => {

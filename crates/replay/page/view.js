@@ -12,6 +12,9 @@ class View {
     this.followed = -1;
     this.marked = -1;
     this.shapes = film.bodies.map((body) => this.shape(body));
+    // Sprockets cover the arms that carry them.
+    const isSprocket = (b) => Number(film.bodies[b].kind === 'sprocket');
+    this.backToFront = [...film.bodies.keys()].sort((a, b) => isSprocket(a) - isSprocket(b));
     this.bounds = this.boundsOfAll();
     this.tension = film.arrays.link_tension && scaleRange(film.arrays.link_tension);
     const force = film.arrays.contact_force;
@@ -93,8 +96,8 @@ class View {
     // The legend and the buttons stand beside the drive where there is room, else above it.
     const [w, h] = [right - left, high - low];
     const room = (aside, above) => Math.min((this.width - aside) / w, (this.height - above) / h);
-    const beside = room(2 * 190, 56);
-    const under = room(32, 2 * 84);
+    const beside = room(2 * 190, 64);
+    const under = room(36, this.width < 600 ? 56 : 2 * 92);
     const scale = Math.max(beside, under);
     this.window = { x: 0.5 * (left + right), y: 0.5 * (low + high), scale, whole: true };
     this.least = 0.2 * scale;
@@ -152,7 +155,7 @@ class View {
     c.fillRect(0, 0, this.width, this.height);
     // Seen with the near plates taken off: those behind the sprockets, rollers in front.
     this.drawPlates();
-    this.shapes.forEach((shape, b) => this.drawBody(shape, this.placement(b, this.frame)));
+    for (const b of this.backToFront) this.drawBody(this.shapes[b], this.placement(b, this.frame));
     this.screen();
     this.drawLinks();
     this.drawRollers();
@@ -178,22 +181,45 @@ class View {
     }
   }
 
+  /** Step on the scale of tension of every link of a chain, at this frame. */
+  tensionSteps(chain) {
+    const tensions = this.film.arrays.link_tension;
+    if (!tensions) return null;
+    const [slack, tight] = this.tension;
+    return Int8Array.from({ length: chain.links }, (_, link) => {
+      const share = (tensions.at(this.frame, chain.firstLink + link) - slack) / (tight - slack || 1);
+      return Math.max(0, Math.min(STEPS - 1, Math.floor(share * STEPS)));
+    });
+  }
+
+  /** Strokes the links of a chain in the colours of their tension. */
+  strokeByTension(chain, steps) {
+    for (const step of new Set(steps)) {
+      this.tracePath(chain, (link) => steps[link] === step);
+      this.context.strokeStyle = this.colours.scale[step];
+      this.context.stroke();
+    }
+  }
+
   drawPlates() {
     const { context: c, colours, window: { scale } } = this;
     c.lineCap = 'round';
     for (const chain of this.film.chains) {
       const height = chain.plate_height * scale;
       if (height < 5) continue;
-      // Outer plates reach over the inner ones.
-      for (const outer of [0, 1]) {
-        this.tracePath(chain, (link) => link % 2 === outer);
-        c.strokeStyle = colours['plate-line'];
-        c.lineWidth = height;
-        c.stroke();
-        c.strokeStyle = colours.plate;
-        c.lineWidth = height - 1.6;
-        c.stroke();
-      }
+      this.tracePath(chain);
+      c.strokeStyle = colours['plate-line'];
+      c.lineWidth = height;
+      c.stroke();
+      const steps = this.tensionSteps(chain);
+      c.strokeStyle = steps ? colours.paper : colours.plate;
+      c.lineWidth = height - 1.6;
+      c.stroke();
+      if (!steps) continue;
+      // Pale, so that rollers and arrows stand out.
+      c.globalAlpha = 0.5;
+      this.strokeByTension(chain, steps);
+      c.globalAlpha = 1;
     }
   }
 
@@ -203,14 +229,15 @@ class View {
     const [cos, sin] = [Math.cos(angle) * scale * density, Math.sin(angle) * scale * density];
     c.setTransform(cos, -sin, -sin, -cos, u * density, v * density);
     const sprocket = kind === 'sprocket';
-    const face = kind === 'guide' || kind === 'shoe';
+    const face = kind === 'guide';
     c.lineJoin = 'round';
     c.fillStyle = sprocket ? colours.steel : colours.arm;
     c.strokeStyle = sprocket ? colours['steel-line'] : face ? colours.guide : colours['arm-line'];
     c.lineWidth = (face ? 2.6 : 1.1) / scale;
     for (const { path, closed } of lines) {
       if (closed) c.fill(path);
-      c.stroke(path);
+      // The material behind a face is for the eye; the face is what the chain meets.
+      if (!(face && closed)) c.stroke(path);
     }
     if (!sprocket) return;
     // Bore, and a mark by which one sees it turn.
@@ -227,26 +254,15 @@ class View {
   }
 
   drawLinks() {
-    const { context: c, colours, film, frame, window: { scale } } = this;
-    const tensions = film.arrays.link_tension;
+    const { context: c, colours, window: { scale } } = this;
     c.lineCap = 'round';
-    for (const chain of film.chains) {
-      c.lineWidth = Math.max(2.4, Math.min(0.24 * chain.plate_height * scale, 9));
-      if (!tensions) {
+    for (const chain of this.film.chains) {
+      c.lineWidth = Math.max(3, Math.min(0.3 * chain.plate_height * scale, 9));
+      const steps = this.tensionSteps(chain);
+      if (steps) this.strokeByTension(chain, steps);
+      else {
         this.tracePath(chain);
         c.strokeStyle = colours['plate-line'];
-        c.stroke();
-        continue;
-      }
-      const [slack, tight] = this.tension;
-      const steps = new Int8Array(chain.links);
-      for (let link = 0; link < chain.links; link++) {
-        const share = (tensions.at(frame, chain.firstLink + link) - slack) / (tight - slack || 1);
-        steps[link] = Math.max(0, Math.min(STEPS - 1, Math.floor(share * STEPS)));
-      }
-      for (const step of new Set(steps)) {
-        this.tracePath(chain, (link) => steps[link] === step);
-        c.strokeStyle = colours.scale[step];
         c.stroke();
       }
     }
