@@ -19,6 +19,9 @@ __all__ = ["Replay", "replay"]
 #: Height of a replay in a notebook [pixels].
 _HEIGHT = 640
 
+#: Frames of a page: the start, and 5000 more.
+_FRAMES = 5001
+
 
 class Replay:
     """A recorded run as one HTML page that needs nothing else.
@@ -53,14 +56,13 @@ def replay(
     path: str | PathLike[str] | None = None,
     *,
     plot: Sequence[str] | None = None,
-    frames: int = 5001,
-    **movie: Any,
+    frames: int | None = None,
 ) -> Replay | Path:
     """Make a page or a movie of a recorded run, in which the drive moves.
 
-    The page plays, scrubs, zooms and follows a roller; links are coloured by their tension and arrows
-    show the forces of teeth on rollers, where ``link_tension`` and ``contact_force`` were recorded.
-    Channels are plotted beside the picture. Press ``?`` in the page for its keys.
+    The page plays, scrubs, zooms and follows a roller; links are coloured by their tension and
+    arrows show the forces of teeth on rollers, where ``link_tension`` and ``contact_force`` were
+    recorded. Channels are plotted beside the picture. Press ``?`` in the page for its keys.
 
     Parameters
     ----------
@@ -69,14 +71,14 @@ def replay(
         ``tensioner_position`` if there is a tensioner, with ``sprocket_x`` and ``sprocket_y`` if
         sprockets stand on springs.
     path
-        Where to write: ``.html`` for the page, ``.mp4`` or ``.gif`` for a movie, which takes the extra
-        ``movie``. Nothing is written when absent.
+        Where to write: ``.html`` for the page, ``.mp4`` or ``.gif`` for a movie, which takes the
+        extra ``movie``. Nothing is written when absent.
     plot
         Channels to plot beside the picture; the tension of the spans when absent.
     frames
-        Largest number of frames; of more samples every n-th is taken, and the page says so.
-    **movie
-        For movies: see `chaindrive.movies.movie`.
+        Largest number of frames of a page, 5001 when absent; of more samples every n-th is taken,
+        and the page says so. Number of pictures of a movie, 250 when absent;
+        `chaindrive.movies.movie` has more settings.
 
     Returns
     -------
@@ -98,15 +100,16 @@ def replay(
     >>> page.html.startswith("<!DOCTYPE html>")
     True
     """
-    if path is not None and Path(fspath(path)).suffix in (".mp4", ".gif"):
-        from chaindrive.movies import movie as make
+    suffix = ".html" if path is None else Path(fspath(path)).suffix
+    if path is not None and suffix in (".mp4", ".gif"):
+        from chaindrive.movies import PICTURES, movie
 
-        return make(run, path, **movie)
-    if movie:
-        raise TypeError(f"replay() of a page takes no {', '.join(movie)}: these are for movies")
-    if path is not None and Path(fspath(path)).suffix not in (".html", ".htm"):
-        raise ValueError(f"{fspath(path)}: the name must end in .html, .mp4 or .gif")
-    page = Replay(_page(run, None if plot is None else list(plot), frames))
+        return movie(run, path, frames=PICTURES if frames is None else frames)
+    if suffix not in (".html", ".htm"):
+        raise ValueError(f"{path!s}: the name must end in .html, .mp4 or .gif")
+    page = Replay(
+        _page(run, None if plot is None else list(plot), _FRAMES if frames is None else frames)
+    )
     if path is not None:
         page.save(path)
     return page

@@ -131,7 +131,12 @@ fn packed(film: &Film) -> Streams {
     let moment = 1e-3 * span / (times.len().max(2) - 1) as f64;
     streams.push("time", times, 1, moment);
 
-    let corners = || film.bodies.iter().flat_map(|it| &it.outlines).flat_map(|it| &it.points);
+    let corners = || {
+        film.bodies
+            .iter()
+            .flat_map(|it| &it.outlines)
+            .flat_map(|it| &it.points)
+    };
     for (name, axis) in [("outline_x", 0), ("outline_y", 1)] {
         let values: Vec<f64> = corners().map(|point| point[axis]).collect();
         streams.push(name, &values, 1, OUTLINES);

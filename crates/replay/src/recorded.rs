@@ -177,7 +177,11 @@ fn shown_body(body: &chaindrive::Body, chords: f64) -> Result<Body, GeometryErro
     let mut outlines = Vec::new();
     if !body.backing.is_empty() {
         outlines.push(Outline {
-            points: body.backing.iter().map(|point| [point.x, point.y]).collect(),
+            points: body
+                .backing
+                .iter()
+                .map(|point| [point.x, point.y])
+                .collect(),
             is_closed: true,
         });
     }
@@ -263,7 +267,12 @@ impl Directions {
                 if forces.get(roller).is_some_and(|force| *force > 0.0) {
                     let nearest = chain.sprockets.iter().filter_map(|&sprocket| {
                         let reach = chain.roller_diameter;
-                        normal(&figure.bodies[sprocket], &pose.placements[sprocket], place, reach)
+                        normal(
+                            &figure.bodies[sprocket],
+                            &pose.placements[sprocket],
+                            place,
+                            reach,
+                        )
                     });
                     let found = nearest.min_by(|a, b| a.0.total_cmp(&b.0));
                     let last = &mut self.last[roller];
@@ -324,7 +333,13 @@ fn curves_of(channel: &RecordedChannel) -> Vec<Curve> {
         name: channel.name.replace('_', " "),
         unit: channel.unit.clone(),
         label: label.to_owned(),
-        values: channel.values.iter().skip(entry).step_by(channel.width()).copied().collect(),
+        values: channel
+            .values
+            .iter()
+            .skip(entry)
+            .step_by(channel.width())
+            .copied()
+            .collect(),
     };
     if channel.labels.is_empty() {
         return vec![curve(0, "")];
@@ -338,7 +353,10 @@ fn contacts(recorded: &Recorded, figure: &Figure) -> Vec<Contact> {
     let shown = |logged: &LoggedContact| {
         let bodies = figure.bodies.iter();
         let touchable = bodies.enumerate().filter(|(_, body)| {
-            matches!(body.kind, BodyKind::Sprocket { .. } | BodyKind::Guide { .. })
+            matches!(
+                body.kind,
+                BodyKind::Sprocket { .. } | BodyKind::Guide { .. }
+            )
         });
         let mut touchable = touchable;
         Some(Contact {

@@ -97,7 +97,11 @@ impl Quantised {
         // An array of zeros has no largest value to take a share of.
         let quantum = if quantum > 0.0 { quantum } else { 1.0 };
         // A multiple of the quantum, so that zero and whole numbers stay what they are.
-        let middle = if least <= most { 0.5 * (least + most) } else { 0.0 };
+        let middle = if least <= most {
+            0.5 * (least + most)
+        } else {
+            0.0
+        };
         let origin = (middle / quantum).round() * quantum;
         #[expect(
             clippy::cast_possible_truncation,
@@ -147,7 +151,11 @@ fn planes(numbers: &[i64]) -> (Vec<u8>, usize) {
     let zigzag = |number: i64| ((number << 1) ^ (number >> 63)).cast_unsigned();
     let most = numbers.iter().map(|&it| zigzag(it)).max().unwrap_or(0);
     let count = (64 - most.leading_zeros() as usize).div_ceil(8).max(1);
-    let plane = |place: usize| numbers.iter().map(move |&it| zigzag(it).to_le_bytes()[place]);
+    let plane = |place: usize| {
+        numbers
+            .iter()
+            .map(move |&it| zigzag(it).to_le_bytes()[place])
+    };
     ((0..count).flat_map(plane).collect(), count)
 }
 

@@ -17,8 +17,8 @@ The page:
   Record link_tension for colours, contact_force for arrows, and tensioner_position where there is a tensioner.
 
 Movies:
-  The Python package makes them, with this command and an output that ends in .mp4 or .gif:
-  pip install 'chaindrive[movie]'";
+  The Python package makes them, with this command and --mp4, --gif, or an output that ends so:
+  pip install 'chaindrive[movie]'. Of a movie --frames is the number of pictures, 250 unless given.";
 
 /// Makes one HTML page of a recorded run, in which the drive moves.
 #[derive(Debug, Args)]
@@ -40,6 +40,14 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NUMBER", default_value_t = MOST_FRAMES, value_parser = some_frames)]
     frames: usize,
 
+    /// Makes a movie instead (.mp4), by the command of the Python package
+    #[arg(long, conflicts_with = "gif")]
+    mp4: bool,
+
+    /// Makes a movie instead (.gif), by the command of the Python package
+    #[arg(long)]
+    gif: bool,
+
     /// Replaces an earlier page of the same name
     #[arg(long)]
     overwrite: bool,
@@ -57,9 +65,14 @@ fn some_frames(text: &str) -> Result<usize, String> {
 }
 
 pub(crate) fn replay(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
+    let kind = match (arguments.mp4, arguments.gif) {
+        (true, _) => "mp4",
+        (_, true) => "gif",
+        _ => "html",
+    };
     let output = match &arguments.output {
         Some(output) => output.clone(),
-        None => arguments.result.with_extension("html"),
+        None => arguments.result.with_extension(kind),
     };
     check_output(&output, arguments.overwrite)?;
     let selection = Selection {
@@ -107,8 +120,8 @@ fn check_output(output: &Path, overwrite: bool) -> Result<(), Failure> {
     if output.exists() && !overwrite {
         return Err(Failure::Taken {
             path: name.to_string(),
-            found: "there is already something here",
-            hint: ", or give --overwrite",
+            found: "there is already a file here",
+            hint: ", or pass --overwrite",
         });
     }
     Ok(())

@@ -155,7 +155,11 @@ impl Stored {
 
     /// Labels along a dimension, numbers as text.
     fn labels(&self, axis: &str) -> Result<Vec<String>, Fault> {
-        if self.arrays.get(axis).is_some_and(|about| about["data_type"] == "int64") {
+        if self
+            .arrays
+            .get(axis)
+            .is_some_and(|about| about["data_type"] == "int64")
+        {
             let numbers: Vec<i64> = self.rows(axis, 1)?;
             return Ok(numbers.iter().map(i64::to_string).collect());
         }
