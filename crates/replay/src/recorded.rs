@@ -341,6 +341,10 @@ fn curves_of(channel: &RecordedChannel) -> Vec<Curve> {
             .copied()
             .collect(),
     };
+    if channel.values.is_empty() {
+        // A channel of spans in a drive that has none.
+        return Vec::new();
+    }
     if channel.labels.is_empty() {
         return vec![curve(0, "")];
     }

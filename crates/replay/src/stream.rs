@@ -164,3 +164,6 @@ fn deflate(bytes: &[u8], level: Compression) -> Vec<u8> {
     let written = encoder.write_all(bytes).and_then(|()| encoder.finish());
     written.expect("memory takes all that is written")
 }
+
+#[cfg(test)]
+mod tests;
