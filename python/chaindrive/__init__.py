@@ -59,6 +59,8 @@ if TYPE_CHECKING:
     from chaindrive.live import Snapshot as Snapshot
     from chaindrive.precision import work_precision as work_precision
     from chaindrive.profile import Profile as Profile
+    from chaindrive.replaying import Replay as Replay
+    from chaindrive.replaying import replay as replay
     from chaindrive.results import open_result as open_result
     from chaindrive.simulation import resume as resume
     from chaindrive.simulation import simulate as simulate
@@ -93,6 +95,7 @@ _DEFINED_IN = {
     "live": ("Simulation", "Snapshot"),
     "precision": ("work_precision",),
     "profile": ("Profile",),
+    "replaying": ("Replay", "replay"),
     "results": ("open_result",),
     "simulation": ("resume", "simulate"),
     "sweeping": ("sweep",),

@@ -30,6 +30,8 @@ __all__ = [
     "methods",
     "polygon_action",
     "presets",
+    "replay",
+    "replay_selection",
     "resume",
     "schema",
     "simulate",
@@ -218,7 +220,6 @@ def polygon_action(
 def links_for(teeth: Sequence[int], pitch: float, centre_distance: float) -> float: ...
 def centre_distance_for(teeth: Sequence[int], pitch: float, links: float) -> float: ...
 def _cli(arguments: Sequence[str]) -> int: ...
-
 def layouts_of(drive: Drive) -> tuple[str, list[str]]: ...
 def layout_around(
     stops: Sequence[object],
@@ -227,3 +228,15 @@ def layout_around(
     phase: float,
     moved: tuple[int | None, tuple[float, float] | None] | None,
 ) -> str: ...
+def replay(
+    attributes: str,
+    samples: int,
+    stride: int,
+    time: _Floats,
+    channels: Sequence[tuple[str, str, str, Sequence[str], _Floats]],
+    contacts: tuple[Sequence[str], NDArray[np.int64], _Floats, _Floats] | None,
+    plots: Sequence[str] | None,
+) -> str: ...
+def replay_selection(
+    recorded: Sequence[str], plots: Sequence[str] | None, samples: int, frames: int
+) -> tuple[list[str], int]: ...

@@ -13,6 +13,8 @@ _BRINGS = {
     "distributed": "dask",
     "ezdxf": "dxf",
     "h5netcdf": "netcdf",
+    "imageio": "movie",
+    "imageio_ffmpeg": "movie",
     "matplotlib": "plot",
     "pyarrow": "parquet",
     "rainflow": "analysis",

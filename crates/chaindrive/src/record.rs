@@ -7,6 +7,7 @@ mod error;
 mod event;
 mod in_store;
 mod memory;
+mod recorded;
 mod summary;
 mod zarr;
 
@@ -21,11 +22,12 @@ pub use error::WriteError;
 pub use event::{EventColumn, EventTable};
 pub use in_store::InStore;
 pub use memory::Memory;
+pub use recorded::{LoggedContact, Recorded, RecordedChannel};
 pub(crate) use summary::Batches;
 pub use summary::{
     ContactStatistics, ForceStatistics, Ledger, Load, SpanStatistics, Steadiness, Summary,
 };
-pub use zarr::{Existing, ResumeError, Stopped, SweepWriter, ZarrWriter};
+pub use zarr::{Existing, ReadError, ResumeError, Stopped, SweepWriter, ZarrWriter};
 
 /// One channel of a recording.
 #[derive(Clone, Debug)]

@@ -6,6 +6,7 @@ pub(crate) mod describe;
 pub(crate) mod design;
 pub(crate) mod lists;
 pub(crate) mod output;
+pub(crate) mod replay;
 pub(crate) mod resume;
 pub(crate) mod run;
 pub(crate) mod scenes;

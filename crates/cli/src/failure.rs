@@ -1,6 +1,6 @@
 //! How a command ends when it does not end well.
 
-use chaindrive::record::{ResumeError, WriteError};
+use chaindrive::record::{ReadError, ResumeError, WriteError};
 use chaindrive::scene::SceneError;
 use chaindrive::sweep::SweepError;
 use chaindrive::{RequestError, SimulationError};
@@ -52,6 +52,10 @@ pub(crate) enum Failure {
     /// There is nothing to go on with.
     #[error(transparent)]
     Resume(ResumeError),
+
+    /// There is nothing to look at.
+    #[error(transparent)]
+    Read(#[from] ReadError),
 
     /// The result could not be written.
     #[error("{path}: {source}")]
@@ -121,6 +125,7 @@ impl Failure {
             | Self::Scenes { .. }
             | Self::Start { .. }
             | Self::Resume(_)
+            | Self::Read(_)
             | Self::Sweep(_) => BAD_INPUT,
             Self::Write(_) | Self::File { .. } | Self::Taken { .. } => 3,
             Self::Distrusted { .. } => 4,

@@ -22,7 +22,9 @@ use std::ffi::OsString;
 
 use clap::{Parser, Subcommand};
 
-use commands::{bench, check, describe, design, lists, resume, run as run_command, scenes, sweep};
+use commands::{
+    bench, check, describe, design, lists, replay, resume, run as run_command, scenes, sweep,
+};
 
 /// Exit code of a run that was stopped by Ctrl-C.
 pub const INTERRUPTED: u8 = 130;
@@ -48,6 +50,7 @@ struct Command {
 enum Verb {
     Run(run_command::Arguments),
     Resume(resume::Arguments),
+    Replay(replay::Arguments),
     Sweep(sweep::Arguments),
     Bench(bench::Arguments),
     Check(check::Arguments),
@@ -89,6 +92,7 @@ where
     let done = match &command.verb {
         Verb::Run(arguments) => run_command::run(arguments, interrupted),
         Verb::Resume(arguments) => resume::resume(arguments, interrupted),
+        Verb::Replay(arguments) => replay::replay(arguments, interrupted),
         Verb::Sweep(arguments) => sweep::sweep(arguments, interrupted),
         Verb::Bench(arguments) => bench::bench(arguments, interrupted),
         Verb::Check(arguments) => check::check(arguments, interrupted),

@@ -18,6 +18,7 @@ mod law;
 mod live;
 mod precision;
 mod profile;
+mod replay;
 mod run;
 mod sweep;
 
@@ -52,6 +53,8 @@ mod core {
     use crate::precision::work_precision;
     #[pymodule_export]
     use crate::profile::Profile;
+    #[pymodule_export]
+    use crate::replay::{replay, replay_selection};
     #[pymodule_export]
     use crate::run::{adaptive_methods, channels, is_being_written, methods, resume, simulate};
 

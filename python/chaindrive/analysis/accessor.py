@@ -5,10 +5,13 @@ Importing this module registers it; chaindrive does so when it first makes or op
 
 from __future__ import annotations
 
+from os import PathLike
+from pathlib import Path
 from typing import Any
 
 import xarray as xr
 
+from chaindrive import replaying
 from chaindrive.analysis import (
     around,
     dissipation,
@@ -24,6 +27,7 @@ from chaindrive.analysis import (
     spectra,
     transmission,
 )
+from chaindrive.replaying import Replay
 
 __all__ = ["DriveAccessor"]
 
@@ -120,3 +124,7 @@ class DriveAccessor:
     def utilisation(self, **options: Any) -> xr.Dataset:
         """See `chaindrive.analysis.utilisation`."""
         return duty.utilisation(self._run, **options)
+
+    def replay(self, path: str | PathLike[str] | None = None, **options: Any) -> Replay | Path:
+        """See `chaindrive.replay`."""
+        return replaying.replay(self._run, path, **options)

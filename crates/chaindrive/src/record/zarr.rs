@@ -21,6 +21,8 @@
 //! Whenever the process dies, the group document describes chunks that are there. Files are not
 //! synchronised with the disk one by one: a result outlives the program, not a power cut.
 //!
+//! `Recorded::open` reads a store back, and `Stopped::open` claims one to go on with.
+//!
 //! A reader has to open the file of a chunk once, as `zarr-python` does. One that asks for its size
 //! first, as object stores do, may then find another file; once the run has ended this does not matter.
 
@@ -28,6 +30,7 @@ mod content;
 mod error;
 mod events;
 mod folder;
+mod reader;
 mod stopped;
 mod store;
 mod sweep;
@@ -40,6 +43,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Map, Value};
 
+pub use reader::ReadError;
 pub use sweep::SweepWriter;
 
 use super::Channel;

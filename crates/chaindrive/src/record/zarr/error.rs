@@ -10,7 +10,7 @@ pub(super) enum Fault {
     Storage(#[from] StorageError),
     #[error(transparent)]
     Key(#[from] StoreKeyError),
-    #[error("`{name}` does not hold the samples up to the checkpoint")]
+    #[error("`{name}` does not hold the samples that the store says it has")]
     Short { name: String },
     #[error(transparent)]
     Array(#[from] ArrayError),
@@ -18,6 +18,8 @@ pub(super) enum Fault {
     ArrayCreate(#[from] ArrayCreateError),
     #[error(transparent)]
     GroupCreate(#[from] GroupCreateError),
+    #[error(transparent)]
+    Io(#[from] std::io::Error),
     #[error(transparent)]
     Json(#[from] serde_json::Error),
 }

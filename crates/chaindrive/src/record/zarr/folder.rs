@@ -63,6 +63,18 @@ impl Folder {
         })
     }
 
+    /// Opens a folder to read it, whoever writes there: nothing is cleared away.
+    pub(super) fn to_read(root: &Path) -> io::Result<Self> {
+        Ok(Self {
+            itself: Handle::from_path(root)?,
+            state: Mutex::new(State {
+                root: root.to_owned(),
+                folders: HashSet::new(),
+                files: HashSet::new(),
+            }),
+        })
+    }
+
     /// Removes the chunks of an array whose index along the first dimension is beyond `last`.
     pub(super) fn clear_behind(&self, array: &str, last: u64) -> Result<(), StorageError> {
         let chunks = format!("{array}/c/");

@@ -1,0 +1,136 @@
+//! `chaindrive replay`: a recorded run as one page to look at.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use chaindrive::SimulationError;
+use chaindrive::record::Recorded;
+use chaindrive_replay::{FilmError, MOST_FRAMES, Selection, film, page};
+use clap::Args;
+
+use crate::failure::Failure;
+
+const PAGES: &str = "\
+The page:
+  One HTML file that a browser shows without a network: play, pause, scrub, zoom, follow a roller, go from contact
+  to contact; `?` lists the keys. Rollers are exact to 0.05 mm or better, channels to 0.125 % of their largest value.
+  Record link_tension for colours, contact_force for arrows, and tensioner_position where there is a tensioner.
+
+Movies:
+  The Python package makes them, with this command and --mp4, --gif, or an output that ends so:
+  pip install 'chaindrive[movie]'. Of a movie --frames is the number of pictures, 250 unless given.";
+
+/// Makes one HTML page of a recorded run, in which the drive moves.
+#[derive(Debug, Args)]
+#[command(after_help = PAGES)]
+pub(crate) struct Arguments {
+    /// The Zarr result of the run, running, complete or killed
+    #[arg(value_name = "RESULT")]
+    result: PathBuf,
+
+    /// The page (.html); the name of the result with this ending unless given
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<PathBuf>,
+
+    /// Channels to plot beside the picture, separated by commas; the tension of the spans unless given
+    #[arg(long, value_name = "CHANNELS", value_delimiter = ',')]
+    plot: Option<Vec<String>>,
+
+    /// Largest number of frames; of more samples every n-th is taken
+    #[arg(long, value_name = "NUMBER", default_value_t = MOST_FRAMES, value_parser = some_frames)]
+    frames: usize,
+
+    /// Makes a movie instead (.mp4), by the command of the Python package
+    #[arg(long, conflicts_with = "gif")]
+    mp4: bool,
+
+    /// Makes a movie instead (.gif), by the command of the Python package
+    #[arg(long)]
+    gif: bool,
+
+    /// Replaces an earlier page of the same name
+    #[arg(long)]
+    overwrite: bool,
+
+    /// Prints errors only
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+fn some_frames(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(0) | Err(_) => Err("must be a whole number, 1 or more".into()),
+        Ok(number) => Ok(number),
+    }
+}
+
+pub(crate) fn replay(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
+    let kind = match (arguments.mp4, arguments.gif) {
+        (true, _) => "mp4",
+        (_, true) => "gif",
+        _ => "html",
+    };
+    let output = match &arguments.output {
+        Some(output) => output.clone(),
+        None => arguments.result.with_extension(kind),
+    };
+    check_output(&output, arguments.overwrite)?;
+    let selection = Selection {
+        frames: arguments.frames,
+        plots: arguments.plot.clone(),
+    };
+    let wanted = |channel: &str| selection.wants(channel);
+    let recorded = Recorded::open(&arguments.result, &wanted, selection.frames)?;
+    let film = film(&recorded, &selection, interrupted);
+    let film = film.map_err(|error| no_film(error, &arguments.result))?;
+    let text = page(&film);
+    fs::write(&output, &text).map_err(|source| Failure::File {
+        path: output.display().to_string(),
+        source,
+    })?;
+    if !arguments.quiet {
+        let (name, size) = (output.display(), text.len() as f64 * 1e-6);
+        let (frames, samples) = (film.frames.times.len(), recorded.samples);
+        let taken = match recorded.stride {
+            1 => format!("{frames} frames, every sample"),
+            stride => format!("{frames} frames, one in {stride} of {samples} samples"),
+        };
+        eprintln!("{name}: {taken}, {size:.2} MB");
+    }
+    Ok(())
+}
+
+/// Refuses a name that is not that of a page, or is taken.
+fn check_output(output: &Path, overwrite: bool) -> Result<(), Failure> {
+    let name = output.display();
+    match output.extension().and_then(|extension| extension.to_str()) {
+        Some("html" | "htm") => {}
+        Some("mp4" | "gif") => {
+            return Err(Failure::Argument(format!(
+                "{name}: this program makes pages (.html); movies are made by the command of the Python package: \
+                 pip install 'chaindrive[movie]'"
+            )));
+        }
+        _ => {
+            return Err(Failure::Argument(format!(
+                "{name}: the name must end in .html, or with the Python package in .mp4 or .gif"
+            )));
+        }
+    }
+    if output.exists() && !overwrite {
+        return Err(Failure::Taken {
+            path: name.to_string(),
+            found: "there is already a file here",
+            hint: ", or pass --overwrite",
+        });
+    }
+    Ok(())
+}
+
+fn no_film(error: FilmError, result: &Path) -> Failure {
+    match error {
+        FilmError::Scene(error) => error.into(),
+        FilmError::Stopped(SimulationError::Interrupted) => Failure::Interrupted,
+        error => Failure::Argument(format!("{}: {error}", result.display())),
+    }
+}

@@ -1,0 +1,90 @@
+// The numbers of the film: base64, deflate, byte planes, differences, quanta.
+
+/** Inflates one stream. */
+async function inflate(bytes) {
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw'));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+/** Whole numbers of a stream, one column after the other: those of one roller stand together. */
+function wholeNumbers(bytes, { rows, columns, planes, order }) {
+  const count = rows * columns;
+  const whole = new Int32Array(count);
+  for (let i = 0; i < count; i++) {
+    let zigzag = bytes[i];
+    for (let plane = 1; plane < planes; plane++) zigzag |= bytes[plane * count + i] << (8 * plane);
+    whole[i] = (zigzag >>> 1) ^ -(zigzag & 1);
+  }
+  const [inTime, across] = order;
+  for (let pass = 0; pass < inTime; pass++) {
+    for (let column = 0; column < columns; column++) {
+      for (let i = column * rows + 1; i < (column + 1) * rows; i++) whole[i] += whole[i - 1];
+    }
+  }
+  for (let pass = 0; pass < across; pass++) {
+    for (let i = rows; i < count; i++) whole[i] += whole[i - rows];
+  }
+  return whole;
+}
+
+/** One array of the film: `at(row, column)` is its value in SI units. */
+class Numbers {
+  constructor(stream, bytes) {
+    const { rows, columns, quantum, origin, missing } = stream;
+    Object.assign(this, { rows, columns, quantum });
+    const whole = wholeNumbers(bytes, stream);
+    this.values = new Float64Array(whole.length);
+    for (let i = 0; i < whole.length; i++) {
+      this.values[i] = whole[i] === missing ? NaN : origin + quantum * whole[i];
+    }
+  }
+
+  at(row, column) {
+    return this.values[column * this.rows + row];
+  }
+
+  /** Least and largest value. */
+  range() {
+    let [least, most] = [Infinity, -Infinity];
+    for (const value of this.values) {
+      if (value < least) least = value;
+      if (value > most) most = value;
+    }
+    return [least, most];
+  }
+}
+
+/** The whole film, read from the page. */
+async function readFilm() {
+  const film = JSON.parse(document.getElementById('index').textContent);
+  const text = atob(document.getElementById('data').textContent.trim());
+  const packed = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; i++) packed[i] = text.charCodeAt(i);
+  film.arrays = {};
+  await Promise.all(film.streams.map(async (stream) => {
+    const bytes = await inflate(packed.subarray(stream.at, stream.at + stream.length));
+    film.arrays[stream.name] = new Numbers(stream, bytes);
+  }));
+  film.frames = film.arrays.time.rows;
+
+  // Lines of the bodies, in their own frames.
+  const { outline_x: x, outline_y: y } = film.arrays;
+  let corner = 0;
+  for (const body of film.bodies) {
+    body.lines = body.outlines.map(([count, closed]) => {
+      const points = [];
+      for (let i = 0; i < count; i++, corner++) points.push([x.at(corner, 0), y.at(corner, 0)]);
+      return { points, closed };
+    });
+  }
+
+  // Where the rollers and links of every chain begin.
+  let [roller, link] = [0, 0];
+  for (const chain of film.chains) {
+    Object.assign(chain, { firstRoller: roller, firstLink: link });
+    roller += chain.rollers;
+    link += chain.links;
+  }
+  Object.assign(film, { rollers: roller, links: link });
+  return film;
+}

@@ -1,0 +1,135 @@
+// Reads the film, puts the page together, and hands out `window.replay` for programs.
+
+/** Texts of the page that the film decides. */
+function describe(film) {
+  const { about, arrays } = film;
+  const parts = [];
+  const part = (text, style) => {
+    const span = document.createElement('span');
+    span.textContent = text;
+    if (style) span.className = `verdict ${style}`;
+    parts.push(span);
+  };
+  if (about.verdict) part(about.verdict, about.verdict);
+  if (about.status !== 'complete') {
+    part(about.failure ? `${about.status}: ${about.failure}` : about.status, about.status === 'running' ? 'caution' : 'distrusted');
+  }
+  const frames = about.stride > 1
+    ? `${film.frames} of ${about.samples} samples, one in ${about.stride}`
+    : `${film.frames} samples`;
+  part(frames);
+  part(about.version);
+  if (about.note) parts[0].title = about.note;
+  parts.forEach((span, i) => byId('subtitle').append(i ? ' · ' : '', span));
+
+  byId('account').hidden = !about.summary;
+  byId('story').querySelector('pre').textContent = about.summary;
+  const { distance, channel } = film.quanta;
+  const exact = `exact to ±${quantity(0.5 * distance, 'm')} and ±${+(50 * channel).toPrecision(3)} % of the largest value`;
+  byId('quantum').textContent = exact;
+  const names = KEYS.map(([key]) => key);
+  byId('help').querySelector('table').append(...KEYS.map(([, text], i) => {
+    const row = document.createElement('tr');
+    for (const cell of [names[i], text]) row.insertCell().textContent = cell;
+    return row;
+  }));
+  byId('help').querySelector('.note').textContent =
+    `Every picture is a recorded sample; nothing is drawn between two of them. Values are ${exact} of their kind. `
+    + (arrays.event_start ? 'Contacts are those that the run has logged.'
+      : 'Contacts were not logged: a contact begins at the first sample with a force on the teeth.');
+}
+
+/** Ends of the scales. */
+function describeScales(film, view) {
+  const { link_tension: tension, contact_force: force, contact_direction: direction } = film.arrays;
+  byId('tension').hidden = !tension;
+  if (tension) {
+    const c = byId('scale').getContext('2d');
+    const { width, height } = byId('scale');
+    view.colours.scale.forEach((colour, i) => {
+      c.fillStyle = colour;
+      c.fillRect((i * width) / STEPS, 0, width / STEPS + 1, height);
+    });
+    const [least, most] = tension.range();
+    const [slack, tight] = view.tension;
+    byId('slackest').textContent = (least < slack ? '≤ ' : '') + quantity(slack, 'N');
+    byId('tightest').textContent = (most > tight ? '≥ ' : '') + quantity(tight, 'N');
+  }
+  byId('force').hidden = !(force && direction && view.largestForce > 0);
+}
+
+/** The theme of the reader's system, until he chooses another. */
+function followTheme(player, film) {
+  const root = document.documentElement;
+  const dark = window.matchMedia('(prefers-color-scheme: dark)');
+  const apply = (theme) => {
+    root.dataset.theme = theme;
+    player.view.colours = palette();
+    describeScales(film, player.view);
+    player.plots.redraw();
+    player.dirty = true;
+  };
+  dark.addEventListener('change', () => apply(dark.matches ? 'dark' : 'light'));
+  player.changeTheme = () => apply(root.dataset.theme === 'dark' ? 'light' : 'dark');
+  apply(dark.matches ? 'dark' : 'light');
+}
+
+/** The film as a program sees it: frames, values in SI units, and the same steps as the buttons. */
+function api(film, player) {
+  const curve = (name, label) => film.curves.findIndex((it) => it.channel === name && it.label === String(label));
+  return {
+    film,
+    frames: film.frames,
+    get frame() { return player.frame; },
+    get playing() { return player.playing; },
+    get scale() { return player.view.window.scale; },
+    get timings() { return player.timings; },
+    time: (frame) => film.arrays.time.at(frame, 0),
+    /** A recorded value: of a roller, link or body by number, of a curve by its label. */
+    value(name, frame, entry = 0) {
+      const array = film.arrays[name] || film.arrays[`curve_${curve(name, entry)}`];
+      if (!array) throw new RangeError(`${name} is not in this film`);
+      return array.at(frame, film.arrays[name] ? entry : 0);
+    },
+    quantum: (name, label = '') => (film.arrays[name] || film.arrays[`curve_${curve(name, label)}`]).quantum,
+    seek: (frame) => player.seek(frame),
+    play: () => player.play(),
+    pause: () => player.pause(),
+    follow: (roller) => player.follow(roller),
+    nextContact: (direction) => player.nextContact(direction),
+    zoom(factor) {
+      player.view.zoom(factor);
+      player.dirty = true;
+    },
+  };
+}
+
+async function start() {
+  const film = await readFilm();
+  const view = new View(byId('picture'), film);
+  let player;
+  const plots = new Plots(byId('plots'), film, (moment) => player.seekTime(moment));
+  plots.frame = 0;
+  view.resize();
+  player = new Player(film, view, plots);
+  describe(film);
+  listenToPicture(byId('picture'), player);
+  listenToControls(player);
+  followTheme(player, film);
+  new ResizeObserver(() => {
+    view.resize();
+    plots.redraw();
+    player.dirty = true;
+  }).observe(byId('stage'));
+  byId('wait').hidden = true;
+  byId('wait').style.display = 'none';
+  window.replay = api(film, player);
+  requestAnimationFrame(() => requestAnimationFrame((now) => {
+    window.replay.firstFrame = now;
+  }));
+}
+
+start().catch((error) => {
+  byId('wait').textContent = `This page cannot be shown: ${error.message}`;
+  throw error;
+});

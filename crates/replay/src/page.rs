@@ -1,0 +1,190 @@
+//! The page: a film packed into the HTML that shows it.
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde::Serialize;
+
+use crate::film::{About, Chain, Film};
+use crate::stream::{LEVELS, Stream, Streams};
+
+const PAGE: &str = include_str!("../page/page.html");
+const STYLE: &str = include_str!("../page/style.css");
+/// The programs of the page, each a file, in the order in which they run.
+const PROGRAMS: [&str; 6] = [
+    include_str!("../page/decode.js"),
+    include_str!("../page/colours.js"),
+    include_str!("../page/view.js"),
+    include_str!("../page/plots.js"),
+    include_str!("../page/controls.js"),
+    include_str!("../page/start.js"),
+];
+
+/// Largest quantum of places \[m\].
+const DISTANCE: f64 = 1e-4;
+
+/// Quanta of places in a pitch, at least: small chains are looked at from nearer.
+const IN_A_PITCH: f64 = 400.0;
+
+/// Quantum of outlines \[m\]: they cost little, and facets would be seen.
+const OUTLINES: f64 = 1e-6;
+
+/// All of a film but the numbers.
+#[derive(Debug, Serialize)]
+struct Index<'a> {
+    about: &'a About,
+    bodies: Vec<BodyIndex<'a>>,
+    chains: &'a [Chain],
+    curves: Vec<CurveIndex<'a>>,
+    quanta: Quanta,
+    streams: &'a [Stream],
+}
+
+/// How exact the numbers are.
+#[derive(Debug, Serialize)]
+struct Quanta {
+    /// Of places \[m\].
+    distance: f64,
+    /// Of a channel, as a share of its largest magnitude.
+    channel: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct BodyIndex<'a> {
+    name: &'a str,
+    kind: &'a str,
+    /// Corners of every line, and whether it is closed.
+    outlines: Vec<(usize, bool)>,
+}
+
+#[derive(Debug, Serialize)]
+struct CurveIndex<'a> {
+    channel: &'a str,
+    name: &'a str,
+    unit: &'a str,
+    label: &'a str,
+}
+
+/// The page of a film: HTML that needs nothing else.
+pub fn page(film: &Film) -> String {
+    let streams = packed(film);
+    let body = |body: &'_ crate::Body| {
+        let outlines = body.outlines.iter();
+        outlines.map(|it| (it.points.len(), it.is_closed)).collect()
+    };
+    let index = Index {
+        about: &film.about,
+        bodies: film
+            .bodies
+            .iter()
+            .map(|it| BodyIndex {
+                name: &it.name,
+                kind: &it.kind,
+                outlines: body(it),
+            })
+            .collect(),
+        chains: &film.chains,
+        curves: film
+            .curves
+            .iter()
+            .map(|it| CurveIndex {
+                channel: &it.channel,
+                name: &it.name,
+                unit: &it.unit,
+                label: &it.label,
+            })
+            .collect(),
+        quanta: Quanta {
+            distance: distance(film),
+            channel: 1.0 / LEVELS,
+        },
+        streams: &streams.index,
+    };
+    let index = serde_json::to_string(&index).expect("texts and numbers make JSON");
+    // Within a script only `</` and `<!--` end or change it; neither is left.
+    let index = index.replace('<', "\\u003c");
+    let title = if film.about.title.is_empty() {
+        "Chain drive"
+    } else {
+        &film.about.title
+    };
+    // The texts of the run go in last: nothing is looked for in them.
+    PAGE.replace("{{style}}", STYLE)
+        .replace("{{program}}", &PROGRAMS.concat())
+        .replace("{{title}}", &escaped(title))
+        .replace("{{data}}", &STANDARD.encode(&streams.bytes))
+        .replace("{{index}}", &index)
+}
+
+/// Quantum of the places of a film \[m\].
+fn distance(film: &Film) -> f64 {
+    let pitches = film.chains.iter().map(|chain| chain.pitch / IN_A_PITCH);
+    pitches.fold(DISTANCE, f64::min)
+}
+
+fn packed(film: &Film) -> Streams {
+    let distance = distance(film);
+    let mut streams = Streams::default();
+    let frames = &film.frames;
+    let times = &frames.times;
+    let span = times.last().unwrap_or(&0.0) - times.first().unwrap_or(&0.0);
+    // A thousandth of the mean time between two frames.
+    let moment = 1e-3 * span / (times.len().max(2) - 1) as f64;
+    streams.push("time", times, 1, moment);
+
+    let corners = || {
+        film.bodies
+            .iter()
+            .flat_map(|it| &it.outlines)
+            .flat_map(|it| &it.points)
+    };
+    for (name, axis) in [("outline_x", 0), ("outline_y", 1)] {
+        let values: Vec<f64> = corners().map(|point| point[axis]).collect();
+        streams.push(name, &values, 1, OUTLINES);
+    }
+
+    let bodies = film.bodies.len();
+    let placed = |axis: usize| frames.placements.iter().skip(axis).step_by(3).copied();
+    for (name, axis) in [("body_x", 0), ("body_y", 1)] {
+        streams.push(name, &placed(axis).collect::<Vec<_>>(), bodies, distance);
+    }
+    let size = corners().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
+    let angles: Vec<f64> = placed(2).collect();
+    // No corner is off by more than a place is: angle = distance / radius.
+    streams.push("body_angle", &angles, bodies, distance / size.max(distance));
+
+    let rollers: usize = film.chains.iter().map(|chain| chain.rollers).sum();
+    let links: usize = film.chains.iter().map(|chain| chain.links).sum();
+    streams.push("roller_x", &frames.roller_x, rollers, distance);
+    streams.push("roller_y", &frames.roller_y, rollers, distance);
+    if let Some(values) = &frames.link_tension {
+        streams.push_channel("link_tension", values, links);
+    }
+    if let Some(values) = &frames.contact_force {
+        streams.push_channel("contact_force", values, rollers);
+    }
+    if let Some(values) = &frames.contact_direction {
+        streams.push("contact_direction", values, rollers, DIRECTION);
+    }
+    for (number, curve) in film.curves.iter().enumerate() {
+        streams.push_channel(&format!("curve_{number}"), &curve.values, 1);
+    }
+    let column = |of: fn(&crate::Contact) -> f64| film.contacts.iter().map(of).collect::<Vec<_>>();
+    if !film.contacts.is_empty() {
+        streams.push("event_start", &column(|it| it.start), 1, moment);
+        streams.push("event_roller", &column(|it| it.roller as f64), 1, 1.0);
+        streams.push("event_body", &column(|it| it.body as f64), 1, 1.0);
+        streams.push_channel("event_peak_force", &column(|it| it.peak_force), 1);
+    }
+    streams
+}
+
+/// Quantum of the direction of arrows \[rad\]: two degrees are less than an eye sees.
+const DIRECTION: f64 = 2.0 * std::f64::consts::PI / 180.0;
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
+        .replace('{', "&#123;")
+}

@@ -1,0 +1,256 @@
+"""Movies of recorded runs: the drive drawn picture by picture, packed by imageio."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from os import PathLike, fspath
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chaindrive.extras import extra
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["PICTURES", "RATE", "SIZE", "movie"]
+
+PICTURES = 250
+"""Pictures of a movie unless somebody asks for another number."""
+RATE = 25.0
+"""Pictures a second."""
+SIZE = (1280, 720)
+"""Width and height [pixels]; codecs want multiples of 16."""
+
+_Floats = NDArray[np.float64]
+
+_STEEL, _STEEL_LINE = "#e3e7eb", "#7a8794"
+_GUIDE, _ARM, _INK = "#a8642a", "#b78a5c", "#1c2733"
+_PLATES = "#8d99a6"
+_DPI = 100
+# Channels by which bodies follow, where they were recorded.
+_PLACING = ("sprocket_angle", "sprocket_x", "sprocket_y", "tensioner_position")
+
+
+def movie(
+    run: xr.Dataset,
+    path: str | PathLike[str],
+    *,
+    frames: int = PICTURES,
+    rate: float = RATE,
+    size: tuple[int, int] = SIZE,
+) -> Path:
+    """Write a movie of a recorded run, in place of what was there.
+
+    Parameters
+    ----------
+    run
+        A run, with the channels that `chaindrive.replay` takes.
+    path
+        Where to write: ``.mp4`` or ``.gif``.
+    frames
+        Number of pictures, evenly over the samples of the run.
+    rate
+        Pictures a second.
+    size
+        Width and height [pixels].
+
+    Returns
+    -------
+    pathlib.Path
+
+    Raises
+    ------
+    KeyError
+        The channels that the motion takes were not recorded.
+    ModuleNotFoundError
+        The extra ``movie`` is not installed.
+    """
+    place = Path(fspath(path))
+    if frames < 1:
+        raise ValueError(f"frames = {frames}, must be 1 or more")
+    imageio = extra("imageio.v2", "movies")
+    if place.suffix == ".mp4":
+        extra("imageio_ffmpeg", "movies in .mp4")
+        how: dict[str, Any] = {"fps": rate, "codec": "libx264", "quality": 8}
+    elif place.suffix == ".gif":
+        how = {"duration": 1e3 / rate, "loop": 0}
+    else:
+        raise ValueError(f"{place}: the name must end in .mp4 or .gif")
+    samples = np.unique(np.linspace(0, run.sizes["time"] - 1, frames).round().astype(int))
+    stage = _Stage(run, samples, size)
+    with imageio.get_writer(place, **how) as writer:
+        for number in range(len(samples)):
+            writer.append_data(stage.picture(number))
+    return place
+
+
+class _Stage:
+    """A drive whose parts are drawn once and then moved from picture to picture."""
+
+    def __init__(self, run: xr.Dataset, samples: NDArray[np.int_], size: tuple[int, int]) -> None:
+        extra("matplotlib", "movies")
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+
+        from chaindrive.drive import _from_text
+
+        drive = _from_text(run.attrs["scene"], run.attrs.get("scene_name", "scene"))
+        figure = drive._inner.figure(True, float(run.attrs.get("run_in", 0.0)))
+        missing = [name for name in figure.needs if name not in run]
+        if missing:
+            raise KeyError(f"the movie takes {', '.join(missing)}: simulate(…, record=[…])")
+        thinned = run.isel(time=samples)
+        self.times = _floats(thinned["time"])
+        given = {name: _floats(thinned[name]) for name in _PLACING if name in thinned}
+        self.placements = figure.placements(self.times, given)
+        self.rollers = np.stack(
+            [_floats(thinned["roller_x"]), _floats(thinned["roller_y"])], axis=2
+        )
+        known = "link_tension" in thinned
+        self.tensions = _floats(thinned["link_tension"]) if known else None
+        self.canvas = FigureCanvasAgg(
+            Figure((size[0] / _DPI, size[1] / _DPI), dpi=_DPI, layout="constrained")
+        )
+        self.axes = self.canvas.figure.add_subplot()
+        self.axes.set_axis_off()
+        self.axes.set_aspect("equal")
+        self.axes.set_title(run.attrs.get("title") or drive.name, fontsize=11, color=_INK)
+        self.links = _links(figure.chains)
+        pitch = min(chain["pitch"] for chain in figure.chains)
+        self._draw_bodies(figure.bodies(1e-3 * pitch))
+        self._draw_chains(figure.chains)
+        self.clock = self.axes.text(0.01, 0.01, "", transform=self.axes.transAxes, color=_INK)
+
+    def _draw_bodies(self, bodies: list[dict[str, Any]]) -> None:
+        from matplotlib.patches import PathPatch
+        from matplotlib.path import Path as Outline
+
+        self.parts: list[tuple[int, Any]] = []
+        low, high = self.rollers.min(axis=(0, 1)), self.rollers.max(axis=(0, 1))
+        for index, body in enumerate(bodies):
+            sprocket = body["kind"] == "sprocket"
+            face = {"facecolor": _STEEL, "edgecolor": _STEEL_LINE, "linewidth": 0.7, "zorder": 2}
+            line = {"facecolor": "none", "zorder": 1.5}
+            colour, width = (_GUIDE, 1.8) if body["kind"] == "guide" else (_ARM, 2.5)
+            for outline in body["outlines"]:
+                look = face if sprocket else {**line, "edgecolor": colour, "linewidth": width}
+                patch = PathPatch(Outline(outline, closed=False), **look)
+                self.axes.add_patch(patch)
+                self.parts.append((index, patch))
+                reach = np.hypot(*outline.T).max() if sprocket else 0.0
+                if sprocket:
+                    spoke = np.array([[0.0, 0.0], [0.4 * reach, 0.0]])
+                    mark = PathPatch(Outline(spoke), edgecolor=_STEEL_LINE, zorder=2.1)
+                    self.axes.add_patch(mark)
+                    self.parts.append((index, mark))
+                for placement in self.placements[[0, len(self.times) // 2, -1], index]:
+                    x, y, angle = placement
+                    turned = np.array(
+                        [[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]]
+                    )
+                    corners = outline @ turned + (x, y)
+                    low = np.minimum(low, corners.min(axis=0))
+                    high = np.maximum(high, corners.max(axis=0))
+        margin = 0.04 * (high - low).max()
+        self.axes.set_xlim(low[0] - margin, high[0] + margin)
+        self.axes.set_ylim(low[1] - margin, high[1] + margin)
+
+    def _draw_chains(self, chains: list[dict[str, Any]]) -> None:
+        from matplotlib.collections import EllipseCollection, LineCollection
+
+        # The layout settles the scale, which the width of plates on the picture follows.
+        self.canvas.draw()
+        scale = abs(self.axes.transData.transform((1.0, 0.0))[0])
+        scale = abs(scale - self.axes.transData.transform((0.0, 0.0))[0])
+        heights = np.repeat([it["plate_height"] for it in chains], [it["links"] for it in chains])
+        widths = np.maximum(1.5, heights * scale * 72 / _DPI)
+        ends = list(self.rollers[0][self.links])
+        look: dict[str, Any] = {"linewidths": widths, "capstyle": "round", "zorder": 3}
+        self.plates = LineCollection(ends, **look)
+        if self.tensions is None:
+            self.plates.set_color(_PLATES)
+        else:
+            self.plates.set(cmap="viridis", alpha=0.85)
+            self.plates.set_clim(*np.quantile(self.tensions, [0.001, 0.999]))
+            bar = self.canvas.figure.colorbar(self.plates, ax=self.axes, shrink=0.7)
+            bar.set_label("link tension [N]")
+        self.axes.add_collection(self.plates)
+        diameters = np.repeat(
+            [it["roller_diameter"] for it in chains], [it["rollers"] for it in chains]
+        )
+        self.circles = EllipseCollection(
+            diameters,
+            diameters,
+            np.zeros_like(diameters),
+            units="xy",
+            offsets=self.rollers[0],
+            offset_transform=self.axes.transData,
+            facecolors="white",
+            edgecolors=_INK,
+            linewidths=0.5,
+            zorder=4,
+        )
+        self.axes.add_collection(self.circles)
+
+    def picture(self, number: int) -> NDArray[np.uint8]:
+        """Draw one picture, (height, width, 3)."""
+        from matplotlib.transforms import Affine2D
+
+        for index, patch in self.parts:
+            x, y, angle = self.placements[number, index]
+            patch.set_transform(Affine2D().rotate(angle).translate(x, y) + self.axes.transData)
+        rollers = self.rollers[number]
+        self.plates.set_segments(list(rollers[self.links]))
+        if self.tensions is not None:
+            self.plates.set_array(self.tensions[number])
+        self.circles.set_offsets(rollers)
+        self.clock.set_text(f"t = {self.times[number]:.5f} s")
+        self.canvas.draw()
+        return np.asarray(self.canvas.buffer_rgba())[..., :3].copy()
+
+
+def _links(chains: list[dict[str, Any]]) -> NDArray[np.int_]:
+    """Numbers of both rollers of every link, (links, 2)."""
+    first, pairs = 0, []
+    for chain in chains:
+        link = np.arange(chain["links"])
+        pairs.append(first + np.column_stack([link, (link + 1) % chain["rollers"]]))
+        first += chain["rollers"]
+    return np.concatenate(pairs)
+
+
+def _floats(values: xr.DataArray) -> _Floats:
+    return np.ascontiguousarray(values.to_numpy(), dtype=np.float64)
+
+
+def command(arguments: list[str]) -> int:
+    """Make the movie that a command line asks for, and return the exit code."""
+    from chaindrive.results import open_result
+
+    parser = argparse.ArgumentParser("chaindrive replay", description="Makes a movie of a run.")
+    parser.add_argument("result", type=Path, help="the Zarr result of the run")
+    parser.add_argument("-o", "--output", type=Path, help="the movie (.mp4 or .gif)")
+    kind = parser.add_mutually_exclusive_group()
+    kind.add_argument("--mp4", action="store_const", const=".mp4", dest="kind")
+    kind.add_argument("--gif", action="store_const", const=".gif", dest="kind")
+    parser.add_argument("--frames", type=int, default=PICTURES, help="number of pictures")
+    parser.add_argument("--overwrite", action="store_true")
+    parser.add_argument("-q", "--quiet", action="store_true")
+    given = parser.parse_args(arguments[1:])
+    output = given.output or given.result.with_suffix(given.kind)
+    if output.exists() and not given.overwrite:
+        print(f"{output}: there is already something here; pass --overwrite", file=sys.stderr)
+        return 3
+    try:
+        movie(open_result(given.result), output, frames=given.frames)
+    except (KeyError, ValueError, FileNotFoundError, ModuleNotFoundError) as error:
+        message = error.args[0] if isinstance(error, KeyError) else error
+        print(f"{given.result}: {message}", file=sys.stderr)
+        return 2
+    if not given.quiet:
+        print(f"{output}: {output.stat().st_size / 1e6:.2f} MB", file=sys.stderr)
+    return 0
