@@ -20,6 +20,7 @@
 
 pub mod catalogue;
 pub mod describe;
+pub mod draw;
 mod error;
 pub mod precision;
 pub mod record;

@@ -22,7 +22,7 @@ use std::ffi::OsString;
 
 use clap::{Parser, Subcommand};
 
-use commands::{bench, check, describe, lists, resume, run as run_command, scenes, sweep};
+use commands::{bench, check, describe, draw, lists, resume, run as run_command, scenes, sweep};
 
 /// Exit code of a run that was stopped by Ctrl-C.
 pub const INTERRUPTED: u8 = 130;
@@ -52,6 +52,7 @@ enum Verb {
     Bench(bench::Arguments),
     Check(check::Arguments),
     Describe(describe::Arguments),
+    Draw(draw::Arguments),
     Resolve(scenes::Resolve),
     Diff(scenes::Diff),
     Scenes(lists::Scenes),
@@ -92,6 +93,7 @@ where
         Verb::Bench(arguments) => bench::bench(arguments, interrupted),
         Verb::Check(arguments) => check::check(arguments, interrupted),
         Verb::Describe(arguments) => describe::describe(arguments, interrupted),
+        Verb::Draw(arguments) => draw::draw(arguments, interrupted),
         Verb::Resolve(arguments) => scenes::resolve(arguments, interrupted),
         Verb::Diff(arguments) => scenes::diff(arguments, interrupted),
         Verb::Scenes(arguments) => lists::scenes(arguments),

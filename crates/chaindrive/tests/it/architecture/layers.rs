@@ -53,7 +53,7 @@ const CRATES: [Storeys; 4] = [
     Storeys {
         folder: "chaindrive",
         layers: &[
-            &["catalogue", "seal", "stepping"],
+            &["catalogue", "draw", "seal", "stepping"],
             &["error", "scene"],
             &["run"],
             &["simulate"],
