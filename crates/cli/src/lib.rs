@@ -23,7 +23,7 @@ use std::ffi::OsString;
 use clap::{Parser, Subcommand};
 
 use commands::{
-    bench, check, describe, design, lists, replay, resume, run as run_command, scenes, sweep,
+    bench, check, describe, design, draw, lists, replay, resume, run as run_command, scenes, sweep,
 };
 
 /// Exit code of a run that was stopped by Ctrl-C.
@@ -56,6 +56,7 @@ enum Verb {
     Check(check::Arguments),
     Describe(describe::Arguments),
     Design(design::Arguments),
+    Draw(draw::Arguments),
     Resolve(scenes::Resolve),
     Diff(scenes::Diff),
     Scenes(lists::Scenes),
@@ -98,6 +99,7 @@ where
         Verb::Check(arguments) => check::check(arguments, interrupted),
         Verb::Describe(arguments) => describe::describe(arguments, interrupted),
         Verb::Design(arguments) => design::design(arguments, interrupted),
+        Verb::Draw(arguments) => draw::draw(arguments, interrupted),
         Verb::Resolve(arguments) => scenes::resolve(arguments, interrupted),
         Verb::Diff(arguments) => scenes::diff(arguments, interrupted),
         Verb::Scenes(arguments) => lists::scenes(arguments),
