@@ -4,6 +4,7 @@ import doctest
 import importlib.util
 import pkgutil
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -52,6 +53,14 @@ def test_description_of_the_package_stands_alone():
     text = (ROOT / "docs" / "package.md").read_text(encoding="utf-8")
     targets = re.findall(r"\]\(([^)]*)\)", text)
     assert all(target.startswith("https://") for target in targets), targets
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/start.md", "docs/package.md"])
+def test_every_extra_is_explained(page):
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    text = (ROOT / page).read_text(encoding="utf-8")
+    told = set(re.findall(r"`([a-z]+)`", "".join(re.findall(r"^\|.*\|.*\|.*\|$", text, re.M))))
+    assert set(extras["optional-dependencies"]) <= told
 
 
 def test_pages_link_to_what_exists():

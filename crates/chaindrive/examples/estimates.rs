@@ -113,7 +113,7 @@ const HEAD: &str = "\
 # Estimates
 
 What runs say of their own error and of its horizon, held against a reference. `make estimates` writes this page and fails where what
-is said does not hold; whoever changes the estimate does that again. What the words mean is told in [precision.md](precision.md).
+is said does not hold; whoever changes the estimate does that again. What the words mean is told in [Precision](precision.md).
 
 Forty presets and variants of presets, each with the method and step that it gets by default. *Stated* and *true* are errors of the
 span tensions over the time examined, root mean square over the mean tension; of the link tensions where no roller holds a span. The true
