@@ -21,6 +21,7 @@
 pub mod catalogue;
 pub mod describe;
 pub mod design;
+pub mod draw;
 mod error;
 pub mod precision;
 pub mod record;

@@ -4,6 +4,7 @@ pub(crate) mod bench;
 pub(crate) mod check;
 pub(crate) mod describe;
 pub(crate) mod design;
+pub(crate) mod draw;
 pub(crate) mod lists;
 pub(crate) mod output;
 pub(crate) mod replay;

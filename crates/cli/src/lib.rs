@@ -23,7 +23,7 @@ use std::ffi::OsString;
 use clap::{Parser, Subcommand};
 
 use commands::{
-    bench, check, describe, design, lists, replay, resume, run as run_command, scenes, sweep,
+    bench, check, describe, design, draw, lists, replay, resume, run as run_command, scenes, sweep,
 };
 
 /// Exit code of a run that was stopped by Ctrl-C.
@@ -55,7 +55,9 @@ enum Verb {
     Bench(bench::Arguments),
     Check(check::Arguments),
     Describe(describe::Arguments),
-    Design(design::Arguments),
+use commands::{
+    bench, check, describe, design, draw, lists, replay, resume, run as run_command, scenes, sweep,
+};
     Resolve(scenes::Resolve),
     Diff(scenes::Diff),
     Scenes(lists::Scenes),
@@ -97,7 +99,9 @@ where
         Verb::Bench(arguments) => bench::bench(arguments, interrupted),
         Verb::Check(arguments) => check::check(arguments, interrupted),
         Verb::Describe(arguments) => describe::describe(arguments, interrupted),
-        Verb::Design(arguments) => design::design(arguments, interrupted),
+use commands::{
+    bench, check, describe, design, draw, lists, replay, resume, run as run_command, scenes, sweep,
+};
         Verb::Resolve(arguments) => scenes::resolve(arguments, interrupted),
         Verb::Diff(arguments) => scenes::diff(arguments, interrupted),
         Verb::Scenes(arguments) => lists::scenes(arguments),

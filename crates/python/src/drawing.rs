@@ -2,10 +2,8 @@
 
 use std::collections::HashMap;
 
-use chaindrive::{
-    BodyKind, Drive, Figure as CoreFigure, Instant, Placement, Pose, Run, Simulation,
-};
-use chaindrive_geometry::{ArcSpline, Point, Vector};
+use chaindrive::{BodyKind, Figure as CoreFigure, Instant, Placement, Pose, draw};
+use chaindrive_geometry::{Point, Vector};
 use numpy::ndarray::ArrayView2;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyKeyError;
@@ -14,79 +12,8 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::errors::OrRaise;
 
-/// How far chords may stand off teeth and guides, in fractions of their size.
-const COARSE: f64 = 1e-4;
-
-/// What can be drawn of a drive, settled or as it was laid.
-pub(crate) fn of<'py>(
-    py: Python<'py>,
-    drive: &Drive,
-    settled: bool,
-) -> PyResult<Bound<'py, PyDict>> {
-    let (mut rollers, centres) = py.detach(|| {
-        if settled {
-            let mut simulation = Simulation::start(drive, &Run::default()).or_raise()?;
-            simulation.next_sample().or_raise()?;
-            let sample = simulation.observation();
-            let pairs = |x: &[f64], y: &[f64]| -> Vec<Point> {
-                x.iter().zip(y).map(|(&x, &y)| Point::new(x, y)).collect()
-            };
-            Ok::<_, PyErr>((
-                pairs(&sample.roller_x, &sample.roller_y),
-                pairs(&sample.sprocket_x, &sample.sprocket_y),
-            ))
-        } else {
-            let laid = drive.layouts().or_raise()?;
-            let rollers = laid.into_iter().flat_map(|chain| chain.positions).collect();
-            Ok((
-                rollers,
-                drive
-                    .sprockets
-                    .iter()
-                    .map(|sprocket| sprocket.centre)
-                    .collect(),
-            ))
-        }
-    })?;
-
-    let sprockets = PyDict::new(py);
-    for (sprocket, centre) in drive.sprockets.iter().zip(centres) {
-        let gap = &sprocket.gap;
-        let drawn = PyDict::new(py);
-        drawn.set_item("teeth", gap.teeth)?;
-        drawn.set_item("pitch_radius", gap.pitch_radius)?;
-        drawn.set_item("tip_radius", gap.tip_radius)?;
-        drawn.set_item("centre", points(py, &[centre])?.reshape([2])?)?;
-        drawn.set_item(
-            "outline",
-            points(py, &polyline(&gap.outline().or_raise()?)?)?,
-        )?;
-        sprockets.set_item(&sprocket.name, drawn)?;
-    }
-    let guides = PyDict::new(py);
-    for guide in &drive.guides {
-        guides.set_item(&guide.name, points(py, &polyline(&guide.face)?)?)?;
-    }
-    let chains = PyList::empty(py);
-    for placed in &drive.chains {
-        let behind = rollers.split_off(placed.chain.rollers());
-        let drawn = PyDict::new(py);
-        drawn.set_item("rollers", points(py, &rollers)?)?;
-        drawn.set_item("closed", placed.chain.is_closed())?;
-        drawn.set_item("pitch", placed.chain.pitch)?;
-        drawn.set_item("roller_diameter", placed.chain.roller_diameter)?;
-        let touched = placed.sprockets.iter();
-        let touched: Vec<&str> = touched.map(|&i| drive.sprockets[i].name.as_str()).collect();
-        drawn.set_item("sprockets", touched)?;
-        chains.append(drawn)?;
-        rollers = behind;
-    }
-    let answer = PyDict::new(py);
-    answer.set_item("chains", chains)?;
-    answer.set_item("sprockets", sprockets)?;
-    answer.set_item("guides", guides)?;
-    Ok(answer)
-}
+/// How far chords of plates may stand off, in pitches.
+const COARSE: f64 = 1e-3;
 
 /// What stays the same while a drive moves: bodies with their outlines, chains with their measures.
 #[pyclass(frozen, module = "chaindrive._core")]
@@ -168,6 +95,53 @@ impl Figure {
         self.0.needs()
     }
 
+    /// Gaps of chains that do not close: place x and y, length that is missing, and that in words.
+    #[getter]
+    fn gaps(&self) -> Vec<Mark> {
+        let gaps = self.0.gaps.iter();
+        gaps.map(|gap| {
+            let [x, y] = [
+                0.5 * (gap.end.x + gap.start.x),
+                0.5 * (gap.end.y + gap.start.y),
+            ];
+            (x, y, gap.missing, gap.to_string())
+        })
+        .collect()
+    }
+
+    /// Clashes: place x and y, depth, and what clashes in words.
+    #[getter]
+    fn clashes(&self) -> Vec<Mark> {
+        let clashes = self.0.clashes.iter();
+        clashes
+            .map(|clash| {
+                let at = clash.place();
+                (at.x, at.y, clash.depth(), clash.to_string())
+            })
+            .collect()
+    }
+
+    /// Why the drive cannot run as it stands, if it cannot.
+    #[getter]
+    fn problem(&self) -> Option<&str> {
+        self.0.problem.as_deref()
+    }
+
+    /// The start as the text of an SVG file, or the pose at a time; channels are (entries,).
+    #[pyo3(signature = (title, time = None, channels = None))]
+    fn svg(
+        &self,
+        title: &str,
+        time: Option<f64>,
+        channels: Option<HashMap<String, PyReadonlyArray1<'_, f64>>>,
+    ) -> PyResult<String> {
+        let pose = match (time, &channels) {
+            (Some(time), Some(channels)) => self.posed(time, channels)?,
+            _ => self.0.start(),
+        };
+        Ok(draw::svg(&self.0, &pose, title))
+    }
+
     /// The pose at the start: placements (bodies, 3), rollers (rollers, 2) and plates (links, 4) of every chain.
     fn start<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         told(py, &self.0.start())
@@ -180,9 +154,7 @@ impl Figure {
         time: f64,
         channels: HashMap<String, PyReadonlyArray1<'py, f64>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let values = |name: &str| channels.get(name).and_then(|it| it.as_slice().ok());
-        let pose = self.0.pose(&instant(time, values)).map_err(missing)?;
-        told(py, &pose)
+        told(py, &self.posed(time, &channels)?)
     }
 
     /// Where all bodies are at every time (times,): x, y and angle, (times, bodies, 3). Channels are (times, entries).
@@ -208,6 +180,20 @@ impl Figure {
             flat.extend(placements.iter().flat_map(numbers));
         }
         PyArray1::from_vec(py, flat).reshape([times.len(), self.0.bodies.len(), 3])
+    }
+}
+
+/// Place x and y, size, and words of a mark.
+type Mark = (f64, f64, f64, String);
+
+impl Figure {
+    fn posed(
+        &self,
+        time: f64,
+        channels: &HashMap<String, PyReadonlyArray1<'_, f64>>,
+    ) -> PyResult<Pose> {
+        let values = |name: &str| channels.get(name).and_then(|it| it.as_slice().ok());
+        self.0.pose(&instant(time, values)).map_err(missing)
     }
 }
 
@@ -253,10 +239,6 @@ fn told<'py>(py: Python<'py>, pose: &Pose) -> PyResult<Bound<'py, PyDict>> {
     answer.set_item("rollers", rollers)?;
     answer.set_item("plates", plates)?;
     Ok(answer)
-}
-
-fn polyline(curve: &ArcSpline) -> PyResult<Vec<Point>> {
-    curve.polyline(COARSE * curve.aabb().diagonal()).or_raise()
 }
 
 /// Points as an array (points, 2).

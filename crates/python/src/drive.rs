@@ -187,10 +187,8 @@ impl Drive {
         answer.set_item("events", events)?;
         let mut record = self.scene.run_defaults().record;
         if record.is_empty() {
-            record = Channel::DEFAULT
-                .iter()
-                .map(|channel| channel.name().to_owned())
-                .collect();
+            let channels = Channel::defaults(&self.drive).into_iter();
+            record = channels.map(|channel| channel.name().to_owned()).collect();
         }
         answer.set_item("record", record)?;
         Ok(answer)
@@ -304,17 +302,12 @@ impl Drive {
                 drive
             };
             if settled {
-                drive.assemble()?.figure()
+                drive.figure()
             } else {
                 drive.figure_as_laid()
             }
         })?;
         Ok(drawing::Figure(figure.or_raise()?))
-    }
-
-    /// Polylines of what can be drawn.
-    fn drawing<'py>(&self, py: Python<'py>, settled: bool) -> PyResult<Bound<'py, PyDict>> {
-        drawing::of(py, &self.drive, settled)
     }
 }
 

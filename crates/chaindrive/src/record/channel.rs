@@ -1,6 +1,6 @@
 //! The channels: what a run can record, with names, units and dimensions.
 
-use chaindrive_mechanics::{Energy, Flow, Observation, Store, System};
+use chaindrive_mechanics::{Energy, Flow, Observation, Parts, Store, Support, System};
 
 use crate::SimulationError;
 
@@ -177,6 +177,24 @@ impl Channel {
         Self::EnergyResidual,
     ];
 
+    /// What a run records beside [`DEFAULT`](Self::DEFAULT) unless asked otherwise, where tensioners or centres move: with both the pose
+    /// of every sample is known.
+    pub const WHERE_BODIES_MOVE: [Self; 3] =
+        [Self::SprocketX, Self::SprocketY, Self::TensionerPosition];
+
+    /// What a run of a drive records unless asked otherwise.
+    pub fn defaults(drive: &Parts) -> Vec<Self> {
+        let mut channels = Self::DEFAULT.to_vec();
+        let mut sprockets = drive.sprockets.iter();
+        let moved = sprockets.any(|sprocket| sprocket.support != Support::Fixed);
+        let moving = Self::WHERE_BODIES_MOVE.into_iter();
+        channels.extend(moving.filter(|channel| match channel {
+            Self::TensionerPosition => !drive.tensioners.is_empty(),
+            _ => moved,
+        }));
+        channels
+    }
+
     /// The channel of a name.
     ///
     /// # Errors
@@ -250,8 +268,7 @@ impl Channel {
         }
     }
 
-    /// The channels of some names for a system, each once: `all` that it has, or the default ones of
-    /// no names.
+    /// The channels of some names for a system, each once; `all` are those that it has.
     ///
     /// # Errors
     /// As [`Channel::from_name`], and [`SimulationError::AbsentChannel`] for one that the system does
@@ -260,9 +277,6 @@ impl Channel {
         names: &[impl AsRef<str>],
         system: &System,
     ) -> Result<Vec<Self>, SimulationError> {
-        if names.is_empty() {
-            return Ok(Self::DEFAULT.to_vec());
-        }
         let mut channels = Vec::new();
         for name in names {
             if name.as_ref() == "all" {

@@ -254,8 +254,11 @@ fn complete<S: Sink>(
     let run = provenance.run.clone();
     let full = request.scene.resolved_for(&run, simulation.method());
     provenance.resolved_scene = Some(full.map_err(RunError::Scene)?.text().to_owned());
-    let channels =
-        Channel::chosen(&request.record, simulation.system()).map_err(RunError::Start)?;
+    let channels = if request.record.is_empty() {
+        Channel::defaults(&simulation.assembled().drive)
+    } else {
+        Channel::chosen(&request.record, simulation.system()).map_err(RunError::Start)?
+    };
     sink.begin(&simulation, &channels, &provenance)
         .map_err(RunError::Sink)?;
     summary.kept = sink.keeps_samples();

@@ -33,6 +33,8 @@ pub(crate) fn channels() -> Result<(), Failure> {
     for channel in Channel::ALL {
         let default = if Channel::DEFAULT.contains(channel) {
             "*"
+        } else if Channel::WHERE_BODIES_MOVE.contains(channel) {
+            "+"
         } else {
             " "
         };
@@ -44,7 +46,9 @@ pub(crate) fn channels() -> Result<(), Failure> {
             channel.description()
         ))?;
     }
-    print("* recorded unless asked otherwise")
+    print(
+        "* recorded unless asked otherwise\n+ recorded with them where tensioners or centres move",
+    )
 }
 
 /// Lists the chains that a scene can name, or all that is known of one.

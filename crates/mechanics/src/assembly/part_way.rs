@@ -1,5 +1,7 @@
 //! Chains that do not close, laid as far as they reach: for pictures of what is wrong.
 
+use std::fmt;
+
 use chaindrive_geometry::{Closing, Point};
 
 use super::lay::{laid_nothing, lay_one};
@@ -19,6 +21,17 @@ pub struct Gap {
     pub start: Point,
     /// Length that is missing along the route \[m\]; negative where the chain is too long by so much.
     pub missing: f64,
+}
+
+impl fmt::Display for Gap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let length = self.missing.abs() * 1e3;
+        if self.missing > 0.0 {
+            write!(f, "{length:.1} mm are missing")
+        } else {
+            write!(f, "{length:.1} mm too long")
+        }
+    }
 }
 
 impl Drive {

@@ -64,6 +64,26 @@ impl Clash {
     pub fn may_pass(&self) -> bool {
         matches!(self, Self::Teeth { beside: true, .. })
     }
+
+    /// Where the two take the same room \[m\].
+    pub fn place(&self) -> Point {
+        match self {
+            Self::Sprockets { at, .. }
+            | Self::Teeth { at, .. }
+            | Self::Guides { at, .. }
+            | Self::Chain { at, .. } => *at,
+        }
+    }
+
+    /// How deep they overlap \[m\].
+    pub fn depth(&self) -> f64 {
+        match self {
+            Self::Sprockets { depth, .. }
+            | Self::Teeth { depth, .. }
+            | Self::Guides { depth, .. }
+            | Self::Chain { depth, .. } => *depth,
+        }
+    }
 }
 
 /// Depth and place, as messages tell them.

@@ -53,7 +53,7 @@ const CRATES: [Storeys; 4] = [
     Storeys {
         folder: "chaindrive",
         layers: &[
-            &["catalogue", "design", "seal", "stepping"],
+            &["catalogue", "design", "draw", "seal", "stepping"],
             &["error", "scene"],
             &["run"],
             &["simulate"],

@@ -1,0 +1,176 @@
+//! What a drawing shows around its parts: the window, the title, names.
+
+use chaindrive_geometry::Point;
+use chaindrive_mechanics::{BodyKind, Figure, Pose};
+
+use super::line;
+use super::path::{escaped, id, millimetres};
+
+/// Width of a drawing on a screen \[px\].
+const WIDTH: f64 = 960.0;
+/// Height that it does not exceed \[px\].
+const HEIGHT: f64 = 720.0;
+/// Letters of a line of text, about as many as fit beside each other.
+const LETTERS: usize = 90;
+
+/// The window of a drawing.
+pub(super) struct View {
+    low: Point,
+    high: Point,
+    /// Height of letters \[m\].
+    pub(super) letter: f64,
+}
+
+impl View {
+    /// A window with room for everything.
+    pub(super) fn of(figure: &Figure, pose: &Pose) -> Self {
+        let mut low = Point::new(f64::INFINITY, f64::INFINITY);
+        let mut high = -low;
+        let mut room = |p: Point, around: f64| {
+            if p.x.is_finite() && p.y.is_finite() {
+                low = Point::new(low.x.min(p.x - around), low.y.min(p.y - around));
+                high = Point::new(high.x.max(p.x + around), high.y.max(p.y + around));
+            }
+        };
+        for (body, placement) in figure.bodies.iter().zip(&pose.placements) {
+            if let BodyKind::Sprocket { tip_radius, .. } = body.kind {
+                room(Point::new(placement.x, placement.y), tip_radius);
+                continue;
+            }
+            for piece in body.outlines.iter().flat_map(|outline| outline.pieces()) {
+                for share in [0.0, 0.5, 1.0] {
+                    room(placement.place(piece.point(share)), 0.0);
+                }
+            }
+            for corner in &body.backing {
+                room(placement.place(*corner), 0.0);
+            }
+        }
+        for (chain, rollers) in figure.chains.iter().zip(&pose.rollers) {
+            let around = 0.5 * chain.plate_height.max(chain.roller_diameter);
+            for roller in rollers {
+                room(*roller, around);
+            }
+        }
+        if low.x > high.x {
+            (low, high) = (Point::origin(), Point::new(0.1, 0.1));
+        }
+        let size = high - low;
+        let margin = 0.03 * size.x.max(size.y);
+        let margin = chaindrive_geometry::Vector::new(margin, margin);
+        Self {
+            low: low - margin,
+            high: high + margin,
+            letter: 0.018 * size.x.max(size.y),
+        }
+    }
+
+    /// The beginning of the file, up to the group in which y points upwards.
+    pub(super) fn head(&self, title: &str, problem: Option<&str>, style: &str) -> String {
+        let told: Vec<String> = problem.map(lines).unwrap_or_default();
+        let below = 1.4 * self.letter * told.len() as f64;
+        let size = self.high - self.low;
+        let (width, height) = (size.x, size.y + below);
+        // Pixels of a screen for a metre of the drive.
+        let scale = (WIDTH / width).min(HEIGHT / height);
+        let mut out = String::new();
+        line(
+            &mut out,
+            format_args!(
+                "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0}\" height=\"{:.0}\" viewBox=\"{} {} {} {}\">",
+                width * scale,
+                height * scale,
+                millimetres(self.low.x),
+                millimetres(-self.high.y),
+                millimetres(width),
+                millimetres(height)
+            ),
+        );
+        line(&mut out, format_args!("<title>{}</title>", escaped(title)));
+        line(&mut out, format_args!("<style>{style}</style>"));
+        for (row, text) in told.iter().enumerate() {
+            let y = -self.low.y + 1.4 * self.letter * (row as f64 + 0.5);
+            line(
+                &mut out,
+                format_args!(
+                    "<text class=\"told\" x=\"{}\" y=\"{}\" font-size=\"{}\">{}</text>",
+                    millimetres(self.low.x + self.letter),
+                    millimetres(y),
+                    millimetres(self.letter),
+                    escaped(text)
+                ),
+            );
+        }
+        line(&mut out, format_args!("<g transform=\"scale(1 -1)\">"));
+        out
+    }
+
+    /// A text at a place.
+    pub(super) fn text(&self, out: &mut String, [id, class]: [&str; 2], at: Point, text: &str) {
+        line(
+            out,
+            format_args!(
+                "<text id=\"{id}\" class=\"{class}\" transform=\"translate({} {}) scale(1 -1)\" font-size=\"{}\" text-anchor=\"middle\">{}</text>",
+                millimetres(at.x),
+                millimetres(at.y),
+                millimetres(self.letter),
+                escaped(text)
+            ),
+        );
+    }
+
+    /// Names of sprockets above their centres, of guides at the middle of their faces.
+    pub(super) fn names(&self, out: &mut String, figure: &Figure, pose: &Pose) {
+        let mut named: Vec<Point> = Vec::new();
+        for (body, placement) in figure.bodies.iter().zip(&pose.placements) {
+            let id = id(&["name", body.kind.name(), &body.name]);
+            let at = match body.kind {
+                BodyKind::Sprocket { .. } => {
+                    let centre = Point::new(placement.x, placement.y);
+                    // Names of sprockets on one axis stand above each other.
+                    let above = named.iter().filter(|other| (*other - centre).norm() < 1e-6);
+                    let rows = 0.6 + 1.2 * above.count() as f64;
+                    named.push(centre);
+                    Point::new(centre.x, centre.y + rows * self.letter)
+                }
+                BodyKind::Guide { .. } => {
+                    let Some(face) = body.outlines.first() else {
+                        continue;
+                    };
+                    let middle = face.point_at(0.5 * face.length());
+                    let inside = body.backing.iter().fold(Point::origin(), |sum, p| {
+                        sum + p.coords / body.backing.len() as f64
+                    });
+                    let [middle, inside] = [middle, inside].map(|p| placement.place(p));
+                    // On the side of the material, away from the chain.
+                    let away = (inside - middle).try_normalize(0.0).unwrap_or_default();
+                    let at = middle + away * (2.5 * self.letter);
+                    Point::new(at.x, at.y - 0.4 * self.letter)
+                }
+                BodyKind::Arm | BodyKind::Slider | BodyKind::Plunger => continue,
+            };
+            self.text(out, [&id, "name"], at, &body.name);
+        }
+    }
+}
+
+/// A message in lines that fit beside the drawing.
+fn lines(text: &str) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for paragraph in text.lines() {
+        for word in paragraph.split_whitespace() {
+            let last = lines.last_mut().expect("one line at least");
+            if !last.is_empty() && last.chars().count() + word.chars().count() > LETTERS {
+                lines.push(word.to_owned());
+            } else {
+                if !last.is_empty() {
+                    last.push(' ');
+                }
+                last.push_str(word);
+            }
+        }
+        lines.push(String::new());
+    }
+    lines.retain(|line| !line.is_empty());
+    lines
+}
