@@ -145,6 +145,26 @@ def test_seating_is_along_the_normal_of_the_tooth(industrial):
     assert median > swing * math.sin(end + 2 * math.pi / 19)
 
 
+def test_bounces_of_an_engagement_are_counted_with_it(industrial):
+    """Contacts on the driver that began during the run, over the rollers that came to it."""
+    found = industrial.drive.impacts()
+    on = (industrial["event_kind"] == "tooth") & (industrial["event_body"] == "driver")
+    began = int((on & (industrial["event_start"] > industrial["time"][0])).sum())
+    came = int((found["sprocket_of"] == "driver").sum())
+    contacts = float(found["contacts"].sel(sprocket="driver"))
+    # Rollers that lay on the driver at the beginning may bounce there too.
+    assert 1.0 <= contacts <= began / came
+
+
+def test_scenes_without_sprockets_are_told_so():
+    run = cd.simulate(
+        cd.scenes.spinning_ring(), until=2e-3, record="all", events="teeth", error=False
+    )
+    for analyse in (analysis.impacts, analysis.tension_around_loop):
+        with pytest.raises(cd.ParameterError, match="sprocket"):
+            analyse(run)
+
+
 def test_impacts_need_contacts():
     run = cd.simulate(cd.scenes.industrial_16b(), until=1e-3, error=False)
     with pytest.raises(cd.ParameterError, match="events='teeth'"):

@@ -114,37 +114,44 @@ def utilisation(
     def said(value: float, usual: float, source: str) -> str:
         return source if math.isclose(value, usual) else "given"
 
-    assumed = "assumed"
     checks = [
         _Check(
             "static",
             float(run["link_tension"].isel(link=own).max()),
             float(strength) / static_factor,
             "N",
-            said(static_factor, STATIC_FACTOR, assumed),
-        ),
-        _Check(
-            "endurance",
-            float(spans.mean("time").max()),
-            float(strength) / endurance_factor,
-            "N",
-            said(endurance_factor, ENDURANCE_FACTOR, _RENOLD),
+            said(static_factor, STATIC_FACTOR, "assumed"),
         ),
         _Check(
             "pressure",
             pressure,
             bearing_pressure,
             "Pa",
-            said(bearing_pressure, BEARING_PRESSURE, assumed),
-        ),
-        _Check(
-            "seating",
-            max((swing_speed(run, it) for it in wheels), default=0.0),
-            seating_speed,
-            "m/s",
-            said(seating_speed, SEATING_SPEED, assumed),
+            said(bearing_pressure, BEARING_PRESSURE, "assumed"),
         ),
     ]
+    # Strands have no span between sprockets, and perhaps no sprocket.
+    if spans.sizes["span"]:
+        checks.insert(
+            1,
+            _Check(
+                "endurance",
+                float(spans.mean("time").max()),
+                float(strength) / endurance_factor,
+                "N",
+                said(endurance_factor, ENDURANCE_FACTOR, _RENOLD),
+            ),
+        )
+    if wheels:
+        checks.append(
+            _Check(
+                "seating",
+                max(swing_speed(run, it) for it in wheels),
+                seating_speed,
+                "m/s",
+                said(seating_speed, SEATING_SPEED, "assumed"),
+            )
+        )
     names, loads, limits, units, sources = zip(*checks, strict=True)
     load, limit = np.asarray(loads), np.asarray(limits)
     return xr.Dataset(

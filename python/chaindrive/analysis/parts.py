@@ -211,7 +211,7 @@ def one_chain(run: xr.Dataset, name: str | None) -> ChainParts:
 def sprockets(run: xr.Dataset) -> dict[str, SprocketParts]:
     """Return the sprockets that chains pass, by name, in the order of routes."""
     scene = _scene(run)
-    tables = {table["name"]: table for table in scene["sprockets"]}
+    tables = {table["name"]: table for table in scene.get("sprockets", [])}
     found: dict[str, SprocketParts] = {}
     for chain in chains(run):
         route = chain.scene.get("route") or scene.get("route", {})

@@ -68,6 +68,9 @@ def impacts(run: xr.Dataset, *, mass: float | None = None) -> xr.Dataset:
     known = sprockets(run)
     rows = [_of(run, wheel, _striking(wheel.chain, mass)) for wheel in known.values()]
     seconds = float(run["time"][-1] - run["time"][0])
+    if not any(engaged.sizes["engagement"] for engaged, _ in rows):
+        message = "no roller came to a sprocket during the run: simulate longer"
+        raise ParameterError(message, "until")
     engagements = xr.concat([engaged for engaged, _ in rows], "engagement")
     names = np.asarray(list(known), dtype=np.str_)
     of = engagements["sprocket_of"].to_numpy()
@@ -149,8 +152,10 @@ def _of(run: xr.Dataset, wheel: SprocketParts, mass: float) -> tuple[xr.Dataset,
         sprocket_of=("engagement", names, {"long_name": "sprocket"}),
         roller_of=("engagement", picked["event_roller"].to_numpy(), {"long_name": "roller"}),
     )
-    visits = came.sum()
-    return engaged, float(order.size / visits) if visits else math.nan
+    # Bounces of what lay there when the record begins belong to no engagement.
+    visits = int(came.sum())
+    touches = came[np.maximum.accumulate(np.where(first, np.arange(order.size), 0))]
+    return engaged, float(touches.sum() / visits) if visits else math.nan
 
 
 def _absence(run: xr.Dataset, wheel: SprocketParts) -> float:
