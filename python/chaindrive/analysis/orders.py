@@ -101,6 +101,7 @@ def order_map(
             "units": values.attrs.get("units", "1"),
             "long_name": f"amplitude of {label(values)}",
             "shaft": shaft,
+            "window": window,
             "resolution": density / size,
         },
     )

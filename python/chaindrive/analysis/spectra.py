@@ -122,8 +122,9 @@ def peaks(
 ) -> xr.Dataset:
     """Lines of an amplitude spectrum, their places and heights corrected.
 
-    A parabola through the logarithm of a line and its neighbours gives the place to some
-    hundredths of the distance of lines, and the height to a per cent, for a sine that stands alone.
+    Of a sine that stands alone, seen through a Hann window, place and height are exact: the ratio
+    of a line to its higher neighbour tells how far it lies between the two. Other windows are
+    refused.
 
     Parameters
     ----------
@@ -143,6 +144,8 @@ def peaks(
     """
     find_peaks = extra("scipy.signal", "spectra").find_peaks
     axis = over or str(spread.dims[-1])
+    if spread.attrs.get("window") != "hann":
+        raise ParameterError("lines are corrected for a Hann window: take window='hann'", "window")
     if spread.dims != (axis,):
         raise ParameterError(
             f"lines are looked for in one spectrum, not over {spread.dims}: select one first", axis
@@ -165,11 +168,11 @@ def peaks(
 def _tops(
     places: NDArray[np.float64], heights: NDArray[np.float64], found: NDArray[np.int64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the tops of parabolas through the logarithms of three neighbours."""
-    left, middle, right = (
-        np.log(np.maximum(heights[found + shift], 1e-300)) for shift in (-1, 0, 1)
-    )
-    # δ = ½ (a − c) / (a − 2 b + c),   ln A = b − ¼ (a − c) δ
-    shift = 0.5 * (left - right) / (left - 2.0 * middle + right)
+    """Return place and height of sines whose spectra have their highest lines at `found`."""
+    left, middle, right = (heights[found + shift] for shift in (-1, 0, 1))
+    side = np.where(right >= left, 1.0, -1.0)
+    ratio = np.maximum(left, right) / middle
+    # δ = (2 a − 1) / (a + 1),   A = A₀ (1 − δ²) / sinc(δ)
+    shift = (2.0 * ratio - 1.0) / (ratio + 1.0)
     step = places[1] - places[0]
-    return places[found] + shift * step, np.exp(middle - 0.25 * (left - right) * shift)
+    return places[found] + side * shift * step, middle * (1.0 - shift**2) / np.sinc(shift)

@@ -108,8 +108,8 @@ def order_slice(cut: xr.Dataset, *, ax: Axes | None = None, **look: Any) -> Axes
     """
     ax = given_or_new(ax)
     about = cut["amplitude"].attrs
-    look = {"label": f"order {about['order']:g}", "linewidth": 1.2} | look
-    ax.plot(_RPM * cut["speed"], cut["amplitude"], **look)
+    style: dict[str, Any] = {"label": f"order {about['order']:g}", "linewidth": 1.2} | look
+    ax.plot(_RPM * cut["speed"], cut["amplitude"], **style)
     ax.set_xlabel(f"speed of {about['shaft']} [rpm]")
     ax.set_ylabel(_label(cut["amplitude"]))
     ax.set_ylim(bottom=0.0)
