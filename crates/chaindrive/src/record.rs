@@ -32,7 +32,7 @@ pub use zarr::{Existing, ReadError, ResumeError, Stopped, SweepWriter, ZarrWrite
 /// One channel of a recording.
 #[derive(Clone, Debug)]
 pub struct Column {
-    /// What it holds.
+    /// Its contents.
     pub channel: Channel,
     /// Entries a sample: the length of the channel's axis, or 1.
     pub width: usize,

@@ -1,4 +1,4 @@
-//! What to run: how long, how often to sample, by which method.
+//! Settings of a run: how long, how often to sample, by which method.
 
 mod checkpoint;
 pub(crate) mod execute;
@@ -30,7 +30,7 @@ pub use settings::{Given, Settings};
 pub struct Run {
     /// End \[s\], positive.
     pub until: f64,
-    /// What is simulated before t = 0.
+    /// Time simulated before t = 0.
     #[serde(default)]
     pub run_in: RunIn,
     /// Interval between samples \[s\], positive.

@@ -15,7 +15,7 @@ const LAYOUT: u32 = 1;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// What can be written down.
+/// Values that can be written down.
 pub(crate) trait Sealed: Serialize + DeserializeOwned {
     /// Its name in messages and in the first line.
     const KIND: &'static str;

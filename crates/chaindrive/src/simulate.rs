@@ -53,7 +53,7 @@ pub struct Simulation {
     stepping_time: f64,
 }
 
-/// What a step changes.
+/// Parts that a step changes.
 #[derive(Clone, Debug)]
 struct Moving {
     system: System,

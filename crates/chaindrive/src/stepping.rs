@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "kebab-case")]
 #[schemars(rename = "Method")]
 pub enum Stepping {
-    /// What suits the chain: implicit damping for rigid links, Verlet for particles.
+    /// The method that suits the chain: implicit damping for rigid links, Verlet for particles.
     #[default]
     Auto,
     /// Velocity Verlet, fixed step: fast and without energy drift.

@@ -154,7 +154,7 @@ pub struct Sweep {
 /// Variants at most: at a second each they would take a week and a half.
 const MOST: usize = 1_000_000;
 
-/// What an accuracy chooses, whatever the scene says about it.
+/// Settings that an accuracy chooses, whatever the scene says about them.
 const CHOSEN: [&str; 4] = ["run.method", "run.step", "run.tolerance", "run.onset_depth"];
 
 /// Wall time between two looks at progress and interrupts while no variant ends.

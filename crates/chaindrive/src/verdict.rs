@@ -41,12 +41,12 @@ impl Trust {
     }
 }
 
-/// What a result says about itself: how far it can be trusted, and why.
+/// Verdict on a result: how far it can be trusted, and why.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
     /// The worst of the reasons.
     pub trust: Trust,
-    /// What speaks against the result, the worst first.
+    /// Reasons against the result, the worst first.
     pub reasons: Vec<Reason>,
 }
 
@@ -185,7 +185,7 @@ fn not_finite(summary: &Summary) -> Option<Reason> {
     (samples > 0).then_some(Reason::NotFinite { samples })
 }
 
-/// What speaks against the ledger of a run of some steps.
+/// Reasons against the energy ledger of a run of some steps.
 ///
 /// ```text
 /// |R| / max(D, 1e-4 M)    R: residual, D: losses, M: energy moved
@@ -243,7 +243,7 @@ fn spans(summary: &Summary) -> impl Iterator<Item = Reason> {
         })
 }
 
-/// What speaks against means over a run up to some time \[s\]: names of spans, means of all samples, and what their batches say.
+/// Reasons against means over a run up to some time \[s\]: names of spans, means of all samples, and those of their batches.
 fn steadiness(spans: &[(&str, f64, Steadiness)], time: f64) -> Vec<Reason> {
     if let Some((span, ..)) = spans.iter().find(|(.., found)| !found.is_steady) {
         let span = (*span).to_owned();
@@ -273,7 +273,7 @@ fn steadiness(spans: &[(&str, f64, Steadiness)], time: f64) -> Vec<Reason> {
     reasons
 }
 
-/// What a run-in that was to end by itself leaves open.
+/// Reason against a run-in that was to end by itself and did not.
 fn started(ran_in: RanIn) -> Option<Reason> {
     let gave_up = ran_in.is_steady == Some(false);
     gave_up.then_some(Reason::NotRunIn { time: ran_in.time })
@@ -287,7 +287,7 @@ fn accuracy(choice: &Choice) -> Option<Reason> {
     })
 }
 
-/// What the estimate of the error says, and what it did not look at.
+/// Reasons from the estimate of the error, and from parts of the run that it did not look at.
 fn examination(judgement: Option<&Judgement>) -> Vec<Reason> {
     let estimate = match judgement {
         Some(Judgement::Made(estimate)) => estimate,

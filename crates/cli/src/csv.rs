@@ -124,7 +124,7 @@ fn digits(value: f64) -> String {
     format!("{value:?}")
 }
 
-/// What the last line says of a table that is not at its end.
+/// Last line of a table that is not at its end.
 pub(crate) fn incomplete(ending: &Ending) -> Option<String> {
     let reason = match ending {
         Ending::Complete => return None,

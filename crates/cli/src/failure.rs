@@ -37,7 +37,7 @@ pub(crate) enum Failure {
         source: SimulationError,
     },
 
-    /// What is to be varied is wrong, or the machine refuses threads.
+    /// The values to vary are wrong, or the machine refuses threads.
     #[error(transparent)]
     Sweep(#[from] SweepError),
 
@@ -91,7 +91,7 @@ impl From<ResumeError> for Failure {
 }
 
 impl Failure {
-    /// What was done for a scene, unless the user did not want to wait for it.
+    /// The result for a scene, unless the user did not want to wait for it.
     pub(crate) fn or_interrupted<T>(
         done: Result<T, SimulationError>,
         scene: &str,
@@ -105,7 +105,7 @@ impl Failure {
         })
     }
 
-    /// What is wrong with a request.
+    /// The mistake in a request.
     pub(crate) fn request(error: RequestError, scene: &str) -> Self {
         match error {
             RequestError::Setting(source) => Self::Start {

@@ -1,4 +1,4 @@
-//! What to run: a scene, changes to it, and the settings of the command line.
+//! Request of a run: a scene, changes to it, and the settings of the command line.
 
 use std::path::Path;
 
@@ -133,7 +133,7 @@ impl RunArguments {
         }
     }
 
-    /// What is given: paths in the scene, and the options of the command line.
+    /// Given values: paths in the scene, and the options of the command line.
     pub(crate) fn given(&self) -> Vec<(String, String)> {
         let named = [
             ("run.record", "--record", &self.record),

@@ -18,7 +18,7 @@ pub struct Approach {
     pub onset_rate: f64,
 }
 
-/// What a contact answers to an approach, from one evaluation of its elastic law.
+/// Force of a contact under an approach and its derivatives, from one evaluation of its elastic law.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Response {
     /// Normal force F \[N\], compressive, never negative.
@@ -230,7 +230,7 @@ impl Prepared {
         Some([power.stiffness, power.exponent, series])
     }
 
-    /// What the dissipation does, its constants worked out.
+    /// Action of the dissipation, its constants worked out.
     #[inline]
     pub fn action(&self) -> Action {
         self.action

@@ -247,7 +247,7 @@ impl ArcSpline {
     }
 }
 
-/// What each piece has to know about its neighbours.
+/// Facts about its neighbours that each piece needs.
 fn stations(pieces: &[Piece], closed: bool) -> Vec<Station> {
     let n = pieces.len();
     let joints: Vec<_> = (0..n)

@@ -44,7 +44,7 @@ impl AreaMoments {
         }
     }
 
-    /// What lies between an arc and its chord, positive for a left turn.
+    /// Area between an arc and its chord, positive for a left turn.
     fn circular_segment(arc: &crate::Arc) -> Self {
         // With half angle α, about the centre:
         //   A = r² (α − sin α cos α),   S = ⅔ r³ sin³ α along the middle,

@@ -1,4 +1,4 @@
-//! What is nearest to a point: every locally nearest place of a curve within reach.
+//! Places nearest to a point: every locally nearest place of a curve within reach.
 //!
 //! Walking along a curve, let f = (p − x) · t tell whether the point p lies ahead (f ≥ 0) or
 //! behind (f < 0). The distance is locally smallest exactly where f turns from ahead to behind:

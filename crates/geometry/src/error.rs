@@ -1,4 +1,4 @@
-//! What can be wrong with a shape.
+//! Mistakes in a shape.
 
 use crate::Point;
 
@@ -232,10 +232,10 @@ impl GeometryError {
     }
 }
 
-/// What a wheel is called.
+/// Name of a wheel.
 type Name<'n> = &'n dyn Fn(usize) -> String;
 
-/// What a wheel is called where only its place on the route is known.
+/// Name of a wheel where only its place on the route is known.
 fn number(wheel: usize) -> String {
     format!("wheel {wheel}")
 }

@@ -78,7 +78,7 @@ fn chords(arc: &Arc, tolerance: f64) -> u32 {
     (arc.sweep.abs() / angle).ceil().max(1.0) as u32
 }
 
-/// What lies between two fractions of a piece.
+/// The part between two fractions of a piece.
 fn cut(piece: &Piece, [from, to]: [f64; 2]) -> Piece {
     match piece {
         Piece::Segment(segment) => Segment::new(segment.point(from), segment.point(to)).into(),

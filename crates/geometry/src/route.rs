@@ -31,7 +31,7 @@ impl Side {
     }
 }
 
-/// What holds the rollers on the circle of a [`Wheel`].
+/// Seat of the rollers on the circle of a [`Wheel`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum WheelKind {
     /// A sprocket: rollers sit in gaps, 2π/z apart.

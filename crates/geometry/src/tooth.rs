@@ -120,7 +120,7 @@ pub struct ToothGap {
     pieces: Vec<Piece>,
 }
 
-/// What every form starts from.
+/// Dimensions from which every form starts.
 #[derive(Clone, Copy, Debug)]
 struct Wheel {
     teeth: u32,
@@ -133,7 +133,7 @@ struct Wheel {
     pitch_radius: f64,
 }
 
-/// What every form comes to.
+/// Dimensions to which every form comes.
 #[derive(Clone, Debug)]
 struct Drawing {
     pieces: Vec<Piece>,

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// What was found not to be finite.
+/// The quantity that is not finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// A position.

@@ -198,7 +198,7 @@ impl GeneralizedAlpha {
         }
     }
 
-    /// What the accelerations a⁺ and the rates ż⁺ leave open, as the right-hand side of the correction.
+    /// Residual of the accelerations a⁺ and the rates ż⁺, as the right-hand side of the correction.
     fn imbalance(&mut self, from: &State, to: &Snapshot) {
         let Coefficients { inertia, force, .. } = self.coefficients;
         let share = 1.0 / (1.0 - inertia);

@@ -14,7 +14,7 @@ pub(crate) const LIMIT: f64 = 2.0;
 /// Work space of the method.
 #[derive(Clone, Debug)]
 pub(crate) struct ImplicitDamping {
-    /// What the equations are solved for: Δv, then Δz.
+    /// Unknowns of the equations: Δv, then Δz.
     change: Vec<f64>,
 }
 

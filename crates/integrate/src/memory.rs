@@ -1,11 +1,11 @@
-//! What a stepper knows beside the state: with both, a run goes on to the last bit.
+//! Memory of a stepper beside the state: with both, a run goes on to the last bit.
 
 use serde::{Deserialize, Serialize};
 
 use crate::stepper::Pace;
 use crate::{IntegrationError, Method, SecondOrderSystem, State, Statistics, Stepper};
 
-/// What a [`Stepper`] remembers from one step to the next, with records of type `R`.
+/// Memory of a [`Stepper`] from one step to the next, with records of type `R`.
 ///
 /// Plain data, for snapshots in memory and on disk. What follows from the method and the size of the system is not in it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -29,7 +29,7 @@ impl<R> StepperMemory<R> {
 }
 
 impl<S: SecondOrderSystem<Record: Clone>> Stepper<S> {
-    /// What it remembers.
+    /// Its memory.
     pub fn memory(&self) -> StepperMemory<S::Record> {
         StepperMemory {
             method: self.method(),

@@ -64,7 +64,7 @@ pub enum Method {
     },
 }
 
-/// What became of an attempt to make a candidate.
+/// Outcome of an attempt to make a candidate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
     /// A candidate to judge.
@@ -190,7 +190,7 @@ impl Method {
         ]
     }
 
-    /// What a step may err by, where the step follows the error.
+    /// Error that a step may make, where the step follows the error.
     pub(crate) fn tolerances(&self) -> Option<Tolerance> {
         match *self {
             Self::DormandPrince {

@@ -1,4 +1,4 @@
-//! What a run cost.
+//! Cost of a run.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! What a system has to answer in order to be stepped through time.
+//! Questions that a system answers in order to be stepped through time.
 
 /// Where an evaluation happens.
 #[derive(Clone, Copy, Debug)]
@@ -57,7 +57,7 @@ pub enum Continuity {
 /// began, the gap a roller sits in. It is constant during a step and advances in
 /// [`commit`](Self::commit) only. Constraints, if any, are already satisfied by a.
 pub trait SecondOrderSystem {
-    /// What one evaluation leaves behind for [`inspect`](Self::inspect) and [`commit`](Self::commit): work space, gaps and rates of contacts.
+    /// Results of one evaluation for [`inspect`](Self::inspect) and [`commit`](Self::commit): work space, gaps and rates of contacts.
     type Record;
 
     /// A record large enough for every evaluation of this system.

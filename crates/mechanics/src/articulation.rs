@@ -1,4 +1,4 @@
-//! What resists the links of a chain turning against each other in their joints.
+//! Resistance of the links of a chain to turning against each other in their joints.
 
 use chaindrive_contact::Friction;
 

@@ -33,7 +33,7 @@ pub(crate) use relax::{Curvature, curvature};
 /// A drive ready to move.
 #[derive(Clone, Debug)]
 pub struct Assembled {
-    /// What was assembled.
+    /// The drive that was assembled.
     pub drive: Drive,
     /// The compiled drive.
     pub system: System,

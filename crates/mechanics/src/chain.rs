@@ -17,7 +17,7 @@ pub enum Ends {
     Open([End; 2]),
 }
 
-/// What happens at one end of an open strand.
+/// Condition at one end of an open strand.
 #[derive(Clone, Debug, PartialEq)]
 pub enum End {
     /// The end roller moves freely.
@@ -67,7 +67,7 @@ pub struct Chain {
     pub roller_diameter: f64,
     /// Height of the link plates \[m\], positive: what a guide for plates touches.
     pub plate_height: f64,
-    /// What resists in the joints, if anything. Joints with clearance have their friction in the contact of pin and bush.
+    /// Resistance of the joints, if there is any. Joints with clearance have their friction in the contact of pin and bush.
     pub articulation: Option<Articulation>,
     /// Drag b of oil or air across every link per length \[N s/m²\], not negative.
     ///
@@ -80,7 +80,7 @@ pub struct Chain {
     pub drag: f64,
     /// How the ends are joined.
     pub ends: Ends,
-    /// What it is made of. Rigid links take their lengths from `lengths`; stiffness, damping and
+    /// Its model. Rigid links take their lengths from `lengths`; stiffness, damping and
     /// masses are then those of the particle chain that serves to lay and settle them.
     pub model: ChainModel,
     /// Its strength, as far as that is known. Nothing follows from it but what is said of the result.

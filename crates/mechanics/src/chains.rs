@@ -43,7 +43,7 @@ pub(crate) enum Chain {
     Links(Box<Linkage>),
 }
 
-/// What a chain remembers beside its contacts with bodies.
+/// Memory of a chain beside its contacts with bodies.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) enum ChainMemory {
     /// The friction of its joints, if there is any.
@@ -54,7 +54,7 @@ pub(crate) enum ChainMemory {
     Links(Box<links::Memory>, Option<joints::Stick>),
 }
 
-/// What a chain is evaluated among.
+/// Surroundings in which a chain is evaluated.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surroundings<'a> {
     /// All bodies of the drive.
@@ -159,7 +159,7 @@ impl Chain {
     }
 }
 
-/// What it is made of.
+/// Its model.
 impl Chain {
     /// Number of coordinates.
     pub(crate) fn coordinates(&self) -> usize {
@@ -171,7 +171,7 @@ impl Chain {
         ask!(self, chain => chain.free_coordinates())
     }
 
-    /// What a coordinate is, in words.
+    /// Description of a coordinate, in words.
     pub(crate) fn name(&self, coordinate: usize) -> String {
         ask!(self, chain => chain.name(coordinate))
     }
@@ -327,7 +327,7 @@ impl Chain {
     }
 }
 
-/// What it remembers.
+/// Its memory.
 impl Chain {
     /// See [`System::memory`](crate::System::memory).
     pub(crate) fn memory(&self) -> ChainMemory {
@@ -364,7 +364,7 @@ impl Chain {
     }
 }
 
-/// What can be read off it.
+/// Quantities that can be read off it.
 impl Chain {
     /// Appends what belongs to the chain.
     pub(crate) fn observe(&self, at: Moment<'_>, record: &Record, out: &mut Observation) {

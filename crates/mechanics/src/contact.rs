@@ -50,7 +50,7 @@ pub(crate) struct Frame {
     pub(crate) spin: f64,
 }
 
-/// What the profile looks like.
+/// Shape of the profile.
 #[derive(Clone, Debug)]
 pub(crate) enum Shape {
     /// z equal gaps around a wheel; the frame's origin is the wheel centre.
@@ -83,7 +83,7 @@ pub(crate) struct Teeth {
 pub(crate) struct Contacts {
     pub(crate) shape: Shape,
     pub(crate) surface: Surface,
-    /// What is different on the flanks.
+    /// Differences on the flanks.
     pub(crate) flank: Option<Flank>,
     /// The two, ready for lanes.
     law: SurfaceLaw,

@@ -45,7 +45,7 @@ pub struct Sprocket {
     pub centre: Point,
     /// Index of the shaft that it sits on.
     pub shaft: usize,
-    /// What holds its centre.
+    /// Support of its centre.
     pub support: Support,
     /// Moment of inertia about the centre \[kg m²\], beside that of its shaft; not negative.
     pub inertia: f64,
@@ -53,19 +53,19 @@ pub struct Sprocket {
     pub mass: f64,
     /// Contact with the rollers.
     pub surface: Surface,
-    /// What is different on the flanks, if anything.
+    /// Differences on the flanks, if there are any.
     pub flank: Option<Flank>,
     /// Angle of one gap axis at assembly \[rad\] for wheels that no route passes over; along a
     /// route the closing of the chain decides.
     pub gap_angle: f64,
 }
 
-/// What turns: it carries sprockets of any chains, rigidly, or none.
+/// A body that turns: it carries sprockets of any chains, rigidly, or none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shaft {
     /// Name, unique among the shafts; none for the shaft of a single sprocket, which is called like that.
     pub name: Option<String>,
-    /// What turns it.
+    /// Its drive: a motion, or torques.
     pub rotation: Rotation,
     /// Moment of inertia \[kg m²\] beside those of its sprockets, not negative.
     pub inertia: f64,
@@ -100,7 +100,7 @@ impl Shaft {
     }
 }
 
-/// What turns a shaft.
+/// Drive of a shaft: a motion, or torques.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Rotation {
     /// The angle is given in time \[rad\].
@@ -114,7 +114,7 @@ pub enum Rotation {
     },
 }
 
-/// What holds the centre of a sprocket.
+/// Support of the centre of a sprocket.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Support {
     /// A fixed bearing.
@@ -144,7 +144,7 @@ pub struct Guide {
     pub name: String,
     /// Working face in the assembled position; material on the left of travel.
     pub face: ArcSpline,
-    /// What holds it.
+    /// Its support.
     pub support: GuideSupport,
     /// Which part of the chain touches it.
     pub touches: Touches,
@@ -152,7 +152,7 @@ pub struct Guide {
     pub surface: Surface,
 }
 
-/// What holds a guide.
+/// Support of a guide.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GuideSupport {
     /// Bolted to the frame.
@@ -258,7 +258,7 @@ pub enum SpanStart {
 /// How a closed chain is fitted to its sprockets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// What is moved until the links close without stress.
+    /// The body that is moved until the links close without stress.
     pub adjust: Adjust,
     /// Tension of every link before gravity and load \[N\], not negative.
     pub pretension: f64,
@@ -281,7 +281,7 @@ pub enum PretensionAt {
     Phase,
 }
 
-/// What is moved until the given number of links closes without stress.
+/// The body that is moved until the given number of links closes without stress.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Adjust {
     /// Nothing: the centres are as they are. A small misfit becomes strain of all links; an

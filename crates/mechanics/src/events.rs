@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::contact::{ContactState, Contacts};
 use crate::system::{RailContact, System};
 
-/// What touched what.
+/// Kind of a contact: the two bodies that touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum ContactPair {
     /// A roller and the teeth of a sprocket.
@@ -40,7 +40,7 @@ pub enum ContactPair {
 /// One contact from touch to parting.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactEvent {
-    /// What touched what.
+    /// Kind of a contact: the two bodies that touch.
     pub pair: ContactPair,
     /// When it began \[s\].
     pub start: f64,

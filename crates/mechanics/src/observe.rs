@@ -1,4 +1,4 @@
-//! What can be read off a state: tensions, forces, positions, energies.
+//! Quantities that can be read off a state: tensions, forces, positions, energies.
 
 use chaindrive_geometry::Point;
 use chaindrive_integrate::{Moment, SecondOrderSystem};

@@ -65,11 +65,11 @@ pub(crate) struct HeldEnd {
     pub(crate) place: Point,
 }
 
-/// What one evaluation leaves behind: contact states, work space and what the bodies feel.
+/// Results of one evaluation: contact states, work space and loads of the bodies.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Record {
     pub(crate) chains: Vec<chains::Record>,
-    /// What all chains together do to every wheel and rail.
+    /// Loads of all chains together on every wheel and rail.
     pub(crate) wheel_wrenches: Vec<Wrench>,
     pub(crate) rail_wrenches: Vec<Wrench>,
     /// Derivatives of pushes with a state, for every tensioner.

@@ -20,7 +20,7 @@ pub struct Tensioner {
     /// Mass of a slider \[kg\] or moment of inertia of an arm about its pivot \[kg m²\], without
     /// the sprockets it carries; positive.
     pub inertia: f64,
-    /// What pushes it.
+    /// Its push.
     pub push: Push,
 }
 

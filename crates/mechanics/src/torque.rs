@@ -57,7 +57,7 @@ pub enum Torque {
     },
 }
 
-/// What a torque table runs over.
+/// Variable of a torque table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Argument {
     /// Time \[s\].

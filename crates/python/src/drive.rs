@@ -94,13 +94,13 @@ impl Drive {
         self.scene.text()
     }
 
-    /// What messages call it: its file or preset.
+    /// Its name in messages: its file or preset.
     #[getter]
     fn name(&self) -> &str {
         self.scene.name()
     }
 
-    /// What it shows, in a line.
+    /// Its title, in a line.
     #[getter]
     fn title(&self) -> &str {
         self.scene.title()
@@ -165,7 +165,7 @@ impl Drive {
             .collect()
     }
 
-    /// What to run and record unless told otherwise.
+    /// Settings of a run and channels to record, unless others are given.
     fn run_defaults<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let run = self.run();
         let answer = PyDict::new(py);
@@ -239,7 +239,7 @@ impl Drive {
         Ok(Profile(found.or_raise()?))
     }
 
-    /// What the drive will be simulated as: as a text, and as JSON.
+    /// Description of the drive: as a text, and as JSON.
     fn describe(&self, py: Python<'_>) -> PyResult<(String, String)> {
         let (drive, run) = (self.drive.clone(), self.run());
         let description = patiently(py, move || Description::of(&drive, &run))?

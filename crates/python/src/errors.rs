@@ -21,7 +21,7 @@ mod python {
     pyo3::import_exception!(chaindrive.errors, WriteError);
 }
 
-/// What becomes a Python exception.
+/// Errors that become Python exceptions.
 pub(crate) trait IntoException {
     /// The exception, with the place and the hint where they are known.
     fn exception(self) -> PyErr;

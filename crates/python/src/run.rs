@@ -82,7 +82,7 @@ pub(crate) fn resume(
     answer(py, report, raised, Memory::default())
 }
 
-/// What came of a run.
+/// Outcome of a run.
 fn answer(
     py: Python<'_>,
     report: PyResult<Report>,
@@ -128,7 +128,7 @@ pub(crate) fn merged(settings: Vec<(String, Setting)>) -> Settings {
     })
 }
 
-/// What a run leaves, as Python takes it.
+/// Outcome of a run, as Python takes it.
 fn told<'py>(py: Python<'py>, report: &Report, memory: Memory) -> PyResult<Bound<'py, PyDict>> {
     let answer = PyDict::new(py);
     let recording = memory.recording;

@@ -1,4 +1,4 @@
-//! What a drawing shows around its parts: the window, the title, names.
+//! Surroundings of the parts in a drawing: the window, the title, names.
 
 use chaindrive_geometry::Point;
 use chaindrive_mechanics::{BodyKind, Figure, Pose};

@@ -20,7 +20,7 @@ use crate::{Run, SimulationError, Stepping};
 /// Accuracy that a run has unless told otherwise \[–\].
 pub const ACCURACY: f64 = 0.01;
 
-/// What is kept within the accuracy.
+/// Quantity that is kept within the accuracy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Promise {
     /// The tension of the tight span, or of the tightest link where [`Choice::gap`] leaves a span without a
@@ -251,7 +251,7 @@ pub fn choose(
     Ok(choice)
 }
 
-/// What a difference exceeds the spread of equal runs by; a spread without bound excuses nothing.
+/// Excess of a difference over the spread of equal runs; a spread without bound excuses nothing.
 fn beyond(difference: f64, spread: f64) -> f64 {
     if difference.is_finite() {
         (difference - spread).max(0.0)
@@ -293,7 +293,7 @@ impl Choice {
         list
     }
 
-    /// What was chosen and why, in a sentence.
+    /// The choice and its reason, in a sentence.
     pub fn reason(&self) -> String {
         let (asked, window) = (percent(self.accuracy), duration(self.window));
         let what = match (self.promise, &self.gap) {

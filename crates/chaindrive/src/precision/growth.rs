@@ -1,6 +1,6 @@
 //! Exponential growth of a distance: rate, its uncertainty, and where it ends.
 
-/// What a distance does over time.
+/// Growth of a distance over time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Growth {
     /// It grows: D(t) = exp(λ (t − t₀)).

@@ -26,7 +26,7 @@ pub struct Horizon {
     pub window: f64,
 }
 
-/// What became of a difference of 1e-12 m.
+/// Fate of a difference of 1e-12 m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Divergence {
     /// It became 1 %.

@@ -7,7 +7,7 @@ use super::attribute::Attribute;
 use super::estimate::{ChannelHorizon, Estimate, estimate};
 use crate::{Channel, Run, Simulation, SimulationError};
 
-/// What is said about the error of a run at its end.
+/// Statement about the error of a run, made at its end.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Judgement {
     /// An estimate.
@@ -44,7 +44,7 @@ impl Judgement {
             .and_then(|estimate| estimate.horizon_of(channel))
     }
 
-    /// What a result says about itself: `error_estimate`, and what was found.
+    /// Attributes of a result: `error_estimate`, and the findings.
     pub fn attributes(&self) -> Vec<(String, Attribute)> {
         let word = match self {
             Self::Made(_) => "made".to_owned(),

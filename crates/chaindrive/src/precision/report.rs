@@ -98,7 +98,7 @@ impl Estimate {
 }
 
 impl Horizon {
-    /// What became of the distance of the twins, in a sentence.
+    /// Fate of the distance of the twins, in a sentence.
     pub fn sentence(&self) -> String {
         self.all.sentence(self.window)
     }

@@ -14,13 +14,13 @@ pub struct Number {
     pub name: &'static str,
     /// SI unit.
     pub unit: &'static str,
-    /// What it is, in a line.
+    /// Description, in a line.
     pub description: &'static str,
     /// Value; NaN where there is none.
     pub value: f64,
 }
 
-/// What the columns of [`Errors`] are, in their order.
+/// Names of the columns of [`Errors`], in their order.
 const ERRORS: [(&str, &str); 10] = [
     (
         "error_span_tension",
@@ -141,7 +141,7 @@ impl Row {
         head.into_iter().chain(errors).collect()
     }
 
-    /// What there is to know about the row beside its numbers; empty if nothing.
+    /// Remark on the row; empty if there is none.
     pub fn remark(&self) -> &str {
         match &self.failure {
             Some(why) => why,
@@ -156,7 +156,7 @@ impl Table {
     /// two lines are `agreement` of reference and check and `spread` of the replicates.
     ///
     /// # Errors
-    /// What the writer refuses.
+    /// Errors of the writer.
     pub fn write_csv(&self, to: impl Write) -> Result<(), csv::Error> {
         let mut writer = csv::Writer::from_writer(to);
         let cell = |value: f64| {

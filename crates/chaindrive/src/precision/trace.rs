@@ -169,7 +169,7 @@ impl Trace {
 }
 
 impl Strands {
-    /// What all of some traces can be compared by: the spans if every trace has all their tensions.
+    /// Quantity by which several traces can be compared: the spans if every trace has all their tensions.
     pub(super) fn of<'a>(traces: impl IntoIterator<Item = &'a Trace>) -> Self {
         let has_spans = |trace: &Trace| trace.gap.is_none() && trace.spans.strands > 0;
         if traces.into_iter().all(has_spans) {

@@ -85,7 +85,7 @@ fn adaptive(start: &Assembled, tolerance: f64, onset_depth: f64) -> Variant {
     }
 }
 
-/// What a study compares unless told otherwise.
+/// Variants that a study compares unless others are given.
 pub(super) fn usual(start: &Assembled) -> Vec<Variant> {
     let of = |stepping, factors: &[f64]| -> Vec<Variant> {
         let variants = factors.iter();

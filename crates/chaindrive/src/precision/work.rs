@@ -18,7 +18,7 @@ use crate::{Run, SimulationError, Stepping};
 /// Settings of a work-precision study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Study {
-    /// What to compare; empty: the usual methods and steps of the drive's kind.
+    /// Variants to compare; empty: the usual methods and steps of the drive's kind.
     pub variants: Vec<Variant>,
     /// Time over which to compare \[s\]; absent: half a [`Window`].
     pub until: Option<f64>,
@@ -42,7 +42,7 @@ impl Default for Study {
 /// One variant, measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// What was run.
+    /// The variant that was run.
     pub variant: Variant,
     /// Wall time \[s\], median; NaN of a failure.
     pub wall: f64,

@@ -1,4 +1,4 @@
-//! What a result says about itself: one list of attributes, in memory and in a store.
+//! Attributes of a result: one list, in memory and in a store.
 //!
 //! All are texts, numbers, or lists of these, so that they survive a conversion to netCDF, which
 //! knows neither truth values nor tables.
@@ -20,7 +20,7 @@ pub(super) const FORMAT: &str = "chaindrive";
 /// Where a run came from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Provenance {
-    /// What the scene shows, in a line.
+    /// Title of the scene, in a line.
     pub title: String,
     /// The text that reproduces the scene, changes included.
     pub scene: String,
@@ -204,7 +204,7 @@ pub fn figures(
     }
 }
 
-/// What the run cost.
+/// Cost of the run.
 fn speed(story: &mut Story, simulation: &Simulation, wall_time: Duration) {
     let wall = simulation.stepping_time();
     let steps = simulation.statistics().steps.max(1) as f64;

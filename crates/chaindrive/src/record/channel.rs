@@ -4,7 +4,7 @@ use chaindrive_mechanics::{Energy, Flow, Observation, Parts, Store, Support, Sys
 
 use crate::SimulationError;
 
-/// What the entries of a channel belong to.
+/// Things to which the entries of a channel belong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
     /// One number a sample.
@@ -98,7 +98,7 @@ macro_rules! channels {
                 match self { $(Self::$variant => $unit),* }
             }
 
-            /// What the entries belong to.
+            /// Things to which the entries belong.
             pub fn axis(self) -> Axis {
                 match self { $(Self::$variant => Axis::$axis),* }
             }
@@ -161,7 +161,7 @@ channels! {
 }
 
 impl Channel {
-    /// What a run records unless asked otherwise.
+    /// Channels that a run records unless others are asked for.
     pub const DEFAULT: [Self; 12] = [
         Self::SpanTension,
         Self::ContactForce,
@@ -182,7 +182,7 @@ impl Channel {
     pub const WHERE_BODIES_MOVE: [Self; 3] =
         [Self::SprocketX, Self::SprocketY, Self::TensionerPosition];
 
-    /// What a run of a drive records unless asked otherwise.
+    /// Channels that a run of a drive records unless others are asked for.
     pub fn defaults(drive: &Parts) -> Vec<Self> {
         let mut channels = Self::DEFAULT.to_vec();
         let mut sprockets = drive.sprockets.iter();

@@ -2,10 +2,10 @@
 
 use chaindrive_mechanics::{ContactEvent, ContactPair, System};
 
-/// What a column of the table holds.
+/// Contents of a column of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EventColumn {
-    /// What touched: see [`EventTable::KINDS`].
+    /// Kind of the contact: see [`EventTable::KINDS`].
     Kind,
     /// Name of the sprocket or guide; empty in joints.
     Body,
@@ -81,7 +81,7 @@ impl EventColumn {
 pub struct EventTable {
     sprockets: Vec<String>,
     guides: Vec<String>,
-    /// What touched, (event,).
+    /// Kind of the contact, (event,).
     pub kind: Vec<&'static str>,
     /// Sprocket or guide, (event,).
     pub body: Vec<String>,

@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 /// Samples of a run, or every n-th of them, with what the result says about itself.
 #[derive(Clone, Debug, Default)]
 pub struct Recorded {
-    /// What the result says about itself.
+    /// Attributes of the result.
     pub attributes: Map<String, Value>,
     /// Samples of the run.
     pub samples: usize,

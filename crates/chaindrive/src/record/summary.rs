@@ -140,7 +140,7 @@ pub struct Ledger {
     pub loads_exchanged: f64,
     /// Largest kinetic energy \[J\].
     pub kinetic: f64,
-    /// What rounding may leave of a residual \[J\].
+    /// Residual that rounding may leave \[J\].
     pub rounding: f64,
 }
 
@@ -207,7 +207,7 @@ impl Turnover {
         greatest
     }
 
-    /// What rounding may leave \[J\].
+    /// Residual that rounding may leave \[J\].
     fn rounding(&self) -> f64 {
         let ranges = self.ranges.unwrap_or_default();
         let largest = ranges

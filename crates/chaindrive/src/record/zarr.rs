@@ -59,7 +59,7 @@ use target::CHECKPOINT;
 /// Wall time between two commits.
 const COMMIT_EVERY: Duration = Duration::from_secs(1);
 
-/// What happens to an earlier result of the same name.
+/// Fate of an earlier result of the same name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Existing {
     /// It stays, and the new one is refused.
@@ -95,7 +95,7 @@ pub struct ZarrWriter {
     content: Content,
     provenance: Provenance,
     judgement: Option<Judgement>,
-    /// What the result says about itself in the end.
+    /// Attributes of the result in the end.
     told: Option<Map<String, Value>>,
     samples: u64,
     /// Whether the checkpoint in the store is of the last sample.

@@ -1,4 +1,4 @@
-//! What a run goes on from when it was stopped or killed.
+//! State from which a run goes on when it was stopped or killed.
 
 use std::time::Duration;
 
@@ -172,7 +172,7 @@ impl Checkpoint {
         Ok(())
     }
 
-    /// What was asked for, with method and step as they were chosen.
+    /// The request, with method and step as they were chosen.
     pub(super) fn request(&self) -> Result<Request, SceneError> {
         Ok(Request {
             scene: Scene::from_text(&self.scene, &self.scene_name)?,

@@ -62,7 +62,7 @@ pub trait Sink {
     fn end(&mut self, end: &End<'_>) -> Result<(), Self::Error>;
 }
 
-/// What is known when a run has ended.
+/// Facts that are known when a run has ended.
 #[derive(Debug)]
 pub struct End<'a> {
     /// The simulation at its last state.
@@ -73,7 +73,7 @@ pub struct End<'a> {
     pub judgement: Option<&'a Judgement>,
     /// How it ended.
     pub ending: &'a Ending,
-    /// What the result says about itself.
+    /// Attributes of the result.
     pub attributes: &'a Map<String, Value>,
 }
 
@@ -124,7 +124,7 @@ pub enum RunError<E: std::error::Error> {
     Sink(E),
 }
 
-/// What a run leaves, beside its samples.
+/// Outcome of a run, beside its samples.
 #[derive(Debug)]
 pub struct Report {
     /// The simulation at its last state.
@@ -145,7 +145,7 @@ pub struct Report {
     pub verdict: Verdict,
     /// How it ended.
     pub stop: Stop,
-    /// What the result says about itself: the same in memory and in a store.
+    /// Attributes of the result: the same in memory and in a store.
     pub attributes: Map<String, Value>,
 }
 

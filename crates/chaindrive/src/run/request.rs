@@ -1,4 +1,4 @@
-//! What somebody wants to have run.
+//! Request of a run.
 
 use super::{Given, Run, Settings};
 use crate::precision::Quantity;

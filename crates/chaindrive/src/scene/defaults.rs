@@ -1,4 +1,4 @@
-//! What is taken for what a scene leaves open: one table, with the value of every version, its unit, and where it is from.
+//! Defaults of values that a scene leaves open: one table, with the value of every version, its unit and its source.
 //!
 //! A default stands here and nowhere else: the parts of a scene are resolved with it, the schema tells it to
 //! editors, and [`Scene::resolved`](super::Scene::resolved) writes it out. To change one add its value
@@ -146,7 +146,7 @@ defaults! {
     ROLLER_DIAMETER = always(0.6), "pitches", Assumed("it touches nothing"), ["Chain.roller_diameter"];
     /// Laying stiffness of rigid links with ideal joints.
     LAYING_STIFFNESS = always(10.0), "stiffnesses of a tooth", Assumed("their stretch must not show beside the indentation of the teeth"), ["Chain.stiffness"];
-    /// What links yield beside their joints with clearance.
+    /// Compliance of links beside their joints with clearance.
     PLATES = [(Version::V0_1, 0.0), (Version::V0_2, 1.0)], "of what the stiffness of a link leaves beside its joint", Source("the stiffness of a link is that between its pins, joints included"), ["Contact.series"];
     /// Compliance of pins where roller, bush and pin are points: the rest is in the links.
     PINS = always(0.5), "of what the stiffness of a link leaves beside its joint", Assumed("half of it is in the pins, which bend whichever way they are pushed, and half in plates; impacts are then those of rigid links with the whole behind their pins"), ["Contact.series"];

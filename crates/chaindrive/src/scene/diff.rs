@@ -1,4 +1,4 @@
-//! What differs between two scenes, defaults included.
+//! Differences between two scenes, defaults included.
 
 use std::fmt;
 
@@ -13,9 +13,9 @@ use super::{Scene, SceneError};
 pub struct Difference {
     /// Place in the scenes, with entries of lists by name where they have one.
     pub path: String,
-    /// What the first scene has there, with its unit.
+    /// Value of the first scene, with its unit.
     pub first: Option<String>,
-    /// What the second scene has there.
+    /// Value of the second scene, likewise.
     pub second: Option<String>,
 }
 
@@ -28,7 +28,7 @@ impl fmt::Display for Difference {
     }
 }
 
-/// What differs between two scenes in full: what they say, what they leave open, and what is then taken.
+/// Differences between two scenes in full: given values, open ones, and the defaults that are then taken.
 ///
 /// Values are compared in SI units, entries of lists by their names: another order, unit or spelling is no difference.
 ///

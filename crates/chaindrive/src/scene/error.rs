@@ -1,4 +1,4 @@
-//! What is wrong with a scene, and where.
+//! Mistakes in a scene, and their places.
 
 use std::fmt;
 
@@ -9,9 +9,9 @@ pub struct Problem {
     pub path: String,
     /// Line of the text, counted from 1; absent in JSON, which carries no lines.
     pub line: Option<usize>,
-    /// What is wrong, with the offending value.
+    /// The mistake, with the offending value.
     pub message: String,
-    /// What is allowed, or what to try.
+    /// The values that are allowed, or something to try.
     pub hint: Option<String>,
 }
 

@@ -1,10 +1,10 @@
-//! What the schema expects of a value: the part of JSON Schema that the format's types produce.
+//! Expectations of the schema of a value: the part of JSON Schema that the format's types produce.
 
 use serde_json::{Map, Value as Json};
 
 use super::quantity::Dimension;
 
-/// What a schema asks for, after references and optional wrappers.
+/// Expectation of a schema, after references and optional wrappers.
 pub(crate) enum Expected<'s> {
     Table(&'s Json),
     List(&'s Json),
@@ -20,7 +20,7 @@ pub(crate) enum Expected<'s> {
 }
 
 impl<'s> Expected<'s> {
-    /// What a schema, freed of references, asks for.
+    /// Expectation of a schema freed of references.
     pub(crate) fn of(schema: &'s Json) -> Self {
         if let Some(name) = schema.get("x-dimension").and_then(Json::as_str)
             && let Some(dimension) = Dimension::named(name)
@@ -107,7 +107,7 @@ fn words_of(schema: &Json) -> impl Iterator<Item = &str> {
     listed.chain(schema.get("const")).filter_map(Json::as_str)
 }
 
-/// What to do about a key that is missing: "give the nominal pitch", "say what pushes it".
+/// Advice about a key that is missing: "give the nominal pitch", "say what pushes it".
 pub(crate) fn request(schema: &Json) -> Option<String> {
     let text = schema.get("description")?.as_str()?;
     let sentence = text

@@ -151,12 +151,12 @@ impl Scene {
         Ok(drive.0)
     }
 
-    /// What the scene shows, in a line; may be empty.
+    /// Title of the scene, in a line; may be empty.
     pub fn title(&self) -> &str {
         &self.content.title
     }
 
-    /// What messages call the scene: its file or preset.
+    /// Name of the scene in messages: its file or preset.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -166,7 +166,7 @@ impl Scene {
         &self.text
     }
 
-    /// What a front end runs and records unless told otherwise.
+    /// Settings of a run and channels to record, unless the caller gives others.
     pub fn run_defaults(&self) -> RunDefaults {
         self.content.run.suggestions()
     }

@@ -138,7 +138,7 @@ pub(crate) fn read_time(text: &str) -> Result<f64, String> {
 /// A length \[m\] from a number and a unit, such as `"12.7 mm"`, or from a bare number of metres.
 ///
 /// # Errors
-/// What is wrong with the text.
+/// The mistake in the text.
 pub fn read_length(text: &str) -> Result<f64, String> {
     let length = DIMENSIONS.iter().find(|dimension| dimension.unit == "m");
     let length = length.expect("lengths are quantities");
@@ -243,7 +243,7 @@ impl Dimension {
     }
 }
 
-/// What a dimension is called, or else its powers.
+/// Name of a dimension, or else its powers.
 fn name_of(powers: Powers) -> String {
     let known = DIMENSIONS.iter().find(|d| powers.matches(Powers(d.powers)));
     match known {

@@ -60,7 +60,7 @@ fn of_result(folder: &Path) -> Result<Option<String>, Problem> {
     Ok(scene.map(str::to_owned))
 }
 
-/// What to try where there is no file: its name may be that of an embedded scene.
+/// Advice where there is no file: its name may be that of an embedded scene.
 fn instead_of(path: &Path) -> String {
     let stem = path.file_stem().and_then(|stem| stem.to_str());
     let preset = stem.and_then(|stem| presets().iter().find(|(name, _)| *name == stem));

@@ -191,7 +191,7 @@ impl Resolved {
     }
 }
 
-/// What a run does that the scene does not say.
+/// Settings of a run that the scene leaves open.
 fn run_defaults(scene: &Scene) -> Vec<Assumption> {
     let (run, wanted) = (Run::default(), scene.run_defaults());
     let assumed = |key: &str, value: Json| Assumption {

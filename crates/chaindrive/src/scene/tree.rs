@@ -14,7 +14,7 @@ pub(crate) struct Node {
     pub(crate) value: Value,
 }
 
-/// What a value can be.
+/// Kinds of values.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
     Truth(bool),

@@ -7,7 +7,7 @@ use chaindrive_mechanics::{Input, Observation, System};
 use super::{Moving, STEPS_PER_LOOK, Simulation};
 use crate::{Channel, SimulationError};
 
-/// What can be set while a drive moves, by the names of the scene.
+/// Inputs that can be set while a drive moves, by the names of the scene.
 ///
 /// A value holds until another one is set; at the start nothing acts beside what the scene says.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -193,7 +193,7 @@ impl Moving {
 }
 
 impl Control {
-    /// What it is in a drive.
+    /// The input of the drive.
     fn input(&self, system: &System) -> Result<Input, SimulationError> {
         let (what, known, name) = match self {
             Self::Force(name) => ("tensioner", system.tensioner_names(), name),

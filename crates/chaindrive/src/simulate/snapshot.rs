@@ -44,7 +44,7 @@ pub struct Snapshot {
     start_energy: Option<Energy>,
 }
 
-/// What of a drive in motion does not follow from the drive.
+/// State of a drive in motion that does not follow from the drive.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Remembered {
     system: SystemMemory,

@@ -1,4 +1,4 @@
-//! What is kept of one variant: statistics, and channels where they are asked for.
+//! Account of one variant: statistics, and channels where they are asked for.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -201,7 +201,7 @@ impl Quantity {
     }
 }
 
-/// What is kept of a run that reached its end.
+/// Account of a run that reached its end.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Account {
     /// Method of time stepping, as chosen.
@@ -210,7 +210,7 @@ pub struct Account {
     pub time: Vec<f64>,
     /// Labels of every dimension that the entries have beside time.
     pub labels: Vec<(String, Vec<String>)>,
-    /// What is kept.
+    /// Values that are kept.
     pub entries: Vec<Entry>,
     /// Whether the numbers can be trusted.
     pub verdict: WrittenVerdict,

@@ -95,7 +95,7 @@ impl Setting {
     }
 }
 
-/// What stands along a dimension.
+/// Coordinates along a dimension.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Coordinate {
     /// Quantities in SI units.

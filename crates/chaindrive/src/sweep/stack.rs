@@ -3,7 +3,7 @@
 use super::{Account, Coordinate, Entry, Outcome, Quantity, Statistic, Sweep};
 use crate::record::Axis;
 
-/// What is said of a variant that was not carried out.
+/// Message for a variant that was not carried out.
 const OPEN: &str = "not carried out: the sweep was stopped";
 
 /// Names and descriptions of the texts that results have of every variant.

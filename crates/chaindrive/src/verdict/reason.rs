@@ -9,7 +9,7 @@ use super::Trust;
 use crate::precision::wording::{duration, percent};
 use crate::precision::{ChannelHorizon, Gap};
 
-/// What speaks against a result.
+/// A reason that speaks against a result.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reason {
     /// Tensions or forces are not numbers.
@@ -19,12 +19,12 @@ pub enum Reason {
     },
     /// The energy does not add up.
     EnergyMissing {
-        /// What is unaccounted for, over the energy moved \[–\].
+        /// Energy unaccounted for, over the energy moved \[–\].
         of_moved: f64,
     },
     /// The energy unaccounted for is of the size of the losses.
     LossesWrong {
-        /// What is unaccounted for, over the losses or 1e-4 of the energy moved, whichever is more \[–\].
+        /// Energy unaccounted for, over the losses or 1e-4 of the energy moved, whichever is more \[–\].
         of_losses: f64,
     },
     /// The energy unaccounted for is a noticeable share of the losses.
@@ -34,7 +34,7 @@ pub enum Reason {
     },
     /// More energy comes out than goes in.
     EfficiencyAboveOne {
-        /// What comes out or is stored, over what goes in \[–\].
+        /// Energy that comes out or is stored, over that supplied \[–\].
         efficiency: f64,
     },
     /// The run has too few steps for its energy to be judged.
@@ -229,7 +229,7 @@ impl Reason {
     }
 }
 
-/// What to do about energy that is missing.
+/// Advice about energy that is missing.
 const SHARPER: &str = "take a smaller step, or method generalized-alpha for rigid links";
 
 impl fmt::Display for Reason {

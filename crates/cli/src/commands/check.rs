@@ -35,7 +35,7 @@ pub(crate) fn check(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
     }
 }
 
-/// What a sound scene holds.
+/// Contents of a sound scene.
 fn sound(name: &str, interrupted: &dyn Fn() -> bool) -> Result<String, Failure> {
     let scene = load(name, interrupted)?;
     let drive = scene.drive()?;

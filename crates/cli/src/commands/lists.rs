@@ -58,7 +58,7 @@ pub(crate) struct Catalogue {
     name: Option<String>,
 }
 
-/// What the list shows, and how many of its units make one of SI.
+/// Quantity in the list, and how many of its units make one of SI.
 const SHOWN: [(Number, &str, f64); 8] = [
     (Number::Pitch, "pitch mm", 1e3),
     (Number::RollerDiameter, "roller mm", 1e3),

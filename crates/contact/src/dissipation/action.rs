@@ -8,7 +8,7 @@
 /// an unlimited factor would multiply the elastic force at will.
 pub const RATIO_LIMIT: f64 = 4.0;
 
-/// What a dissipation does to an elastic force g, its constants worked out.
+/// Action of a dissipation on an elastic force g, its constants worked out.
 ///
 /// The contact never pulls, and an open one (g = 0) carries no force.
 #[derive(Clone, Copy, Debug, PartialEq)]

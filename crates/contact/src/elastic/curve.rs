@@ -3,7 +3,7 @@
 use super::logarithmic::Logarithmic;
 use super::{Elastic, ElasticLaw, Power};
 
-/// What is left of an elastic law once its member has supplied the constants.
+/// Curve of an elastic law once its member has supplied the constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Curve {
     /// g = K δ

@@ -145,7 +145,7 @@ pub(super) fn greatest_penetration(length_scale: f64) -> f64 {
     length_scale / (E * E)
 }
 
-/// What a law with a `length_scale` and a `modulus_length` owes as an elastic law.
+/// The elastic law of a type with a `length_scale` and a `modulus_length`.
 macro_rules! follows_the_logarithm {
     ($law:ty) => {
         impl $law {

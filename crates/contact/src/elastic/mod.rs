@@ -46,7 +46,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::ParameterError;
 
-/// What every elastic law can be asked; kernels that fix the law outside their loop are generic over it.
+/// Questions that every elastic law answers; kernels that fix the law outside their loop are generic over it.
 ///
 /// All functions are zero for δ ≤ 0 and consistent with each other:
 ///

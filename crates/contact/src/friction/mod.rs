@@ -58,7 +58,7 @@ pub enum Friction {
     SpringSlider(SpringSlider),
 }
 
-/// What a rubbing contact answers over a step.
+/// Force and state of a rubbing contact over a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rub {
     /// Tangential force f \[N\], opposes the slip; with a state at the end of the step.

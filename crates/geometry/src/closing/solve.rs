@@ -1,4 +1,4 @@
-//! What makes a chain of given length close: its strain, or a motion of the wheels.
+//! Unknown that makes a chain of given length close: its strain, or a motion of the wheels.
 
 use super::Closing;
 use super::nearest::{Outcome, Search, outward};

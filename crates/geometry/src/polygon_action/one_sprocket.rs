@@ -1,4 +1,4 @@
-//! What one sprocket alone does to a long span: chordal action, meeting angle, mesh frequency.
+//! Action of one sprocket on a long span: chordal action, meeting angle, mesh frequency.
 
 use std::f64::consts::{PI, TAU};
 

@@ -28,7 +28,7 @@ pub(crate) use curvature::{Curvature, curvature};
 /// A static state on the way to the start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Statics {
-    /// What had been applied: "pretension", "gravity" or "load".
+    /// Load that had been applied: "pretension", "gravity" or "load".
     pub stage: &'static str,
     /// Newton iterations.
     pub iterations: usize,

@@ -31,7 +31,7 @@ pub(crate) struct Balance {
     pub(crate) residual: f64,
 }
 
-/// What a chain is to carry, and how stiff it was laid.
+/// Load that a chain shall carry, and the stiffness with which it was laid.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tightening {
     /// Which chain.

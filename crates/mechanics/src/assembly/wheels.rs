@@ -32,7 +32,7 @@ impl Drive {
         wheels(&parts, &placed.chain, stops).map(Some)
     }
 
-    /// What is in each other's way when the chains have been laid, without settling.
+    /// Bodies in each other's way when the chains have been laid, without settling.
     ///
     /// # Errors
     /// [`AssemblyError`] when a chain does not close.

@@ -1,4 +1,4 @@
-//! What resists in the joints of a chain: torques between neighbouring links, on lanes.
+//! Resistance of the joints of a chain: torques between neighbouring links, on lanes.
 //!
 //! ```text
 //! ω = ω_after − ω_before,   M = r f(N, r ω) − c ω       on the link after the joint, and −M on the one before it
@@ -38,7 +38,7 @@ pub(crate) struct Stick {
     slopes: [f64; 2],
 }
 
-/// What one evaluation finds in the joints.
+/// Results of one evaluation in the joints.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Resistance {
     /// Torque of every joint on the link after it \[N m\], and whole lanes behind.

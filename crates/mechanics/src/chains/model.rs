@@ -1,10 +1,10 @@
-//! What a chain can be made of, as a drive describes it.
+//! Models of a chain, as a drive describes them.
 
 use super::links::model::{Clearance, FreeRoller, Joint, RigidLinks, RollerModel};
 use super::particles::points::PointJoints;
 use crate::DriveError;
 
-/// What the chain is made of: model only what a scene needs.
+/// Model of a chain: no more than a scene needs.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ChainModel {
     /// Point masses at the rollers, joined by spring-damper links: two coordinates a link.

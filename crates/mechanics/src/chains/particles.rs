@@ -36,7 +36,7 @@ pub(super) use springs::Links;
 #[derive(Clone, Debug)]
 pub(crate) struct Particles {
     pub(super) links: Links,
-    /// What resists in the joints, if anything.
+    /// Resistance of the joints, if there is any.
     pub(super) joints: Option<Joints>,
     /// Drag across the links, if any.
     drag: Option<Drag>,

@@ -1,4 +1,4 @@
-//! What one evaluation of a chain leaves behind.
+//! Results of one evaluation of a chain.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +10,7 @@ use super::particles::points;
 use crate::contact::{Begun, ContactMemory, Frame, Touch, Wrench};
 use crate::system::BodyContacts;
 
-/// What the bodies that a chain touches feel of it, by contact.
+/// Loads of a chain on the bodies that it touches, by contact.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[expect(
     clippy::vec_box,

@@ -23,7 +23,7 @@ use crate::lanes::{FixedPower, LANES, Lane, Mask, Wide};
 #[derive(Clone, Debug)]
 pub(crate) struct SurfaceLaw {
     elastic: LaneElastic,
-    /// What is different on flanks.
+    /// Differences on flanks.
     pub(super) flank: Option<LaneFlank>,
     /// χ of a hysteretic law, otherwise zero.
     factor: f64,
@@ -100,7 +100,7 @@ pub(crate) struct Pressed<S: Simd> {
     pub(crate) force: Lane<S>,
 }
 
-/// What friction answers.
+/// Force of friction, and its derivatives.
 pub(crate) struct Rubbing<S: Simd> {
     /// Force along the slip \[N\].
     pub(crate) force: Lane<S>,

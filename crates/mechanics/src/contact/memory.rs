@@ -1,4 +1,4 @@
-//! What contacts remember, whatever touches what.
+//! Memory of contacts of any kind.
 //!
 //! A contact is closed from the first accepted state with a penetration to the last one. Its memory counts only in between:
 //! a contact that begins takes nothing from the one that was there before, neither the speed at touch nor the bristles of its

@@ -1,4 +1,4 @@
-//! What the contacts with one body remember, as plain data.
+//! Memory of the contacts with one body, as plain data.
 
 use serde::{Deserialize, Serialize};
 
@@ -23,7 +23,7 @@ pub(crate) struct PlateMemory {
 }
 
 impl Contacts {
-    /// What they remember.
+    /// Their memory.
     pub(crate) fn windows(&self) -> Windows {
         Windows {
             runs: self.runs.clone(),
@@ -56,7 +56,7 @@ impl Contacts {
 }
 
 impl PlateContact {
-    /// What it remembers.
+    /// Its memory.
     pub(crate) fn remembered(&self) -> PlateMemory {
         PlateMemory {
             memory: self.memory.clone(),

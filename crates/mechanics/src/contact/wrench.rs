@@ -1,4 +1,4 @@
-//! What contacts cost, how they began, and what rollers do to a body, all together.
+//! Loads of rollers on a body, with the losses and onsets of their contacts.
 
 use pulp::Simd;
 use serde::{Deserialize, Serialize};

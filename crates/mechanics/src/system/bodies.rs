@@ -12,7 +12,7 @@ use crate::motion::Kinematics;
 use crate::tensioner::Slopes;
 use crate::{Coupling, Motion};
 
-/// What chains touch.
+/// Bodies that chains touch.
 #[derive(Clone, Debug)]
 pub(crate) struct Bodies {
     pub(crate) wheels: Vec<Wheel>,
@@ -29,7 +29,7 @@ pub(crate) struct Bodies {
     pub(crate) inertias: Vec<f64>,
     /// ω² and damping rate of the quickest of them, but for what states of pushes add.
     pub(crate) rates: [f64; 2],
-    /// What somebody sets from outside.
+    /// Inputs from outside.
     pub(crate) inputs: Inputs,
 }
 
@@ -55,7 +55,7 @@ pub(crate) struct Wheel {
     pub(crate) sense: f64,
 }
 
-/// What holds a wheel's centre.
+/// Support of a wheel's centre.
 #[derive(Clone, Debug)]
 pub(crate) enum WheelSupport {
     Fixed,
@@ -79,7 +79,7 @@ pub(crate) struct Rail {
     pub(crate) support: RailSupport,
 }
 
-/// What holds a rail.
+/// Support of a rail.
 #[derive(Clone, Debug)]
 pub(crate) enum RailSupport {
     Fixed,
@@ -312,7 +312,7 @@ impl Bodies {
         }
     }
 
-    /// What a coordinate is, in words.
+    /// Description of a coordinate, in words.
     pub(crate) fn name(&self, dof: usize) -> String {
         let shaft = || {
             let index = self.shafts.iter().position(|s| s.led() == Some(dof))?;

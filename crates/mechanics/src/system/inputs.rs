@@ -1,4 +1,4 @@
-//! What acts on a drive from outside while it moves: torques, forces and motions that somebody sets.
+//! Inputs that act on a drive from outside while it moves: torques, forces and motions that somebody sets.
 //!
 //! A value holds from the moment at which it is set until another one is. Every change is an event: a step lands on its
 //! time, and the next one begins with the new forces.
@@ -10,7 +10,7 @@ use super::{System, TurnedBy, WheelSupport};
 use crate::motion::Kinematics;
 use crate::{MemoryError, Motion};
 
-/// What can be set from outside.
+/// Inputs that can be set from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Input {
     /// Torque on a free shaft \[N m\], counter-clockwise positive, beside those of the scene.

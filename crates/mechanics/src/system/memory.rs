@@ -1,4 +1,4 @@
-//! What a system remembers from one accepted state to the next, as plain data.
+//! Memory of a system from one accepted state to the next, as plain data.
 //!
 //! With it, the state and the memory of the time stepping a run goes on to the last bit. What follows from the drive is not
 //! in it.
@@ -42,7 +42,7 @@ enum RailMemory {
 }
 
 impl System {
-    /// What it remembers.
+    /// Its memory.
     pub fn memory(&self) -> SystemMemory {
         SystemMemory {
             chains: self.chains.iter().map(Member::memory).collect(),

@@ -20,7 +20,7 @@ pub(crate) struct Turn {
     pub(crate) zero: f64,
 }
 
-/// What turns a train of shafts.
+/// Drive of a train of shafts.
 #[derive(Clone, Debug)]
 pub(crate) enum TurnedBy {
     Motion(Motion),

@@ -38,7 +38,7 @@ macro_rules! ask {
     };
 }
 
-/// What a carrier has to answer.
+/// Questions that a carrier answers.
 trait Carries: Copy {
     /// SI unit of the coordinate.
     fn coordinate_unit(&self) -> &'static str;
@@ -86,7 +86,7 @@ trait Carries: Copy {
         None
     }
 
-    /// What goes with s: the carrier's own inertia and that of the masses it carries.
+    /// Inertia that goes with s: the carrier's own inertia and that of the masses it carries.
     fn reduced(&self, s: f64, own: f64, carried: &[Weight]) -> Reduced {
         let mut reduced = Reduced {
             inertia: own,
@@ -209,7 +209,7 @@ impl Carrier {
 
 /// Inertia and weight.
 impl Carrier {
-    /// What goes with s: the carrier's own inertia and that of the masses it carries.
+    /// Inertia that goes with s: the carrier's own inertia and that of the masses it carries.
     pub(crate) fn reduced(&self, s: f64, own: f64, carried: &[Weight]) -> Reduced {
         ask!(self, carrier => carrier.reduced(s, own, carried))
     }

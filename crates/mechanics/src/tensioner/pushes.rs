@@ -37,7 +37,7 @@ macro_rules! ask {
     };
 }
 
-/// What a push has to answer; those without a state leave out the second half.
+/// Questions that a push answers; those without a state leave out the second half.
 trait Pushes: Copy {
     /// Force at extension x and rate ẋ, with what its state z does.
     fn force(&self, x: f64, rate: f64, z: f64) -> PushForce;
@@ -65,7 +65,7 @@ trait Pushes: Copy {
         *self
     }
 
-    /// What the state adds to the derivatives.
+    /// Share of the state in the derivatives.
     fn slopes(&self, x: f64, z: f64) -> Slopes {
         let _ = (x, z);
         Slopes::default()
@@ -158,7 +158,7 @@ impl Push {
         }
     }
 
-    /// What its state adds to the derivatives.
+    /// Share of its state in the derivatives.
     pub(crate) fn slopes(&self, x: f64, z: f64) -> Slopes {
         ask!(self, push => push.slopes(x, z))
     }

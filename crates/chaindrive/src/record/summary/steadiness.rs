@@ -69,7 +69,7 @@ pub(crate) struct Batches {
     begun: (f64, u64),
 }
 
-/// What is known of a mean over time.
+/// Knowledge of a mean over time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steadiness {
     /// Half width of the 95 % interval of the mean, without what comes before the steady state.
@@ -111,7 +111,7 @@ impl Batches {
         }
     }
 
-    /// What they say about the mean; nothing as long as there are fewer than 20.
+    /// Their statement about the mean; none as long as there are fewer than 20.
     pub(crate) fn steadiness(&self) -> Option<Steadiness> {
         let all = &self.means;
         if all.len() < LEAST {

@@ -1,4 +1,4 @@
-//! What goes wrong in a store, before the path is known.
+//! Errors in a store, before the path is known.
 
 use zarrs::array::{ArrayCreateError, ArrayError};
 use zarrs::group::GroupCreateError;

@@ -136,7 +136,7 @@ impl Stopped {
         Ok(Self { store, checkpoint })
     }
 
-    /// What the run goes on from.
+    /// State from which the run goes on.
     pub fn checkpoint(&self) -> &Checkpoint {
         &self.checkpoint
     }

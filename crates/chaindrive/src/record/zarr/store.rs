@@ -34,7 +34,7 @@ pub(in crate::record) struct Store {
     ended: bool,
 }
 
-/// What the group document says.
+/// Contents of the group document.
 #[derive(Clone, Default)]
 struct Document {
     attributes: Map<String, Value>,
@@ -100,7 +100,7 @@ impl Store {
         self.set_aside()
     }
 
-    /// What the store says about itself.
+    /// Attributes of the store.
     pub(super) fn attributes(&self) -> &Map<String, Value> {
         &self.last.attributes
     }

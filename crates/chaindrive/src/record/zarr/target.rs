@@ -1,4 +1,4 @@
-//! What may be replaced: nothing, an empty folder, or an earlier result.
+//! Targets that may be replaced: nothing, an empty folder, or an earlier result.
 
 use std::fs;
 use std::io;
@@ -10,7 +10,7 @@ use super::Existing;
 use crate::record::attributes::FORMAT;
 use crate::record::error::WriteError;
 
-/// What a run goes on from, beside the arrays.
+/// State from which a run goes on, beside the arrays.
 pub(super) const CHECKPOINT: &str = "checkpoint";
 
 /// The document that makes a folder a Zarr group.

@@ -1,4 +1,4 @@
-//! What resists in the joints of any chain: friction of pin and bush, and viscous damping.
+//! Resistance of the joints of any chain: friction of pin and bush, and viscous damping.
 
 use chaindrive_contact::friction::SpringSlider;
 use chaindrive_contact::{Friction, Law};
@@ -138,7 +138,7 @@ impl<'a> Joints<'a> {
         Some(stiffness)
     }
 
-    /// What resists; none where nothing does. Pins with clearance rub in the contact with their bushes.
+    /// The resistance; none where nothing resists. Pins with clearance rub in the contact with their bushes.
     pub(super) fn articulation(&self, findings: &mut Findings<'_>) -> Option<Articulation> {
         let joint = self.text.joint.as_ref();
         let damping = joint.map_or(0.0, |joint| joint.damping.0);

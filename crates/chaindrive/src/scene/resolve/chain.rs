@@ -191,7 +191,7 @@ fn damping(
         .collect()
 }
 
-/// What is between the joints.
+/// The part between the joints.
 #[derive(Debug)]
 pub(super) struct Body {
     pub(super) masses: Vec<f64>,

@@ -14,7 +14,7 @@ use super::law::{Pair, elastic};
 use crate::scene::defaults::{self, Default};
 use crate::scene::schema::{self, Contact};
 
-/// What a contact falls back on.
+/// Values on which a contact falls back.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fallback {
     /// Place of the contact that holds for all.
@@ -46,7 +46,7 @@ pub(super) const ROLLERS: Fallback = Fallback {
     restitution: &defaults::ROLLERS_RESTITUTION,
 };
 
-/// What a scene says of one contact: its own words at `path`, then what holds for all of its kind.
+/// Description of one contact in a scene: its own words at `path`, then what holds for all of its kind.
 #[derive(Clone, Copy)]
 pub(super) struct Said<'a> {
     pub(super) own: &'a Contact,

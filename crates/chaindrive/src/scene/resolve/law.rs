@@ -22,7 +22,7 @@ pub(super) struct Pair {
     pub(super) length: Option<f64>,
 }
 
-/// What the material of surfaces is taken for.
+/// Material that surfaces are assumed to be of.
 pub(super) fn steel(version: Version) -> Elasticity {
     Elasticity {
         modulus: defaults::MODULUS.value(version),

@@ -220,7 +220,7 @@ struct Findings<'t> {
     chain: Option<usize>,
     problems: Problems,
     assumptions: Vec<Assumption>,
-    /// What has been assumed at a place; none where chains differ in it.
+    /// The assumption at a place; none where chains differ in it.
     assumed: HashMap<String, Option<Json>>,
 }
 

@@ -149,7 +149,7 @@ type Turned<'t> = (
     &'t Vec<schema::Torque>,
 );
 
-/// What turns a shaft: a motion, or torques that drive and load it.
+/// Drive of a shaft: a motion, or torques that drive and load it.
 fn rotation(
     (given, drive, load): Turned<'_>,
     path: &str,
@@ -175,7 +175,7 @@ fn rotation(
     })
 }
 
-/// What couplings and gears can join, and torques follow, by name.
+/// Shafts that couplings and gears can join, and torques follow, by name.
 pub(super) struct Ends<'n> {
     shafts: Vec<&'n str>,
     sprockets: Vec<&'n str>,

@@ -203,7 +203,7 @@ fn area(oil: &Oil) -> f64 {
     0.25 * std::f64::consts::PI * oil.diameter.0 * oil.diameter.0
 }
 
-/// What is wrong stands among the findings.
+/// Mistakes stand among the findings.
 struct Refused;
 
 /// Oil that can be compressed, if it can: it needs all that says how, and valves with a resistance.

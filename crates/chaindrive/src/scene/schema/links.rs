@@ -1,4 +1,4 @@
-//! What rigid links are made of: plates, joints, rollers.
+//! Parts of rigid links: plates, joints, rollers.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! What `--vary` says: `path=value,value,first..last/count`.
+//! Syntax of `--vary`: `path=value,value,first..last/count`.
 
 use chaindrive::Scene;
 use chaindrive::sweep::Setting;

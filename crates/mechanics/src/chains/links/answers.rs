@@ -1,4 +1,4 @@
-//! What every chain answers, for rigid links.
+//! Answers of rigid links to the questions of every chain.
 
 use chaindrive_integrate::Moment;
 

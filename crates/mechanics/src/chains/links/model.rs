@@ -29,7 +29,7 @@ pub struct RigidLinks {
     pub outer_first: bool,
     /// How neighbouring links are joined.
     pub joint: Joint,
-    /// What runs on the teeth.
+    /// The part that runs on the teeth.
     pub rollers: RollerModel,
 }
 
@@ -65,7 +65,7 @@ pub struct Clearance {
     pub surface: Surface,
 }
 
-/// What runs on the teeth.
+/// The part that runs on the teeth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RollerModel {
     /// Rollers that move with the bush: their mass is the link's. They slide, as the particles do.

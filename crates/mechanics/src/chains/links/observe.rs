@@ -1,4 +1,4 @@
-//! What can be read off a linkage.
+//! Quantities that can be read off a linkage.
 
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;

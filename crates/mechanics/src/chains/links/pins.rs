@@ -16,7 +16,7 @@ use super::{Bearing, Element, JointMates, Linkage, Mate, Partner, Posture, Tally
 use crate::contact::{ContactMemory, LaneTally, MemoryLanes};
 use crate::lanes::{LANES, Wide, padded};
 
-/// What the joints exert, whole lanes.
+/// Forces of the joints, whole lanes.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Pins {
     /// Gap \[m\] and normal force \[N\]. The memory has them too, but changes hands when a step is accepted.

@@ -1,4 +1,4 @@
-//! What can be read off a particle chain.
+//! Quantities that can be read off a particle chain.
 
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;

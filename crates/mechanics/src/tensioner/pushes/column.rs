@@ -39,9 +39,9 @@ pub struct OilColumn {
 pub(super) struct Oil {
     /// Push on the plunger against the air outside \[N\].
     pub(super) force: f64,
-    /// What it costs to bring a metre of column in from the supply \[N\].
+    /// Energy that a metre of column from the supply takes \[N\].
     pub(super) effort: f64,
-    /// What is stored, the supply counted as a weight \[J\].
+    /// Energy stored, the supply counted as a weight \[J\].
     pub(super) energy: f64,
     /// −∂F/∂x with the oil trapped \[N/m\], here, and at the highest pressures.
     pub(super) stiffness: [f64; 2],
