@@ -19,7 +19,12 @@ from chaindrive.analysis.fatigue import cycles, rainflow
 from chaindrive.analysis.joints import joint_work
 from chaindrive.analysis.orders import campbell, mesh_orders, order_map, order_slice, order_spectrum
 from chaindrive.analysis.ramps import run_up
-from chaindrive.analysis.running import moving_string, running_modes, span_frequencies
+from chaindrive.analysis.running import (
+    critical_speeds,
+    moving_string,
+    running_modes,
+    span_frequencies,
+)
 from chaindrive.analysis.seating import impacts
 from chaindrive.analysis.spans import span_envelope, span_lines, span_motion
 from chaindrive.analysis.spectra import peaks, spectrum
@@ -27,6 +32,7 @@ from chaindrive.analysis.transmission import speed_ripple, transmission_error
 
 __all__ = [
     "campbell",
+    "critical_speeds",
     "cycles",
     "decay",
     "impacts",

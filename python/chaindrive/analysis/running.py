@@ -15,7 +15,7 @@ from chaindrive.analysis.spans import span_lines
 from chaindrive.drive import Drive
 from chaindrive.errors import ParameterError
 
-__all__ = ["moving_string", "running_modes", "span_frequencies"]
+__all__ = ["critical_speeds", "moving_string", "running_modes", "span_frequencies"]
 
 
 def __dir__() -> list[str]:
@@ -185,6 +185,48 @@ def running_modes(
         for speed in asked
     ]
     return _labelled(chain, shaft, asked, solved)
+
+
+def critical_speeds(modes: xr.Dataset, order: float) -> xr.Dataset:
+    """Speeds at which an order meets the modes of a running drive.
+
+    Where ``order ω / 2π = f(ω)``, f interpolated between the speeds of the modes.
+
+    Parameters
+    ----------
+    modes
+        What `running_modes` returned, of several ascending speeds.
+    order
+        The order of its shaft [–]; teeth for the mesh.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``speed`` [rad/s], ``frequency`` [Hz], ``part``, where most of the energy of the mode is,
+        and its ``share`` [–], (crossing,), in the order of the speed.
+    """
+    speed = modes["speed"].to_numpy()
+    frequency = modes["frequency"].transpose("speed", "mode").to_numpy()
+    share = modes["share"].transpose("speed", "mode", "part").to_numpy()
+    ahead = frequency - order * speed[:, None] / (2 * np.pi)
+    found = []
+    for i, k in np.argwhere((ahead[:-1] > 0.0) & (ahead[1:] <= 0.0)):
+        at = ahead[i, k] / (ahead[i, k] - ahead[i + 1, k])
+        main = int(share[i, k].argmax())
+        where = float(speed[i] + at * (speed[i + 1] - speed[i]))
+        found.append((where, order * where / (2 * np.pi), main, float(share[i, k, main])))
+    found.sort()
+    speeds, hertz, parts, shares = np.array(found).T if found else np.empty((4, 0))
+    label = f"speed of {modes.attrs['shaft']}"
+    return xr.Dataset(
+        {
+            "speed": ("crossing", speeds, {"units": "rad/s", "long_name": label}),
+            "frequency": ("crossing", hertz, {"units": "Hz", "long_name": "frequency"}),
+            "part": ("crossing", modes["part"].to_numpy()[parts.astype(int)]),
+            "share": ("crossing", shares, {"units": "1", "long_name": "share of its energy"}),
+        },
+        attrs={"shaft": modes.attrs["shaft"], "order": order},
+    )
 
 
 def _labelled(
