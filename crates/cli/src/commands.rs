@@ -8,4 +8,5 @@ pub(crate) mod output;
 pub(crate) mod resume;
 pub(crate) mod run;
 pub(crate) mod scenes;
+pub(crate) mod shell;
 pub(crate) mod sweep;

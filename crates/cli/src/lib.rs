@@ -17,12 +17,13 @@ mod failure;
 mod progress;
 mod request;
 mod stdout;
+mod suggested;
 
 use std::ffi::OsString;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
-use commands::{bench, check, describe, lists, resume, run as run_command, scenes, sweep};
+use commands::{bench, check, describe, lists, resume, run as run_command, scenes, shell, sweep};
 
 /// Exit code of a run that was stopped by Ctrl-C.
 pub const INTERRUPTED: u8 = 130;
@@ -60,6 +61,8 @@ enum Verb {
     /// Lists what a run can record.
     Channels,
     Catalogue(lists::Catalogue),
+    Completion(shell::Completion),
+    Man(shell::Man),
 }
 
 /// Runs the command with its arguments, the program's name first, and returns the exit code.
@@ -98,6 +101,8 @@ where
         Verb::Schema => lists::schema(),
         Verb::Channels => lists::channels(),
         Verb::Catalogue(arguments) => lists::catalogue(arguments),
+        Verb::Completion(arguments) => shell::completion(arguments, Command::command()),
+        Verb::Man(arguments) => shell::man(arguments, Command::command()),
     };
     match done {
         Ok(()) => 0,
