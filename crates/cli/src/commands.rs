@@ -11,4 +11,5 @@ pub(crate) mod replay;
 pub(crate) mod resume;
 pub(crate) mod run;
 pub(crate) mod scenes;
+pub(crate) mod shell;
 pub(crate) mod sweep;

@@ -17,13 +17,15 @@ mod failure;
 mod progress;
 mod request;
 mod stdout;
+mod suggested;
 
 use std::ffi::OsString;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use commands::{
-    bench, check, describe, design, draw, lists, replay, resume, run as run_command, scenes, sweep,
+    bench, check, describe, design, draw, lists, replay, resume, run as run_command, scenes, shell,
+    sweep,
 };
 
 /// Exit code of a run that was stopped by Ctrl-C.
@@ -65,6 +67,8 @@ enum Verb {
     /// Lists what a run can record.
     Channels,
     Catalogue(lists::Catalogue),
+    Completion(shell::Completion),
+    Man(shell::Man),
 }
 
 /// Runs the command with its arguments, the program's name first, and returns the exit code.
@@ -106,6 +110,8 @@ where
         Verb::Schema => lists::schema(),
         Verb::Channels => lists::channels(),
         Verb::Catalogue(arguments) => lists::catalogue(arguments),
+        Verb::Completion(arguments) => shell::completion(arguments, Command::command()),
+        Verb::Man(arguments) => shell::man(arguments, Command::command()),
     };
     match done {
         Ok(()) => 0,

@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use chaindrive::scene::{SceneError, presets};
-use chaindrive::{Given, Request, Scene, Settings, Stepping, patiently};
+use chaindrive::{Channel, Given, Request, Scene, Settings, Stepping, patiently};
 use clap::Args;
 
 use crate::failure::Failure;
+use crate::suggested::Suggested;
 
 /// A scene and what is changed in it.
 #[derive(Debug, Args)]
@@ -62,12 +63,18 @@ pub(crate) struct RunArguments {
     accuracy_of: Option<String>,
 
     /// Channels to record, separated by commas, or all; `chaindrive channels` lists them
-    #[arg(long, value_name = "CHANNELS", value_delimiter = ',')]
+    #[arg(long, value_name = "CHANNELS", value_delimiter = ',', value_parser = channels(), hide_possible_values = true)]
     record: Vec<String>,
 
     /// Contacts to log, separated by commas: teeth, guides, joints; they go into the result and the summary
-    #[arg(long, value_name = "KINDS", value_delimiter = ',')]
+    #[arg(long, value_name = "KINDS", value_delimiter = ',', value_parser = Suggested(vec!["teeth", "guides", "joints"]), hide_possible_values = true)]
     events: Vec<String>,
+}
+
+/// Channels as shells complete them.
+pub(crate) fn channels() -> Suggested {
+    let names = Channel::ALL.iter().map(|channel| channel.name());
+    Suggested(names.chain(["all"]).collect())
 }
 
 /// Reads a scene file, stdin or an embedded scene; what comes through a pipe may be a long time in coming.

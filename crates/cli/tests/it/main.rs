@@ -5,5 +5,6 @@ mod command;
 mod interrupt;
 mod resume;
 mod same_run;
+mod shell;
 mod store_faults;
 mod sweep;

@@ -111,7 +111,7 @@ const CRATES: [Storeys; 4] = [
     Storeys {
         folder: "cli",
         layers: &[
-            &["failure"],
+            &["failure", "suggested"],
             &["csv", "progress", "request", "stdout"],
             &["commands"],
         ],
