@@ -337,11 +337,29 @@ class Drive:
         """
         return Profile._of(self._inner.profile(name, settled), name)
 
+    def svg(self, *, settled: bool = True) -> str:
+        """Return the drive as it stands at the start, as the text of an SVG file.
+
+        Coordinates are millimetres of the drive, x to the right and y upwards. Every part has an
+        ``id``, such as ``sprocket-crank``, ``guide-shoe``, ``roller-17`` or ``plate-17``. A drive
+        that does not assemble is drawn as it is laid, with gaps and clashes marked.
+
+        Parameters
+        ----------
+        settled
+            Whether the chain hangs and stretches as in static equilibrium, or lies as it was laid.
+        """
+        return self._inner.figure(settled, 0.0).svg(self.title or self.name)
+
     def __repr__(self) -> str:
         return data_sheet.text(self.name, self.title, self._rows())
 
     def _repr_html_(self) -> str:
-        return data_sheet.html(self.name, self.title, self._rows(), None)
+        return data_sheet.html(self.name, self.title, self._rows(), self._repr_svg_())
+
+    def _repr_svg_(self) -> str:
+        # As it is laid, which takes milliseconds for any drive.
+        return self.svg(settled=False)
 
     def _rows(self) -> list[data_sheet.Row]:
         return data_sheet.rows(self.resolved().to_dict())

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 import chaindrive as cd
+from chaindrive.pose import at_start
 
 PULSE = (0.05, 0.06, 0.08, 0.09)  # begin, full, still full, end of the overload [s]
 UNTIL = 0.4
@@ -101,7 +102,7 @@ def _register(drive, run, at, near):
     if len(on) < 2:
         raise ValueError(f"at {at} s {len(on)} rollers lie on the idler, needs two")
     # Gap axes of the laid chain: rollers of the drawing sit in them exactly.
-    laid = drive._inner.drawing(False)
+    laid = at_start(drive, settled=False)
     from_centre = laid["chains"][0]["rollers"] - laid["sprockets"]["idler"]["centre"]
     seat = from_centre[np.abs(np.hypot(*from_centre.T) - pitch_radius) < 0.02 * pitch_radius]
     origin = np.arctan2(seat[len(seat) // 2, 1], seat[len(seat) // 2, 0])

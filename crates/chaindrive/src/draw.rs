@@ -16,20 +16,20 @@ use chaindrive_mechanics::{Body, BodyKind, Figure, FigureChain, Placement, Pose}
 use path::{id, millimetres, outline, placed, polygon};
 use view::View;
 
-/// Looks of all parts. Lines keep their width whatever the size of the drawing.
+/// Looks of all parts, for drawings alone: pages that hold one have other pictures too. Lines keep their width whatever the size.
 const STYLE: &str = "\
-path,circle,line{vector-effect:non-scaling-stroke;stroke:#3c4650;stroke-width:.7;fill:none;stroke-linejoin:round;stroke-linecap:round}
-.sprocket{fill:#b9c2cb}
-.face{stroke:#b5651d;stroke-width:1.4}
-.backing{fill:#b5651d;fill-opacity:.4;stroke:none}
-.arm,.slider{stroke:#6b7a4b;stroke-width:4;stroke-opacity:.7}
-.plunger{stroke:#6b7a4b;stroke-width:2}
-.pivot{fill:#fff;stroke:#6b7a4b}
-.roller{fill:#fff}
-.plate{fill:#4a7ba6;fill-opacity:.45;stroke-width:.4}
-.mark{stroke:#c8102e;stroke-width:2}
-text{font-family:sans-serif;fill:#6b7684}
-.told{fill:#c8102e}";
+.chaindrive path,.chaindrive circle,.chaindrive line{vector-effect:non-scaling-stroke;stroke:#3c4650;stroke-width:.7;fill:none;stroke-linejoin:round;stroke-linecap:round}
+.chaindrive .sprocket{fill:#b9c2cb}
+.chaindrive .face{stroke:#b5651d;stroke-width:1.4}
+.chaindrive .backing{fill:#b5651d;fill-opacity:.4;stroke:none}
+.chaindrive .arm,.chaindrive .slider{stroke:#6b7a4b;stroke-width:4;stroke-opacity:.7}
+.chaindrive .plunger{stroke:#6b7a4b;stroke-width:2}
+.chaindrive .pivot{fill:#fff;stroke:#6b7a4b}
+.chaindrive .roller{fill:#fff}
+.chaindrive .plate{fill:#4a7ba6;fill-opacity:.45;stroke-width:.4}
+.chaindrive .mark{stroke:#c8102e;stroke-width:2}
+.chaindrive text{font-family:sans-serif;fill:#6b7684}
+.chaindrive .told{fill:#c8102e}";
 
 /// A pose as the text of an SVG file.
 pub fn svg(figure: &Figure, pose: &Pose, title: &str) -> String {

@@ -103,6 +103,11 @@ pub(crate) fn load(name: &str, interrupted: &dyn Fn() -> bool) -> Result<Scene, 
 }
 
 impl SceneArguments {
+    /// The file, preset or result, as it was given.
+    pub(crate) fn name(&self) -> &str {
+        &self.scene
+    }
+
     /// Paths that are changed, and how the command line says so.
     pub(crate) fn given(&self) -> Vec<(String, String)> {
         let paths = self.set.iter().filter_map(|change| change.split_once('='));

@@ -176,7 +176,10 @@ impl Figure {
                 // Rows of arrays in the order of C lie in one piece.
                 values.row(index).to_slice()
             };
-            let placements = self.0.placements(&instant(time, row)).map_err(missing)?;
+            let placements = self
+                .0
+                .placements(&Instant::recorded(time, row))
+                .map_err(missing)?;
             flat.extend(placements.iter().flat_map(numbers));
         }
         PyArray1::from_vec(py, flat).reshape([times.len(), self.0.bodies.len(), 3])
@@ -193,7 +196,9 @@ impl Figure {
         channels: &HashMap<String, PyReadonlyArray1<'_, f64>>,
     ) -> PyResult<Pose> {
         let values = |name: &str| channels.get(name).and_then(|it| it.as_slice().ok());
-        self.0.pose(&instant(time, values)).map_err(missing)
+        self.0
+            .pose(&Instant::recorded(time, values))
+            .map_err(missing)
     }
 }
 
@@ -203,23 +208,6 @@ fn numbers(placement: &Placement) -> [f64; 3] {
 
 fn missing(error: chaindrive::MissingChannel) -> PyErr {
     PyKeyError::new_err(error.to_string())
-}
-
-/// The instant that has these values of channels.
-fn instant<'a>(time: f64, values: impl Fn(&str) -> Option<&'a [f64]>) -> Instant<'a> {
-    Instant {
-        time,
-        roller_x: values("roller_x"),
-        roller_y: values("roller_y"),
-        sprocket_angle: values("sprocket_angle"),
-        sprocket_x: values("sprocket_x"),
-        sprocket_y: values("sprocket_y"),
-        tensioner_position: values("tensioner_position"),
-        joint_offset_x: values("joint_offset_x"),
-        joint_offset_y: values("joint_offset_y"),
-        bush_offset_x: values("bush_offset_x"),
-        bush_offset_y: values("bush_offset_y"),
-    }
 }
 
 fn told<'py>(py: Python<'py>, pose: &Pose) -> PyResult<Bound<'py, PyDict>> {

@@ -13,6 +13,7 @@ from chaindrive.analysis.running import running_modes
 from chaindrive.analysis.signal import drive_of, label, sample_rate, signal, turning
 from chaindrive.errors import ParameterError
 from chaindrive.extras import extra
+from chaindrive.pose import at_start
 
 __all__ = ["campbell", "mesh_orders", "order_map", "order_slice", "order_spectrum"]
 
@@ -274,7 +275,7 @@ def campbell(
 
 def mesh_orders(run: xr.Dataset) -> dict[str, float]:
     """Return the mesh order of every sprocket: its number of teeth."""
-    drawn = drive_of(run)._inner.drawing(False)["sprockets"]
+    drawn = at_start(drive_of(run), settled=False)["sprockets"]
     return {name: float(wheel["teeth"]) for name, wheel in drawn.items()}
 
 

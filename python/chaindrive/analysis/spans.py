@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from chaindrive.analysis.signal import drive_of, recorded
 from chaindrive.drive import Drive
 from chaindrive.errors import ParameterError
+from chaindrive.pose import at_start
 
 __all__ = ["Stations", "span_envelope", "span_lines", "span_motion", "stations"]
 
@@ -33,7 +34,7 @@ class Stations:
     """Places of the settled chain: its rollers at the start, cut into stops and spans."""
 
     def __init__(self, drive: Drive, seated: list[int], free: list[int], spans: list[str]) -> None:
-        drawn = drive._inner.drawing(True)
+        drawn = at_start(drive, settled=True)
         if len(drawn["chains"]) != 1 or not drawn["chains"][0]["closed"]:
             raise ParameterError("spans are looked at of drives with one closed chain", "run")
         self.chain = drawn["chains"][0]

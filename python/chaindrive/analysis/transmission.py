@@ -8,6 +8,7 @@ import xarray as xr
 from chaindrive import kinematics
 from chaindrive.analysis.signal import drive_of, recorded, signal
 from chaindrive.errors import ParameterError
+from chaindrive.pose import at_start
 
 __all__ = ["speed_ripple", "transmission_error"]
 
@@ -53,7 +54,7 @@ def transmission_error(
         signal(run, "sprocket_angle", {"sprocket": name}).to_numpy() for name in (driver, driven)
     ]
     first, second = (angle - angle[0] for angle in angles)
-    drawn = drive_of(run)._inner.drawing(False)
+    drawn = at_start(drive_of(run), settled=False)
     wheels = [drawn["sprockets"][name] for name in (driver, driven)]
     chains = [chain for chain in drawn["chains"] if {driver, driven} <= set(chain["sprockets"])]
     if not chains:

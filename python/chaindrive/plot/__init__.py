@@ -7,7 +7,7 @@ new ones, and returns them; nothing is shown or saved.
 from __future__ import annotations
 
 from chaindrive.plot.curves import tension, work_precision
-from chaindrive.plot.drive import frame, layout
+from chaindrive.plot.drive import frame, layout, svg
 from chaindrive.plot.spectra import (
     campbell,
     order_map,
@@ -46,6 +46,7 @@ __all__ = [
     "span_motion",
     "spectrum",
     "speed_ripple",
+    "svg",
     "tension",
     "tension_around_loop",
     "tooth_load",

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from chaindrive.drive import Drive, _from_text
+from chaindrive.drive import Drive
 from chaindrive.plot.axes import given_or_new
+from chaindrive.pose import Pose, figure_of, recorded_at
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,20 +30,6 @@ _MARK = "#c8102e"
 # Chords of drawn outlines stand off by less than a hundredth of what can be seen in a drive of a
 # metre on a thousand pixels.
 _TOLERANCE = 1e-5
-
-# Channels by which bodies and plates follow, where they were recorded.
-_PLACING = (
-    "roller_x",
-    "roller_y",
-    "sprocket_angle",
-    "sprocket_x",
-    "sprocket_y",
-    "tensioner_position",
-    "joint_offset_x",
-    "joint_offset_y",
-    "bush_offset_x",
-    "bush_offset_y",
-)
 
 
 def layout(
@@ -70,15 +57,29 @@ def layout(
     -------
     matplotlib.axes.Axes
 
-    Raises
-    ------
-    AssemblyError
-        The drive does not close, or settle if asked to.
+    Notes
+    -----
+    A drive that does not assemble is drawn as it is laid, with the reason below the title. A chain
+    that does not close is laid from the first stop of its route as far as it reaches, and its gap
+    marked; parts in each other's way are marked with the depth of their overlap.
     """
     figure = drive._inner.figure(settled, 0.0)
     ax = given_or_new(ax)
-    _Picture(ax, figure, _Pose(**figure.start())).draw(names=names)
+    _Picture(ax, figure, Pose(**figure.start())).draw(names=names)
     ax.set_title(drive.title)
+    if figure.problem is not None:
+        told = textwrap.fill(figure.problem, 90)
+        ax.text(
+            0.5,
+            1.0,
+            told,
+            transform=ax.transAxes,
+            color=_MARK,
+            fontsize=8,
+            ha="center",
+            va="bottom",
+        )
+        ax.set_title(drive.title, pad=14.0 + 11.0 * told.count("\n"))
     return _finish(ax)
 
 
@@ -109,42 +110,41 @@ def frame(
     KeyError
         A channel that places something was not recorded.
     """
-    figure = _figure_of(run, drive)
+    figure = figure_of(run, drive)
+    sample = recorded_at(figure, run, time)
     now = run.sel(time=time, method="nearest")
     ax = given_or_new(ax)
     tensions = now["link_tension"].to_numpy() if "link_tension" in now else None
-    _Picture(ax, figure, _pose_of(figure, now), tensions).draw(names=False)
-    ax.set_title(f"t = {float(now['time']):.4g} s")
+    _Picture(ax, figure, Pose(**figure.pose(**sample)), tensions).draw(names=False)
+    ax.set_title(f"t = {sample['time']:.4g} s")
     return _finish(ax)
 
 
-@dataclass
-class _Pose:
-    """Places: of bodies (bodies, 3), of rollers (rollers, 2) and plate ends (links, 4) a chain."""
+def svg(run: xr.Dataset, time: float, *, drive: Drive | None = None) -> str:
+    """Return a recorded drive at an instant as the text of an SVG file.
 
-    placements: _Floats
-    rollers: list[_Floats]
-    plates: list[_Floats]
+    Coordinates are millimetres of the drive, x to the right and y upwards. Every part has an
+    ``id``, such as ``sprocket-crank``, ``guide-shoe``, ``roller-17`` or ``plate-17``. `Drive.svg`
+    draws the start.
 
+    Parameters
+    ----------
+    run
+        A run with the channels that `frame` takes.
+    time
+        When [s]; the nearest sample is taken.
+    drive
+        What was run; read from the attribute ``scene`` of the run when absent.
 
-def _figure_of(run: xr.Dataset, drive: Drive | None) -> _core.Figure:
-    """Return the figure of the drive that was run, assembled as it was for the run."""
-    drive = drive or _from_text(run.attrs["scene"], run.attrs.get("scene_name", "scene"))
-    return drive._inner.figure(True, float(run.attrs.get("run_in", 0.0)))
-
-
-def _pose_of(figure: _core.Figure, now: xr.Dataset) -> _Pose:
-    absent = [name for name in figure.needs if name not in now]
-    if absent:
-        names = ", ".join(repr(name) for name in absent)
-        raise KeyError(f"{absent[0]} was not recorded: simulate(…, record=[…, {names}])")
-    given = {name: _row(now[name]) for name in _PLACING if name in now}
-    pose = figure.pose(float(now["time"]), given)
-    return _Pose(**pose)
-
-
-def _row(values: xr.DataArray) -> _Floats:
-    return np.ascontiguousarray(values.to_numpy(), dtype=np.float64)
+    Raises
+    ------
+    KeyError
+        A channel that places something was not recorded.
+    """
+    figure = figure_of(run, drive)
+    sample = recorded_at(figure, run, time)
+    title = f"{run.attrs.get('title', '')}, t = {sample['time']:.4g} s".removeprefix(", ")
+    return figure.svg(title, **sample)
 
 
 class _Picture:
@@ -154,10 +154,11 @@ class _Picture:
         self,
         ax: Axes,
         figure: _core.Figure,
-        pose: _Pose,
+        pose: Pose,
         tensions: _Floats | None = None,
     ) -> None:
         self.ax = ax
+        self.figure = figure
         self.bodies = figure.bodies(_TOLERANCE)
         self.chains = figure.chains
         self.pose = pose
@@ -167,6 +168,7 @@ class _Picture:
         for body, placement in zip(self.bodies, self.pose.placements, strict=True):
             self._body(body, placement)
         self._chains()
+        self._marks()
         if names:
             self._names()
 
@@ -208,7 +210,8 @@ class _Picture:
             self.ax.figure.colorbar(plates, ax=self.ax, label="link tension [N]", shrink=0.8)
         else:
             plates = PolyCollection(shapes, facecolors=_PLATES, **look)
-        plates.set_alpha(0.75)
+        # Teeth behind the plates are what one looks for.
+        plates.set_alpha(0.5)
         self.ax.add_collection(plates)
         for chain, places in zip(self.chains, self.pose.rollers, strict=True):
             radius = 0.5 * chain["roller_diameter"]
@@ -220,9 +223,28 @@ class _Picture:
             rims.set(facecolor="none", edgecolor=_OUTLINE, linewidth=0.4, alpha=0.8)
             self.ax.add_collection(rims)
 
+    def _marks(self) -> None:
+        """Mark gaps and clashes with their sizes."""
+        clashes = [(x, y, f"{1e3 * depth:.1f} mm") for x, y, depth, _ in self.figure.clashes]
+        gaps = [(x, y, told) for x, y, _, told in self.figure.gaps]
+        for x, y, told in clashes + gaps:
+            look = {"mfc": "none", "mec": _MARK, "mew": 1.5, "markersize": 16, "zorder": 7}
+            self.ax.plot(x, y, "o", **look)
+            self.ax.annotate(
+                told,
+                (x, y),
+                xytext=(0, 11),
+                textcoords="offset points",
+                ha="center",
+                fontsize=8,
+                color=_MARK,
+                zorder=7,
+            )
+
     def _names(self) -> None:
         named: list[_Floats] = []
-        middle = np.concatenate(self.pose.rollers)[:, 0].mean()
+        places = np.concatenate([*self.pose.rollers, self.pose.placements[:, :2]])
+        middle = places[:, 0].mean()
         for body, placement in zip(self.bodies, self.pose.placements, strict=True):
             centre = placement[:2]
             if body["kind"] == "sprocket":

@@ -77,7 +77,7 @@ impl View {
         line(
             &mut out,
             format_args!(
-                "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0}\" height=\"{:.0}\" viewBox=\"{} {} {} {}\">",
+                "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"chaindrive\" width=\"{:.0}\" height=\"{:.0}\" viewBox=\"{} {} {} {}\">",
                 width * scale,
                 height * scale,
                 millimetres(self.low.x),

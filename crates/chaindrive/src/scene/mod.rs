@@ -77,8 +77,7 @@ pub use error::{Problem, SceneError};
 pub use presets::presets;
 pub use schema::{RunDefaults, schema};
 
-pub use quantity::read_length;
-pub(crate) use quantity::read_time;
+pub use quantity::{read_length, read_time};
 use schema::SceneText;
 use tree::Node;
 

@@ -128,8 +128,11 @@ pub(crate) struct Complaint {
     pub(crate) hint: String,
 }
 
-/// A time \[s\] from a number and a unit, or what is wrong with it.
-pub(crate) fn read_time(text: &str) -> Result<f64, String> {
+/// A time \[s\] from a number and a unit, such as `"0.1 s"`, or from a bare number of seconds.
+///
+/// # Errors
+/// What is wrong with the text.
+pub fn read_time(text: &str) -> Result<f64, String> {
     let time = DIMENSIONS.iter().find(|dimension| dimension.unit == "s");
     let time = time.expect("times are quantities");
     time.read(text, None).map_err(|complaint| complaint.message)

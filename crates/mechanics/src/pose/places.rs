@@ -37,6 +37,49 @@ pub struct Instant<'a> {
 }
 
 impl<'a> Instant<'a> {
+    /// Names of the channels of its fields.
+    pub const CHANNELS: [&'static str; 10] = [
+        "roller_x",
+        "roller_y",
+        "sprocket_angle",
+        "sprocket_x",
+        "sprocket_y",
+        "tensioner_position",
+        "joint_offset_x",
+        "joint_offset_y",
+        "bush_offset_x",
+        "bush_offset_y",
+    ];
+
+    /// The instant at which channels have the values that `values` knows by their names.
+    pub fn recorded(time: f64, values: impl Fn(&str) -> Option<&'a [f64]>) -> Self {
+        let [
+            roller_x,
+            roller_y,
+            sprocket_angle,
+            sprocket_x,
+            sprocket_y,
+            tensioner_position,
+            joint_offset_x,
+            joint_offset_y,
+            bush_offset_x,
+            bush_offset_y,
+        ] = Self::CHANNELS.map(values);
+        Self {
+            time,
+            roller_x,
+            roller_y,
+            sprocket_angle,
+            sprocket_x,
+            sprocket_y,
+            tensioner_position,
+            joint_offset_x,
+            joint_offset_y,
+            bush_offset_x,
+            bush_offset_y,
+        }
+    }
+
     /// The instant of an observation.
     pub fn of(seen: &'a Observation) -> Self {
         Self {
