@@ -1,14 +1,16 @@
-"""Layouts of chains: how many links a route takes, where it touches what, and what has to move for the links to close.
+"""Layouts of chains: how many links a route takes, and what has to move for them to close.
 
-Geometry alone, nothing is assembled. `of` lays out a `Drive`, `layout` the stops that a program names:
+Geometry alone, nothing is assembled. `of` lays out a `Drive`, `layout` the stops of a program:
 
     >>> import chaindrive as cd
-    >>> stops = [cd.design.Sprocket("driver", 19, (0, 0)), cd.design.Sprocket("driven", 57, (1.03, 0))]
+    >>> from chaindrive.design import Sprocket
+    >>> stops = [Sprocket("driver", 19, (0, 0)), Sprocket("driven", 57, (1.03, 0))]
     >>> found = cd.design.layout(stops, 25.4e-3)
     >>> round(found.counts.pitches, 4), found.counts.even_above
     (120.0055, 122)
-    >>> cd.design.close(stops, 25.4e-3, 120, move="driven", along=(1, 0)).stops[1].centre
-    (1.02992995816770..., 0.0)
+    >>> laid = cd.design.close(stops, 25.4e-3, 120, move="driven", along=(1, 0))
+    >>> round(laid.stops[1].centre[0], 9)
+    1.029929958
 
 All lengths are in metres and all angles in radians.
 """
@@ -53,7 +55,7 @@ class Sprocket(NamedTuple):
     centre: tuple[float, float]
     """Centre (x, y) [m]."""
     side: Side = "left"
-    """Side of the travelling chain on which it lies; a chain that runs counter-clockwise has its sprockets on the left."""
+    """Side of the travelling chain on which it lies: left where it turns to the left."""
 
 
 class Idler(NamedTuple):
@@ -79,9 +81,9 @@ class Guide(NamedTuple):
     radius: float
     """Radius of its face [m]."""
     bow: float
-    """How far its crest pushes the chain across the straight span [m]; negative: how far it keeps clear."""
+    """How far its crest pushes the chain across the straight span [m]; negative: a gap."""
     shares: tuple[float, float] = (0.1, 0.9)
-    """Shares of the span between which the face lies, from 0 where the chain leaves the sprocket before."""
+    """Shares of the span between which the face lies, 0 where the chain leaves a sprocket."""
     crest: float = 0.5
     """Share of the span at which the crest lies: the point of contact of a shoe."""
     height: float = 0.0
@@ -185,7 +187,7 @@ class Worn(NamedTuple):
     elongation: float
     """Elongation of the chain, 0.01 for 1 %."""
     travel: float | None
-    """Travel of the body [m, or rad where it turns]; None where the chain closes nowhere in reach."""
+    """Travel of the body [m, or rad where it turns]; None where the chain closes nowhere near."""
 
 
 class Layout(NamedTuple):
@@ -200,9 +202,9 @@ class Layout(NamedTuple):
     links: int | None
     """Number of links that it has, or was asked for."""
     misfit: float | None
-    """Length of the route beyond that of these links [m]: positive for a chain that is too short."""
+    """Length of the route beyond that of these links [m]: positive for a short chain."""
     travel: float | None
-    """Travel of the body that was moved [m, or rad where it turns]; None where nothing was to move."""
+    """Travel of the body that moves [m, or rad where it turns]; None where nothing does."""
     turns: bool
     """Whether travels are angles."""
     counts: Counts
@@ -216,7 +218,7 @@ class Layout(NamedTuple):
     fits: tuple[Fit, ...]
     """Where one body would have to stand for the numbers of links next to those of the route."""
     wear: tuple[Worn, ...]
-    """Where the body that moves goes while the chain wears, up to 3 %; empty where nothing was to move."""
+    """Where the body that moves goes while the chain wears, up to 3 %; empty where nothing does."""
 
 
 def layout(
@@ -263,7 +265,7 @@ def close(
 ) -> Layout:
     """Move one stop until a number of links closes exactly.
 
-    Guides and idlers on spans follow their spans. The nearest place that closes is found, either way.
+    Guides and idlers follow their spans. The nearest place that closes is found, either way.
 
     Parameters
     ----------
@@ -272,8 +274,8 @@ def close(
     links
         Number of links.
     move
-        Name of the stop that moves: a sprocket along a direction, of a guide the bow, of an idler the wrap; the sprocket
-        behind the first stop that has the greatest effect when absent.
+        Name of the stop that moves: a sprocket along a direction, of a guide the bow, of an idler
+        the wrap; the sprocket behind the first stop that has the greatest effect when absent.
     along
         Direction (x, y), of any length; that of the greatest effect when absent.
 
@@ -296,7 +298,7 @@ def close(
 
 
 def of(drive: Drive) -> tuple[Layout, ...]:
-    """Layouts of the closed chains of a drive, as they are laid, or as they are described where they do not close.
+    """Lay out the closed chains of a drive: as they are laid, or described if they do not close.
 
     Raises
     ------
@@ -315,7 +317,7 @@ def of(drive: Drive) -> tuple[Layout, ...]:
 
 
 def clashes(drive: Drive) -> tuple[str, ...]:
-    """Bodies in each other's way, and chains that run through guides, as the chains are laid; none where they do not close."""
+    """Tell what is in each other's way, chains in guides included, as the chains are laid."""
     _, found = _core.layouts_of(drive._inner)
     return tuple(found)
 

@@ -105,13 +105,13 @@ def test_presets_are_laid_out_as_they_run():
 
 
 def test_a_chain_that_does_not_close_is_laid_out_all_the_same():
-    drive = cd.scenes.industrial_16b().replace(chain__links=118)
+    drive = cd.scenes.industrial_16b().replace({"chain.links": 118})
     (laid,) = design.of(drive)
     assert laid.links == 118
     assert laid.misfit == pytest.approx(2 * 25.4e-3, rel=1e-6)
     (fit,) = [fit for fit in laid.fits if fit.links == 118]
     with pytest.raises(cd.AssemblyError, match=f"{fit.centre_distance * 1e3:.2f}"):
-        drive.layout() if hasattr(drive, "layout") else drive.statics()
+        drive.describe()
 
 
 def test_the_command_prints_what_the_module_says():
@@ -127,8 +127,91 @@ def test_the_command_prints_what_the_module_says():
     assert [span["name"] for span in found["chains"][0]["spans"]] == [s.name for s in laid.spans]
     assert found["chains"][0]["counts"]["pitches"] == laid.counts.pitches
     text = told("--sprockets", "19,38", "--pitch", "12.7mm", "--centre-distance", "400mm")
-    assert "92" in text and "would close" in text
+    assert "92 links" in text
+    assert "would close" in text
     text = told("--sprockets", "19,57", "--pitch", "25.4 mm", "--links", "120")
     assert "1029.929958" in text
     wrong = subprocess.run([*command, "--sprockets", "19"], capture_output=True, text=True)
     assert wrong.returncode == 2
+
+
+SCENE = """
+[chain]
+type = "08B-1"
+
+[[sprockets]]
+name = "driver"
+teeth = 19
+centre = ["0 mm", "0 mm"]
+motion = "held"
+
+[[sprockets]]
+name = "driven"
+teeth = 38
+centre = ["CENTRE mm", "0 mm"]
+inertia = "1 kg m^2"
+
+[[guides]]
+name = "rail"
+face = { kind = "on-span", from = "20 %", to = "80 %", radius = "2 m" BOW }
+
+[route]
+stops = ["driver", "rail", "driven"]
+"""
+
+
+def scene(centre, bow="", links=None):
+    text = SCENE.replace("CENTRE", str(centre)).replace("BOW", bow)
+    return text.replace('"08B-1"', f'"08B-1"\nlinks = {links}' if links else '"08B-1"')
+
+
+def test_a_bow_left_open_closes_the_links_and_is_told():
+    """The rail of a scene is that of the module, and the text in full makes the same drive."""
+    drive = cd.Drive.from_toml(scene(401, links=92))
+    (laid,) = design.of(drive)
+    assert abs(laid.misfit) < 1e-12
+    full = drive.resolved()
+    assert "computed: 92 links close without stress" in full.text
+    (again,) = design.of(full)
+    assert again == laid
+    stops = [
+        Sprocket("driver", 19, (0, 0)),
+        Guide("rail", 2.0, 3e-3, (0.2, 0.8), height=8.51e-3),
+        Sprocket("driven", 38, (0.401, 0)),
+    ]
+    closed = design.close(stops, 12.7e-3, 92, move="rail")
+    np.testing.assert_allclose(laid.stops[1].centre, closed.stops[1].centre, atol=1e-12)
+    # Without a number of links or a bow there is nothing that either could follow from.
+    with pytest.raises(cd.SceneError, match="bow of `rail` is open"):
+        cd.Drive.from_toml(scene(401))
+
+
+def test_the_number_of_links_follows_from_routes_over_guides():
+    drive = cd.Drive.from_toml(scene(401, bow=', bow = "8 mm"'))
+    (laid,) = design.of(drive)
+    assert drive.links == laid.counts.even_above
+    with pytest.raises(cd.SceneError, match=r"too few and \d+ too many; move `driven` to \("):
+        cd.Drive.from_toml(scene(404, bow=', bow = "8 mm"'))
+
+
+def test_straight_rails_keep_clear_by_as_much_as_is_said():
+    """The face stands off the rollers of the taut strand, over the shares."""
+    marine = cd.scenes.marine_engine()
+    (laid,) = design.of(marine)
+    (span,) = [span for span in laid.spans if span.name == "crank-camshaft"]
+    face = {
+        "kind": "on-span",
+        "between": ["crank", "camshaft"],
+        "from": 0.1,
+        "to": 0.9,
+        "bow": "-5 mm",
+    }
+    drive = marine.replace({"guides.crank-to-camshaft.face": face})
+    rail = drive.profile("crank-to-camshaft")
+    along = np.array([math.cos(span.direction), math.sin(span.direction)])
+    roller = 53.98e-3 / 2
+    for share in [0.1, 0.5, 0.9]:
+        place = np.asarray(span.leaves) + share * span.length * along
+        assert rail.distance(place) == pytest.approx(roller + 5e-3, abs=1e-9)
+    with pytest.raises(cd.SceneError, match="between: no sprocket is named `cam`"):
+        marine.replace({"guides.crank-to-camshaft.face": {**face, "between": ["crank", "cam"]}})

@@ -204,9 +204,12 @@ pub fn of(drive: &Drive) -> Result<Vec<ChainLayout>, AssemblyError> {
     Ok(layouts)
 }
 
-/// What is in each other's way in a drive as its chains are laid; none where they do not close.
-pub fn clashes(drive: &Drive) -> Vec<Clash> {
-    drive.clashes_as_laid().unwrap_or_default()
+/// What is in each other's way in a drive as its chains are laid.
+///
+/// # Errors
+/// An outline that is none, which checked drives do not bring about.
+pub fn clashes(drive: &Drive) -> Result<Vec<Clash>, AssemblyError> {
+    Ok(drive.figure_as_laid()?.clashes)
 }
 
 /// The layout of one chain; none for one that lies along no route.

@@ -131,6 +131,7 @@ pub(crate) fn layouts_of(
 ) -> PyResult<(String, Vec<String>)> {
     let drive = drive.drive.clone();
     let (layouts, clashes) = py.detach(|| (design::of(&drive), design::clashes(&drive)));
+    let clashes = clashes.or_raise()?;
     let told = clashes.iter().map(ToString::to_string).collect();
     Ok((json(serde_json::to_string(&layouts.or_raise()?))?, told))
 }

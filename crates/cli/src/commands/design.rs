@@ -63,7 +63,8 @@ pub(crate) fn design(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> R
         scene = scene.replace(path.trim(), value.trim())?;
     }
     let drive = scene.drive()?;
-    let layouts = of(&drive).map_err(|error| Failure::Start {
+    let found = of(&drive).and_then(|layouts| Ok((layouts, clashes(&drive)?)));
+    let (layouts, clashes) = found.map_err(|error| Failure::Start {
         scene: scene.name().to_owned(),
         source: error.into(),
     })?;
@@ -73,7 +74,7 @@ pub(crate) fn design(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> R
             "{name}: no chain runs around sprockets, so there is nothing to lay out"
         )));
     }
-    let clashes: Vec<String> = clashes(&drive).iter().map(ToString::to_string).collect();
+    let clashes: Vec<String> = clashes.iter().map(ToString::to_string).collect();
     show(&layouts, &clashes, arguments.json)
 }
 

@@ -2,11 +2,8 @@
 
 use chaindrive_geometry::{Piece, Side, Vector, Wheel, WheelKind};
 
-use super::lay;
-use crate::check::clash::clashes;
 use crate::drive::{Adjust, Guide, GuideSupport, Layout, Parts, Stop, Support, Touches};
-use crate::standing::Standing;
-use crate::{AssemblyError, Chain, Clash, Drive};
+use crate::{AssemblyError, Chain, Drive};
 
 impl Drive {
     /// The stops of a chain's route as wheels, with a body moved by `travel` \[m, or rad for an arm\] from where it is described.
@@ -30,16 +27,6 @@ impl Drive {
         };
         let parts = shifted(self.parts(), moved, travel)?;
         wheels(&parts, &placed.chain, stops).map(Some)
-    }
-
-    /// Bodies in each other's way when the chains have been laid, without settling.
-    ///
-    /// # Errors
-    /// [`AssemblyError`] when a chain does not close.
-    pub fn clashes_as_laid(&self) -> Result<Vec<Clash>, AssemblyError> {
-        let (laid, _) = lay::lay(self)?;
-        let rollers: Vec<_> = laid.chains.iter().map(|c| c.positions.clone()).collect();
-        Ok(clashes(&laid.parts, &Standing::laid(&laid), &rollers))
     }
 }
 

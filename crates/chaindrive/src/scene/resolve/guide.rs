@@ -113,8 +113,8 @@ fn on_span(
         None if chain.uncounted.is_some() => return None,
         None => {
             let links = chain.chain.links();
-            let phase = passing.phase();
-            let phase = phase.unwrap_or(defaults::PHASE.value(findings.version));
+            // A drive is not another one for where it happens to stand.
+            let phase = defaults::PHASE.value(findings.version);
             let found = passing.closing_bow(guide, links, phase);
             let found = findings.keep(&place, found)?;
             let remark = format!("computed: {links} links close without stress");

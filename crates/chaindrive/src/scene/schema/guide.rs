@@ -92,7 +92,7 @@ pub(crate) enum Face {
         #[serde(default)]
         crest: Option<Ratio>,
         /// How far the face pushes the chain across the straight span [m], less than zero where it keeps clear; absent: as far
-        /// as makes the links close without stress, for one convex face that is a stop of the route.
+        /// as makes the links close without stress where the first sprocket stands symmetric, for one convex face that is a stop.
         #[serde(default)]
         bow: Option<Length>,
         /// Radius of the ends of a straight face [m]; absent: a quarter of its length.
