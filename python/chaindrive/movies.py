@@ -135,6 +135,11 @@ class _Stage:
             sprocket = body["kind"] == "sprocket"
             face = {"facecolor": _STEEL, "edgecolor": _STEEL_LINE, "linewidth": 0.7, "zorder": 2}
             line = {"facecolor": "none", "zorder": 1.5}
+            if len(body["backing"]):
+                backing = {"facecolor": _GUIDE, "edgecolor": "none", "alpha": 0.3, "zorder": 1.4}
+                patch = PathPatch(Outline(body["backing"]), **backing)
+                self.axes.add_patch(patch)
+                self.parts.append((index, patch))
             colour, width = (_GUIDE, 1.8) if body["kind"] == "guide" else (_ARM, 2.5)
             for outline in body["outlines"]:
                 look = face if sprocket else {**line, "edgecolor": colour, "linewidth": width}
@@ -162,23 +167,24 @@ class _Stage:
     def _draw_chains(self, chains: list[dict[str, Any]]) -> None:
         from matplotlib.collections import EllipseCollection, LineCollection
 
-        # The layout settles the scale, which the width of plates on the picture follows.
-        self.canvas.draw()
-        scale = abs(self.axes.transData.transform((1.0, 0.0))[0])
-        scale = abs(scale - self.axes.transData.transform((0.0, 0.0))[0])
-        heights = np.repeat([it["plate_height"] for it in chains], [it["links"] for it in chains])
-        widths = np.maximum(1.5, heights * scale * 72 / _DPI)
         ends = list(self.rollers[0][self.links])
-        look: dict[str, Any] = {"linewidths": widths, "capstyle": "round", "zorder": 3}
-        self.plates = LineCollection(ends, **look)
+        self.plates = LineCollection(ends, capstyle="round", zorder=3)
         if self.tensions is None:
             self.plates.set_color(_PLATES)
         else:
             self.plates.set(cmap="viridis", alpha=0.85)
             self.plates.set_clim(*np.quantile(self.tensions, [0.001, 0.999]))
-            bar = self.canvas.figure.colorbar(self.plates, ax=self.axes, shrink=0.7)
+            bar = self.canvas.figure.colorbar(self.plates, ax=self.axes, shrink=0.7, panchor=False)
             bar.set_label("link tension [N]")
         self.axes.add_collection(self.plates)
+        # Laid out once: that takes longer than to draw what moves.
+        self.canvas.draw()
+        self.canvas.figure.set_layout_engine("none")
+        # Lines have widths in points: a plate has its height by the scale of the layout.
+        corners = self.axes.transData.transform([(0.0, 0.0), (1.0, 0.0)])
+        heights = np.repeat([it["plate_height"] for it in chains], [it["links"] for it in chains])
+        points = heights * (corners[1, 0] - corners[0, 0]) * 72 / _DPI
+        self.plates.set_linewidths(np.maximum(1.5, points))
         diameters = np.repeat(
             [it["roller_diameter"] for it in chains], [it["rollers"] for it in chains]
         )

@@ -31,26 +31,33 @@ function wholeNumbers(bytes, { rows, columns, planes, order }) {
 class Numbers {
   constructor(stream, bytes) {
     const { rows, columns, quantum, origin, missing } = stream;
-    Object.assign(this, { rows, columns, quantum });
-    const whole = wholeNumbers(bytes, stream);
-    this.values = new Float64Array(whole.length);
-    for (let i = 0; i < whole.length; i++) {
-      this.values[i] = whole[i] === missing ? NaN : origin + quantum * whole[i];
-    }
+    Object.assign(this, { rows, columns, quantum, origin, missing });
+    this.whole = wholeNumbers(bytes, stream);
+  }
+
+  value(whole) {
+    return whole === this.missing ? NaN : this.origin + this.quantum * whole;
   }
 
   at(row, column) {
-    return this.values[column * this.rows + row];
+    return this.value(this.whole[column * this.rows + row]);
+  }
+
+  /** All values, one column after the other. */
+  get values() {
+    this.all ??= Float64Array.from(this.whole, (whole) => this.value(whole));
+    return this.all;
   }
 
   /** Least and largest value. */
   range() {
     let [least, most] = [Infinity, -Infinity];
-    for (const value of this.values) {
-      if (value < least) least = value;
-      if (value > most) most = value;
+    for (const whole of this.whole) {
+      if (whole === this.missing) continue;
+      if (whole < least) least = whole;
+      if (whole > most) most = whole;
     }
-    return [least, most];
+    return [this.value(least), this.value(most)];
   }
 }
 

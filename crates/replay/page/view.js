@@ -51,7 +51,7 @@ class View {
       low = Math.min(low, y - margin);
       high = Math.max(high, y + margin);
     };
-    if (arrays.roller_x.values.length) {
+    if (this.film.rollers) {
       const [x, y] = [arrays.roller_x.range(), arrays.roller_y.range()];
       const margin = Math.max(...chains.map((chain) => 0.7 * chain.pitch));
       take(x[0], y[0], margin);
@@ -354,15 +354,17 @@ class View {
   }
 }
 
-/** Ends of a scale: all but one in a thousand values lie between them. */
+/** Ends of a scale: all but one in a thousand of some values, evenly over all, lie between them. */
 function scaleRange(numbers) {
-  const stride = Math.max(1, Math.floor(numbers.values.length / 50000));
+  const { whole } = numbers;
+  const stride = Math.max(1, Math.floor(whole.length / 20000));
   const some = [];
-  for (let i = 0; i < numbers.values.length; i += stride) {
-    if (Number.isFinite(numbers.values[i])) some.push(numbers.values[i]);
+  for (let i = 0; i < whole.length; i += stride) {
+    if (whole[i] !== numbers.missing) some.push(whole[i]);
   }
   if (!some.length) return [0, 0];
-  const sorted = Float64Array.from(some).sort();
+  const sorted = Int32Array.from(some).sort();
   const last = sorted.length - 1;
-  return [Math.min(0, sorted[Math.floor(0.001 * last)]), sorted[Math.ceil(0.999 * last)]];
+  const end = (share) => numbers.value(sorted[Math.round(share * last)]);
+  return [Math.min(0, end(0.001)), end(0.999)];
 }

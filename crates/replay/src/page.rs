@@ -65,6 +65,9 @@ struct CurveIndex<'a> {
 }
 
 /// The page of a film: HTML that needs nothing else.
+///
+/// # Panics
+/// Never: texts and numbers make JSON.
 pub fn page(film: &Film) -> String {
     let streams = packed(film);
     let body = |body: &'_ crate::Body| {

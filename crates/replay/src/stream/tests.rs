@@ -58,7 +58,7 @@ fn packed(values: &[f64], columns: usize, quantum: f64) -> Vec<f64> {
 fn waves(rows: usize, columns: usize) -> Vec<f64> {
     let wave = |at: usize| {
         let (row, column) = ((at / columns) as f64, (at % columns) as f64);
-        let jump = if at % 97 == 0 { 50.0 } else { 0.0 };
+        let jump = if at.is_multiple_of(97) { 50.0 } else { 0.0 };
         (0.05 * row + 0.3 * column).sin() * 3.0 + 0.01 * row - 7.0 + jump
     };
     (0..rows * columns).map(wave).collect()
