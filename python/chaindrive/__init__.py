@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from chaindrive import analysis as analysis
     from chaindrive import design as design
     from chaindrive import errors as errors
+    from chaindrive import exchange as exchange
     from chaindrive import kinematics as kinematics
     from chaindrive import plot as plot
     from chaindrive import scenes as scenes
@@ -53,6 +54,7 @@ if TYPE_CHECKING:
     from chaindrive.errors import SimulationError as SimulationError
     from chaindrive.errors import VerdictWarning as VerdictWarning
     from chaindrive.errors import WriteError as WriteError
+    from chaindrive.exchange import save as save
     from chaindrive.friction_law import Friction as Friction
     from chaindrive.friction_law import friction as friction
     from chaindrive.live import Simulation as Simulation
@@ -68,7 +70,16 @@ if TYPE_CHECKING:
 
 # What is imported when it is first asked for: xarray alone takes longer than all of a short
 # command. No name is that of a module that defines something else, which the import would hide.
-_MODULES = ("analysis", "design", "errors", "kinematics", "plot", "scenes", "settings")
+_MODULES = (
+    "analysis",
+    "design",
+    "errors",
+    "exchange",
+    "kinematics",
+    "plot",
+    "scenes",
+    "settings",
+)
 _DEFINED_IN = {
     "analysis.elongation": ("worn",),
     "analysis.ramps": ("run_up",),
@@ -91,6 +102,7 @@ _DEFINED_IN = {
         "VerdictWarning",
         "WriteError",
     ),
+    "exchange": ("save",),
     "friction_law": ("Friction", "friction"),
     "live": ("Simulation", "Snapshot"),
     "precision": ("work_precision",),

@@ -1,0 +1,129 @@
+"""Results as files of other programs: NetCDF, CSV, Parquet."""
+
+from __future__ import annotations
+
+import json
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from chaindrive.errors import ParameterError
+from chaindrive.extras import extra
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["save"]
+
+_SUFFIXES = ".nc, .csv or .parquet"
+
+
+def save(run: xr.Dataset, path: str | PathLike[str]) -> list[Path]:
+    """Write a result for other programs, in the form that the name ends in.
+
+    ``.nc`` is NetCDF with everything that the dataset holds, and takes the extra ``netcdf``;
+    ``.csv`` and ``.parquet`` (extra ``parquet``) are tables of one row a sample, with columns such
+    as ``span_tension[crank-to-cam] [N]``. Contacts that were logged go to a second table beside
+    it, ``run.events.csv``. Parquet has unit, description and label of every column in its metadata,
+    and the attributes of the result as JSON under ``chaindrive``.
+
+    Parameters
+    ----------
+    run
+        What `simulate` or `open_result` returned; of a sweep, for NetCDF.
+    path
+        The file; one that exists is replaced.
+
+    Returns
+    -------
+    list of pathlib.Path
+        What was written.
+
+    Raises
+    ------
+    ParameterError
+        The name ends otherwise, or the dataset has no samples over time for a table.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import chaindrive as cd
+    >>> run = cd.simulate(cd.scenes.hanging_chain(), until=2e-3, every=1e-3)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     (table,) = cd.save(run, f"{folder}/run.csv")
+    ...     table.read_text().splitlines()[0].split(",")[:2]
+    ['time [s]', 'link_tension[0] [N]']
+    """
+    file = Path(path)
+    if file.suffix == ".nc":
+        extra("h5netcdf", "results in NetCDF")
+        run.to_netcdf(file, engine="h5netcdf")
+        return [file]
+    if file.suffix not in (".csv", ".parquet"):
+        hint = "a Zarr store is written by `simulate(…, output=…)`"
+        raise ParameterError(f"{file}: the name must end in {_SUFFIXES}", "path", hint)
+    if "time" not in run.dims or any(len(of.dims) > 2 for of in _over(run, "time")):
+        message = "the dataset is no table: it has no samples over time, or more than one run"
+        raise ParameterError(message, "run", "select one run, or write NetCDF")
+    write = _write_csv if file.suffix == ".csv" else _write_parquet
+    written = [file]
+    write(file, _columns(run, "time"), run.attrs)
+    if "event" in run.dims:
+        events = file.with_suffix(f".events{file.suffix}")
+        write(events, _columns(run, "event"), run.attrs)
+        written.append(events)
+    return written
+
+
+# A column: its heading, its values, and what is to be known about it.
+_Column = tuple[str, Any, dict[str, str]]
+
+
+def _over(run: xr.Dataset, dimension: str) -> list[xr.DataArray]:
+    return [variable for variable in run.data_vars.values() if variable.dims[:1] == (dimension,)]
+
+
+def _columns(run: xr.Dataset, dimension: str) -> list[_Column]:
+    """Return the columns of a table whose rows are the entries of a dimension."""
+    index = [run[dimension]] if dimension in run.coords else []
+    found = []
+    for variable in [*index, *_over(run, dimension)]:
+        about = {key: str(value) for key, value in variable.attrs.items()}
+        unit = f" [{about['units']}]" if "units" in about else ""
+        values = variable.to_numpy()
+        if values.ndim == 1:
+            found.append((f"{variable.name}{unit}", values, about))
+            continue
+        for label, column in zip(variable[variable.dims[1]].to_numpy(), values.T, strict=True):
+            heading = f"{variable.name}[{label}]{unit}"
+            found.append((heading, column, about | {str(variable.dims[1]): str(label)}))
+    return found
+
+
+def _write_csv(file: Path, columns: list[_Column], _: dict[str, Any]) -> None:
+    # It comes with xarray.
+    import pandas as pd
+
+    # Every column under its own heading: names of bodies may repeat.
+    table = pd.concat([pd.Series(values, name=heading) for heading, values, _ in columns], axis=1)
+    table.to_csv(file, index=False)
+
+
+def _write_parquet(file: Path, columns: list[_Column], attributes: dict[str, Any]) -> None:
+    arrow = extra("pyarrow", "tables in Parquet")
+    parquet = extra("pyarrow.parquet", "tables in Parquet")
+    arrays = [arrow.array(_plain(values)) for _, values, _ in columns]
+    fields = [
+        arrow.field(heading, array.type, metadata=about)
+        for (heading, _, about), array in zip(columns, arrays, strict=True)
+    ]
+    told = json.dumps(attributes, default=lambda value: np.asarray(value).tolist())
+    schema = arrow.schema(fields, metadata={"chaindrive": told})
+    parquet.write_table(arrow.Table.from_arrays(arrays, schema=schema), file)
+
+
+def _plain(values: Any) -> Any:
+    return values.tolist() if values.dtype.kind in "US" else np.ascontiguousarray(values)
