@@ -60,7 +60,8 @@ def save(run: xr.Dataset, path: str | PathLike[str]) -> list[Path]:
     """
     file = Path(path)
     if file.suffix == ".nc":
-        extra("h5netcdf", "results in NetCDF")
+        for package in ("h5netcdf", "h5py"):
+            extra(package, "results in NetCDF")
         run.to_netcdf(file, engine="h5netcdf")
         return [file]
     if file.suffix not in (".csv", ".parquet"):
