@@ -13,6 +13,7 @@ _BRINGS = {
     "distributed": "dask",
     "ezdxf": "dxf",
     "h5netcdf": "netcdf",
+    "h5py": "netcdf",
     "imageio": "movie",
     "imageio_ffmpeg": "movie",
     "matplotlib": "plot",

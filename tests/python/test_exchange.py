@@ -227,6 +227,7 @@ def run() -> xr.Dataset:
 
 
 def test_netcdf_keeps_everything(run: xr.Dataset, tmp_path: Path) -> None:
+    pytest.importorskip("h5py")
     pytest.importorskip("h5netcdf")
     assert cd.save(run, tmp_path / "run.nc") == [tmp_path / "run.nc"]
     with xr.open_dataset(tmp_path / "run.nc", engine="h5netcdf") as back:
@@ -241,6 +242,7 @@ def test_netcdf_keeps_everything(run: xr.Dataset, tmp_path: Path) -> None:
 
 
 def test_a_sweep_goes_into_netcdf(tmp_path: Path) -> None:
+    pytest.importorskip("h5py")
     pytest.importorskip("h5netcdf")
     ring = cd.scenes.spinning_ring()
     swept = cd.sweep(ring, {"chain.mass": ["8 g", "9 g"]}, until=2e-3, every=1e-3)

@@ -51,7 +51,8 @@ def save(run: xr.Dataset, path: str | PathLike[str]) -> list[Path]:
     >>> import tempfile
     >>> from pathlib import Path
     >>> import chaindrive as cd
-    >>> run = cd.simulate(cd.scenes.hanging_chain(), until=2e-3, every=1e-3)
+    >>> ring = cd.scenes.spinning_ring()
+    >>> run = cd.simulate(ring, until=2e-3, every=1e-3, record="link_tension")
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     (table,) = cd.save(run, f"{folder}/run.csv")
     ...     table.read_text().splitlines()[0].split(",")[:2]
@@ -59,7 +60,8 @@ def save(run: xr.Dataset, path: str | PathLike[str]) -> list[Path]:
     """
     file = Path(path)
     if file.suffix == ".nc":
-        extra("h5netcdf", "results in NetCDF")
+        for package in ("h5netcdf", "h5py"):
+            extra(package, "results in NetCDF")
         run.to_netcdf(file, engine="h5netcdf")
         return [file]
     if file.suffix not in (".csv", ".parquet"):
