@@ -35,8 +35,14 @@ fn every_shell_gets_a_script_that_names_every_verb() {
     for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
         let (code, script) = chaindrive(&["completion", shell]);
         assert_eq!(code, 0, "{shell}");
-        for word in VERBS.iter().chain(&["span_tension", "dormand-prince"]) {
+        for word in VERBS {
             assert!(script.contains(word), "{shell}: {word}");
+        }
+        // The others complete options, but not what these take.
+        if ["bash", "fish", "zsh"].contains(&shell) {
+            for word in ["span_tension", "dormand-prince"] {
+                assert!(script.contains(word), "{shell}: {word}");
+            }
         }
     }
     assert_eq!(chaindrive(&["completion", "cmd"]).0, 2);
