@@ -6,22 +6,22 @@ use std::process;
 
 use assert_cmd::Command;
 
-const VERBS: [&str; 14] = [
-    "run",
-    "resume",
-    "sweep",
-    "bench",
-    "check",
-    "describe",
-    "resolve",
-    "diff",
-    "scenes",
-    "schema",
-    "channels",
-    "catalogue",
-    "completion",
-    "man",
-];
+/// The verbs that the help lists.
+fn verbs() -> Vec<String> {
+    let (_, help) = chaindrive(&["--help"]);
+    let (_, list) = help.split_once("Commands:\n").unwrap();
+    let (list, _) = list.split_once("\n\n").unwrap();
+    // Continued lines are indented deeper.
+    let entries = list.lines().filter_map(|line| line.strip_prefix("  "));
+    let entries = entries.filter(|entry| !entry.starts_with(' '));
+    let names = entries.filter_map(|entry| entry.split_whitespace().next());
+    let found: Vec<String> = names
+        .filter(|&it| it != "help")
+        .map(str::to_owned)
+        .collect();
+    assert!(found.len() >= 14, "{found:?}");
+    found
+}
 
 fn chaindrive(arguments: &[&str]) -> (i32, String) {
     let mut command = Command::cargo_bin("chaindrive").unwrap();
@@ -35,8 +35,8 @@ fn every_shell_gets_a_script_that_names_every_verb() {
     for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
         let (code, script) = chaindrive(&["completion", shell]);
         assert_eq!(code, 0, "{shell}");
-        for word in VERBS {
-            assert!(script.contains(word), "{shell}: {word}");
+        for word in verbs() {
+            assert!(script.contains(&word), "{shell}: {word}");
         }
         // The others complete options, but not what these take.
         if ["bash", "fish", "zsh"].contains(&shell) {
@@ -76,7 +76,7 @@ fn bash_completes_verbs_methods_and_channels() {
                 .collect(),
         )
     };
-    let Some(found): Option<Vec<String>> = asked(&["chaindrive", "des"]) else {
+    let Some(found): Option<Vec<String>> = asked(&["chaindrive", "descr"]) else {
         return;
     };
     assert_eq!(found, ["describe"]);
@@ -114,17 +114,14 @@ fn every_verb_has_a_page() {
     let page = |name: &str| fs::read_to_string(pages.join(name)).unwrap();
     let first = page("chaindrive.1");
     assert!(first.contains("Exit codes"));
-    for verb in VERBS {
+    for verb in verbs() {
         assert!(first.contains(&format!("chaindrive\\-{verb}(1)")), "{verb}");
         assert!(
             page(&format!("chaindrive-{verb}.1")).contains(".SH SYNOPSIS"),
             "{verb}"
         );
     }
-    assert!(
-        page("chaindrive-run.1").contains("span tension")
-            || page("chaindrive-run.1").contains("Channels to record")
-    );
+    assert!(page("chaindrive-run.1").contains("Channels to record"));
     // A file cannot be a folder.
     let taken = pages.join("chaindrive.1");
     assert_eq!(chaindrive(&["man", taken.to_str().unwrap()]).0, 3);
