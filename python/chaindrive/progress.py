@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -43,9 +44,11 @@ class _Bar:
     def __init__(self, what: str) -> None:
         self._what = self._phase = what
         auto = extra("tqdm.auto", "progress bars")
-        # With None for `disable` a terminal or a notebook shows the bar and a pipe does not.
+        # A pipe shows no bar. A notebook is none, though it is no terminal either: without
+        # ipywidgets the bar is a text there.
+        shown = sys.stderr.isatty() or "ipykernel" in sys.modules
         self._bar: Any = auto.tqdm(
-            total=1.0, desc=what, bar_format=_FORMAT, miniters=0, disable=None
+            total=1.0, desc=what, bar_format=_FORMAT, miniters=0, disable=not shown
         )
 
     def __call__(self, share: float) -> None:

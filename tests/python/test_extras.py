@@ -64,6 +64,13 @@ def test_a_pipe_shows_no_bar() -> None:
     assert (done.stdout, done.stderr) == ("", "")
 
 
+def test_a_notebook_without_widgets_shows_the_bar_as_text() -> None:
+    code = f"import sys; sys.modules['ipykernel'] = object()\n{RUN}"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "100 %" in done.stderr
+    assert "left" in done.stderr
+
+
 @pytest.mark.skipif(os.name == "nt", reason="terminals of Windows cannot be looked at")
 def test_a_terminal_shows_run_in_run_and_sweep_with_the_time_left() -> None:
     import pty
