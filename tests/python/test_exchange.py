@@ -189,6 +189,48 @@ def test_outlines_that_are_no_sprockets_are_refused() -> None:
         face(outline)
 
 
+def test_pointed_teeth_are_cut_at_their_points() -> None:
+    """Twelve seats of a quarter turn, and flanks that meet in a point."""
+    angles = np.arange(36) * 2.0 * np.pi / 36
+    radii = np.tile([0.05, 0.05, 0.06], 12)
+    points = np.column_stack([radii * np.cos(angles), radii * np.sin(angles)])
+    bulges = np.tile([-np.tan(np.pi / 8), 0.0, 0.0], 12)
+    for turned in (0.0, 0.1, np.pi / 2):
+        wheel = Curve(points, bulges, True).moved([0.3, 0.2], turned=turned)
+        entry = tooth(wheel, 12)
+        assert [piece["kind"] for piece in entry["pieces"]] == ["line", "arc", "line"]
+        np.testing.assert_allclose(np.hypot(*entry["from"]), 0.06)
+        # The tooth on the right is half a gap from the y axis.
+        np.testing.assert_allclose(entry["from"][0], 0.06 * np.sin(np.pi / 12))
+
+
+def test_the_face_is_cut_out_of_the_outline_of_a_shoe() -> None:
+    """A shoe of two arcs about one centre and two straights; the outer arc is the face."""
+    angles = np.array([0.2, 1.2])
+    rim = np.column_stack([np.cos(angles), np.sin(angles)])
+    bulge = np.tan(0.25)
+    shoe = Curve(
+        np.concatenate([0.5 * rim, 0.45 * rim[::-1]]), np.array([bulge, 0, -bulge, 0]), True
+    )
+    whole = shoe.stretch([0.6, 0.1], 0.5 * rim[1])
+    np.testing.assert_allclose(whole.points, 0.5 * rim, atol=1e-15)
+    np.testing.assert_allclose(whole.bulges, [bulge])
+    middle = 0.5 * np.array([np.cos(0.7), np.sin(0.7)])
+    half = shoe.stretch(middle, 0.5 * rim[1])
+    assert half.length == pytest.approx(0.25)
+    # On from there, around the back, to where it began.
+    rest = shoe.stretch(0.5 * rim[1], middle)
+    assert rest.length == pytest.approx(shoe.length - 0.25)
+    around = shoe.stretch(middle, 0.5 * np.array([np.cos(0.6), np.sin(0.6)]))
+    assert around.length == pytest.approx(shoe.length - 0.05)
+    with pytest.raises(cd.ParameterError, match="lies before its start"):
+        whole.stretch(middle, 0.5 * rim[0])
+    # The tangents at the ends of a radian meet at R / cos ½.
+    taken = face(whole, material="left")
+    np.testing.assert_allclose(taken["radii"], [0.5])
+    np.testing.assert_allclose(np.hypot(*taken["points"][1]), 0.5 / np.cos(0.5))
+
+
 def test_an_svg_is_to_scale_and_its_arcs_are_arcs(tmp_path: Path) -> None:
     drive = cd.scenes.industrial_16b()
     profile = drive.profile("driver")

@@ -19,7 +19,7 @@ from chaindrive.errors import ParameterError
 if TYPE_CHECKING:
     from chaindrive.profile import Profile
 
-__all__ = ["Curve", "curve_of", "joined"]
+__all__ = ["Curve", "curve_of", "joined", "turn_between"]
 
 # Chords by which a profile is read stand off by this part of its length.
 _CHORD = 1e-5
@@ -27,6 +27,8 @@ _CHORD = 1e-5
 # this angle [rad]: distances from which they are found are exact to some 1e-16 m.
 _SAME_CURVATURE = 1e-6
 _SAME_DIRECTION = 1e-7
+# A piece shorter than this part of its curve has no direction.
+_NOTHING = 1e-9
 # An arc of more than a half turn is poorly given by its ends.
 _LARGEST_SWEEP = 0.9 * np.pi
 
@@ -124,6 +126,72 @@ class Curve(NamedTuple):
         if self.closed:
             points = np.roll(points, 1, axis=0)
         return self._replace(points=points, bulges=-self.bulges[::-1])
+
+    def stretch(self, start: ArrayLike, end: ArrayLike) -> Curve:
+        """Return the open stretch of the curve from one place to another, in the sense of its run.
+
+        Parameters
+        ----------
+        start, end : (2,)
+            Places near the curve [m], such as the corners of the face of a shoe.
+
+        Raises
+        ------
+        ParameterError
+            The curve is open, and the end lies before the start.
+        """
+        (first, begin), (last, stop) = self._nearest(start), self._nearest(end)
+        count = len(self.bulges)
+        behind = first == last and self._along(last, stop) < self._along(first, begin)
+        if not self.closed and (last < first or behind):
+            message = "the end of the stretch lies before its start"
+            raise ParameterError(message, "end", "swap them, or reverse the curve")
+        steps = (last - first) % count if not behind else count
+        order = [(first + step) % count for step in range(steps + 1)]
+        points, bulges = [begin], []
+        for step, piece in enumerate(order):
+            reached = stop if step == steps else self.ends[piece]
+            # Of a piece that the stretch touches at its very end there is nothing.
+            if np.hypot(*(reached - points[-1])) > _NOTHING * self.length:
+                bulges.append(self._bulge_between(piece, points[-1], reached))
+                points.append(reached)
+        return self._replace(points=np.array(points), bulges=np.array(bulges), closed=False)
+
+    def _nearest(self, place: ArrayLike) -> tuple[int, NDArray[np.float64]]:
+        """Return the piece nearest to a place, and the place on it, (2,)."""
+        at = np.asarray(place, dtype=float)
+        found: list[tuple[float, int, NDArray[np.float64]]] = []
+        rows = zip(self.starts, self.ends, self.sweeps, self.radii, self.centres, strict=True)
+        for piece, (start, end, sweep, radius, centre) in enumerate(rows):
+            on = [start, end]
+            if sweep == 0.0:
+                along = end - start
+                on.append(start + np.clip((at - start) @ along / (along @ along), 0, 1) * along)
+            elif (at != centre).any():
+                foot = centre + abs(radius) * (at - centre) / np.hypot(*(at - centre))
+                if turn_between(start - centre, foot - centre, sweep) <= abs(sweep):
+                    on.append(foot)
+            found += [(float(np.hypot(*(at - foot))), piece, foot) for foot in on]
+        _, piece, foot = min(found, key=lambda it: it[:2])
+        return piece, foot
+
+    def _along(self, piece: int, place: NDArray[np.float64]) -> float:
+        """Return how far along a piece a place on it lies, in whatever measure."""
+        if self.bulges[piece] == 0.0:
+            return float(np.hypot(*(place - self.starts[piece])))
+        centre = self.centres[piece]
+        return turn_between(self.starts[piece] - centre, place - centre, self.bulges[piece])
+
+    def _bulge_between(
+        self, piece: int, start: NDArray[np.float64], end: NDArray[np.float64]
+    ) -> float:
+        """Return the bulge of a part of a piece."""
+        bulge = self.bulges[piece]
+        if bulge == 0.0:
+            return 0.0
+        centre = self.centres[piece]
+        turn = turn_between(start - centre, end - centre, bulge)
+        return float(np.sign(bulge) * np.tan(0.25 * turn))
 
     def moved(
         self, by: ArrayLike = (0.0, 0.0), *, turned: float = 0.0, scaled: float = 1.0
@@ -237,6 +305,14 @@ def _merged(curve: Curve) -> Curve:
             sweeps.append(sweep)
             last = curvature
     return curve._replace(points=np.array(points), bulges=np.tan(0.25 * np.array(sweeps[1:])))
+
+
+def turn_between(first: NDArray[np.float64], last: NDArray[np.float64], sense: float) -> float:
+    """Return the angle from one direction to another in a sense of turning [rad], in [0, 2π)."""
+    turn = np.arctan2(last[1], last[0]) - np.arctan2(first[1], first[0])
+    turned = float((np.sign(sense) * turn) % (2.0 * np.pi))
+    # What rounding puts before the start is the start.
+    return turned if turned < 2.0 * np.pi - 1e-12 else 0.0
 
 
 def _angle(turn: float) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from chaindrive.errors import ParameterError
-from chaindrive.exchange.curve import Curve
+from chaindrive.exchange.curve import Curve, turn_between
 
 __all__ = ["face", "tooth"]
 
@@ -73,7 +73,7 @@ def tooth(
     # The scene has the gap on the y axis.
     curve = curve.moved(turned=0.5 * np.pi - float(np.arctan2(deepest[1], deepest[0])))
     half = np.pi / teeth
-    gap = _between(curve, 0.5 * np.pi - half, 0.5 * np.pi + half)
+    gap = curve.stretch(_crossing(curve, 0.5 * np.pi - half), _crossing(curve, 0.5 * np.pi + half))
     worst = max(
         float(gap.distance(_within(curve.moved(turned=-2.0 * half * turn), half)).max(initial=0.0))
         for turn in range(teeth)
@@ -118,7 +118,7 @@ def face(curve: Curve, *, material: str = "right") -> dict[str, Any]:
     """
     if curve.closed:
         message = "the curve is closed, and the face of a guide is open"
-        raise ParameterError(message, "curve", "draw the face on a layer of its own")
+        raise ParameterError(message, "curve", "cut the face out: curve.stretch(start, end)")
     whole = _split(curve)
     corners, radii = [whole.points[0]], []
     rows = zip(whole.starts, whole.ends, whole.bulges, whole.radii, strict=True)
@@ -186,16 +186,10 @@ def _deepest(curve: Curve) -> NDArray[np.float64]:
         # The near and the far side of the circle, as seen from the origin.
         for side in (-1.0, 1.0):
             place = centre + side * abs(radius) * centre / distance
-            turn = _turn_between(start - centre, place - centre, sweep)
+            turn = turn_between(start - centre, place - centre, sweep)
             if turn <= abs(sweep):
                 found.append(place)
     return min(found, key=lambda place: float(np.hypot(*place)))
-
-
-def _turn_between(first: NDArray[np.float64], last: NDArray[np.float64], sense: float) -> float:
-    """Return the angle from one direction to another in a sense of turning, in [0, 2π)."""
-    turn = np.arctan2(last[1], last[0]) - np.arctan2(first[1], first[0])
-    return float((np.sign(sense) * turn) % (2.0 * np.pi))
 
 
 def _within(curve: Curve, half: float) -> NDArray[np.float64]:
@@ -204,50 +198,37 @@ def _within(curve: Curve, half: float) -> NDArray[np.float64]:
     return curve.points[np.abs(angles) < half * (1.0 - 1e-9)]
 
 
-def _between(curve: Curve, first: float, last: float) -> Curve:
-    """Return the stretch of a closed curve from one ray out of the origin to the next."""
-    piece, start = _crossing(curve, first)
-    end_piece, end = _crossing(curve, last)
-    count = len(curve.bulges)
-    order = [(piece + step) % count for step in range((end_piece - piece) % count + 1)]
-    points, bulges = [start], []
-    for index in order:
-        stop = end if index == end_piece else curve.ends[index]
-        begin, sweep, centre = points[-1], curve.sweeps[index], curve.centres[index]
-        if sweep != 0.0:
-            bulges.append(
-                np.sign(sweep) * np.tan(0.25 * _turn_between(begin - centre, stop - centre, sweep))
-            )
-        else:
-            bulges.append(0.0)
-        points.append(stop)
-    return Curve(np.array(points), np.array(bulges), False, curve.layer)
-
-
-def _crossing(curve: Curve, angle: float) -> tuple[int, NDArray[np.float64]]:
-    """Return the piece of a curve that crosses a ray out of the origin, and the place."""
+def _crossing(curve: Curve, angle: float) -> NDArray[np.float64]:
+    """Return the one place where a curve crosses a ray out of the origin, (2,)."""
     ray = np.array([np.cos(angle), np.sin(angle)])
-    found: list[tuple[int, NDArray[np.float64]]] = []
+    found: list[NDArray[np.float64]] = []
     rows = zip(curve.starts, curve.ends, curve.sweeps, curve.radii, curve.centres, strict=True)
-    for piece, (start, end, sweep, radius, centre) in enumerate(rows):
+    for start, end, sweep, radius, centre in rows:
         places = []
         if sweep == 0.0:
             # s + u (e − s) = t r
             matrix = np.column_stack([end - start, -ray])
             if abs(np.linalg.det(matrix)) > 0.0:
                 share, _ = np.linalg.solve(matrix, -start)
-                places = [start + share * (end - start)] if 0.0 <= share < 1.0 else []
+                if -_NOTHING <= share <= 1.0 + _NOTHING:
+                    places.append(start + share * (end - start))
         else:
             # |t r − c| = R
             nearest = centre @ ray
             root = nearest**2 - centre @ centre + radius**2
             for side in (-1.0, 1.0) if root >= 0.0 else ():
                 place = (nearest + side * np.sqrt(root)) * ray
-                if _turn_between(start - centre, place - centre, sweep) < abs(sweep):
+                if turn_between(start - centre, place - centre, sweep) <= abs(sweep) + _NOTHING:
                     places.append(place)
-        found += [(piece, place) for place in places if place @ ray > 0.0]
-    if len(found) != 1:
-        crossings = f"crosses the middle of a tooth {len(found)} times"
+        found += [place for place in places if place @ ray > 0.0]
+    # A pointed tooth is found on both of its flanks.
+    apart = [
+        place
+        for index, place in enumerate(found)
+        if all(np.hypot(*(place - other)) > 1e-6 * curve.length for other in found[:index])
+    ]
+    if len(apart) != 1:
+        crossings = f"crosses the middle of a tooth {len(apart)} times"
         hint = "give the outline of the teeth alone, their number and the centre"
         raise ParameterError(f"the outline {crossings}, must be once", "outline", hint)
-    return found[0]
+    return apart[0]
