@@ -152,7 +152,7 @@ def campbell(found: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     if "mode_frequency" in found:
         at = _RPM * found["mode_speed"].to_numpy()
         lines = found["mode_frequency"].transpose("mode_speed", "mode").to_numpy()
-        ax.plot(at, lines, color="#ff8c42", linewidth=0.5, alpha=0.7)
+        ax.plot(at, lines, color="#ff8c42", linewidth=0.8, alpha=0.8)
         ax.plot([], [], color="#ff8c42", linewidth=0.7, label="running modes")
         ax.plot([], [], color="grey", linewidth=0.8, linestyle="--", label="orders")
         ax.legend(fontsize="small", loc="upper left")
