@@ -233,6 +233,9 @@ def test_every_plot_names_its_axes(two_sprockets: xr.Dataset) -> None:
         cd.plot.span_envelope(run.span_envelope("camshaft-crank")),
         cd.plot.running_modes(run.running_modes(speeds=[7.0, 9.0], up_to=20.0)),
     ]
+    steady = diagram.isel(time=[0, 1]).assign_coords(speed=("time", [3.0, 3.0]))
+    with pytest.raises(cd.ParameterError, match="the speed does not change"):
+        cd.plot.campbell(steady)
     for axes in drawn:
         figure = axes.figure
         figure.canvas.draw()
