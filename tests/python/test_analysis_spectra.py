@@ -122,6 +122,19 @@ def test_running_modes_are_those_of_moving_strings(speed: float) -> None:
     assert float(np.abs(modes["growth"]).max()) < 1e-6
 
 
+def test_orders_meet_modes_at_critical_speeds() -> None:
+    modes = analysis.running_modes(
+        cd.scenes.marine_two_sprockets(), speeds=[0.5, 1.0, 1.5, 2.0], up_to=15.0
+    )
+    found = analysis.critical_speeds(modes, 60)
+    np.testing.assert_allclose(found["frequency"], 60 * found["speed"] / TAU)
+    # The first three modes of both spans, as the order rises from 5 to 19 Hz through them.
+    at_rest = cd.scenes.marine_two_sprockets().natural_frequencies()
+    inside = at_rest[(at_rest > 5.0) & (at_rest < 14.0)]
+    assert found.sizes["crossing"] == inside.size
+    np.testing.assert_allclose(found["frequency"], inside, rtol=0.03)
+
+
 def test_a_moving_string_stands_still_at_its_wave_speed() -> None:
     assert analysis.moving_string(400.0, 1.0, 2.0, 0.0) == pytest.approx(5.0)
     assert analysis.moving_string(400.0, 1.0, 2.0, 20.0) == 0.0
@@ -220,6 +233,9 @@ def test_every_plot_names_its_axes(two_sprockets: xr.Dataset) -> None:
         cd.plot.span_envelope(run.span_envelope("camshaft-crank")),
         cd.plot.running_modes(run.running_modes(speeds=[7.0, 9.0], up_to=20.0)),
     ]
+    steady = diagram.isel(time=[0, 1]).assign_coords(speed=("time", [3.0, 3.0]))
+    with pytest.raises(cd.ParameterError, match="the speed does not change"):
+        cd.plot.campbell(steady)
     for axes in drawn:
         figure = axes.figure
         figure.canvas.draw()

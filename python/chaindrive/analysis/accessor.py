@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
-from chaindrive import replaying
+from chaindrive import plot, replaying
 from chaindrive.analysis import (
     around,
     dissipation,
@@ -28,6 +28,9 @@ from chaindrive.analysis import (
     transmission,
 )
 from chaindrive.replaying import Replay
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 __all__ = ["DriveAccessor"]
 
@@ -124,6 +127,10 @@ class DriveAccessor:
     def utilisation(self, **options: Any) -> xr.Dataset:
         """See `chaindrive.analysis.utilisation`."""
         return duty.utilisation(self._run, **options)
+
+    def frame(self, time: float, **options: Any) -> Axes:
+        """See `chaindrive.plot.frame`."""
+        return plot.frame(self._run, time, **options)
 
     def replay(self, path: str | PathLike[str] | None = None, **options: Any) -> Replay | Path:
         """See `chaindrive.replay`."""

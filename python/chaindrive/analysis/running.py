@@ -47,8 +47,8 @@ def moving_string(
     numpy.ndarray
         Frequency [Hz]; zero from the speed on at which v = c.
 
-    Source
-    ------
+    References
+    ----------
     R. Skutsch, *Ueber die Bewegung eines gespannten Fadens*, Annalen der Physik und Chemie
     **297**, 1897, 190–195; R. A. Sack, *Br. J. Appl. Phys.* **5**, 1954, 224–226.
     """
@@ -162,8 +162,8 @@ def running_modes(
     AssemblyError
         The drive does not close or settle.
 
-    Source
-    ------
+    References
+    ----------
     J. A. Wickert and C. D. Mote, *J. Appl. Mech.* **57**, 1990, 738–744,
     <https://doi.org/10.1115/1.2897085>.
     """

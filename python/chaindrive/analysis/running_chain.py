@@ -111,15 +111,17 @@ class RunningChain:
         tension = signal(run, "link_tension", {}).transpose("time", "link").to_numpy()
         # Angles count from where the drive was assembled, before it was run in.
         passed = self.places.sense(name) * angle * self.teeth[name] / (2 * np.pi)
+        tension, passed = tension[near], passed[near]
+        # The link at place j at time t is the one that started at j − passed.
         count = tension.shape[1]
-        total = np.zeros(count)
-        for row in np.flatnonzero(near):
-            # The link at place j at time t is the one that started at j − passed.
-            at = (np.arange(count) - passed[row]) % count
-            low = np.floor(at).astype(int) % count
-            part = at - np.floor(at)
-            total += (1.0 - part) * tension[row, low] + part * tension[row, (low + 1) % count]
-        return total / np.count_nonzero(near)
+        at = (np.arange(count) - passed[:, None]) % count
+        low = np.floor(at).astype(int)
+        part = at - low
+        row = np.arange(len(tension))[:, None]
+        low %= count
+        met = (1.0 - part) * tension[row, low] + part * tension[row, (low + 1) % count]
+        mean: NDArray[np.float64] = met.mean(axis=0)
+        return mean
 
     def modes(self, v: float, up_to: float, tension: NDArray[np.float64] | None) -> RunningState:
         """Return the modes at a chain speed [m/s] below a frequency [Hz].

@@ -65,8 +65,8 @@ def spectrum(
     ParameterError
         The channel was not recorded, a label does not exist, or samples are too few.
 
-    Source
-    ------
+    References
+    ----------
     G. Heinzel, A. Rüdiger, R. Schilling, *Spectrum and spectral density estimation by the
     discrete Fourier transform*, Max-Planck-Institut für Gravitationsphysik, 2002.
     """

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from chaindrive.errors import ParameterError
 from chaindrive.plot.axes import given_or_new
 
 if TYPE_CHECKING:
@@ -152,7 +153,7 @@ def campbell(found: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     if "mode_frequency" in found:
         at = _RPM * found["mode_speed"].to_numpy()
         lines = found["mode_frequency"].transpose("mode_speed", "mode").to_numpy()
-        ax.plot(at, lines, color="#ff8c42", linewidth=0.5, alpha=0.7)
+        ax.plot(at, lines, color="#ff8c42", linewidth=0.8, alpha=0.8)
         ax.plot([], [], color="#ff8c42", linewidth=0.7, label="running modes")
         ax.plot([], [], color="grey", linewidth=0.8, linestyle="--", label="orders")
         ax.legend(fontsize="small", loc="upper left")
@@ -310,8 +311,14 @@ def span_envelope(envelope: xr.Dataset, *, ax: Axes | None = None) -> Axes:
 
 
 def _map(ax: Axes, x: Any, y: Any, amplitude: xr.DataArray) -> None:
-    """Draw amplitudes (x, y) in decibels of the largest."""
+    """Draw amplitudes (x, y) in decibels of the largest, in the order of x."""
+    if np.ptp(x) < 1e-3 * np.abs(x).max():
+        raise ParameterError("the speed does not change in this run: draw its spectrum", "found")
     values = amplitude.to_numpy().T
+    # At the ends of a ramp windows follow each other at one speed.
+    order = np.argsort(x)
+    order = order[np.insert(np.diff(x[order]) > 1e-6 * np.ptp(x), 0, True)]
+    x, values = x[order], values[:, order]
     # The line at zero holds what is left of the mean.
     largest = float(values[1:].max())
     decibels = 20.0 * np.log10(np.maximum(values / largest, 10.0 ** (_FLOOR_DB / 20.0)))
