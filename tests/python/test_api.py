@@ -207,7 +207,8 @@ def test_plots_draw(tmp_path):
     from matplotlib import pyplot as plt
 
     drive = cd.scenes.marine_engine()
-    channels = ["span_tension", "link_tension", "roller_x", "roller_y"]
+    channels = ["span_tension", "link_tension", "roller_x", "roller_y", "sprocket_angle"]
+    channels += ["tensioner_position"]
     run = cd.simulate(drive, until=4e-3, every=1e-3, record=channels)
     ax = cd.plot.layout(drive)
     assert {text.get_text() for text in ax.texts} >= {"crank", "camshaft", "tensioner", "idler"}
@@ -221,11 +222,18 @@ def test_plots_draw(tmp_path):
 
 
 def test_layout_puts_rollers_into_gaps():
-    drawing = cd.scenes.marine_engine()._inner.drawing(True)
-    crank = drawing["sprockets"]["crank"]
-    (chain,) = drawing["chains"]
-    turn = cd.plot._turn(chain["rollers"], crank["centre"], crank, chain["pitch"])
-    x, y = (chain["rollers"] - crank["centre"]).T
-    seated = np.abs(np.hypot(x, y) - crank["pitch_radius"]) < 1e-3
-    phase = crank["teeth"] * (np.arctan2(y, x)[seated] - np.pi / 2 - turn) / (2 * np.pi)
-    np.testing.assert_allclose(phase, np.round(phase), atol=0.02)
+    """The outline of a sprocket has gaps where its own angle has them, and rollers sit in these."""
+    drive = cd.scenes.marine_engine()
+    figure = drive._inner.figure(True, 0.0)
+    pose = figure.start()
+    (rollers,) = pose["rollers"]
+    for body, (x, y, angle) in zip(figure.bodies(1e-5), pose["placements"], strict=True):
+        if body["kind"] != "sprocket":
+            continue
+        away = rollers - (x, y)
+        seated = np.abs(np.hypot(*away.T) - body["pitch_radius"]) < 1e-3
+        # A gap stands on the y axis of the sprocket.
+        turned = np.arctan2(*away[seated].T[::-1]) - np.pi / 2 - angle
+        phase = body["teeth"] * turned / (2 * np.pi)
+        np.testing.assert_allclose(phase, np.round(phase), atol=0.02)
+        assert seated.sum() > 4

@@ -1,22 +1,20 @@
 """Drawings: what is measured in them is what the simulation has.
 
-Gaps are measured in the text of the SVG files, between circles and paths of straight lines and arcs,
-by formulas of their own. The simulation says which rollers press on teeth, how deep the deepest is,
-and through `Drive.profile` how far the others are from teeth and guides that stood elsewhere when
-the run began.
+Gaps are measured in the text of the SVG files, between circles and paths of straight lines and
+arcs, by formulas of their own. The simulation says which rollers press on teeth, how deep the
+deepest is, and through `Drive.profile` how far the others are from teeth and guides that stood
+elsewhere when the run began.
 """
 
-import json
-import random
 import re
 import subprocess
 import sys
 
 import numpy as np
 import pytest
+from drives import random_drive
 
 import chaindrive as cd
-from drives import random_drive
 
 # Agreement asked for [m].
 ALLOWED = 1e-4
@@ -45,7 +43,7 @@ def rollers(svg, chain=""):
 
 
 def pieces(path):
-    """Return the lines and arcs of path data [m]: (start, end, radius or None, counter-clockwise)."""
+    """Return lines and arcs of path data [m]: start, end, radius or None, counter-clockwise."""
     tokens = _TOKEN.findall(path)
     found, here, first = [], None, None
     at = 0
@@ -141,8 +139,8 @@ def check(drive, *, samples=20, until=None):
     """Compare a drive's drawings with its simulation at some instants of a short run."""
     wanted = ["contact_force", "contact_depth", "roller_x", "roller_y", "guide_force_x"]
     wanted += ["guide_force_y", "sprocket_angle", "sprocket_x", "sprocket_y", "tensioner_position"]
-    until = until or min(drive.run_defaults()["until"], 5e-3)
-    run = cd.simulate(drive, until=until, every=until / (samples - 1), record=wanted, accuracy=None)
+    until = until or min(drive.run_defaults["until"], 5e-3)
+    run = cd.simulate(drive, until=until, every=until / (samples - 1), record=wanted, error=False)
     assert run.sizes["time"] >= samples
     scene = drive.resolved().to_dict()
     chains = drive.chains or {"": drive.links}
@@ -166,8 +164,13 @@ def check(drive, *, samples=20, until=None):
                 deepest[sprocket] = max(deepest[sprocket], -gaps.min())
                 touched |= gaps < 0
                 # Gaps of the same rollers to the teeth as they stood at the start.
-                there = [np.array([run[f"sprocket_{axis}"].sel(sprocket=sprocket)[at]
-                                   for axis in "xy"], dtype=float) for at in (0, index)]
+                there = [
+                    np.array(
+                        [run[f"sprocket_{axis}"].sel(sprocket=sprocket)[at] for axis in "xy"],
+                        dtype=float,
+                    )
+                    for at in (0, index)
+                ]
                 angle = run["sprocket_angle"].sel(sprocket=sprocket)
                 angle = float(angle[index] - angle[0])
                 seen = turned(centres - there[1] + there[0], -angle, there[0])
@@ -176,11 +179,20 @@ def check(drive, *, samples=20, until=None):
                 worst["open"] = max(worst["open"], np.abs(gaps - expected)[near].max(initial=0.0))
                 counted += int(near.sum())
             # A roller presses where it overlaps, to rounding; both ways.
-            gaps = np.min([distances(part(svg, "sprocket", drive.sprockets[it])["d"], centres)
-                           for it in chain["sprockets"]] or [np.full(len(centres), 1.0)], axis=0)
+            gaps = np.min(
+                [
+                    distances(part(svg, "sprocket", drive.sprockets[it])["d"], centres)
+                    for it in chain["sprockets"]
+                ]
+                or [np.full(len(centres), 1.0)],
+                axis=0,
+            )
             gaps = gaps - radius
-            worst["pressing"] = max(worst["pressing"], gaps[force > 0].max(initial=0.0),
-                                    -gaps[(force == 0)].min(initial=0.0))
+            worst["pressing"] = max(
+                worst["pressing"],
+                gaps[force > 0].max(initial=0.0),
+                -gaps[(force == 0)].min(initial=0.0),
+            )
             for guide in (drive.guides[it] for it in chain["guides"]):
                 face = part(svg, "guide", guide)["d"]
                 support = shoes[guide].get("support", {"kind": "fixed"})
@@ -244,3 +256,75 @@ def test_gaps_in_drawings_of_drives_by_lot_are_those_of_the_simulation(seed):
     print(f"lot {seed}: {worst} of {counted}")
     assert max(worst.values()) < DIGITS, worst
     assert counted > 200
+
+
+def test_a_chain_that_does_not_close_is_drawn_with_its_gap():
+    """Two links less than what closes leave a gap of two pitches, on the straight last span."""
+    drive = cd.scenes.industrial_16b().replace({"chain.links": 118})
+    with pytest.raises(cd.AssemblyError):
+        drive.describe()
+    svg = drive.svg()
+    centres, _ = rollers(svg)
+    # A strand has one roller more than links.
+    assert len(centres) == 119
+    assert len(re.findall('class="plate"', svg)) == 118
+    steps = np.hypot(*np.diff(centres, axis=0).T)
+    np.testing.assert_allclose(steps, 25.4e-3, atol=2e-5)
+    gap = part(svg, "gap", "0")
+    ends = 1e-3 * np.array([[float(gap[f"{axis}{end}"]) for axis in "xy"] for end in (1, 2)])
+    np.testing.assert_allclose(ends, centres[[-1, 0]], atol=1e-9)
+    assert np.hypot(*(ends[1] - ends[0])) == pytest.approx(50.8e-3, abs=2e-4)
+    assert "50.8 mm are missing" in svg
+    assert "118" in re.search(r'class="told"[^>]*>([^<]*118[^<]*)<', svg)[1]
+
+
+def test_clashes_are_marked_where_they_are():
+    """A bar through the taut span of the industrial drive, 20 mm behind the line of the rollers."""
+    drive = cd.scenes.industrial_16b()
+    figure = drive._inner.figure(False, 0.0)
+    ((x, y),) = figure.start()["rollers"][0][[60]]
+    bar = {"kind": "bar", "start": [x - 0.1, y + 0.02], "end": [x + 0.1, y + 0.02]}
+    bar |= {"end_radius": 0.05, "end_angle": "20 deg"}
+    values = drive.to_dict()
+    values["guides"] = [{"name": "bar", "face": bar}]
+    clashing = cd.Drive.from_dict(values)
+    figure = clashing._inner.figure(True, 0.0)
+    assert figure.problem
+    ((at_x, at_y, depth, told),) = figure.clashes
+    assert "guide `bar`" in told
+    assert abs(at_y - y) < 0.03
+    assert abs(at_x - x) < 0.15
+    mark = part(clashing.svg(), "clash", "0")
+    assert 1e-3 * float(mark["cx"]) == pytest.approx(at_x, abs=1e-6)
+    assert f"{1e3 * depth:.1f} mm" in clashing.svg()
+
+
+def test_the_command_draws_scenes_and_results(tmp_path):
+    def told(*arguments):
+        command = [sys.executable, "-m", "chaindrive", *arguments]
+        return subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
+
+    drive = cd.scenes.timing_drive()
+    done = told("draw", "timing_drive", "-o", "timing.svg")
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "timing.svg").read_text() == drive.svg()
+    assert "--overwrite" in told("draw", "timing_drive", "-o", "timing.svg").stderr
+    run = cd.simulate(drive, until=1e-3, every=1e-4, output=tmp_path / "run.zarr", error=False)
+    done = told("draw", "run.zarr", "--at", "0.52 ms")
+    assert done.returncode == 0, done.stderr
+    expected = cd.plot.svg(run, 5e-4)
+    # But for the title.
+    assert done.stdout.splitlines()[2:] == expected.splitlines()[2:]
+
+
+def test_a_frame_says_which_channel_is_missing():
+    drive = cd.scenes.timing_drive()
+    run = cd.simulate(drive, until=1e-4, every=1e-4, record=["roller_x", "roller_y"], error=False)
+    with pytest.raises(KeyError, match=r"sprocket_angle.*'sprocket_angle', 'tensioner_position'"):
+        cd.plot.svg(run, 0.0)
+
+
+def test_notebooks_show_drives():
+    html = cd.scenes.two_stage_timing()._repr_html_()
+    assert html.count("<svg") == 1
+    assert 'id="roller-primary-0"' in html

@@ -96,18 +96,18 @@ def test_all_chains_are_drawn(run: xr.Dataset) -> None:
     from matplotlib import pyplot
 
     ax = cd.plot.layout(cd.scenes.two_stage_timing())
-    lines = [it for it in ax.collections if type(it).__name__ == "LineCollection"]
-    assert [len(it.get_segments()) for it in lines] == [76, 84]
+    (plates,) = [it for it in ax.collections if type(it).__name__ == "PolyCollection"]
+    assert len(plates.get_paths()) == 76 + 84
     pyplot.close(ax.figure)
     both = cd.simulate(
         cd.scenes.two_stage_timing(),
         until=2e-4,
         every=1e-4,
         method="verlet",
-        record=["roller_x", "roller_y", "link_tension"],
+        record=["roller_x", "roller_y", "sprocket_angle", "tensioner_position", "link_tension"],
         error=False,
     )
     ax = cd.plot.frame(both, 1e-4)
-    (links,) = [it for it in ax.collections if type(it).__name__ == "LineCollection"]
-    assert len(links.get_segments()) == 160
+    (plates,) = [it for it in ax.collections if type(it).__name__ == "PolyCollection"]
+    assert len(plates.get_array()) == len(plates.get_paths()) == 160
     pyplot.close(ax.figure)

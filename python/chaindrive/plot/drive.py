@@ -191,7 +191,7 @@ class _Picture:
             self.ax.plot(*outlines[0].T, color=_GUIDE, linewidth=1.0, zorder=3)
         else:
             wide = 1.5 if body["kind"] == "plunger" else 3.0
-            look = {"color": _CARRIER, "linewidth": wide, "solid_capstyle": "round"}
+            look: dict[str, Any] = {"color": _CARRIER, "linewidth": wide, "solid_capstyle": "round"}
             for outline in outlines:
                 self.ax.plot(*outline.T, zorder=1.4, alpha=0.7, **look)
             if body["kind"] == "arm":
@@ -228,7 +228,13 @@ class _Picture:
         clashes = [(x, y, f"{1e3 * depth:.1f} mm") for x, y, depth, _ in self.figure.clashes]
         gaps = [(x, y, told) for x, y, _, told in self.figure.gaps]
         for x, y, told in clashes + gaps:
-            look = {"mfc": "none", "mec": _MARK, "mew": 1.5, "markersize": 16, "zorder": 7}
+            look: dict[str, Any] = {
+                "mfc": "none",
+                "mec": _MARK,
+                "mew": 1.5,
+                "markersize": 16,
+                "zorder": 7,
+            }
             self.ax.plot(x, y, "o", **look)
             self.ax.annotate(
                 told,
