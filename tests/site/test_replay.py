@@ -148,7 +148,7 @@ def test_followed_roller_is_told(page, run):
     page.select_option("#follow", "17")
     page.wait_for_function("document.getElementById('followed').textContent.includes('Roller 17')")
     x = run["roller_x"].isel(time=1234, roller=17).item() * 1e3
-    told = float(page.inner_text("#followed").split("x")[1].split("mm")[0])
+    told = float(page.inner_text("#followed").split("x")[1].split("mm")[0].replace("−", "-"))
     assert told == pytest.approx(x, abs=0.1)
 
 

@@ -139,7 +139,7 @@ class Plots {
       c.moveTo(plot.left, at);
       c.lineTo(plot.right, at);
       c.stroke();
-      c.fillText(String(+(tick / factor).toPrecision(6)), plot.left - 6, at);
+      c.fillText(withMinus(+(tick / factor).toPrecision(6)), plot.left - 6, at);
     }
     c.textBaseline = 'top';
     c.textAlign = 'center';
