@@ -185,7 +185,7 @@ class _Stage:
         corners = self.axes.transData.transform([(0.0, 0.0), (1.0, 0.0)])
         heights = np.repeat([it["plate_height"] for it in chains], [it["links"] for it in chains])
         points = heights * (corners[1, 0] - corners[0, 0]) * 72 / _DPI
-        self.plates.set_linewidths(np.maximum(1.5, points))
+        self.plates.set(linewidths=np.maximum(1.5, points))
         diameters = np.repeat(
             [it["roller_diameter"] for it in chains], [it["rollers"] for it in chains]
         )
