@@ -67,8 +67,8 @@ def test_values_are_those_recorded_within_half_a_quantum(run, page):
             assert quantum <= 1e-4
         else:
             assert quantum <= 0.0025 * np.abs(recorded).max() * (1 + 1e-9)
-    for number, curve in enumerate(index["curves"]):
-        values, quantum = arrays[f"curve_{number}"]
+    for curve in index["curves"]:
+        values, quantum = arrays[curve["stream"]]
         recorded = run["span_tension"].sel(span=curve["label"]).to_numpy()
         assert np.abs(values[:, 0] - recorded).max() <= 0.5 * quantum * (1 + 1e-9)
         assert quantum <= 0.0025 * run["span_tension"].to_numpy().max()

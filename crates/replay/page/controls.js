@@ -113,6 +113,7 @@ class Player {
 
   follow(roller) {
     this.view.follow(roller);
+    this.plots.follow(roller);
     this.view.marked = -1;
     byId('follow').value = roller;
     this.dirty = true;
