@@ -63,7 +63,13 @@ def random_drive(seed: int) -> cd.Drive:
     ]
     moves = {"kind": "sprocket", "name": "driven", "direction": list(along), "within": 2 * pitch}
     if kind == "guide":
-        face = {"kind": "on-span", "from": "25 %", "to": "75 %", "radius": 4 * length, "bow": pitch / 4}
+        face = {
+            "kind": "on-span",
+            "from": "25 %",
+            "to": "75 %",
+            "radius": 4 * length,
+            "bow": pitch / 4,
+        }
         touches = lot.choice(["rollers", "eyes"])
         scene["guides"] = [{"name": "rail", "face": face, "touches": touches}]
         scene["route"]["stops"] = ["driver", "rail", "driven"]
@@ -81,7 +87,12 @@ def random_drive(seed: int) -> cd.Drive:
         idler["support"] = {"kind": "tensioner", "name": "tightener"}
         scene["sprockets"].append(idler)
         stops.append(cd.design.Sprocket("idler", 17, tuple(centre)))
-        push: dict[str, Any] = {"kind": "spring", "preload": pull, "stiffness": 1e5, "damping": 200.0}
+        push: dict[str, Any] = {
+            "kind": "spring",
+            "preload": pull,
+            "stiffness": 1e5,
+            "damping": 200.0,
+        }
         if kind == "slider":
             carrier: dict[str, Any] = {"kind": "slider", "direction": list(across), "mass": 1.0}
             within: Any = 2 * pitch

@@ -166,8 +166,13 @@ def check(drive, *, samples=20, until=None):
                 deepest[sprocket] = max(deepest[sprocket], -gaps.min())
                 touched |= gaps < 0
                 # Gaps of the same rollers to the teeth as they stood at the start.
-                there = [np.array([run[f"sprocket_{axis}"].sel(sprocket=sprocket)[at]
-                                   for axis in "xy"], dtype=float) for at in (0, index)]
+                there = [
+                    np.array(
+                        [run[f"sprocket_{axis}"].sel(sprocket=sprocket)[at] for axis in "xy"],
+                        dtype=float,
+                    )
+                    for at in (0, index)
+                ]
                 angle = run["sprocket_angle"].sel(sprocket=sprocket)
                 angle = float(angle[index] - angle[0])
                 seen = turned(centres - there[1] + there[0], -angle, there[0])
@@ -176,11 +181,20 @@ def check(drive, *, samples=20, until=None):
                 worst["open"] = max(worst["open"], np.abs(gaps - expected)[near].max(initial=0.0))
                 counted += int(near.sum())
             # A roller presses where it overlaps, to rounding; both ways.
-            gaps = np.min([distances(part(svg, "sprocket", drive.sprockets[it])["d"], centres)
-                           for it in chain["sprockets"]] or [np.full(len(centres), 1.0)], axis=0)
+            gaps = np.min(
+                [
+                    distances(part(svg, "sprocket", drive.sprockets[it])["d"], centres)
+                    for it in chain["sprockets"]
+                ]
+                or [np.full(len(centres), 1.0)],
+                axis=0,
+            )
             gaps = gaps - radius
-            worst["pressing"] = max(worst["pressing"], gaps[force > 0].max(initial=0.0),
-                                    -gaps[(force == 0)].min(initial=0.0))
+            worst["pressing"] = max(
+                worst["pressing"],
+                gaps[force > 0].max(initial=0.0),
+                -gaps[(force == 0)].min(initial=0.0),
+            )
             for guide in (drive.guides[it] for it in chain["guides"]):
                 face = part(svg, "guide", guide)["d"]
                 support = shoes[guide].get("support", {"kind": "fixed"})
