@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 
 # What the wheel is made of.
 SOURCES := Cargo.toml Cargo.lock pyproject.toml \
-	$(shell find crates -type f \( -path '*/src/*' -o -path '*/scenes/*' -o -name Cargo.toml \)) \
+	$(shell find crates -type f \( -path '*/src/*' -o -path '*/scenes/*' -o -path '*/page/*' -o -name Cargo.toml \)) \
 	$(shell find python -type f \( -name '*.py' -o -name '*.pyi' -o -name py.typed \))
 
 # Every test that judges a validation case appends to it.

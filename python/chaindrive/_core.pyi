@@ -241,6 +241,7 @@ def replay(
     samples: int,
     stride: int,
     time: _Floats,
+    names: Sequence[str],
     channels: Sequence[tuple[str, str, str, Sequence[str], _Floats]],
     contacts: tuple[Sequence[str], NDArray[np.int64], _Floats, _Floats] | None,
     plots: Sequence[str] | None,

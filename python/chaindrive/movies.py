@@ -112,7 +112,8 @@ class _Stage:
         )
         known = "link_tension" in thinned
         self.tensions = _floats(thinned["link_tension"]) if known else None
-        self.canvas = FigureCanvasAgg(
+        # The backend is not typed.
+        self.canvas: Any = FigureCanvasAgg(
             Figure((size[0] / _DPI, size[1] / _DPI), dpi=_DPI, layout="constrained")
         )
         self.axes = self.canvas.figure.add_subplot()
@@ -168,7 +169,7 @@ class _Stage:
         from matplotlib.collections import EllipseCollection, LineCollection
 
         ends = list(self.rollers[0][self.links])
-        self.plates = LineCollection(ends, capstyle="round", zorder=3)
+        self.plates: Any = LineCollection(ends, capstyle="round", zorder=3)
         if self.tensions is None:
             self.plates.set_color(_PLATES)
         else:
@@ -184,7 +185,7 @@ class _Stage:
         corners = self.axes.transData.transform([(0.0, 0.0), (1.0, 0.0)])
         heights = np.repeat([it["plate_height"] for it in chains], [it["links"] for it in chains])
         points = heights * (corners[1, 0] - corners[0, 0]) * 72 / _DPI
-        self.plates.set_linewidths(np.maximum(1.5, points))
+        self.plates.set(linewidths=np.maximum(1.5, points))
         diameters = np.repeat(
             [it["roller_diameter"] for it in chains], [it["rollers"] for it in chains]
         )

@@ -129,6 +129,7 @@ def _page(run: xr.Dataset, plot: list[str] | None, frames: int) -> str:
         samples,
         stride,
         _floats(thinned["time"]),
+        recorded,
         [_channel(thinned[name]) for name in wanted],
         _contacts(run),
         plot,

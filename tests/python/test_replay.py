@@ -1,6 +1,7 @@
 """Replays: what the page holds is what was recorded, and what cannot be shown is refused."""
 
 import base64
+import html
 import json
 import re
 import subprocess
@@ -20,9 +21,9 @@ CHANNELS += ["link_tension", "contact_force", "energy_kinetic"]
 def run():
     return cd.simulate(
         cd.scenes.timing_drive(),
-        until=8e-3,
-        every=2e-5,
-        step=2e-6,
+        until=3e-3,
+        every=1e-5,
+        step=3e-7,
         record=CHANNELS,
         events=["teeth"],
         error=False,
@@ -67,8 +68,8 @@ def test_values_are_those_recorded_within_half_a_quantum(run, page):
             assert quantum <= 1e-4
         else:
             assert quantum <= 0.0025 * np.abs(recorded).max() * (1 + 1e-9)
-    for number, curve in enumerate(index["curves"]):
-        values, quantum = arrays[f"curve_{number}"]
+    for curve in index["curves"]:
+        values, quantum = arrays[curve["stream"]]
         recorded = run["span_tension"].sel(span=curve["label"]).to_numpy()
         assert np.abs(values[:, 0] - recorded).max() <= 0.5 * quantum * (1 + 1e-9)
         assert quantum <= 0.0025 * run["span_tension"].to_numpy().max()
@@ -111,7 +112,7 @@ def test_contacts_are_those_logged(run, page):
     _, arrays = decoded(page)
     starts, quantum = arrays["event_start"]
     recorded = np.sort(run["event_start"].to_numpy())
-    assert len(recorded) > 100
+    assert len(recorded) > 20
     assert np.abs(starts[:, 0] - recorded).max() <= 0.5 * quantum
     order = np.argsort(run["event_start"].to_numpy(), kind="stable")
     rollers = run["event_roller"].to_numpy()[order]
@@ -181,14 +182,14 @@ def test_texts_of_a_run_do_not_break_the_page(run):
     assert index["about"]["title"] == awkward.attrs["title"]
     assert index["about"]["summary"] == awkward.attrs["summary"]
     assert "roller_x" in arrays
-    assert "<b>" not in cd.replay(awkward).html
+    assert "</script><b>" not in cd.replay(awkward).html
 
 
 def test_notebook_shows_the_page_in_a_frame(run, page):
     shown = cd.replay(run)._repr_html_()
     assert shown.startswith("<iframe srcdoc=")
     inner = shown.split('srcdoc="')[1].split('"')[0]
-    assert inner.replace("&quot;", '"').replace("&lt;", "<").startswith("<!DOCTYPE html>")
+    assert html.unescape(inner) == page
     assert len(shown) < 1.1 * len(page)
 
 
@@ -213,7 +214,7 @@ def test_command_makes_the_same_page_of_a_store(tmp_path):
         cd.scenes.timing_drive(),
         until=1e-3,
         every=2e-5,
-        step=2e-6,
+        step=3e-7,
         record=CHANNELS,
         events=["teeth", "guides"],
         error=False,

@@ -148,7 +148,7 @@ def test_followed_roller_is_told(page, run):
     page.select_option("#follow", "17")
     page.wait_for_function("document.getElementById('followed').textContent.includes('Roller 17')")
     x = run["roller_x"].isel(time=1234, roller=17).item() * 1e3
-    told = float(page.inner_text("#followed").split("x")[1].split("mm")[0])
+    told = float(page.inner_text("#followed").split("x")[1].split("mm")[0].replace("−", "-"))
     assert told == pytest.approx(x, abs=0.1)
 
 
@@ -195,7 +195,7 @@ def test_first_frame_and_script_time_keep_their_limits(browser, file):
     page.close()
 
 
-@pytest.mark.parametrize("name", cd.scenes.names())
+@pytest.mark.parametrize("name", cd.scenes.__all__)
 def test_presets_are_drawn(browser, name, tmp_path):
     drive = getattr(cd.scenes, name)()
     run = cd.simulate(drive, until=2e-3, every=1e-4, record=CHANNELS, error=False)

@@ -35,6 +35,7 @@ pub(crate) fn replay<'py>(
     samples: usize,
     stride: usize,
     time: PyReadonlyArray1<'py, f64>,
+    names: Vec<String>,
     channels: Vec<Channel<'py>>,
     contacts: Option<Contacts<'py>>,
     plots: Option<Vec<String>>,
@@ -53,6 +54,7 @@ pub(crate) fn replay<'py>(
         samples,
         stride,
         time: time.as_array().to_vec(),
+        names,
         channels: channels.into_iter().map(channel).collect(),
         contacts: contacts.map(logged),
     };

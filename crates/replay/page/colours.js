@@ -37,14 +37,17 @@ function palette() {
 // Numbers as engineers write them: three digits and a prefix.
 const PREFIXES = { '-9': 'n', '-6': 'µ', '-3': 'm', 0: '', 3: 'k', 6: 'M', 9: 'G' };
 
+/** A number with a minus that is one. */
+const withMinus = (text) => String(text).replace('-', '−');
+
 /** A value with its unit; units that take no prefix are written out. */
 function quantity(value, unit, digits = 3) {
   if (!Number.isFinite(value)) return '–';
-  if (unit === '1' || unit === '') return String(+value.toPrecision(digits));
+  if (unit === '1' || unit === '') return withMinus(+value.toPrecision(digits));
   const plain = /^[A-Za-z]+( m)?(\/s)?$/.test(unit) && unit !== 'rad' && unit !== 'rad/s';
-  if (!plain || value === 0) return `${+value.toPrecision(digits)} ${unit}`;
+  if (!plain || value === 0) return `${withMinus(+value.toPrecision(digits))} ${unit}`;
   const exponent = Math.max(-9, Math.min(9, 3 * Math.floor(Math.log10(Math.abs(value) * 1.0005) / 3)));
-  return `${+(value / 10 ** exponent).toPrecision(digits)} ${PREFIXES[exponent]}${unit}`;
+  return `${withMinus(+(value / 10 ** exponent).toPrecision(digits))} ${PREFIXES[exponent]}${unit}`;
 }
 
 /** The largest of 1, 2, 5 times a power of ten that is no larger. */

@@ -113,6 +113,7 @@ class Player {
 
   follow(roller) {
     this.view.follow(roller);
+    this.plots.follow(roller);
     this.view.marked = -1;
     byId('follow').value = roller;
     this.dirty = true;
@@ -145,7 +146,8 @@ class Player {
     this.tellLengths();
     if (roller < 0) return;
     const [x, y] = view.roller(roller);
-    const rows = [['x', `${(x * 1e3).toFixed(1)} mm`], ['y', `${(y * 1e3).toFixed(1)} mm`]];
+    const place = (value) => withMinus(`${(value * 1e3).toFixed(2)} mm`);
+    const rows = [['x', place(x)], ['y', place(y)]];
     const chain = this.film.chains.findLast((it) => it.firstRoller <= roller);
     const link = roller - chain.firstRoller;
     if (arrays.contact_force) rows.push(['on the teeth', quantity(arrays.contact_force.at(this.frame, roller), 'N')]);
@@ -165,7 +167,7 @@ class Player {
     const { view } = this;
     const length = roundDown(110 / view.window.scale);
     byId('bar').style.width = `${length * view.window.scale}px`;
-    byId('length').textContent = quantity(length, 'm').replace(/^(\d+) m$/, '$1 m');
+    byId('length').textContent = quantity(length, 'm');
     if (byId('force').hidden) return;
     const force = roundDown(view.largestForce);
     const arrow = (view.longest() * force) / view.largestForce;

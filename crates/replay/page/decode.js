@@ -49,6 +49,11 @@ class Numbers {
     return this.all;
   }
 
+  /** All values of one column. */
+  column(column) {
+    return this.values.subarray(column * this.rows, (column + 1) * this.rows);
+  }
+
   /** Least and largest value. */
   range() {
     let [least, most] = [Infinity, -Infinity];

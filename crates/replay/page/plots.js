@@ -1,5 +1,8 @@
 // Quantities over time, with a cursor that goes with the picture.
 
+/** Curves of one plot that colours tell apart. */
+const MOST_COLOURS = 8;
+
 class Plots {
   constructor(place, film, seek) {
     this.film = film;
@@ -7,9 +10,9 @@ class Plots {
     this.window = [this.times[0], this.times[film.frames - 1]];
     this.colours = palette();
     const channels = new Map();
-    film.curves.forEach((curve, i) => {
+    film.curves.forEach((curve) => {
       const known = channels.get(curve.channel) || { ...curve, curves: [] };
-      known.curves.push({ label: curve.label, values: film.arrays[`curve_${i}`].values });
+      known.curves.push({ label: curve.label, values: film.arrays[curve.stream].column(curve.column) });
       channels.set(curve.channel, known);
     });
     this.plots = [...channels.values()].map((channel) => this.panel(place, channel, seek));
@@ -27,16 +30,18 @@ class Plots {
     canvas.setAttribute('aria-label', `${channel.name} over time`);
     const key = document.createElement('div');
     key.className = 'key';
+    const crowded = channel.curves.length > MOST_COLOURS;
     const named = channel.curves.filter(({ label }) => label !== '');
-    named.forEach(({ label }, i) => {
+    if (crowded) key.textContent = `${named.length} curves; that of the roller followed, or its link, in colour`;
+    else named.forEach(({ label }, i) => {
       const entry = document.createElement('span');
       entry.textContent = label;
-      entry.style.setProperty('--own', `var(--curve-${i % 8})`);
+      entry.style.setProperty('--own', `var(--curve-${i % MOST_COLOURS})`);
       key.append(entry);
     });
     section.append(heading, canvas, key);
     place.append(section);
-    const plot = { ...channel, canvas, unitPlace: unit, drawn: document.createElement('canvas') };
+    const plot = { ...channel, crowded, canvas, unitPlace: unit, drawn: document.createElement('canvas') };
     this.listen(plot, seek);
     return plot;
   }
@@ -139,7 +144,7 @@ class Plots {
       c.moveTo(plot.left, at);
       c.lineTo(plot.right, at);
       c.stroke();
-      c.fillText(String(+(tick / factor).toPrecision(6)), plot.left - 6, at);
+      c.fillText(withMinus(+(tick / factor).toPrecision(6)), plot.left - 6, at);
     }
     c.textBaseline = 'top';
     c.textAlign = 'center';
@@ -158,13 +163,27 @@ class Plots {
     c.clip();
     c.lineWidth = 1.2;
     c.lineJoin = 'round';
-    plot.curves.forEach(({ values }, i) => {
-      c.strokeStyle = this.colours.curves[i % 8];
+    const trace = ({ values }, colour) => {
+      c.strokeStyle = colour;
       c.beginPath();
       tracePeaks(c, values, this.times, from, to, x, y);
       c.stroke();
-    });
+    };
+    const { curves } = this.colours;
+    if (plot.crowded) {
+      c.globalAlpha = 0.25;
+      for (const curve of plot.curves) trace(curve, this.colours.faint);
+      c.globalAlpha = 1;
+      const followed = plot.curves.find(({ label }) => label === String(this.followed));
+      if (followed) trace(followed, curves[0]);
+    } else plot.curves.forEach((curve, i) => trace(curve, curves[i % MOST_COLOURS]));
     c.restore();
+  }
+
+  /** Tells crowded plots apart the curve of a roller. */
+  follow(roller) {
+    this.followed = roller;
+    for (const plot of this.plots) if (plot.crowded && plot.width) this.drawCurves(plot);
   }
 
   /** The curves as drawn before, and the cursor at a frame. */

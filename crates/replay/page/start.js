@@ -76,7 +76,13 @@ function followTheme(player, film) {
 
 /** The film as a program sees it: frames, values in SI units, and the same steps as the buttons. */
 function api(film, player) {
-  const curve = (name, label) => film.curves.findIndex((it) => it.channel === name && it.label === String(label));
+  /** The array and column of a channel's entry. */
+  const found = (name, entry) => {
+    if (film.arrays[name]) return [film.arrays[name], Number(entry)];
+    const curve = film.curves.find((it) => it.channel === name && it.label === String(entry));
+    if (!curve) throw new RangeError(`${name} of ${entry} is not in this film`);
+    return [film.arrays[curve.stream], curve.column];
+  };
   return {
     film,
     frames: film.frames,
@@ -86,12 +92,11 @@ function api(film, player) {
     get timings() { return player.timings; },
     time: (frame) => film.arrays.time.at(frame, 0),
     /** A recorded value: of a roller, link or body by number, of a curve by its label. */
-    value(name, frame, entry = 0) {
-      const array = film.arrays[name] || film.arrays[`curve_${curve(name, entry)}`];
-      if (!array) throw new RangeError(`${name} is not in this film`);
-      return array.at(frame, film.arrays[name] ? entry : 0);
+    value(name, frame, entry = '') {
+      const [array, column] = found(name, entry);
+      return array.at(frame, column);
     },
-    quantum: (name, label = '') => (film.arrays[name] || film.arrays[`curve_${curve(name, label)}`]).quantum,
+    quantum: (name, entry = '') => found(name, entry)[0].quantum,
     seek: (frame) => player.seek(frame),
     play: () => player.play(),
     pause: () => player.pause(),

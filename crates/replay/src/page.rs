@@ -62,6 +62,9 @@ struct CurveIndex<'a> {
     name: &'a str,
     unit: &'a str,
     label: &'a str,
+    /// The array with its values, and the column there.
+    stream: String,
+    column: usize,
 }
 
 /// The page of a film: HTML that needs nothing else.
@@ -86,16 +89,7 @@ pub fn page(film: &Film) -> String {
             })
             .collect(),
         chains: &film.chains,
-        curves: film
-            .curves
-            .iter()
-            .map(|it| CurveIndex {
-                channel: &it.channel,
-                name: &it.name,
-                unit: &it.unit,
-                label: &it.label,
-            })
-            .collect(),
+        curves: curves(film),
         quanta: Quanta {
             distance: distance(film),
             channel: 1.0 / LEVELS,
@@ -116,6 +110,36 @@ pub fn page(film: &Film) -> String {
         .replace("{{title}}", &escaped(title))
         .replace("{{data}}", &STANDARD.encode(&streams.bytes))
         .replace("{{index}}", &index)
+}
+
+/// Where the values of every curve are: those that colours or arrows show are in the page already.
+fn curves(film: &Film) -> Vec<CurveIndex<'_>> {
+    let frames = &film.frames;
+    let shown = |channel: &str| match channel {
+        "link_tension" => frames.link_tension.is_some(),
+        "contact_force" => frames.contact_force.is_some(),
+        _ => false,
+    };
+    let mut column = 0;
+    let mut index: Vec<CurveIndex<'_>> = Vec::with_capacity(film.curves.len());
+    for (number, curve) in film.curves.iter().enumerate() {
+        let follows = index.last().is_some_and(|it| it.channel == curve.channel);
+        column = if follows { column + 1 } else { 0 };
+        let is_shown = shown(&curve.channel);
+        index.push(CurveIndex {
+            channel: &curve.channel,
+            name: &curve.name,
+            unit: &curve.unit,
+            label: &curve.label,
+            stream: if is_shown {
+                curve.channel.clone()
+            } else {
+                format!("curve_{number}")
+            },
+            column: if is_shown { column } else { 0 },
+        });
+    }
+    index
 }
 
 /// Quantum of the places of a film \[m\].
@@ -168,8 +192,14 @@ fn packed(film: &Film) -> Streams {
     if let Some(values) = &frames.contact_direction {
         streams.push("contact_direction", values, rollers, DIRECTION);
     }
-    for (number, curve) in film.curves.iter().enumerate() {
-        streams.push_channel(&format!("curve_{number}"), &curve.values, 1);
+    for (curve, index) in film.curves.iter().zip(curves(film)) {
+        if streams
+            .index
+            .iter()
+            .all(|known| !known.is_called(&index.stream))
+        {
+            streams.push_channel(&index.stream, &curve.values, 1);
+        }
     }
     let column = |of: fn(&crate::Contact) -> f64| film.contacts.iter().map(of).collect::<Vec<_>>();
     if !film.contacts.is_empty() {

@@ -315,10 +315,9 @@ fn normal(
 fn curves(recorded: &Recorded, selection: &Selection) -> Result<Vec<Curve>, FilmError> {
     for name in selection.plots.iter().flatten() {
         if recorded.channel(name).is_none() {
-            let known = recorded.channels.iter().map(|it| it.name.as_str());
             return Err(FilmError::UnknownPlot {
                 name: name.clone(),
-                known: known.collect::<Vec<_>>().join(", "),
+                known: recorded.names.join(", "),
             });
         }
     }

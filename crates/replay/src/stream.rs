@@ -35,6 +35,12 @@ pub(crate) struct Stream {
     length: usize,
 }
 
+impl Stream {
+    pub(crate) fn is_called(&self, name: &str) -> bool {
+        self.name == name
+    }
+}
+
 /// Packed arrays, one behind the other.
 #[derive(Debug, Default)]
 pub(crate) struct Streams {

@@ -13,6 +13,8 @@ pub struct Recorded {
     pub stride: usize,
     /// Instants \[s\], (time,).
     pub time: Vec<f64>,
+    /// Names of all channels that were recorded.
+    pub names: Vec<String>,
     /// The channels that were asked for and recorded.
     pub channels: Vec<RecordedChannel>,
     /// Contacts in the order in which they ended; none where they were not logged.

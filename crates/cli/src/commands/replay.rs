@@ -40,13 +40,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NUMBER", default_value_t = MOST_FRAMES, value_parser = some_frames)]
     frames: usize,
 
-    /// Makes a movie instead (.mp4), by the command of the Python package
-    #[arg(long, conflicts_with = "gif")]
-    mp4: bool,
-
-    /// Makes a movie instead (.gif), by the command of the Python package
-    #[arg(long)]
-    gif: bool,
+    #[command(flatten)]
+    movie: Movie,
 
     /// Replaces an earlier page of the same name
     #[arg(long)]
@@ -57,6 +52,18 @@ pub(crate) struct Arguments {
     quiet: bool,
 }
 
+/// Movies instead of a page.
+#[derive(Clone, Copy, Debug, Args)]
+struct Movie {
+    /// Makes a movie instead (.mp4), by the command of the Python package
+    #[arg(long, conflicts_with = "gif")]
+    mp4: bool,
+
+    /// Makes a movie instead (.gif), by the command of the Python package
+    #[arg(long)]
+    gif: bool,
+}
+
 fn some_frames(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(0) | Err(_) => Err("must be a whole number, 1 or more".into()),
@@ -65,7 +72,7 @@ fn some_frames(text: &str) -> Result<usize, String> {
 }
 
 pub(crate) fn replay(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
-    let kind = match (arguments.mp4, arguments.gif) {
+    let kind = match (arguments.movie.mp4, arguments.movie.gif) {
         (true, _) => "mp4",
         (_, true) => "gif",
         _ => "html",

@@ -3,6 +3,7 @@
 mod bench;
 mod command;
 mod interrupt;
+mod replay;
 mod resume;
 mod same_run;
 mod shell;

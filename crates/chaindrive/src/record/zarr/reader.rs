@@ -104,12 +104,16 @@ impl Stored {
     fn read(self, wanted: &dyn Fn(&str) -> bool, most: usize) -> Result<Recorded, Fault> {
         let samples = self.length("time");
         let stride = Recorded::stride(samples, most);
-        let mut channels = Vec::new();
+        let (mut names, mut channels) = (Vec::new(), Vec::new());
         for (name, about) in &self.arrays {
             let dimensions = about["dimension_names"].as_array();
             let dimensions = dimensions.map_or(&[][..], Vec::as_slice);
             let varies = dimensions.first().is_some_and(|it| it == "time");
-            if !varies || name == "time" || !wanted(name) {
+            if !varies || name == "time" {
+                continue;
+            }
+            names.push(name.clone());
+            if !wanted(name) {
                 continue;
             }
             let labels = match dimensions.get(1).and_then(Value::as_str) {
@@ -129,6 +133,7 @@ impl Stored {
             samples,
             stride,
             time: self.rows("time", stride)?,
+            names,
             channels,
             contacts: self.contacts()?,
             attributes: self.attributes,
