@@ -38,6 +38,7 @@ nb_execution_raise_on_error = True
 nb_execution_timeout = 300
 # Tutorials write their files beside nothing of ours.
 nb_execution_in_temp = True
+os.environ["CHAINDRIVE_EXAMPLES"] = str(HERE.parent / "examples")
 nb_merge_streams = True
 
 # In docstrings, single backticks stand about names.
