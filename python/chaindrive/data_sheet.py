@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
 from html import escape
 from textwrap import wrap
 from typing import Any, NamedTuple
@@ -57,7 +58,7 @@ def text(name: str, title: str, of: list[Row]) -> str:
 
 
 def html(name: str, title: str, of: list[Row], drawing: str | None) -> str:
-    """Return a sheet as HTML, with a drawing where there is one.
+    """Return a sheet as HTML, with a drawing in SVG where there is one.
 
     Colours are those of the page around it, so that it can be read on light and on dark ones.
     """
@@ -68,8 +69,17 @@ def html(name: str, title: str, of: list[Row], drawing: str | None) -> str:
         for row in of
     )
     heading = f"<strong>{escape(title or name)}</strong> <code>{escape(name)}</code>"
-    picture = "" if drawing is None else f'<div style="max-width: 40em">{drawing}</div>'
-    return f"<div>{heading}<table>{table}</table>{picture}</div>"
+    return f"<div>{heading}<table>{table}</table>{_picture(title or name, drawing)}</div>"
+
+
+def _picture(title: str, drawing: str | None) -> str:
+    """Return an image that fits the page; its parts have names of their own, page by page."""
+    if drawing is None:
+        return ""
+    data = b64encode(drawing.encode()).decode()
+    look = "max-width: min(100%, 40em); max-height: 40em; height: auto; background: white"
+    source = f"data:image/svg+xml;base64,{data}"
+    return f'<img src="{source}" alt="{escape(title)}" style="{look}">'
 
 
 def _chain(chain: dict[str, Any]) -> str:
@@ -85,7 +95,7 @@ def _sprocket(sprocket: dict[str, Any]) -> str:
 
 def _guide(guide: dict[str, Any]) -> str:
     face = guide["face"]["kind"]
-    return f"{guide['name']} ({face} under {guide['touches']})"
+    return f"{guide['name']} ({face}, touches {guide['touches']})"
 
 
 def _tensioner(tensioner: dict[str, Any]) -> str:

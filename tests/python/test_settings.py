@@ -1,6 +1,8 @@
 """The words that editors complete are those that the core takes."""
 
+import base64
 import inspect
+import re
 from typing import Any, get_args
 
 import pytest
@@ -60,6 +62,12 @@ def test_every_setting_of_a_run_can_be_kept_in_a_dict() -> None:
     assert set(settings.RunSettings.__annotations__) == set(
         cd.schema()["$defs"]["Run"]["properties"]
     )
+
+
+def test_the_drawing_in_a_sheet_is_that_of_the_drive() -> None:
+    drive = cd.scenes.two_stage_timing()
+    (data,) = re.findall(r'src="data:image/svg\+xml;base64,([^"]*)"', drive._repr_html_())
+    assert base64.b64decode(data).decode() == drive._repr_svg_()
 
 
 @pytest.mark.parametrize("name", cd.scenes.presets())
