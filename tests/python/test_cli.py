@@ -32,6 +32,15 @@ def test_help_and_version(command):
     assert "run" in run(*command, "--help").stdout
 
 
+def test_shells_are_told_of_the_command(tmp_path):
+    told = run(COMMAND, "completion", "bash")
+    assert told.returncode == 0
+    assert "_chaindrive()" in told.stdout
+    assert "span_tension" in told.stdout
+    assert run(COMMAND, "man", tmp_path / "man1").returncode == 0
+    assert ".TH chaindrive" in (tmp_path / "man1" / "chaindrive.1").read_text(encoding="utf-8")
+
+
 def test_check_and_its_exit_codes():
     assert run(COMMAND, "check", "spinning_ring").returncode == 0
     wrong = run(COMMAND, "check", "spining_ring")

@@ -14,7 +14,7 @@ use crate::stdout::print;
 ///
 /// bash: chaindrive completion bash > ~/.local/share/bash-completion/completions/chaindrive
 ///
-/// zsh: chaindrive completion zsh > a folder of $fpath/_chaindrive
+/// zsh: chaindrive completion zsh > ~/.zfunc/_chaindrive, with ~/.zfunc in fpath
 ///
 /// fish: chaindrive completion fish > ~/.config/fish/completions/chaindrive.fish
 #[derive(Debug, Args)]
