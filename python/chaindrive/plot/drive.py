@@ -178,7 +178,7 @@ class _Picture:
         outlines = [_placed(outline, placement) for outline in body["outlines"]]
         x, y, _ = placement
         if body["kind"] == "sprocket":
-            face = {"facecolor": _STEEL, "edgecolor": _OUTLINE, "linewidth": 0.6}
+            face: dict[str, Any] = {"facecolor": _STEEL, "edgecolor": _OUTLINE, "linewidth": 0.6}
             self.ax.add_patch(Polygon(outlines[0], zorder=2, **face))
             # The spoke shows how far the sprocket has turned.
             spoke = _placed(np.array([[0.0, 0.0], [0.0, 0.4 * body["pitch_radius"]]]), placement)
