@@ -28,6 +28,9 @@ def test_every_extra_is_one_that_the_wheel_has() -> None:
         ("zarr", "zarr", "cd.simulate(ring, output='ring.zarr')"),
         ("zarr", "zarr", "cd.open_result('ring.zarr')"),
         ("tqdm", "progress", "cd.simulate(ring, progress=True)"),
+        ("ezdxf", "dxf", "cd.exchange.write_dxf('ring.dxf', ring)"),
+        ("h5netcdf", "netcdf", "cd.save(cd.simulate(ring, until=1e-3), 'ring.nc')"),
+        ("scipy", "analysis", "cd.simulate(ring, until=1e-3).drive.spectrum('link_tension')"),
     ],
 )
 def test_a_missing_extra_is_asked_for_by_name(package: str, name: str, code: str) -> None:
