@@ -13,12 +13,23 @@ ROOT = Path(__file__).resolve().parents[2]
 COMMAND = Path(sysconfig.get_path("scripts")) / "chaindrive"
 
 
-def run(*arguments, **settings):
+# Examples that draw the pictures of pages: a run-up of a minute, every diagram there is.
+LONG = ["gallery", "run_up"]
+# A picture of a browser, taken where one is at hand.
+WITH_A_BROWSER = ["replay_picture"]
+SHORT = [
+    script
+    for script in sorted((ROOT / "examples").glob("*.py"))
+    if script.stem not in [*LONG, *WITH_A_BROWSER]
+]
+
+
+def run(*arguments, timeout=300, **settings):
     return subprocess.run(
         [str(argument) for argument in arguments],
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=timeout,
         check=False,
         **settings,
     )
@@ -56,7 +67,17 @@ def test_run_writes_a_store(tmp_path):
     assert xr.open_zarr(store, chunks=None).sizes["time"] > 1
 
 
-@pytest.mark.parametrize("script", sorted((ROOT / "examples").glob("*.py")), ids=lambda p: p.stem)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", LONG)
+def test_long_examples_run(name, tmp_path):
+    environment = os.environ | {"MPLBACKEND": "Agg"}
+    script = ROOT / "examples" / f"{name}.py"
+    done = run(sys.executable, script, "--results", tmp_path, env=environment, timeout=1800)
+    assert done.returncode == 0, done.stderr
+    assert list(tmp_path.glob("*.png"))
+
+
+@pytest.mark.parametrize("script", SHORT, ids=lambda script: script.stem)
 def test_examples_run(script, tmp_path):
     environment = os.environ | {"MPLBACKEND": "Agg"}
     text = script.read_text(encoding="utf-8")
