@@ -90,6 +90,13 @@ def test_a_run_up_keeps_the_orders_of_the_crank() -> None:
     np.testing.assert_allclose(found, expected, atol=2e-7)
     np.testing.assert_allclose(run["speed"], start + change * s * s * (3 - 2 * s))
     assert run.attrs["run_up"] == "crank"
+    # Before the ramp the crank turns at its first speed, with its orders.
+    settings["until"] = 0.01
+    run = cd.run_up(drive, "100 rpm", "127 rpm", run_in=0.03, record="span_tension", **settings)
+    turned = run["sprocket_angle"].sel(sprocket="crank").isel(time=0)
+    smooth = start * 0.03
+    began = smooth + 0.2e-3 * np.sin(4 * smooth) + 0.28e-3 * np.sin(7 * smooth)
+    assert float(turned) == pytest.approx(-began, abs=2e-7)
 
 
 def test_a_run_up_says_what_it_cannot_do() -> None:
@@ -261,6 +268,10 @@ def test_what_is_missing_is_named(two_sprockets: xr.Dataset) -> None:
         two_sprockets.drive.span_motion("top")
     with pytest.raises(cd.ParameterError, match="span left"):
         two_sprockets.drive.order_map("span_tension", "crank", turns=0.5)
+    with pytest.raises(cd.ParameterError, match="one closed chain of particles"):
+        analysis.running_modes(cd.scenes.bicycle(), speeds=1.0)
+    with pytest.raises(cd.ParameterError, match="does not turn at 90"):
+        two_sprockets.drive.span_frequencies(speed=90.0)
     script = (
         "import sys; sys.modules['scipy'] = None; sys.modules['scipy.signal'] = None\n"
         "import chaindrive as cd\n"

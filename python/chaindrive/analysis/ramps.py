@@ -31,6 +31,7 @@ def run_up(
     to: float | str,
     *,
     until: float,
+    run_in: float | str | None = None,
     of: str | None = None,
     record: Any = None,
     **settings: Any,
@@ -53,6 +54,9 @@ def run_up(
         A run-down goes from the higher speed to the lower one.
     until
         Duration of the ramp and of the run [s].
+    run_in
+        What is simulated before the ramp, at the speed from which it starts, as in `simulate`; in
+        seconds where the motion has orders.
     of
         Sprocket or shaft whose motion is replaced; needed where several have one.
     record
@@ -71,9 +75,9 @@ def run_up(
     ParameterError
         No motion is given, several are, or the speeds are not positive.
     """
-    changed, name, speed = with_run_up(drive, from_, to, until=until, of=of)
+    changed, name, speed = with_run_up(drive, from_, to, until=until, run_in=run_in, of=of)
     channels = _with_angles(drive, record)
-    run = simulate(changed, until=until, record=channels, **settings)
+    run = simulate(changed, until=until, run_in=run_in, record=channels, **settings)
     time = run["time"].to_numpy()
     about = {"units": "rad/s", "long_name": f"speed of {name}"}
     run = run.assign_coords(speed=("time", _ramp(*speed, until, time)[1], about))
@@ -82,7 +86,13 @@ def run_up(
 
 
 def with_run_up(
-    drive: Drive, from_: float | str, to: float | str, *, until: float, of: str | None = None
+    drive: Drive,
+    from_: float | str,
+    to: float | str,
+    *,
+    until: float,
+    run_in: float | str | None = None,
+    of: str | None = None,
 ) -> tuple[Drive, str, tuple[float, float]]:
     """Return a drive that runs up, the sprocket or shaft with the ramp, and the speeds [rad/s].
 
@@ -115,9 +125,15 @@ def with_run_up(
             "drive",
         )
     fastest = max(start, end) * max(float(term["order"]) for term in terms) / (2 * math.pi)
-    # Two knots behind the end: the curvature of a natural spline vanishes at its ends.
+    if isinstance(run_in, str):
+        raise ParameterError(
+            f"run_in = {run_in!r}: {path} has orders, give the time in seconds", "run_in"
+        )
+    # Knots beyond both ends: the curvature of a natural spline vanishes at its own.
     step = 1.0 / (_KNOTS * fastest)
-    time = np.arange(0.0, until + 4.0 * step, step)
+    before = math.ceil((run_in or 0.0) / step) + 4
+    after = math.ceil(until / step) + 4
+    time = np.linspace(-before * step, after * step, before + after + 1)
     smooth = direction * _ramp(start, end, until, time)[0]
     angle = smooth.copy()
     for term in terms:

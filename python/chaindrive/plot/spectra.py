@@ -60,7 +60,8 @@ def spectrum(spread: xr.DataArray, *, ax: Axes | None = None, up_to: float | Non
         name = ", ".join(str(row[dim].item()) for dim in others)
         ax.semilogy(shown[axis], row, linewidth=0.8, label=name)
     if others and rows.sizes["row"] <= 12:
-        ax.legend(fontsize="small", loc="upper right")
+        # Above the lines: peaks may stand anywhere.
+        ax.legend(fontsize="small", loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3)
     ax.set_xlabel(_label(shown[axis]))
     ax.set_ylabel(_label(spread))
     ax.margins(x=0)
@@ -144,9 +145,10 @@ def campbell(found: xr.Dataset, *, ax: Axes | None = None) -> Axes:
         ax.annotate(
             f"{order:g}",
             (speed[last], line[last]),
-            xytext=(-3, 2),
+            xytext=(-2, -9 if line[last] > 0.5 * frequency[-1] else 3),
             textcoords="offset points",
             ha="right",
+            va="top" if line[last] > 0.5 * frequency[-1] else "bottom",
             color="white",
             fontsize=8,
         )
