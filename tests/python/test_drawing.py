@@ -16,9 +16,7 @@ from drives import random_drive
 
 import chaindrive as cd
 
-# Agreement asked for [m].
-ALLOWED = 1e-4
-# Coordinates have four digits behind the point of a millimetre; both ends of a distance round.
+# Coordinates have four digits behind the point of a millimetre; both ends of a distance round [m].
 DIGITS = 2e-7
 
 _TOKEN = re.compile(r"[MLAZ]|-?[0-9.]+(?:e-?[0-9]+)?")
@@ -258,6 +256,45 @@ def test_gaps_in_drawings_of_drives_by_lot_are_those_of_the_simulation(seed):
     print(f"lot {seed}: {worst} of {counted}")
     assert max(worst.values()) < DIGITS, worst
     assert counted > 200
+
+
+def along(path, count):
+    """Return places (pieces × count, 2) along the arcs and lines of path data [m]."""
+    found = []
+    for start, end, radius, left in pieces(path):
+        chord = end - start
+        length = np.hypot(*chord)
+        share = np.linspace(0, 1, count)[:, None]
+        if radius is None:
+            found.append(start + share * chord)
+            continue
+        side = np.array([-chord[1], chord[0]]) / length * (1 if left else -1)
+        centre = (start + end) / 2 + side * np.sqrt(radius**2 - length**2 / 4)
+        sweep = 2 * np.arcsin(length / (2 * radius)) * (1 if left else -1)
+        first = np.arctan2(*(start - centre)[::-1])
+        angle = first + share[:, 0] * sweep
+        found.append(centre + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1))
+    return np.concatenate(found)
+
+
+def test_plates_lie_on_the_guides_that_carry_them():
+    """A guide that is pressed touches the edge of a plate, one that is not keeps away from all."""
+    drive = cd.scenes.timing_drive()
+    wanted = ["roller_x", "roller_y", "sprocket_angle", "tensioner_position"]
+    wanted += ["guide_force_x", "guide_force_y"]
+    run = cd.simulate(drive, until=4e-3, every=2e-3, record=wanted, error=False)
+    pressed = 0
+    for now in (run.isel(time=index) for index in range(run.sizes["time"])):
+        svg = cd.plot.svg(run, float(now["time"]))
+        plates = re.findall(r'<path id="plate-\d+" class="plate" d="([^"]+)"/>', svg)
+        for guide in drive.guides:
+            face = along(part(svg, "guide", guide)["d"], 800)
+            nearest = min(distances(plate, face).min() for plate in plates)
+            force = np.hypot(*(float(now[f"guide_force_{it}"].sel(guide=guide)) for it in "xy"))
+            pressed += force > 0
+            # 40 N on plastic of 5 MN/m are 8 micrometres.
+            assert (nearest < 2e-5) == (force > 0), (guide, nearest, force)
+    assert pressed > 4
 
 
 def test_a_chain_that_does_not_close_is_drawn_with_its_gap():
