@@ -1,6 +1,6 @@
 //! Surroundings of the parts in a drawing: the window, the title, names.
 
-use chaindrive_geometry::{Point, Vector};
+use chaindrive_geometry::{ArcSpline, Point, Vector};
 use chaindrive_mechanics::{Body, BodyKind, Figure, Placement, Pose};
 
 use super::line;
@@ -40,7 +40,7 @@ impl View {
                 room(Point::new(placement.x, placement.y), tip_radius);
                 continue;
             }
-            for piece in body.outlines.iter().flat_map(|outline| outline.pieces()) {
+            for piece in body.outlines.iter().flat_map(ArcSpline::pieces) {
                 for share in [0.0, 0.5, 1.0] {
                     room(placement.place(piece.point(share)), 0.0);
                 }
