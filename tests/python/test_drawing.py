@@ -6,6 +6,7 @@ deepest is, and through `Drive.profile` how far the others are from teeth and gu
 elsewhere when the run began.
 """
 
+import base64
 import re
 import subprocess
 import sys
@@ -367,6 +368,7 @@ def test_a_frame_says_which_channel_is_missing():
 
 
 def test_notebooks_show_drives():
-    html = cd.scenes.two_stage_timing()._repr_html_()
-    assert html.count("<svg") == 1
-    assert 'id="roller-primary-0"' in html
+    drive = cd.scenes.two_stage_timing()
+    (data,) = re.findall(r'src="data:image/svg\+xml;base64,([^"]+)"', drive._repr_html_())
+    assert base64.b64decode(data).decode() == drive._repr_svg_()
+    assert 'id="roller-primary-0"' in drive._repr_svg_()
