@@ -236,4 +236,4 @@ def test_layout_puts_rollers_into_gaps():
         turned = np.arctan2(*away[seated].T[::-1]) - np.pi / 2 - angle
         phase = body["teeth"] * turned / (2 * np.pi)
         np.testing.assert_allclose(phase, np.round(phase), atol=0.02)
-        assert seated.sum() > 4
+        assert seated.sum() > 3

@@ -1,7 +1,7 @@
 //! Surroundings of the parts in a drawing: the window, the title, names.
 
-use chaindrive_geometry::Point;
-use chaindrive_mechanics::{BodyKind, Figure, Pose};
+use chaindrive_geometry::{ArcSpline, Point, Vector};
+use chaindrive_mechanics::{Body, BodyKind, Figure, Placement, Pose};
 
 use super::line;
 use super::path::{escaped, id, millimetres};
@@ -12,6 +12,9 @@ const WIDTH: f64 = 960.0;
 const HEIGHT: f64 = 720.0;
 /// Letters of a line of text, about as many as fit beside each other.
 const LETTERS: usize = 90;
+
+/// Mean width of a letter in its height.
+const LETTER_WIDTH: f64 = 0.55;
 
 /// The window of a drawing.
 pub(super) struct View {
@@ -37,7 +40,7 @@ impl View {
                 room(Point::new(placement.x, placement.y), tip_radius);
                 continue;
             }
-            for piece in body.outlines.iter().flat_map(|outline| outline.pieces()) {
+            for piece in body.outlines.iter().flat_map(ArcSpline::pieces) {
                 for share in [0.0, 0.5, 1.0] {
                     room(placement.place(piece.point(share)), 0.0);
                 }
@@ -57,11 +60,23 @@ impl View {
         }
         let size = high - low;
         let margin = 0.03 * size.x.max(size.y);
-        let margin = chaindrive_geometry::Vector::new(margin, margin);
+        let letter = 0.018 * size.x.max(size.y);
+        for (body, placement) in figure.bodies.iter().zip(&pose.placements) {
+            if matches!(body.kind, BodyKind::Guide { .. }) {
+                let (at, anchor) = name_of_guide(body, placement, letter);
+                let width = LETTER_WIDTH * letter * body.name.chars().count() as f64;
+                match anchor {
+                    "start" => high.x = high.x.max(at.x + width),
+                    "end" => low.x = low.x.min(at.x - width),
+                    _ => {}
+                }
+            }
+        }
+        let margin = Vector::new(margin, margin);
         Self {
             low: low - margin,
             high: high + margin,
-            letter: 0.018 * size.x.max(size.y),
+            letter,
         }
     }
 
@@ -105,12 +120,23 @@ impl View {
         out
     }
 
-    /// A text at a place.
-    pub(super) fn text(&self, out: &mut String, [id, class]: [&str; 2], at: Point, text: &str) {
+    /// A text at a place, its middle there.
+    pub(super) fn text(&self, out: &mut String, ids: [&str; 2], at: Point, text: &str) {
+        self.anchored(out, ids, (at, "middle"), text);
+    }
+
+    /// A text whose `start`, `middle` or `end` is at a place.
+    fn anchored(
+        &self,
+        out: &mut String,
+        [id, class]: [&str; 2],
+        (at, anchor): (Point, &str),
+        text: &str,
+    ) {
         line(
             out,
             format_args!(
-                "<text id=\"{id}\" class=\"{class}\" transform=\"translate({} {}) scale(1 -1)\" font-size=\"{}\" text-anchor=\"middle\">{}</text>",
+                "<text id=\"{id}\" class=\"{class}\" transform=\"translate({} {}) scale(1 -1)\" font-size=\"{}\" text-anchor=\"{anchor}\">{}</text>",
                 millimetres(at.x),
                 millimetres(at.y),
                 millimetres(self.letter),
@@ -131,27 +157,37 @@ impl View {
                     let above = named.iter().filter(|other| (*other - centre).norm() < 1e-6);
                     let rows = 0.6 + 1.2 * above.count() as f64;
                     named.push(centre);
-                    Point::new(centre.x, centre.y + rows * self.letter)
+                    (
+                        Point::new(centre.x, centre.y + rows * self.letter),
+                        "middle",
+                    )
                 }
-                BodyKind::Guide { .. } => {
-                    let Some(face) = body.outlines.first() else {
-                        continue;
-                    };
-                    let middle = face.point_at(0.5 * face.length());
-                    let inside = body.backing.iter().fold(Point::origin(), |sum, p| {
-                        sum + p.coords / body.backing.len() as f64
-                    });
-                    let [middle, inside] = [middle, inside].map(|p| placement.place(p));
-                    // On the side of the material, away from the chain.
-                    let away = (inside - middle).try_normalize(0.0).unwrap_or_default();
-                    let at = middle + away * (2.5 * self.letter);
-                    Point::new(at.x, at.y - 0.4 * self.letter)
-                }
+                BodyKind::Guide { .. } => name_of_guide(body, placement, self.letter),
                 BodyKind::Arm | BodyKind::Slider | BodyKind::Plunger => continue,
             };
-            self.text(out, [&id, "name"], at, &body.name);
+            self.anchored(out, [&id, "name"], at, &body.name);
         }
     }
+}
+
+/// Where the name of a guide stands, and by which end: on the side of the material, away from the chain.
+fn name_of_guide(body: &Body, placement: &Placement, letter: f64) -> (Point, &'static str) {
+    let Some(face) = body.outlines.first() else {
+        return (Point::new(placement.x, placement.y), "middle");
+    };
+    let middle = face.point_at(0.5 * face.length());
+    let foot = face.nearest(middle, f64::INFINITY);
+    let behind = foot.map_or(middle, |foot| middle - foot.normal * (2.0 * letter));
+    let [middle, at] = [middle, behind].map(|p| placement.place(p));
+    let aside = at.x - middle.x;
+    let anchor = if aside.abs() < 0.5 * letter {
+        "middle"
+    } else if aside > 0.0 {
+        "start"
+    } else {
+        "end"
+    };
+    (Point::new(at.x, at.y - 0.4 * letter), anchor)
 }
 
 /// A message in lines that fit beside the drawing.

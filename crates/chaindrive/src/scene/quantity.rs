@@ -132,6 +132,10 @@ pub(crate) struct Complaint {
 ///
 /// # Errors
 /// What is wrong with the text.
+#[expect(
+    clippy::missing_panics_doc,
+    reason = "the table of dimensions is fixed"
+)]
 pub fn read_time(text: &str) -> Result<f64, String> {
     let time = DIMENSIONS.iter().find(|dimension| dimension.unit == "s");
     let time = time.expect("times are quantities");
@@ -142,6 +146,10 @@ pub fn read_time(text: &str) -> Result<f64, String> {
 ///
 /// # Errors
 /// The mistake in the text.
+#[expect(
+    clippy::missing_panics_doc,
+    reason = "the table of dimensions is fixed"
+)]
 pub fn read_length(text: &str) -> Result<f64, String> {
     let length = DIMENSIONS.iter().find(|dimension| dimension.unit == "m");
     let length = length.expect("lengths are quantities");

@@ -21,11 +21,12 @@ pub(super) fn behind(face: &ArcSpline, pitch: f64) -> Result<Vec<Point>, Geometr
     let back = pieces.flat_map(|piece| {
         let count = match piece {
             // Chords of a tenth of a radian.
-            Piece::Arc(arc) => (arc.sweep.abs() * 10.0).ceil() as usize,
-            Piece::Segment(_) => 1,
+            Piece::Arc(arc) => (1..64).find(|&count| arc.sweep.abs() <= 0.1 * f64::from(count)),
+            Piece::Segment(_) => None,
         };
+        let count = count.unwrap_or(1);
         (0..=count).map(move |k| {
-            let share = k as f64 / count as f64;
+            let share = f64::from(k) / f64::from(count);
             piece.point(share) - piece.normal(share) * thickness
         })
     });

@@ -11,10 +11,10 @@ const ROD: f64 = 3.0;
 /// Lines of a tensioner's carrier where it was laid.
 pub(super) fn lines(parts: &Parts, tensioner: usize, pitch: f64) -> Vec<[Point; 2]> {
     let sprockets = parts.sprockets.iter();
-    let centres: Vec<Point> = sprockets
+    let (centres, tips): (Vec<Point>, Vec<f64>) = sprockets
         .filter(|it| it.support == Support::Tensioner(tensioner))
-        .map(|it| it.centre)
-        .collect();
+        .map(|it| (it.centre, it.gap.tip_radius))
+        .unzip();
     let guides = parts.guides.iter();
     let faces: Vec<&ArcSpline> = guides
         .filter(|it| it.support == GuideSupport::Tensioner(tensioner))
@@ -22,11 +22,12 @@ pub(super) fn lines(parts: &Parts, tensioner: usize, pitch: f64) -> Vec<[Point; 
         .collect();
     match &parts.tensioners[tensioner].carrier {
         Carrier::Slider(slider) => {
-            // A rod behind everything that it pushes.
-            let middles = faces.iter().map(|face| face.point_at(0.5 * face.length()));
-            let pushed = centres.iter().copied().chain(middles);
+            // A rod behind everything that it pushes, seen beyond the tips of a sprocket.
+            let middles = faces.iter();
+            let middles = middles.map(|face| (face.point_at(0.5 * face.length()), 0.0));
+            let pushed = centres.iter().copied().zip(tips).chain(middles);
             pushed
-                .map(|tip| [tip - slider.direction * (ROD * pitch), tip])
+                .map(|(end, covered)| [end - slider.direction * (covered + ROD * pitch), end])
                 .collect()
         }
         Carrier::Arm(arm) => {
