@@ -54,7 +54,7 @@ impl fmt::Display for ChainLayout {
             let travel = worn
                 .travel
                 .map_or("closes nowhere in reach".to_owned(), |t| self.travelled(t));
-            writeln!(f, "{heading:16} {:>4.1} %  {travel}", worn.elongation * 1e2)?;
+            writeln!(f, "{heading:16} {:>4.2} %  {travel}", worn.elongation * 1e2)?;
         }
         Ok(())
     }

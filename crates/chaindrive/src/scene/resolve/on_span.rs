@@ -73,7 +73,8 @@ impl<'s> Passing<'s> {
         };
         match &guide.face {
             Face::OnSpan { bow: given, .. } => {
-                let open = || format!("the bow of `{name}` is open too: give it, or the links");
+                let open =
+                    || format!("the bow of `{name}` is open: give it, or the number of links");
                 let bow = given.map(|bow| bow.0).or(bow).ok_or_else(open)?;
                 let curved = curved(guide, bow, self.size).ok_or_else(neither)?;
                 Ok(Station::Guide(curved))
