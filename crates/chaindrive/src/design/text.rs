@@ -121,9 +121,10 @@ impl ChainLayout {
 
     /// A travel in words.
     fn travelled(&self, travel: f64) -> String {
-        match self.turns {
-            true => format!("turned by {:+.6} deg", travel.to_degrees()),
-            false => format!("moved by {:+.6} mm", travel * 1e3),
+        if self.turns {
+            format!("turned by {:+.6} deg", travel.to_degrees())
+        } else {
+            format!("moved by {:+.6} mm", travel * 1e3)
         }
     }
 }
