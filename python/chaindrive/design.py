@@ -330,7 +330,8 @@ def _layout(found: Mapping[str, Any]) -> Layout:
         entries = found[key]
         return tuple(kind(**{**it, **{p: pair(it[p]) for p in points}}) for it in entries)
 
-    faces = ({**it, "begin": it.pop("from"), "end": it.pop("to")} for it in found["faces"])
+    words = {"from": "begin", "to": "end"}
+    faces = [{words.get(key, key): it[key] for key in it} for it in found["faces"]]
     return Layout(
         **{
             **found,

@@ -47,8 +47,9 @@ def test_a_timing_drive_is_laid_out_without_a_pocket_calculator():
             pytest.approx(0, abs=1e-12)
         )
     # A worn chain is longer: the shoe goes on, and ever further.
-    travels = [worn.travel for worn in laid.wear]
+    travels = [worn.travel for worn in laid.wear if worn.travel is not None]
     assert travels[0] == pytest.approx(laid.travel)
+    assert len(travels) > 1
     assert all(np.diff(travels) > 0)
 
 
@@ -73,10 +74,10 @@ def test_an_idler_is_wrapped_as_asked():
     stops = [
         Sprocket("a", 30, (0, 0)),
         Sprocket("b", 30, (0.5, 0)),
-        Idler("idler", 12, math.radians(40)),
+        Idler("idler", 12, math.radians(30)),
     ]
     laid = design.layout(stops, PITCH)
-    assert laid.stops[2].wrap == pytest.approx(math.radians(40), abs=1e-9)
+    assert laid.stops[2].wrap == pytest.approx(math.radians(30), abs=1e-9)
     # The upper span runs back: the idler lies above and pushes down, half-way.
     assert laid.stops[2].centre[0] == pytest.approx(0.25)
     with pytest.raises(cd.ParameterError, match="wraps the idler by"):
@@ -167,7 +168,7 @@ def scene(centre, bow="", links=None):
 
 def test_a_bow_left_open_closes_the_links_and_is_told():
     """The rail of a scene is that of the module, and the text in full makes the same drive."""
-    drive = cd.Drive.from_toml(scene(401, links=92))
+    drive = cd.Drive.from_toml(scene(401.2, links=92))
     (laid,) = design.of(drive)
     assert abs(laid.misfit) < 1e-12
     full = drive.resolved()
@@ -177,12 +178,12 @@ def test_a_bow_left_open_closes_the_links_and_is_told():
     stops = [
         Sprocket("driver", 19, (0, 0)),
         Guide("rail", 2.0, 3e-3, (0.2, 0.8), height=8.51e-3),
-        Sprocket("driven", 38, (0.401, 0)),
+        Sprocket("driven", 38, (0.4012, 0)),
     ]
     closed = design.close(stops, 12.7e-3, 92, move="rail")
     np.testing.assert_allclose(laid.stops[1].centre, closed.stops[1].centre, atol=1e-12)
     # Without a number of links or a bow there is nothing that either could follow from.
-    with pytest.raises(cd.SceneError, match="bow of `rail` is open"):
+    with pytest.raises(cd.SceneError, match=r"guides\[0\].face.bow: missing; give it"):
         cd.Drive.from_toml(scene(401))
 
 

@@ -12,8 +12,9 @@ use chaindrive_geometry::{
 use chaindrive_mechanics::{Adjust, AssemblyError, Clash, Drive, Layout, PlacedChain, Stop};
 use serde::Serialize;
 
-/// Elongations by wear at which the travel of an adjusted body is given \[–\]: chains are replaced at 2 to 3 %.
-const ELONGATIONS: [f64; 7] = [0.0, 0.005, 0.01, 0.015, 0.02, 0.025, 0.03];
+/// Elongations by wear at which the travel of an adjusted body is given \[–\]: timing chains are replaced at 0.5 to 1 %, others at 2
+/// to 3 %.
+const ELONGATIONS: [f64; 9] = [0.0, 0.001, 0.002, 0.003, 0.005, 0.0075, 0.01, 0.02, 0.03];
 
 /// First step of a search for a place \[pitches\].
 const STEP: f64 = 0.1;

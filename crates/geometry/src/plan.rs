@@ -98,6 +98,7 @@ impl Plan {
 
     /// The plan with one stop changed by `travel`: a wheel moved along a direction \[m\], the bow of a guide \[m\], the wrap of an
     /// idler \[rad\]. No such stop: the plan as it is.
+    #[must_use]
     pub fn moved(&self, stop: usize, direction: Vector, travel: f64) -> Self {
         let mut plan = self.clone();
         match plan.stops.get_mut(stop) {

@@ -54,7 +54,7 @@ impl fmt::Display for ChainLayout {
             let travel = worn
                 .travel
                 .map_or("closes nowhere in reach".to_owned(), |t| self.travelled(t));
-            writeln!(f, "{heading:16} {:>4.1} %  {travel}", worn.elongation * 1e2)?;
+            writeln!(f, "{heading:16} {:>4.2} %  {travel}", worn.elongation * 1e2)?;
         }
         Ok(())
     }
@@ -121,9 +121,10 @@ impl ChainLayout {
 
     /// A travel in words.
     fn travelled(&self, travel: f64) -> String {
-        match self.turns {
-            true => format!("turned by {:+.6} deg", travel.to_degrees()),
-            false => format!("moved by {:+.6} mm", travel * 1e3),
+        if self.turns {
+            format!("turned by {:+.6} deg", travel.to_degrees())
+        } else {
+            format!("moved by {:+.6} mm", travel * 1e3)
         }
     }
 }

@@ -137,9 +137,9 @@ pub(crate) struct Complaint {
     reason = "the table of dimensions is fixed"
 )]
 pub fn read_time(text: &str) -> Result<f64, String> {
-    let time = DIMENSIONS.iter().find(|dimension| dimension.unit == "s");
-    let time = time.expect("times are quantities");
-    time.read(text, None).map_err(|complaint| complaint.message)
+    in_unit("s")
+        .read(text, None)
+        .map_err(|complaint| complaint.message)
 }
 
 /// A length \[m\] from a number and a unit, such as `"12.7 mm"`, or from a bare number of metres.
@@ -151,10 +151,14 @@ pub fn read_time(text: &str) -> Result<f64, String> {
     reason = "the table of dimensions is fixed"
 )]
 pub fn read_length(text: &str) -> Result<f64, String> {
-    let length = DIMENSIONS.iter().find(|dimension| dimension.unit == "m");
-    let length = length.expect("lengths are quantities");
-    let read = length.read(text, None);
+    let read = in_unit("m").read(text, None);
     read.map_err(|complaint| format!("{}; {}", complaint.message, complaint.hint))
+}
+
+/// The dimension of an SI unit.
+fn in_unit(unit: &str) -> &'static Dimension {
+    let found = DIMENSIONS.iter().find(|dimension| dimension.unit == unit);
+    found.expect("there is a quantity in this unit")
 }
 
 impl Dimension {

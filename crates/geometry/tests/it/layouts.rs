@@ -104,11 +104,11 @@ fn fifty_random_drives_close() {
         let (moved, toward) = (largest.unwrap(), bare.lengthening(largest.unwrap()));
         let mut moving = |travel: f64| {
             let mut plan = plan.clone();
-            let wheels = plan.stops.iter_mut().filter_map(|stop| match stop {
+            let mut wheels = plan.stops.iter_mut().filter_map(|stop| match stop {
                 Station::Wheel(wheel) => Some(wheel),
                 _ => None,
             });
-            let wheel = wheels.skip(moved).next().unwrap();
+            let wheel = wheels.nth(moved).unwrap();
             wheel.centre += toward.normalize() * travel;
             plan.lay().unwrap_or_default()
         };

@@ -109,8 +109,11 @@ fn on_span(
     }
     let bow = match bow {
         Some(bow) => bow.0,
-        // With a number of links that is a guess nothing closes; it is refused elsewhere.
-        None if chain.uncounted.is_some() => return None,
+        None if chain.uncounted.is_some() => {
+            let hint = "give it, or the number of links from which it follows";
+            findings.refuse_with(&place, "missing", hint);
+            return None;
+        }
         None => {
             let links = chain.chain.links();
             // A drive is not another one for where it happens to stand.

@@ -27,12 +27,12 @@ pub(super) struct Passing<'s> {
 impl<'s> Passing<'s> {
     pub(super) fn new(scene: &'s SceneText, described: &Described<'s>, size: [f64; 3]) -> Self {
         let route = described.route;
-        let stops = match route.and_then(|route| route.stops.as_ref()) {
-            Some(names) => names.iter().map(String::as_str).collect(),
-            None => {
-                let own = described.sprockets.iter();
-                own.map(|&i| scene.sprockets[i].name.as_str()).collect()
-            }
+        let named = route.and_then(|route| route.stops.as_ref());
+        let stops = if let Some(names) = named {
+            names.iter().map(String::as_str).collect()
+        } else {
+            let own = described.sprockets.iter();
+            own.map(|&i| scene.sprockets[i].name.as_str()).collect()
         };
         Self {
             scene,
@@ -73,7 +73,8 @@ impl<'s> Passing<'s> {
         };
         match &guide.face {
             Face::OnSpan { bow: given, .. } => {
-                let open = || format!("the bow of `{name}` is open too: give it, or the links");
+                let open =
+                    || format!("the bow of `{name}` is open: give it, or the number of links");
                 let bow = given.map(|bow| bow.0).or(bow).ok_or_else(open)?;
                 let curved = curved(guide, bow, self.size).ok_or_else(neither)?;
                 Ok(Station::Guide(curved))
@@ -128,22 +129,19 @@ impl<'s> Passing<'s> {
         guide: &Guide,
         between: Option<&[String; 2]>,
     ) -> Result<Span, String> {
-        let [before, after] = match between {
-            Some(names) => {
-                let known = |name: &String| {
-                    let missing = || format!("between: no sprocket is named `{name}`");
-                    self.sprocket(name).ok_or_else(missing)
-                };
-                [known(&names[0])?, known(&names[1])?]
-            }
-            None => {
-                let stop = self.stops.iter().position(|stop| *stop == guide.name);
-                let stop = stop.ok_or(
-                    "between: missing; name the two sprockets of the span, or make the guide a stop of the route",
-                )?;
-                let alone = "between: no sprocket stands beside it on the route";
-                self.beside(stop).ok_or(alone)?
-            }
+        let [before, after] = if let Some(names) = between {
+            let known = |name: &String| {
+                let missing = || format!("between: no sprocket is named `{name}`");
+                self.sprocket(name).ok_or_else(missing)
+            };
+            [known(&names[0])?, known(&names[1])?]
+        } else {
+            let stop = self.stops.iter().position(|stop| *stop == guide.name);
+            let stop = stop.ok_or(
+                "between: missing; name the two sprockets of the span, or make the guide a stop of the route",
+            )?;
+            let alone = "between: no sprocket stands beside it on the route";
+            self.beside(stop).ok_or(alone)?
         };
         Span::between(&before, &after).map_err(|error| {
             error.with_names(&|wheel| ["the sprocket before", "the sprocket behind"][wheel].into())
