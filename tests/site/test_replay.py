@@ -195,7 +195,7 @@ def test_first_frame_and_script_time_keep_their_limits(browser, file):
     page.close()
 
 
-@pytest.mark.parametrize("name", cd.scenes.presets())
+@pytest.mark.parametrize("name", list(cd.scenes.presets()))
 def test_presets_are_drawn(browser, name, tmp_path):
     drive = getattr(cd.scenes, name)()
     run = cd.simulate(drive, until=2e-3, every=1e-4, record=CHANNELS, error=False)

@@ -346,7 +346,7 @@ class View {
       const below = v + Math.max(0.16 * radius * scale + 10, 14);
       const half = 0.5 * c.measureText(name).width + 3;
       const box = [u - half, below - 7, u + half, below + 7];
-      if (half > radius * scale) return;
+      if (half > 0.85 * radius * scale) return;
       if (taken.some((it) => box[0] < it[2] && it[0] < box[2] && box[1] < it[3] && it[1] < box[3])) return;
       taken.push(box);
       c.fillText(name, u, below);

@@ -80,7 +80,7 @@ fn refusals_say_what_to_try() {
         (&["still.zarr", "-o", "x.pdf"], 2, "must end in .html"),
         (&["still.zarr", "--frames", "0"], 2, "1 or more"),
         (&["gone.zarr"], 2, "nothing of this name"),
-        (&["."], 2, "not a result of chaindrive"),
+        (&[".", "-o", "x.html"], 2, "not a result of chaindrive"),
     ] {
         let (found, told) = run(at, &[&["replay"], arguments].concat());
         assert!(
