@@ -117,7 +117,8 @@ def test_names_and_open_faces_are_told(drive, crank, shoe):
 
 def test_a_guide_in_the_teeth_is_refused():
     scene = cd.scenes.marine_engine().to_dict()
-    scene["guides"][0]["face"]["start"] = ["0.60 m", "0.0 m"]
+    ends = {"start": ["0.60 m", "0.0 m"], "end": ["1.62 m", "1.41 m"]}
+    scene["guides"][0]["face"] = {"kind": "bar", **ends, "end_radius": "1 m", "end_angle": "8 deg"}
     message = "guide `crank-to-camshaft` cuts into the teeth of `crank` by"
     with pytest.raises(cd.AssemblyError, match=message):
         cd.Drive.from_dict(scene).statics()
