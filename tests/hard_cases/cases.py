@@ -4,6 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 import chaindrive as cd
 import tooth_jump
 
@@ -48,8 +50,10 @@ def sharp_guides():
     changes = {}
     for name in drive.guides:
         index = drive.guides.index(name)
-        face = drive.to_dict()["guides"][index]["face"]
-        points = [face["start"], face["end"]]
+        # The straight part is the longest side of the outline, which runs against the chain.
+        outline = drive.profile(name, settled=False).outline()
+        side = np.hypot(*np.diff(outline, axis=0).T).argmax()
+        points = [outline[side + 1].tolist(), outline[side].tolist()]
         changes[f"guides[{index}].face"] = {"kind": "points", "points": points, "radii": []}
     return drive.replace(changes)
 
