@@ -132,10 +132,6 @@ pub(crate) struct Complaint {
 ///
 /// # Errors
 /// What is wrong with the text.
-#[expect(
-    clippy::missing_panics_doc,
-    reason = "the table of dimensions is fixed"
-)]
 pub fn read_time(text: &str) -> Result<f64, String> {
     in_unit("s")
         .read(text, None)
@@ -146,10 +142,6 @@ pub fn read_time(text: &str) -> Result<f64, String> {
 ///
 /// # Errors
 /// The mistake in the text.
-#[expect(
-    clippy::missing_panics_doc,
-    reason = "the table of dimensions is fixed"
-)]
 pub fn read_length(text: &str) -> Result<f64, String> {
     let read = in_unit("m").read(text, None);
     read.map_err(|complaint| format!("{}; {}", complaint.message, complaint.hint))

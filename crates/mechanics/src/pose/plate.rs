@@ -84,6 +84,7 @@ mod tests {
             name: None,
             closed: true,
             rollers: 4,
+            joints: 0,
             links: 4,
             pitch: 12.7e-3,
             roller_diameter: 7.75e-3,

@@ -129,12 +129,12 @@ impl<'s> Passing<'s> {
         guide: &Guide,
         between: Option<&[String; 2]>,
     ) -> Result<Span, String> {
-        let [before, after] = if let Some(names) = between {
+        let [before, after] = if let Some([before, after]) = between {
             let known = |name: &String| {
                 let missing = || format!("between: no sprocket is named `{name}`");
                 self.sprocket(name).ok_or_else(missing)
             };
-            [known(&names[0])?, known(&names[1])?]
+            [known(before)?, known(after)?]
         } else {
             let stop = self.stops.iter().position(|stop| *stop == guide.name);
             let stop = stop.ok_or(
