@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 import chaindrive as cd
+from chaindrive.pose import at_start
 
 FILE = Path(__file__).with_name("drive.json")
 
@@ -58,7 +59,7 @@ def numbers():
     record = ["roller_x", "roller_y", "roller_vx", "roller_vy", "link_tension", "contact_force"]
     record += ["sprocket_angle", "sprocket_speed"]
     start = cd.simulate(drive, until=1e-6, every=1e-6, record=record).isel(time=0)
-    drawing = drive._inner.drawing(False)
+    drawing = at_start(drive, settled=False)
     chain = drive.to_dict()["chain"]
     quantity = {"mass": 3.01, "stiffness": 815e6, "pitch": 0.0889, "roller_diameter": 0.05398}
     stated = {"mass": "3.01 kg", "stiffness": "815 MN/m", "pitch": "88.9 mm"}

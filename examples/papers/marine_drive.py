@@ -57,11 +57,7 @@ def nearer(drive: cd.Drive, by: float) -> cd.Drive:
     scene = drive.to_dict()
     resolved = drive.resolved().to_dict()["guides"]
     for guide, known in zip(scene["guides"], resolved, strict=True):
-        start, end = (np.array(known["face"][key]) for key in ("start", "end"))
-        along = (end - start) / np.hypot(*(end - start))
-        # The material lies on the right of the bar, the chain on its left.
-        shift = by * np.array([-along[1], along[0]])
-        guide["face"] |= {"start": (start + shift).tolist(), "end": (end + shift).tolist()}
+        guide["face"]["bow"] = known["face"]["bow"] + by
     return cd.Drive.from_dict(scene, "bars nearer")
 
 
