@@ -200,7 +200,7 @@ fn messages_name_sprockets_and_are_english() {
         "[chain]\nlinks = 3\npitch = 1\n[[tensioners]]\nname = 'x'",
         &[
             "tensioners[0].carrier: missing; say how it moves",
-            "say what pushes it",
+            "tensioners[0].push: missing; give its push",
         ],
     );
     let error = Scene::read("marine_engine.toml").unwrap_err().to_string();

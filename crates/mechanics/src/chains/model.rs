@@ -24,6 +24,20 @@ impl ChainModel {
         }
     }
 
+    /// Whether joints move by themselves beside the rollers: then offsets in them can be recorded.
+    pub(crate) fn has_joints(&self) -> bool {
+        !matches!(self, Self::Particles)
+    }
+
+    /// Whether the first link is an outer one.
+    pub(crate) fn begins_outside(&self) -> bool {
+        match self {
+            Self::Particles => false,
+            Self::Points(points) => points.outer_first,
+            Self::Rigid(links) => links.outer_first,
+        }
+    }
+
     /// Pins that have play in their bushes.
     pub fn clearance(&self) -> Option<&Clearance> {
         match self {

@@ -3,7 +3,6 @@
 use chaindrive_geometry::{Point, Vector};
 
 use super::{Figure, Instant};
-use crate::ChainModel;
 use crate::chain::Chain;
 use crate::drive::{Layout, Parts, PlacedChain, Stop, Touches};
 
@@ -83,9 +82,10 @@ fn chain(parts: &Parts, placed: &PlacedChain) -> FigureChain {
         closed: placed.chain.is_closed(),
         rollers: placed.chain.rollers(),
         links: placed.chain.links(),
-        joints: match placed.chain.model {
-            ChainModel::Particles => 0,
-            ChainModel::Points(_) | ChainModel::Rigid(_) => placed.chain.rollers(),
+        joints: if placed.chain.model.has_joints() {
+            placed.chain.rollers()
+        } else {
+            0
         },
         pitch,
         roller_diameter,
@@ -96,11 +96,7 @@ fn chain(parts: &Parts, placed: &PlacedChain) -> FigureChain {
         } else {
             PlateShape::Waisted
         },
-        outer_first: match &placed.chain.model {
-            ChainModel::Particles => false,
-            ChainModel::Points(points) => points.outer_first,
-            ChainModel::Rigid(links) => links.outer_first,
-        },
+        outer_first: placed.chain.model.begins_outside(),
         spans: spans(parts, placed),
         sprockets: placed.sprockets.clone(),
         guides: placed.guides.clone(),

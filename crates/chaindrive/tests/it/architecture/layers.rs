@@ -125,7 +125,7 @@ const CRATES: [Storeys; 4] = [
             &["friction", "profile"],
             &["drive"],
             &["design", "run"],
-            &["live", "precision", "sweep"],
+            &["live", "precision", "replay", "sweep"],
         ],
         exceptions: &[(
             "drive",
