@@ -149,7 +149,7 @@ pub struct Worn {
     pub travel: Option<f64>,
 }
 
-/// What moves until a number of links closes.
+/// The body that moves until a number of links closes.
 struct Mover<'m> {
     /// Its name.
     body: String,
@@ -205,7 +205,7 @@ pub fn of(drive: &Drive) -> Result<Vec<ChainLayout>, AssemblyError> {
     Ok(layouts)
 }
 
-/// What is in each other's way in a drive as its chains are laid.
+/// Bodies in each other's way in a drive as its chains are laid.
 ///
 /// # Errors
 /// An outline that is none, which checked drives do not bring about.

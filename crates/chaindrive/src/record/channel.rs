@@ -177,7 +177,7 @@ impl Channel {
         Self::EnergyResidual,
     ];
 
-    /// What a run records beside [`DEFAULT`](Self::DEFAULT) unless asked otherwise, where tensioners or centres move: with both the pose
+    /// Channels that a run records beside [`DEFAULT`](Self::DEFAULT) unless asked otherwise, where tensioners or centres move: with both the pose
     /// of every sample is known.
     pub const WHERE_BODIES_MOVE: [Self; 3] =
         [Self::SprocketX, Self::SprocketY, Self::TensionerPosition];
