@@ -31,7 +31,7 @@ pub struct Estimate {
     pub window: f64,
     /// Time in which a tooth passes \[s\]; none without a chain that runs over sprockets.
     pub period: Option<f64>,
-    /// What makes the shadow better than the run.
+    /// The setting by which the shadow is better than the run.
     pub shadow: &'static str,
     /// The tensions that were compared.
     pub strands: Strands,

@@ -9,7 +9,7 @@
 //!   reserve           space given back when the disk is full, for a last word about that
 //! ```
 //!
-//! What lies in the folder of a dead process is cleared away by the next writer.
+//! The next writer clears away the folder of a dead process.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Write};

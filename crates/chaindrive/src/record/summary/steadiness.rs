@@ -15,7 +15,7 @@
 //! τ = 1 + 2 Σ_{k≤M} ρ_k,   M ≥ 5 τ the smallest        (Sokal, Monte Carlo Methods in Statistical Mechanics, 1997)
 //! ```
 //!
-//! What comes before the steady state
+//! The start of a run, before the steady state,
 //! is cut off where the standard error of the rest is least (MSER: White, Simulation 69, 1997; on means of batches as in MSER-5,
 //! White, Cobb and Spratt, Winter Simulation Conference 2000):
 //!
@@ -409,7 +409,7 @@ mod tests {
         assert!(of(series(1, 0.0, 20)).is_some());
     }
 
-    /// What goes on for a quarter of the run is not known from it, and what swings once in it is not steady.
+    /// A swing that lasts for a quarter of the run is not known from it, and one that fills it is not steady.
     #[test]
     fn batches_that_go_together_are_told() {
         let doubted = (1..=100).filter(|&seed| {

@@ -16,7 +16,7 @@ use zarrs::storage::{
     StorageError, StoreKey, StorePrefix, WritableStorageTraits, store_set_partial_many,
 };
 
-/// What the name of a file on its way ends in; readers of the store know no such key.
+/// End of the name of a file on its way; readers of the store know no such key.
 const STAGED: &str = "#1";
 
 /// A folder with a store in the making.
