@@ -54,7 +54,7 @@ bench: ## Measure kernels and steps
 	cargo bench
 
 report: setup ## Measure speed and error on this machine, and write docs/how-fast-how-accurate.md
-	$(BIN)/python benchmarks/report.py
+	$(BIN)/python benchmarks/report
 
 estimates: ## Hold what runs say of their error against a reference, and write docs/estimates.md
 	cargo run --release --quiet -p chaindrive --example estimates > docs/estimates.md

@@ -8,11 +8,9 @@ and how.
 """
 
 import argparse
-import importlib.metadata
 import importlib.util
 import json
 import os
-import platform
 import statistics
 import sys
 import warnings
@@ -24,6 +22,7 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
     os.environ.setdefault(variable, "1")
 
 from measure import error, load, tight_tension  # noqa: E402
+from provenance import machine, told  # noqa: E402
 
 FOLDER = Path(__file__).parent
 RESULTS = FOLDER / "results.json"
@@ -236,30 +235,6 @@ def ratios(rows):
     return found
 
 
-def machine():
-    """Tell what the figures were measured on."""
-    model = platform.processor() or platform.machine()
-    info = Path("/proc/cpuinfo")
-    if info.exists():
-        lines = info.read_text(encoding="utf-8").splitlines()
-        names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-        model = names[0] if names else model
-    packages = ("chaindrive", "numba", "numpy", "scipy", "exudyn")
-    versions = {}
-    for package in packages:
-        try:
-            versions[package] = importlib.metadata.version(package)
-        except importlib.metadata.PackageNotFoundError:
-            versions[package] = None
-    return {
-        "processor": model,
-        "cores": os.cpu_count(),
-        "system": f"{platform.system()} {platform.machine()}",
-        "python": platform.python_version(),
-        "versions": versions,
-    }
-
-
 def name(setting):
     """Put a setting in words."""
     text = f"{setting[0]} {setting[1]:g}"
@@ -309,12 +284,7 @@ def table(results):
 
 def account(results):
     """Write machine and table as the README shows them."""
-    about = results["machine"]
-    versions = ", ".join(f"{package} {version}" for package, version in about["versions"].items())
-    return (
-        f"{about['processor']}, {about['cores']} cores shared with other work, "
-        f"Python {about['python']}; {versions}.\n\n{table(results)}\n"
-    )
+    return f"{told(results['machine'])}.\n\n{table(results)}\n"
 
 
 def write_account(results):

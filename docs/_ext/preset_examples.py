@@ -1,12 +1,16 @@
-"""Examples of every key of a scene file: from the presets, else from the schema."""
+"""Examples of every key of a scene: of the presets, else of `examples.toml` or the schema."""
 
 import json
+import tomllib
+from pathlib import Path
 from typing import Any
 
 Node = dict[str, Any]
 
 # Longer values are not shown: a key is described by a short one as well.
 LONGEST = 90
+
+WRITTEN: Node = tomllib.loads(Path(__file__).with_name("examples.toml").read_text("utf-8"))
 
 
 class Examples:
@@ -15,6 +19,7 @@ class Examples:
     def __init__(self, schema: Node) -> None:
         self.schema = schema
         self.found: dict[tuple[str, str], tuple[str, str]] = {}
+        self.asked: set[tuple[str, str]] = set()
 
     def take(self, scene: Any, preset: str) -> None:
         """Remember the values of a preset."""
@@ -22,9 +27,19 @@ class Examples:
 
     def of(self, owner: str, key: str, node: Node) -> tuple[str, str]:
         """Return an example of a key, and the preset that has it, or no name."""
+        self.asked.add((owner, key))
         if (owner, key) in self.found:
             return self.found[owner, key]
+        written = WRITTEN.get(owner, {})
+        if key in written or key in WRITTEN["any"]:
+            return f"{key} = {self.toml(written.get(key, WRITTEN['any'].get(key)))}", ""
         return f"{key} = {self.toml(self._made(node, key))}", ""
+
+    def left_over(self) -> list[str]:
+        """Return the written examples of keys for which none was asked: keys that there are not."""
+        tables = (name for name in WRITTEN if name != "any")
+        keys = ((name, key) for name in tables for key in WRITTEN[name])
+        return [f"{name}.{key}" for name, key in keys if (name, key) not in self.asked]
 
     def toml(self, value: Any) -> str:
         """Write a value as TOML in one line."""

@@ -79,6 +79,8 @@ def write_pages(app: Sphinx) -> None:
     for key, names in pages.items():
         if key != "index":
             written[key] = page(key, names, schema, examples)
+    if unknown := examples.left_over():
+        raise ValueError(f"examples.toml has keys that the schema has not: {unknown}")
     for old in folder.glob("*.md"):
         if old.stem not in written:
             old.unlink()

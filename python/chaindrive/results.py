@@ -75,7 +75,12 @@ def open_result(path: str | PathLike[str]) -> xr.Dataset:
 def _open(name: str) -> xr.Dataset:
     import chaindrive.analysis.accessor  # noqa: F401  registers `run.drive`
 
-    stored: xr.Dataset = xr.open_zarr(name, chunks=None)
+    try:
+        stored: xr.Dataset = xr.open_zarr(name, chunks=None)
+    except FileNotFoundError as error:
+        raise FileNotFoundError(
+            f"{name}: there is no result here; check the path, a result's name ends in .zarr"
+        ) from error
     if stored.attrs.get("format") != "chaindrive" or "status" not in stored.attrs:
         raise ValueError(
             f"{name}: this is not a result of chaindrive; xarray.open_zarr reads others"

@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Executor, Future, as_completed
 from functools import lru_cache
+from os import PathLike, fspath
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -18,11 +19,12 @@ from chaindrive.errors import DistrustedResultWarning, ParameterError, Simulatio
 from chaindrive.progress import told
 from chaindrive.settings import Quantity, Recorded
 from chaindrive.simulation import _listed
+from chaindrive.sweep_store import into_store
 
 __all__ = ["sweep"]
 
-_Recipe: TypeAlias = tuple[str, str, tuple[tuple[str, tuple[str, ...]], ...], tuple[str, ...]]
-"""Parts of a sweep: text and name of the scene, paths with values as JSON, channels."""
+_Recipe: TypeAlias = tuple[str, str, tuple[tuple[str, tuple[str, ...]], ...], tuple[str, ...], bool]
+"""Parts of a sweep: text and name of the scene, values as JSON by path, channels, table or not."""
 
 # An executor gets so many chunks that its workers end at about the same time.
 _CHUNKS = 128
@@ -32,17 +34,22 @@ _LARGEST_CHUNK = 32
 
 def sweep(
     drive: Drive,
-    vary: Mapping[str, Any],
+    vary: Mapping[str, Any] | None = None,
     *,
+    design: Any = None,
     until: Quantity | None = None,
     every: Quantity | None = None,
     record: Recorded | Iterable[Recorded] = (),
     accuracy: Quantity | None = None,
+    output: str | PathLike[str] | None = None,
+    overwrite: bool = False,
     jobs: int | None = None,
     executor: Executor | None = None,
     progress: bool | Callable[[float], object] = False,
 ) -> xr.Dataset:
-    """Simulate every combination of some values in a drive's scene and stack the results.
+    """Simulate variants of a drive's scene and stack the results.
+
+    The variants are every combination of the values in `vary`, or the rows of the table `design`.
 
     Every variant is computed by one thread: the numbers do not depend on `jobs` or `executor`, to
     the last bit. They are those of `simulate` with the same method. Where neither names one the
@@ -61,6 +68,12 @@ def sweep(
         Values by dotted path, see `Drive.replace`; the last path varies fastest. Values are numbers
         in SI units, texts with units, or whatever else stands at the path: a list, an array
         such as ``numpy.linspace(10e3, 20e3, 11)``, or a single value.
+    design
+        A table instead: a row a variant, a column a path. A pandas ``DataFrame``, a structured
+        array, a dict of equally long columns, or a pair of paths and samples (row, path) such as
+        ``SALib`` and ``scipy.stats.qmc`` give them. Of the numbers of a column the least, the
+        greatest and the first are tried in the scene before anything runs, of everything else
+        each value; a row that is wrong in another way is a variant that fails.
     until
         End of the runs [s], or a text with a unit. This and the next come from the scene when
         absent.
@@ -75,11 +88,19 @@ def sweep(
         ``run.accuracy`` in the scene. Other settings of the run are given or varied as values of
         the scene: ``run.method``, ``run.step``, ``run.tolerance``, ``run.onset_depth``,
         ``run.events``.
+    output
+        Zarr store, a path that ends in ``.zarr``, for sweeps that outgrow the memory or the
+        patience: takes the extra ``zarr``. Variants are computed in tasks of about a second, and
+        whoever computes a task writes it, so that nothing but counts comes back. Where there is
+        such a store of the same sweep already, the sweep goes on with what it lacks.
+    overwrite
+        Begin anew in place of the earlier result of this name.
     jobs
         Variants at a time; as many as there are cores when absent.
     executor
         Who computes instead of threads of this process: any `concurrent.futures.Executor`, such as
-        a ``ProcessPoolExecutor``, or ``client.get_executor()`` of a Dask cluster.
+        a ``ProcessPoolExecutor``, or ``client.get_executor()`` of a Dask cluster. With `output`
+        its workers must see the store under the same path.
     progress
         True for a bar with the time left, in a terminal or a notebook, which takes the extra
         ``progress``; or a function called with the share of variants done, 0 to 1.
@@ -88,7 +109,9 @@ def sweep(
     -------
     xarray.Dataset
         Dimensions are those swept, named by the end of their paths, with coordinates in SI
-        units; `path` in their attributes is the whole path. Variables:
+        units; `path` in their attributes is the whole path. Of a table the dimension is
+        ``variant``, and its columns are coordinates along it. With `output` the dataset is read
+        from the store on demand. Variables:
 
         - statistics of each variant, such as ``span_tension_mean``, ``span_tension_half_width``
           (of the 95 % interval of the mean), ``span_tension_std``, ``span_tension_min``,
@@ -117,13 +140,17 @@ def sweep(
         A path leads nowhere, or a value does not belong there; before anything runs.
     ParameterError
         Nothing is varied, a value stands twice, a channel does not exist; a value is varied that is
-        given as an argument too, or that an accuracy chooses.
+        given as an argument too, or that an accuracy chooses; columns of a table are not equally
+        long.
     SimulationError
-        The executor lost every variant.
+        The executor lost every variant; with `output`, the executor lost a task. What is stored
+        stays there, and the same call goes on with it.
+    WriteError
+        The output holds another sweep or another result, or cannot be written.
     KeyboardInterrupt
         Ctrl-C. Its attribute `result` is the dataset as it would have been returned, with the
         variants that were finished; ``error`` of the others says that they were not carried out.
-        Of an executor the chunks count that had come back.
+        Of an executor the chunks count that had come back. With `output` the same call goes on.
 
     Warns
     -----
@@ -148,8 +175,7 @@ def sweep(
     True
     """
     _needed(drive)
-    if not isinstance(vary, Mapping):
-        raise TypeError(f"vary is a {type(vary).__name__}, needed is a dict of values by path")
+    columns = _columns(vary, design)
     if executor is not None and jobs is not None:
         message = "`jobs` is for the threads of this process; the executor decides on its own"
         raise ParameterError(message, "jobs", "leave it out, or give it to the executor")
@@ -158,11 +184,14 @@ def sweep(
     arguments = {"until": until, "every": every, "accuracy": accuracy}
     settings = {f"run.{name}": value for name, value in arguments.items() if value is not None}
     base = drive.replace(settings) if settings else drive
-    varied = tuple((path, _values(values, path)) for path, values in vary.items())
-    recipe = (base.text, base.name, varied, tuple(_listed(record)))
+    varied = tuple((path, _values(values, path)) for path, values in columns.items())
+    recipe = (base.text, base.name, varied, tuple(_listed(record)), design is not None)
     given = [(path, path.removeprefix("run.")) for path in settings]
     core = _core.Sweep(*recipe, given)
     start = time.perf_counter()
+    if output is not None:
+        with told(progress, "sweep") as tell:
+            return into_store(core, fspath(output), overwrite, jobs, executor, tell)
     with told(progress, "sweep") as tell:
         if executor is None:
             result = core.run(jobs, tell)
@@ -196,6 +225,39 @@ def sweep(
         stop.add_note(f"{done}: `except KeyboardInterrupt as stop` finds them in `stop.result`")
         raise stop
     return dataset
+
+
+def _columns(vary: Any, design: Any) -> dict[str, Any]:
+    """Return values by path: those of a grid, or the columns of a table."""
+    if (vary is None) == (design is None):
+        message = "give values to be combined as `vary`, or a table of points as `design`"
+        raise ParameterError(message, "design", "one of the two")
+    if design is None:
+        if not isinstance(vary, Mapping):
+            raise TypeError(f"vary is a {type(vary).__name__}, needed is a dict of values by path")
+        return dict(vary)
+    if isinstance(design, tuple) and len(design) == 2:
+        paths, samples = list(design[0]), np.asarray(design[1])
+        if samples.ndim != 2 or samples.shape[1] != len(paths):
+            message = f"design: samples of shape {samples.shape} for {len(paths)} paths"
+            raise ParameterError(message, "design", f"samples of shape (rows, {len(paths)})")
+        return dict(zip(paths, samples.T, strict=True))
+    if isinstance(design, np.ndarray) and design.dtype.names is not None:
+        return {path: design[path] for path in design.dtype.names}
+    if isinstance(design, Mapping):
+        return {path: _column(design[path]) for path in design}
+    if hasattr(design, "columns"):
+        return {path: design[path] for path in design.columns}
+    message = f"design is a {type(design).__name__}, needed is a table with a column a path: "
+    message += "a DataFrame, a structured array, a dict of columns, or a pair (paths, samples)"
+    raise TypeError(message)
+
+
+def _column(values: Any) -> Any:
+    if isinstance(values, str | bytes | Mapping) or not isinstance(values, Iterable):
+        message = f"design: a column is a list or an array of values, not {values!r}"
+        raise ParameterError(message, "design", "a value for every row")
+    return values
 
 
 def _status(stop: KeyboardInterrupt | None, failed: int, variants: int) -> dict[str, Any]:
@@ -285,10 +347,13 @@ def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:
     import chaindrive.analysis.accessor  # noqa: F401  registers `run.drive`
 
     coordinates: dict[str, Any] = {}
-    swept = [name for name, *_ in result["swept"]]
+    swept = result["dims"]
     for name, path, unit, values in result["swept"]:
         about = {"long_name": path, "path": path} | ({} if unit is None else {"units": unit})
-        coordinates[name] = (name, _labels(values), about)
+        coordinates[name] = (swept if result["table"] else name, _labels(values), about)
+    if result["table"]:
+        rows = len(coordinates[result["swept"][0][0]][1])
+        coordinates[swept[0]] = (swept[0], np.arange(rows))
     if result["time"] is not None:
         coordinates["time"] = ("time", result["time"], {"units": "s", "long_name": "time"})
     for name, values in result["labels"].items():

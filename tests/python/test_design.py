@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import subprocess
 import sys
 
@@ -185,6 +186,17 @@ def test_a_bow_left_open_closes_the_links_and_is_told():
     # Without a number of links or a bow there is nothing that either could follow from.
     with pytest.raises(cd.SceneError, match=r"guides\[0\].face.bow: missing; give it"):
         cd.Drive.from_toml(scene(401))
+
+
+def test_a_bow_that_closes_nothing_is_told_with_how_far_it_reaches():
+    """The lengths of the route between which bows can choose, measured with bows of our own."""
+    with pytest.raises(cd.SceneError, match="smaller radius") as refused:
+        cd.Drive.from_toml(scene(401.2, links=94))
+    least, most = map(float, re.findall(r"made ([\d.]+) to ([\d.]+) links", str(refused.value))[0])
+    for bow in (1, 4, 8):
+        drive = cd.Drive.from_toml(scene(401.2, bow=f', bow = "{bow} mm"', links=92))
+        (laid,) = design.of(drive)
+        assert least - 5e-4 <= laid.counts.smooth <= most + 5e-4 < 94
 
 
 def test_the_number_of_links_follows_from_routes_over_guides():

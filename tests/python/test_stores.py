@@ -91,6 +91,11 @@ def test_the_command_hears_signals_too(tmp_path):
     assert xr.open_zarr(store, chunks=None).attrs["status"] == "interrupted"
 
 
+def test_a_result_that_is_not_there_is_told_by_name(tmp_path):
+    with pytest.raises(FileNotFoundError, match=r"none\.zarr: there is no result here; check"):
+        cd.open_result(tmp_path / "none.zarr")
+
+
 def test_a_writer_keeps_others_out(growing):
     store, writer = growing
     with pytest.raises(cd.WriteError, match=f"process {writer.pid} is writing") as caught:

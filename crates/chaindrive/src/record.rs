@@ -27,7 +27,9 @@ pub(crate) use summary::Batches;
 pub use summary::{
     ContactStatistics, ForceStatistics, Ledger, Load, SpanStatistics, Steadiness, Summary,
 };
-pub use zarr::{Existing, ReadError, ResumeError, Stopped, SweepWriter, ZarrWriter};
+pub use zarr::{
+    Existing, Finished, ReadError, ResumeError, Stopped, SweepStore, Worker, ZarrWriter,
+};
 
 /// One channel of a recording.
 #[derive(Clone, Debug)]

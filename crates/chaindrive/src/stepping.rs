@@ -93,15 +93,20 @@ impl Stepping {
         matches!(self, Self::DormandPrince)
     }
 
+    /// The time scale \[s\] of a system that limits the steps of the method.
+    pub(crate) fn time_scale(self, system: &System) -> f64 {
+        match self.suited(system) {
+            Self::Auto | Self::Verlet => system.predicted_time_scale(),
+            Self::Rk4 | Self::DormandPrince => system.time_scale(),
+            Self::ImplicitDamping | Self::GeneralizedAlpha => system.undamped_time_scale(),
+        }
+    }
+
     /// The method with its parameters for a system: a step \[s\], by default one that suits the system, and the relative
     /// tolerance of a method that has one.
     pub fn method(self, system: &System, step: Option<f64>, tolerance: f64) -> Method {
         let stepping = self.suited(system);
-        let scale = if stepping.is_implicit() {
-            system.undamped_time_scale()
-        } else {
-            system.time_scale()
-        };
+        let scale = stepping.time_scale(system);
         // What is recorded has no say in it: samples are interpolated.
         let step = |factor: f64| step.unwrap_or(factor * scale);
         match stepping {

@@ -4,9 +4,12 @@
 //! those of a run on its own, bit for bit, whatever the number of threads.
 
 mod account;
+mod design;
 mod dimension;
 mod report;
+mod sample;
 mod stack;
+mod tally;
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -15,12 +18,16 @@ use std::thread::available_parallelism;
 use std::time::Duration;
 
 pub use account::{Account, Entry, Quantity, Statistic};
+pub use design::{Arrangement, Recipe};
 pub use dimension::{Coordinate, Dimension, Setting};
 pub use report::Report;
+pub use sample::Sample;
+pub(crate) use stack::{OPEN, TEXTS, fill, texts};
 pub use stack::{Stacked, StackedQuantity, StackedText};
+pub use tally::Tally;
 
 use crate::scene::SceneError;
-use crate::{Channel, Scene, SimulationError};
+use crate::{Scene, SimulationError};
 
 /// Why a sweep cannot begin.
 #[derive(Debug, thiserror::Error)]
@@ -60,6 +67,17 @@ pub enum SweepError {
     /// A path without values.
     #[error("`{path}` has no values; give at least one")]
     Empty { path: String },
+
+    /// Columns of a table that do not go together.
+    #[error(
+        "`{path}` has {rows} values, `{first}` has {others}; a table has a value of each in every row"
+    )]
+    Uneven {
+        path: String,
+        rows: usize,
+        first: String,
+        others: usize,
+    },
 
     /// Two paths to one place.
     #[error("`{path}` is varied twice; give all of its values at once")]
@@ -122,7 +140,7 @@ pub enum Go {
     NoFurther,
 }
 
-/// Variants of a scene: every combination of some values.
+/// Variants of a scene: every combination of some values, or the rows of a table.
 ///
 /// # Example
 ///
@@ -146,13 +164,19 @@ pub enum Go {
 #[derive(Clone, Debug)]
 pub struct Sweep {
     scene: Scene,
+    arrangement: Arrangement,
     dimensions: Vec<Dimension>,
     record: Vec<String>,
     len: usize,
+    /// Samples of the longest run among those that were looked at; 0 when no channel is kept.
+    most_samples: usize,
 }
 
 /// Variants at most: at a second each they would take a week and a half.
 const MOST: usize = 1_000_000;
+
+/// Dimension of the rows of a table.
+const VARIANT: &str = "variant";
 
 /// Settings that an accuracy chooses, whatever the scene says about them.
 const CHOSEN: [&str; 4] = ["run.method", "run.step", "run.tolerance", "run.onset_depth"];
@@ -161,87 +185,6 @@ const CHOSEN: [&str; 4] = ["run.method", "run.step", "run.tolerance", "run.onset
 const LOOK: Duration = Duration::from_millis(50);
 
 impl Sweep {
-    /// Every combination of the values at the paths, in their order; the last path varies fastest.
-    /// `record` names channels to keep beside the statistics.
-    ///
-    /// # Errors
-    /// Every value is put into the scene, the first ones of the other paths beside it; what is not of a
-    /// scene is refused here, before hours have gone by. Values that do not go together are the failure
-    /// of their variants.
-    pub fn new(
-        scene: &Scene,
-        vary: &[(String, Vec<Setting>)],
-        record: &[String],
-    ) -> Result<Self, SweepError> {
-        Channel::check(record)?;
-        if vary.is_empty() {
-            return Err(SweepError::Nothing);
-        }
-        let mut len: usize = 1;
-        for (path, settings) in vary {
-            if settings.is_empty() {
-                return Err(SweepError::Empty { path: path.clone() });
-            }
-            len = len.saturating_mul(settings.len());
-        }
-        if len > MOST {
-            return Err(SweepError::TooMany { most: MOST });
-        }
-        let mut dimensions = Vec::new();
-        let mut places = Vec::new();
-        for (index, (path, settings)) in vary.iter().enumerate() {
-            let with = |setting: &Setting| {
-                let mut changed = scene.clone();
-                for (other, (path, settings)) in vary.iter().enumerate() {
-                    let setting = if other == index {
-                        setting
-                    } else {
-                        &settings[0]
-                    };
-                    changed = setting.put(&changed, path)?;
-                }
-                Ok::<_, SceneError>(changed)
-            };
-            let first = with(&settings[0])?;
-            let place = first.place(path);
-            if places.contains(&place) {
-                return Err(SweepError::Twice { path: path.clone() });
-            }
-            let covered = places
-                .iter()
-                .find(|earlier| first.encloses(&place, earlier));
-            if let Some(covered) = covered {
-                return Err(SweepError::Covered {
-                    path: covered.clone(),
-                    by: path.clone(),
-                });
-            }
-            if CHOSEN.contains(&place.as_str()) && first.run_defaults().accuracy.is_some() {
-                return Err(SweepError::Chosen { path: path.clone() });
-            }
-            places.push(place);
-            let mut every = None;
-            let mut data = Vec::new();
-            for setting in settings {
-                // A scene takes a hundred times the memory of its value: none is kept.
-                let scene = with(setting)?;
-                let interval = scene.run_defaults().every.map(f64::to_bits);
-                if !record.is_empty() && *every.get_or_insert(interval) != interval {
-                    return Err(SweepError::Intervals { path: path.clone() });
-                }
-                data.push(scene.datum(path));
-            }
-            dimensions.push(Dimension::new(path, settings.clone(), &data)?);
-        }
-        dimension::name_all(&mut dimensions);
-        Ok(Self {
-            scene: scene.clone(),
-            dimensions,
-            record: record.to_vec(),
-            len,
-        })
-    }
-
     /// Refuses settings that a varied path would silently replace: pairs of the path in the scene, into which they
     /// have been put, and of what the user calls them.
     ///
@@ -270,7 +213,28 @@ impl Sweep {
         &self.scene
     }
 
-    /// The swept dimensions.
+    /// Whether the values are combined, or are the columns of a table.
+    pub fn arrangement(&self) -> Arrangement {
+        self.arrangement
+    }
+
+    /// Names of the dimensions that results have for the variants.
+    pub fn dims(&self) -> Vec<&str> {
+        match self.arrangement {
+            Arrangement::Grid => self.dimensions.iter().map(|it| it.name.as_str()).collect(),
+            Arrangement::Table => vec![VARIANT],
+        }
+    }
+
+    /// Variants along each of them.
+    pub fn shape(&self) -> Vec<usize> {
+        match self.arrangement {
+            Arrangement::Grid => self.dimensions.iter().map(|it| it.settings.len()).collect(),
+            Arrangement::Table => vec![self.len],
+        }
+    }
+
+    /// The varied values: dimensions of a grid, columns of a table.
     pub fn dimensions(&self) -> &[Dimension] {
         &self.dimensions
     }
@@ -313,21 +277,12 @@ impl Sweep {
         parts.collect::<Vec<_>>().join(", ")
     }
 
-    /// Place of a variant along each dimension.
+    /// Place of a variant in the values of each path.
     pub fn indices(&self, index: usize) -> Vec<usize> {
-        let mut left = index;
-        let mut indices: Vec<usize> = self
-            .dimensions
-            .iter()
-            .rev()
-            .map(|dimension| {
-                let at = left % dimension.values.len();
-                left /= dimension.values.len();
-                at
-            })
-            .collect();
-        indices.reverse();
-        indices
+        match self.arrangement {
+            Arrangement::Grid => places(index, &self.shape()),
+            Arrangement::Table => vec![index; self.dimensions.len()],
+        }
     }
 
     /// Runs one variant on the calling thread, until it ends or `stop` is set.
@@ -415,4 +370,15 @@ impl Sweep {
         });
         Ok(outcomes)
     }
+}
+
+/// Place along each dimension of an entry of an array; the last dimension varies fastest.
+pub(crate) fn places(index: usize, shape: &[usize]) -> Vec<usize> {
+    let mut left = index;
+    let mut places = vec![0; shape.len()];
+    for (place, &size) in places.iter_mut().zip(shape).rev() {
+        *place = left % size;
+        left /= size;
+    }
+    places
 }

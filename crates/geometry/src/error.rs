@@ -151,6 +151,8 @@ pub enum GeometryError {
         taut: f64,
         /// Length of the chain beyond that of the route \[m\]; positive: too long.
         slack: f64,
+        /// Links of the shortest and of the longest route that moving wheels make; none where they stand still.
+        reach: Option<Box<[f64; 2]>>,
         /// Next count below, and by how much it is too short \[m\].
         below: u32,
         short: f64,
@@ -277,6 +279,7 @@ fn does_not_close(name: Name<'_>, error: &GeometryError) -> String {
         links,
         taut,
         slack,
+        reach,
         below,
         short,
         above,
@@ -291,7 +294,6 @@ fn does_not_close(name: Name<'_>, error: &GeometryError) -> String {
     } else {
         "too short"
     };
-    let odd = if below % 2 == 1 { below } else { above };
     let moved = remedy.as_deref().map_or_else(
         || "move a wheel".to_owned(),
         |remedy| match remedy.centre_distance {
@@ -305,10 +307,41 @@ fn does_not_close(name: Name<'_>, error: &GeometryError) -> String {
             ),
         },
     );
+    let slack = slack * 1e3;
+    let share = taut / f64::from(*links);
+    if !(1.0 / OTHER_UNIT..OTHER_UNIT).contains(&share) {
+        return format!(
+            "{links} links do not close: the taut route takes {taut:.0}; are places and pitch given in their units? A bare number is in metres"
+        );
+    }
+    if let Some(reach) = reach {
+        let [least, most] = **reach;
+        return format!(
+            "{links} links do not close: the taut route can be made {least:.3} to {most:.3} links long, so that the chain would be {is} (slack {slack:+.3} mm); {} for {links} links {moved}",
+            within_reach(**reach)
+        );
+    }
+    let odd = if below % 2 == 1 { below } else { above };
     format!(
-        "{links} links do not close: the taut route takes {taut:.3}, so that the chain would be {is} (slack {:+.3} mm); {below} links are {:.3} mm too short, {above} are {:.3} mm too long ({odd} need an offset link); take one of these, or for {links} links {moved}",
-        slack * 1e3,
+        "{links} links do not close: the taut route takes {taut:.3}, so that the chain would be {is} (slack {slack:+.3} mm); {below} links are {:.3} mm too short, {above} are {:.3} mm too long ({odd} need an offset link); take one of these, or for {links} links {moved}",
         short * 1e3,
         long * 1e3
     )
+}
+
+/// The route is so many times longer or shorter than the chain that lengths must be in different units.
+const OTHER_UNIT: f64 = 50.0;
+
+/// The whole numbers of links between two lengths of a route, before what else would do.
+fn within_reach([least, most]: [f64; 2]) -> String {
+    let (first, last) = (least.ceil(), most.floor());
+    if first > last {
+        "no whole number lies between;".to_owned()
+    } else if first < last {
+        format!("take {first} to {last} (odd numbers need an offset link), or")
+    } else if first % 2.0 == 0.0 {
+        format!("take {first}, or")
+    } else {
+        format!("take {first}, which needs an offset link, or")
+    }
 }

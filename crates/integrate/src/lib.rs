@@ -79,4 +79,4 @@ pub use method::Method;
 pub use state::State;
 pub use statistics::Statistics;
 pub use stepper::{Step, Stepper, slack};
-pub use system::{Continuity, Moment, SecondOrderSystem, Verdict, Weights};
+pub use system::{Continuity, Moment, Prediction, SecondOrderSystem, Verdict, Weights};

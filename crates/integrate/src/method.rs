@@ -220,10 +220,12 @@ impl Method {
 
     /// The time scale τ \[s\] of a system that limits the steps of this method.
     pub fn time_scale<S: SecondOrderSystem>(&self, system: &S) -> f64 {
-        if self.is_implicit() {
-            system.undamped_time_scale()
-        } else {
-            system.time_scale()
+        match self {
+            Self::Verlet { .. } => system.predicted_time_scale(),
+            Self::Rk4 { .. } | Self::DormandPrince { .. } => system.time_scale(),
+            Self::ImplicitDamping { .. } | Self::GeneralizedAlpha { .. } => {
+                system.undamped_time_scale()
+            }
         }
     }
 

@@ -13,6 +13,22 @@ pub struct Moment<'a> {
     pub z: &'a [f64],
 }
 
+/// How the velocities of a moment were predicted, for forces that look ahead of them.
+///
+/// ```text
+/// v⁺ = v + ½ h (a⁺ − a),   v = v₀ + h a
+/// z⁺ = z + ½ h (ż⁺ − ż),   z = z₀ + h ż
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Prediction<'a> {
+    /// ½ h \[s\].
+    pub half_step: f64,
+    /// Accelerations at the beginning of the step `(dofs)`.
+    pub a: &'a [f64],
+    /// Rates of the states there `(states)`.
+    pub flow: &'a [f64],
+}
+
 /// Weights of damping and stiffness in the matrix of an implicit step; first-order states have the weight of the damping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weights {
@@ -85,6 +101,22 @@ pub trait SecondOrderSystem {
     /// leave anything in the record. Verlet asks with velocities and states predicted to first order.
     fn evaluate(&self, at: Moment<'_>, a: &mut [f64], rates: &mut [f64], record: &mut Self::Record);
 
+    /// The same at the end of a step with velocities and states that are only predicted.
+    ///
+    /// A system may take stiff damping, and states that settle fast, at the velocities and states to which the new rates lead, as the
+    /// implicit trapezoidal rule does: its steps are then limited by [`predicted_time_scale`](Self::predicted_time_scale) alone.
+    fn evaluate_predicted(
+        &self,
+        at: Moment<'_>,
+        prediction: Prediction<'_>,
+        a: &mut [f64],
+        rates: &mut [f64],
+        record: &mut Self::Record,
+    ) {
+        let _ = prediction;
+        self.evaluate(at, a, rates, record);
+    }
+
     /// Judges a candidate step of size h \[s\] by the evaluation at its end.
     fn inspect(&self, h: f64, end: &Self::Record) -> Verdict {
         let _ = (h, end);
@@ -129,6 +161,14 @@ pub trait SecondOrderSystem {
     /// rate. Asked after each accepted step: keep it a field.
     fn time_scale(&self) -> f64 {
         f64::INFINITY
+    }
+
+    /// Time scale τ \[s\] of the fastest mode, without the damping and settling that
+    /// [`evaluate_predicted`](Self::evaluate_predicted) takes at the end of a step.
+    ///
+    /// Asked after each accepted step: keep it a field.
+    fn predicted_time_scale(&self) -> f64 {
+        self.time_scale()
     }
 
     /// Time scale 1/ω \[s\] of the fastest mode without its damping, for methods that treat damping and states implicitly.

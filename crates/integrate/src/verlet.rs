@@ -5,7 +5,7 @@ use pulp::{Arch, Simd, WithSimd};
 use crate::finite::Watch;
 use crate::registers::dispatch;
 use crate::state::{Size, Snapshot, State};
-use crate::{Moment, SecondOrderSystem};
+use crate::{Moment, Prediction, SecondOrderSystem};
 
 /// Limit of ωh.
 pub(crate) const LIMIT: f64 = 2.0;
@@ -40,7 +40,8 @@ impl Verlet {
     /// ```
     ///
     /// Of second order although a⁺ and ż⁺ belong to v* and z*: what is predicted is off by O(h²). With damping
-    /// λ the scheme is stable for (ωh)²/4 + λh < 1, and a state that settles as e^(−λt) is for λh < 1.
+    /// λ the scheme is stable for (ωh)²/4 + λh < 1, and a state that settles as e^(−λt) is for λh < 1. Damping that the system
+    /// takes at v⁺ instead of v* does not limit the step, whatever its λ.
     ///
     /// # Source
     /// W. C. Swope et al., *J. Chem. Phys.* **76**, 1982, 637–649,
@@ -76,7 +77,12 @@ impl Verlet {
             v: &self.predicted,
             z: &self.states,
         };
-        system.evaluate(end, &mut to.a, &mut to.rates, record);
+        let prediction = Prediction {
+            half_step: 0.5 * h,
+            a: &from.a,
+            flow,
+        };
+        system.evaluate_predicted(end, prediction, &mut to.a, &mut to.rates, record);
         let mut watch = dispatch(
             self.arch,
             Kick {

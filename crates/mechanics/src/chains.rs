@@ -16,7 +16,7 @@ use std::ops::Range;
 
 use chaindrive_contact::Prepared;
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::{Moment, Weights};
+use chaindrive_integrate::{Moment, Prediction, Weights};
 use serde::{Deserialize, Serialize};
 
 pub(crate) use balance::{Balance, Load, Moving, Sum, Unknown, Way};
@@ -63,6 +63,39 @@ pub(crate) struct Surroundings<'a> {
     pub(crate) first: usize,
     /// The chain's contacts with them.
     pub(crate) contacts: &'a BodyContacts,
+    /// How the velocities of the chain were predicted, if they were.
+    pub(crate) prediction: Option<Prediction<'a>>,
+}
+
+/// ω² and damping rates of the stiffest mode.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Rates {
+    /// ω² \[1/s²\].
+    pub(crate) squared: f64,
+    /// D \[1/s\].
+    pub(crate) damping: f64,
+    /// D without the damping that is taken at the end of a step whose velocities are predicted.
+    pub(crate) predicted: f64,
+}
+
+impl Rates {
+    /// Of a mode whose damping is taken where it is asked for.
+    pub(crate) fn of([squared, damping]: [f64; 2]) -> Self {
+        Self {
+            squared,
+            damping,
+            predicted: damping,
+        }
+    }
+
+    /// The larger of each.
+    pub(crate) fn max(self, other: Self) -> Self {
+        Self {
+            squared: self.squared.max(other.squared),
+            damping: self.damping.max(other.damping),
+            predicted: self.predicted.max(other.predicted),
+        }
+    }
 }
 
 /// How a chain was laid.
@@ -263,8 +296,12 @@ impl Chain {
     }
 
     /// ω² and damping rate D of the stiffest mode, bodies by themselves left out.
-    pub(crate) fn rates(&self, around: Surroundings<'_>, record: &mut Record) -> [f64; 2] {
-        ask!(self, chain => chain.rates(around, record))
+    pub(crate) fn rates(&self, around: Surroundings<'_>, record: &mut Record) -> Rates {
+        match self {
+            Self::Particles(chain) => chain.rates(around, record),
+            Self::Points(chain) => Rates::of(chain.rates(around, record)),
+            Self::Links(chain) => Rates::of(chain.rates(around, record)),
+        }
     }
 
     /// Frequency \[1/s\] of what every method takes explicitly, beside the mode above.

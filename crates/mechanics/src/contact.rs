@@ -5,6 +5,7 @@
 //! such slot the contact remembers, since the last accepted state, the gap, the closing speed
 //! and, while closed, the inverse of the speed at touch.
 
+mod ahead;
 mod impacts;
 mod kernel;
 mod law;

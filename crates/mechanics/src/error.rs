@@ -161,7 +161,7 @@ pub enum AssemblyError {
 
     /// Newton's iteration for the static state ended without converging.
     #[error(
-        "static equilibrium not found while applying {stage}: residual {residual:.1e} of the chain tension after {iterations} iterations; raise the pretension, or start with `settle = false`"
+        "static equilibrium not found while applying {stage}: residual {residual:.1e} of the chain tension after {iterations} iterations; see that every tensioner pushes onto the chain (torques are positive counter-clockwise), raise the pretension, or start with `settle = false`"
     )]
     NoEquilibrium {
         stage: &'static str,

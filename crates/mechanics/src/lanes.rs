@@ -4,6 +4,7 @@
 //! which one runs is decided when the system is built. No operation is fused, and sums are taken
 //! in a fixed order: the same machine gives the same bits.
 
+mod polynomial;
 mod power;
 mod turn;
 
@@ -11,6 +12,7 @@ use std::ops::{Add, AddAssign, BitAnd, Mul, Neg, Sub};
 
 use pulp::{Arch, Scalar128b, Simd, WithSimd};
 
+pub(crate) use polynomial::Polynomial;
 pub(crate) use power::FixedPower;
 
 /// Largest number of lanes of any processor: what arrays are padded to.

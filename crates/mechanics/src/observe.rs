@@ -399,7 +399,7 @@ impl System {
         out.oil_pressure.clear();
         for slide in &self.bodies.slides {
             let pose = slide.pose(at.q, at.v);
-            let (push, _) = slide.pushed(pose, at.z);
+            let (push, _) = slide.pushed(pose, slide.state(at.z));
             out.tensioner_position.push(pose.coordinate);
             out.tensioner_force.push(push.elastic + push.damping);
             out.oil_pressure.extend(slide.pressure(pose, at.z));

@@ -18,7 +18,7 @@ mod slide;
 mod solve;
 
 use chaindrive_geometry::Point;
-use chaindrive_integrate::{Continuity, Moment, SecondOrderSystem, Verdict, Weights};
+use chaindrive_integrate::{Continuity, Moment, Prediction, SecondOrderSystem, Verdict, Weights};
 use serde::{Deserialize, Serialize};
 
 pub(crate) use bodies::{Bodies, RailSupport, Wheel, WheelSupport};
@@ -32,7 +32,7 @@ pub(crate) use shafts::{Shaft, Turn, TurnedBy};
 pub(crate) use slide::Slide;
 
 use crate::End;
-use crate::chains::{self, Chain, LaidAs};
+use crate::chains::{self, Chain, LaidAs, Rates};
 use crate::contact::Wrench;
 use crate::energy::Flow;
 use crate::events::EventLog;
@@ -48,8 +48,8 @@ pub struct System {
     pub(crate) groups: Vec<Group>,
     /// The log of contacts, where one is kept.
     pub(crate) events: Option<EventLog>,
-    /// 1/ω of the stiffest mode, damping included and left out \[s\].
-    time_scales: [f64; 2],
+    /// 1/ω of the stiffest mode \[s\]: damping included, without that of teeth on particles, without any.
+    time_scales: [f64; 3],
     /// Deepest first penetration accepted \[m\], when steps are to be rejected for it.
     onset_depth: Option<f64>,
     /// Time at which it was assembled \[s\].
@@ -272,10 +272,31 @@ impl System {
     }
 
     /// ω² and damping rate of the stiffest mode at an evaluation.
-    pub(crate) fn rates(&self, record: &mut Record) -> [f64; 2] {
+    pub(crate) fn rates(&self, record: &mut Record) -> Rates {
         let chains = self.chains.iter().zip(&mut record.chains);
         let rates = chains.map(|(member, record)| member.rates_at(&self.bodies, record));
-        largest(rates, self.bodies.own_rates(&record.pushes))
+        rates.fold(self.bodies.own_rates(&record.pushes), Rates::max)
+    }
+
+    /// Accelerations and powers at a moment.
+    fn respond(
+        &self,
+        at: Moment<'_>,
+        prediction: Option<Prediction<'_>>,
+        a: &mut [f64],
+        rates: &mut [f64],
+        record: &mut Record,
+    ) {
+        rates.fill(0.0);
+        a[self.bodies.first..].fill(0.0);
+        for (member, record) in self.chains.iter().zip(&mut record.chains) {
+            member.evaluate(&self.bodies, at, prediction, a, rates, record);
+        }
+        self.gather(record);
+        let wrenches = [&record.wheel_wrenches, &record.rail_wrenches];
+        let wrenches = wrenches.map(Vec::as_slice);
+        self.bodies
+            .accelerate(at, prediction, a, rates, wrenches, &mut record.pushes);
     }
 
     /// Adds up what the chains do to the bodies.
@@ -295,22 +316,23 @@ impl System {
     fn renew_time_scales(&mut self, pushes: &[Slopes]) {
         let own = self.bodies.own_rates(pushes);
         let all = self.chains.iter().map(|member| member.rates);
-        let [squared, damping] = largest(all, own);
+        let Rates {
+            squared,
+            damping,
+            predicted,
+        } = all.fold(own, Rates::max);
+        // τ = 1/(D + √(D² + ω²))
+        let scale = |damping: f64| 1.0 / (damping + (damping * damping + squared).sqrt());
         let explicit = self
             .chains
             .iter()
             .map(|member| member.chain.stabilisation());
         self.time_scales = [
-            1.0 / (damping + (damping * damping + squared).sqrt()),
+            scale(damping),
+            scale(predicted),
             1.0 / explicit.fold(squared.sqrt(), f64::max),
         ];
     }
-}
-
-fn largest(rates: impl Iterator<Item = [f64; 2]>, own: [f64; 2]) -> [f64; 2] {
-    rates.fold(own, |[k, d], [squared, damping]| {
-        [k.max(squared), d.max(damping)]
-    })
 }
 
 /// The first chain at a body sets what it feels, others add to it.
@@ -354,16 +376,18 @@ impl SecondOrderSystem for System {
     }
 
     fn evaluate(&self, at: Moment<'_>, a: &mut [f64], rates: &mut [f64], record: &mut Record) {
-        rates.fill(0.0);
-        a[self.bodies.first..].fill(0.0);
-        for (member, record) in self.chains.iter().zip(&mut record.chains) {
-            member.evaluate(&self.bodies, at, a, rates, record);
-        }
-        self.gather(record);
-        let wrenches = [&record.wheel_wrenches, &record.rail_wrenches];
-        let wrenches = wrenches.map(Vec::as_slice);
-        self.bodies
-            .accelerate(at, a, rates, wrenches, &mut record.pushes);
+        self.respond(at, None, a, rates, record);
+    }
+
+    fn evaluate_predicted(
+        &self,
+        at: Moment<'_>,
+        prediction: Prediction<'_>,
+        a: &mut [f64],
+        rates: &mut [f64],
+        record: &mut Record,
+    ) {
+        self.respond(at, Some(prediction), a, rates, record);
     }
 
     fn inspect(&self, h: f64, end: &Record) -> Verdict {
@@ -413,8 +437,12 @@ impl SecondOrderSystem for System {
         self.time_scales[0]
     }
 
-    fn undamped_time_scale(&self) -> f64 {
+    fn predicted_time_scale(&self) -> f64 {
         self.time_scales[1]
+    }
+
+    fn undamped_time_scale(&self) -> f64 {
+        self.time_scales[2]
     }
 
     fn can_solve(&self) -> bool {

@@ -59,7 +59,7 @@ mod core {
     use crate::run::{adaptive_methods, channels, is_being_written, methods, resume, simulate};
 
     #[pymodule_export]
-    use crate::sweep::Sweep;
+    use crate::sweep::{Sweep, SweepStore, SweepWorker};
 
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "the name that Python expects")]

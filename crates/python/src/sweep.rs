@@ -1,10 +1,12 @@
 //! Sweeps: without the interpreter's lock, stopped by Ctrl-C, with outcomes that travel between processes.
 
+mod stored;
+
 use std::time::Instant;
 
 use chaindrive::Scene;
 use chaindrive::sweep::{
-    self, Account, Coordinate, Entry, Go, Outcome, Progress, Quantity, Setting,
+    self, Account, Arrangement, Coordinate, Entry, Go, Outcome, Progress, Quantity, Setting,
 };
 use chaindrive::verdict::WrittenVerdict;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
@@ -14,6 +16,7 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::errors::{OrRaise, parameter};
 use crate::run::{PATIENCE, look};
+pub(crate) use stored::{SweepStore, SweepWorker};
 
 /// Variants of a scene.
 #[pyclass(frozen, module = "chaindrive._core")]
@@ -34,16 +37,17 @@ struct Parts<'py>(
 
 #[pymethods]
 impl Sweep {
-    /// Paths with their values as JSON, put into the scene of a text; `given` are paths that have been put there
-    /// before, with what the caller calls them.
+    /// Paths with their values as JSON, put into the scene of a text, in every combination or as the columns of a table; `given` are
+    /// paths that have been put there before, with what the caller calls them.
     #[new]
-    #[pyo3(signature = (text, name, vary, record, given=Vec::new()))]
+    #[pyo3(signature = (text, name, vary, record, table=false, given=Vec::new()))]
     fn new(
         py: Python<'_>,
         text: &str,
         name: &str,
         vary: Vec<(String, Vec<String>)>,
         record: Vec<String>,
+        table: bool,
         given: Vec<(String, String)>,
     ) -> PyResult<Self> {
         let mut settings = Vec::new();
@@ -59,7 +63,13 @@ impl Sweep {
             settings.push((path, values));
         }
         let scene = Scene::from_text(text, name).or_raise()?;
-        let sweep = py.detach(|| sweep::Sweep::new(&scene, &settings, &record));
+        let sweep = py.detach(|| {
+            if table {
+                sweep::Sweep::of_table(&scene, &settings, &record)
+            } else {
+                sweep::Sweep::new(&scene, &settings, &record)
+            }
+        });
         let sweep = sweep.or_raise()?;
         sweep.check_given(&given).or_raise()?;
         Ok(Self(sweep))
@@ -147,6 +157,8 @@ impl Sweep {
     fn stacked<'py>(&self, py: Python<'py>, outcomes: &[Outcome]) -> PyResult<Bound<'py, PyDict>> {
         let stacked = py.detach(|| self.0.stack(outcomes));
         let answer = PyDict::new(py);
+        answer.set_item("dims", self.0.dims())?;
+        answer.set_item("table", self.0.arrangement() == Arrangement::Table)?;
         let swept = PyList::empty(py);
         for dimension in self.0.dimensions() {
             let values = coordinate(py, &dimension.values)?;

@@ -242,12 +242,14 @@ function tracePeaks(c, values, times, from, to, x, y) {
   close();
 }
 
-/** Round numbers between two ends, some `count` of them. */
+/** Round numbers between two ends, some `count` of them and never less than two: one alone tells no scale. */
 function ticksBetween(low, high, count) {
-  const step = roundDown((high - low) / count) * ((high - low) / count / roundDown((high - low) / count) > 1.5 ? 2 : 1);
+  if (!(high > low)) return [];
+  const share = (high - low) / count;
+  const step = roundDown(share) * (share / roundDown(share) > 1.5 ? 2 : 1);
   const ticks = [];
   for (let i = Math.ceil(low / step); i * step <= high + 1e-9 * step; i++) ticks.push(i * step);
-  return ticks;
+  return ticks.length > 1 ? ticks : ticksBetween(low, high, 1.5 * count);
 }
 
 /** The last frame that is not later than a moment. */

@@ -1,6 +1,5 @@
 //! The methods and steps among which the automatic choice chooses.
 
-use chaindrive_integrate::SecondOrderSystem;
 use chaindrive_mechanics::Assembled;
 
 use super::trace::Trace;
@@ -23,43 +22,90 @@ pub(super) struct Entry {
     pub(super) judge: Candidate,
 }
 
-/// Verlet's steps in units of 1/ω of the stiffest mode, damping included; each is compared with a step that is
-/// at most half as long.
-const VERLET: [f64; 4] = [0.7, 0.5, 0.25, 0.125];
-/// Runge–Kutta steps in the same unit, with the depth \[m\] beyond which a first penetration is approached
+/// Longest step of the ladder in units of the time scale that limits the method. A run may have 1.8 of it: a sixth is left for contacts
+/// that stiffen as they are pressed, and beyond that the run halves its step.
+const LONGEST: f64 = 1.5;
+/// Ratio of a step of the ladder to the next.
+const RATIO: f64 = 1.15;
+/// Steps of the ladder.
+const RUNGS: usize = 22;
+/// Rungs from a candidate down to its judge, whose step is half as long: 1.15⁵ = 2.01.
+const TO_JUDGE: usize = 5;
+/// Runge–Kutta steps in units of 1/ω of the stiffest mode, with the depth \[m\] beyond which a first penetration is approached
 /// again; each is compared with the next, which has to have a shorter step: a shallower onset alone would show
 /// the error of the onset only.
 const RK4: [(f64, f64); 4] = [(0.5, 1e-5), (0.25, 1e-6), (0.125, 1e-7), (0.0625, 1e-8)];
-/// Steps with implicit damping in units of 1/ω without damping; each is compared with the next.
-const IMPLICIT_DAMPING: [f64; 5] = [1.4, 0.7, 0.35, 0.175, 0.0875];
 
-/// Candidates that suit a drive, from the cheapest to the dearest.
+/// Candidates that suit a drive, from the cheapest to the dearest: a ladder of steps of one method, then others.
 ///
 /// Particles: Verlet, then Runge–Kutta with rejection. Rigid links: implicit damping, whose error
 /// falls to 0.01 % before explicit methods, which have to follow the damping, become cheaper.
-pub(super) fn entries(start: &Assembled) -> Vec<Entry> {
-    let system = &start.system;
-    let of = |stepping: Stepping, factor: f64, onset_depth: Option<f64>| {
-        let scale = if stepping.is_implicit() {
-            system.undamped_time_scale()
-        } else {
-            system.time_scale()
-        };
-        Candidate {
+///
+/// The first [`RUNGS`] are the ladder.
+pub(super) struct Candidates(Vec<Entry>);
+
+impl Candidates {
+    pub(super) fn of(start: &Assembled) -> Self {
+        let system = &start.system;
+        let of = |stepping: Stepping, factor: f64, onset_depth: Option<f64>| Candidate {
             stepping,
-            step: factor * scale,
+            step: factor * stepping.time_scale(system),
             onset_depth,
+        };
+        let stepping = Stepping::Auto.suited(system);
+        let mut factor = LONGEST;
+        let mut rungs = Vec::new();
+        for _ in 0..RUNGS + TO_JUDGE {
+            rungs.push(of(stepping, factor, None));
+            factor /= RATIO;
         }
-    };
-    if system.prefers_implicit_damping() {
-        let list = IMPLICIT_DAMPING.map(|factor| of(Stepping::ImplicitDamping, factor, None));
-        return pairs(&list);
+        let pairs_of = rungs.iter().zip(&rungs[TO_JUDGE..]);
+        let ladder = pairs_of.map(|(&candidate, &judge)| Entry { candidate, judge });
+        let mut entries: Vec<Entry> = ladder.collect();
+        if stepping == Stepping::Verlet {
+            let rk4 = RK4.map(|(factor, depth)| of(Stepping::Rk4, factor, Some(depth)));
+            entries.extend(pairs(&rk4));
+        }
+        Self(entries)
     }
-    let rk4 = RK4.map(|(factor, depth)| of(Stepping::Rk4, factor, Some(depth)));
-    let [v7, v5, v25, v125] = VERLET.map(|factor| of(Stepping::Verlet, factor, None));
-    let verlet = [(v7, v25), (v5, v25), (v25, rk4[0]), (v125, rk4[1])];
-    let verlet = verlet.map(|(candidate, judge)| Entry { candidate, judge });
-    verlet.into_iter().chain(pairs(&rk4)).collect()
+
+    /// Judge of the cheapest: steps near the limit of stability part twins that the drive does not.
+    pub(super) fn first_judge(&self) -> Candidate {
+        self.0[0].judge
+    }
+
+    /// One of them, by its place.
+    pub(super) fn get(&self, place: usize) -> Option<&Entry> {
+        self.0.get(place)
+    }
+
+    /// Place of the candidate to try after one that errs by more than the accuracy.
+    ///
+    /// ```text
+    /// e ∝ h²:   k = ln(e/accuracy)/(2 ln 1.15) rungs, one at least
+    /// ```
+    ///
+    /// A step that fails says nothing of its error: the next one is that of its judge. From the last rung the other methods follow
+    /// one by one.
+    pub(super) fn after(place: usize, error: f64, accuracy: f64) -> usize {
+        if place + 1 >= RUNGS {
+            return place + 1;
+        }
+        let rungs = ((error / accuracy).ln() / (2.0 * RATIO.ln())).ceil();
+        let down = if rungs.is_finite() {
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "few rungs, one at least"
+            )]
+            {
+                rungs.clamp(1.0, RUNGS as f64) as usize
+            }
+        } else {
+            TO_JUDGE
+        };
+        (place + down).min(RUNGS - 1)
+    }
 }
 
 /// Every candidate with the next as its judge.

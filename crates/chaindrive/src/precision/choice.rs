@@ -8,10 +8,10 @@ use serde::{Deserialize, Serialize};
 use super::Watch;
 use super::accuracy::{Accuracy, Quantity};
 use super::attribute::Attribute;
-use super::candidates::{Candidate, Entry, entries, work};
+use super::candidates::{Candidate, Candidates, Entry, work};
 use super::compare::{Account, distances, rms};
 use super::estimate::pinned;
-use super::horizon::{APART, Divergence, Horizon};
+use super::horizon::{APART, Horizon};
 use super::trace::{Gap, Strands, Trace};
 use super::window::Window;
 use super::wording::{duration, percent};
@@ -27,7 +27,7 @@ pub enum Promise {
     /// tension, at every moment of the window, root mean square.
     Waveform,
     /// Mean and root mean square of the tension of every span or link, or no more than chance makes of them: the
-    /// chaos horizon lies within the window.
+    /// run goes on beyond its chaos horizon.
     Statistics,
     /// The energy lost, as it is without what chance makes of it, and what is unaccounted for beside it.
     Losses,
@@ -140,9 +140,13 @@ impl Trials<'_> {
             return Ok((Promise::Losses, losses_apart(&twin, base)));
         }
         let strands = Strands::of([base, &twin]);
-        let promise = match Horizon::of(base, &twin, strands).tight {
-            Divergence::Measured { .. } => Promise::Statistics,
-            _ => Promise::Waveform,
+        let horizon = Horizon::of(base, &twin, strands);
+        let parted = [horizon.all, horizon.tight].map(|of| of.time());
+        let within = |at: &f64| *at < self.run.until;
+        let promise = if parted.iter().flatten().any(within) {
+            Promise::Statistics
+        } else {
+            Promise::Waveform
         };
         Ok((promise, statistics(&twin, base)))
     }
@@ -154,8 +158,9 @@ impl Trials<'_> {
 /// e = ‖T − T′‖ / T̄ · caution ≤ accuracy,   T′: tension by a sharper candidate
 /// ```
 ///
-/// Candidates are tried from the cheapest on, each against a sharper one of the list, over half a [`Window`]. Within the
-/// chaos horizon the waveform of the tight span counts, beyond it mean and root mean square of all spans. Where the losses are
+/// Candidates are tried from the cheapest on, each against a sharper one of the list, over half a [`Window`]. For runs within their
+/// chaos horizon, by the judge of the first candidate, the waveform of the tight span counts, for longer ones mean and root mean
+/// square of all spans. Where the losses are
 /// to be kept, the energy lost counts, less what chance makes of it, and what is unaccounted for: |R|/D ≤ accuracy. If none is
 /// good enough, the run gets the best, and [`Choice::kept`] is false. Counts decide and never clocks: the same drive
 /// gets the same answer.
@@ -187,7 +192,7 @@ pub fn choose(
         ..run.clone()
     };
     let window = Window::of(start, &pinned(start, &automatic)).first_half();
-    let entries = entries(start);
+    let candidates = Candidates::of(start);
     let mut trials = Trials {
         start,
         run,
@@ -195,7 +200,7 @@ pub fn choose(
         watch,
         taken: Vec::new(),
     };
-    let (promise, spread) = trials.promise(entries[0].candidate, of)?;
+    let (promise, spread) = trials.promise(candidates.first_judge(), of)?;
     let mut choice = Choice {
         run: automatic,
         accuracy,
@@ -209,7 +214,8 @@ pub fn choose(
     if promise == Promise::Nothing {
         return Ok(choice);
     }
-    for entry in &entries {
+    let mut place = 0;
+    while let Some(entry) = candidates.get(place) {
         let found = trials.pair(entry)?.map(|(candidate, judge)| {
             let apart = match promise {
                 Promise::Statistics => beyond(statistics(candidate, judge), spread),
@@ -247,6 +253,7 @@ pub fn choose(
             choice.kept = true;
             break;
         }
+        place = Candidates::after(place, error, accuracy);
     }
     Ok(choice)
 }

@@ -61,12 +61,7 @@ const CLEARANCE_CHECK: f64 = 0.25;
 
 /// A fixed step in units of the time scale that limits the method.
 fn fixed(start: &Assembled, stepping: Stepping, factor: f64, onset_depth: Option<f64>) -> Variant {
-    let system = &start.system;
-    let scale = if stepping.is_implicit() {
-        system.undamped_time_scale()
-    } else {
-        system.time_scale()
-    };
+    let scale = stepping.time_scale(&start.system);
     Variant {
         stepping,
         step: Some(factor * scale),

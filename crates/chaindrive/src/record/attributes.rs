@@ -111,15 +111,7 @@ pub fn attributes(
     ending: &Ending,
     judgement: Option<&Judgement>,
 ) -> Map<String, Value> {
-    let mut story = Story(Map::new());
-    story.text("title", &provenance.title);
-    story.text("format", FORMAT);
-    story.text("chaindrive_version", env!("CARGO_PKG_VERSION"));
-    story.text("status", ending.status());
-    story.count("complete", u64::from(*ending == Ending::Complete));
-    if let Ending::Failed(reason) = ending {
-        story.text("failure", reason);
-    }
+    let mut story = Story::of(&provenance.title, ending);
     story.text("scene_name", &provenance.scene_name);
     story.text("scene", &provenance.scene);
     if let Some(text) = &provenance.resolved_scene {
@@ -255,6 +247,20 @@ fn assembly(story: &mut Story, simulation: &Simulation) {
 pub(super) struct Story(pub(super) Map<String, Value>);
 
 impl Story {
+    /// Title and format, and how far the result is.
+    pub(super) fn of(title: &str, ending: &Ending) -> Self {
+        let mut story = Self(Map::new());
+        story.text("title", title);
+        story.text("format", FORMAT);
+        story.text("chaindrive_version", env!("CARGO_PKG_VERSION"));
+        story.text("status", ending.status());
+        story.count("complete", u64::from(*ending == Ending::Complete));
+        if let Ending::Failed(reason) = ending {
+            story.text("failure", reason);
+        }
+        story
+    }
+
     pub(super) fn text(&mut self, name: &str, text: &str) {
         self.0.insert(name.into(), text.into());
     }

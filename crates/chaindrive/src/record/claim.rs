@@ -33,8 +33,10 @@ pub struct Claim {
     /// Where the result is, symbolic links followed.
     place: PathBuf,
     beside: PathBuf,
-    /// Unlocked when it is closed.
-    _lock: File,
+    /// Unlocked when it is closed, in all processes that have it open.
+    lock: File,
+    /// The process that made the claim: one that it forks has a copy of this, and no right to write.
+    process: u32,
 }
 
 impl Claim {
@@ -61,10 +63,17 @@ impl Claim {
             asked: path.to_owned(),
             place,
             beside,
-            _lock: lock,
+            lock,
+            process: std::process::id(),
         };
         claim.clear_up().map_err(io)?;
         Ok(claim)
+    }
+
+    /// Number of the open file that holds the lock. A process that is forked must close it, or it keeps the claim alive.
+    #[cfg(unix)]
+    pub fn descriptor(&self) -> i32 {
+        std::os::fd::AsRawFd::as_raw_fd(&self.lock)
     }
 
     /// Where the result is, symbolic links followed.
@@ -152,6 +161,9 @@ impl Claim {
 
 impl Drop for Claim {
     fn drop(&mut self) {
+        if self.process != std::process::id() {
+            return;
+        }
         // What cannot be removed now is cleared away by the next writer. The name of the lock goes last:
         // whoever finds another file under it than the one he has locked begins anew.
         let _ = self.clear_up();

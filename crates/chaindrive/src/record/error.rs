@@ -8,8 +8,12 @@ use std::path::PathBuf;
 #[expect(missing_docs, reason = "each message names its fields")]
 pub enum WriteError {
     /// The target holds an earlier result.
-    #[error("{}: there is already a result here; choose another name, or ask for it to be replaced", .path.display())]
+    #[error("{}: there is already a result here; choose another name, or have it replaced: `--overwrite`, in Python `overwrite=True`", .path.display())]
     Exists { path: PathBuf },
+
+    /// The target holds another sweep than the one that was to go on.
+    #[error("{}: there is another sweep here: {difference}; choose another name, or ask for it to be replaced", .path.display())]
+    OtherSweep { path: PathBuf, difference: String },
 
     /// The target holds something that this program did not write and will not remove.
     #[error("{}: {found}; choose another name", .path.display())]

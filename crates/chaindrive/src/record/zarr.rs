@@ -33,9 +33,9 @@ mod folder;
 mod reader;
 mod stopped;
 mod store;
-mod sweep;
 mod target;
 mod track;
+mod variants;
 
 use std::fmt;
 use std::path::Path;
@@ -44,7 +44,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Map, Value};
 
 pub use reader::ReadError;
-pub use sweep::SweepWriter;
+pub use variants::{Finished, SweepStore, Worker};
 
 use super::Channel;
 use super::attributes::{Ending, Provenance, attributes};

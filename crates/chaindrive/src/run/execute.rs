@@ -397,6 +397,13 @@ fn begin<E: std::error::Error>(
     }
     let (start, ran_in) = run_in(start, &provenance.run, onlooker).map_err(failed)?;
     provenance.ran_in = ran_in;
+    if provenance.choice.is_some() {
+        // The run-in may have pressed contacts until they bound the step that was chosen before it.
+        let method = provenance.run.method(&start.system);
+        let longest = method.longest_step(method.time_scale(&start.system));
+        let step = provenance.run.step;
+        provenance.run.step = step.map(|step| step.min(longest));
+    }
     let simulation = Simulation::from_assembled(start, &provenance.run).map_err(failed)?;
     Ok(Begun {
         summary: Summary::new(&simulation),

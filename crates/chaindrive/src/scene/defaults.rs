@@ -4,7 +4,7 @@
 //! editors, and [`Scene::resolved`](super::Scene::resolved) writes it out. To change one add its value
 //! for the new version; scenes that say `defaults = "…"` keep the old one.
 //!
-//! What is simply not there (no friction, no damping, a phase of zero) is no default in this sense: it
+//! An absent thing (no friction, no damping, a phase of zero) is no default in this sense: it
 //! is the empty value of its type in `schema`.
 
 use std::borrow::Cow;

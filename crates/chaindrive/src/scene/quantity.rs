@@ -131,7 +131,7 @@ pub(crate) struct Complaint {
 /// A time \[s\] from a number and a unit, such as `"0.1 s"`, or from a bare number of seconds.
 ///
 /// # Errors
-/// What is wrong with the text.
+/// The fault of the text, in words.
 pub fn read_time(text: &str) -> Result<f64, String> {
     in_unit("s")
         .read(text, None)
@@ -157,6 +157,13 @@ impl Dimension {
     /// The dimension called so in the schema.
     pub(crate) fn named(name: &str) -> Option<&'static Self> {
         DIMENSIONS.iter().find(|dimension| dimension.name == name)
+    }
+
+    /// A unit of this dimension whose symbols were written without a space between them.
+    fn apart(&self, text: &str, symbol: &str, exponent: Option<f64>) -> Option<String> {
+        let fits =
+            |text: &String| unit::parse(text).is_ok_and(|unit| self.fits(unit.powers, exponent));
+        unit::apart(text, symbol).into_iter().find(fits)
     }
 
     /// Reads a number and a unit into SI; `exponent` is the n of a power law, where known.
@@ -188,7 +195,10 @@ impl Dimension {
             unit::parse(rest).map_err(|problem| match problem {
                 UnitProblem::Unknown(symbol) => complain(
                     format!("unknown unit `{symbol}` in `{text}`"),
-                    format!("{}; the units are {}", such_as(), unit::known()),
+                    match self.apart(rest, &symbol, exponent) {
+                        Some(apart) => format!("units stand apart: write `{number} {apart}`"),
+                        None => format!("{}; the units are {}", such_as(), unit::known()),
+                    },
                 ),
                 UnitProblem::Grammar(reason) => complain(
                     format!("`{}` is not a unit: {reason}", rest.trim()),
@@ -344,6 +354,20 @@ mod tests {
                 "12 furlong",
                 "unknown unit `furlong`",
                 "the units are m g s",
+            ),
+            ("a torque", "60 Nm", "unknown unit `Nm`", "write `60 N m`"),
+            ("a torque", "2 kNm", "unknown unit `kNm`", "write `2 kN m`"),
+            (
+                "a moment of inertia",
+                "3 kgm^2",
+                "unknown unit `kgm`",
+                "write `3 kg m^2`",
+            ),
+            (
+                "a rotational damping",
+                "2 Nms",
+                "unknown unit `Nms`",
+                "write `2 N m s`",
             ),
             ("a length", "12", "has no unit", "the bare number 12 [m]"),
             ("a length", "12,7 mm", "has a comma", "point"),

@@ -249,6 +249,29 @@ impl Reader<'_> {
     }
 }
 
+/// Ways of writing a unit with its unknown symbol taken apart into known ones: `N m` for `Nm`.
+pub(crate) fn apart(text: &str, symbol: &str) -> Vec<String> {
+    let written = |parts: String| text.trim().replacen(symbol, &parts, 1);
+    known_parts(symbol).into_iter().map(written).collect()
+}
+
+/// Ways of writing a text as known symbols side by side.
+fn known_parts(text: &str) -> Vec<String> {
+    let cuts = text.char_indices().map(|(at, _)| at).skip(1);
+    let mut ways: Vec<String> = cuts
+        .map(|at| text.split_at(at))
+        .filter(|(first, _)| lookup(first).is_some())
+        .flat_map(|(first, rest)| {
+            let rest = known_parts(rest);
+            rest.into_iter().map(move |rest| format!("{first} {rest}"))
+        })
+        .collect();
+    if lookup(text).is_some() {
+        ways.push(text.to_owned());
+    }
+    ways
+}
+
 fn lookup(name: &str) -> Option<Unit> {
     let unit = |symbol: &Symbol, decade: i32| Unit {
         decade: symbol.decade + decade,

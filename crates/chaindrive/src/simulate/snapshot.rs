@@ -13,7 +13,7 @@ use crate::seal::{Sealed, opened, sealed};
 
 /// A simulation as it was at a moment, to the last bit: contacts, windows and the time stepping with its memory.
 ///
-/// What follows from the drive is not in it: a snapshot is put back into a simulation of the same drive that was begun
+/// All that follows from the drive is left out: a snapshot is put back into a simulation of the same drive that was begun
 /// in the same way.
 ///
 /// # Example

@@ -81,6 +81,12 @@ statistics! {
 }
 
 impl Statistic {
+    /// The statistics that every run has.
+    pub fn of_every_run() -> impl Iterator<Item = Self> {
+        let all = Self::ALL.iter().copied();
+        all.filter(|it| !it.is_of_logged_contacts() && !it.is_of_a_choice())
+    }
+
     /// Whether it belongs to contacts that have to be logged.
     pub fn is_of_logged_contacts(self) -> bool {
         self.along() == Some(KIND)
@@ -243,8 +249,10 @@ impl Sink for Kept {
         channels: &[Channel],
         provenance: &Provenance,
     ) -> Result<(), SimulationError> {
-        let channels = if self.wanted { channels } else { &[] };
-        self.recording = Recording::of_run(channels, simulation.system(), &provenance.run)?;
+        // Where no channel is kept there is nothing that a long run could fill the memory with.
+        if self.wanted {
+            self.recording = Recording::of_run(channels, simulation.system(), &provenance.run)?;
+        }
         Ok(())
     }
 

@@ -1,16 +1,18 @@
 //! The values that are varied, and the dimensions that they become.
 
+use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 
 use super::report::short;
 use super::stack::TEXTS;
-use super::{MOST, Quantity, Statistic, SweepError};
+use super::{Arrangement, MOST, Quantity, Statistic, SweepError, VARIANT};
 use crate::Channel;
 use crate::record::Axis;
 use crate::scene::{Datum, Scene, SceneError};
 
 /// One value for a place in a scene.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Setting {
     /// As on the command line, see [`Scene::replace`].
     Text(String),
@@ -166,9 +168,12 @@ impl Dimension {
         path: &str,
         settings: Vec<Setting>,
         data: &[Option<Datum>],
+        arrangement: Arrangement,
     ) -> Result<Self, SweepError> {
         let (unit, values) = coordinate(data, &settings);
-        if let Some(value) = values.repeated() {
+        if arrangement == Arrangement::Grid
+            && let Some(value) = values.repeated()
+        {
             return Err(SweepError::Repeated {
                 path: path.to_owned(),
                 value,
@@ -181,6 +186,19 @@ impl Dimension {
             values,
             settings,
         })
+    }
+}
+
+impl Dimension {
+    /// Settings of a path, and nothing else about them.
+    pub(super) fn unnamed(path: String, settings: Vec<Setting>) -> Self {
+        Self {
+            name: path.clone(),
+            path,
+            unit: None,
+            values: Coordinate::Texts(Vec::new()),
+            settings,
+        }
     }
 }
 
@@ -246,7 +264,7 @@ fn is_taken(name: &str) -> bool {
     let along = Statistic::ALL
         .iter()
         .filter_map(|it| Quantity::Statistic(*it).along());
-    let own = ["time", "event"]
+    let own = ["time", "event", VARIANT]
         .into_iter()
         .chain(TEXTS.map(|(name, _)| name));
     axes.chain(channels)

@@ -2,22 +2,19 @@
 
 use std::fmt::{self, Write};
 
-use super::{Account, Dimension, Outcome, Quantity, Statistic, Sweep};
+use super::{Account, Dimension, Outcome, Quantity, Statistic, Sweep, Tally};
 
 /// Variants of which each has its line; of more, only the extremes are told.
 const LINES: usize = 40;
 
-/// Failures that are told.
-const FAILURES: usize = 20;
-
 /// A figure of a variant.
-struct Column {
-    heading: &'static str,
-    read: fn(&Account) -> f64,
+pub(super) struct Column {
+    pub(super) heading: &'static str,
+    pub(super) read: fn(&Account) -> f64,
 }
 
 /// The columns of the table.
-const COLUMNS: [Column; 6] = [
+pub(super) const COLUMNS: [Column; 6] = [
     Column {
         heading: "span max [N]",
         read: |account| account.largest(Statistic::SpanTensionMax),
@@ -46,7 +43,7 @@ const COLUMNS: [Column; 6] = [
 
 impl Account {
     /// Whether no method on the list kept the accuracy that was asked for.
-    fn misses(&self) -> bool {
+    pub(super) fn misses(&self) -> bool {
         self.largest(Statistic::AccuracyKept) < 1.0
     }
 
@@ -78,81 +75,32 @@ impl Sweep {
 
     /// One line for whoever asked to hear of errors only; none unless a variant is distrusted.
     pub fn warning(&self, outcomes: &[Outcome]) -> Option<String> {
-        let report = self.report(outcomes);
-        let (first, account) = report.distrusted().next()?;
-        Some(format!(
-            "do not trust {} of {} variants, see `verdict_note`; the first is {}: {}",
-            report.distrusted().count(),
-            outcomes.len(),
-            self.label(first),
-            account.verdict.note
-        ))
+        Tally::of(outcomes).warning(self)
     }
 
     /// A line a variant that failed, with the reason; all but the first ones are only counted.
     pub fn failures(&self, outcomes: &[Outcome]) -> Vec<String> {
-        let mut lines = Vec::new();
-        let mut more = 0;
-        for (index, outcome) in outcomes.iter().enumerate() {
-            match outcome {
-                Outcome::Failed(_) if lines.len() == FAILURES => more += 1,
-                Outcome::Failed(message) => {
-                    lines.push(format!("{}: {message}", self.label(index)));
-                }
-                Outcome::Open | Outcome::Done(_) => {}
-            }
-        }
-        if more > 0 {
-            lines.push(format!("and {more} more"));
-        }
-        lines
+        Tally::of(outcomes).failures(self)
+    }
+}
+
+impl Sweep {
+    /// Whether the account of it has a line a variant.
+    pub(crate) fn has_a_line_each(&self) -> bool {
+        self.len() <= LINES
     }
 }
 
 impl fmt::Display for Report<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let finished = self.done().count();
-        if self.outcomes.len() <= LINES {
+        if self.sweep.has_a_line_each() {
             self.variants(f)?;
-        } else if finished > 0 {
-            self.extremes(f)?;
         }
-        let failed = self.outcomes.iter();
-        let failed = failed.filter(|outcome| matches!(outcome, Outcome::Failed(_)));
-        let (failed, all) = (failed.count(), self.outcomes.len());
-        write!(f, "variants: {finished} of {all} done")?;
-        if failed > 0 {
-            write!(f, ", {failed} failed")?;
-        }
-        let missed = self.done().filter(|(_, account)| account.misses()).count();
-        if missed > 0 {
-            write!(f, ", {missed} without the accuracy asked for")?;
-        }
-        let distrusted = self.distrusted().count();
-        if distrusted > 0 {
-            write!(f, ", {distrusted} distrusted")?;
-        }
-        if finished + failed < all {
-            write!(f, ", {} not carried out", all - finished - failed)?;
-        }
-        Ok(())
+        write!(f, "{}", Tally::of(self.outcomes).summary(self.sweep))
     }
 }
 
 impl Report<'_> {
-    fn done(&self) -> impl Iterator<Item = (usize, &Account)> {
-        let outcomes = self.outcomes.iter().enumerate();
-        outcomes.filter_map(|(index, outcome)| match outcome {
-            Outcome::Done(account) => Some((index, account)),
-            Outcome::Open | Outcome::Failed(_) => None,
-        })
-    }
-
-    fn distrusted(&self) -> impl Iterator<Item = (usize, &Account)> {
-        self.done()
-            .filter(|(_, account)| account.verdict.is_distrusted())
-    }
-
     /// A line a variant.
     fn variants(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let dimensions = self.sweep.dimensions();
@@ -184,28 +132,6 @@ impl Report<'_> {
                 Outcome::Open => line.push_str("not carried out"),
             }
             writeln!(f, "{}", line.trim_end())?;
-        }
-        Ok(())
-    }
-
-    /// Where each figure is least and greatest.
-    fn extremes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for column in &COLUMNS {
-            let figures = self.done().map(|(index, it)| (index, (column.read)(it)));
-            let figures = figures.filter(|(_, figure)| !figure.is_nan());
-            let figures: Vec<(usize, f64)> = figures.collect();
-            let by_figure = |a: &&(usize, f64), b: &&(usize, f64)| a.1.total_cmp(&b.1);
-            let ends = [
-                ("least", figures.iter().min_by(by_figure)),
-                ("greatest", figures.iter().max_by(by_figure)),
-            ];
-            for (word, end) in ends {
-                if let Some(&(index, figure)) = end {
-                    let at = self.sweep.label(index);
-                    let heading = column.heading;
-                    writeln!(f, "{heading:15}  {word:8} {:>12}  at {at}", short(figure))?;
-                }
-            }
         }
         Ok(())
     }

@@ -4,10 +4,10 @@ use super::{Account, Coordinate, Entry, Outcome, Quantity, Statistic, Sweep};
 use crate::record::Axis;
 
 /// Message for a variant that was not carried out.
-const OPEN: &str = "not carried out: the sweep was stopped";
+pub(crate) const OPEN: &str = "not carried out: the sweep was stopped";
 
 /// Names and descriptions of the texts that results have of every variant.
-pub(super) const TEXTS: [(&str, &str); 4] = [
+pub(crate) const TEXTS: [(&str, &str); 4] = [
     (
         "verdict",
         "whether the numbers can be trusted: trusted, caution or distrusted",
@@ -46,7 +46,7 @@ pub struct StackedQuantity {
 /// A sweep as labelled arrays.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stacked {
-    /// Variants along each of the swept dimensions.
+    /// Variants along each of their dimensions.
     pub shape: Vec<usize>,
     /// Sample times \[s\], of the longest run; none without channels.
     pub time: Option<Vec<f64>>,
@@ -64,8 +64,7 @@ impl Sweep {
     /// Stacks the outcomes of all variants, in their order. Runs that sample longer than others, or have
     /// more links, decide about the size of the arrays; what the others do not have is NaN.
     pub fn stack(&self, outcomes: &[Outcome]) -> Stacked {
-        let shape: Vec<usize> = self.dimensions().iter().map(|d| d.values.len()).collect();
-        let names: Vec<&str> = self.dimensions().iter().map(|d| d.name.as_str()).collect();
+        let (shape, names) = (self.shape(), self.dims());
         let accounts: Vec<Option<&Account>> = outcomes
             .iter()
             .map(|outcome| match outcome {
@@ -126,7 +125,7 @@ impl Sweep {
 }
 
 /// The texts of one variant, in the order of [`TEXTS`].
-fn texts(outcome: &Outcome) -> [&str; TEXTS.len()] {
+pub(crate) fn texts(outcome: &Outcome) -> [&str; TEXTS.len()] {
     match outcome {
         Outcome::Done(Account { verdict, .. }) => {
             [&verdict.verdict, &verdict.reasons, &verdict.note, ""]
@@ -208,10 +207,7 @@ fn coordinate((name, labels): (String, Vec<String>)) -> (String, Coordinate) {
 
 /// The quantities that any of the accounts has; those of a run without channels in any case.
 fn quantities(accounts: &[Option<&Account>]) -> Vec<Quantity> {
-    let always = Statistic::ALL
-        .iter()
-        .filter(|it| !it.is_of_logged_contacts() && !it.is_of_a_choice());
-    let mut all: Vec<Quantity> = always.map(|&it| Quantity::Statistic(it)).collect();
+    let mut all: Vec<Quantity> = Statistic::of_every_run().map(Quantity::Statistic).collect();
     for entry in accounts
         .iter()
         .flatten()
@@ -225,7 +221,12 @@ fn quantities(accounts: &[Option<&Account>]) -> Vec<Quantity> {
 }
 
 /// Puts the entries of one account where their labels are in the stack.
-fn fill(account: &Account, quantity: Quantity, width: Option<&[String]>, to: &mut [f64]) {
+pub(crate) fn fill(
+    account: &Account,
+    quantity: Quantity,
+    width: Option<&[String]>,
+    to: &mut [f64],
+) {
     let mut entries = account.entries.iter();
     let Some(Entry { values, .. }) = entries.find(|entry| entry.quantity == quantity) else {
         return;

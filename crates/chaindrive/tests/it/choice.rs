@@ -5,6 +5,7 @@ use chaindrive::precision::{ACCURACY, Choice, Promise, Quantity, choose};
 use chaindrive::{
     Assembled, Given, Request, Run, Scene, Settings, Simulation, SimulationError, Stepping,
 };
+use chaindrive_integrate::SecondOrderSystem;
 
 fn start(scene: &str) -> Assembled {
     let drive = Scene::preset(scene).unwrap().drive().unwrap();
@@ -12,8 +13,12 @@ fn start(scene: &str) -> Assembled {
 }
 
 fn chosen(start: &Assembled, accuracy: f64) -> Choice {
+    chosen_until(start, accuracy, 0.1)
+}
+
+fn chosen_until(start: &Assembled, accuracy: f64, until: f64) -> Choice {
     let run = Run {
-        until: 1.0,
+        until,
         ..Run::default()
     };
     choose(start, &run, accuracy, &|| false).unwrap()
@@ -53,7 +58,8 @@ fn the_marine_drives_keep_what_was_asked() {
     for scene in ["marine_two_sprockets", "marine_engine_bare"] {
         let start = start(scene);
         for accuracy in [0.01, 0.001] {
-            let choice = chosen(&start, accuracy);
+            // Within the horizon of both.
+            let choice = chosen_until(&start, accuracy, 8e-3);
             assert!(choice.kept, "{scene}: {choice}");
             assert_eq!(choice.promise, Promise::Waveform);
             assert!(choice.error <= accuracy);
@@ -68,6 +74,25 @@ fn the_marine_drives_keep_what_was_asked() {
             assert!(error > 1e-9, "the reference is another run");
         }
     }
+}
+
+/// The teeth of a timing drive damp deep, slow contacts, and its plunger the arm, several times as fast as an explicit step could
+/// follow: the step chosen is longer than that, and the run is that of RK4, which follows.
+#[test]
+fn stiff_damping_does_not_shorten_the_step() {
+    let start = start("timing_drive");
+    let choice = chosen(&start, ACCURACY);
+    assert!(choice.kept, "{choice}");
+    let step = choice.run.step.unwrap();
+    let explicit = 2.0 * start.system.time_scale();
+    assert!(step > 2.0 * explicit, "{step:e} s, {explicit:e} s");
+    let reference = Run {
+        stepping: Stepping::Rk4,
+        step: Some(0.5 * start.system.time_scale()),
+        ..Run::default()
+    };
+    let error = error(&start, &choice, &reference, 0.2 * choice.window);
+    assert!((1e-9..=ACCURACY).contains(&error), "{error:.1e}, {choice}");
 }
 
 /// RK4 resolves the joints' damping, which the method chosen treats implicitly: two independent ways.

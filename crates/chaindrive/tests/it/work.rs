@@ -83,8 +83,8 @@ fn the_reference_is_confirmed_by_another_method() {
         "marine_two_sprockets",
         6e-3,
         vec![
-            variant(Stepping::Verlet, 1e-5),
-            variant(Stepping::Verlet, 5e-6),
+            variant(Stepping::Verlet, 3e-5),
+            variant(Stepping::Verlet, 1.5e-5),
         ],
     );
     assert_ne!(table.reference.stepping, table.check.stepping);

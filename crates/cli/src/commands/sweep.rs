@@ -3,12 +3,13 @@
 mod output;
 mod vary;
 
+use std::fs;
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use chaindrive::Request;
-use chaindrive::record::{Ending, Existing};
-use chaindrive::sweep::{Go, Outcome, Sweep};
+use chaindrive::record::{Ending, Existing, SweepStore, WriteError};
+use chaindrive::sweep::{Go, Sweep, Tally};
 use clap::Args;
 
 use super::output::Target;
@@ -34,6 +35,10 @@ Method and step:
   There a sweep takes the default step: trials in every variant would double the cost of short ones.
   With --accuracy 1% every variant chooses for itself, as its run would; accuracy_error and
   accuracy_kept in the result say what came of it.
+
+Results in a store:
+  Every task of about a second writes its part of the store. A sweep that was stopped or killed goes on
+  with what it lacks when the same command is given again.
 
 Exit codes:
   0    done
@@ -94,14 +99,27 @@ pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
     } else {
         Existing::Keep
     };
-    let mut output = Output::begin(target, &sweep, existing)?;
+    match target {
+        Target::Zarr(path) => in_store(arguments, &path, &sweep, interrupted),
+        Target::Csv(path) => in_memory(arguments, Some(&path), &sweep, existing, interrupted),
+        Target::Nowhere => in_memory(arguments, None, &sweep, existing, interrupted),
+    }
+}
 
+fn in_memory(
+    arguments: &Arguments,
+    table: Option<&Path>,
+    sweep: &Sweep,
+    existing: Existing,
+    interrupted: &dyn Fn() -> bool,
+) -> Result<(), Failure> {
+    let mut output = Output::begin(table, sweep, existing)?;
     let mut progress = Progress::new(arguments.quiet);
     let mut refused = None;
     let mut stopped = false;
     let outcomes = sweep.run(arguments.jobs.map(NonZeroUsize::get), |state| {
         progress.count(state.finished, sweep.len());
-        if let Err(error) = output.keep(&sweep, state) {
+        if let Err(error) = output.keep(sweep, state) {
             refused = Some(error);
         }
         stopped = stopped || interrupted();
@@ -115,21 +133,72 @@ pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
     if let Some(error) = refused {
         return Err(error);
     }
-    let open = outcomes.contains(&Outcome::Open);
-    output.write(&sweep, &outcomes, &Ending::of(&outcomes))?;
+    output.write(sweep, &outcomes, &Ending::of(&outcomes))?;
+    let report = sweep.report(&outcomes).to_string();
+    conclude(arguments, sweep, &Tally::of(&outcomes), report)
+}
+
+/// Begins a store, or goes on with one of the same sweep that was stopped or killed.
+fn in_store(
+    arguments: &Arguments,
+    path: &Path,
+    sweep: &Sweep,
+    interrupted: &dyn Fn() -> bool,
+) -> Result<(), Failure> {
+    let jobs = arguments.jobs.map(NonZeroUsize::get);
+    let mut progress = Progress::new(arguments.quiet);
+    let exists = fs::symlink_metadata(path).is_ok();
+    let mut store = if exists && !arguments.overwrite {
+        let store = SweepStore::go_on(path, sweep)?;
+        if store.open_tasks()?.is_empty() {
+            let path = path.to_owned();
+            return Err(WriteError::Exists { path }.into());
+        }
+        store
+    } else {
+        let existing = if arguments.overwrite {
+            Existing::Replace
+        } else {
+            Existing::Keep
+        };
+        let go = || {
+            if interrupted() { Go::NoFurther } else { Go::On }
+        };
+        let sample = sweep.time_sample(jobs, go)?;
+        if sample.stopped {
+            return Err(Failure::Interrupted);
+        }
+        SweepStore::begin(path, sweep, &sample, existing)?
+    };
+    let mut stopped = false;
+    store.run(jobs, |stored| {
+        progress.count(stored, sweep.len());
+        stopped = stopped || interrupted();
+        if stopped { Go::NoFurther } else { Go::On }
+    })?;
+    drop(progress);
+    let (tally, report) = store.finish()?;
+    conclude(arguments, sweep, &tally, report)
+}
+
+/// Says what came of a sweep.
+fn conclude(
+    arguments: &Arguments,
+    sweep: &Sweep,
+    tally: &Tally,
+    report: String,
+) -> Result<(), Failure> {
     if !arguments.quiet {
-        print(sweep.report(&outcomes))?;
+        print(report)?;
     }
-    if let Some(warning) = sweep.warning(&outcomes) {
+    if let Some(warning) = tally.warning(sweep) {
         eprintln!("{warning}");
     }
-    for failure in sweep.failures(&outcomes) {
+    for failure in tally.failures(sweep) {
         eprintln!("{failure}");
     }
-    let failed = outcomes.iter();
-    let failed = failed.filter(|outcome| matches!(outcome, Outcome::Failed(_)));
-    match failed.count() {
-        _ if open => Err(Failure::Interrupted),
+    match tally.failed {
+        _ if tally.open > 0 => Err(Failure::Interrupted),
         0 => Ok(()),
         failed => Err(Failure::Variants {
             failed,

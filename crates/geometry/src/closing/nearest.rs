@@ -117,7 +117,9 @@ pub fn close_nearest(
     let stretched = pitch * (1.0 + strain);
     match outward(stretched, links, phase, moving, search)? {
         Outcome::Closes(place, wheels, closing) => Ok((place, wheels, closing)),
-        Outcome::Nearest(wheels) => Err(does_not_close(&wheels, stretched, links)?),
+        Outcome::Nowhere { nearest, farthest } => {
+            Err(does_not_close(&nearest, Some(&farthest), stretched, links)?)
+        }
     }
 }
 
@@ -125,8 +127,11 @@ pub fn close_nearest(
 pub(super) enum Outcome {
     /// The place, the wheels there and the chain.
     Closes(f64, Vec<Wheel>, Closing),
-    /// Nowhere; the wheels where least is missing.
-    Nearest(Vec<Wheel>),
+    /// Nowhere; the wheels where least is missing, and where most is.
+    Nowhere {
+        nearest: Vec<Wheel>,
+        farthest: Vec<Wheel>,
+    },
 }
 
 /// Searches outward from the start, either way.
@@ -146,7 +151,8 @@ pub(super) fn outward(
     if misfit.abs() < f64::MIN_POSITIVE {
         return Ok(Outcome::Closes(search.start, wheels, closing));
     }
-    let mut nearest = (misfit, wheels);
+    let mut nearest = (misfit, wheels.clone());
+    let mut farthest = (misfit, wheels);
     let mut ways = [1.0, -1.0].map(|sense| Way {
         sense,
         last: (search.start, misfit),
@@ -175,10 +181,15 @@ pub(super) fn outward(
             }
             if found.abs() < nearest.0.abs() {
                 nearest = (found, wheels);
+            } else if found.abs() > farthest.0.abs() {
+                farthest = (found, wheels);
             }
             way.last = (to, found);
             way.step *= if way.refused { 0.5 } else { 1.5 };
         }
     }
-    Ok(Outcome::Nearest(nearest.1))
+    Ok(Outcome::Nowhere {
+        nearest: nearest.1,
+        farthest: farthest.1,
+    })
 }

@@ -27,7 +27,7 @@ pub fn close_by_strain(
     let unstrained = Closing::march(wheels, pitch, phase)?;
     let excess = unstrained.excess(links);
     if excess.abs() > MOST_MISFIT * pitch {
-        return Err(does_not_close(wheels, pitch, links)?);
+        return Err(does_not_close(wheels, None, pitch, links)?);
     }
     let free = f64::from(unstrained.spans.iter().sum::<u32>().max(1));
     let mut trial = |strain: f64| {
@@ -44,7 +44,7 @@ pub fn close_by_strain(
         }
         margin *= 2.0;
     }
-    Err(does_not_close(wheels, pitch, links)?)
+    Err(does_not_close(wheels, None, pitch, links)?)
 }
 
 /// Place in a motion of the wheels at which `links` links of a given strain close.
@@ -78,12 +78,12 @@ pub fn close_by_motion(
     }
     let (at_begin, (begin, _)) = trial(range.0)?;
     let (at_end, (end, _)) = trial(range.1)?;
-    let nearest = if at_begin.abs() < at_end.abs() {
-        begin
+    let (nearest, farthest) = if at_begin.abs() < at_end.abs() {
+        (begin, end)
     } else {
-        end
+        (end, begin)
     };
-    Err(does_not_close(&nearest, stretched, links)?)
+    Err(does_not_close(&nearest, Some(&farthest), stretched, links)?)
 }
 
 /// Closing strain over one tooth of wheel 0: pairs of phase and strain \[–\], at `samples` even phases in [0, 1).
@@ -145,13 +145,20 @@ pub(super) fn bisect<T>(
 }
 
 /// The message for a designer: how far off, which counts fit better, and where a wheel would have to stand.
+/// Wheels that move are given where least is missing, and where most is.
 pub(super) fn does_not_close(
     wheels: &[Wheel],
+    farthest: Option<&[Wheel]>,
     pitch: f64,
     links: u32,
 ) -> Result<GeometryError, GeometryError> {
     let route = Route::taut(wheels)?;
     let taut = route.pitches(pitch);
+    let other = farthest.map(Route::taut).transpose()?;
+    let reach = other.map(|other| {
+        let other = other.pitches(pitch);
+        Box::new([taut.min(other), taut.max(other)])
+    });
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -163,6 +170,7 @@ pub(super) fn does_not_close(
         links,
         taut,
         slack: (f64::from(links) - taut) * pitch,
+        reach,
         below,
         short: (taut - f64::from(below)) * pitch,
         above,
@@ -194,6 +202,6 @@ fn remedy(route: &Route, pitch: f64, links: u32) -> Option<Remedy> {
             centre: moved[wheel].centre,
             centre_distance: two.then(|| (moved[1].centre - moved[0].centre).norm()),
         }),
-        Outcome::Nearest(_) => None,
+        Outcome::Nowhere { .. } => None,
     }
 }

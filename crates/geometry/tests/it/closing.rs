@@ -382,4 +382,26 @@ fn a_chain_that_cannot_close_says_by_how_much() {
         matches!(error, GeometryError::DoesNotClose { slack, .. } if slack < 0.0),
         "{error}"
     );
+    let taut = |x: f64| Route::taut(&marine(x)).unwrap().pitches(MARINE_PITCH);
+    let [least, most] = [taut(1.15), taut(1.25)];
+    let told = format!("can be made {least:.3} to {most:.3} links long");
+    assert!(error.to_string().contains(&told), "{error}");
+    let [first, last] = [least.ceil(), most.floor()];
+    assert!(
+        error
+            .to_string()
+            .contains(&format!("take {first} to {last}")),
+        "{error}"
+    );
+}
+
+/// A bare number where millimetres were meant makes the route a thousand times too long.
+#[test]
+fn a_route_in_another_unit_is_told() {
+    let wheels = marine(1e3 * MARINE_CAMSHAFT);
+    let error = close_by_strain(&wheels, MARINE_PITCH, 122, 0.5).unwrap_err();
+    assert!(
+        error.to_string().contains("A bare number is in metres"),
+        "{error}"
+    );
 }

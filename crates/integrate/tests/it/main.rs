@@ -6,6 +6,7 @@ mod guards;
 mod implicit;
 mod memory;
 mod order;
+mod predicted;
 mod problems;
 mod states;
 mod validation_bounce;

@@ -13,6 +13,7 @@
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Moment, SecondOrderSystem, Weights};
 
+use crate::chains::Rates;
 use crate::drive::PretensionAt;
 use crate::energy::Flow;
 use crate::system::{RailSupport, Record, System, Turn, WheelSupport};
@@ -162,7 +163,7 @@ fn relax(system: &mut System, q: &mut [f64], typical: f64) -> Balance {
     let mut a = forces(system, q, &still, &mut record);
     let (mut worst, mut residual) = system.imbalance(q, &a, &record, typical);
     let mut best = (worst, residual, q.to_vec());
-    let [squared, _] = system.rates(&mut record);
+    let Rates { squared, .. } = system.rates(&mut record);
     let scale = (1.0 / squared.sqrt()).min(1e-4);
     let longest = 10.0;
     let mut reach = 10.0 * scale;

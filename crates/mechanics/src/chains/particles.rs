@@ -20,11 +20,11 @@ mod springs;
 mod statics;
 
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::Moment;
+use chaindrive_integrate::{Moment, Prediction};
 use pulp::Arch;
 
 use super::joints::Joints;
-use super::{Pose, Record, Surroundings};
+use super::{Pose, Rates, Record, Surroundings};
 use crate::contact::Rollers;
 use crate::contact::{PlatePins, PlatePlaces};
 use crate::system::HeldEnd;
@@ -125,7 +125,13 @@ impl Particles {
     }
 
     #[inline(always)]
-    pub(super) fn view<'a>(&'a self, q: &'a [f64], v: &'a [f64], a: &'a mut [f64]) -> Rollers<'a> {
+    pub(super) fn view<'a>(
+        &'a self,
+        at: Moment<'a>,
+        prediction: Option<Prediction<'_>>,
+        a: &'a mut [f64],
+    ) -> Rollers<'a> {
+        let Moment { q, v, .. } = at;
         let n = self.stride;
         let (ax, rest) = a.split_at_mut(n);
         Rollers {
@@ -137,6 +143,7 @@ impl Particles {
             ay: &mut rest[..n],
             inverse_mass: &self.inverse_masses[..n],
             spin: &[],
+            half_step: prediction.map_or(0.0, |prediction| prediction.half_step),
         }
     }
 
@@ -168,8 +175,9 @@ impl Particles {
     /// ω_s = D + √(D² + ω²),   ω² = max Σ k/m + max k_c/m,   D = Σ d/m
     /// ```
     ///
-    /// The damping rate enters because Verlet's predicted velocity limits h D to 1.
-    pub(super) fn rates(&self, around: Surroundings<'_>, record: &mut Record) -> [f64; 2] {
+    /// The damping rate enters because Verlet's predicted velocity limits h D to 1; that of teeth along their normals does not, where
+    /// it is taken at the end of the step.
+    pub(super) fn rates(&self, around: Surroundings<'_>, record: &mut Record) -> Rates {
         let Surroundings {
             bodies, contacts, ..
         } = around;
@@ -180,7 +188,7 @@ impl Particles {
         let dragged = self.drag.as_ref();
         let dragged = dragged.map_or(0.0, |it| it.rate(&self.links, self.lightest));
         damping = damping.max(drag + dragged);
-        let (mut contact, mut drag) = (0.0_f64, 0.0_f64);
+        let (mut contact, mut drag, mut predicted) = (0.0_f64, 0.0_f64, 0.0_f64);
         for (on, wrench) in contacts.teeth.iter().zip(&record.loads.wheel_wrenches) {
             let stiffness = on.contacts.surface.stiffness(wrench.depth);
             let seated: usize = on.contacts.runs.iter().map(|run| run.count).sum();
@@ -188,15 +196,20 @@ impl Particles {
             let shared = mobility * seated as f64;
             contact = contact.max(stiffness * (self.lightest + shared));
             drag = drag.max(wrench.damping * (self.lightest + shared));
+            predicted = predicted.max(wrench.across * (self.lightest + shared));
         }
         for (on, wrench) in contacts.rails.iter().zip(&record.loads.rail_wrenches) {
             let stiffness = on.contact.surface().stiffness(wrench.depth);
             contact = contact.max(stiffness * self.lightest);
-            drag = drag.max(wrench.damping * self.lightest);
+            let damped = wrench.damping * self.lightest;
+            drag = drag.max(damped);
+            predicted = predicted.max(damped);
         }
-        squared += contact;
-        damping += drag;
-        [squared, damping]
+        Rates {
+            squared: squared + contact,
+            damping: damping + drag,
+            predicted: damping + predicted,
+        }
     }
 
     /// Moves every roller that is not held; copies behind the last one follow.

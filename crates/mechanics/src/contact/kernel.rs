@@ -2,6 +2,7 @@
 
 use pulp::Simd;
 
+use super::ahead::Ahead;
 use super::look::{FacedSurface, Place, View};
 use super::rest::{CLOSE, Clear};
 use super::slots::Slots;
@@ -14,7 +15,8 @@ use crate::profile::SHARPEST;
 impl Contacts {
     /// Adds the contact accelerations to `rollers` and returns what the body receives.
     ///
-    /// Reads the memory of the last accepted state, writes the state here into `touch`.
+    /// Reads the memory of the last accepted state, writes the state here into `touch`. Where velocities are predicted, damping is
+    /// taken at the end of the step if it is known by how much the body yields, 1/M \[1/kg\]: see [`Ahead`].
     #[inline(always)]
     pub(crate) fn act<S: Simd>(
         &self,
@@ -22,6 +24,7 @@ impl Contacts {
         t: f64,
         frame: &Frame,
         rollers: &mut Rollers<'_>,
+        yielding: Option<f64>,
         touch: &mut Touch,
     ) -> Wrench {
         let dt = t - self.accepted;
@@ -47,6 +50,7 @@ impl Contacts {
                         axis: place,
                         roller: run.start + offset,
                         valid: w.first(run.count - offset),
+                        yielding,
                     };
                     let (slots, sums) = (&mut slots, &mut sums);
                     touching |= self.lane(w, dt, &frame, view, slot, rollers, slots, sums);
@@ -165,8 +169,18 @@ impl Contacts {
         // δ̇ = −n·u
         let closing = -(faced.nx * motion.ux + faced.ny * motion.uy);
         let share = law.share(w, faced.beyond);
+        let inverse_mass = w.load(rollers.inverse_mass, roller);
+        let ahead = slot.yielding.map(|yielding| {
+            let (ax, ay) = (w.load(rollers.ax, roller), w.load(rollers.ay, roller));
+            Ahead {
+                thrust: -(faced.nx * ax + faced.ny * ay),
+                half_step: w.splat(rollers.half_step),
+                mobility: inverse_mass + w.splat(yielding),
+            }
+        });
         let (memory, tally) = (&mut slots.memory, &mut sums.tally);
-        let Some(pressed) = law.press(w, memory, lane, [gap, closing], share, None, tally) else {
+        let surfaces = [gap, closing];
+        let Some(pressed) = law.press(w, memory, lane, surfaces, share, None, ahead, tally) else {
             return Some(closing);
         };
         let force = pressed.force;
@@ -189,13 +203,13 @@ impl Contacts {
             // M = −(d − r n) × F
             moment = motion.dy * fx - motion.dx * fy + rub * radius;
             damping += rubbing.steepest;
+            sums.across = sums.across.max(rubbing.steepest);
             if let Some(faces) = &mut slots.faces {
                 faces.rub.set(lane, rub);
                 faces.drag.set(lane, rubbing.drag);
                 faces.secant.set(lane, rubbing.secant);
             }
         }
-        let inverse_mass = w.load(rollers.inverse_mass, roller);
         (w.load(rollers.ax, roller) + fx * inverse_mass).store(rollers.ax, roller);
         (w.load(rollers.ay, roller) + fy * inverse_mass).store(rollers.ay, roller);
 
@@ -226,6 +240,8 @@ struct RollerSlot<S: Simd> {
     axis: usize,
     roller: usize,
     valid: Mask<S>,
+    /// By how much the body yields \[1/kg\], where steps look ahead.
+    yielding: Option<f64>,
 }
 
 impl<S: Simd> RollerSlot<S> {

@@ -13,6 +13,7 @@ use chaindrive_contact::dissipation::{Action, RATIO_LIMIT};
 use chaindrive_contact::{Approach, Friction, Law, Prepared, Rub};
 use pulp::Simd;
 
+use super::ahead::Ahead;
 use super::memory::MemoryLanes;
 use super::stacked::Stacked;
 use super::wrench::LaneTally;
@@ -153,6 +154,7 @@ impl SurfaceLaw {
         [gap, closing]: [Lane<S>; 2],
         share: Option<Lane<S>>,
         weight: Option<Lane<S>>,
+        ahead: Option<Ahead<S>>,
         tally: &mut LaneTally<S>,
     ) -> Option<Pressed<S>> {
         let zero = w.splat(0.0);
@@ -182,11 +184,18 @@ impl SurfaceLaw {
             stored = stored + share * (flank.elastic.force(w, depth) - stored);
             memory.keep_share(lane, share);
         }
-        let ratio = (closing * inverse_onset).min(w.splat(RATIO_LIMIT));
-        let factor = w.splat(self.factor);
-        let viscous = w.splat(self.damping) * closing;
-        let raw = stored * (w.splat(1.0) + factor * ratio) + viscous;
+        let [one, factor, damping] = [1.0, self.factor, self.damping].map(|x| w.splat(x));
+        let ratio_at = |closing: Lane<S>| (closing * inverse_onset).min(w.splat(RATIO_LIMIT));
+        let (mut closing, mut ratio) = (closing, ratio_at(closing));
+        let raw = stored * (one + factor * ratio) + damping * closing;
         let mut force = closed.select(raw.max(zero), zero);
+        if let Some(ahead) = ahead {
+            let steep = factor * stored * inverse_onset + damping;
+            let [change, ahead] = ahead.change(w, memory, lane, fresh, [force, steep]);
+            closing += change;
+            ratio = ratio_at(closing);
+            force = closed.select(ahead.max(zero), zero);
+        }
         let mut loss = force - closed.select(stored, zero);
         if let Some(weight) = weight {
             force = weight * force;

@@ -22,6 +22,8 @@ pub(crate) struct ContactMemory {
     pub(crate) closing: Vec<f64>,
     /// Normal force \[N\].
     pub(crate) force: Vec<f64>,
+    /// Acceleration of a closed contact's circle towards the surface by all else that acts on it \[m/s²\]; kept where steps look ahead.
+    pub(crate) thrust: Vec<f64>,
     /// State of a friction law that has one; means something while closed.
     pub(crate) stick: Vec<f64>,
     /// Share of the flank's law, where there is one; means something while closed.
@@ -84,6 +86,7 @@ impl ContactMemory {
         self.gap[to] = other.gap[from];
         self.closing[to] = other.closing[from];
         self.force[to] = other.force[from];
+        self.thrust[to] = other.thrust[from];
         self.stick[to] = other.stick[from];
         self.share[to] = other.share[from];
     }
@@ -101,6 +104,7 @@ impl ContactMemory {
             &self.gap,
             &self.closing,
             &self.force,
+            &self.thrust,
             &self.stick,
             &self.share,
         ] {
@@ -118,12 +122,13 @@ impl ContactMemory {
         }
     }
 
-    fn all(&mut self) -> [&mut Vec<f64>; 6] {
+    fn all(&mut self) -> [&mut Vec<f64>; 7] {
         [
             &mut self.inverse_onset,
             &mut self.gap,
             &mut self.closing,
             &mut self.force,
+            &mut self.thrust,
             &mut self.stick,
             &mut self.share,
         ]
@@ -140,6 +145,8 @@ struct Before<'a, S: Simd> {
     inverse_onset: Lanes<'a, S>,
     gap: Lanes<'a, S>,
     closing: Lanes<'a, S>,
+    force: Lanes<'a, S>,
+    thrust: Lanes<'a, S>,
     stick: Lanes<'a, S>,
 }
 
@@ -148,6 +155,7 @@ struct Now<'a, S: Simd> {
     gap: LanesMut<'a, S>,
     closing: LanesMut<'a, S>,
     force: LanesMut<'a, S>,
+    thrust: LanesMut<'a, S>,
     stick: LanesMut<'a, S>,
     share: LanesMut<'a, S>,
 }
@@ -174,6 +182,8 @@ impl<'a, S: Simd> MemoryLanes<'a, S> {
                 inverse_onset: w.lanes(&before.inverse_onset[..count]),
                 gap: w.lanes(&before.gap[..count]),
                 closing: w.lanes(&before.closing[..count]),
+                force: w.lanes(&before.force[..count]),
+                thrust: w.lanes(&before.thrust[..count]),
                 stick: w.lanes(&before.stick[..count]),
             },
             now: Now {
@@ -181,6 +191,7 @@ impl<'a, S: Simd> MemoryLanes<'a, S> {
                 gap: Wide::<S>::lanes_mut(&mut now.gap[..count]),
                 closing: Wide::<S>::lanes_mut(&mut now.closing[..count]),
                 force: Wide::<S>::lanes_mut(&mut now.force[..count]),
+                thrust: Wide::<S>::lanes_mut(&mut now.thrust[..count]),
                 stick: Wide::<S>::lanes_mut(&mut now.stick[..count]),
                 share: Wide::<S>::lanes_mut(&mut now.share[..count]),
             },
@@ -233,6 +244,19 @@ impl<'a, S: Simd> MemoryLanes<'a, S> {
         self.now.inverse_onset.set(lane, inverse);
     }
 
+    /// Forces \[N\], and what else drew the circles towards their surfaces \[m/s²\], at the last accepted state.
+    #[inline(always)]
+    pub(super) fn pushed(&self, lane: usize) -> [Lane<S>; 2] {
+        [self.before.force.get(lane), self.before.thrust.get(lane)]
+    }
+
+    /// Keeps what else draws the circles.
+    #[inline(always)]
+    pub(super) fn keep_thrust(&mut self, lane: usize, thrust: Lane<S>) {
+        self.now.thrust.set(lane, thrust);
+    }
+
+    /// Keeps the forces, zero where open.
     #[inline(always)]
     pub(crate) fn keep_force(&mut self, lane: usize, force: Lane<S>) {
         self.now.force.set(lane, force);

@@ -6,7 +6,7 @@
 
 use chaindrive_geometry::{Point, Vector};
 
-use super::window::FAR;
+use super::window::{FAR, Places};
 use super::{ContactMemory, Frame, LaneTally, MemoryLanes, SurfaceLaw, Wrench};
 use crate::drive::Surface;
 use crate::lanes::Wide;
@@ -39,6 +39,8 @@ pub(crate) struct PlateContact {
     law: SurfaceLaw,
     /// Half the plate height \[m\].
     pub(crate) half_height: f64,
+    /// Links that can touch before the next look.
+    pub(super) near: Vec<usize>,
     /// State of each link at the last accepted step.
     pub(crate) memory: ContactMemory,
     /// When that was \[s\].
@@ -72,6 +74,7 @@ impl PlateContact {
             surface,
             law: SurfaceLaw::new(&surface, None),
             half_height,
+            near: Vec::new(),
             memory: ContactMemory::open(links),
             accepted: 0.0,
         }
@@ -98,8 +101,27 @@ impl PlateContact {
             .unwrap_or_else(|| at(0.5))
     }
 
+    /// Looks which links can touch before the next look: none of their pins crosses the margin until then.
+    pub(crate) fn renew(&mut self, frame: &Frame, places: Places<'_>, margin: f64) {
+        let mut near = std::mem::take(&mut self.near);
+        let far = |roller: usize| {
+            let pin = Point::new(places.x[roller], places.y[roller]);
+            self.beyond(frame.local(pin, self.reference), margin)
+        };
+        let links = 0..self.memory.gap.len();
+        let all = links.filter(|&link| !(far(link) && far((link + 1) % places.count)));
+        near.clear();
+        near.extend(all);
+        self.near = near;
+    }
+
     fn far(&self, p: Point) -> bool {
-        let reach = 4.0 * self.half_height;
+        self.beyond(p, 0.0)
+    }
+
+    /// Whether a place in the face's coordinates is farther from its box than a plate reaches, by a margin \[m\].
+    fn beyond(&self, p: Point, margin: f64) -> bool {
+        let reach = 4.0 * self.half_height + margin;
         (0..2).any(|axis| {
             p[axis] < self.bounds[0][axis] - reach || p[axis] > self.bounds[1][axis] + reach
         })
@@ -116,13 +138,15 @@ impl PlateContact {
         links: usize,
         touch: &mut ContactMemory,
     ) -> Wrench {
-        touch.resize(links);
+        if touch.gap.len() != links {
+            touch.reopen(links);
+        }
         let w = Wide(pulp::Scalar);
         let dt = t - self.accepted;
         let mut memory = MemoryLanes::new(w, &self.memory, touch, links);
         let mut tally = LaneTally::new(w);
         let mut wrench = Wrench::default();
-        for link in 0..links {
+        for &link in &self.near {
             let pins = [0, 1].map(|end| pins_of.place(link, end));
             let [a, b] = pins.map(|pin| frame.local(pin, self.reference));
             if self.far(a) && self.far(b) {
@@ -141,9 +165,16 @@ impl PlateContact {
                 - Vector::new(-d.y, d.x) * frame.spin;
             let surfaces = [point.probe.gap, -normal.dot(&u)].map(|number| w.splat(number));
             let weight = Some(w.splat(point.weight));
-            let pressed = self
-                .law
-                .press(w, &mut memory, link, surfaces, None, weight, &mut tally);
+            let pressed = self.law.press(
+                w,
+                &mut memory,
+                link,
+                surfaces,
+                None,
+                weight,
+                None,
+                &mut tally,
+            );
             let Some(pressed) = pressed else { continue };
             let tangent = Vector::new(-normal.y, normal.x);
             let slip = w.splat(tangent.dot(&u) + frame.spin * self.half_height);

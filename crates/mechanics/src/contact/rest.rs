@@ -92,7 +92,7 @@ mod tests {
         fn with_simd<S: Simd>(mut self, simd: S) {
             let (t, rollers, touch) = (self.t, &mut self.rollers, self.touch);
             self.contacts
-                .act(Wide(simd), t, &self.frame, rollers, touch);
+                .act(Wide(simd), t, &self.frame, rollers, None, touch);
         }
     }
 
@@ -148,6 +148,7 @@ mod tests {
                 ay: &mut ay,
                 inverse_mass: &inverse_mass,
                 spin: &[],
+                half_step: 0.0,
             };
             Arch::new().dispatch(Look {
                 contacts,

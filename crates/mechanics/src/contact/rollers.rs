@@ -14,6 +14,8 @@ pub(crate) struct Rollers<'a> {
     pub(crate) inverse_mass: &'a [f64],
     /// Angular speeds of the circles that touch \[rad/s\]; empty where none of them turns.
     pub(crate) spin: &'a [f64],
+    /// Half of the step \[s\] at whose end the velocities are predicted; zero where they are what they are.
+    pub(crate) half_step: f64,
 }
 
 impl Rollers<'_> {

@@ -4,16 +4,20 @@
 //! x + K xⁿ/k_s = δ,   F = K xⁿ,   1/k = x/(n F) + 1/k_s
 //! ```
 //!
-//! Newton's method from x = δ/(1 + K δⁿ⁻¹/k_s), which lies below the root; the first step passes it, and the rest come down to it.
-//! How many it takes depends on n and on K δⁿ⁻¹/k_s alone: they are counted once.
+//! With x = δ y and r = K δⁿ⁻¹/k_s that is y + r yⁿ = 1, where y depends on n and r alone. For r up to [`QUICK`] a polynomial in
+//! r/(1 + r), fitted once, is so near that one step of Newton's method ends at rounding. Beyond, Newton's method begins at
+//! y = 1/(1 + r), which lies below the root; the first step passes it, and the rest come down to it: how many it takes is counted once.
 
 use pulp::{Simd, WithSimd};
 
 use super::law::LEAST_DEPTH;
-use crate::lanes::{FixedPower, LANES, Lane, Wide};
+use crate::lanes::{FixedPower, LANES, Lane, Polynomial, Wide};
 
 /// K δⁿ⁻¹/k_s that steps are counted for: beyond the last one the surfaces are as good as rigid, before the first what lies behind.
 const RATIOS: [f64; 2] = [1e-8, 1e8];
+
+/// r up to which the polynomial serves: deeper contacts are several times as stiff as what lies behind them.
+const QUICK: f64 = 4.0;
 
 /// Steps at most, where doubling digits has long come to an end.
 const MOST: usize = 12;
@@ -27,6 +31,8 @@ pub(super) struct Stacked {
     lower: FixedPower,
     /// 1/k_s \[m/N\]
     compliance: f64,
+    /// y of 2 r/(1 + r) (1 + R)/R − 1, where R is [`QUICK`].
+    near: Polynomial,
     steps: usize,
 }
 
@@ -37,6 +43,10 @@ impl Stacked {
             exponent,
             lower: FixedPower::new(exponent - 1.0),
             compliance: 1.0 / series,
+            near: Polynomial::through(|t| {
+                let share = 0.5 * (t + 1.0) * QUICK / (1.0 + QUICK);
+                root(exponent, share / (1.0 - share))
+            }),
             steps: steps(exponent),
         }
     }
@@ -54,7 +64,20 @@ impl Stacked {
         let depth = depth.max(w.splat(LEAST_DEPTH));
         let yielding = w.splat(self.stiffness * self.compliance);
         let n = w.splat(self.exponent);
-        let mut x = depth * (one + yielding * self.lower.of(w, depth)).recip();
+        let lower = self.lower.of(w, depth);
+        let r = yielding * lower;
+        let beside = (one + r).recip();
+        if !r.greater(w.splat(QUICK)).any() {
+            let t = r * beside * w.splat(2.0 * (1.0 + QUICK) / QUICK) - one;
+            let y = self.near.of(w, t);
+            // Δ = (1 − y − r yⁿ)/(1 + n r yⁿ⁻¹),   (y + Δ)ⁿ⁻¹ = yⁿ⁻¹ (1 + (n − 1) Δ/y)
+            let below = self.lower.of(w, y);
+            let steep = r * below;
+            let change = (one - y - steep * y) * (one + n * steep).recip();
+            let share = (y + change) * (one + (n - one) * change * y.recip());
+            return w.splat(self.stiffness) * depth * lower * below * share;
+        }
+        let mut x = depth * beside;
         for _ in 0..self.steps {
             // a = K xⁿ⁻¹/k_s,   x ← x − (x + a x − δ)/(1 + n a)
             let a = yielding * self.lower.of(w, x);
@@ -89,6 +112,20 @@ impl WithSimd for Ask<'_> {
         let w = Wide(simd);
         self.law.found(w, w.load(&self.depth, 0)).numbers()
     }
+}
+
+/// y where y + r yⁿ = 1, by Newton's method until nothing changes.
+fn root(n: f64, r: f64) -> f64 {
+    let mut y = 1.0 / (1.0 + r);
+    for _ in 0..64 {
+        let a = r * y.powf(n - 1.0);
+        let next = y - (y + a * y - 1.0) / (1.0 + n * a);
+        if (next - y).abs() <= f64::EPSILON * y {
+            break;
+        }
+        y = next;
+    }
+    y
 }
 
 /// Steps after which y + r yⁿ = 1 holds to rounding, for all r.

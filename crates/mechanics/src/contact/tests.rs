@@ -207,10 +207,11 @@ impl Roller {
             ay: &mut ay,
             inverse_mass: &lane(1.0),
             spin: &[],
+            half_step: 0.0,
         };
         let w = Wide(pulp::Scalar);
         self.contacts
-            .act(w, t, &self.frame, &mut rollers, &mut self.touch);
+            .act(w, t, &self.frame, &mut rollers, None, &mut self.touch);
         std::mem::swap(&mut self.contacts.memory, &mut self.touch);
         self.contacts.accepted = t;
         Vector::new(ax[0], ay[0])

@@ -18,6 +18,7 @@ pub(crate) struct Windows {
 /// States of the contacts of link plates.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct PlateMemory {
+    near: Vec<usize>,
     memory: ContactMemory,
     accepted: f64,
 }
@@ -59,6 +60,7 @@ impl PlateContact {
     /// Its memory.
     pub(crate) fn remembered(&self) -> PlateMemory {
         PlateMemory {
+            near: self.near.clone(),
             memory: self.memory.clone(),
             accepted: self.accepted,
         }
@@ -66,7 +68,11 @@ impl PlateContact {
 
     /// Goes on from there.
     pub(crate) fn remember(&mut self, memory: PlateMemory) -> Result<(), MemoryError> {
-        memory.memory.check(self.memory.gap.len())?;
+        let links = self.memory.gap.len();
+        memory.memory.check(links)?;
+        let last = memory.near.iter().map(|link| link + 1).max();
+        MemoryError::unless_within("link", last.unwrap_or(0), links)?;
+        self.near = memory.near;
         self.memory = memory.memory;
         self.accepted = memory.accepted;
         Ok(())

@@ -21,6 +21,8 @@ pub(crate) struct Wrench {
     pub(crate) depth: f64,
     /// Largest damping of one contact, along the normal and across \[N s/m\].
     pub(crate) damping: f64,
+    /// Largest damping across alone \[N s/m\].
+    pub(crate) across: f64,
     /// Deepest penetration of a contact that began in this step \[m\].
     pub(crate) first_depth: f64,
     /// Smallest share of the step after which such a contact began.
@@ -163,6 +165,7 @@ pub(super) struct Sums<S: Simd> {
     pub(super) fy: Lane<S>,
     pub(super) moment: Lane<S>,
     pub(super) damping: Lane<S>,
+    pub(super) across: Lane<S>,
     pub(super) tally: LaneTally<S>,
 }
 
@@ -175,6 +178,7 @@ impl<S: Simd> Sums<S> {
             fy: zero,
             moment: zero,
             damping: zero,
+            across: zero,
             tally: LaneTally::new(w),
         }
     }
@@ -185,6 +189,7 @@ impl<S: Simd> Sums<S> {
             force: [self.fx.sum(), self.fy.sum()],
             moment: self.moment.sum(),
             damping: self.damping.largest(),
+            across: if rubbing { self.across.largest() } else { 0.0 },
             ..Wrench::default()
         };
         self.tally.total(rubbing, wrench)

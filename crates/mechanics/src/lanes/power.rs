@@ -9,10 +9,9 @@
 
 use pulp::Simd;
 
+use super::polynomial::Polynomial;
 use super::{Lane, Wide};
 
-/// Coefficients of the polynomial. For exponents up to 2 the error of the interpolation is then below that of rounding.
-const TERMS: usize = 14;
 /// Powers of two that are taken off, from the largest number on; they reach down to 10⁻³⁵.
 const OCTAVES: [f64; 8] = [64.0, 32.0, 16.0, 8.0, 4.0, 2.0, 1.0, 0.5];
 /// Numbers are below 2 to this power.
@@ -24,8 +23,8 @@ const HALF: f64 = 0.5 * (1.0 - std::f64::consts::FRAC_1_SQRT_2);
 /// x ↦ xⁿ for 10⁻³⁵ < x < 256.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FixedPower {
-    /// Of rising powers of (m − MIDDLE)/HALF.
-    coefficients: [f64; TERMS],
+    /// mⁿ of (m − MIDDLE)/HALF. For exponents up to 2 the error of the interpolation is below that of rounding.
+    within: Polynomial,
     /// 2^(−s), 2^s and 2^(−s n) of every octave.
     octaves: [[f64; 3]; OCTAVES.len()],
     /// 2^(8 n)
@@ -35,7 +34,7 @@ pub(crate) struct FixedPower {
 impl FixedPower {
     pub(crate) fn new(exponent: f64) -> Self {
         Self {
-            coefficients: polynomial(|m| m.powf(exponent)),
+            within: Polynomial::through(|t| (MIDDLE + HALF * t).powf(exponent)),
             octaves: OCTAVES.map(|s| [(-s).exp2(), s.exp2(), (-s * exponent).exp2()]),
             largest: (LARGEST * exponent).exp2(),
         }
@@ -51,41 +50,8 @@ impl FixedPower {
             power = below.select(power * w.splat(share), power);
         }
         let t = (m - w.splat(MIDDLE)) * w.splat(1.0 / HALF);
-        // Even and odd powers side by side.
-        let squared = t * t;
-        let mut even = w.splat(self.coefficients[TERMS - 2]);
-        let mut odd = w.splat(self.coefficients[TERMS - 1]);
-        for k in (0..TERMS / 2 - 1).rev() {
-            even = even * squared + w.splat(self.coefficients[2 * k]);
-            odd = odd * squared + w.splat(self.coefficients[2 * k + 1]);
-        }
-        power * (even + odd * t)
+        power * self.within.of(w, t)
     }
-}
-
-/// Coefficients of the polynomial through the values of `f` at Chebyshev's nodes, in rising powers of (m − MIDDLE)/HALF.
-fn polynomial(f: impl Fn(f64) -> f64) -> [f64; TERMS] {
-    let count = TERMS as f64;
-    let angle = |i: usize| std::f64::consts::PI * (i as f64 + 0.5) / count;
-    let values: [f64; TERMS] = std::array::from_fn(|i| f(MIDDLE + HALF * angle(i).cos()));
-    let mut sum = [0.0; TERMS];
-    // T₀ = 1, T₁ = t, T_{k+1} = 2 t T_k − T_{k−1}
-    let (mut before, mut basis) = ([0.0; TERMS], [0.0; TERMS]);
-    basis[0] = 1.0;
-    for k in 0..TERMS {
-        let share: f64 = (0..TERMS)
-            .map(|i| values[i] * (k as f64 * angle(i)).cos())
-            .sum();
-        let share = share * if k == 0 { 1.0 } else { 2.0 } / count;
-        for (sum, basis) in sum.iter_mut().zip(&basis) {
-            *sum += share * basis;
-        }
-        let factor = if k == 0 { 1.0 } else { 2.0 };
-        let next =
-            std::array::from_fn(|j| factor * if j > 0 { basis[j - 1] } else { 0.0 } - before[j]);
-        (before, basis) = (basis, next);
-    }
-    sum
 }
 
 #[cfg(test)]

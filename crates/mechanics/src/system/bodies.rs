@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::Slide;
 use super::inputs::Inputs;
 use super::shafts::{Shaft, Turn};
+use crate::chains::Rates;
 use crate::contact::Frame;
 use crate::motion::Kinematics;
 use crate::tensioner::Slopes;
@@ -167,16 +168,22 @@ impl Bodies {
     }
 
     /// ω² and damping rate of every body by itself, the largest of each; `pushes` of every tensioner at the last evaluation.
-    pub(crate) fn own_rates(&self, pushes: &[Slopes]) -> [f64; 2] {
-        let [mut squared, mut damping] = self.rates;
+    pub(crate) fn own_rates(&self, pushes: &[Slopes]) -> Rates {
+        let [mut squared, predicted] = self.rates;
+        let mut damping = predicted;
         for (slide, state) in self.slides.iter().zip(pushes) {
+            damping = damping.max(slide.own_damping());
             if slide.state.is_some() {
                 let [trapped, settling] = state.largest;
                 squared = squared.max(slide.own_rate() + trapped / slide.inertia);
                 damping = damping.max(settling);
             }
         }
-        [squared, damping]
+        Rates {
+            squared,
+            damping,
+            predicted,
+        }
     }
 
     /// The same without what states of pushes add: it never changes.
@@ -204,7 +211,6 @@ impl Bodies {
         }
         for slide in &self.slides {
             squared = squared.max(slide.own_rate());
-            damping = damping.max(slide.push.damping() * slide.lightness());
         }
         [squared, damping]
     }

@@ -96,7 +96,7 @@ impl System {
             dofs,
             groups: places.solved(first),
             events: None,
-            time_scales: [f64::INFINITY; 2],
+            time_scales: [f64::INFINITY; 3],
             onset_depth: None,
             begin: laid.begin,
         };

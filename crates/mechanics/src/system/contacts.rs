@@ -132,8 +132,9 @@ impl BodyContacts {
         }
         for on in &mut self.rails {
             let frame = bodies.rail_frame(on.rail, at);
-            if let RailContact::Circles(contacts) = &mut on.contact {
-                contacts.renew(&frame, places, margin);
+            match &mut on.contact {
+                RailContact::Circles(contacts) => contacts.renew(&frame, places, margin),
+                RailContact::Plates(plates) => plates.renew(&frame, places, margin),
             }
         }
         speed

@@ -1,9 +1,10 @@
 //! The equations of motion of everything but the chains, and the powers that go with them.
 
 use chaindrive_geometry::Vector;
-use chaindrive_integrate::Moment;
+use chaindrive_integrate::{Moment, Prediction};
 
 use super::bodies::{Bodies, RailSupport, WheelSupport};
+use super::slide::Pose;
 use crate::contact::Wrench;
 use crate::energy::Flow;
 use crate::tensioner::Slopes;
@@ -13,6 +14,7 @@ impl Bodies {
     pub(super) fn accelerate(
         &self,
         at: Moment<'_>,
+        prediction: Option<Prediction<'_>>,
         a: &mut [f64],
         rates: &mut [f64],
         [wheel_wrenches, rail_wrenches]: [&[Wrench]; 2],
@@ -79,21 +81,32 @@ impl Bodies {
         }
         for (i, slide) in self.slides.iter().enumerate() {
             let Some(dof) = slide.dof else { continue };
-            let pose = slide.pose(at.q, at.v);
-            let (push, lever) = slide.pushed(pose, at.z);
-            rates[Flow::TensionerLoss as usize] -= push.damping * lever * pose.rate;
-            if let Some(state) = slide.state {
-                rates[Flow::TensionerLoss as usize] += push.loss;
-                flows[state] = push.flow;
-                pushes[i] = slide.slopes(pose, at.z);
-            }
+            let mut pose = slide.pose(at.q, at.v);
+            let mut state = slide.state(at.z);
             let input = self.inputs.force(i);
-            rates[Flow::DriveTorque as usize] += input * pose.rate;
-            let weight = slide.weight(pose, self.gravity);
-            let force = a[dof] + (push.elastic + push.damping) * lever + input + weight;
-            // I s̈ = Σ Q − ½ I′ ṡ²
+            let given = a[dof] + input + slide.weight(pose, self.gravity);
             let reduced = slide.reduced(pose);
-            a[dof] = (force - 0.5 * reduced.slope * pose.rate * pose.rate) / reduced.inertia;
+            // I s̈ = Σ Q − ½ I′ ṡ²
+            let accelerate = |pose: Pose, state: f64| {
+                let (push, lever) = slide.pushed(pose, state);
+                let force = given + (push.elastic + push.damping) * lever;
+                let turning = 0.5 * reduced.slope * pose.rate * pose.rate;
+                (push, lever, (force - turning) / reduced.inertia)
+            };
+            if let Some(prediction) = prediction {
+                state = slide.state_ahead(pose, at.z, prediction);
+                let (_, _, acceleration) = accelerate(pose, state);
+                pose.rate = slide.rate_ahead(pose, state, acceleration, prediction);
+            }
+            let (push, lever, acceleration) = accelerate(pose, state);
+            a[dof] = acceleration;
+            rates[Flow::TensionerLoss as usize] -= push.damping * lever * pose.rate;
+            if let Some(place) = slide.state {
+                rates[Flow::TensionerLoss as usize] += push.loss;
+                flows[place] = push.flow;
+                pushes[i] = slide.slopes(pose, state);
+            }
+            rates[Flow::DriveTorque as usize] += input * pose.rate;
         }
     }
 

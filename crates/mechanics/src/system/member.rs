@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use chaindrive_integrate::Moment;
+use chaindrive_integrate::{Moment, Prediction};
 
 use super::{Bodies, BodyContacts, Wheel};
-use crate::chains::{Chain, Loads, Record, Surroundings};
+use crate::chains::{Chain, Loads, Rates, Record, Surroundings};
 use crate::contact::Impacts;
 
 /// One chain and what it touches.
@@ -24,7 +24,7 @@ pub(crate) struct Member {
     /// When the windows are renewed: latest time, and accepted steps to go.
     pub(super) renew: (f64, u32),
     /// ω² and damping rate of the stiffest mode.
-    pub(crate) rates: [f64; 2],
+    pub(crate) rates: Rates,
     /// Impacts since the start: pins in bushes, bushes in rollers.
     pub(crate) joint_impacts: [Impacts; 2],
 }
@@ -50,7 +50,7 @@ impl Member {
             contacts,
             route,
             renew: (0.0, 0),
-            rates: [0.0; 2],
+            rates: Rates::default(),
             joint_impacts: Default::default(),
         }
     }
@@ -72,6 +72,7 @@ impl Member {
         &self,
         bodies: &Bodies,
         at: Moment<'_>,
+        prediction: Option<Prediction<'_>>,
         a: &mut [f64],
         rates: &mut [f64],
         record: &mut Record,
@@ -86,6 +87,7 @@ impl Member {
             bodies,
             first: bodies.first + self.first_body,
             contacts: &self.contacts,
+            prediction,
         };
         let a = &mut a[self.entries.clone()];
         self.chain.evaluate(around, self.own(at), a, rates, record);
@@ -104,11 +106,12 @@ impl Member {
     }
 
     /// ω² and damping rate of the stiffest mode at an evaluation.
-    pub(crate) fn rates_at(&self, bodies: &Bodies, record: &mut Record) -> [f64; 2] {
+    pub(crate) fn rates_at(&self, bodies: &Bodies, record: &mut Record) -> Rates {
         let around = Surroundings {
             bodies,
             first: bodies.first + self.first_body,
             contacts: &self.contacts,
+            prediction: None,
         };
         self.chain.rates(around, record)
     }

@@ -10,7 +10,7 @@ use super::bodies::Anchor;
 use super::inputs::{Inputs, OnwardCentre};
 use super::{BodyContacts, Member, RailContact, Record, System};
 use crate::MemoryError;
-use crate::chains::ChainMemory;
+use crate::chains::{ChainMemory, Rates};
 use crate::contact::Impacts;
 use crate::contact::{PlateMemory, Windows};
 use crate::events::EventLog;
@@ -22,7 +22,7 @@ pub struct SystemMemory {
     inputs: Inputs,
     centres: Vec<OnwardCentre>,
     events: Option<EventLog>,
-    time_scales: [f64; 2],
+    time_scales: [f64; 3],
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -31,7 +31,7 @@ struct MemberMemory {
     teeth: Vec<(Anchor, Windows)>,
     rails: Vec<RailMemory>,
     renew: (f64, u32),
-    rates: [f64; 2],
+    rates: Rates,
     impacts: Vec<Impacts>,
 }
 

@@ -1,6 +1,7 @@
 //! Tensioners, compiled: a carrier with its coordinate and what it carries.
 
 use chaindrive_geometry::{Point, Vector};
+use chaindrive_integrate::Prediction;
 
 use crate::chains::Way;
 use crate::tensioner::{Extension, Reduced, Slopes, Weight};
@@ -70,14 +71,51 @@ impl Slide {
     }
 
     /// State of its push; nothing without one.
-    fn state(&self, z: &[f64]) -> f64 {
+    pub(crate) fn state(&self, z: &[f64]) -> f64 {
         self.state.map_or(0.0, |state| z[state])
     }
 
-    /// The push, and the lever by which it acts on the coordinate.
-    pub(crate) fn pushed(&self, pose: Pose, z: &[f64]) -> (PushForce, f64) {
+    /// Rate of its coordinate at the end of a step for which it was predicted, from the acceleration that it was predicted to have.
+    ///
+    /// ```text
+    /// ṡ⁺ = ṡ + ½ h (s̈ − s̈₀)/(1 + ½ h D)
+    /// ```
+    ///
+    /// with the damping rate D of the push at ṡ.
+    pub(crate) fn rate_ahead(
+        &self,
+        pose: Pose,
+        state: f64,
+        acceleration: f64,
+        prediction: Prediction<'_>,
+    ) -> f64 {
+        let before = self.dof.map_or(0.0, |dof| prediction.a[dof]);
+        let half = prediction.half_step;
+        pose.rate + half * (acceleration - before) / (1.0 + half * self.damping_at(pose, state))
+    }
+
+    /// State of its push at the end of a step for which it was predicted; nothing without one.
+    ///
+    /// ```text
+    /// z⁺ = z + ½ h (ż − ż₀)/(1 + ½ h λ)
+    /// ```
+    ///
+    /// with the rate λ at which z settles where the valves stand as at z.
+    pub(crate) fn state_ahead(&self, pose: Pose, z: &[f64], prediction: Prediction<'_>) -> f64 {
+        if self.state.is_none() {
+            return 0.0;
+        }
+        let (push, _) = self.pushed(pose, self.state(z));
+        let Slopes { settling, .. } = self.slopes(pose, self.state(z));
+        let before = self.state(prediction.flow);
+        let half = prediction.half_step;
+        self.state(z) + half * (push.flow - before) / (1.0 + half * settling)
+    }
+
+    /// The push at a state of it, and the lever by which it acts on the coordinate.
+    pub(crate) fn pushed(&self, pose: Pose, state: f64) -> (PushForce, f64) {
         let Extension { length, lever } = self.carrier.extension(pose.coordinate);
-        let force = self.push.force(length, lever * pose.rate, self.state(z));
+        let force = self.push.force(length, lever * pose.rate, state);
         (force, lever)
     }
 
@@ -94,12 +132,12 @@ impl Slide {
     }
 
     /// What a state of the push adds to the derivatives by the coordinate.
-    pub(crate) fn slopes(&self, pose: Pose, z: &[f64]) -> Slopes {
+    pub(crate) fn slopes(&self, pose: Pose, state: f64) -> Slopes {
         if self.state.is_none() {
             return Slopes::default();
         }
         let Extension { length, lever } = self.carrier.extension(pose.coordinate);
-        let slopes = self.push.slopes(length, self.state(z));
+        let slopes = self.push.slopes(length, state);
         // Q = F ∂x/∂s: stiffness by the square of the lever, flows and forces by itself
         Slopes {
             stiffness: slopes.stiffness * lever * lever,
@@ -125,6 +163,24 @@ impl Slide {
     /// ω² of the push's spring alone.
     pub(crate) fn own_rate(&self) -> f64 {
         self.push.stiffness() * self.lightness()
+    }
+
+    /// Damping rate of the push at a rate: its law is made of straight lines.
+    fn damping_at(&self, pose: Pose, state: f64) -> f64 {
+        let speed = 1e-9_f64.max(1e-6 * pose.rate.abs());
+        let faster = Pose {
+            rate: pose.rate + speed,
+            ..pose
+        };
+        let [(here, lever), (there, _)] = [pose, faster].map(|pose| self.pushed(pose, state));
+        // D = −∂Q/∂ṡ/I,   Q = F ∂x/∂s
+        let slope = (here.damping - there.damping) * lever / speed;
+        slope.max(0.0) / self.reduced(pose).inertia
+    }
+
+    /// Damping rate of the push alone, where it damps most.
+    pub(crate) fn own_damping(&self) -> f64 {
+        self.push.damping() * self.lightness()
     }
 
     /// Inertia as it now is.

@@ -16,8 +16,8 @@ use zarrs::storage::{
     StorageError, StoreKey, StorePrefix, WritableStorageTraits, store_set_partial_many,
 };
 
-/// End of the name of a file on its way; readers of the store know no such key.
-const STAGED: &str = "#1";
+/// Begins the end of the name of a file on its way, the number of its process; readers of the store know no such key.
+pub(super) const STAGED: char = '#';
 
 /// A folder with a store in the making.
 #[derive(Debug)]
@@ -33,6 +33,9 @@ struct State {
     /// Folders and files made, from the root.
     folders: HashSet<PathBuf>,
     files: HashSet<StoreKey>,
+    /// Whether other processes write here as well: files of theirs cannot be noted, and as many as those of a large sweep
+    /// should not be.
+    shared: bool,
 }
 
 impl Folder {
@@ -45,6 +48,7 @@ impl Folder {
                 root,
                 folders: HashSet::new(),
                 files: HashSet::new(),
+                shared: false,
             }),
         })
     }
@@ -55,6 +59,7 @@ impl Folder {
             root: root.to_owned(),
             folders: HashSet::new(),
             files: HashSet::new(),
+            shared: false,
         };
         state.take_in(Path::new(""))?;
         Ok(Self {
@@ -71,8 +76,26 @@ impl Folder {
                 root: root.to_owned(),
                 folders: HashSet::new(),
                 files: HashSet::new(),
+                shared: false,
             }),
         })
+    }
+
+    /// Opens a folder in which several processes write, each files of its own.
+    pub(super) fn shared(root: &Path) -> io::Result<Self> {
+        let folder = Self::to_read(root)?;
+        folder.state().shared = true;
+        Ok(folder)
+    }
+
+    /// Clears away what was on its way when a writer died.
+    pub(super) fn clear_staged(&self) -> io::Result<()> {
+        clear_staged(&self.state().root)
+    }
+
+    /// Whether a file is there.
+    pub(super) fn holds(&self, key: &StoreKey) -> bool {
+        self.path(key).exists()
     }
 
     /// Removes the chunks of an array whose index along the first dimension is beyond `last`.
@@ -92,7 +115,7 @@ impl Folder {
         root.clone_into(&mut self.state().root);
     }
 
-    /// What was written and is not there any more, if anything.
+    /// The first file that was written and is not there any more, if any.
     pub(super) fn missing(&self) -> Option<String> {
         let state = self.state();
         if self.is_elsewhere(&state.root) {
@@ -126,21 +149,47 @@ impl Folder {
         folders.pop();
         for folder in folders.into_iter().rev() {
             if !state.folders.contains(folder) {
-                fs::create_dir(state.root.join(folder))?;
+                match fs::create_dir(state.root.join(folder)) {
+                    Err(error) if state.shared && error.kind() == io::ErrorKind::AlreadyExists => {}
+                    made => made?,
+                }
                 state.folders.insert(folder.to_owned());
             }
         }
         let path = state.root.join(key.as_str());
-        let staged = state.root.join(format!("{key}{STAGED}"));
+        let staged = format!("{key}{STAGED}{}", std::process::id());
+        let staged = state.root.join(staged);
         let written = fs::write(&staged, value).and_then(|()| fs::rename(&staged, &path));
         if written.is_err() {
             // Of the two errors the first says more.
             let _ = fs::remove_file(&staged);
         }
         written?;
-        state.files.insert(key.clone());
+        if !state.shared {
+            state.files.insert(key.clone());
+        }
         Ok(())
     }
+}
+
+fn clear_staged(folder: &Path) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        if entry.file_type()?.is_dir() {
+            clear_staged(&entry.path())?;
+        } else if is_staged(&entry.file_name().to_string_lossy()) {
+            match fs::remove_file(entry.path()) {
+                // A worker that lives on has just put it in place.
+                Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+                removed => removed?,
+            }
+        }
+    }
+    Ok(())
+}
+
+fn is_staged(name: &str) -> bool {
+    name.contains(STAGED)
 }
 
 impl State {
@@ -153,7 +202,7 @@ impl State {
             if entry.file_type()?.is_dir() {
                 self.take_in(&place)?;
                 self.folders.insert(place);
-            } else if name.ends_with(STAGED) {
+            } else if is_staged(&name) {
                 fs::remove_file(entry.path())?;
             } else if let Ok(key) = StoreKey::new(name) {
                 self.files.insert(key);
@@ -177,7 +226,10 @@ impl WritableStorageTraits for Folder {
     }
 
     fn erase(&self, key: &StoreKey) -> Result<(), StorageError> {
-        if self.state().files.remove(key) {
+        let mut state = self.state();
+        let noted = state.files.remove(key) || state.shared;
+        drop(state);
+        if noted {
             fs::remove_file(self.path(key))?;
         }
         Ok(())

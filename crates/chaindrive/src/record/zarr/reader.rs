@@ -31,7 +31,7 @@ pub enum ReadError {
     #[error("{}: this is the result of a sweep; give that of a run", .path.display())]
     Sweep { path: PathBuf },
 
-    /// What it says it holds cannot be read.
+    /// The arrays that it names cannot be read.
     #[error("{}: {source}", .path.display())]
     Store {
         path: PathBuf,

@@ -1,6 +1,7 @@
 //! A store in the making: begun beside its place, put there whole, and told how it ended.
 
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -72,13 +73,29 @@ impl Store {
 
     /// Claims a store that was left, to go on with it. It says what it said until the next [`tell`](Self::tell).
     pub(super) fn reopen(path: &Path) -> Result<Self, WriteError> {
+        Self::reopen_by(path, Folder::open)
+    }
+
+    /// Claims a store that was left, to go on with it together with other processes.
+    pub(super) fn reopen_shared(path: &Path) -> Result<Self, WriteError> {
+        Self::reopen_by(path, |root| {
+            let folder = Folder::shared(root)?;
+            folder.clear_staged()?;
+            Ok(folder)
+        })
+    }
+
+    fn reopen_by(
+        path: &Path,
+        open: impl FnOnce(&Path) -> io::Result<Folder>,
+    ) -> Result<Self, WriteError> {
         let io = |source| WriteError::Io {
             path: path.to_owned(),
             source,
         };
         let claim = Claim::take(path)?;
         let group = target::group(path, claim.place())?;
-        let folder = Arc::new(Folder::open(claim.place()).map_err(io)?);
+        let folder = Arc::new(open(claim.place()).map_err(io)?);
         let entries = |value: &Value| value.as_object().cloned().unwrap_or_default();
         Ok(Self {
             path: path.to_owned(),
@@ -132,6 +149,27 @@ impl Store {
 
     pub(super) fn storage(&self) -> &Storage {
         &self.storage
+    }
+
+    /// Where the store is, symbolic links followed.
+    pub(super) fn place(&self) -> &Path {
+        self.claim.place()
+    }
+
+    #[cfg(unix)]
+    pub(super) fn descriptor(&self) -> i32 {
+        self.claim.descriptor()
+    }
+
+    /// Lets other processes write in the store as well, once it is in place.
+    pub(super) fn share(&mut self) -> Result<(), WriteError> {
+        let folder = Folder::shared(self.claim.place());
+        self.folder = Arc::new(folder.map_err(|source| WriteError::Io {
+            path: self.path.clone(),
+            source,
+        })?);
+        self.storage = self.folder.clone();
+        Ok(())
     }
 
     /// Puts the store in place, with space set aside for its last words.

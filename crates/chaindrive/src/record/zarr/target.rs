@@ -6,7 +6,8 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::Existing;
+use super::folder::STAGED;
+use super::{Existing, variants};
 use crate::record::attributes::FORMAT;
 use crate::record::error::WriteError;
 
@@ -42,12 +43,11 @@ pub(super) fn check(asked: &Path, place: &Path, existing: Existing) -> Result<()
     }
     let arrays = group["consolidated_metadata"]["metadata"].as_object();
     let known = |name: &str| {
-        // What a killed run leaves of a file it was about to put in place: `zarr.json#1`.
-        let staged = name.starts_with(&format!("{GROUP}#"));
-        let checkpoint = name == CHECKPOINT || name == format!("{CHECKPOINT}#1");
+        // A killed run leaves files that it was about to put in place: `zarr.json#1234`.
+        let name = name.split(STAGED).next().unwrap_or(name);
         name == GROUP
-            || staged
-            || checkpoint
+            || name == CHECKPOINT
+            || variants::FILES.contains(&name)
             || arrays.is_some_and(|arrays| arrays.contains_key(name))
     };
     let names = entries

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use chaindrive_geometry::{
-    CurvedGuide, Plan, Search, Side, Span, Station, Vector, Wheel, close_nearest,
+    CurvedGuide, GeometryError, Plan, Search, Side, Span, Station, Vector, Wheel, close_nearest,
 };
 use chaindrive_mechanics::Touches;
 
@@ -177,7 +177,16 @@ impl<'s> Passing<'s> {
         };
         let name = |wheel: usize| format!("`{}`", self.stops.get(wheel).unwrap_or(&"?"));
         let found = close_nearest(pitch, 0.0, links, phase, &mut moving, search);
-        let (bow, ..) = found.map_err(|error| error.with_names(&name))?;
+        let (bow, ..) = found.map_err(|error| {
+            let told = error.with_names(&name);
+            match error {
+                GeometryError::DoesNotClose { slack, .. } if slack > 0.0 => format!(
+                    "{told}; or give `{}` a smaller radius or a shorter face: it then bows the chain further",
+                    guide.name
+                ),
+                _ => told,
+            }
+        })?;
         Ok(bow)
     }
 }

@@ -1,13 +1,13 @@
-//! Where a sweep goes: nowhere, a Zarr store, or a table with a row a variant.
+//! Where a sweep goes that is held in memory: nowhere, or a table with a row a variant.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, IntoInnerError, Seek, SeekFrom, Write};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
-use chaindrive::record::{Ending, Existing, SweepWriter};
+use chaindrive::record::{Ending, Existing};
 use chaindrive::sweep::{Outcome, Progress, Stacked, Sweep};
 
-use super::super::output::Target;
 use crate::csv::{Claimed, VARIANT, claim, failed, incomplete, named, quoted};
 use crate::failure::Failure;
 
@@ -31,7 +31,6 @@ pub(super) struct Output {
 #[derive(Debug)]
 enum Place {
     Nowhere,
-    Zarr(Box<SweepWriter>),
     Csv(Box<Table>),
 }
 
@@ -46,20 +45,17 @@ struct Table {
 impl Output {
     /// Begins the result.
     pub(super) fn begin(
-        target: Target,
+        table: Option<&Path>,
         sweep: &Sweep,
         existing: Existing,
     ) -> Result<Self, Failure> {
-        let place = match target {
-            Target::Nowhere => Place::Nowhere,
-            Target::Zarr(path) => {
-                Place::Zarr(Box::new(SweepWriter::create(&path, sweep, existing)?))
-            }
-            Target::Csv(path) if sweep.record().is_empty() => Place::Csv(Box::new(Table {
-                claimed: claim(&path, existing)?,
+        let place = match table {
+            None => Place::Nowhere,
+            Some(path) if sweep.record().is_empty() => Place::Csv(Box::new(Table {
+                claimed: claim(path, existing)?,
                 running: false,
             })),
-            Target::Csv(path) => {
+            Some(path) => {
                 return Err(Failure::Argument(format!(
                     "{}: a table has no place for the channels of --record; take a .zarr store",
                     path.display()
@@ -102,7 +98,6 @@ impl Output {
     ) -> Result<(), Failure> {
         match &mut self.place {
             Place::Nowhere => Ok(()),
-            Place::Zarr(writer) => Ok(writer.write(sweep, outcomes, ending)?),
             Place::Csv(table) => table.write(sweep, &sweep.stack(outcomes), ending),
         }
     }

@@ -43,7 +43,9 @@ pub(crate) fn curvature(system: &System, q: &[f64]) -> Curvature {
         let row = slide.dof.and_then(|dof| unknowns.row[dof]);
         if let Some(row) = row {
             // Vibrations leave a state, such as the oil in a chamber, no time to flow.
-            hessian[(row, row)] += slide.slopes(slide.pose(q, &still), &z).stiffness;
+            hessian[(row, row)] += slide
+                .slopes(slide.pose(q, &still), slide.state(&z))
+                .stiffness;
         }
     }
     let hinges = hinges(system, q);

@@ -167,7 +167,8 @@ impl Bearing {
             levers: [zero, zero],
         };
         let law = &self.lanes;
-        let Some(pressed) = law.press(w, memory, lane, [gap, closing], None, None, tally) else {
+        let Some(pressed) = law.press(w, memory, lane, [gap, closing], None, None, None, tally)
+        else {
             return grip;
         };
         [grip.stiffness, grip.damping] = law.slopes(w, &pressed, None);

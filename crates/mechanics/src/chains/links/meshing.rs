@@ -27,6 +27,7 @@ impl Linkage {
             bodies,
             first,
             contacts,
+            ..
         } = around;
         joint_state.mounts.clear();
         for (i, on) in contacts.teeth.iter().enumerate() {
@@ -115,6 +116,7 @@ impl WithSimd for Touching<'_> {
             self.t,
             self.frame,
             &mut self.rollers,
+            None,
             self.touch,
         )
     }
@@ -157,6 +159,7 @@ impl Linkage {
                     ay: &mut idle.ay,
                     inverse_mass: &idle.inverse_mass,
                     spin: &idle.spin,
+                    half_step: 0.0,
                 },
                 touch,
             },

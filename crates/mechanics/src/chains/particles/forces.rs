@@ -10,7 +10,7 @@ use crate::chains::{Loads, Record, Surroundings};
 use crate::contact::{PlatePins, Rollers};
 use crate::energy::Flow;
 use crate::lanes::Wide;
-use crate::system::{BodyContacts, RailContact};
+use crate::system::RailContact;
 
 /// What bodies feel, how links turn, and what resists in the joints.
 type Found<'a> = (&'a mut Loads, &'a mut Turning, &'a mut Resistance);
@@ -43,7 +43,7 @@ impl Particles {
                 found: (&mut *loads, &mut *turning, &mut *resistance),
             });
         }
-        let mut rollers = self.view(at.q, at.v, a);
+        let mut rollers = self.view(at, None, a);
         let mut pins = Pins {
             rollers: &mut rollers,
             count: self.rollers,
@@ -74,8 +74,7 @@ impl Particles {
         rates: &mut [f64],
         (loads, turning, found): Found<'_>,
     ) {
-        let contacts = around.contacts;
-        let mut rollers = self.view(at.q, at.v, a);
+        let mut rollers = self.view(at, around.prediction, a);
         let gravity = [around.bodies.gravity.x, around.bodies.gravity.y];
         let links = &self.links;
         let loss = if let Some(joints) = &self.joints {
@@ -91,7 +90,7 @@ impl Particles {
         if let Some(drag) = &self.drag {
             rates[Flow::DragLoss as usize] += drag.act(w, links, &mut rollers);
         }
-        touch_bodies(w, contacts, at.t, &mut rollers, rates, loads);
+        touch_bodies(w, around, at.t, &mut rollers, rates, loads);
     }
 }
 
@@ -99,24 +98,31 @@ impl Particles {
 #[inline(always)]
 pub(super) fn touch_bodies<S: Simd>(
     w: Wide<S>,
-    contacts: &BodyContacts,
+    around: Surroundings<'_>,
     t: f64,
     rollers: &mut Rollers<'_>,
     rates: &mut [f64],
     loads: &mut Loads,
 ) {
+    let Surroundings {
+        bodies, contacts, ..
+    } = around;
     // One call of the kernel serves wheels and rails: it is inlined, and long.
     let wheels = contacts.teeth.len();
     for i in 0..wheels + contacts.rails.len() {
-        let (contacts, touch) = if i < wheels {
-            (&contacts.teeth[i].contacts, &mut loads.teeth[i])
+        let (contacts, yielding, touch) = if i < wheels {
+            let on = &contacts.teeth[i];
+            // All that may press on the wheel count, whether they do or not.
+            let all: usize = on.contacts.runs.iter().map(|run| run.count).sum();
+            let yielding = bodies.mobility(on.wheel) * all as f64;
+            (&on.contacts, Some(yielding), &mut loads.teeth[i])
         } else {
             let RailContact::Circles(contacts) = &contacts.rails[i - wheels].contact else {
                 continue;
             };
-            (contacts, &mut loads.circles[i - wheels])
+            (contacts, None, &mut loads.circles[i - wheels])
         };
-        let wrench = contacts.act(w, t, &loads.frames[i], rollers, touch);
+        let wrench = contacts.act(w, t, &loads.frames[i], rollers, yielding, touch);
         let [loss, friction] = if i < wheels {
             [Flow::ToothLoss, Flow::ToothFriction]
         } else {

@@ -37,7 +37,7 @@ impl Particles {
         out: &mut Energy,
     ) {
         let mut none = vec![0.0; self.coordinates()];
-        let rollers = self.view(at.q, at.v, &mut none);
+        let rollers = self.view(at, None, &mut none);
         let mut add = |store: Store, value: f64| out.stores[store as usize] += value;
         for i in 0..self.rollers {
             let mass = self.masses[i];
@@ -62,7 +62,7 @@ impl Particles {
         _record: &Record,
     ) -> f64 {
         let mut none = vec![0.0; self.coordinates()];
-        let mut rollers = self.view(at.q, at.v, &mut none);
+        let mut rollers = self.view(at, None, &mut none);
         let pins = Pins {
             rollers: &mut rollers,
             count: self.rollers,

@@ -63,6 +63,7 @@ impl Points {
             bodies,
             first,
             contacts,
+            ..
         } = around;
         found.touching.clear();
         found.mounts.clear();

@@ -99,8 +99,9 @@ impl Points {
             ay: &mut rest[..n],
             inverse_mass: &self.inverse_masses[ROLLERS],
             spin: &[],
+            half_step: 0.0,
         };
-        touch_bodies(w, around.contacts, at.t, &mut rollers, rates, loads);
+        touch_bodies(w, around, at.t, &mut rollers, rates, loads);
     }
 
     /// One coordinate of a block.

@@ -1,0 +1,488 @@
+//! Who begins a sweep on disk, hands out its tasks, and says in the store how far it is.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread::{self, available_parallelism};
+use std::time::{Duration, Instant};
+
+use serde_json::{Map, Value};
+use zarrs::array::{CodecOptions, data_type};
+
+use super::layout::Layout;
+use super::{Arrays, Finished, LAYOUT, RECIPE, Worker, every_chunk};
+use crate::record::attributes::Story;
+use crate::record::zarr::error::Fault;
+use crate::record::zarr::store::Store;
+use crate::record::zarr::track::{StoredArray, metadata, store_metadata};
+use crate::record::zarr::{Ending, Existing, about};
+use crate::record::{Axis, WriteError};
+use crate::sweep::{Coordinate, Go, Outcome, Quantity, Recipe, Sample, Sweep, TEXTS, Tally};
+
+/// Wall time between two accounts of a sweep in its store.
+const TELL_EVERY: Duration = Duration::from_secs(5);
+
+/// Wall time between two looks at interrupts while no task ends.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// The store of a sweep, claimed by the process that hands out its tasks.
+pub struct SweepStore {
+    store: Store,
+    sweep: Sweep,
+    worker: Worker,
+    /// Layout by which the metadata of all arrays were written last, and these.
+    told: Layout,
+    arrays: Map<String, Value>,
+    finished: Finished,
+    tasks: usize,
+    last_told: Instant,
+}
+
+impl std::fmt::Debug for SweepStore {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("SweepStore")
+            .field("path", &self.store.path())
+            .field("finished", &self.finished)
+            .finish_non_exhaustive()
+    }
+}
+
+impl SweepStore {
+    /// Begins a sweep, with tasks of the size that a sample suggests.
+    ///
+    /// # Errors
+    /// [`WriteError`] when the place is taken or cannot be written.
+    pub fn begin(
+        path: impl AsRef<Path>,
+        sweep: &Sweep,
+        sample: &Sample,
+        existing: Existing,
+    ) -> Result<Self, WriteError> {
+        let path = path.as_ref();
+        let mut store = Store::begin(path, existing)?;
+        let layout = Layout::new(sweep, sample.variants_per_task, sample.account());
+        let recipe = sweep.recipe();
+        let begun = [
+            (RECIPE, serde_json::to_vec(&recipe)),
+            (LAYOUT, serde_json::to_vec(&layout)),
+        ]
+        .into_iter()
+        .try_for_each(|(name, bytes)| store.put(name, bytes?))
+        .and_then(|()| put_coordinates(&store, sweep, &layout))
+        .and_then(|mut arrays| {
+            arrays.extend(lay(&store, sweep, &layout)?);
+            Ok(arrays)
+        });
+        let arrays = begun.map_err(|fault| store.fault(fault))?;
+        let open = Finished::default();
+        let attributes = attributes(sweep, &layout, open, &Ending::None);
+        store.tell(attributes, arrays.clone(), &Ending::None)?;
+        store.publish()?;
+        store.share()?;
+        let worker = Worker::open(store.place())?;
+        let mut begun = Self {
+            store,
+            sweep: sweep.clone(),
+            worker,
+            tasks: layout.tasks(),
+            told: layout,
+            arrays,
+            finished: open,
+            last_told: Instant::now(),
+        };
+        // A variant that is a task on its own need not be computed again.
+        if begun.told.block() == 1 && sample.first != Outcome::Open {
+            begun.worker.store(0, std::slice::from_ref(&sample.first))?;
+            let first = begun.worker.carry_out(0, &AtomicBool::new(false))?;
+            begun.count(first.unwrap_or_default())?;
+        }
+        Ok(begun)
+    }
+
+    /// Goes on with a sweep that was stopped or killed, where it is this one.
+    ///
+    /// # Errors
+    /// [`WriteError::OtherSweep`] where it is another one, [`WriteError::Exists`] where it is another result, and all others.
+    pub fn go_on(path: impl AsRef<Path>, sweep: &Sweep) -> Result<Self, WriteError> {
+        let path = path.as_ref();
+        let mut store = Store::reopen_shared(path)?;
+        let recipe = store.read(RECIPE).map_err(|fault| store.fault(fault))?;
+        let Some(recipe) = recipe else {
+            return Err(WriteError::Exists {
+                path: path.to_owned(),
+            });
+        };
+        let recipe: Result<Recipe, Fault> = serde_json::from_slice(&recipe).map_err(Fault::from);
+        let recipe = recipe.map_err(|fault| store.fault(fault))?;
+        if let Some(difference) = sweep.recipe().difference(&recipe) {
+            return Err(WriteError::OtherSweep {
+                path: path.to_owned(),
+                difference,
+            });
+        }
+        store.go_on()?;
+        let worker = Worker::open(store.place())?;
+        let layout = worker.layout().map_err(|fault| store.fault(fault))?;
+        let arrays = put_coordinates(&store, sweep, &layout).and_then(|mut arrays| {
+            arrays.extend(lay(&store, sweep, &layout)?);
+            Ok(arrays)
+        });
+        let arrays = arrays.map_err(|fault| store.fault(fault))?;
+        let mut left = Self {
+            store,
+            sweep: sweep.clone(),
+            worker,
+            tasks: layout.tasks(),
+            told: layout,
+            arrays,
+            finished: Finished::default(),
+            last_told: Instant::now(),
+        };
+        left.finished = counts(&left.read(|_, _| {})?);
+        left.tell(&Ending::None)?;
+        Ok(left)
+    }
+
+    /// The sweep.
+    pub fn sweep(&self) -> &Sweep {
+        &self.sweep
+    }
+
+    /// Where the store is, symbolic links followed: the path for workers.
+    pub fn place(&self) -> &Path {
+        self.store.place()
+    }
+
+    /// Number of the open file that holds the claim, which processes that are forked inherit: they must close it.
+    #[cfg(unix)]
+    pub fn descriptor(&self) -> i32 {
+        self.store.descriptor()
+    }
+
+    /// Numbers of the tasks that are still to be carried out.
+    ///
+    /// # Errors
+    /// [`WriteError`] when the store cannot be read.
+    pub fn open_tasks(&self) -> Result<Vec<usize>, WriteError> {
+        let layout = &self.told;
+        let open = (0..self.tasks).map(|task| Ok((task, self.worker.holds(layout, task)?)));
+        let open: Result<Vec<(usize, bool)>, Fault> = open.collect();
+        let open = open.map_err(|fault| self.store.fault(fault))?;
+        let open = open.into_iter().filter(|(_, held)| !held);
+        Ok(open.map(|(task, _)| task).collect())
+    }
+
+    /// Variants that are stored so far, as far as they were counted.
+    pub fn stored(&self) -> usize {
+        self.finished.done + self.finished.failed
+    }
+
+    /// Takes the counts of a task that was carried out, and says so in the store if it is time.
+    ///
+    /// # Errors
+    /// [`WriteError`] when the store refuses.
+    pub fn count(&mut self, task: Finished) -> Result<(), WriteError> {
+        let first = self.stored() == 0;
+        self.finished.done += task.done;
+        self.finished.failed += task.failed;
+        self.finished.distrusted += task.distrusted;
+        if first || self.last_told.elapsed() >= TELL_EVERY {
+            self.tell(&Ending::None)?;
+        }
+        Ok(())
+    }
+
+    /// Carries out all open tasks on threads of this process, as many as there are cores if absent.
+    ///
+    /// `watch` is called with the number of variants stored whenever a task has ended, and every 50 ms.
+    ///
+    /// # Errors
+    /// [`WriteError`] when the store or the system refuses.
+    pub fn run(
+        &mut self,
+        jobs: Option<usize>,
+        mut watch: impl FnMut(usize) -> Go,
+    ) -> Result<(), WriteError> {
+        let open = self.open_tasks()?;
+        let cores = || available_parallelism().map_or(1, usize::from);
+        let jobs = jobs.unwrap_or_else(cores).clamp(1, open.len().max(1));
+        let worker = Worker::open(self.store.place())?;
+        let stop = AtomicBool::new(false);
+        let next = AtomicUsize::new(0);
+        let (sender, receiver) = channel();
+        thread::scope(|scope| {
+            for _ in 0..jobs {
+                let (sender, open) = (sender.clone(), &open);
+                let (worker, stop, next) = (&worker, &stop, &next);
+                let work = move || {
+                    while !stop.load(Ordering::Relaxed) {
+                        let Some(task) = open.get(next.fetch_add(1, Ordering::Relaxed)) else {
+                            break;
+                        };
+                        let finished = worker.carry_out(*task, stop);
+                        if sender.send(finished).is_err() {
+                            break; // the watcher has panicked
+                        }
+                    }
+                };
+                let spawned = thread::Builder::new().spawn_scoped(scope, work);
+                if let Err(source) = spawned {
+                    stop.store(true, Ordering::Relaxed);
+                    let path = self.store.path().to_owned();
+                    return Err(WriteError::Io { path, source });
+                }
+            }
+            drop(sender);
+            let mut refused = None;
+            loop {
+                let counted = match receiver.recv_timeout(LOOK) {
+                    Ok(finished) => {
+                        finished.and_then(|finished| self.count(finished.unwrap_or_default()))
+                    }
+                    Err(RecvTimeoutError::Timeout) => Ok(()),
+                    Err(RecvTimeoutError::Disconnected) => break,
+                };
+                if let Err(error) = counted {
+                    refused.get_or_insert(error);
+                    stop.store(true, Ordering::Relaxed);
+                }
+                let stopped = stop.load(Ordering::Relaxed);
+                if !stopped && watch(self.stored()) == Go::NoFurther {
+                    stop.store(true, Ordering::Relaxed);
+                }
+            }
+            refused.map_or(Ok(()), Err)
+        })
+    }
+
+    fn read(&self, mut take: impl FnMut(usize, Outcome)) -> Result<Tally, WriteError> {
+        let mut tally = Tally::default();
+        let layout = self.worker.layout();
+        let read = layout.and_then(|layout| {
+            for task in 0..self.tasks {
+                for (variant, outcome) in self.worker.read_back(&layout, task)? {
+                    tally.push(variant, &outcome);
+                    take(variant, outcome);
+                }
+            }
+            Ok(())
+        });
+        read.map_err(|fault| self.store.fault(fault))?;
+        Ok(tally)
+    }
+
+    /// Ends the sweep, and says in the store how: complete, failed where variants failed, or interrupted where some are open.
+    ///
+    /// Returns the tally of all variants, read from the store task by task, and the short account of them.
+    ///
+    /// # Errors
+    /// [`WriteError`] when the store refuses.
+    pub fn finish(&mut self) -> Result<(Tally, String), WriteError> {
+        let few = self.sweep.has_a_line_each();
+        let mut outcomes = vec![Outcome::Open; if few { self.sweep.len() } else { 0 }];
+        let tally = self.read(|variant, outcome| {
+            if let Some(place) = outcomes.get_mut(variant) {
+                *place = outcome;
+            }
+        })?;
+        self.finished = counts(&tally);
+        let ending = match tally.failed {
+            _ if tally.open > 0 => Ending::Interrupted,
+            0 => Ending::Complete,
+            failed => Ending::Failed(format!("{failed} of {} variants failed", self.sweep.len())),
+        };
+        self.tell(&ending)?;
+        let report = if few {
+            self.sweep.report(&outcomes).to_string()
+        } else {
+            tally.summary(&self.sweep)
+        };
+        Ok((tally, report))
+    }
+
+    fn tell(&mut self, ending: &Ending) -> Result<(), WriteError> {
+        let layout = self.worker.layout();
+        let layout = layout.map_err(|fault| self.store.fault(fault))?;
+        if layout != self.told {
+            let arrays = lay(&self.store, &self.sweep, &layout);
+            let arrays = arrays.map_err(|fault| self.store.fault(fault))?;
+            self.arrays.extend(arrays);
+            self.told = layout;
+        }
+        let attributes = attributes(&self.sweep, &self.told, self.finished, ending);
+        self.store.tell(attributes, self.arrays.clone(), ending)?;
+        self.last_told = Instant::now();
+        Ok(())
+    }
+}
+
+fn counts(tally: &Tally) -> Finished {
+    Finished {
+        done: tally.finished,
+        failed: tally.failed,
+        distrusted: tally.distrusted,
+    }
+}
+
+/// Writes the coordinates of the variants, which do not change.
+fn put_coordinates(
+    store: &Store,
+    sweep: &Sweep,
+    layout: &Layout,
+) -> Result<Map<String, Value>, Fault> {
+    let dims: Vec<String> = sweep.dims().into_iter().map(str::to_owned).collect();
+    let arrays = Arrays {
+        storage: store.storage(),
+        layout,
+        dims: Some(&dims),
+    };
+    let mut written = Map::new();
+    // The rows of a table are numbered.
+    let numbered = dims.len() == 1 && sweep.dimensions().iter().all(|it| it.name != dims[0]);
+    if numbered {
+        let rows = Coordinate::Whole((0..).take(sweep.len()).collect());
+        let array = put_coordinate(&arrays, &dims[0], &dims[0], &rows, sweep.len(), Map::new())?;
+        written.insert(dims[0].clone(), array);
+    }
+    for dimension in sweep.dimensions() {
+        let mut about = Map::new();
+        if let Some(unit) = dimension.unit {
+            about.insert("units".into(), unit.into());
+        }
+        about.insert("long_name".into(), dimension.path.as_str().into());
+        about.insert("path".into(), dimension.path.as_str().into());
+        let (along, cut) = if numbered {
+            (dims[0].as_str(), layout.cuts[0])
+        } else {
+            (dimension.name.as_str(), dimension.values.len())
+        };
+        let array = put_coordinate(
+            &arrays,
+            &dimension.name,
+            along,
+            &dimension.values,
+            cut,
+            about,
+        )?;
+        written.insert(dimension.name.clone(), array);
+    }
+    Ok(written)
+}
+
+fn put_coordinate(
+    arrays: &Arrays<'_>,
+    name: &str,
+    along: &str,
+    values: &Coordinate,
+    cut: usize,
+    about: Map<String, Value>,
+) -> Result<Value, Fault> {
+    let (dims, shape, chunk) = ([along], [values.len()], [cut]);
+    let options = every_chunk();
+    let array = match values {
+        Coordinate::Numbers(numbers) => {
+            let kind = data_type::float64();
+            let array = arrays.array(name, &dims, &shape, &chunk, &kind, f64::NAN, about)?;
+            put_whole(&array, numbers.as_slice(), &options)?;
+            array
+        }
+        Coordinate::Whole(numbers) => {
+            let kind = data_type::int64();
+            let array = arrays.array(name, &dims, &shape, &chunk, &kind, 0_i64, about)?;
+            put_whole(&array, numbers.as_slice(), &options)?;
+            array
+        }
+        Coordinate::Texts(texts) => {
+            let kind = data_type::string();
+            let array = arrays.array(name, &dims, &shape, &chunk, &kind, "", about)?;
+            put_whole(&array, texts.clone(), &options)?;
+            array
+        }
+    };
+    store_metadata(&array)?;
+    metadata(&array)
+}
+
+/// Writes an array of one dimension.
+fn put_whole<'a>(
+    array: &StoredArray,
+    values: impl zarrs::array::IntoArrayBytes<'a>,
+    options: &CodecOptions,
+) -> Result<(), Fault> {
+    if array.shape()[0] > 0 {
+        array.store_array_subset_opt(&array.subset_all(), values, options)?;
+    }
+    Ok(())
+}
+
+/// Writes what a layout says of all arrays but the coordinates of the variants.
+fn lay(store: &Store, sweep: &Sweep, layout: &Layout) -> Result<Map<String, Value>, Fault> {
+    let dims: Vec<String> = sweep.dims().into_iter().map(str::to_owned).collect();
+    let arrays = Arrays {
+        storage: store.storage(),
+        layout,
+        dims: Some(&dims),
+    };
+    let mut written = Map::new();
+    if !layout.time.is_empty() {
+        let time = Coordinate::Numbers(layout.time.clone());
+        let about = about("s", "time");
+        let array = put_coordinate(&arrays, "time", "time", &time, layout.samples, about)?;
+        written.insert("time".into(), array);
+    }
+    for axis in &layout.axes {
+        let mut known = Axis::ALL.iter();
+        let labels = if known.any(|it| it.name() == Some(&axis.name) && it.is_numbered()) {
+            Coordinate::Whole((0..).take(axis.labels.len()).collect())
+        } else {
+            Coordinate::Texts(axis.labels.clone())
+        };
+        let (name, cut) = (axis.name.as_str(), axis.cut);
+        let array = put_coordinate(&arrays, name, name, &labels, cut, Map::new())?;
+        written.insert(axis.name.clone(), array);
+    }
+    for (name, units) in &layout.quantities {
+        if let Some(quantity) = Quantity::from_name(name) {
+            let about = about(&units.join(" or "), quantity.description());
+            let array = arrays.quantity(quantity, about)?;
+            store_metadata(&array)?;
+            written.insert(name.clone(), metadata(&array)?);
+        }
+    }
+    for (name, description) in TEXTS {
+        let mut about = Map::new();
+        about.insert("long_name".into(), description.into());
+        let array = arrays.text(name, about)?;
+        store_metadata(&array)?;
+        written.insert(name.into(), metadata(&array)?);
+    }
+    Ok(written)
+}
+
+fn attributes(
+    sweep: &Sweep,
+    layout: &Layout,
+    finished: Finished,
+    ending: &Ending,
+) -> Map<String, Value> {
+    let scene = sweep.scene();
+    let mut story = Story::of(scene.title(), ending);
+    story.text("scene_name", scene.name());
+    story.text("scene", scene.text());
+    story.text("method", &layout.methods.join(", "));
+    story.list("swept", sweep.dimensions().iter().map(|d| d.path.as_str()));
+    // Readers take the columns of a table for coordinates.
+    let columns = sweep.dimensions().iter().map(|d| d.name.as_str());
+    let columns: Vec<&str> = columns
+        .filter(|name| !sweep.dims().contains(name))
+        .collect();
+    if !columns.is_empty() {
+        story.text("coordinates", &columns.join(" "));
+    }
+    story.count("variants", sweep.len() as u64);
+    story.count("finished", finished.done as u64);
+    story.count("failed", finished.failed as u64);
+    story.count("distrusted", finished.distrusted as u64);
+    story.count("variants_per_task", layout.block() as u64);
+    story.0
+}

@@ -1,0 +1,56 @@
+//! Smooth functions of a number between −1 and 1.
+
+use pulp::Simd;
+
+use super::{Lane, Wide};
+
+/// Coefficients of the polynomial.
+const TERMS: usize = 14;
+
+/// The polynomial through the values of a function at Chebyshev's nodes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Polynomial {
+    /// Of rising powers.
+    coefficients: [f64; TERMS],
+}
+
+impl Polynomial {
+    pub(crate) fn through(f: impl Fn(f64) -> f64) -> Self {
+        let count = TERMS as f64;
+        let angle = |i: usize| std::f64::consts::PI * (i as f64 + 0.5) / count;
+        let values: [f64; TERMS] = std::array::from_fn(|i| f(angle(i).cos()));
+        let mut sum = [0.0; TERMS];
+        // T₀ = 1, T₁ = t, T_{k+1} = 2 t T_k − T_{k−1}
+        let (mut before, mut basis) = ([0.0; TERMS], [0.0; TERMS]);
+        basis[0] = 1.0;
+        for k in 0..TERMS {
+            let terms = values.iter().enumerate();
+            let share: f64 = terms
+                .map(|(i, value)| value * (k as f64 * angle(i)).cos())
+                .sum();
+            let share = share * if k == 0 { 1.0 } else { 2.0 } / count;
+            for (sum, basis) in sum.iter_mut().zip(&basis) {
+                *sum += share * basis;
+            }
+            let factor = if k == 0 { 1.0 } else { 2.0 };
+            let next = std::array::from_fn(|j| {
+                factor * if j > 0 { basis[j - 1] } else { 0.0 } - before[j]
+            });
+            (before, basis) = (basis, next);
+        }
+        Self { coefficients: sum }
+    }
+
+    #[inline(always)]
+    pub(crate) fn of<S: Simd>(&self, w: Wide<S>, t: Lane<S>) -> Lane<S> {
+        // Even and odd powers side by side.
+        let squared = t * t;
+        let mut even = w.splat(self.coefficients[TERMS - 2]);
+        let mut odd = w.splat(self.coefficients[TERMS - 1]);
+        for k in (0..TERMS / 2 - 1).rev() {
+            even = even * squared + w.splat(self.coefficients[2 * k]);
+            odd = odd * squared + w.splat(self.coefficients[2 * k + 1]);
+        }
+        even + odd * t
+    }
+}

@@ -1,0 +1,147 @@
+"""Sweeps in a store that their workers write: tasks go out, and counts come back."""
+
+from __future__ import annotations
+
+import os
+import time
+import warnings
+from collections.abc import Callable
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from functools import lru_cache
+from itertools import islice
+from typing import Any
+from uuid import uuid4
+
+import xarray as xr
+
+from chaindrive import _core
+from chaindrive.errors import DistrustedResultWarning, SimulationError
+from chaindrive.extras import extra
+from chaindrive.results import _open
+from chaindrive.signals import heard
+
+__all__ = ["into_store"]
+
+# Tasks that an executor has at a time: enough for hundreds of workers, few beside a large sweep.
+_AHEAD = 1024
+
+# Open files that hold claims of this process. A process that is forked inherits them, and would
+# keep a claim alive when this one is killed.
+_claims: set[int] = set()
+
+
+def into_store(
+    core: _core.Sweep,
+    path: str,
+    overwrite: bool,
+    jobs: int | None,
+    executor: Executor | None,
+    tell: Callable[[float], object] | None,
+) -> xr.Dataset:
+    """Begin a sweep in a store, or go on with it, and return the store as a dataset."""
+    extra("zarr", "stores on disk")
+    begin = time.perf_counter()
+    if overwrite or not os.path.lexists(path):
+        store = _core.SweepStore.begin(path, core, overwrite, jobs)
+    else:
+        store = _core.SweepStore.go_on(path, core)
+    descriptor = store.descriptor() if hasattr(store, "descriptor") else None
+    if descriptor is not None:
+        _claims.add(descriptor)
+    stop: Any = None
+    lost: list[Exception] = []
+    try:
+        if executor is None:
+            with heard():
+                stop = store.run(jobs, tell)
+        else:
+            stop, lost = _spread(store, len(core), executor, tell)
+        told = store.finish()
+    finally:
+        _claims.discard(descriptor or -1)
+        store.close()
+    if stop is not None and not isinstance(stop, KeyboardInterrupt):
+        raise stop
+    dataset = _open(path)
+    dataset.attrs["wall_time"] = time.perf_counter() - begin
+    dataset.attrs["summary"] = told["summary"]
+    if told["warning"]:
+        warnings.warn(told["warning"], DistrustedResultWarning, stacklevel=3)
+    goes_on = (
+        f"{path} holds {len(core) - told['open']} of {len(core)} variants: the same call goes on"
+    )
+    if stop is not None:
+        # The very exception, for a class of its own would change the exit code of a script.
+        interrupt: Any = stop
+        interrupt.result = dataset
+        interrupt.add_note(goes_on)
+        raise interrupt
+    if told["open"]:
+        first = f"{type(lost[0]).__name__}: {lost[0]}" if lost else "no reason was given"
+        message = f"the executor lost {max(len(lost), 1)} tasks, the first by {first}; {goes_on}"
+        raise SimulationError(message, "executor") from (lost[0] if lost else None)
+    return dataset
+
+
+def _spread(
+    store: _core.SweepStore,
+    variants: int,
+    executor: Executor,
+    tell: Callable[[float], object] | None,
+) -> tuple[KeyboardInterrupt | None, list[Exception]]:
+    """Have an executor carry out all open tasks; return an interrupt, and why tasks were lost."""
+    path, sweep = os.fspath(store.place()), uuid4().hex
+    pending: set[Future[tuple[int, int, int]]] = set()
+    lost: list[Exception] = []
+    tasks = iter(store.open_tasks())
+    try:
+        while True:
+            try:
+                for task in islice(tasks, _AHEAD - len(pending)):
+                    pending.add(executor.submit(_task, _core.__version__, path, sweep, task))
+            except Exception as error:
+                # Such as a pool whose worker was killed: it takes no more tasks.
+                lost.append(error)
+                tasks = iter(())
+            if not pending:
+                return None, lost
+            done, pending = wait(pending, return_when=FIRST_COMPLETED)
+            for future in done:
+                try:
+                    counts = future.result()
+                except Exception as error:
+                    # A worker that died, or that has no chaindrive: other tasks are not its fault.
+                    lost.append(error)
+                else:
+                    store.count(counts)
+            if tell is not None:
+                tell(store.stored() / variants)
+    except KeyboardInterrupt as interrupt:
+        return interrupt, lost
+    finally:
+        for future in pending:
+            future.cancel()
+
+
+def _task(version: str, path: str, sweep: str, task: int) -> tuple[int, int, int]:
+    """Carry out a task; called by an executor, in whatever process it likes."""
+    if version != _core.__version__:
+        message = f"a worker has chaindrive {_core.__version__} instead of {version}"
+        raise SimulationError(message, "executor", "install the same version everywhere")
+    return _worker(path, sweep).carry_out(task)
+
+
+@lru_cache(maxsize=1)
+def _worker(path: str, sweep: str) -> _core.SweepWorker:
+    """Open a store, once in each process and for each call of `sweep`."""
+    return _core.SweepWorker(path)
+
+
+def _let_go() -> None:
+    for descriptor in _claims:
+        os.close(descriptor)
+    _claims.clear()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_let_go)

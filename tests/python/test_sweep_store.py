@@ -1,0 +1,513 @@
+"""Sweeps in a store: tables and grids, any executor, whatever dies on the way: the same bits."""
+
+import contextlib
+import json
+import multiprocessing
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from pathlib import Path
+from uuid import uuid4
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import chaindrive as cd
+
+zarr = pytest.importorskip("zarr")
+
+SPEED, PRETENSION = "sprockets.crank.motion.speed", "route.pretension"
+MEASURED = ["stepping_time", "real_time_factor"]
+RING = {"until": 2e-3, "every": 1e-3, "record": "link_tension"}
+SPEEDS = {"chain.start.speed": np.linspace(300.0, 400.0, 40), "chain.mass": ["8 g", "9 g", "10 g"]}
+
+
+def marine():
+    return cd.scenes.marine_two_sprockets()
+
+
+def ring():
+    return cd.scenes.spinning_ring()
+
+
+def assert_same(stored, expected):
+    """The same names, labels and numbers, to the last bit."""
+    stored = stored.load()
+    assert set(stored.variables) == set(expected.variables)
+    assert set(stored.coords) == set(expected.coords)
+    for name in set(expected.variables) - set(MEASURED):
+        one, other = stored[name], expected[name]
+        assert one.dims == other.dims, name
+        assert one.attrs == other.attrs, name
+        if other.dtype == np.float64:
+            assert one.to_numpy().tobytes() == other.to_numpy().tobytes(), name
+        else:
+            assert one.to_numpy().tolist() == other.to_numpy().tolist(), name
+
+
+@pytest.fixture(scope="module")
+def in_memory():
+    return cd.sweep(ring(), SPEEDS, **RING)
+
+
+def test_a_row_of_a_table_is_the_variant_of_its_values():
+    """Columns as a dict, a structured array, a data frame, and a sample with its names."""
+    pandas = pytest.importorskip("pandas")
+    paths = [SPEED, PRETENSION]
+    samples = np.array([[-8.0, 10e3], [-9.5, 14e3], [-8.0, 12e3]])
+    rows = [(PRETENSION, "f8"), (SPEED, "f8")]
+    structured = np.zeros(3, dtype=[(name, kind) for name, kind in reversed(rows)])
+    for column, path in enumerate(paths):
+        structured[path] = samples[:, column]
+    tables = [
+        dict(zip(paths, samples.T, strict=True)),
+        structured,
+        pandas.DataFrame(samples, columns=paths),
+        (paths, samples),
+    ]
+    settings = {"until": 2e-3, "every": 4e-4, "record": "span_tension"}
+    results = [cd.sweep(marine(), design=table, **settings) for table in tables]
+    for result in results[1:]:
+        assert_same(result, results[0])
+    first = results[0]
+    assert first["span_tension"].dims == ("variant", "time", "span")
+    assert first["speed"].dims == ("variant",)
+    assert first["pretension"].attrs["units"] == "N"
+    for row, (speed, pretension) in enumerate(samples):
+        alone = cd.sweep(marine(), {SPEED: speed, PRETENSION: pretension}, **settings)
+        one = alone["span_tension"].to_numpy()[0, 0]
+        assert one.tobytes() == first["span_tension"][row].to_numpy().tobytes()
+    assert "variants: 3 of 3 done" in first.attrs["summary"]
+
+
+def test_a_table_may_hold_words_counts_and_rows_twice():
+    table = {
+        "run.method": ["verlet", "rk4", "verlet"],
+        "sprockets.crank.teeth": np.array([60.0, 59.0, 60.0]),
+    }
+    result = cd.sweep(marine(), design=table, until=2e-4)
+    assert result["method"].to_numpy().tolist() == ["verlet", "rk4", "verlet"]
+    assert result["teeth"].dtype == np.int64
+    largest = result["span_tension_max"].to_numpy()
+    assert largest[0].tobytes() == largest[2].tobytes() != largest[1].tobytes()
+
+
+@pytest.mark.parametrize(
+    ("vary", "design", "error", "words"),
+    [
+        (None, None, cd.ParameterError, "a table of points"),
+        ({PRETENSION: [1e3]}, {PRETENSION: [1e3]}, cd.ParameterError, "a table of points"),
+        (None, {PRETENSION: [1e3, 2e3], SPEED: [-8.0]}, cd.ParameterError, "has 1 values"),
+        (None, {PRETENSION: []}, cd.ParameterError, "no values"),
+        (None, {PRETENSION: 1e3}, cd.ParameterError, "a list or an array of values"),
+        (None, ([PRETENSION], np.zeros((2, 2))), cd.ParameterError, "for 1 paths"),
+        (None, 12, TypeError, "a DataFrame"),
+        (None, {"route.pretenson": [1.0, 2.0]}, cd.SceneError, "pretension"),
+        (None, {"chain.links": [112.0, 112.5, 113.0]}, cd.SceneError, "chain.links"),
+        (None, {PRETENSION: ["1 kN", "1 mm"]}, cd.SceneError, "is a length"),
+        (None, {PRETENSION: [1e3, np.nan]}, cd.ParameterError, PRETENSION),
+    ],
+)
+def test_a_wrong_table_is_refused_before_anything_runs(vary, design, error, words):
+    with pytest.raises(error, match=words):
+        cd.sweep(marine(), vary, design=design, until=1e-3)
+
+
+def executors(tmp_path):
+    fresh = multiprocessing.get_context("spawn")
+    yield "threads of the core", None
+    with ThreadPoolExecutor(2) as executor:
+        yield "threads", executor
+    with ProcessPoolExecutor(2, mp_context=fresh) as executor:
+        yield "processes", executor
+    distributed = pytest.importorskip("distributed")
+    here = {"n_workers": 2, "threads_per_worker": 1, "processes": True, "host": "127.0.0.1"}
+    here |= {"dashboard_address": None, "local_directory": tmp_path / "dask"}
+    with distributed.LocalCluster(**here) as cluster, distributed.Client(cluster) as client:
+        assert len(set(client.run(os.getpid).values()) - {os.getpid()}) == 2
+        with client.get_executor() as executor:
+            yield "a Dask cluster of two processes", executor
+
+
+def test_every_executor_stores_the_bits_of_the_sweep_in_memory(in_memory, tmp_path):
+    for number, (name, executor) in enumerate(executors(tmp_path)):
+        shares = []
+        store = tmp_path / f"{number}.zarr"
+        result = cd.sweep(
+            ring(), SPEEDS, **RING, output=store, executor=executor, progress=shares.append
+        )
+        assert_same(result, in_memory)
+        assert result.attrs["status"] == "complete", name
+        assert result.attrs["finished"] == 120, name
+        assert result.attrs["summary"].splitlines()[-1] == "variants: 120 of 120 done"
+        assert shares == sorted(shares), name
+        assert shares[-1] == 1.0, name
+
+
+def test_a_table_in_a_store_is_that_in_memory(tmp_path):
+    qmc = pytest.importorskip("scipy.stats").qmc
+    sample = qmc.scale(qmc.Sobol(2, rng=1).random_base2(5), [300.0, 8e-3], [400.0, 10e-3])
+    design = (["chain.start.speed", "chain.mass"], sample)
+    expected = cd.sweep(ring(), design=design, **RING)
+    stored = cd.sweep(ring(), design=design, **RING, output=tmp_path / "sobol.zarr")
+    assert_same(stored, expected)
+    np.testing.assert_array_equal(stored["mass"], sample[:, 1])
+    # All arrays are cut at the same places: xarray refuses others.
+    chunks = xr.open_zarr(tmp_path / "sobol.zarr").chunks["variant"]
+    assert len(chunks) > 8
+    assert set(chunks) == {stored.attrs["variants_per_task"]}
+
+
+def test_variants_that_fail_are_stored_with_their_messages(tmp_path):
+    vary = {"chain.start.speed": [300.0, 1e300], "chain.mass": ["8 g", "9 g"]}
+    expected = cd.sweep(ring(), vary, **RING)
+    stored = cd.sweep(ring(), vary, **RING, output=tmp_path / "s.zarr")
+    assert_same(stored, expected)
+    attributes = {"failed": 2, "finished": 2, "status": "failed", "complete": 0}
+    assert {name: stored.attrs[name] for name in attributes} == attributes
+    # There is nothing left to do.
+    again = cd.sweep(ring(), vary, **RING, output=tmp_path / "s.zarr")
+    assert again.attrs["failure"] == "2 of 4 variants failed"
+
+
+def test_runs_and_chains_may_be_longer_than_the_first(tmp_path):
+    """Rings of 20 and 24 links, runs of 1 to 3 ms, contacts logged in some: the store grows."""
+    vary = {
+        "chain.links": [20, 24, 22],
+        "run.until": [1e-3, 3e-3, 2e-3],
+        "run.events": [[], ["teeth"]],
+    }
+    expected = cd.sweep(ring(), vary, every=1e-3, record="link_tension")
+    for jobs in [1, 2]:
+        stored = cd.sweep(
+            ring(),
+            vary,
+            every=1e-3,
+            record="link_tension",
+            output=tmp_path / f"{jobs}.zarr",
+            jobs=jobs,
+        )
+        assert_same(stored, expected)
+    assert stored.sizes["link"] == 24
+    assert stored.sizes["time"] == 4
+
+
+class Failing(ThreadPoolExecutor):
+    """Loses every task after the first few, and notes the others."""
+
+    def __init__(self, few):
+        super().__init__(1)
+        self.few, self.tasks = few, []
+
+    def submit(self, task, /, *arguments):
+        if len(self.tasks) == self.few:
+            future = Future()
+            future.set_exception(OSError("the second machine was switched off"))
+            return future
+        self.tasks.append(arguments[-1])
+        return super().submit(task, *arguments)
+
+
+def test_what_an_executor_lost_is_carried_out_by_the_next_call(in_memory, tmp_path):
+    store = tmp_path / "lost.zarr"
+    words = r"switched off; .*: the same call goes on"
+    with Failing(5) as executor, pytest.raises(cd.SimulationError, match=words):
+        cd.sweep(ring(), SPEEDS, **RING, output=store, executor=executor)
+    with pytest.warns(cd.ResultWarning, match="interrupted"):
+        left = cd.open_result(store)
+    each = left.attrs["variants_per_task"]
+    assert left.attrs["finished"] == 5 * each
+    missing = left["error"].to_numpy() != ""
+    assert missing.sum() == 120 - 5 * each
+    assert "not carried out" in str(left["error"].to_numpy()[missing][0])
+    assert np.isnan(left["steps"].to_numpy()[missing]).all()
+    with Failing(-1) as rest:
+        assert_same(cd.sweep(ring(), SPEEDS, **RING, output=store, executor=rest), in_memory)
+    assert set(executor.tasks) & set(rest.tasks) == set(), "each is carried out once"
+
+
+def test_a_store_of_another_sweep_is_refused(tmp_path):
+    store = tmp_path / "s.zarr"
+    speeds = {"chain.start.speed": [300.0, 400.0]}
+    cd.sweep(ring(), speeds, **RING, output=store)
+    others = [
+        ({"chain.start.speed": [300.0, 401.0]}, RING, "other values of `chain.start.speed`"),
+        ({"chain.mass": ["8 g"]}, RING, "a grid of `chain.start.speed` instead of"),
+        (speeds, RING | {"until": 3e-3}, r"line \d+ of its scene is `until = 0.002`"),
+        (speeds, RING | {"record": []}, r"the channels \[link_tension\] instead of \[\]"),
+    ]
+    for vary, settings, words in others:
+        with pytest.raises(cd.WriteError, match=words):
+            cd.sweep(ring(), vary, **settings, output=store)
+    with pytest.raises(cd.WriteError, match=r"a grid of .* instead of a table"):
+        cd.sweep(ring(), design=speeds, **RING, output=store)
+    anew = cd.sweep(ring(), {"chain.mass": ["8 g"]}, **RING, output=store, overwrite=True)
+    assert anew.sizes["mass"] == 1
+    run = tmp_path / "run.zarr"
+    cd.simulate(ring(), **RING, output=run, error=False)
+    with pytest.raises(cd.WriteError, match="already a result"):
+        cd.sweep(ring(), speeds, **RING, output=run)
+
+
+def test_ctrl_c_leaves_a_store_that_says_so_and_goes_on(tmp_path):
+    """Two variants that end at once, and others that would take days."""
+    store = tmp_path / "s.zarr"
+    finished = threading.Event()
+
+    def interrupt():
+        finished.wait()
+        time.sleep(0.3)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    thread = threading.Thread(target=interrupt, daemon=True)
+    thread.start()
+    table = {"run.until": [1e-3, 1e5, 2e5, 1e-3]}
+    with pytest.raises(KeyboardInterrupt) as caught:
+        cd.sweep(
+            ring(),
+            design=table,
+            every=5e-4,
+            jobs=2,
+            output=store,
+            progress=lambda share: share > 0.0 and finished.set(),
+        )
+    thread.join()
+    assert "the same call goes on" in caught.value.__notes__[0]
+    kept = caught.value.result
+    assert kept.attrs["status"] == "interrupted"
+    assert kept.attrs["finished"] == (kept["error"].to_numpy() == "").sum() >= 1
+    # The claim is given back: the next call is refused for what it asks, not for who asks.
+    with pytest.raises(cd.WriteError, match="other values"):
+        cd.sweep(ring(), design={"run.until": [1.0, 2.0]}, every=5e-4, output=store)
+
+
+SCRIPT = """
+import sys
+from concurrent.futures import ProcessPoolExecutor
+import numpy as np
+import chaindrive as cd
+
+store, how, count, until = sys.argv[1], sys.argv[2], int(sys.argv[3]), float(sys.argv[4])
+design = {"chain.start.speed": np.linspace(300.0, 400.0, count)}
+settings = {"until": until, "every": 1e-3, "record": "link_tension", "output": store}
+if __name__ == "__main__":
+    if how == "threads":
+        cd.sweep(cd.scenes.spinning_ring(), design=design, **settings)
+    else:
+        # Forked, as is the default up to Python 3.13: workers inherit what their parent has open.
+        import multiprocessing
+
+        context = multiprocessing.get_context("fork")
+        with ProcessPoolExecutor(2, mp_context=context) as executor:
+            cd.sweep(cd.scenes.spinning_ring(), design=design, **settings, executor=executor)
+"""
+
+
+def children(process):
+    listed = Path(f"/proc/{process}/task/{process}/children")
+    return [int(child) for child in listed.read_text().split()] if listed.exists() else []
+
+
+def stored(store):
+    """Names of the chunks of the array that is written last."""
+    return {path.relative_to(store) for path in (store / "error").glob("c/*")}
+
+
+def kill_and_resume(folder, killed, kills, *, count, until, random):
+    """Begin a sweep again and again, and kill workers and coordinators, until it is complete."""
+    script, store = folder / "script.py", folder / "killed.zarr"
+    script.write_text(textwrap.dedent(SCRIPT))
+    begun = {}
+    # Workers outlive a coordinator that was killed, and wait for it: the next one does not mind.
+    orphans = []
+    while True:
+        how = "threads" if random.random() < 0.3 else "processes"
+        arguments = [sys.executable, str(script), str(store), how, str(count), str(until)]
+        # Not a pipe: workers that outlive a coordinator would hold it open.
+        with (folder / "told").open("w") as told:
+            process = subprocess.Popen(arguments, stderr=told)
+        before = len(stored(store))
+        while process.poll() is None and (
+            len(stored(store)) < before + 1 or (how == "processes" and not children(process.pid))
+        ):
+            time.sleep(0.005)
+        time.sleep(random.uniform(0.0, 0.05))
+        left = children(process.pid)
+        if sum(killed.values()) < kills and process.poll() is None:
+            fewer = killed["worker"] <= killed["coordinator"]
+            victim = "worker" if left and fewer else "coordinator"
+            killed[victim] += 1
+            os.kill(left[0] if victim == "worker" else process.pid, signal.SIGKILL)
+        process.wait()
+        orphans += left
+        told = (folder / "told").read_text()
+        for chunk in stored(store):
+            contents = (store / chunk).read_bytes()
+            assert begun.setdefault(chunk, contents) == contents, "stored twice"
+        if process.returncode == 0:
+            for orphan in orphans:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(orphan, signal.SIGKILL)
+            return store
+        assert process.returncode == -signal.SIGKILL or "the same call goes on" in told, told
+
+
+def check_killed(tmp_path, kills, count, until):
+    """Sweep after sweep, until so many processes were killed: a fast machine soon completes one."""
+    design = {"chain.start.speed": np.linspace(300.0, 400.0, count)}
+    run = {"until": until, "every": 1e-3, "record": "link_tension"}
+    undisturbed = cd.sweep(ring(), design=design, **run)
+    random = np.random.default_rng(7)
+    killed = {"coordinator": 0, "worker": 0}
+    for number in range(kills):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        store = kill_and_resume(folder, killed, kills, count=count, until=until, random=random)
+        assert_same(cd.open_result(store), undisturbed)
+        # Nothing is left of files that were on their way.
+        assert not list(store.rglob("*#*"))
+        if sum(killed.values()) == kills:
+            return killed
+    pytest.fail(f"the sweeps ended before they were killed: {killed}")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks at processes in /proc")
+def test_killed_and_resumed_no_variant_is_lost_twice_or_different(tmp_path):
+    check_killed(tmp_path, kills=3, count=240, until=60e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="looks at processes in /proc")
+def test_killed_twenty_times_no_variant_is_lost_twice_or_different(tmp_path):
+    killed = check_killed(tmp_path, kills=20, count=1000, until=40e-3)
+    print(json.dumps(killed))
+    assert min(killed.values()) >= 5
+
+
+def test_an_executor_of_another_version_is_told(tmp_path):
+    class Other(Executor):
+        def submit(self, task, /, *arguments):
+            return ThreadPoolExecutor(1).submit(task, "another version", *arguments[1:])
+
+    with pytest.raises(cd.SimulationError, match="instead of another version"):
+        cd.sweep(ring(), SPEEDS, **RING, output=tmp_path / "s.zarr", executor=Other())
+
+
+def test_the_command_goes_on_with_a_sweep_that_was_killed(tmp_path):
+    store = tmp_path / "s.zarr"
+    arguments = ["sweep", "spinning_ring", "-q", "-o", str(store), "-j", "1"]
+    arguments += ["--vary", "chain.start.speed=300..400/60", "--until", "20 ms", "--every", "1 ms"]
+    command = [sys.executable, "-m", "chaindrive", *arguments]
+    process = subprocess.Popen(command)
+    while len(stored(store)) < 2:
+        assert process.poll() is None, "it was to take longer"
+        time.sleep(0.002)
+    process.kill()
+    process.wait()
+    left = len(stored(store))
+    with pytest.warns(cd.ResultWarning, match="killed"):
+        each = cd.open_result(store).attrs["variants_per_task"]
+    assert 2 <= left < -(-60 // each)
+    subprocess.run(command, check=True)
+    speeds = {"chain.start.speed": np.linspace(300.0, 400.0, 60)}
+    expected = cd.sweep(ring(), speeds, until=20e-3, every=1e-3)
+    result = cd.open_result(store).load()
+    assert result.attrs["finished"] == 60
+    one, other = (it["steps"].to_numpy() for it in (result, expected))
+    np.testing.assert_array_equal(one, other)
+    assert subprocess.run(command, stderr=subprocess.PIPE, check=False).returncode == 3
+
+
+def test_nothing_but_the_number_of_a_task_goes_out_and_counts_come_back(tmp_path):
+    """Sizes of what a pool of processes would send, for tables of 40 and 400 rows."""
+    sizes = {}
+    for rows in [40, 400]:
+
+        class Weighing(ThreadPoolExecutor):
+            def submit(self, task, /, *arguments):
+                future = super().submit(task, *arguments)
+                sent, returned = pickle.dumps(arguments), pickle.dumps(future.result())
+                sizes.setdefault(rows, []).append((len(sent), len(returned)))  # noqa: B023
+                return future
+
+        table = {"chain.start.speed": np.linspace(300.0, 400.0, rows)}
+        with Weighing(1) as executor:
+            output = tmp_path / f"{rows}.zarr"
+            cd.sweep(ring(), design=table, **RING, output=output, executor=executor)
+    assert np.max(sizes[400], axis=0)[0] < 400
+    assert np.max(sizes[400], axis=0)[1] < 50
+    assert np.max(sizes[400]) <= np.max(sizes[40]) + 10
+
+
+MEASURED_SWEEP = """
+import json
+import resource
+import sys
+import time
+
+import numpy as np
+
+import chaindrive as cd
+
+first, count, jobs, store = *map(int, sys.argv[1:4]), sys.argv[4]
+design = {"chain.start.speed": np.linspace(300.0, 400.0, 10_000)[first : first + count]}
+settings = {"until": 20e-3, "every": 1e-3, "jobs": jobs}
+# What is imported when it is first needed takes as long as hundreds of variants.
+cd.sweep(cd.scenes.spinning_ring(), {"chain.mass": ["8 g"]}, until=1e-3, output=sys.argv[5])
+wall, cpu = time.perf_counter(), time.process_time()
+output = {"output": store} if store else {}
+result = cd.sweep(cd.scenes.spinning_ring(), design=design, **settings, **output)
+wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
+memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+assert result.attrs["finished"] == count
+print(json.dumps({"wall": wall, "cpu": cpu, "memory": memory}))
+"""
+
+
+def measured(script, *runs):
+    """Run sweeps side by side, each in a process of its own, and return their accounts."""
+    starts = []
+    for run in runs:
+        first = script.with_name(f"{uuid4()}.zarr")
+        starts.append([sys.executable, str(script), *map(str, run), str(first)])
+    processes = [subprocess.Popen(start, stdout=subprocess.PIPE, text=True) for start in starts]
+    return [json.loads(process.communicate()[0]) for process in processes]
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="memory in kilobytes, two cores")
+def test_ten_thousand_variants_keep_two_cores_busy_in_little_memory(tmp_path):
+    """Against two processes that know nothing of each other, interleaved; `-s` prints the figures.
+
+    Processor times are compared, since others may use the machine; wall times are printed.
+    """
+    script = tmp_path / "script.py"
+    script.write_text(MEASURED_SWEEP)
+    pairs, each = 7, 1428
+    walls, costs = [], []
+    for pair in range(pairs):
+        first, half = pair * each, each // 2
+        halves = measured(script, (first, half, 1, ""), (first + half, half, 1, ""))
+        [sweep] = measured(script, (first, each, 2, tmp_path / f"{pair}.zarr"))
+        walls.append(max(it["wall"] for it in halves) / sweep["wall"])
+        costs.append(sweep["cpu"] / sum(it["cpu"] for it in halves) - 1.0)
+    [some] = measured(script, (0, 1000, 2, tmp_path / "some.zarr"))
+    [all_of_them] = measured(script, (0, 10_000, 2, tmp_path / "all.zarr"))
+    figures = {
+        "speed-up over that of two processes": sorted(walls),
+        "overhead in processor time": sorted(costs),
+        "sweep of 1 000": some,
+        "sweep of 10 000": all_of_them,
+    }
+    print(json.dumps(figures, indent=1))
+    assert np.median(walls) > 0.95
+    assert np.median(costs) < 0.02
+    # Four kilobytes a variant [MB]: copies of the values that are varied, and larger tasks.
+    assert all_of_them["memory"] - some["memory"] < 9_000 * 4e-3
