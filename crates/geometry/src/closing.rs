@@ -378,34 +378,37 @@ impl Lattice<'_> {
         })
     }
 
-    /// The seats of the span that joins this lattice to another one, both fixed: seats near the two guesses.
+    /// The seats of the span that joins this lattice to another one, both fixed: the common tangent of two convex polygons.
+    ///
+    /// From the two guesses the seat whose window the span misses by more moves on, forward where the span is turned
+    /// beyond the window, until both windows hold it. There is one such span, unless it would leave before seat 0.
     pub(crate) fn join(&self, to: &Lattice<'_>, leaving: i64, arriving: i64) -> Option<(i64, i64)> {
-        let depth = |leaves: i64, arrives: i64| {
-            let span = to.at(arrives) - self.at(leaves);
-            let direction = span.y.atan2(span.x);
-            self.depth(leaves, direction)
-                .min(to.depth(arrives, direction))
-        };
+        let (mut leaves, mut arrives) = (leaving.max(0), arriving);
         let mut best = None;
         let mut deepest = -self.half.max(to.half);
-        for leaves in (leaving - 1).max(0)..=leaving + 1 {
-            for arrives in arriving - 2..=arriving + 2 {
-                let depth = depth(leaves, arrives);
-                if depth > deepest {
-                    deepest = depth;
-                    best = Some((leaves, arrives));
-                }
+        // Nobody is a full turn of both wheels off.
+        for _ in 0..whole(TAU / self.half + TAU / to.half) {
+            let span = to.at(arrives) - self.at(leaves);
+            let direction = span.y.atan2(span.x);
+            let beyond = [(self, leaves), (to, arrives)]
+                .map(|(at, seat)| at.wheel.sense() * off(at.wheel, at.angle(seat), direction));
+            let depths = [self.half - beyond[0].abs(), to.half - beyond[1].abs()];
+            let depth = depths[0].min(depths[1]);
+            if depth > deepest {
+                deepest = depth;
+                best = Some((leaves, arrives));
+            }
+            if depth >= 0.0 {
+                break;
+            }
+            let first = leaves == 0 && beyond[0] < 0.0;
+            if depths[0] < depths[1] && !first || depths[1] >= 0.0 {
+                leaves = (leaves + whole(beyond[0].signum())).max(0);
+            } else {
+                arrives += whole(beyond[1].signum());
             }
         }
-        // As in `reach`: further along, while no window holds the span and it comes nearer.
-        let (mut leaves, arrives) = best?;
-        for step in [-1, 1] {
-            while deepest < 0.0 && leaves + step >= 0 && depth(leaves + step, arrives) > deepest {
-                leaves += step;
-                deepest = depth(leaves, arrives);
-            }
-        }
-        Some((leaves, arrives))
+        best
     }
 }
 
@@ -413,8 +416,13 @@ impl Lattice<'_> {
 ///
 /// The edges at ψ point along ψ + s (π/2 ∓ π/z) for a chain that turns with sense s.
 fn depth(wheel: &Wheel, half: f64, angle: f64, direction: f64) -> f64 {
+    half - off(wheel, angle, direction).abs()
+}
+
+/// Angle from the tangent at a place on the circle to a span direction \[rad\], within half a turn.
+fn off(wheel: &Wheel, angle: f64, direction: f64) -> f64 {
     let off = direction - angle - wheel.sense() * FRAC_PI_2;
-    half - ((off + PI).rem_euclid(TAU) - PI).abs()
+    (off + PI).rem_euclid(TAU) - PI
 }
 
 /// Nearest whole number.
