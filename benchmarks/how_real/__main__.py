@@ -10,6 +10,7 @@ from pathlib import Path
 import matplotlib as mpl
 
 import models
+import seatings
 import tornado
 from assumptions import cases
 
@@ -44,14 +45,18 @@ def main() -> None:
     drives = [drive for drive in models.DRIVES if drive[0] in wanted]
     share = 0.02 if arguments.quick else 1.0
     by_model = [line for drive in drives for line in models.table(*drive, share)]
+    struck: list[str] = []
+    if seatings.PRESET in wanted:
+        struck = list(seatings.table(*((1, 0.2) if arguments.quick else (5, 1.0))))
     results = [(case, *tornado.effects(case)) for case in chosen]
     effects = [line for result in results for line in tornado.table(*result)]
     if not whole:
-        print("\n".join([*effects, *by_model]))
+        print("\n".join([*effects, *by_model, *struck]))
         return
     page = DOCS / "how-real.md"
     text = write_into(page.read_text(encoding="utf-8"), "assumptions", effects)
-    page.write_text(write_into(text, "models", by_model), encoding="utf-8")
+    text = write_into(text, "models", by_model)
+    page.write_text(write_into(text, "seatings", struck), encoding="utf-8")
     tornado.draw(results, DOCS / "how-real.png")
 
 
