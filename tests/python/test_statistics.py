@@ -58,9 +58,9 @@ def test_means_do_not_depend_on_the_phase_of_the_start(name: str, run_in: str, u
 @pytest.mark.parametrize(
     ("name", "run_in", "until"),
     [
-        ("marine_engine", "0.3 s", "0.6 s"),  # 1.3 turns of the crank
-        ("industrial_16b", "0.1 s", "0.1 s"),  # ten teeth
-        ("bicycle", "0.05 s", "0.1 s"),  # seven teeth
+        ("marine_engine", "0.5 s", "4.7 s"),  # ten turns of the crank
+        ("industrial_16b", "0.1 s", "0.4 s"),  # 38 teeth
+        ("bicycle", "0.05 s", "0.2 s"),  # fourteen teeth
     ],
 )
 def test_intervals_hold_the_mean_as_often_as_they_say(name: str, run_in: str, until: str) -> None:
