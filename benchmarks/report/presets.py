@@ -2,7 +2,6 @@
 
 import warnings
 from dataclasses import dataclass
-from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -24,8 +23,6 @@ class Run:
     """A run as a user asks for it, with what it tells and the time that was not stepping."""
 
     attributes: dict[str, Any]
-    besides: float
-    """Wall time of trials and estimate over that of stepping [–]."""
 
     @property
     def evaluations_per_second(self) -> float:
@@ -39,8 +36,8 @@ class Run:
 
     @property
     def trials(self) -> float:
-        """Trials over the run [–]: of what is not stepping, all but the estimate."""
-        return max(self.besides - self.estimate, 0.0)
+        """Counted evaluations of the trials over those of the run [–]."""
+        return self.attributes.get("accuracy_evaluations", 0.0) / self.attributes["evaluations"]
 
 
 def found_error(attributes: dict[str, Any]) -> str:
@@ -51,27 +48,19 @@ def found_error(attributes: dict[str, Any]) -> str:
     return f"{100 * attributes['accuracy_error']:.2g} %, {kept}"
 
 
-def as_asked(drive: cd.Drive, until: float, assembly: float) -> Run:
-    """Run the default; trials and estimate are what takes time beside assembly and stepping."""
-    begin = perf_counter()
+def as_asked(drive: cd.Drive, until: float) -> Run:
+    """Run the default."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", cd.VerdictWarning)
         run = cd.simulate(drive, until=until, every=until / 200, record="energy_residual")
-    whole = perf_counter() - begin
-    stepping = run.attrs["stepping_time"]
-    return Run(dict(run.attrs), max(whole - stepping - assembly, 0.0) / stepping)
+    return Run(dict(run.attrs))
 
 
-def assembled(drive: cd.Drive) -> tuple[float, float]:
-    """Return the wall time of assembling a drive, and its step where no accuracy is asked for."""
+def own_step(drive: cd.Drive) -> float:
+    """Return the step of a drive where no accuracy is asked for."""
     instant = {"until": 1e-9, "every": 1e-9, "record": "energy_residual", "method": "auto"}
-    times = []
-    # The first one of a process finds everything cold.
-    for _ in range(3):
-        begin = perf_counter()
-        run = cd.simulate(drive, error=False, **instant)
-        times.append(perf_counter() - begin)
-    return min(times), float(run.attrs["step"])
+    run = cd.simulate(drive, error=False, **instant)
+    return float(run.attrs["step"])
 
 
 @dataclass(frozen=True)
@@ -126,9 +115,9 @@ def report(page: Page) -> None:
     counts, costs, far, short_most, long_most = [], [], {}, {}, {}
     for name in names:
         drive = getattr(cd.scenes, name)()
-        assembly, step = assembled(drive)
+        step = own_step(drive)
         share = 0.1 if page.quick else 1.0
-        short = as_asked(drive, SHORT * share * step, assembly)
+        short = as_asked(drive, SHORT * share * step)
         chosen = short.attributes
         if "choice" not in chosen:
             # Some scenes name method and step themselves.
@@ -147,7 +136,7 @@ def report(page: Page) -> None:
                 f"{1e3 * chosen['error_window']:.3g}",
             ]
         )
-        long = as_asked(drive, LONG * share * step, assembly)
+        long = as_asked(drive, LONG * share * step)
         short_most[name] = short.trials + short.estimate
         long_most[name] = long.trials + long.estimate
         costs.append(
@@ -178,9 +167,8 @@ def report(page: Page) -> None:
         counts,
     )
     page.add(
-        "Trials of the choice and the estimate at the end, over the run itself: the estimate in "
-        "evaluations, which are counted; the trials as the wall time that is neither assembly nor "
-        "stepping nor estimate, over that of stepping.",
+        "Trials of the choice and the estimate at the end, over the run itself, in counted "
+        "evaluations.",
     )
     page.table(
         [

@@ -133,7 +133,7 @@ def simulate(
 
         Where method and step were chosen, ``choice`` says which, why and how many were tried,
         ``accuracy_error`` what error was found [–], and ``accuracy_kept`` whether ``accuracy`` is
-        ``"kept"`` or ``"not reached"``.
+        ``"kept"`` or ``"not reached"``; ``accuracy_evaluations`` counts what the trials took.
 
         ``verdict`` says how far the result can be trusted: ``"trusted"``, ``"caution"`` or
         ``"distrusted"``; ``reasons`` names what speaks against it, with blanks between the names,

@@ -69,6 +69,8 @@ pub struct Choice {
     pub gap: Option<Gap>,
     /// All that were tried, in that order.
     pub trials: Vec<Trial>,
+    /// Evaluations of all runs that it took, judges and twin included, but for runs that failed.
+    pub evaluations: u64,
 }
 
 /// Traces of the runs so far, so that none is taken twice.
@@ -78,6 +80,7 @@ struct Trials<'a> {
     window: Window,
     watch: Watch<'a>,
     taken: Vec<(Candidate, Option<Trace>)>,
+    evaluations: u64,
 }
 
 impl Trials<'_> {
@@ -94,6 +97,9 @@ impl Trials<'_> {
                 // Too long a step for this drive: out of the race, not the end of it.
                 Err(_) => None,
             };
+            self.evaluations += trace
+                .as_ref()
+                .map_or(0, |trace| trace.statistics.evaluations);
             self.taken.push((candidate, trace));
             self.taken.len() - 1
         };
@@ -136,6 +142,7 @@ impl Trials<'_> {
             &self.window,
             self.watch,
         )?;
+        self.evaluations += twin.statistics.evaluations;
         if of == Quantity::Losses {
             return Ok((Promise::Losses, losses_apart(&twin, base)));
         }
@@ -199,6 +206,7 @@ pub fn choose(
         window,
         watch,
         taken: Vec::new(),
+        evaluations: 0,
     };
     let (promise, spread) = trials.promise(candidates.first_judge(), of)?;
     let mut choice = Choice {
@@ -210,6 +218,7 @@ pub fn choose(
         window: window.until,
         gap: None,
         trials: Vec::new(),
+        evaluations: trials.evaluations,
     };
     if promise == Promise::Nothing {
         return Ok(choice);
@@ -255,6 +264,7 @@ pub fn choose(
         }
         place = Candidates::after(place, error, accuracy);
     }
+    choice.evaluations = trials.evaluations;
     Ok(choice)
 }
 
@@ -292,6 +302,10 @@ impl Choice {
             ("accuracy".to_owned(), Attribute::Number(self.accuracy)),
             ("accuracy_kept".to_owned(), Attribute::Text(kept.to_owned())),
             ("choice".to_owned(), Attribute::Text(self.reason())),
+            (
+                "accuracy_evaluations".to_owned(),
+                Attribute::Number(self.evaluations as f64),
+            ),
         ];
         if self.error.is_finite() {
             let error = Attribute::Number(self.error);
