@@ -23,8 +23,8 @@ fn of_mode(sample: &Observation, k: f64, length: f64, level: f64) -> f64 {
 /// Damper \[N s/m\] at the teeth that a lone roller leaves at half its speed.
 ///
 /// A stated restitution would do the same to impacts, but holds rollers that merely rest on their teeth
-/// some ten times as firmly, for which steps have to be ten times as short. The sway tells neither from the other: that of
-/// rows 1, 6 and 8, at seven speeds each, is the same within 1 % off the peak and 3 % on it.
+/// some ten times as firmly. The sway tells neither from the other: that of rows 1, 6 and 8, at seven speeds each, is the
+/// same within 1 % off the peak and 3 % on it.
 fn halving(contact: f64, mass: f64) -> f64 {
     // e = exp(-π ζ/√(1 - ζ²)) = ½
     2.0 * 0.2155 * (contact * mass).sqrt()
