@@ -4,6 +4,7 @@ mod apart;
 mod beginning;
 mod hard;
 mod lay;
+mod overrun;
 mod part_way;
 mod relax;
 mod setting_off;
@@ -49,7 +50,8 @@ pub struct Assembled {
     pub statics: Vec<Statics>,
     /// How every chain was fitted, where it runs around sprockets.
     pub fittings: Vec<Option<Fitting>>,
-    /// Bodies that take the same room in the plane, and are in each other's way unless they pass side by side.
+    /// Bodies that take the same room in the plane, and are in each other's way unless they pass side by side; and guides too short
+    /// for the chain that they turn.
     pub warnings: Vec<Clash>,
     /// The parts as they were laid.
     pub(crate) parts: Parts,
@@ -337,7 +339,11 @@ impl Assembled {
     /// What is.
     fn clashes(&self) -> Result<Vec<Clash>, AssemblyError> {
         let rollers = self.system.roller_places(self.start());
-        let found = clashes(&self.parts, &self.standing()?, &rollers);
+        let standing = self.standing()?;
+        let mut found = clashes(&self.parts, &standing, &rollers);
+        for index in 0..self.parts.chains.len() {
+            found.extend(overrun::of(&self.parts, index, &standing));
+        }
         let (may_pass, certain): (Vec<_>, Vec<_>) = found.into_iter().partition(Clash::may_pass);
         if certain.is_empty() {
             Ok(may_pass)

@@ -193,16 +193,21 @@ fn through(
             .max_by(|a, b| a.0.total_cmp(&b.0))?,
     };
     (behind > TOUCHING).then(|| Clash::Chain {
-        chain: if parts.chains.len() == 1 {
-            "the chain".to_owned()
-        } else {
-            format!("chain {index}")
-        },
+        chain: called(parts, index),
         guide: guide.name.clone(),
         depth: behind + carries,
         carries,
         at,
     })
+}
+
+/// A chain, as messages call it.
+pub(crate) fn called(parts: &Parts, index: usize) -> String {
+    if parts.chains.len() == 1 {
+        "the chain".to_owned()
+    } else {
+        format!("chain {index}")
+    }
 }
 
 /// The line through the centres of the rollers.

@@ -1,8 +1,8 @@
-//! Bodies in each other's way, in words.
+//! Bodies in each other's way, and chains where no guide holds them, in words.
 
 use chaindrive_geometry::Point;
 
-/// Two parts of a drive that take the same room.
+/// Two parts of a drive that take the same room, or that part where one should carry the other.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(
@@ -57,31 +57,56 @@ pub enum Clash {
         carries: f64,
         at: Point,
     },
+
+    /// The face of a guide on the route ends before the chain has turned as far as it is led.
+    #[error(
+        "{chain} bends over the end of guide `{guide}` where it runs {}: it turns by {:.1}° there, and the face ends {:.1}° too early, at ({:.1}, {:.1}) mm; make the face {:.1} mm longer, or let the guide press less on the chain",
+        if *.off { "off" } else { "on" }, .wrap.to_degrees(), .short.to_degrees(), .at.x * 1e3, .at.y * 1e3, .missing * 1e3
+    )]
+    Overrun {
+        chain: String,
+        guide: String,
+        /// Angle \[rad\] by which the taut chain turns over the guide.
+        wrap: f64,
+        /// Angle \[rad\] of it for which there is no face.
+        short: f64,
+        /// The same along the face.
+        missing: f64,
+        /// Whether the face ends where the chain runs off, and not where it runs on.
+        off: bool,
+        at: Point,
+    },
 }
 
 impl Clash {
-    /// Whether the two may lie side by side all the same: rails that carry link plates can leave room for teeth between them.
+    /// Whether a drive can run so all the same: rails that carry link plates can leave room for teeth between them, and a chain bends
+    /// over the edge of a face, if not for long.
     pub fn may_pass(&self) -> bool {
-        matches!(self, Self::Teeth { beside: true, .. })
+        matches!(
+            self,
+            Self::Teeth { beside: true, .. } | Self::Overrun { .. }
+        )
     }
 
-    /// Where the two take the same room \[m\].
+    /// Where the two take the same room, or the face ends \[m\].
     pub fn place(&self) -> Point {
         match self {
             Self::Sprockets { at, .. }
             | Self::Teeth { at, .. }
             | Self::Guides { at, .. }
-            | Self::Chain { at, .. } => *at,
+            | Self::Chain { at, .. }
+            | Self::Overrun { at, .. } => *at,
         }
     }
 
-    /// How deep they overlap \[m\].
+    /// How deep they overlap, or how much of the face is missing \[m\].
     pub fn depth(&self) -> f64 {
         match self {
             Self::Sprockets { depth, .. }
             | Self::Teeth { depth, .. }
             | Self::Guides { depth, .. }
             | Self::Chain { depth, .. } => *depth,
+            Self::Overrun { missing, .. } => *missing,
         }
     }
 }
