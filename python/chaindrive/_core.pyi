@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import Any, Final, TypeAlias, final
+from typing import Any, ClassVar, Final, TypeAlias, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,6 +92,7 @@ class Figure:
     def chains(self) -> list[dict[str, Any]]: ...
     @property
     def needs(self) -> list[str]: ...
+    placing: ClassVar[list[str]]
     @property
     def gaps(self) -> list[tuple[float, float, float, str]]: ...
     @property

@@ -20,20 +20,6 @@ __all__ = ["Pose", "at_start", "figure_of", "recorded_at"]
 
 _Floats = NDArray[np.float64]
 
-# Channels by which bodies and plates follow, where they were recorded.
-_PLACING = (
-    "roller_x",
-    "roller_y",
-    "sprocket_angle",
-    "sprocket_x",
-    "sprocket_y",
-    "tensioner_position",
-    "joint_offset_x",
-    "joint_offset_y",
-    "bush_offset_x",
-    "bush_offset_y",
-)
-
 
 def __dir__() -> list[str]:
     return list(__all__)
@@ -67,7 +53,7 @@ def recorded_at(figure: _core.Figure, run: xr.Dataset, time: float) -> dict[str,
         names = ", ".join(repr(name) for name in absent)
         raise KeyError(f"{absent[0]} was not recorded: simulate(…, record=[…, {names}])")
     now = run.sel(time=time, method="nearest")
-    given = {name: _row(now[name]) for name in _PLACING if name in now}
+    given = {name: _row(now[name]) for name in figure.placing if name in now}
     return {"time": float(now["time"]), "channels": given}
 
 

@@ -95,6 +95,12 @@ impl Figure {
         self.0.needs()
     }
 
+    /// Names of the channels by which everything is placed, where they were recorded.
+    #[classattr]
+    fn placing() -> [&'static str; 10] {
+        Instant::CHANNELS
+    }
+
     /// Gaps of chains that do not close: place x and y, length that is missing, and that in words.
     #[getter]
     fn gaps(&self) -> Vec<Mark> {

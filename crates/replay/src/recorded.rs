@@ -214,16 +214,7 @@ fn frames(recorded: &Recorded, figure: &Figure) -> Result<Frames, FilmError> {
     let mut directions = Directions::new(figure);
     for index in 0..recorded.time.len() {
         let sample = |name: &str| recorded.channel(name).and_then(|it| it.sample(index));
-        let at = Instant {
-            time: recorded.time[index],
-            roller_x: sample("roller_x"),
-            roller_y: sample("roller_y"),
-            sprocket_angle: sample("sprocket_angle"),
-            sprocket_x: sample("sprocket_x"),
-            sprocket_y: sample("sprocket_y"),
-            tensioner_position: sample("tensioner_position"),
-            ..Instant::default()
-        };
+        let at = Instant::recorded(recorded.time[index], sample);
         let pose = figure.pose(&at)?;
         if let Some(forces) = sample("contact_force") {
             directions.push(figure, &pose, forces);
