@@ -108,3 +108,23 @@ def test_a_chain_that_does_not_close():
 def test_an_implicit_method_for_the_particle_chain(method):
     with pytest.raises(cd.ParameterError, match="verlet, rk4, dormand-prince"):
         cd.simulate(cd.scenes.spinning_ring(), until=1e-3, every=1e-3, method=method)
+
+
+@pytest.mark.parametrize("until", ["1", "1e-3", " 0.5 "])
+def test_a_text_without_a_unit_is_no_time(until):
+    with pytest.raises(cd.SceneError, match="has no unit") as caught:
+        cd.simulate(cd.scenes.spinning_ring(), until=until)
+    assert caught.value.path == "run.until"
+    assert "the bare number" in caught.value.hint
+
+
+def test_what_was_replaced_stands_in_no_line():
+    drive = cd.scenes.industrial_16b()
+    with pytest.raises(cd.SceneError) as caught:
+        drive.replace({"sprockets.driver.tooth": 5})
+    (problem,) = caught.value.problems
+    assert problem.line is None
+    assert "`teeth`" in problem.hint
+    with pytest.raises(cd.SceneError) as caught:
+        cd.simulate(drive, until="1 x")
+    assert caught.value.problems[0].line is None

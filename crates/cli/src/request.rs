@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
-use chaindrive::scene::{SceneError, presets};
-use chaindrive::{Channel, Given, Request, Scene, Settings, Stepping, patiently};
+use chaindrive::scene::{Datum, SceneError, presets};
+use chaindrive::{
+    Channel, Given, Request, RequestError, Scene, Settings, SimulationError, Stepping, patiently,
+};
 use clap::Args;
 
 use crate::failure::Failure;
@@ -16,7 +18,8 @@ pub(crate) struct SceneArguments {
     #[arg(value_name = "SCENE|PRESET")]
     scene: String,
 
-    /// Replaces a value of the scene, such as chain.links=80 or "sprockets.crank.motion.speed=-90 rpm"; may be repeated
+    /// Replaces a value of the scene, such as chain.links=80 or "sprockets.crank.motion.speed=-90 rpm"; a number without a
+    /// unit is in SI units, and a speed of rotation in rad/s; may be repeated
     #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<String>,
 }
@@ -125,10 +128,38 @@ impl SceneArguments {
                     "--set {change}: a path and a value are needed, such as chain.links=80"
                 )));
             };
-            scene = scene.replace(path.trim(), value.trim())?;
+            let (path, value) = (path.trim(), value.trim());
+            let changed = scene.replace(path, value);
+            scene = changed.map_err(|error| by_option(error, &format!("--set {path}")))?;
         }
         Ok(scene)
     }
+
+    /// Numbers without a unit where a quantity has one: they are in SI units, and perhaps were not meant so.
+    pub(crate) fn notes(&self, scene: &Scene) -> Vec<String> {
+        let changes = self.set.iter().filter_map(|change| change.split_once('='));
+        let bare = changes.filter(|(_, value)| {
+            let number = value.trim().parse::<f64>();
+            number.is_ok_and(|number| number.abs() > 0.0)
+        });
+        bare.filter_map(|(path, value)| match scene.datum(path.trim())? {
+            Datum::Quantity(_, unit) if unit != "1" => Some(format!(
+                "note: --set {}: {value} without a unit is {value} {unit}",
+                path.trim()
+            )),
+            _ => None,
+        })
+        .collect()
+    }
+}
+
+/// The mistake in a value that an option gave: it stands in no line of the scene.
+fn by_option(mut error: SceneError, option: &str) -> SceneError {
+    option.clone_into(&mut error.source_name);
+    for problem in &mut error.problems {
+        problem.line = None;
+    }
+    error
 }
 
 impl RunArguments {
@@ -182,7 +213,7 @@ impl RunArguments {
         let mut settings = Settings::default();
         for (path, _, value) in self.settings() {
             if let Some(value) = value {
-                settings = settings.with(key(path), Given::Text(value.clone()));
+                settings = settings.with(key(path), Given::written(value));
             }
         }
         for (path, names) in [("run.record", &self.record), ("run.events", &self.events)] {
@@ -192,7 +223,39 @@ impl RunArguments {
                 settings = settings.with(key(path), Given::Names(names));
             }
         }
-        Request::new(scene, &settings).map_err(|error| Failure::request(error, scene.name()))
+        Request::new(scene, &settings).map_err(|error| self.refused(error, scene.name()))
+    }
+
+    /// The mistake in what was asked for, by the option that asked for it.
+    fn refused(&self, error: RequestError, scene: &str) -> Failure {
+        let settings = self.settings().into_iter();
+        let given: Vec<_> = settings.filter(|(.., value)| value.is_some()).collect();
+        let option = |path: &str| {
+            let found = given.iter().find(|(known, ..)| *known == path);
+            found.map(|(_, option, _)| *option)
+        };
+        match error {
+            RequestError::Scene(mut error) => {
+                let path = error.problems.first().map(|problem| problem.path.as_str());
+                let Some(option) = path.and_then(option) else {
+                    return error.into();
+                };
+                // The option says which setting it is.
+                for problem in &mut error.problems {
+                    problem.path.clear();
+                }
+                by_option(error, option).into()
+            }
+            RequestError::Setting(SimulationError::Setting {
+                name,
+                value,
+                allowed,
+            }) if option(&format!("run.{name}")).is_some() => Failure::Argument(format!(
+                "{}: {value}, must be {allowed}",
+                option(&format!("run.{name}")).unwrap_or_default()
+            )),
+            error => Failure::request(error, scene),
+        }
     }
 }
 

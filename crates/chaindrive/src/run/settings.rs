@@ -9,7 +9,7 @@ use crate::{RequestError, SimulationError, Stepping};
 /// A value that a caller gives for a key of `[run]`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Given {
-    /// As a scene writes it, with a unit: `1 ms`.
+    /// As a scene writes it, with a unit: `1 ms`. A number without one is refused where the setting has a unit.
     Text(String),
     /// In SI units.
     Number(f64),
@@ -144,6 +144,14 @@ fn unknown(setting: &'static str, name: &str, known: &[&'static str]) -> Simulat
 }
 
 impl Given {
+    /// As a command line has it, where everything is a text: a number alone is one in SI units.
+    pub fn written(text: &str) -> Self {
+        match text.trim().parse() {
+            Ok(number) => Self::Number(number),
+            Err(_) => Self::Text(text.to_owned()),
+        }
+    }
+
     /// A time \[s\] that is no setting of the scene, but written as one; `name` is what messages call it.
     pub(super) fn time(&self, scene: &Scene, name: &str) -> Result<f64, SceneError> {
         if let Self::Number(time) = self {
@@ -160,6 +168,10 @@ impl Given {
 
     pub(super) fn put(&self, scene: &Scene, path: &str) -> Result<Scene, SceneError> {
         match self {
+            // `replace` would read it as a number of TOML.
+            Self::Text(text) if text.trim().parse::<f64>().is_ok() => {
+                scene.replace_json(path, &Json::from(text.as_str()))
+            }
             Self::Text(text) => scene.replace(path, text),
             Self::Number(number) => scene.replace_json(path, &Json::from(*number)),
             Self::Names(names) => scene.replace_json(path, &Json::from(names.as_slice())),

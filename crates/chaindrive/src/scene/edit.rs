@@ -63,7 +63,31 @@ impl Scene {
                 .ok_or_else(|| self.refuse(path, "nothing can be left out here", None))?;
             document.to_string()
         };
-        Self::from_text(&text, &self.name)
+        self.edited(&text, &keys)
+    }
+
+    /// This scene with another text, which differs at the end of a path.
+    ///
+    /// Lines stay those of the text that was read, which is the one that a user has before his eyes; what has been put in its place has
+    /// none.
+    fn edited(&self, text: &str, keys: &[Key]) -> Result<Self, SceneError> {
+        let tree = Node::parse(text).map_err(|problem| {
+            let problem = Problem {
+                line: None,
+                ..problem
+            };
+            SceneError::new(&self.name, vec![problem])
+        });
+        let mut tree = tree?;
+        tree.take_lines(Some(&self.tree));
+        let changed = keys.iter().try_fold(&mut tree, |node, key| match key {
+            Key::Index(index) => node.entry_mut(*index),
+            Key::Name(name) => node.get_mut(name),
+        });
+        if let Some(changed) = changed {
+            changed.take_lines(None);
+        }
+        Self::from_tree(tree, text, &self.name)
     }
 
     fn put(&self, path: &str, json: &Json, toml: Toml) -> Result<Self, SceneError> {
@@ -80,7 +104,7 @@ impl Scene {
                 .ok_or_else(|| self.refuse(path, "nothing can be put here", None))?;
             document.to_string()
         };
-        Self::from_text(&text, &self.name)
+        self.edited(&text, &keys)
     }
 
     fn refuse(&self, path: &str, message: &str, hint: Option<String>) -> SceneError {

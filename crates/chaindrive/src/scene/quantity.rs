@@ -128,7 +128,7 @@ pub(crate) struct Complaint {
     pub(crate) hint: String,
 }
 
-/// A time \[s\] from a number and a unit, such as `"0.1 s"`, or from a bare number of seconds.
+/// A time \[s\] from a number and a unit, such as `"0.1 s"`.
 ///
 /// # Errors
 /// The fault of the text, in words.
@@ -138,7 +138,7 @@ pub fn read_time(text: &str) -> Result<f64, String> {
         .map_err(|complaint| complaint.message)
 }
 
-/// A length \[m\] from a number and a unit, such as `"12.7 mm"`, or from a bare number of metres.
+/// A length \[m\] from a number and a unit, such as `"12.7 mm"`.
 ///
 /// # Errors
 /// The mistake in the text.
@@ -161,9 +161,17 @@ impl Dimension {
 
     /// A unit of this dimension whose symbols were written without a space between them.
     fn apart(&self, text: &str, symbol: &str, exponent: Option<f64>) -> Option<String> {
-        let fits =
-            |text: &String| unit::parse(text).is_ok_and(|unit| self.fits(unit.powers, exponent));
-        unit::apart(text, symbol).into_iter().find(fits)
+        let mut ways = unit::apart(text, symbol).into_iter();
+        ways.find(|way| self.is_unit(way, exponent))
+    }
+
+    /// A unit of this dimension whose powers were written without `^`.
+    fn marked(&self, text: &str, exponent: Option<f64>) -> Option<String> {
+        Some(unit::with_powers(text)).filter(|way| self.is_unit(way, exponent))
+    }
+
+    fn is_unit(&self, text: &str, exponent: Option<f64>) -> bool {
+        unit::parse(text).is_ok_and(|unit| self.fits(unit.powers, exponent))
     }
 
     /// Reads a number and a unit into SI; `exponent` is the n of a power law, where known.
@@ -202,7 +210,10 @@ impl Dimension {
                 ),
                 UnitProblem::Grammar(reason) => complain(
                     format!("`{}` is not a unit: {reason}", rest.trim()),
-                    such_as(),
+                    match self.marked(rest, exponent) {
+                        Some(marked) => format!("write `{number} {marked}`"),
+                        None => such_as(),
+                    },
                 ),
             })?
         };
@@ -362,6 +373,18 @@ mod tests {
                 "3 kgm^2",
                 "unknown unit `kgm`",
                 "write `3 kg m^2`",
+            ),
+            (
+                "a moment of inertia",
+                "0.4 kgm2",
+                "unknown unit `kgm`",
+                "write `0.4 kg m^2`",
+            ),
+            (
+                "a moment of inertia",
+                "0.4 kg m2",
+                "write powers as `^2`",
+                "write `0.4 kg m^2`",
             ),
             (
                 "a rotational damping",

@@ -160,6 +160,51 @@ impl Node {
         }
     }
 
+    /// The same to change.
+    pub(crate) fn get_mut(&mut self, key: &str) -> Option<&mut Self> {
+        let Value::Table(entries) = &mut self.value else {
+            return None;
+        };
+        let entry = entries.iter_mut().find(|entry| entry.key == key);
+        entry.map(|entry| &mut entry.node)
+    }
+
+    /// An entry of a list, to change.
+    pub(crate) fn entry_mut(&mut self, index: usize) -> Option<&mut Self> {
+        match &mut self.value {
+            Value::List(items) => items.get_mut(index),
+            _ => None,
+        }
+    }
+
+    /// Takes over the lines of a tree, as far as it has the same values; others stand on no line.
+    pub(crate) fn take_lines(&mut self, of: Option<&Self>) {
+        self.line = of.and_then(|of| of.line);
+        match &mut self.value {
+            Value::Table(entries) => {
+                let known = match of.map(|of| &of.value) {
+                    Some(Value::Table(known)) => known.as_slice(),
+                    _ => &[],
+                };
+                for entry in entries {
+                    let same = known.iter().find(|it| it.key == entry.key);
+                    entry.line = same.and_then(|same| same.line);
+                    entry.node.take_lines(same.map(|same| &same.node));
+                }
+            }
+            Value::List(items) => {
+                for (index, item) in items.iter_mut().enumerate() {
+                    let same = match of.map(|of| &of.value) {
+                        Some(Value::List(known)) => known.get(index),
+                        _ => None,
+                    };
+                    item.take_lines(same);
+                }
+            }
+            _ => {}
+        }
+    }
+
     /// The value at a path, with entries of lists by name or index.
     pub(crate) fn find(&self, path: &str) -> Option<&Self> {
         steps(path).try_fold(self, |node, step| match &node.value {

@@ -249,10 +249,22 @@ impl Reader<'_> {
     }
 }
 
-/// Ways of writing a unit with its unknown symbol taken apart into known ones: `N m` for `Nm`.
+/// Ways of writing a unit with its unknown symbol taken apart into known ones: `N m` for `Nm`, `kg m^2` for `kgm2`.
 pub(crate) fn apart(text: &str, symbol: &str) -> Vec<String> {
-    let written = |parts: String| text.trim().replacen(symbol, &parts, 1);
+    let written = |parts: String| with_powers(&text.trim().replacen(symbol, &parts, 1));
     known_parts(symbol).into_iter().map(written).collect()
+}
+
+/// A unit with its powers marked: `kg m^2` for `kg m2`.
+pub(crate) fn with_powers(text: &str) -> String {
+    let mut marked = String::with_capacity(text.len() + 2);
+    for letter in text.trim().chars() {
+        if letter.is_ascii_digit() && marked.ends_with(char::is_alphabetic) {
+            marked.push('^');
+        }
+        marked.push(letter);
+    }
+    marked
 }
 
 /// Ways of writing a text as known symbols side by side.

@@ -163,7 +163,18 @@ impl<'s> Validator<'s> {
             let property = schema.get("properties").and_then(|all| all.get(&entry.key));
             match property {
                 Some(_) if entry.key == "kind" && kind.is_some() => {}
-                Some(property) => self.visit(&mut entry.node, property, &place, exponent),
+                Some(property) => match self.meant(entry, property, schema) {
+                    Some(near) => {
+                        let text = format!(
+                            "found the number {}, needed is a table",
+                            number(&entry.node).unwrap_or(f64::NAN)
+                        );
+                        let problem = Problem::new(&place, entry.line, text);
+                        self.refuse(problem.hint(format!("did you mean `{near}`?")));
+                        meant.push(near);
+                    }
+                    None => self.visit(&mut entry.node, property, &place, exponent),
+                },
                 None => self.problems.push_with(|| {
                     let (near, problem) = unknown_key(entry, &place, &known, kind);
                     meant.extend(near);
@@ -189,6 +200,22 @@ impl<'s> Validator<'s> {
                 None => problem,
             });
         }
+    }
+
+    /// The key that was meant where a number stands in place of a table, and a key of nearly the same name takes numbers: `teeth`
+    /// for `tooth`.
+    fn meant(&self, entry: &Entry, property: &'s Json, schema: &'s Json) -> Option<String> {
+        number(&entry.node)?;
+        let all = schema.get("properties")?.as_object()?;
+        let expected = |schema| Expected::of(self.schema.core(schema));
+        if !matches!(expected(property), Expected::Table(_) | Expected::Kinds(..)) {
+            return None;
+        }
+        let takes_numbers =
+            |schema| matches!(expected(schema), Expected::Quantity(..) | Expected::Integer);
+        let fitting = all.iter().filter(|(_, schema)| takes_numbers(schema));
+        let keys: Vec<&str> = fitting.map(|(key, _)| key.as_str()).collect();
+        nearest(&entry.key, &keys).map(str::to_owned)
     }
 
     fn list(&mut self, node: &mut Node, schema: &'s Json, path: &str, exponent: Option<f64>) {

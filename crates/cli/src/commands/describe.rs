@@ -34,6 +34,9 @@ pub(crate) fn describe(
         ..
     } = arguments.run.apply(&arguments.scene.load(interrupted)?)?;
     let drive = scene.drive()?;
+    for note in arguments.scene.notes(&scene) {
+        eprintln!("{note}");
+    }
     // What a run would do, it would do by the method that it would choose.
     let choice = accuracy.map(|accuracy| {
         let start = assemble(&drive, interrupted)?;

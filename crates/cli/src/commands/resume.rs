@@ -33,7 +33,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn resume(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
-    let until = arguments.until.clone().map(Given::Text);
+    let until = arguments.until.clone().map(|until| Given::written(&until));
     let stopped = Stopped::open(&arguments.result, until.as_ref())?;
     let checkpoint = stopped.checkpoint();
     if !arguments.telling.quiet {

@@ -61,9 +61,14 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
     let target = Target::of(arguments.output.as_deref())?;
     let mut request = arguments.run.apply(&arguments.scene.load(interrupted)?)?;
     let scene = request.scene.name().to_owned();
+    if !arguments.telling.quiet {
+        for note in arguments.scene.notes(&request.scene) {
+            eprintln!("{note}");
+        }
+    }
     if let Some(every) = &arguments.checkpoint_every {
         target.for_checkpoints()?;
-        let every = Given::Text(every.clone());
+        let every = Given::written(every);
         let wanted = request.with_checkpoints(&every);
         request = wanted.map_err(|error| Failure::request(error, &scene))?;
     }
