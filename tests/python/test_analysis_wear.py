@@ -357,3 +357,34 @@ def test_utilisation_is_load_over_limit(industrial):
     assert str(found["source"].sel(check="static").item()) == "assumed"
     with pytest.raises(cd.ParameterError, match="must be positive"):
         industrial.drive.utilisation(static_factor=0.0)
+
+
+def test_utilisation_knows_the_rating_of_american_chains(industrial):
+    """15 kW over the formula of the association, for 19 teeth at 300 rpm."""
+    assert "power" not in industrial.drive.utilisation()["check"]
+    american = cd.scenes.industrial_16b().replace({"chain.type": "16A-1"})
+    run = run_of(american, until=0.05, run_in=0.05, every=1e-4)
+    horsepower = 0.004 * 19**1.08 * 300**0.9
+    rated = 745.7 * horsepower
+    assert american.rated_power(19, -300 * math.tau / 60) == pytest.approx(rated, rel=1e-9)
+    power = run.drive.utilisation().sel(check="power")
+    assert float(power["limit"]) == pytest.approx(rated, rel=1e-3)
+    assert float(power["load"]) == pytest.approx(15e3, rel=0.05)
+    assert str(power["unit"].item()) == "W"
+    facts = american.describe()["chain"]["rated_power"]
+    assert facts["power"] == pytest.approx(rated, rel=1e-9)
+    assert facts["sprocket"] == "driver"
+
+
+def test_ratings_that_nobody_knows_are_refused():
+    with pytest.raises(cd.ParameterError, match="no rating is known"):
+        cd.scenes.industrial_16b().rated_power(19, 31.4)
+    american = cd.scenes.industrial_16b().replace({"chain.type": "16A-1"})
+    with pytest.raises(cd.ParameterError, match="teeth = 0"):
+        american.rated_power(0, 31.4)
+    with pytest.raises(cd.ParameterError, match="speed = nan"):
+        american.rated_power(19, math.nan)
+    with pytest.raises(KeyError):
+        american.rated_power(19, 31.4, chain="primary")
+    with pytest.raises(cd.ParameterError, match="several chains"):
+        cd.scenes.two_stage_timing().rated_power(19, 31.4)

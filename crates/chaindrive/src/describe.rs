@@ -12,8 +12,8 @@ mod text;
 use chaindrive_geometry::mesh_frequency;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 use chaindrive_mechanics::{
-    Assembled, ChainModel, Clash, Drive, Fight, Fitting, Flow, GuideSupport, Observation,
-    PlacedChain, Statics,
+    Adjust, Assembled, Carrier, ChainModel, Clash, Drive, Fight, Fitting, Flow, GuideSupport,
+    Layout, Observation, PlacedChain, Rotation, Statics,
 };
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -47,7 +47,7 @@ pub struct Description {
     pub polygon: Vec<PolygonPair>,
     /// Method, steps and run time.
     pub cost: Cost,
-    /// Bodies that take the same room in the plane, and must pass side by side.
+    /// Bodies that take the same room in the plane, and must pass side by side; guides that are too short; motions that fight.
     pub warnings: Vec<String>,
 }
 
@@ -72,6 +72,8 @@ pub struct ChainFacts {
     pub longitudinal_wave_speed: f64,
     /// Speed of transverse waves at the least and the greatest static tension of a span \[m/s\].
     pub transverse_wave_speeds: Option<[f64; 2]>,
+    /// Power that it is rated for; absent where no rating is known, or nothing turns.
+    pub rated_power: Option<RatedPower>,
     /// How the chain was fitted; absent when it does not run around sprockets.
     pub closing: Option<Closing>,
 }
@@ -92,12 +94,37 @@ pub struct ShaftFacts {
 }
 
 /// How the chain was fitted.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Closing {
     /// Strain of the links as laid \[–\].
     pub strain: f64,
-    /// Travel of the adjusted body \[m, or rad\].
+    /// Travel of the adjusted body, see `unit`.
     pub travel: f64,
+    /// Unit of the travel: m, or rad of an arm.
+    pub unit: &'static str,
+    /// Name of the sprocket or tensioner that was adjusted, if one was.
+    pub adjusted: Option<String>,
+}
+
+/// Power that a chain is rated for where the run starts.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RatedPower {
+    /// The smallest sprocket that something drives or loads.
+    pub sprocket: String,
+    /// Its teeth.
+    pub teeth: u32,
+    /// Its speed at the start \[rad/s\].
+    pub speed: f64,
+    /// The power \[W\], see [`Rating::power`](chaindrive_mechanics::Rating::power).
+    pub power: f64,
+}
+
+/// A number of things: `1 guide`, `2 guides`.
+pub fn counted(number: usize, thing: &str) -> String {
+    match number {
+        1 => format!("1 {thing}"),
+        _ => format!("{number} {thing}s"),
+    }
 }
 
 /// A static state on the way to the start.
@@ -173,7 +200,11 @@ impl Description {
         let chains = drive.chains.iter().zip(&assembled.fittings);
         Ok(Self {
             chains: chains
-                .map(|(placed, fitting)| chain_facts(placed, fitting.as_ref(), &spans))
+                .map(|(placed, fitting)| {
+                    let rated_power = rated_power(drive, placed, &start);
+                    let closing = fitting.as_ref().map(|it| closing(drive, placed, it));
+                    chain_facts(placed, closing, rated_power, &spans)
+                })
                 .collect(),
             shafts: shafts(drive, &start),
             stops: route::stops(drive, &assembled, &start),
@@ -272,9 +303,67 @@ fn shafts(drive: &Drive, start: &Observation) -> Vec<ShaftFacts> {
         .collect()
 }
 
+fn closing(drive: &Drive, placed: &PlacedChain, fitting: &Fitting) -> Closing {
+    let adjust = match &placed.layout {
+        Layout::Route { fit, .. } => &fit.adjust,
+        Layout::Points { .. } => &Adjust::Nothing,
+    };
+    let (adjusted, unit) = match adjust {
+        Adjust::Nothing => (None, "m"),
+        Adjust::Sprocket { sprocket, .. } => (Some(&drive.sprockets[*sprocket].name), "m"),
+        Adjust::Tensioner { tensioner, .. } => {
+            let tensioner = &drive.tensioners[*tensioner];
+            let unit = match tensioner.carrier {
+                Carrier::Slider(_) => "m",
+                Carrier::Arm(_) => "rad",
+            };
+            (Some(&tensioner.name), unit)
+        }
+    };
+    Closing {
+        strain: fitting.strain,
+        travel: fitting.travel,
+        unit,
+        adjusted: adjusted.cloned(),
+    }
+}
+
+/// The rating at the smallest sprocket that takes part; idlers do not.
+fn rated_power(drive: &Drive, placed: &PlacedChain, start: &Observation) -> Option<RatedPower> {
+    let rating = placed.chain.strength.rating?;
+    let takes_part = |shaft: usize| {
+        let joined = drive.couplings.iter().map(|it| it.shafts);
+        let mut joined = joined.chain(drive.gears.iter().map(|it| it.shafts));
+        let alone = drive
+            .sprockets
+            .iter()
+            .filter(|it| it.shaft == shaft)
+            .count()
+            < 2;
+        let idle = match &drive.shafts[shaft].rotation {
+            Rotation::Prescribed(_) => false,
+            Rotation::Free { drive, load } => drive.is_empty() && load.is_empty(),
+        };
+        !idle || !alone || joined.any(|ends| ends.contains(&shaft))
+    };
+    let own = placed.sprockets.iter().copied();
+    let own = own.filter(|&index| takes_part(drive.sprockets[index].shaft));
+    let smallest = own.min_by_key(|&index| drive.sprockets[index].gap.teeth)?;
+    let sprocket = &drive.sprockets[smallest];
+    let (teeth, speed) = (sprocket.gap.teeth, start.sprocket_speed[smallest]);
+    let power = rating.power(teeth, speed);
+    (power > 0.0).then(|| RatedPower {
+        sprocket: sprocket.name.clone(),
+        teeth,
+        speed,
+        power,
+    })
+}
+
 fn chain_facts(
     placed: &PlacedChain,
-    fitting: Option<&Fitting>,
+    closing: Option<Closing>,
+    rated_power: Option<RatedPower>,
     spans: &[SpanAtRest],
 ) -> ChainFacts {
     let chain = &placed.chain;
@@ -293,10 +382,8 @@ fn chain_facts(
     let (least, most) = (tensions().reduce(f64::min), tensions().reduce(f64::max));
     ChainFacts {
         name: placed.name.clone(),
-        closing: fitting.map(|fitting| Closing {
-            strain: fitting.strain,
-            travel: fitting.travel,
-        }),
+        closing,
+        rated_power,
         links: chain.links(),
         pitch: chain.pitch,
         mass_per_length,
@@ -325,14 +412,16 @@ fn model(drive: &Drive, assembled: &Assembled) -> Model {
         let particles = !matches!(placed.chain.model, ChainModel::Rigid(_));
         particles && placed.chain.damping.iter().all(|d| *d <= 0.0)
     });
+    let slippery = contacts.iter().all(|contact| contact.friction == "none");
+    let mut chains = drive.chains.iter();
+    let rubbing = chains.any(|placed| LinkFacts::of(&placed.chain).joint_friction.is_some());
     let lacks = [
         (drive.sprockets.is_empty(), "sprockets"),
         (drive.guides.is_empty(), "guides"),
         (drive.tensioners.is_empty(), "tensioners"),
-        (
-            contacts.iter().all(|contact| contact.friction == "none"),
-            "friction",
-        ),
+        (slippery && !rubbing, "friction"),
+        // Pins that turn in their bushes rub in no contact of these.
+        (slippery && rubbing, "friction on teeth and guides"),
         (undamped, "damping of the links"),
         (drive.gravity.norm() <= 0.0, "gravity"),
         (!drive.settle, "settling before the start"),

@@ -227,6 +227,22 @@ impl Drive {
         Ok(Law(surface.law))
     }
 
+    /// Power \[W\] that a chain is rated for; none where no rating is known.
+    fn rated_power(&self, chain: Option<&str>, teeth: u32, speed: f64) -> PyResult<Option<f64>> {
+        let mut chains = self.drive.chains.iter();
+        let placed = match chain {
+            None if self.drive.chains.len() == 1 => chains.next(),
+            None => {
+                let message = "there are several chains, and each has its own rating".to_owned();
+                return Err(parameter(message, "chain", "the name of one"));
+            }
+            Some(name) => chains.find(|placed| placed.name.as_deref() == Some(name)),
+        };
+        let placed = placed.ok_or_else(|| PyKeyError::new_err(chain.map(str::to_owned)))?;
+        let rating = placed.chain.strength.rating;
+        Ok(rating.map(|rating| rating.power(teeth, speed)))
+    }
+
     /// The whole profile of a sprocket or guide, settled or as it was laid.
     fn profile(&self, py: Python<'_>, name: &str, settled: bool) -> PyResult<Profile> {
         let found = py.detach(|| {

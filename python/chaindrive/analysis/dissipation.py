@@ -38,8 +38,8 @@ def losses(run: xr.Dataset, *, start: float | None = None, end: float | None = N
     -------
     xarray.Dataset
         ``energy`` [J], ``power`` [W] and ``share`` [–] (place,), ``power_over_time`` (time, place)
-        [W] between samples, ``efficiency`` [–], NaN where the drivers put nothing in or W is not
-        known.
+        [W] between samples, ``efficiency`` [–], NaN where the drivers put nothing in, nobody takes
+        anything out, or W is not known.
 
     Raises
     ------
@@ -87,6 +87,9 @@ def _efficiency(run: xr.Dataset, part: xr.Dataset, lost: float, *, whole: bool) 
     if whole and "efficiency" in run.attrs:
         return float(run.attrs["efficiency"])
     if "energy_flows" not in part:
+        return math.nan
+    taken = part["energy_flows"].sel(flow=[*_SUPPLIES, "load_supplied"])
+    if float((taken.isel(time=-1) - taken.isel(time=0)).min()) >= 0.0:
         return math.nan
     flows = part["energy_flows"].sel(flow=list(_SUPPLIES))
     steps = flows.diff("time").sum("flow").to_numpy()

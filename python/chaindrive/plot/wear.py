@@ -336,5 +336,5 @@ def _with_legend(ax: Axes) -> Axes:
 
 
 def _rounded(value: float, unit: str) -> str:
-    scale, prefix = {"N": (1e3, "k"), "Pa": (1e6, "M")}.get(unit, (1.0, ""))
+    scale, prefix = {"N": (1e3, "k"), "W": (1e3, "k"), "Pa": (1e6, "M")}.get(unit, (1.0, ""))
     return f"{value / scale:.3g} {prefix}{unit}"

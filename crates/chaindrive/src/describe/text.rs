@@ -1,8 +1,12 @@
 //! A description as text.
 
+use std::f64::consts::TAU;
 use std::fmt;
 
-use super::{ChainFacts, ContactFacts, Description, LinkFacts, Model, SpanAtRest};
+use super::{
+    ChainFacts, Closing, ContactFacts, Description, LinkFacts, Model, RatedPower, SpanAtRest,
+    counted,
+};
 
 impl fmt::Display for Description {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -55,7 +59,11 @@ impl fmt::Display for ChainFacts {
             Some([least, most]) => format!("{along}, {least:.1} to {most:.1} m/s across, at rest"),
             None => along,
         };
-        row(f, "wave speeds", &waves)
+        row(f, "wave speeds", &waves)?;
+        match &chain.rated_power {
+            Some(rated) => row(f, "rated power", &rated.to_string()),
+            None => Ok(()),
+        }
     }
 }
 
@@ -96,12 +104,7 @@ impl Description {
                 "  {name:22} {pitches:>7}   {length:>10.4}   {tension:>11.1}   {frequency:>20}"
             )?;
         }
-        let closing = format!(
-            "strain {:.3e} as laid, adjusted by {:.4} mm (or mrad)",
-            closing.strain,
-            closing.travel * 1e3
-        );
-        row(f, "closing", &closing)
+        row(f, "closing", &closing.to_string())
     }
 
     fn shafts(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -243,12 +246,15 @@ impl fmt::Display for Model {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "model")?;
         let freedom = format!(
-            "{}, of {} rollers and",
-            self.degrees_of_freedom, self.rollers
+            "{}, of {} and",
+            self.degrees_of_freedom,
+            counted(self.rollers, "roller")
         );
         let bodies = format!(
-            "{freedom} {} free sprockets ({} driven), {} tensioners",
-            self.free_sprockets, self.driven_sprockets, self.tensioners
+            "{freedom} {} ({} driven), {}",
+            counted(self.free_sprockets, "free sprocket"),
+            self.driven_sprockets,
+            counted(self.tensioners, "tensioner")
         );
         row(f, "degrees of freedom", &bodies)?;
         let guides = format!("{} fixed, {} moving", self.fixed_guides, self.moving_guides);
@@ -256,7 +262,7 @@ impl fmt::Display for Model {
         row(
             f,
             "contact candidates",
-            &format!("{} rollers near a body", self.candidates),
+            &format!("{} near a body", counted(self.candidates, "roller")),
         )?;
         for contact in &self.contacts {
             row(
@@ -280,7 +286,12 @@ impl fmt::Display for LinkFacts {
             } else {
                 "rigid links"
             };
-            write!(f, "{}: {made}, {} joints", self.model, self.joints)?;
+            write!(
+                f,
+                "{}: {made}, {}",
+                self.model,
+                counted(self.joints, "joint")
+            )?;
             if let Some(gap) = self.joint_clearance {
                 write!(f, " with {:.1} µm of radial play", gap * 1e6)?;
             }
@@ -300,6 +311,32 @@ impl fmt::Display for LinkFacts {
             write!(f, "; joints damp with {} N m s/rad", self.joint_damping)?;
         }
         Ok(())
+    }
+}
+
+impl fmt::Display for Closing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "strain {:.3e} as laid, ", self.strain)?;
+        match (&self.adjusted, self.unit) {
+            (None, _) => write!(f, "nothing adjusted"),
+            (Some(name), "rad") => {
+                write!(f, "{name} turned by {:.3}°", self.travel.to_degrees())
+            }
+            (Some(name), _) => write!(f, "{name} moved by {:.3} mm", self.travel * 1e3),
+        }
+    }
+}
+
+impl fmt::Display for RatedPower {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{:.3} kW at the {} teeth and {:.1} rpm of {}, a single strand under smooth load",
+            self.power * 1e-3,
+            self.teeth,
+            self.speed.abs() * 60.0 / TAU,
+            self.sprocket
+        )
     }
 }
 

@@ -152,6 +152,18 @@ pub fn attributes(
             story.number("efficiency", efficiency);
             story.number("efficiency_error", uncertain);
         }
+        let loads = summary.carried();
+        for load in &loads {
+            // Of several chains each says its own.
+            let named = |what: &str| match loads.len() {
+                1 => what.to_owned(),
+                _ => format!("{what}_{}", load.chain),
+            };
+            if let Some(rated) = load.rated() {
+                story.number(&named("power_carried"), load.power);
+                story.number(&named("power_rated"), rated);
+            }
+        }
         story.number("energy_residual_largest", summary.residual);
         story.number("contact_force_largest", summary.forces().max);
     }

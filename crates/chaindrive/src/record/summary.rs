@@ -132,6 +132,8 @@ pub struct Ledger {
     pub moved: f64,
     /// Energy that drivers, motions, torques and loads have put in, those that took some out left aside \[J\].
     pub supplied: f64,
+    /// Energy that those have taken out that took more than they put in \[J\].
+    pub delivered: f64,
     /// Energy that they have put in and taken out again, added up without regard to direction \[J\].
     pub exchanged: f64,
     /// Energy that loads have put in, those that took some out counted against it \[J\].
@@ -147,10 +149,13 @@ pub struct Ledger {
 /// Share of the energy exchanged with the outside that has to go one way before its ratio is an efficiency: a driver that
 /// swings to and fro has none.
 const ONE_WAY: f64 = 0.25;
+/// Share of the energy supplied that somebody has to take out before the rest of it is an efficiency. *Assumed*: less is rounding and
+/// the run-up, and what a drive that serves nobody keeps in its motion is not its use.
+const TAKEN: f64 = 1e-6;
 
 impl Ledger {
     /// Share of the energy supplied that is not lost, and by how much the energy unaccounted for makes it uncertain; none where
-    /// energy goes to and fro.
+    /// energy goes to and fro, or nobody takes any out.
     ///
     /// ```text
     /// η = 1 − D/E ± |R|/E       D: losses, R: residual, E: energy supplied
@@ -158,7 +163,13 @@ impl Ledger {
     pub fn efficiency(&self) -> Option<[f64; 2]> {
         let goes_one_way = self.supplied > ONE_WAY * self.exchanged;
         let share = |of: f64| of / self.supplied;
-        goes_one_way.then(|| [1.0 - share(self.losses), share(self.residual.abs())])
+        (goes_one_way && !self.idles())
+            .then(|| [1.0 - share(self.losses), share(self.residual.abs())])
+    }
+
+    /// Whether nobody takes out what is supplied: all of it is lost, or stays in motion, height and springs.
+    pub fn idles(&self) -> bool {
+        self.delivered <= TAKEN * self.supplied
     }
 }
 
@@ -357,12 +368,15 @@ impl Summary {
     pub fn ledger(&self) -> Ledger {
         let start = self.start.unwrap_or_default();
         let flows = Flow::ALL.iter().filter(|flow| !flow.is_loss());
-        let net = flows.map(|&flow| self.last.flow(flow) - start.flow(flow));
+        let net: Vec<f64> = flows
+            .map(|&flow| self.last.flow(flow) - start.flow(flow))
+            .collect();
         Ledger {
             residual: self.residual,
             losses: self.energy_dissipated(),
             moved: self.energy_moved(),
-            supplied: net.filter(|work| *work > 0.0).sum(),
+            supplied: net.iter().filter(|work| **work > 0.0).sum(),
+            delivered: -net.iter().filter(|work| **work < 0.0).sum::<f64>(),
             exchanged: self.turnover.exchanged,
             by_loads: self.last.flow(Flow::Load) - start.flow(Flow::Load),
             loads_exchanged: self.turnover.loads,

@@ -48,9 +48,9 @@ fn broken(load: &Load) -> Option<Reason> {
 }
 
 fn overloaded(load: &Load) -> Option<Reason> {
-    let (sprocket, teeth, speed) = load.smallest.as_ref()?;
-    let rated = load.strength.rating?.power(*teeth, *speed);
-    (load.power > rated && rated > 0.0).then(|| Reason::AboveRating {
+    let (sprocket, _, speed) = load.smallest.as_ref()?;
+    let rated = load.rated()?;
+    (load.power > rated).then(|| Reason::AboveRating {
         sprocket: sprocket.clone(),
         speed: speed.abs(),
         power: load.power,

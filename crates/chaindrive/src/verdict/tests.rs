@@ -9,6 +9,7 @@ fn ledger_with(residual: f64) -> Ledger {
         losses: 2.0,
         moved: 100.0,
         supplied: 100.0,
+        delivered: 98.0,
         exchanged: 198.0,
         by_loads: -98.0,
         loads_exchanged: 98.0,

@@ -1,5 +1,6 @@
 //! `chaindrive check`: are these scenes sound?
 
+use chaindrive::describe::counted;
 use chaindrive::{Run, assemble};
 use clap::Args;
 
@@ -50,14 +51,14 @@ fn sound(name: &str, interrupted: &dyn Fn() -> bool) -> Result<String, Failure> 
     }
     let links = assembled.system.links();
     let chain = match drive.chains.len() {
-        1 => format!("{links} links"),
+        1 => counted(links, "link"),
         chains => format!("{chains} chains of {links} links"),
     };
     Ok(format!(
-        "sound; {chain}, {} sprockets, {} guides, {} tensioners, {} degrees of freedom",
-        drive.sprockets.len(),
-        drive.guides.len(),
-        drive.tensioners.len(),
-        assembled.system.free_dofs()
+        "sound; {chain}, {}, {}, {}, {} of freedom",
+        counted(drive.sprockets.len(), "sprocket"),
+        counted(drive.guides.len(), "guide"),
+        counted(drive.tensioners.len(), "tensioner"),
+        counted(assembled.system.free_dofs(), "degree")
     ))
 }

@@ -2,6 +2,7 @@
 
 mod bench;
 mod command;
+mod first_use;
 mod interrupt;
 mod replay;
 mod resume;

@@ -50,6 +50,16 @@ pub struct Load {
     pub smallest: Option<(String, u32, f64)>,
 }
 
+impl Load {
+    /// Power \[W\] that the chain is rated for at the teeth and the mean speed of its smallest sprocket, see
+    /// [`Rating::power`](chaindrive_mechanics::Rating::power); none where no rating is known, or nothing has turned.
+    pub fn rated(&self) -> Option<f64> {
+        let (_, teeth, speed) = self.smallest.as_ref()?;
+        let rated = self.strength.rating?.power(*teeth, *speed);
+        (rated > 0.0).then_some(rated)
+    }
+}
+
 /// Share of the power of a chain that a sprocket takes part with, at least; idlers do not.
 const TAKES_PART: f64 = 0.1;
 

@@ -65,32 +65,7 @@ impl fmt::Display for Report<'_> {
         contacts(f, summary, simulation)?;
         impacts(f, simulation)?;
         losses(f, summary)?;
-        let supplied = summary.energy_supplied();
-        let moved = summary.energy_moved();
-        let relative = if moved > 0.0 {
-            let share = |of: f64| (summary.residual / of).abs();
-            let of_losses = match summary.energy_dissipated() {
-                losses if losses > 0.0 => format!(", {:.1e} of the losses", share(losses)),
-                _ => String::new(),
-            };
-            format!("{of_losses}, {:.1e} of the {moved:.4e} moved", share(moved))
-        } else {
-            String::new()
-        };
-        writeln!(
-            f,
-            "energy [J]               supplied {supplied:.4e}, dissipated {:.4e}; unaccounted for {:.2e}{relative}",
-            summary.energy_dissipated(),
-            summary.residual
-        )?;
-        if let Some([efficiency, uncertain]) = summary.ledger().efficiency() {
-            let percent = 100.0 * efficiency;
-            writeln!(
-                f,
-                "efficiency               {percent:.3} % ± {:.3} % by the energy unaccounted for",
-                100.0 * uncertain
-            )?;
-        }
+        energy(f, summary)?;
         let steps = statistics.steps.max(1) as f64;
         writeln!(
             f,
@@ -172,6 +147,56 @@ fn impacts(f: &mut fmt::Formatter<'_>, simulation: &Simulation) -> fmt::Result {
             impacts.fastest,
             impacts.deepest * 1e6,
             100.0 * gentle
+        )?;
+    }
+    Ok(())
+}
+
+/// What was supplied and lost, and what came of it: efficiency, and power beside its rating.
+fn energy(f: &mut fmt::Formatter<'_>, summary: &Summary) -> fmt::Result {
+    let supplied = summary.energy_supplied();
+    let moved = summary.energy_moved();
+    let relative = if moved > 0.0 {
+        let share = |of: f64| (summary.residual / of).abs();
+        let of_losses = match summary.energy_dissipated() {
+            losses if losses > 0.0 => format!(", {:.1e} of the losses", share(losses)),
+            _ => String::new(),
+        };
+        format!("{of_losses}, {:.1e} of the {moved:.4e} moved", share(moved))
+    } else {
+        String::new()
+    };
+    writeln!(
+        f,
+        "energy [J]               supplied {supplied:.4e}, dissipated {:.4e}; unaccounted for {:.2e}{relative}",
+        summary.energy_dissipated(),
+        summary.residual
+    )?;
+    if let Some([efficiency, uncertain]) = summary.ledger().efficiency() {
+        let percent = 100.0 * efficiency;
+        writeln!(
+            f,
+            "efficiency               {percent:.3} % ± {:.3} % by the energy unaccounted for",
+            100.0 * uncertain
+        )?;
+    } else if summary.ledger().idles() && supplied > 0.0 {
+        let kept = 100.0 * (1.0 - summary.energy_dissipated() / supplied);
+        writeln!(
+            f,
+            "efficiency               none: nobody takes energy out; {:.1} % of the supplied is lost, {kept:.1} % stays in motion, height and springs",
+            100.0 - kept
+        )?;
+    }
+    for load in summary.carried() {
+        let (Some(rated), Some((sprocket, teeth, _))) = (load.rated(), &load.smallest) else {
+            continue;
+        };
+        writeln!(
+            f,
+            "power                    {:.3} kW carried, {:.3} kW rated at the {teeth} teeth of {sprocket}: {:.1} %",
+            load.power * 1e-3,
+            rated * 1e-3,
+            100.0 * load.power / rated
         )?;
     }
     Ok(())
