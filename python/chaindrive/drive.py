@@ -360,7 +360,7 @@ class Drive:
         >>> import chaindrive as cd
         >>> drive = cd.scenes.industrial_16b().replace({"chain.type": "16A-1"})
         >>> round(drive.rated_power(19, 31.4))  # 19 teeth at 300 rpm
-        12157
+        12159
         """
         if teeth < 1:
             raise ParameterError(f"teeth = {teeth}, must be positive", "teeth", "at least 1")
