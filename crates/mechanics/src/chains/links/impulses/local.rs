@@ -78,7 +78,7 @@ impl Local {
 
     /// Eliminates all rows, with at most C columns around them; false if a pivot vanishes.
     #[inline(always)]
-    pub(super) fn condense<const R: usize, const C: usize>(
+    pub(super) fn condense<const R: usize, const C: usize, const B: usize>(
         &mut self,
         linkage: &Linkage,
         rows: &[Rows; 2],
@@ -138,7 +138,7 @@ impl Local {
                     }
                 }
             }
-            joints.subtract::<R, C>(link, linkage.joint_behind(link), &sum);
+            joints.subtract::<R, C, B>(link, linkage.joint_behind(link), &sum);
         }
         true
     }

@@ -13,7 +13,8 @@ pub(super) enum Place {
     Border(usize),
 }
 
-/// Blocks of R rows, a border, and one right-hand side.
+/// Blocks of R rows, a border, and one right-hand side: B columns beside the blocks, fewer than the C around a link, which sees the
+/// rows of two joints.
 ///
 /// The last joint of a closed chain stands first in the border, before the wheels. The elimination begins at both ends and meets
 /// in the middle: two recurrences at a time take as long as one.
@@ -24,7 +25,7 @@ pub(super) struct Tridiagonal {
     /// Entries of the blocks (joint + 1, joint): row p there, column o here; after the elimination of L.
     coupling: [Vec<f64>; 4],
     right: [Vec<f64>; 2],
-    /// C columns for every row: the border, and the right-hand side behind it.
+    /// B columns for every row: the border, and the right-hand side behind it.
     beside: Vec<f64>,
     /// The border's own equations in the same columns.
     corner: Vec<f64>,
@@ -47,7 +48,7 @@ const fn entry(p: usize, o: usize) -> usize {
 impl Tridiagonal {
     /// Makes room; entries of the blocks are written, not added, by the lanes.
     #[inline(always)]
-    pub(super) fn clear<const R: usize, const C: usize>(
+    pub(super) fn clear<const R: usize, const B: usize>(
         &mut self,
         linkage: &Linkage,
         wheels: usize,
@@ -71,9 +72,9 @@ impl Tridiagonal {
             }
         }
         self.beside.clear();
-        self.beside.resize(self.count * R * C, 0.0);
+        self.beside.resize(self.count * R * B, 0.0);
         self.corner.clear();
-        self.corner.resize(self.border * C, 0.0);
+        self.corner.resize(self.border * B, 0.0);
         self.edge.resize(self.border, 0.0);
     }
 
@@ -108,10 +109,10 @@ impl Tridiagonal {
 
     /// Moves right-hand sides, and the last joint of a closed chain, to where they are eliminated.
     #[inline(always)]
-    pub(super) fn take_in<const R: usize, const C: usize>(&mut self, linkage: &Linkage) {
+    pub(super) fn take_in<const R: usize, const B: usize>(&mut self, linkage: &Linkage) {
         for joint in 0..self.count {
             for p in 0..R {
-                self.beside[(R * joint + p) * C + self.border] = self.right[p][joint];
+                self.beside[(R * joint + p) * B + self.border] = self.right[p][joint];
             }
         }
         if !linkage.closed {
@@ -119,17 +120,17 @@ impl Tridiagonal {
         }
         let last = self.count;
         for p in 0..R {
-            self.add_right::<R, C>(Place::Border(p), self.right[p][last]);
+            self.add_right::<R, B>(Place::Border(p), self.right[p][last]);
             for o in 0..R {
                 if o <= p {
                     let value = self.own[entry(p, o)][last];
-                    self.add::<R, C>(Place::Border(p), Place::Border(o), value);
+                    self.add::<R, B>(Place::Border(p), Place::Border(o), value);
                 }
                 // From the last joint back to the one before it, and on to the first.
                 let value = self.coupling[entry(p, o)][last - 1];
-                self.add::<R, C>(Place::Border(p), Place::Row(last - 1, o), value);
+                self.add::<R, B>(Place::Border(p), Place::Row(last - 1, o), value);
                 let value = self.coupling[entry(p, o)][last];
-                self.add::<R, C>(Place::Row(0, p), Place::Border(o), value);
+                self.add::<R, B>(Place::Row(0, p), Place::Border(o), value);
             }
         }
     }
@@ -150,7 +151,7 @@ impl Tridiagonal {
 
     /// Subtracts a symmetric matrix over the rows of two neighbours, the wheels, and the right-hand side.
     #[inline(always)]
-    pub(super) fn subtract<const R: usize, const C: usize>(
+    pub(super) fn subtract<const R: usize, const C: usize, const B: usize>(
         &mut self,
         first: usize,
         second: usize,
@@ -164,9 +165,9 @@ impl Tridiagonal {
                 let place = self.place::<R>([first, second], x);
                 for (y, value) in sum[..=x].iter().enumerate() {
                     let other = self.place::<R>([first, second], y);
-                    self.add::<R, C>(place, other, -value);
+                    self.add::<R, B>(place, other, -value);
                 }
-                self.add_right::<R, C>(place, -sum[known]);
+                self.add_right::<R, B>(place, -sum[known]);
             }
             return;
         }
@@ -179,7 +180,7 @@ impl Tridiagonal {
                 self.coupling[entry(p, o)][first] -= sum[R + p][o];
             }
             for (joint, sum) in [(first, &sum[p]), (second, &sum[R + p])] {
-                let from = (R * joint + p) * C + self.held;
+                let from = (R * joint + p) * B + self.held;
                 let beside = &mut self.beside[from..=from + wheels];
                 for (beside, sum) in beside.iter_mut().zip(&sum[2 * R..]) {
                     *beside -= sum;
@@ -187,7 +188,7 @@ impl Tridiagonal {
             }
         }
         for (wheel, sum) in sum[2 * R..known].iter().enumerate() {
-            let from = (self.held + wheel) * C + self.held;
+            let from = (self.held + wheel) * B + self.held;
             let corner = &mut self.corner[from..=from + wheels];
             for (corner, sum) in corner.iter_mut().zip(&sum[2 * R..]) {
                 *corner -= sum;
@@ -217,7 +218,7 @@ impl Tridiagonal {
 
     /// Adds to an entry and to its mirror image.
     #[inline(always)]
-    pub(super) fn add<const R: usize, const C: usize>(&mut self, a: Place, b: Place, value: f64) {
+    pub(super) fn add<const R: usize, const B: usize>(&mut self, a: Place, b: Place, value: f64) {
         match (a, b) {
             (Place::Row(i, p), Place::Row(j, o)) => {
                 let entries = match i.cmp(&j) {
@@ -228,12 +229,12 @@ impl Tridiagonal {
                 entries[i.min(j)] += value;
             }
             (Place::Row(i, p), Place::Border(j)) | (Place::Border(j), Place::Row(i, p)) => {
-                self.beside[(R * i + p) * C + j] += value;
+                self.beside[(R * i + p) * B + j] += value;
             }
             (Place::Border(i), Place::Border(j)) => {
-                self.corner[i * C + j] += value;
+                self.corner[i * B + j] += value;
                 if i != j {
-                    self.corner[j * C + i] += value;
+                    self.corner[j * B + i] += value;
                 }
             }
         }
@@ -241,48 +242,48 @@ impl Tridiagonal {
 
     /// Adds to a right-hand side.
     #[inline(always)]
-    pub(super) fn add_right<const R: usize, const C: usize>(&mut self, place: Place, value: f64) {
+    pub(super) fn add_right<const R: usize, const B: usize>(&mut self, place: Place, value: f64) {
         match place {
-            Place::Row(i, p) => self.beside[(R * i + p) * C + self.border] += value,
-            Place::Border(i) => self.corner[i * C + self.border] += value,
+            Place::Row(i, p) => self.beside[(R * i + p) * B + self.border] += value,
+            Place::Border(i) => self.corner[i * B + self.border] += value,
         }
     }
 
     /// L D Lᵀ in place; border and right-hand sides are carried along. False if a pivot vanishes.
     #[inline(always)]
-    pub(super) fn factor<const R: usize, const C: usize>(&mut self) -> bool {
+    pub(super) fn factor<const R: usize, const B: usize>(&mut self) -> bool {
         let middle = self.count / 2;
-        let mut corner = [[0.0; C]; C];
+        let mut corner = [[0.0; B]; B];
         let mut sound = true;
         for k in 0..=middle {
             let behind = self.count - 1 - k;
             if k < middle {
-                sound &= self.eliminate::<R, C>(k, Some((k + 1, k, false)), &mut corner);
+                sound &= self.eliminate::<R, B>(k, Some((k + 1, k, false)), &mut corner);
             }
             if behind > middle {
-                sound &= self.eliminate::<R, C>(
+                sound &= self.eliminate::<R, B>(
                     behind,
                     Some((behind - 1, behind - 1, true)),
                     &mut corner,
                 );
             }
         }
-        sound &= self.eliminate::<R, C>(middle, None, &mut corner);
+        sound &= self.eliminate::<R, B>(middle, None, &mut corner);
         for (i, sum) in corner[..self.border].iter().enumerate() {
             for (j, sum) in sum[..=self.border].iter().enumerate() {
-                self.corner[i * C + j] -= sum;
+                self.corner[i * B + j] -= sum;
             }
         }
-        sound && self.factor_corner::<C>()
+        sound && self.factor_corner::<B>()
     }
 
     /// Eliminates a joint into (neighbour, place of their coupling, whether it is the neighbour's rows that come first).
     #[inline(always)]
-    fn eliminate<const R: usize, const C: usize>(
+    fn eliminate<const R: usize, const B: usize>(
         &mut self,
         joint: usize,
         into: Option<(usize, usize, bool)>,
-        corner: &mut [[f64; C]; C],
+        corner: &mut [[f64; B]; B],
     ) -> bool {
         let block: [[f64; R]; R] = std::array::from_fn(|p| {
             std::array::from_fn(|o| self.own[entry(p.max(o), p.min(o))][joint])
@@ -295,10 +296,10 @@ impl Tridiagonal {
                 self.own[entry(p, o)][joint] = inverse[p][o];
             }
         }
-        let rows = self.beside.as_chunks_mut::<C>().0;
-        let here: [[f64; C]; R] = std::array::from_fn(|p| rows[R * joint + p]);
+        let rows = self.beside.as_chunks_mut::<B>().0;
+        let here: [[f64; B]; R] = std::array::from_fn(|p| rows[R * joint + p]);
         // D⁻¹ times everything beside.
-        let scaled: [[f64; C]; R] = std::array::from_fn(|p| {
+        let scaled: [[f64; B]; R] = std::array::from_fn(|p| {
             std::array::from_fn(|b| (0..R).map(|o| inverse[p][o] * here[o][b]).sum())
         });
         for p in 0..R {
@@ -337,8 +338,8 @@ impl Tridiagonal {
     }
 
     #[inline(always)]
-    fn factor_corner<const C: usize>(&mut self) -> bool {
-        let rows = self.corner.as_chunks_mut::<C>().0;
+    fn factor_corner<const B: usize>(&mut self) -> bool {
+        let rows = self.corner.as_chunks_mut::<B>().0;
         for i in 0..self.border {
             let (done, rest) = rows.split_at_mut(i + 1);
             let here = &done[i];
@@ -358,25 +359,25 @@ impl Tridiagonal {
 
     /// Back through the border, D and Lᵀ, from the middle outward.
     #[inline(always)]
-    pub(super) fn substitute<const R: usize, const C: usize>(&mut self, linkage: &Linkage) {
+    pub(super) fn substitute<const R: usize, const B: usize>(&mut self, linkage: &Linkage) {
         for i in (0..self.border).rev() {
-            let row = &self.corner[i * C..(i + 1) * C];
+            let row = &self.corner[i * B..(i + 1) * B];
             let known = row[i + 1..self.border].iter().zip(&self.edge[i + 1..]);
             let sum: f64 = known.map(|(a, x)| a * x).sum();
             self.edge[i] = (row[self.border] - sum) / row[i];
         }
-        let mut edge = [0.0; C];
+        let mut edge = [0.0; B];
         for (edge, found) in edge.iter_mut().zip(&self.edge) {
             *edge = -found;
         }
         edge[self.border] = 1.0;
         let middle = self.count / 2;
-        self.find::<R, C>(middle, None, &edge);
+        self.find::<R, B>(middle, None, &edge);
         for k in (0..middle).rev() {
-            self.find::<R, C>(k, Some((k + 1, k)), &edge);
+            self.find::<R, B>(k, Some((k + 1, k)), &edge);
             let behind = self.count - 1 - k;
             if behind > middle {
-                self.find::<R, C>(behind, Some((behind - 1, behind - 1)), &edge);
+                self.find::<R, B>(behind, Some((behind - 1, behind - 1)), &edge);
             }
         }
         if linkage.closed {
@@ -389,13 +390,13 @@ impl Tridiagonal {
 
     /// y = D⁻¹ (r − beside·edge) − Lᵀ y of the neighbour
     #[inline(always)]
-    fn find<const R: usize, const C: usize>(
+    fn find<const R: usize, const B: usize>(
         &mut self,
         joint: usize,
         from: Option<(usize, usize)>,
-        edge: &[f64; C],
+        edge: &[f64; B],
     ) {
-        let rows = self.beside.as_chunks::<C>().0;
+        let rows = self.beside.as_chunks::<B>().0;
         let right: [f64; R] = std::array::from_fn(|p| {
             rows[R * joint + p]
                 .iter()
