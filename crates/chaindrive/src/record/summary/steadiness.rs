@@ -392,12 +392,12 @@ mod tests {
     fn what_ends_cut_off_a_period_is_told() {
         for periods in [2.3, 5.6, 17.4, 38.2, 77.7] {
             let (count, mut held, mut worst) = (4000, 0, 0.0_f64);
-            for start in 0..200 {
+            for start in 0..200_u32 {
                 let wave = |i: usize| {
                     let at = TAU * (periods * i as f64 / count as f64 + f64::from(start) / 200.0);
                     at.sin() + 0.3 * (2.0 * at).sin()
                 };
-                let noise = series(start as u64 + 1, 0.5, count).enumerate();
+                let noise = series(u64::from(start) + 1, 0.5, count).enumerate();
                 let found = of(noise.map(|(i, x)| 1e-3 * x + wave(i))).unwrap();
                 held += usize::from(found.mean.abs() <= found.half_width);
                 worst = worst.max(found.half_width);
