@@ -20,7 +20,7 @@
 //! τ is the [`time_scale`](SecondOrderSystem::time_scale) of the system, 1/ω its
 //! [`undamped_time_scale`](SecondOrderSystem::undamped_time_scale). The implicit methods need a system that can
 //! [`solve`](SecondOrderSystem::solve). Fixed steps keep a tenth in
-//! reserve: a step above 0.9 of the limit is refused at the start and halved during a run.
+//! reserve: a step above 0.9 of the limit is refused at the start and shortened during a run.
 //!
 //! Forces are evaluated with `&self` and memory advances with `&mut self` in
 //! [`commit`](SecondOrderSystem::commit) only, so a rejected step leaves no trace. Nothing is allocated

@@ -19,7 +19,7 @@ pub struct Statistics {
     pub newton_failures: u64,
     /// Commits that called for a fresh evaluation.
     pub jumps: u64,
-    /// Halvings of a fixed step that stability asked for.
+    /// Times that a fixed step was shortened for the sake of stability.
     pub reductions: u64,
     /// Smallest accepted step \[s\]; infinite before the first.
     pub smallest_step: f64,

@@ -11,8 +11,12 @@ pub(crate) const SAFETY: f64 = 0.9;
 /// Least step, in units of the nominal one, that a verdict can bring about.
 pub(crate) const FLOOR: f64 = 1e-3;
 
-/// Halvings of a fixed step after which a run is given up: a millionth of the nominal step.
-const MOST_HALVINGS: u32 = 20;
+/// By how much a fixed step is shortened at a time: 2^(−1/5). Coarser rungs leave more of the limit unused, finer ones change the step
+/// more often.
+const RUNG: f64 = 0.870_550_563_296_124_1;
+
+/// Rungs of a fixed step after which a run is given up: a millionth of the nominal step.
+const MOST_RUNGS: u32 = 100;
 
 /// Step after a verdict to retry a candidate of size h \[s\] for the n-th time, n = 0, 1, ….
 ///
@@ -27,42 +31,46 @@ pub(crate) fn shortened(h: f64, at_most: f64, n: u32, floor: f64) -> f64 {
     estimate.min(share * h).max(floor)
 }
 
-/// A fixed step, halved while stability asks for it.
+/// A fixed step, shortened while stability asks for it.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Fixed {
     /// The step asked for \[s\].
     pub(crate) nominal: f64,
-    /// How often it is halved at present.
-    halvings: u32,
+    /// By how many rungs it is shortened at present, and the step that is left \[s\].
+    rungs: u32,
+    step: f64,
 }
 
 impl Fixed {
     pub(crate) fn new(nominal: f64) -> Self {
         Self {
             nominal,
-            halvings: 0,
+            rungs: 0,
+            step: nominal,
         }
     }
 
     /// Step in use \[s\].
     pub(crate) fn step(self) -> f64 {
-        self.nominal * 0.5_f64.powi(self.halvings.cast_signed())
+        self.step
     }
 
-    /// Adapts to the limit \[s\] of the present state; returns the halvings added, or nothing if the step vanishes.
-    pub(crate) fn adapt(&mut self, limit: f64) -> Option<u32> {
-        let before = self.halvings;
-        if self.step() <= limit && before == 0 {
-            return Some(0);
+    /// Adapts to the limit \[s\] of the present state; returns whether the step is shorter for it, or nothing if it vanishes.
+    pub(crate) fn adapt(&mut self, limit: f64) -> Option<bool> {
+        let before = self.rungs;
+        if self.step <= limit && before == 0 {
+            return Some(false);
         }
-        self.halvings = 0;
-        while limit.is_nan() || self.step() > limit {
-            self.halvings += 1;
-            if self.halvings > MOST_HALVINGS {
+        self.rungs = 0;
+        self.step = self.nominal;
+        while limit.is_nan() || self.step > limit {
+            self.rungs += 1;
+            self.step *= RUNG;
+            if self.rungs > MOST_RUNGS {
                 return None;
             }
         }
-        Some(self.halvings.saturating_sub(before))
+        Some(self.rungs > before)
     }
 }
 

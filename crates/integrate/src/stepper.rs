@@ -265,11 +265,11 @@ impl<S: SecondOrderSystem> Stepper<S> {
         }
         if let Pace::Fixed(fixed) = &mut self.pace {
             let limit = stable_step(&self.method, self.method.time_scale(system));
-            let Some(halvings) = fixed.adapt(limit) else {
+            let Some(shortened) = fixed.adapt(limit) else {
                 let (t, step) = (state.t, fixed.step());
                 return Err(IntegrationError::StepUnderflow { t, step });
             };
-            self.statistics.reductions += u64::from(halvings);
+            self.statistics.reductions += u64::from(shortened);
         }
         Ok(())
     }

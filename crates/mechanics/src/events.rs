@@ -199,7 +199,7 @@ impl System {
                     RailContact::Circles(contacts) => contacts.each_candidate(see),
                     RailContact::Plates(plates) => {
                         for link in 0..member.chain.links() {
-                            see(link, plates.memory.at(link));
+                            see(link, plates.memory.state.at(link));
                         }
                     }
                 }

@@ -21,6 +21,9 @@ pub(crate) const LANES: usize = 8;
 /// Stands for zero under a root. Half of the smallest normal number would not be normal, and a hundred times slower.
 const TINY: f64 = 1e-200;
 
+/// The bit of the sign.
+const SIGN: u64 = 1 << 63;
+
 /// `n` rounded up to whole lanes.
 pub(crate) const fn padded(n: usize) -> usize {
     n.div_ceil(LANES) * LANES
@@ -163,7 +166,9 @@ impl<S: Simd> Lane<S> {
 
     #[inline(always)]
     pub(crate) fn abs(self) -> Self {
-        self.with(self.simd.abs_f64s(self.v))
+        // The library's own is not always inlined, and is compiled for the oldest processor then.
+        let but_sign = self.simd.splat_f64s(f64::from_bits(!SIGN));
+        self.with(self.simd.and_f64s(but_sign, self.v))
     }
 
     #[inline(always)]
@@ -368,7 +373,9 @@ impl<S: Simd> Neg for Lane<S> {
 
     #[inline(always)]
     fn neg(self) -> Self {
-        self.with(self.simd.neg_f64s(self.v))
+        // As with `abs`.
+        let sign = self.simd.splat_f64s(f64::from_bits(SIGN));
+        self.with(self.simd.xor_f64s(sign, self.v))
     }
 }
 

@@ -449,7 +449,7 @@ impl System {
             }
             for (i, on) in member.contacts.rails.iter().enumerate() {
                 let stored = match &on.contact {
-                    RailContact::Circles(contacts) => contacts.stored(&record.loads.circles[i]),
+                    RailContact::Circles(contacts) => contacts.stored(&record.loads.rails[i]),
                     RailContact::Plates(plates) => {
                         let frame = bodies.rail_frame(on.rail, at);
                         let own = member.own(at);

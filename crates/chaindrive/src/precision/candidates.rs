@@ -23,7 +23,7 @@ pub(super) struct Entry {
 }
 
 /// Longest step of the ladder in units of the time scale that limits the method. A run may have 1.8 of it: a sixth is left for contacts
-/// that stiffen as they are pressed, and beyond that the run halves its step.
+/// that stiffen as they are pressed, and beyond that the run shortens its step.
 const LONGEST: f64 = 1.5;
 /// Ratio of a step of the ladder to the next.
 const RATIO: f64 = 1.15;

@@ -25,8 +25,8 @@ use pulp::Arch;
 
 use super::joints::Joints;
 use super::{Pose, Rates, Record, Surroundings};
+use crate::contact::PlatePlaces;
 use crate::contact::Rollers;
-use crate::contact::{PlatePins, PlatePlaces};
 use crate::system::HeldEnd;
 pub(super) use articulation::Turning;
 use drag::Drag;
@@ -58,27 +58,9 @@ pub(crate) struct Particles {
 }
 
 /// The plates of the particle chain: link i between roller i and the next.
-pub(super) struct Pins<'a, 'b> {
-    pub(super) rollers: &'b mut Rollers<'a>,
-    pub(super) count: usize,
-}
-
-impl PlatePlaces for Pins<'_, '_> {
+impl PlatePlaces for Rollers<'_> {
     fn place(&self, link: usize, end: usize) -> Point {
-        self.rollers.place(link + end)
-    }
-}
-
-impl PlatePins for Pins<'_, '_> {
-    fn velocity(&self, link: usize, end: usize) -> Vector {
-        self.rollers.velocity(link + end)
-    }
-
-    fn push(&mut self, link: usize, end: usize, force: Vector) {
-        // Behind the last roller of a closed chain its copies are only looked at.
-        let roller = (link + end) % self.count;
-        self.rollers.ax[roller] += force.x * self.rollers.inverse_mass[roller];
-        self.rollers.ay[roller] += force.y * self.rollers.inverse_mass[roller];
+        self.place(link + end)
     }
 }
 

@@ -7,7 +7,7 @@ use super::joints::Resistance;
 use super::links::{Impulses, JointState};
 use super::particles::Turning;
 use super::particles::points;
-use crate::contact::{Begun, ContactMemory, Frame, Touch, Wrench};
+use crate::contact::{Begun, Frame, Touch, Wrench};
 use crate::system::BodyContacts;
 
 /// Loads of a chain on the bodies that it touches, by contact.
@@ -18,8 +18,8 @@ use crate::system::BodyContacts;
 )]
 pub(crate) struct Loads {
     pub(crate) teeth: Vec<Box<Touch>>,
-    pub(crate) circles: Vec<Box<Touch>>,
-    pub(crate) plates: Vec<ContactMemory>,
+    /// Of rollers or plates.
+    pub(crate) rails: Vec<Box<Touch>>,
     pub(crate) wheel_wrenches: Vec<Wrench>,
     pub(crate) rail_wrenches: Vec<Wrench>,
     /// Frames of the wheels, then of the rails.
@@ -53,8 +53,7 @@ impl Record {
         Self {
             loads: Loads {
                 teeth: touches(wheels),
-                circles: touches(rails),
-                plates: vec![ContactMemory::default(); rails],
+                rails: touches(rails),
                 wheel_wrenches: vec![Wrench::default(); wheels],
                 rail_wrenches: vec![Wrench::default(); rails],
                 frames: vec![Frame::fixed(); wheels + rails],

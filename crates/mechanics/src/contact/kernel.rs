@@ -170,14 +170,18 @@ impl Contacts {
         let closing = -(faced.nx * motion.ux + faced.ny * motion.uy);
         let share = law.share(w, faced.beyond);
         let inverse_mass = w.load(rollers.inverse_mass, roller);
-        let ahead = slot.yielding.map(|yielding| {
-            let (ax, ay) = (w.load(rollers.ax, roller), w.load(rollers.ay, roller));
-            Ahead {
-                thrust: -(faced.nx * ax + faced.ny * ay),
-                half_step: w.splat(rollers.half_step),
-                mobility: inverse_mass + w.splat(yielding),
+        // Not a closure: one that is not inlined is compiled for the oldest processor.
+        let ahead = match slot.yielding {
+            Some(yielding) => {
+                let (ax, ay) = (w.load(rollers.ax, roller), w.load(rollers.ay, roller));
+                Some(Ahead {
+                    thrust: -(faced.nx * ax + faced.ny * ay),
+                    half_step: w.splat(rollers.half_step),
+                    mobility: inverse_mass + w.splat(yielding),
+                })
             }
-        });
+            None => None,
+        };
         let (memory, tally) = (&mut slots.memory, &mut sums.tally);
         let surfaces = [gap, closing];
         let Some(pressed) = law.press(w, memory, lane, surfaces, share, None, ahead, tally) else {

@@ -417,12 +417,13 @@ impl LaneFriction {
         }
     }
 
-    /// Slope at rest under a normal force \[N s/m\].
-    pub(super) fn at_rest(&self, force: f64) -> f64 {
+    /// Slope at rest under normal forces \[N s/m\].
+    #[inline(always)]
+    pub(super) fn at_rest<S: Simd>(&self, w: Wide<S>, force: Lane<S>) -> Lane<S> {
         match self {
-            Self::None | Self::SpringSlider(_) => 0.0,
-            Self::Coulomb { slope, .. } => slope * force,
-            Self::General(friction) => friction.damping(force, 0.0),
+            Self::None | Self::SpringSlider(_) => w.splat(0.0),
+            Self::Coulomb { slope, .. } => w.splat(*slope) * force,
+            Self::General(friction) => force.one_by_one(|force| friction.damping(force, 0.0)),
         }
     }
 

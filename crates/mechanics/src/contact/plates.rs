@@ -3,13 +3,19 @@
 //! A plate touches a bulging rail where the line between its pins comes nearest to the centre of
 //! the arc; the force is shared between the two pins by the lever rule. At an eye, where two
 //! plates end, each of them carries half of the contact.
+//!
+//! Links are looked at in lanes of consecutive ones, as the chain has them: lanes near the guide are listed anew with the windows.
+//! Lanes that nothing can reach for a while rest, where the chain says how its pins are accelerated.
 
 use chaindrive_geometry::{Point, Vector};
+use pulp::{Simd, WithSimd};
 
+use super::rest::Clear;
 use super::window::{FAR, Places};
-use super::{ContactMemory, Frame, LaneTally, MemoryLanes, SurfaceLaw, Wrench};
+use super::wrench::Sums;
+use super::{AWAKE, Frame, MemoryLanes, SurfaceLaw, Touch, Wrench};
 use crate::drive::Surface;
-use crate::lanes::Wide;
+use crate::lanes::{LANES, Lane, Wide, padded};
 use crate::profile::{Probe, RailFace};
 
 /// Where the pins of the link plates are, whatever the chain is made of.
@@ -18,12 +24,44 @@ pub(crate) trait PlatePlaces {
     fn place(&self, link: usize, end: usize) -> Point;
 }
 
-/// How they move, and what they bear.
-pub(crate) trait PlatePins: PlatePlaces {
-    /// Velocity of a link's first (0) or second (1) pin.
-    fn velocity(&self, link: usize, end: usize) -> Vector;
-    /// Takes a force \[N\] on that pin.
-    fn push(&mut self, link: usize, end: usize, force: Vector);
+/// A vector for each of the two pins of the links of a lane.
+pub(crate) type OfPins<S> = [[Lane<S>; 2]; 2];
+
+/// Where the pins of lanes of consecutive links are, how they move, and what they bear.
+pub(crate) trait PlatePins {
+    /// Places \[m\] of the pins of the lane that begins with a link.
+    fn places<S: Simd>(&self, w: Wide<S>, link: usize) -> OfPins<S>;
+    /// Velocities \[m/s\].
+    fn velocities<S: Simd>(&self, w: Wide<S>, link: usize) -> OfPins<S>;
+    /// Accelerations \[m/s²\] by all that was found so far; none where lanes may not rest.
+    fn accelerations<S: Simd>(&self, w: Wide<S>, link: usize) -> Option<OfPins<S>>;
+    /// Takes forces \[N\] on the pins; those on links behind the last one are nothing.
+    fn push<S: Simd>(&mut self, w: Wide<S>, link: usize, forces: OfPins<S>);
+}
+
+/// All contacts with one rail as one call that is compiled for every kind of processor: kernels that call it stay short.
+pub(crate) struct Pressing<'a, P> {
+    pub(crate) plates: &'a PlateContact,
+    pub(crate) t: f64,
+    pub(crate) frame: Frame,
+    pub(crate) pins: &'a mut P,
+    pub(crate) touch: &'a mut Touch,
+}
+
+impl<P: PlatePins> WithSimd for Pressing<'_, P> {
+    type Output = Wrench;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Wrench {
+        let Self {
+            plates,
+            t,
+            frame,
+            pins,
+            touch,
+        } = self;
+        plates.act(Wide(simd), t, &frame, pins, touch)
+    }
 }
 
 /// Contacts of all links with one rail.
@@ -39,10 +77,12 @@ pub(crate) struct PlateContact {
     law: SurfaceLaw,
     /// Half the plate height \[m\].
     pub(crate) half_height: f64,
-    /// Links that can touch before the next look.
+    /// Number of links.
+    pub(super) links: usize,
+    /// First links of the lanes of eight in which some can touch before the next look.
     pub(super) near: Vec<usize>,
-    /// State of each link at the last accepted step.
-    pub(crate) memory: ContactMemory,
+    /// State of each link at the last accepted step, whole lanes.
+    pub(crate) memory: Box<Touch>,
     /// When that was \[s\].
     pub(crate) accepted: f64,
 }
@@ -56,6 +96,26 @@ pub(crate) struct PlatePoint {
     pub(crate) probe: Probe,
     /// Share of the contact that this plate carries: a half at an eye.
     pub(crate) weight: f64,
+}
+
+/// The same for a lane of plates.
+#[derive(Clone, Copy)]
+struct Touched<S: Simd> {
+    share: Lane<S>,
+    gap: Lane<S>,
+    /// Outward normal in the face's coordinates.
+    nx: Lane<S>,
+    ny: Lane<S>,
+}
+
+/// Half heights around the box of a face within which a plate is looked at.
+const REACH: f64 = 4.0;
+
+/// A lane of links.
+#[derive(Clone, Copy)]
+struct PlateLane {
+    lane: usize,
+    link: usize,
 }
 
 impl PlateContact {
@@ -74,8 +134,13 @@ impl PlateContact {
             surface,
             law: SurfaceLaw::new(&surface, None),
             half_height,
+            links,
             near: Vec::new(),
-            memory: ContactMemory::open(links),
+            memory: {
+                let mut memory = Box::<Touch>::default();
+                memory.open(padded(links));
+                memory
+            },
             accepted: 0.0,
         }
     }
@@ -101,17 +166,20 @@ impl PlateContact {
             .unwrap_or_else(|| at(0.5))
     }
 
-    /// Looks which links can touch before the next look: none of their pins crosses the margin until then.
+    /// Looks which lanes can touch before the next look: none of the pins of the others crosses the margin until then.
     pub(crate) fn renew(&mut self, frame: &Frame, places: Places<'_>, margin: f64) {
         let mut near = std::mem::take(&mut self.near);
         let far = |roller: usize| {
             let pin = Point::new(places.x[roller], places.y[roller]);
             self.beyond(frame.local(pin, self.reference), margin)
         };
-        let links = 0..self.memory.gap.len();
-        let all = links.filter(|&link| !(far(link) && far((link + 1) % places.count)));
+        let reached = |link: usize| !(far(link) && far((link + 1) % places.count));
         near.clear();
-        near.extend(all);
+        let lanes = (0..self.links).step_by(LANES);
+        near.extend(lanes.filter(|&first| {
+            let behind = self.links.min(first + LANES);
+            (first..behind).any(reached)
+        }));
         self.near = near;
     }
 
@@ -121,80 +189,255 @@ impl PlateContact {
 
     /// Whether a place in the face's coordinates is farther from its box than a plate reaches, by a margin \[m\].
     fn beyond(&self, p: Point, margin: f64) -> bool {
-        let reach = 4.0 * self.half_height + margin;
+        let reach = REACH * self.half_height + margin;
         (0..2).any(|axis| {
             p[axis] < self.bounds[0][axis] - reach || p[axis] > self.bounds[1][axis] + reach
         })
     }
 
     /// Pushes the pins and returns what the rail receives.
-    ///
-    /// The edges are looked at one by one, so that the lanes of the laws are one wide.
-    pub(crate) fn act(
+    #[inline(always)]
+    fn act<S: Simd>(
         &self,
+        w: Wide<S>,
         t: f64,
         frame: &Frame,
-        pins_of: &mut impl PlatePins,
-        links: usize,
-        touch: &mut ContactMemory,
+        pins: &mut impl PlatePins,
+        touch: &mut Touch,
     ) -> Wrench {
-        if touch.gap.len() != links {
-            touch.reopen(links);
+        let count = padded(self.links);
+        if touch.wake.len() != count {
+            touch.open(count);
         }
-        let w = Wide(pulp::Scalar);
         let dt = t - self.accepted;
-        let mut memory = MemoryLanes::new(w, &self.memory, touch, links);
-        let mut tally = LaneTally::new(w);
-        let mut wrench = Wrench::default();
-        for &link in &self.near {
-            let pins = [0, 1].map(|end| pins_of.place(link, end));
-            let [a, b] = pins.map(|pin| frame.local(pin, self.reference));
-            if self.far(a) && self.far(b) {
-                memory.look(link, w.splat(FAR), w.splat(0.0));
-                memory.open(w, link);
-                continue;
+        let Touch { state, wake, .. } = touch;
+        let mut memory = MemoryLanes::new(w, &self.memory.state, state, count);
+        let mut sums = Sums::new(w);
+        let mut touching = false;
+        // A copy: what may change while contacts are written is read from memory again for every lane.
+        let frame = *frame;
+        for &first in &self.near {
+            for link in (first..first + LANES).step_by(Wide::<S>::COUNT) {
+                let lane = link / Wide::<S>::COUNT;
+                let until = self.memory.wake[link];
+                if link >= self.links || until > t {
+                    // What was written at the beginning of the rest is as open.
+                    if wake[link] < until {
+                        memory.look(lane, w.splat(FAR), w.splat(0.0));
+                        memory.open(w, lane);
+                    }
+                    wake[link] = until;
+                    continue;
+                }
+                let at = PlateLane { lane, link };
+                let rest = self.lane(w, dt, &frame, at, pins, &mut memory, &mut sums);
+                touching |= rest.is_none();
+                wake[link] = rest.map_or(AWAKE, |rest| t + rest);
             }
-            let point = self.nearest(a, b);
-            let normal = frame.outward(point.probe.normal);
-            let shares = [1.0 - point.share, point.share];
-            let speed = |pin: usize| pins_of.velocity(link, pin);
-            let d = (pins[0] - frame.origin) * shares[0] + (pins[1] - frame.origin) * shares[1];
-            // u = v − v_o − ω ẑ × d
-            let u = speed(0) * shares[0] + speed(1) * shares[1]
-                - frame.velocity
-                - Vector::new(-d.y, d.x) * frame.spin;
-            let surfaces = [point.probe.gap, -normal.dot(&u)].map(|number| w.splat(number));
-            let weight = Some(w.splat(point.weight));
-            let pressed = self.law.press(
-                w,
-                &mut memory,
-                link,
-                surfaces,
-                None,
-                weight,
-                None,
-                &mut tally,
-            );
-            let Some(pressed) = pressed else { continue };
-            let tangent = Vector::new(-normal.y, normal.x);
-            let slip = w.splat(tangent.dot(&u) + frame.spin * self.half_height);
-            let rubbing = self
-                .law
-                .rub(w, &mut memory, link, dt, &pressed, slip, &mut tally);
-            let force = pressed.force.sum();
-            let push = normal * force + tangent * rubbing.force.sum();
-            for (pin, share) in shares.into_iter().enumerate() {
-                pins_of.push(link, pin, push * share);
-            }
-            let foot = d - normal * self.half_height;
-            wrench.force[0] -= push.x;
-            wrench.force[1] -= push.y;
-            wrench.moment -= foot.x * push.y - foot.y * push.x;
-            let across = rubbing.drag.sum().max(self.law.friction.at_rest(force));
-            let damping = self.law.steepest(w, &pressed).sum() + across;
-            wrench.damping = wrench.damping.max(damping);
         }
-        tally.total(self.law.friction.acts(), wrench)
+        if touching {
+            sums.total(self.law.friction.acts())
+        } else {
+            Wrench {
+                first_share: 1.0,
+                ..Wrench::default()
+            }
+        }
+    }
+
+    /// One lane; how long \[s\] it may rest, if none of its plates touches.
+    #[inline(always)]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the inner loop, split for reading only"
+    )]
+    fn lane<S: Simd, P: PlatePins>(
+        &self,
+        w: Wide<S>,
+        dt: f64,
+        frame: &Frame,
+        PlateLane { lane, link }: PlateLane,
+        pins: &mut P,
+        memory: &mut MemoryLanes<'_, S>,
+        sums: &mut Sums<S>,
+    ) -> Option<f64> {
+        let law = &self.law;
+        let [one, half, far] = [1.0, 0.5, FAR].map(|number| w.splat(number));
+        let height = w.splat(self.half_height);
+        let valid = w.first(self.links - link);
+        let [c, s] = frame.turn.map(|number| w.splat(number));
+        let [ox, oy] = [frame.origin.x, frame.origin.y].map(|number| w.splat(number));
+        let [rx, ry] = [self.reference.x, self.reference.y].map(|number| w.splat(number));
+        // d = p − o,   p' = reference + Rᵀ d
+        let [[px, py], [qx, qy]] = pins.places(w, link);
+        let (dx, dy, ex, ey) = (px - ox, py - oy, qx - px, qy - py);
+        let a = [c * dx + s * dy + rx, c * dy - s * dx + ry];
+        let along = [c * ex + s * ey, c * ey - s * ex];
+        let square = ex * ex + ey * ey;
+        let b = [a[0] + along[0], a[1] + along[1]];
+        let apart = self.outside(w, a).min(self.outside(w, b));
+        let near = w.splat(REACH * self.half_height).greater(apart) & valid;
+        // No part of an edge is nearer to the box than its nearer end, less half of its length.
+        let clear = apart - half * square.root() - height;
+        let [[vx, vy], [wx, wy]] = pins.velocities(w, link);
+        if !near.any() {
+            memory.look(lane, far, w.splat(0.0));
+            memory.open(w, lane);
+            let speeds = [[vx, vy], [wx, wy]];
+            return Some(self.rest(w, dt, frame, link, clear, speeds, pins));
+        }
+        let found = self.nearest_of(w, a, along, square);
+        let gap = near.select(found.gap, far);
+        let (nx, ny) = (c * found.nx - s * found.ny, s * found.nx + c * found.ny);
+        // u = v − v_o − ω ẑ × d, at the touching point of the line between the pins
+        let share = found.share;
+        let spin = w.splat(frame.spin);
+        let (dx, dy) = (dx + share * ex, dy + share * ey);
+        let ux = vx + share * (wx - vx) - w.splat(frame.velocity.x) + spin * dy;
+        let uy = vy + share * (wy - vy) - w.splat(frame.velocity.y) - spin * dx;
+        let closing = -(nx * ux + ny * uy);
+        let inside = share.greater(w.splat(0.0)) & one.greater(share);
+        let weight = Some(inside.select(one, half));
+        let tally = &mut sums.tally;
+        let surfaces = [gap, closing];
+        let Some(pressed) = law.press(w, memory, lane, surfaces, None, weight, None, tally) else {
+            let clear = near.select(found.gap, clear);
+            let speeds = [[vx, vy], [wx, wy]];
+            return Some(self.rest(w, dt, frame, link, clear, speeds, pins));
+        };
+        let force = pressed.force;
+        let (mut fx, mut fy) = (force * nx, force * ny);
+        // M = −d × F
+        let mut moment = dy * fx - dx * fy;
+        let mut damping = law.steepest(w, &pressed);
+        if law.friction.acts() {
+            // slip = t·u + ω h
+            let slip = nx * uy - ny * ux + spin * height;
+            let rubbing = law.rub(w, memory, lane, dt, &pressed, slip, tally);
+            let rub = rubbing.force;
+            fx += -(rub * ny);
+            fy += rub * nx;
+            // M = −(d − h n) × F
+            moment = dy * fx - dx * fy + rub * height;
+            let across = rubbing.steepest.max(law.friction.at_rest(w, force));
+            damping += across;
+            sums.across = sums.across.max(across);
+        }
+        let [first, second] = [one - share, share].map(|share| [share * fx, share * fy]);
+        pins.push(w, link, [first, second]);
+        sums.fx += -fx;
+        sums.fy += -fy;
+        sums.moment += moment;
+        sums.damping = sums.damping.max(damping);
+        None
+    }
+
+    /// How long \[s\] a lane may rest whose plates are clear by these distances \[m\] at least.
+    #[inline(always)]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the inner loop, split for reading only"
+    )]
+    fn rest<S: Simd, P: PlatePins>(
+        &self,
+        w: Wide<S>,
+        dt: f64,
+        frame: &Frame,
+        link: usize,
+        clear: Lane<S>,
+        speeds: OfPins<S>,
+        pins: &P,
+    ) -> f64 {
+        let Some(thrusts) = pins.accelerations(w, link) else {
+            return 0.0;
+        };
+        let valid = w.first(self.links - link);
+        let zero = w.splat(0.0);
+        let origin = [frame.origin.x, frame.origin.y].map(|number| w.splat(number));
+        let velocity = [frame.velocity.x, frame.velocity.y].map(|number| w.splat(number));
+        let spin = w.splat(frame.spin);
+        let places = pins.places(w, link);
+        let [mut speed, mut thrust, mut lever] = [zero; 3];
+        // What an edge does is between what its ends do.
+        for end in 0..2 {
+            let [dx, dy] = [places[end][0] - origin[0], places[end][1] - origin[1]];
+            let ux = speeds[end][0] - velocity[0] + spin * dy;
+            let uy = speeds[end][1] - velocity[1] - spin * dx;
+            let [ax, ay] = thrusts[end];
+            speed = speed.max(ux * ux + uy * uy);
+            thrust = thrust.max(ax * ax + ay * ay);
+            lever = lever.max(dx * dx + dy * dy);
+        }
+        let rests = Clear {
+            gap: valid.select(clear, w.splat(f64::MAX)),
+            closing: None,
+            speed: valid.select(speed, zero),
+            thrust: valid.select(thrust, zero),
+            lever: valid.select(lever, zero),
+        };
+        rests.rest(w, dt, frame.spin)
+    }
+
+    /// Distances \[m\] of places in the face's coordinates from its box, along the axis where they are longest; negative inside.
+    #[inline(always)]
+    fn outside<S: Simd>(&self, w: Wide<S>, [x, y]: [Lane<S>; 2]) -> Lane<S> {
+        let [low, high] = &self.bounds;
+        let x = (w.splat(low.x) - x).max(x - w.splat(high.x));
+        let y = (w.splat(low.y) - y).max(y - w.splat(high.y));
+        x.max(y)
+    }
+
+    /// Where plates come nearest, as [`nearest`](Self::nearest) has it: edges begin at `a`, and go `along` as far as the root of `square`.
+    #[inline(always)]
+    fn nearest_of<S: Simd>(
+        &self,
+        w: Wide<S>,
+        a: [Lane<S>; 2],
+        along: [Lane<S>; 2],
+        square: Lane<S>,
+    ) -> Touched<S> {
+        let [zero, one] = [0.0, 1.0].map(|number| w.splat(number));
+        let inverse_square = square.max(w.splat(f64::MIN_POSITIVE)).recip();
+        let mut best = self.touched(w, a, along, zero);
+        best = self.touched(w, a, along, one).or(best);
+        let b = [a[0] + along[0], a[1] + along[1]];
+        for index in 0..self.face.rows() {
+            for feature in self.face.row(index).passed_by([a, b]) {
+                if feature.sign < 0.0 || feature.straight != Vector::zeros() {
+                    continue;
+                }
+                // s = (c − a)·e/|e|²
+                let cx = w.splat(feature.centre.x) - a[0];
+                let cy = w.splat(feature.centre.y) - a[1];
+                let foot = (cx * along[0] + cy * along[1]) * inverse_square;
+                // Beyond the ends these are nearest.
+                let inside = foot.greater(zero) & one.greater(foot);
+                if inside.any() {
+                    let share = foot.max(zero).min(one);
+                    best = self.touched(w, a, along, share).or(best);
+                }
+            }
+        }
+        best
+    }
+
+    /// What edges face at some shares of their length.
+    #[inline(always)]
+    fn touched<S: Simd>(
+        &self,
+        w: Wide<S>,
+        a: [Lane<S>; 2],
+        along: [Lane<S>; 2],
+        share: Lane<S>,
+    ) -> Touched<S> {
+        let at = [a[0] + share * along[0], a[1] + share * along[1]];
+        let nearest = self.face.nearest(w, at, self.half_height);
+        Touched {
+            share,
+            gap: nearest.gap,
+            nx: nearest.nx,
+            ny: nearest.ny,
+        }
     }
 
     /// Sum of the elastic energies \[J\].
@@ -210,5 +453,19 @@ impl PlateContact {
                 point.weight * self.surface.law.energy(-point.probe.gap)
             })
             .sum()
+    }
+}
+
+impl<S: Simd> Touched<S> {
+    /// Whatever is nearer; the other where both are as near.
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        let nearer = other.gap.greater(self.gap);
+        Self {
+            share: nearer.select(self.share, other.share),
+            gap: nearer.select(self.gap, other.gap),
+            nx: nearer.select(self.nx, other.nx),
+            ny: nearer.select(self.ny, other.ny),
+        }
     }
 }

@@ -1,5 +1,7 @@
 //! Contacts of rollers with gaps of any shape: how many, how continuous, and what becomes of the energy.
 
+mod plates;
+
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use chaindrive_contact::elastic::Power;

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{ContactMemory, Contacts, PlateContact, Run, Touch};
+use super::{Contacts, PlateContact, Run, Touch};
 use crate::MemoryError;
-use crate::lanes::LANES;
+use crate::lanes::{LANES, padded};
 
 /// Windows of rollers near a body, and the states of the contacts in them.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -19,7 +19,7 @@ pub(crate) struct Windows {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct PlateMemory {
     near: Vec<usize>,
-    memory: ContactMemory,
+    memory: Box<Touch>,
     accepted: f64,
 }
 
@@ -68,10 +68,15 @@ impl PlateContact {
 
     /// Goes on from there.
     pub(crate) fn remember(&mut self, memory: PlateMemory) -> Result<(), MemoryError> {
-        let links = self.memory.gap.len();
-        memory.memory.check(links)?;
-        let last = memory.near.iter().map(|link| link + 1).max();
-        MemoryError::unless_within("link", last.unwrap_or(0), links)?;
+        let contacts = padded(self.links);
+        MemoryError::unless("lanes at rest", memory.memory.wake.len(), contacts)?;
+        memory.memory.state.check(contacts)?;
+        let last = memory.near.iter().map(|first| first + LANES).max();
+        MemoryError::unless_within("link", last.unwrap_or(0), contacts)?;
+        let first_of_lanes = memory.near.iter().all(|first| first % LANES == 0);
+        if !first_of_lanes {
+            return Err(MemoryError::Model);
+        }
         self.near = memory.near;
         self.memory = memory.memory;
         self.accepted = memory.accepted;

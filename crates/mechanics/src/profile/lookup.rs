@@ -97,6 +97,30 @@ impl Profile {
         a.min(b)..a.max(b) + 1
     }
 
+    /// The features that any of the straight lines of a lane passes, from and to its two places.
+    #[inline(always)]
+    pub(crate) fn passed_by<S: Simd>(&self, ends: [[Lane<S>; 2]; 2]) -> &[Feature] {
+        if self.reaches.is_empty() {
+            return &self.features;
+        }
+        let ends = ends.map(|end| end.map(Lane::numbers));
+        self.passed_by_any(Wide::<S>::COUNT, &ends)
+    }
+
+    /// The same from the numbers of the lanes; kept out of line, since few rows are so long.
+    #[inline(never)]
+    fn passed_by_any(&self, count: usize, ends: &[[[f64; LANES]; 2]; 2]) -> &[Feature] {
+        let (mut first, mut behind) = (self.features.len(), 0);
+        for [x, y] in ends {
+            for (x, y) in x.iter().zip(y).take(count) {
+                let feature = self.feature_at(*x, *y);
+                first = first.min(feature);
+                behind = behind.max(feature + 1);
+            }
+        }
+        &self.features[first..behind]
+    }
+
     /// The features that circles at (x, y) belong to, looked up one after the other.
     #[inline(always)]
     pub(super) fn looked_up<S: Simd>(&self, w: Wide<S>, [x, y]: [Lane<S>; 2]) -> Chosen<S> {

@@ -76,6 +76,19 @@ impl RailFace {
         Probe::of([gap, nx, ny, bend, w.splat(f64::MAX)])
     }
 
+    /// Number of rows, at least one.
+    pub(crate) fn rows(&self) -> usize {
+        1 + self.others.len()
+    }
+
+    /// One of them.
+    #[inline(always)]
+    pub(crate) fn row(&self, index: usize) -> &Profile {
+        index
+            .checked_sub(1)
+            .map_or(&self.first, |other| &self.others[other])
+    }
+
     /// The features that a straight line from `a` to `b` passes.
     pub(crate) fn features_along(&self, a: Point, b: Point) -> impl Iterator<Item = &Feature> {
         std::iter::once(&self.first)

@@ -168,11 +168,11 @@ impl BodyContacts {
         for (i, on) in self.rails.iter_mut().enumerate() {
             match &mut on.contact {
                 RailContact::Circles(contacts) => {
-                    std::mem::swap(&mut contacts.memory, &mut loads.circles[i]);
+                    std::mem::swap(&mut contacts.memory, &mut loads.rails[i]);
                     contacts.accepted = t;
                 }
                 RailContact::Plates(plates) => {
-                    std::mem::swap(&mut plates.memory, &mut loads.plates[i]);
+                    std::mem::swap(&mut plates.memory, &mut loads.rails[i]);
                     plates.accepted = t;
                 }
             }

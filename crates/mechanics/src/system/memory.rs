@@ -85,10 +85,10 @@ impl System {
             let bodies = [record.wheel_wrenches.len(), record.rail_wrenches.len()];
             let chains = record.chains.iter().map(|chain| {
                 let loads = &chain.loads;
-                let plates = [loads.plates.len(), loads.wheel_wrenches.len()];
-                let circles = [loads.teeth.len(), loads.circles.len()];
-                let rest = [loads.rail_wrenches.len(), loads.frames.len()];
-                ([plates, circles, rest], loads.ways.len())
+                let touches = [loads.teeth.len(), loads.rails.len()];
+                let wrenches = [loads.wheel_wrenches.len(), loads.rail_wrenches.len()];
+                let frames = [loads.frames.len(), loads.ways.len()];
+                [touches, wrenches, frames]
             });
             (bodies, chains.collect::<Vec<_>>())
         };

@@ -5,10 +5,11 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 use pulp::{Simd, WithSimd};
 
+use super::rates::LinkPins;
 use super::{Element, JointState, Linkage, Mount, Partner, Posture};
 use crate::chains::{Loads, Surroundings, Way};
 use crate::contact::Rollers;
-use crate::contact::{Contacts, Frame, Touch, Wrench};
+use crate::contact::{Contacts, Frame, Pressing, Touch, Wrench};
 use crate::energy::Flow;
 use crate::lanes::{Wide, dispatch};
 use crate::system::{Bodies, RailContact, RailSupport, Wheel, WheelSupport};
@@ -49,12 +50,21 @@ impl Linkage {
             joint_state.mounts.push(mount);
             let wrench = match &on.contact {
                 RailContact::Circles(contacts) => {
-                    let touch = &mut loads.circles[i];
+                    let touch = &mut loads.rails[i];
                     self.roll(contacts, &frame, number, at, touch, joint_state)
                 }
                 RailContact::Plates(plates) => {
-                    let mut pins = super::rates::LinkPins(joint_state);
-                    plates.act(at.t, &frame, &mut pins, self.links, &mut loads.plates[i])
+                    let pressing = Pressing {
+                        plates,
+                        t: at.t,
+                        frame,
+                        pins: &mut LinkPins {
+                            joint_state,
+                            links: self.links,
+                        },
+                        touch: &mut loads.rails[i],
+                    };
+                    dispatch(self.arch, pressing)
                 }
             };
             rates[Flow::GuideLoss as usize] += wrench.normal_loss;

@@ -2,11 +2,13 @@
 
 use chaindrive_geometry::{Point, Vector};
 use nalgebra::Vector3;
+use pulp::Simd;
 
-use super::{Element, Joining, JointState, Linkage, Partner, cross, turned};
+use super::{Element, Joining, JointState, Linkage, Partner, Posture, cross, turned};
 use crate::chains::joints::Joints;
 use crate::chains::{Record, Surroundings};
-use crate::contact::{PlatePins, PlatePlaces};
+use crate::contact::{OfPins, PlatePins, PlatePlaces};
+use crate::lanes::{Lane, Wide};
 
 /// Shares of a contact between chain and wheel: 1 + ε and 1 + 1/ε with ε = 0.1.
 const WHEEL_SHARE: f64 = 1.1;
@@ -245,7 +247,10 @@ impl JointState {
 }
 
 /// The link plates of a linkage.
-pub(crate) struct LinkPins<'a>(pub(crate) &'a mut JointState);
+pub(super) struct LinkPins<'a> {
+    pub(super) joint_state: &'a mut JointState,
+    pub(super) links: usize,
+}
 
 /// Where they are.
 pub(crate) struct LinkPlaces<'a>(pub(crate) &'a JointState);
@@ -256,19 +261,46 @@ impl PlatePlaces for LinkPlaces<'_> {
     }
 }
 
-impl PlatePlaces for LinkPins<'_> {
-    fn place(&self, link: usize, end: usize) -> Point {
-        self.0.posture.tip(link, end).place
-    }
-}
-
 impl PlatePins for LinkPins<'_> {
-    fn velocity(&self, link: usize, end: usize) -> Vector {
-        self.0.posture.tip(link, end).velocity
+    #[inline(always)]
+    fn places<S: Simd>(&self, w: Wide<S>, link: usize) -> OfPins<S> {
+        let Posture { before, after, .. } = &self.joint_state.posture;
+        [
+            [w.load(&after.x, link), w.load(&after.y, link)],
+            [w.load(&before.x, link + 1), w.load(&before.y, link + 1)],
+        ]
     }
 
-    fn push(&mut self, link: usize, end: usize, force: Vector) {
-        let arm = self.0.posture.arm(link, end);
-        self.0.forces[link] += Vector3::new(force.x, force.y, cross(arm, force));
+    #[inline(always)]
+    fn velocities<S: Simd>(&self, w: Wide<S>, link: usize) -> OfPins<S> {
+        let Posture { before, after, .. } = &self.joint_state.posture;
+        [
+            [w.load(&after.vx, link), w.load(&after.vy, link)],
+            [w.load(&before.vx, link + 1), w.load(&before.vy, link + 1)],
+        ]
+    }
+
+    /// A link that is struck at its other end moves at once.
+    #[inline(always)]
+    fn accelerations<S: Simd>(&self, _w: Wide<S>, _link: usize) -> Option<OfPins<S>> {
+        None
+    }
+
+    #[inline(always)]
+    fn push<S: Simd>(&mut self, _w: Wide<S>, first: usize, forces: OfPins<S>) {
+        let forces = forces.map(|force| force.map(Lane::numbers));
+        let JointState {
+            posture,
+            forces: sum,
+            ..
+        } = &mut *self.joint_state;
+        let behind = self.links.min(first + Wide::<S>::COUNT);
+        for link in first..behind {
+            for (end, [x, y]) in forces.iter().enumerate() {
+                let force = Vector::new(x[link - first], y[link - first]);
+                let arm = posture.arm(link, end);
+                sum[link] += Vector3::new(force.x, force.y, cross(arm, force));
+            }
+        }
     }
 }

@@ -3,11 +3,11 @@
 use chaindrive_integrate::Moment;
 use pulp::{Scalar128b, Simd, WithSimd};
 
+use super::Particles;
 use super::articulation::{self, Turning};
-use super::{Particles, Pins};
 use crate::chains::joints::Resistance;
 use crate::chains::{Loads, Record, Surroundings};
-use crate::contact::{PlatePins, Rollers};
+use crate::contact::{OfPins, PlatePins, Pressing, Rollers};
 use crate::energy::Flow;
 use crate::lanes::Wide;
 use crate::system::RailContact;
@@ -43,12 +43,6 @@ impl Particles {
                 found: (&mut *loads, &mut *turning, &mut *resistance),
             });
         }
-        let mut rollers = self.view(at, None, a);
-        let mut pins = Pins {
-            rollers: &mut rollers,
-            count: self.rollers,
-        };
-        plate_forces(around, at.t, &mut pins, self.links.count, rates, loads);
         let n = self.stride;
         if self.links.closed {
             // A ghost behind the first turn copies one of the turn before.
@@ -91,6 +85,17 @@ impl Particles {
             rates[Flow::DragLoss as usize] += drag.act(w, links, &mut rollers);
         }
         touch_bodies(w, around, at.t, &mut rollers, rates, loads);
+        if links.closed {
+            // The roller behind the last link is the first one again, and has to be where plates push it.
+            let count = links.count;
+            let before = [rollers.ax[0], rollers.ay[0]];
+            [rollers.ax[count], rollers.ay[count]] = before;
+            plate_forces(w, around, at.t, &mut rollers, rates, loads);
+            rollers.ax[0] += rollers.ax[count] - before[0];
+            rollers.ay[0] += rollers.ay[count] - before[1];
+        } else {
+            plate_forces(w, around, at.t, &mut rollers, rates, loads);
+        }
     }
 }
 
@@ -120,7 +125,7 @@ pub(super) fn touch_bodies<S: Simd>(
             let RailContact::Circles(contacts) = &contacts.rails[i - wheels].contact else {
                 continue;
             };
-            (contacts, None, &mut loads.circles[i - wheels])
+            (contacts, None, &mut loads.rails[i - wheels])
         };
         let wrench = contacts.act(w, t, &loads.frames[i], rollers, yielding, touch);
         let [loss, friction] = if i < wheels {
@@ -139,11 +144,12 @@ pub(super) fn touch_bodies<S: Simd>(
 }
 
 /// Contacts of link plates with guides.
-pub(super) fn plate_forces(
+#[inline(always)]
+pub(super) fn plate_forces<S: Simd>(
+    w: Wide<S>,
     around: Surroundings<'_>,
     t: f64,
     pins: &mut impl PlatePins,
-    links: usize,
     rates: &mut [f64],
     loads: &mut Loads,
 ) {
@@ -152,12 +158,53 @@ pub(super) fn plate_forces(
         let RailContact::Plates(plates) = &on.contact else {
             continue;
         };
-        let touch = &mut loads.plates[i];
-        let wrench = plates.act(t, frame, pins, links, touch);
+        let wrench = w.call(Pressing {
+            plates,
+            t,
+            frame: *frame,
+            pins: &mut *pins,
+            touch: &mut loads.rails[i],
+        });
         rates[Flow::GuideLoss as usize] += wrench.normal_loss;
         rates[Flow::GuideFriction as usize] += wrench.friction_loss;
         loads.rail_wrenches[i] = wrench;
     }
+}
+
+/// The plates of the particle chain: link i between roller i and the next.
+impl PlatePins for Rollers<'_> {
+    #[inline(always)]
+    fn places<S: Simd>(&self, w: Wide<S>, link: usize) -> OfPins<S> {
+        between(w, [self.x, self.y], link)
+    }
+
+    #[inline(always)]
+    fn velocities<S: Simd>(&self, w: Wide<S>, link: usize) -> OfPins<S> {
+        between(w, [self.vx, self.vy], link)
+    }
+
+    #[inline(always)]
+    fn accelerations<S: Simd>(&self, w: Wide<S>, link: usize) -> Option<OfPins<S>> {
+        Some(between(w, [self.ax, self.ay], link))
+    }
+
+    #[inline(always)]
+    fn push<S: Simd>(&mut self, w: Wide<S>, link: usize, [first, second]: OfPins<S>) {
+        for (roller, [fx, fy]) in [(link, first), (link + 1, second)] {
+            let inverse_mass = w.load(self.inverse_mass, roller);
+            (w.load(self.ax, roller) + fx * inverse_mass).store(self.ax, roller);
+            (w.load(self.ay, roller) + fy * inverse_mass).store(self.ay, roller);
+        }
+    }
+}
+
+/// What rollers have at both ends of a lane of links.
+#[inline(always)]
+fn between<S: Simd>(w: Wide<S>, [x, y]: [&[f64]; 2], link: usize) -> OfPins<S> {
+    [
+        [w.load(x, link), w.load(y, link)],
+        [w.load(x, link + 1), w.load(y, link + 1)],
+    ]
 }
 
 /// The kernels as one call, compiled for every kind of processor.

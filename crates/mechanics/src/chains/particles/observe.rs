@@ -3,7 +3,7 @@
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
 
-use super::{Particles, Pins};
+use super::Particles;
 use crate::chains::Record;
 use crate::contact::{Frame, PlateContact};
 use crate::energy::{Energy, Store};
@@ -62,11 +62,7 @@ impl Particles {
         _record: &Record,
     ) -> f64 {
         let mut none = vec![0.0; self.coordinates()];
-        let mut rollers = self.view(at, None, &mut none);
-        let pins = Pins {
-            rollers: &mut rollers,
-            count: self.rollers,
-        };
-        plates.stored(&pins, frame, self.links.count)
+        let rollers = self.view(at, None, &mut none);
+        plates.stored(&rollers, frame, self.links.count)
     }
 }

@@ -20,7 +20,7 @@ mod statics;
 
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
-use pulp::Arch;
+use pulp::{Arch, Simd};
 use serde::{Deserialize, Serialize};
 
 pub use model::PointJoints;
@@ -29,7 +29,8 @@ use super::Links;
 use crate::chains::joints::Joints;
 use crate::chains::links::{Bearing, Tally};
 use crate::chains::{Pose, Record};
-use crate::contact::{ContactMemory, PlatePins, PlatePlaces};
+use crate::contact::{ContactMemory, OfPins, PlatePins, PlatePlaces};
+use crate::lanes::Wide;
 use crate::system::HeldEnd;
 
 /// Roller, bush and pin as point masses.
@@ -150,18 +151,45 @@ impl PlatePlaces for Ends<'_> {
     }
 }
 
+impl Ends<'_> {
+    /// What the ends of a lane of links have.
+    #[inline(always)]
+    fn of_lane<S: Simd>(&self, w: Wide<S>, values: &[f64], link: usize) -> OfPins<S> {
+        let n = self.chain.stride;
+        let (after, before) = (2 * AFTER * n + link, 2 * BEFORE * n + link + 1);
+        [
+            [w.load(values, after), w.load(values, after + n)],
+            [w.load(values, before), w.load(values, before + n)],
+        ]
+    }
+}
+
 impl PlatePins for Ends<'_> {
-    fn velocity(&self, link: usize, end: usize) -> Vector {
-        let (block, i) = self.entry(link, end);
-        self.chain.point(self.v, block, i).coords
+    #[inline(always)]
+    fn places<S: Simd>(&self, w: Wide<S>, link: usize) -> OfPins<S> {
+        self.of_lane(w, self.q, link)
     }
 
-    fn push(&mut self, link: usize, end: usize, force: Vector) {
-        let (block, i) = self.entry(link, end);
-        let inverse_mass = self.chain.inverse_masses[block][i];
+    #[inline(always)]
+    fn velocities<S: Simd>(&self, w: Wide<S>, link: usize) -> OfPins<S> {
+        self.of_lane(w, self.v, link)
+    }
+
+    /// An end that is struck in its joint moves at once.
+    #[inline(always)]
+    fn accelerations<S: Simd>(&self, _w: Wide<S>, _link: usize) -> Option<OfPins<S>> {
+        None
+    }
+
+    #[inline(always)]
+    fn push<S: Simd>(&mut self, w: Wide<S>, link: usize, [first, second]: OfPins<S>) {
         let n = self.chain.stride;
-        self.a[2 * block * n + i] += force.x * inverse_mass;
-        self.a[(2 * block + 1) * n + i] += force.y * inverse_mass;
+        for (block, i, force) in [(AFTER, link, first), (BEFORE, link + 1, second)] {
+            let inverse_mass = w.load(&self.chain.inverse_masses[block], i);
+            let (x, y) = (2 * block * n + i, (2 * block + 1) * n + i);
+            (w.load(self.a, x) + force[0] * inverse_mass).store(self.a, x);
+            (w.load(self.a, y) + force[1] * inverse_mass).store(self.a, y);
+        }
     }
 }
 

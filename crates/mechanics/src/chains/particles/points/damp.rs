@@ -80,7 +80,7 @@ impl Points {
             let number = contacts.teeth.len() + i;
             let support = &bodies.rails[on.rail].support;
             let mount = rail_mount((bodies, first), support, loads.ways[number]);
-            let surface = (circles, &*loads.circles[i], &loads.frames[number]);
+            let surface = (circles, &*loads.rails[i], &loads.frames[number]);
             self.list(surface, number, &mount, at, found);
         }
     }

@@ -57,13 +57,6 @@ impl Points {
         } else {
             self.arch.dispatch(all);
         }
-        let mut ends = Ends {
-            chain: self,
-            q: at.q,
-            v: at.v,
-            a: &mut *a,
-        };
-        plate_forces(around, at.t, &mut ends, self.links.count, rates, loads);
         self.list_touching(around, at, loads, points);
         self.copy_ghosts(a);
     }
@@ -102,6 +95,22 @@ impl Points {
             half_step: 0.0,
         };
         touch_bodies(w, around, at.t, &mut rollers, rates, loads);
+        // The joint behind the last link is the first one again, and has to be where plates push it.
+        let behind = [2 * BEFORE, 2 * BEFORE + 1].map(|column| column * n);
+        let before = behind.map(|column| a[column]);
+        for (column, before) in behind.into_iter().zip(before) {
+            a[column + self.links.count] = before;
+        }
+        let mut ends = Ends {
+            chain: self,
+            q: at.q,
+            v: at.v,
+            a: &mut *a,
+        };
+        plate_forces(w, around, at.t, &mut ends, rates, loads);
+        for (column, before) in behind.into_iter().zip(before) {
+            a[column] += a[column + self.links.count] - before;
+        }
     }
 
     /// One coordinate of a block.
