@@ -15,6 +15,9 @@ pub(crate) const FLOOR: f64 = 1e-3;
 /// more often.
 const RUNG: f64 = 0.870_550_563_296_124_1;
 
+/// What a step that is beyond the limit is shortened to, at most, in units of the limit: up to there is stable, not accurate.
+const ROOM: f64 = 0.75;
+
 /// Rungs of a fixed step after which a run is given up: a millionth of the nominal step.
 const MOST_RUNGS: u32 = 100;
 
@@ -63,7 +66,12 @@ impl Fixed {
         }
         self.rungs = 0;
         self.step = self.nominal;
-        while limit.is_nan() || self.step > limit {
+        let short_enough = if self.step > limit {
+            ROOM * limit
+        } else {
+            limit
+        };
+        while limit.is_nan() || self.step > short_enough {
             self.rungs += 1;
             self.step *= RUNG;
             if self.rungs > MOST_RUNGS {

@@ -17,15 +17,15 @@ const FRICTION: Coulomb = Coulomb {
     slip_speed: 0.1,
 };
 
-/// A strand of rollers beside a face.
-struct Strand {
+/// A slack run of rollers beside a face.
+struct Slack {
     links: usize,
     columns: [Vec<f64>; 4],
     thrust: [Vec<f64>; 2],
     inverse_mass: Vec<f64>,
 }
 
-impl Strand {
+impl Slack {
     fn new(links: usize) -> Self {
         let size = padded(links + 1) + LANES;
         Self {
@@ -88,13 +88,9 @@ fn plates(face: &ArcSpline, links: usize) -> PlateContact {
 }
 
 /// What plates do that are looked at one by one: forces on the rollers, and force, moment, loss and depth of the body.
-fn one_by_one(
-    plates: &PlateContact,
-    frame: &Frame,
-    strand: &mut Strand,
-) -> (Vec<Vector>, [f64; 5]) {
-    let links = strand.links;
-    let rollers = strand.rollers();
+fn one_by_one(plates: &PlateContact, frame: &Frame, slack: &mut Slack) -> (Vec<Vector>, [f64; 5]) {
+    let links = slack.links;
+    let rollers = slack.rollers();
     let mut forces = vec![Vector::zeros(); links + 1];
     let mut sums = [0.0; 5];
     for link in 0..links {
@@ -160,7 +156,7 @@ fn lanes_of_plates_press_as_plates_one_by_one() {
         let (mut closed, mut eyes) = (0, 0);
         for _ in 0..60 {
             let links = 29;
-            let mut strand = Strand::new(links);
+            let mut slack = Slack::new(links);
             let angle = dice.between(-0.5, 0.5);
             let frame = Frame {
                 origin: Point::new(dice.between(-0.1, 0.1), dice.between(-0.1, 0.1)),
@@ -178,16 +174,16 @@ fn lanes_of_plates_press_as_plates_one_by_one() {
                 let place = foot.point + foot.normal * away - beyond;
                 let place = frame.origin + frame.outward(place - Point::origin());
                 let velocity = Vector::new(dice.between(-5.0, 5.0), dice.between(-1.0, 1.0));
-                strand.set(roller, place, velocity);
+                slack.set(roller, place, velocity);
             }
             let mut plates = plates(face, links);
-            plates.renew(&frame, strand.places(), 0.5 * PITCH);
-            let (expected, sums) = one_by_one(&plates, &frame, &mut strand);
+            plates.renew(&frame, slack.places(), 0.5 * PITCH);
+            let (expected, sums) = one_by_one(&plates, &frame, &mut slack);
             closed += expected.iter().filter(|force| force.norm() > 0.0).count();
             eyes += usize::from(sums[4] > 0.0);
             let largest = expected.iter().map(Vector::norm).fold(1.0, f64::max);
             for width in 0..3 {
-                for thrust in &mut strand.thrust {
+                for thrust in &mut slack.thrust {
                     thrust.fill(0.0);
                 }
                 let mut touch = Touch::default();
@@ -195,7 +191,7 @@ fn lanes_of_plates_press_as_plates_one_by_one() {
                     plates: &plates,
                     t: 1e-6,
                     frame,
-                    pins: &mut strand.rollers(),
+                    pins: &mut slack.rollers(),
                     touch: &mut touch,
                 };
                 let wrench = match width {
@@ -204,11 +200,11 @@ fn lanes_of_plates_press_as_plates_one_by_one() {
                     _ => press.with_simd(pulp::Scalar),
                 };
                 for (roller, expected) in expected.iter().enumerate() {
-                    let [x, y] = [0, 1].map(|axis| strand.thrust[axis][roller]);
+                    let [x, y] = [0, 1].map(|axis| slack.thrust[axis][roller]);
                     let off = (Vector::new(x, y) - expected).norm();
                     assert!(off < 1e-9 * largest, "face {which}, roller {roller}: {off}");
                 }
-                let behind = strand.thrust.iter().flat_map(|all| &all[links + 1..]);
+                let behind = slack.thrust.iter().flat_map(|all| &all[links + 1..]);
                 assert!(behind.fold(0.0, |m: f64, a| m.max(a.abs())) < f64::MIN_POSITIVE);
                 let [fx, fy] = wrench.force;
                 let found = [fx, fy, wrench.moment, wrench.friction_loss, wrench.depth];
@@ -229,7 +225,7 @@ fn no_plate_touches_unseen() {
     let links = 24;
     let face = bar(Point::new(0.4, 0.0), Point::new(-0.4, 0.0), 0.02, 0.4).expect("a bar");
     let mut plates = plates(&face, links);
-    let mut strand = Strand::new(links);
+    let mut slack = Slack::new(links);
     let mut touch = Box::<Touch>::default();
     let (mut rested, mut touched) = (0, 0);
     let top = face.point_at(0.5 * face.length()).y;
@@ -241,24 +237,24 @@ fn no_plate_touches_unseen() {
             let (rise, fall) = (0.05 * (3.0 * i).cos(), -300.0);
             let height = top + HALF_HEIGHT + 1e-3 + 0.0005 * i + 3e-3 * (0.2 * i).sin();
             let place = Point::new(0.3 - 0.02 * i - 6.0 * t, height + rise * t + fall * t * t);
-            strand.set(roller, place, Vector::new(-6.0, rise + 2.0 * fall * t));
+            slack.set(roller, place, Vector::new(-6.0, rise + 2.0 * fall * t));
         }
         if step % 64 == 0 {
-            plates.renew(&Frame::fixed(), strand.places(), 0.1);
+            plates.renew(&Frame::fixed(), slack.places(), 0.1);
         }
         rested += plates.memory.wake.iter().filter(|wake| **wake > t).count();
-        strand.thrust[0].fill(0.0);
-        strand.thrust[1].fill(-600.0);
+        slack.thrust[0].fill(0.0);
+        slack.thrust[1].fill(-600.0);
         Arch::new().dispatch(Pressing {
             plates: &plates,
             t,
             frame: Frame::fixed(),
-            pins: &mut strand.rollers(),
+            pins: &mut slack.rollers(),
             touch: &mut touch,
         });
         std::mem::swap(&mut plates.memory, &mut touch);
         plates.accepted = t;
-        let rollers = strand.rollers();
+        let rollers = slack.rollers();
         for link in 0..links {
             let [a, b] = [0, 1].map(|end| PlatePlaces::place(&rollers, link, end));
             let inside = plates.nearest(a, b).probe.gap < 0.0;
@@ -267,7 +263,6 @@ fn no_plate_touches_unseen() {
             touched += usize::from(seen);
         }
     }
-    println!("{rested} lanes at rest, {touched} contacts");
     assert!(rested > 200, "{rested}");
     assert!(touched > 1000, "{touched}");
 }
