@@ -400,7 +400,7 @@ fn places_that_cannot_be_carried_on_are_refused() {
         ),
         (
             &["0", "-o", "run.zarr"],
-            "checkpoint_every: 0, must be positive",
+            "checkpoint_every = 0, must be positive",
         ),
     ] {
         let (code, err) = run(at, &[&every[..], more].concat());
