@@ -15,7 +15,8 @@ pub(crate) const FLOOR: f64 = 1e-3;
 /// more often.
 const RUNG: f64 = 0.870_550_563_296_124_1;
 
-/// What a step that is beyond the limit is shortened to, at most, in units of the limit: up to there is stable, not accurate.
+/// Longest step, in units of the limit, that one beyond the limit is shortened to: near the limit it is stable, not accurate. Assumed; shortened
+/// to the limit itself, a bare chain on two sprockets has the first percentile of its tension 6 % too low.
 const ROOM: f64 = 0.75;
 
 /// Rungs of a fixed step after which a run is given up: a millionth of the nominal step.
@@ -66,12 +67,10 @@ impl Fixed {
         }
         self.rungs = 0;
         self.step = self.nominal;
-        let short_enough = if self.step > limit {
-            ROOM * limit
-        } else {
-            limit
-        };
-        while limit.is_nan() || self.step > short_enough {
+        if self.step <= limit {
+            return Some(false);
+        }
+        while limit.is_nan() || self.step > ROOM * limit {
             self.rungs += 1;
             self.step *= RUNG;
             if self.rungs > MOST_RUNGS {

@@ -148,7 +148,7 @@ impl Sweep {
         })
     }
 
-    /// What others need to compute the same variants.
+    /// Everything that others need to compute the same variants.
     pub fn recipe(&self) -> Recipe {
         let vary = self.dimensions.iter();
         Recipe {
@@ -279,7 +279,7 @@ fn new_place(first: &Scene, path: &str, earlier: &[String]) -> Result<String, Sw
     Ok(place)
 }
 
-/// What the values of a column are in a scene, looked up for as few of them as tell it of all: a table may have a million rows.
+/// Kinds of the values of a column in a scene, looked up for as few of them as tell it of all: a table may have a million rows.
 fn data_of_column(
     settings: &[Setting],
     look: &mut impl FnMut(&Setting) -> Result<Option<Datum>, SweepError>,

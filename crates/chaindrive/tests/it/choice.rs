@@ -171,7 +171,7 @@ fn an_accuracy_is_a_share() {
     assert!(matches!(stopped, Err(SimulationError::Interrupted)));
 }
 
-/// What a scene or a caller says about the method is kept; only what is left open is chosen.
+/// The word of a scene or a caller about the method is kept; only what is left open is chosen.
 #[test]
 fn a_scene_with_a_step_keeps_it() {
     let wanted = |text: &str| {

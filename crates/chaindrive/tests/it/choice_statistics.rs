@@ -9,7 +9,7 @@ use std::thread::scope;
 use chaindrive::precision::{ACCURACY, choose};
 use chaindrive::{Assembled, Run, Scene, Simulation};
 
-/// What is kept of the tension of a span.
+/// Statistics of the tension of a span.
 const NAMES: [&str; 7] = ["mean", "rms", "p1", "p10", "p50", "p90", "p99"];
 
 /// Runs of an ensemble.

@@ -152,7 +152,7 @@ fn impacts(f: &mut fmt::Formatter<'_>, simulation: &Simulation) -> fmt::Result {
     Ok(())
 }
 
-/// What was supplied and lost, and what came of it: efficiency, and power beside its rating.
+/// Energy supplied and lost, the efficiency that follows, and power beside its rating.
 fn energy(f: &mut fmt::Formatter<'_>, summary: &Summary) -> fmt::Result {
     let supplied = summary.energy_supplied();
     let moved = summary.energy_moved();
