@@ -2,15 +2,15 @@
 //!
 //! ```text
 //! w = 1/m + 1/M,   c = ∂F/∂δ̇
-//! δ̇⁺ = δ̇ + ½ h (b − b₀ − w (F − F₀))/(1 + ½ h c w)
-//! F⁺ = (F + ½ h c (w F₀ + b − b₀))/(1 + ½ h c w)
+//! F⁺ = max(0, (F + ½ h c (w F₀ + b − b₀))/(1 + ½ h c w))
+//! δ̇⁺ = δ̇ + ½ h (b − b₀ − w (F⁺ − F₀))
 //! ```
 //!
 //! b is the acceleration towards the surface by all that is not this contact, m the mass of the circle, M the one by which the body
 //! yields to all circles that may press on it, and b₀ and F₀ belong to the beginning of the step. This is the implicit trapezoidal
 //! rule for one contact, or for several that press alike on one body. δ̇ is off by O(h²) only, so that other contacts of the same circle
-//! may be left out, and M need not be exact. F⁺ is the force that brings about δ̇⁺, which for the true w is the law's own, F + c (δ̇⁺ − δ̇):
-//! so a w that is too large slows the correction, however stiff the damping, where the law's force would swing by more from step to step.
+//! may be left out, and M need not be exact. F is the law's force before it is kept from pulling. F⁺ is the force that brings about δ̇⁺, which
+//! for the true w is the law's own, max(0, F + c (δ̇⁺ − δ̇)): so a w that is too large slows the correction, however stiff the damping, where the law's force would swing by more from step to step.
 
 use pulp::Simd;
 
@@ -28,7 +28,7 @@ pub(crate) struct Ahead<S: Simd> {
 }
 
 impl<S: Simd> Ahead<S> {
-    /// Change of the closing speeds, and the forces, of contacts that have these forces and damping at the predicted ones.
+    /// Change of the closing speeds, and the forces, of contacts that have these forces, pulling or pushing, and damping at the predicted ones.
     #[inline(always)]
     pub(super) fn change(
         self,
@@ -44,8 +44,9 @@ impl<S: Simd> Ahead<S> {
         let grown = fresh.select(w.splat(0.0), self.thrust - thrust_before);
         let lag = self.half_step * damping;
         let share = (w.splat(1.0) + lag * self.mobility).recip();
-        let change = self.half_step * (grown - (force - force_before) * self.mobility);
         let ahead = force + lag * (self.mobility * force_before + grown);
-        [change * share, ahead * share]
+        let ahead = (ahead * share).max(w.splat(0.0));
+        let change = self.half_step * (grown - (ahead - force_before) * self.mobility);
+        [change, ahead]
     }
 }

@@ -191,10 +191,11 @@ impl SurfaceLaw {
         let mut force = closed.select(raw.max(zero), zero);
         if let Some(ahead) = ahead {
             let steep = factor * stored * inverse_onset + damping;
-            let [change, ahead] = ahead.change(w, memory, lane, fresh, [force, steep]);
+            let raw = closed.select(raw, zero);
+            let [change, ahead] = ahead.change(w, memory, lane, fresh, [raw, steep]);
             closing += change;
             ratio = ratio_at(closing);
-            force = closed.select(ahead.max(zero), zero);
+            force = closed.select(ahead, zero);
         }
         let mut loss = force - closed.select(stored, zero);
         if let Some(weight) = weight {
