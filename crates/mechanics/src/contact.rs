@@ -29,7 +29,7 @@ use serde::{Deserialize, Serialize};
 pub use impacts::Impacts;
 pub(crate) use law::{LaneFriction, LaneSpring, SurfaceLaw};
 pub(crate) use memory::{ContactMemory, ContactState, MemoryLanes};
-pub(crate) use plates::{OfPins, PlateContact, PlatePins, PlatePlaces, Pressing};
+pub(crate) use plates::{Drawn, OfPins, PlateContact, PlatePins, PlatePlaces, Pressing};
 pub(crate) use rollers::Rollers;
 pub(crate) use window::{FAR, Places, Run, Spare};
 pub(crate) use windows::{PlateMemory, Windows};

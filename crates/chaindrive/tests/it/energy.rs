@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::f64::consts::PI;
 
-use chaindrive::{Run, Scene, Simulation, Summary, Verdict};
+use chaindrive::{Run, Scene, Simulation, Stepping, Summary, Verdict};
 
 use crate::dynamics::{pairs, run};
 
@@ -107,6 +107,46 @@ fn a_driver_that_reverses_has_moved_energy() -> Result<(), Box<dyn Error>> {
     let (supplied, moved) = (summary.energy_supplied(), summary.energy_moved());
     assert!(moved > 2.0 * supplied, "{moved} of {supplied}");
     assert!(!is_distrusted(&summary, &simulation));
+    Ok(())
+}
+
+/// Guides whose oil damps ten times as hard as that of the preset shorten no step: what they take is taken at the end of the step,
+/// the ledger closes, and the tensions are those of a method that follows the damping.
+#[test]
+fn the_damping_of_guides_bounds_no_step() -> Result<(), Box<dyn Error>> {
+    let scene = Scene::preset("timing_drive")?;
+    let scene = scene.replace("contact.guides.onset_floor", r#""5 mm/s""#)?;
+    let drive = scene
+        .replace("contact.guides.restitution", "0.1")?
+        .drive()?;
+    let tensions = |stepping: Stepping, step: f64| -> Result<_, Box<dyn Error>> {
+        let run = Run {
+            until: 2e-3,
+            every: 1e-5,
+            stepping,
+            step: Some(step),
+            ..Run::default()
+        };
+        let mut simulation = Simulation::start(&drive, &run)?;
+        let mut summary = Summary::new(&simulation);
+        let mut tensions = Vec::new();
+        while let Some(sample) = simulation.next_sample()? {
+            summary.push(sample);
+            tensions.extend_from_slice(&sample.span_tension);
+        }
+        let missing = summary.residual.abs() / summary.energy_dissipated();
+        Ok((tensions, missing, *simulation.statistics()))
+    };
+    let (found, missing, counts) = tensions(Stepping::Verlet, 3e-6)?;
+    let (exact, _, _) = tensions(Stepping::Rk4, 1e-7)?;
+    let n = exact.len() as f64;
+    let mean = exact.iter().sum::<f64>() / n;
+    let squares = found.iter().zip(&exact).map(|(a, b)| (a - b).powi(2));
+    let apart = (squares.sum::<f64>() / n).sqrt() / mean;
+    println!("{apart:.2e} apart, {missing:.1e} of the losses missing, {counts:?}");
+    assert_eq!(counts.reductions, 0);
+    assert!(apart < 0.01, "{apart}");
+    assert!(missing < 0.01, "{missing}");
     Ok(())
 }
 

@@ -157,7 +157,7 @@ impl Particles {
     /// ω_s = D + √(D² + ω²),   ω² = max Σ k/m + max k_c/m,   D = Σ d/m
     /// ```
     ///
-    /// The damping rate enters because Verlet's predicted velocity limits h D to 1; that of teeth along their normals does not, where
+    /// The damping rate enters because Verlet's predicted velocity limits h D to 1; that of teeth and guides along their normals does not, where
     /// it is taken at the end of the step.
     pub(super) fn rates(&self, around: Surroundings<'_>, record: &mut Record) -> Rates {
         let Surroundings {
@@ -185,7 +185,7 @@ impl Particles {
             contact = contact.max(stiffness * self.lightest);
             let damped = wrench.damping * self.lightest;
             drag = drag.max(damped);
-            predicted = predicted.max(damped);
+            predicted = predicted.max(wrench.across * self.lightest);
         }
         Rates {
             squared: squared + contact,

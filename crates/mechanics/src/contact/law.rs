@@ -187,23 +187,24 @@ impl SurfaceLaw {
         let [one, factor, damping] = [1.0, self.factor, self.damping].map(|x| w.splat(x));
         let ratio_at = |closing: Lane<S>| (closing * inverse_onset).min(w.splat(RATIO_LIMIT));
         let (mut closing, mut ratio) = (closing, ratio_at(closing));
-        let raw = stored * (one + factor * ratio) + damping * closing;
+        let mut raw = stored * (one + factor * ratio) + damping * closing;
+        let mut steep = factor * stored * inverse_onset + damping;
+        let mut returned = stored;
+        if let Some(weight) = weight {
+            raw = weight * raw;
+            steep = weight * steep;
+            returned = weight * returned;
+        }
         let mut force = closed.select(raw.max(zero), zero);
         if let Some(ahead) = ahead {
-            let steep = factor * stored * inverse_onset + damping;
             let raw = closed.select(raw, zero);
             let [change, ahead] = ahead.change(w, memory, lane, fresh, [raw, steep]);
             closing += change;
             ratio = ratio_at(closing);
             force = closed.select(ahead, zero);
         }
-        let mut loss = force - closed.select(stored, zero);
-        if let Some(weight) = weight {
-            force = weight * force;
-            loss = weight * loss;
-        }
         memory.keep_force(lane, force);
-        tally.normal_loss += loss * closing;
+        tally.normal_loss += (force - closed.select(returned, zero)) * closing;
         tally.depth = tally.depth.max(depth);
         Some(Pressed {
             closed,

@@ -10,6 +10,7 @@
 use chaindrive_geometry::{Point, Vector};
 use pulp::{Simd, WithSimd};
 
+use super::ahead::Ahead;
 use super::rest::Clear;
 use super::window::{FAR, Places};
 use super::wrench::Sums;
@@ -27,14 +28,25 @@ pub(crate) trait PlatePlaces {
 /// A vector for each of the two pins of the links of a lane.
 pub(crate) type OfPins<S> = [[Lane<S>; 2]; 2];
 
+/// What moves the pins of the links of a lane, where they are point masses.
+#[derive(Clone, Copy)]
+pub(crate) struct Drawn<S: Simd> {
+    /// Accelerations \[m/s²\] by all that was found so far.
+    pub(crate) by: OfPins<S>,
+    /// Inverse masses \[1/kg\].
+    pub(crate) inverse_masses: [Lane<S>; 2],
+    /// Half of the step \[s\] at whose end velocities are predicted; zero where they are what they are.
+    pub(crate) half_step: f64,
+}
+
 /// Where the pins of lanes of consecutive links are, how they move, and what they bear.
 pub(crate) trait PlatePins {
     /// Places \[m\] of the pins of the lane that begins with a link.
     fn places<S: Simd>(&self, w: Wide<S>, link: usize) -> OfPins<S>;
     /// Velocities \[m/s\].
     fn velocities<S: Simd>(&self, w: Wide<S>, link: usize) -> OfPins<S>;
-    /// Accelerations \[m/s²\] by all that was found so far; none where lanes may not rest.
-    fn accelerations<S: Simd>(&self, w: Wide<S>, link: usize) -> Option<OfPins<S>>;
+    /// How pins are drawn that are point masses; none of others, whose lanes may not rest.
+    fn drawn<S: Simd>(&self, w: Wide<S>, link: usize) -> Option<Drawn<S>>;
     /// Takes forces \[N\] on the pins; those on links behind the last one are nothing.
     fn push<S: Simd>(&mut self, w: Wide<S>, link: usize, forces: OfPins<S>);
 }
@@ -45,6 +57,8 @@ pub(crate) struct Pressing<'a, P> {
     pub(crate) t: f64,
     pub(crate) frame: Frame,
     pub(crate) pins: &'a mut P,
+    /// By how much the guide yields to one plate \[1/kg\].
+    pub(crate) yielding: f64,
     pub(crate) touch: &'a mut Touch,
 }
 
@@ -58,9 +72,10 @@ impl<P: PlatePins> WithSimd for Pressing<'_, P> {
             t,
             frame,
             pins,
+            yielding,
             touch,
         } = self;
-        plates.act(Wide(simd), t, &frame, pins, touch)
+        plates.act(Wide(simd), t, &frame, pins, yielding, touch)
     }
 }
 
@@ -116,6 +131,8 @@ const REACH: f64 = 4.0;
 struct PlateLane {
     lane: usize,
     link: usize,
+    /// By how much the guide yields to all plates \[1/kg\].
+    yielding: f64,
 }
 
 impl PlateContact {
@@ -203,6 +220,7 @@ impl PlateContact {
         t: f64,
         frame: &Frame,
         pins: &mut impl PlatePins,
+        yielding: f64,
         touch: &mut Touch,
     ) -> Wrench {
         let count = padded(self.links);
@@ -214,6 +232,8 @@ impl PlateContact {
         let mut memory = MemoryLanes::new(w, &self.memory.state, state, count);
         let mut sums = Sums::new(w);
         let mut touching = false;
+        // All that may press on the guide count, whether they do or not.
+        let yielding = yielding * (LANES * self.near.len()) as f64;
         // A copy: what may change while contacts are written is read from memory again for every lane.
         let frame = *frame;
         for &first in &self.near {
@@ -229,7 +249,11 @@ impl PlateContact {
                     wake[link] = until;
                     continue;
                 }
-                let at = PlateLane { lane, link };
+                let at = PlateLane {
+                    lane,
+                    link,
+                    yielding,
+                };
                 let rest = self.lane(w, dt, &frame, at, pins, &mut memory, &mut sums);
                 touching |= rest.is_none();
                 wake[link] = rest.map_or(AWAKE, |rest| t + rest);
@@ -256,7 +280,11 @@ impl PlateContact {
         w: Wide<S>,
         dt: f64,
         frame: &Frame,
-        PlateLane { lane, link }: PlateLane,
+        PlateLane {
+            lane,
+            link,
+            yielding,
+        }: PlateLane,
         pins: &mut P,
         memory: &mut MemoryLanes<'_, S>,
         sums: &mut Sums<S>,
@@ -297,10 +325,26 @@ impl PlateContact {
         let uy = vy + share * (wy - vy) - w.splat(frame.velocity.y) - spin * dx;
         let closing = -(nx * ux + ny * uy);
         let inside = share.greater(w.splat(0.0)) & one.greater(share);
-        let weight = Some(inside.select(one, half));
-        let tally = &mut sums.tally;
+        let weight = inside.select(one, half);
+        let ahead = match pins.drawn(w, link) {
+            Some(drawn) => {
+                // All plates beside one another press alike, each on two pins: a pin bears as much as one plate.
+                let [first, second] = drawn.inverse_masses;
+                let [[ax, ay], [bx, by]] = drawn.by;
+                let mobility = first + share * (second - first) + w.splat(yielding);
+                let (ax, ay) = (ax + share * (bx - ax), ay + share * (by - ay));
+                Some(Ahead {
+                    thrust: -(nx * ax + ny * ay),
+                    half_step: w.splat(drawn.half_step),
+                    // 1/weight, of one and a half
+                    mobility: mobility * (w.splat(3.0) - (weight + weight)),
+                })
+            }
+            None => None,
+        };
+        let (weight, tally) = (Some(weight), &mut sums.tally);
         let surfaces = [gap, closing];
-        let Some(pressed) = law.press(w, memory, lane, surfaces, None, weight, None, tally) else {
+        let Some(pressed) = law.press(w, memory, lane, surfaces, None, weight, ahead, tally) else {
             let clear = near.select(found.gap, clear);
             let speeds = [[vx, vy], [wx, wy]];
             return Some(self.rest(w, dt, frame, link, clear, speeds, pins));
@@ -348,7 +392,7 @@ impl PlateContact {
         speeds: OfPins<S>,
         pins: &P,
     ) -> f64 {
-        let Some(thrusts) = pins.accelerations(w, link) else {
+        let Some(Drawn { by: thrusts, .. }) = pins.drawn(w, link) else {
             return 0.0;
         };
         let valid = w.first(self.links - link);

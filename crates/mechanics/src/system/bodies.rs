@@ -78,6 +78,8 @@ pub(crate) enum WheelSupport {
 pub(crate) struct Rail {
     pub(crate) name: String,
     pub(crate) support: RailSupport,
+    /// How easily a force on its face moves it \[1/kg\], at most.
+    pub(crate) mobility: f64,
 }
 
 /// Support of a rail.
@@ -407,9 +409,7 @@ impl Bodies {
             WheelSupport::Fixed | WheelSupport::Prescribed { .. } => 0.0,
             WheelSupport::Springs { .. } => 1.0 / wheel.mass,
             WheelSupport::Carried(index) => {
-                let slide = &self.slides[*index];
-                let lever = slide.carrier.squared_lever(0.0, wheel.centre);
-                slide.dof.map_or(0.0, |_| lever / slide.inertia)
+                self.slides[*index].mobility(&[wheel.centre, wheel.centre])
             }
         };
         turning + moving

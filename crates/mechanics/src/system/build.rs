@@ -77,7 +77,11 @@ impl System {
         }
         let mut bodies = Bodies {
             wheels,
-            rails: parts.guides.iter().map(rail).collect(),
+            rails: parts
+                .guides
+                .iter()
+                .map(|guide| rail(guide, &slides))
+                .collect(),
             slides,
             shafts,
             couplings: parts.couplings.clone(),
@@ -340,8 +344,13 @@ fn wheel(sprocket: &Sprocket, angle: f64, turn: Turn, centre: Option<usize>) -> 
     }
 }
 
-fn rail(guide: &Guide) -> Rail {
+fn rail(guide: &Guide, slides: &[Slide]) -> Rail {
+    let mobility = match &guide.support {
+        GuideSupport::Fixed | GuideSupport::Prescribed { .. } => 0.0,
+        GuideSupport::Tensioner(index) => slides[*index].mobility(&bounds(guide)),
+    };
     Rail {
+        mobility,
         name: guide.name.clone(),
         support: match &guide.support {
             GuideSupport::Fixed => RailSupport::Fixed,

@@ -46,6 +46,21 @@ impl Slide {
         (place, first * pose.rate)
     }
 
+    /// How easily a force at any place within a box (low, high) moves the carrier where it is assembled \[1/kg\], at most.
+    pub(crate) fn mobility(&self, [low, high]: &[Point; 2]) -> f64 {
+        if self.dof.is_none() {
+            return 0.0;
+        }
+        let corners = [
+            *low,
+            *high,
+            Point::new(low.x, high.y),
+            Point::new(high.x, low.y),
+        ];
+        let levers = corners.map(|corner| self.carrier.squared_lever(0.0, corner));
+        levers.into_iter().fold(0.0, f64::max) / self.inertia
+    }
+
     /// Generalised force of a force at a carried point.
     pub(crate) fn project(&self, pose: Pose, force: [f64; 2], place: Point) -> f64 {
         let [first, _] = self.carrier.ways(pose.coordinate, place);

@@ -62,6 +62,7 @@ impl Linkage {
                             joint_state,
                             links: self.links,
                         },
+                        yielding: 0.0,
                         touch: &mut loads.rails[i],
                     };
                     dispatch(self.arch, pressing)

@@ -7,7 +7,7 @@ use pulp::Simd;
 use super::{Element, Joining, JointState, Linkage, Partner, Posture, cross, turned};
 use crate::chains::joints::Joints;
 use crate::chains::{Record, Surroundings};
-use crate::contact::{OfPins, PlatePins, PlatePlaces};
+use crate::contact::{Drawn, OfPins, PlatePins, PlatePlaces};
 use crate::lanes::{Lane, Wide};
 
 /// Shares of a contact between chain and wheel: 1 + ε and 1 + 1/ε with ε = 0.1.
@@ -282,7 +282,7 @@ impl PlatePins for LinkPins<'_> {
 
     /// A link that is struck at its other end moves at once.
     #[inline(always)]
-    fn accelerations<S: Simd>(&self, _w: Wide<S>, _link: usize) -> Option<OfPins<S>> {
+    fn drawn<S: Simd>(&self, _w: Wide<S>, _link: usize) -> Option<Drawn<S>> {
         None
     }
 

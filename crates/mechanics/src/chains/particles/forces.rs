@@ -7,7 +7,7 @@ use super::Particles;
 use super::articulation::{self, Turning};
 use crate::chains::joints::Resistance;
 use crate::chains::{Loads, Record, Surroundings};
-use crate::contact::{OfPins, PlatePins, Pressing, Rollers};
+use crate::contact::{Drawn, OfPins, PlatePins, Pressing, Rollers};
 use crate::energy::Flow;
 use crate::lanes::Wide;
 use crate::system::RailContact;
@@ -120,13 +120,17 @@ pub(super) fn touch_bodies<S: Simd>(
             // All that may press on the wheel count, whether they do or not.
             let all: usize = on.contacts.runs.iter().map(|run| run.count).sum();
             let yielding = bodies.mobility(on.wheel) * all as f64;
-            (&on.contacts, Some(yielding), &mut loads.teeth[i])
+            (&on.contacts, yielding, &mut loads.teeth[i])
         } else {
-            let RailContact::Circles(contacts) = &contacts.rails[i - wheels].contact else {
+            let on = &contacts.rails[i - wheels];
+            let RailContact::Circles(contacts) = &on.contact else {
                 continue;
             };
-            (contacts, None, &mut loads.rails[i - wheels])
+            let all: usize = contacts.runs.iter().map(|run| run.count).sum();
+            let yielding = bodies.rails[on.rail].mobility * all as f64;
+            (contacts, yielding, &mut loads.rails[i - wheels])
         };
+        let yielding = Some(yielding);
         let wrench = contacts.act(w, t, &loads.frames[i], rollers, yielding, touch);
         let [loss, friction] = if i < wheels {
             [Flow::ToothLoss, Flow::ToothFriction]
@@ -163,6 +167,7 @@ pub(super) fn plate_forces<S: Simd>(
             t,
             frame: *frame,
             pins: &mut *pins,
+            yielding: around.bodies.rails[on.rail].mobility,
             touch: &mut loads.rails[i],
         });
         rates[Flow::GuideLoss as usize] += wrench.normal_loss;
@@ -184,8 +189,15 @@ impl PlatePins for Rollers<'_> {
     }
 
     #[inline(always)]
-    fn accelerations<S: Simd>(&self, w: Wide<S>, link: usize) -> Option<OfPins<S>> {
-        Some(between(w, [self.ax, self.ay], link))
+    fn drawn<S: Simd>(&self, w: Wide<S>, link: usize) -> Option<Drawn<S>> {
+        Some(Drawn {
+            by: between(w, [self.ax, self.ay], link),
+            inverse_masses: [
+                w.load(self.inverse_mass, link),
+                w.load(self.inverse_mass, link + 1),
+            ],
+            half_step: self.half_step,
+        })
     }
 
     #[inline(always)]

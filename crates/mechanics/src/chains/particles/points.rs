@@ -29,7 +29,7 @@ use super::Links;
 use crate::chains::joints::Joints;
 use crate::chains::links::{Bearing, Tally};
 use crate::chains::{Pose, Record};
-use crate::contact::{ContactMemory, OfPins, PlatePins, PlatePlaces};
+use crate::contact::{ContactMemory, Drawn, OfPins, PlatePins, PlatePlaces};
 use crate::lanes::Wide;
 use crate::system::HeldEnd;
 
@@ -177,7 +177,7 @@ impl PlatePins for Ends<'_> {
 
     /// An end that is struck in its joint moves at once.
     #[inline(always)]
-    fn accelerations<S: Simd>(&self, _w: Wide<S>, _link: usize) -> Option<OfPins<S>> {
+    fn drawn<S: Simd>(&self, _w: Wide<S>, _link: usize) -> Option<Drawn<S>> {
         None
     }
 

@@ -192,6 +192,7 @@ fn lanes_of_plates_press_as_plates_one_by_one() {
                     t: 1e-6,
                     frame,
                     pins: &mut slack.rollers(),
+                    yielding: 0.0,
                     touch: &mut touch,
                 };
                 let wrench = match width {
@@ -250,6 +251,7 @@ fn no_plate_touches_unseen() {
             t,
             frame: Frame::fixed(),
             pins: &mut slack.rollers(),
+            yielding: 0.0,
             touch: &mut touch,
         });
         std::mem::swap(&mut plates.memory, &mut touch);
