@@ -6,11 +6,12 @@
 //! δ̇⁺ = δ̇ + ½ h (b − b₀ − w (F⁺ − F₀))
 //! ```
 //!
-//! b is the acceleration towards the surface by all that is not this contact, m the mass of the circle, M the one by which the body
-//! yields to all circles that may press on it, and b₀ and F₀ belong to the beginning of the step. This is the implicit trapezoidal
-//! rule for one contact, or for several that press alike on one body. δ̇ is off by O(h²) only, so that other contacts of the same circle
-//! may be left out, and M need not be exact. F is the law's force before it is kept from pulling. F⁺ is the force that brings about δ̇⁺, which
-//! for the true w is the law's own, max(0, F + c (δ̇⁺ − δ̇)): so a w that is too large slows the correction, however stiff the damping, where the law's force would swing by more from step to step.
+//! b is the acceleration towards the surface by all that is not this contact, m the mass of the circle or of the pins that share the force,
+//! M the one by which the body yields to all that may press on it, and b₀ and F₀ belong to the beginning of the step. This is the implicit
+//! trapezoidal rule for one contact, or for several that press alike. δ̇ is off by O(h²) only, so that other contacts of the same circle
+//! may be left out, and w need not be exact. F is the law's force before it is kept from pulling. F⁺ is the force that brings about δ̇⁺,
+//! which for the true w is the law's own, max(0, F + c (δ̇⁺ − δ̇)): so a w that is too large slows the correction, however stiff the
+//! damping, where the law's force would swing by more from step to step. One that is too small lets it swing, so w is the largest that can be.
 
 use pulp::Simd;
 
@@ -23,7 +24,7 @@ pub(crate) struct Ahead<S: Simd> {
     pub(super) thrust: Lane<S>,
     /// ½ h \[s\]; zero where velocities are what they are.
     pub(super) half_step: Lane<S>,
-    /// 1/m + 1/M \[1/kg\].
+    /// w \[1/kg\].
     pub(super) mobility: Lane<S>,
 }
 
