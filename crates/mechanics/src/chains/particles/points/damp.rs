@@ -304,7 +304,7 @@ impl WithSimd for Joints<'_> {
         ]
         .map(|values| w.lanes(values));
         let [c, k] = [weights.damping, weights.stiffness].map(|weight| w.splat(weight));
-        let (one, half) = (w.splat(1.0), w.splat(0.5));
+        let [zero, half, one] = [0.0, 0.5, 1.0].map(|number| w.splat(number));
         for i in 0..count / Wide::<S>::COUNT {
             let start = i * Wide::<S>::COUNT;
             let b_r = [w.load(x, start), w.load(x, n + start)];
@@ -328,13 +328,23 @@ impl WithSimd for Joints<'_> {
             let n2 = [bush_x.get(i), bush_y.get(i)];
             let d1 = c * pin_d.get(i) + k * pin_k.get(i);
             let d2 = c * bush_d.get(i) + k * bush_k.get(i);
+            let (pressed_x, pressed_y) = (matrix_xx.get(i), matrix_yy.get(i));
+            if !(d2 + pressed_x + pressed_y).greater(zero).any() {
+                // Rollers that touch nothing, as those between sprockets mostly are: what is left is the pin in its bush.
+                let w1 = dot(n1, [b_p[0] - b_b[0], b_p[1] - b_b[1]]);
+                let p1 = d1 * w1 * (one + d1 * (m_p + m_b)).recip();
+                let [along_x, along_y] = [p1 * n1[0], p1 * n1[1]];
+                let of_before = is_after.select(-m_p, m_b);
+                let of_after = is_after.select(m_b, -m_p);
+                (before[0] + along_x * of_before).store(x, 2 * n + start);
+                (before[1] + along_y * of_before).store(x, 3 * n + start);
+                (after[0] + along_x * of_after).store(x, 4 * n + start);
+                (after[1] + along_y * of_after).store(x, 5 * n + start);
+                continue;
+            }
             // y = A⁻¹ r,   A = m_r + Σ D e eᵀ
             let m_r = masses.get(i);
-            let (xx, xy, yy) = (
-                m_r + matrix_xx.get(i),
-                matrix_xy.get(i),
-                m_r + matrix_yy.get(i),
-            );
+            let (xx, xy, yy) = (m_r + pressed_x, matrix_xy.get(i), m_r + pressed_y);
             let inverse = (xx * yy - xy * xy).recip();
             let right = [m_r * b_r[0] + right_x.get(i), m_r * b_r[1] + right_y.get(i)];
             let y = [
