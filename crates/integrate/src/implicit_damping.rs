@@ -67,13 +67,9 @@ impl ImplicitDamping {
             counts.evaluations += 1;
         }
         to.t = from.t + h;
-        // The right-hand side of the equations, divided by the masses.
-        let (dv, dz) = self.change.split_at_mut(from.a.len());
-        for (x, rates) in [(dv, &from.a[..]), (dz, from.flow())] {
-            for (x, rate) in x.iter_mut().zip(rates) {
-                *x = h * rate;
-            }
-        }
+        let arch = Arch::new();
+        let change = &mut self.change;
+        dispatch(arch, Right { h, from, change });
         let weights = Weights {
             damping: h,
             stiffness: 0.0,
@@ -82,7 +78,6 @@ impl ImplicitDamping {
         if !system.solve(weights, record, &mut self.change) {
             return Outcome::NoSolution;
         }
-        let arch = Arch::new();
         let change = &self.change;
         dispatch(
             arch,
@@ -97,6 +92,27 @@ impl ImplicitDamping {
         counts.evaluations += 1;
         to.trapezoidal(from, h);
         Outcome::of(dispatch(arch, Finite(to)))
+    }
+}
+
+/// The right-hand side of the equations, divided by the masses.
+struct Right<'a> {
+    h: f64,
+    from: &'a State,
+    change: &'a mut [f64],
+}
+
+impl WithSimd for Right<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let (dv, dz) = self.change.split_at_mut(self.from.a.len());
+        for (x, rates) in [(dv, &self.from.a[..]), (dz, self.from.flow())] {
+            for (x, rate) in x.iter_mut().zip(rates) {
+                *x = self.h * rate;
+            }
+        }
     }
 }
 
@@ -136,7 +152,8 @@ impl WithSimd for Finite<'_> {
     fn with_simd<S: Simd>(self, _: S) -> bool {
         let mut watch = Watch::default();
         let to = self.0;
-        for part in [&to.q, &to.v, &to.a, &to.quadratures, &to.z] {
+        // Places are as finite as the velocities that led there.
+        for part in [&to.v, &to.a, &to.quadratures, &to.z] {
             for value in part {
                 watch.see(*value);
             }

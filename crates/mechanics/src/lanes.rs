@@ -4,6 +4,7 @@
 //! which one runs is decided when the system is built. No operation is fused, and sums are taken
 //! in a fixed order: the same machine gives the same bits.
 
+mod octaves;
 mod polynomial;
 mod power;
 mod turn;
@@ -12,6 +13,7 @@ use std::ops::{Add, AddAssign, BitAnd, Mul, Neg, Sub};
 
 use pulp::{Arch, Scalar128b, Simd, WithSimd};
 
+pub(crate) use octaves::Logarithm;
 pub(crate) use polynomial::Polynomial;
 pub(crate) use power::FixedPower;
 
@@ -252,6 +254,19 @@ impl<S: Simd> Lane<S> {
     fn whole(self, missing: Self, curve: Self) -> Self {
         let cubic = (missing * missing).fused(Wide(self.simd).splat(0.3125), curve);
         (self * missing).fused(cubic, self)
+    }
+
+    /// self · factor + term, rounded once where the processor has an instruction for it: elsewhere a function would be called.
+    #[inline(always)]
+    pub(crate) fn times_plus(self, factor: Self, term: Self) -> Self {
+        #[cfg(target_arch = "x86_64")]
+        {
+            let kind = &self.simd as &dyn std::any::Any;
+            if kind.is::<pulp::x86::V4>() || kind.is::<pulp::x86::V3>() {
+                return self.fused(factor, term);
+            }
+        }
+        self * factor + term
     }
 
     /// self · factor + term, rounded once: for processors with the instruction.

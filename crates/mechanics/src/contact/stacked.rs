@@ -4,20 +4,29 @@
 //! x + K xⁿ/k_s = δ,   F = K xⁿ,   1/k = x/(n F) + 1/k_s
 //! ```
 //!
-//! With x = δ y and r = K δⁿ⁻¹/k_s that is y + r yⁿ = 1, where y depends on n and r alone. For r up to [`QUICK`] a polynomial in
-//! r/(1 + r), fitted once, is so near that one step of Newton's method ends at rounding. Beyond, Newton's method begins at
+//! With x = δ y and r = K δⁿ⁻¹/k_s that is y + r yⁿ = 1, where y depends on n and r alone. For r up to [`QUICK`] yⁿ is a polynomial in
+//! r/(1 + r), and from there on for [`OCTAVES`] of r, where the surfaces are stiffer than what lies behind them, 1 − y is one in log₂ r.
+//! Both are fitted once, and err by [`ERROR`] at most for exponents up to 1.5. Beyond, and for others, Newton's method begins at
 //! y = 1/(1 + r), which lies below the root; the first step passes it, and the rest come down to it: how many it takes is counted once.
 
 use pulp::{Simd, WithSimd};
 
 use super::law::LEAST_DEPTH;
-use crate::lanes::{FixedPower, LANES, Lane, Polynomial, Wide};
+use crate::lanes::{FixedPower, LANES, Lane, Logarithm, Polynomial, Wide};
 
 /// K δⁿ⁻¹/k_s that steps are counted for: beyond the last one the surfaces are as good as rigid, before the first what lies behind.
 const RATIOS: [f64; 2] = [1e-8, 1e8];
 
-/// r up to which the polynomial serves: deeper contacts are several times as stiff as what lies behind them.
-const QUICK: f64 = 4.0;
+/// r up to which the first polynomial serves, and its logarithm.
+const QUICK: f64 = 1.0;
+const FROM: f64 = 0.0;
+
+/// Octaves of r that the second one serves from there on.
+const OCTAVES: f64 = 5.0;
+
+/// Coefficients of the polynomials, and their error; one that errs by more is not used.
+const TERMS: usize = 20;
+const ERROR: f64 = 5e-13;
 
 /// Steps at most, where doubling digits has long come to an end.
 const MOST: usize = 12;
@@ -31,8 +40,13 @@ pub(super) struct Stacked {
     lower: FixedPower,
     /// 1/k_s \[m/N\]
     compliance: f64,
-    /// y of 2 r/(1 + r) (1 + R)/R − 1, where R is [`QUICK`].
-    near: Polynomial,
+    /// yⁿ of 2 r/(1 + r) (1 + R)/R − 1, where R is [`QUICK`]; none where it would err.
+    near: Option<Polynomial<TERMS>>,
+    /// 1 − y of 2 (log₂ r − log₂ R)/[`OCTAVES`] − 1.
+    far: Option<Polynomial<TERMS>>,
+    /// log₂ K/k_s
+    at_one: f64,
+    logarithm: Logarithm,
     steps: usize,
 }
 
@@ -43,10 +57,10 @@ impl Stacked {
             exponent,
             lower: FixedPower::new(exponent - 1.0),
             compliance: 1.0 / series,
-            near: Polynomial::through(|t| {
-                let share = 0.5 * (t + 1.0) * QUICK / (1.0 + QUICK);
-                root(exponent, share / (1.0 - share))
-            }),
+            near: near(exponent),
+            far: far(exponent),
+            at_one: (stiffness / series).log2(),
+            logarithm: Logarithm::new(),
             steps: steps(exponent),
         }
     }
@@ -61,22 +75,34 @@ impl Stacked {
     #[inline(always)]
     fn found<S: Simd>(&self, w: Wide<S>, depth: Lane<S>) -> Lane<S> {
         let one = w.splat(1.0);
+        let closed = depth.greater(w.splat(LEAST_DEPTH));
         let depth = depth.max(w.splat(LEAST_DEPTH));
-        let yielding = w.splat(self.stiffness * self.compliance);
         let n = w.splat(self.exponent);
-        let lower = self.lower.of(w, depth);
-        let r = yielding * lower;
-        let beside = (one + r).recip();
-        if !r.greater(w.splat(QUICK)).any() {
-            let t = r * beside * w.splat(2.0 * (1.0 + QUICK) / QUICK) - one;
-            let y = self.near.of(w, t);
-            // Δ = (1 − y − r yⁿ)/(1 + n r yⁿ⁻¹),   (y + Δ)ⁿ⁻¹ = yⁿ⁻¹ (1 + (n − 1) Δ/y)
-            let below = self.lower.of(w, y);
-            let steep = r * below;
-            let change = (one - y - steep * y) * (one + n * steep).recip();
-            let share = (y + change) * (one + (n - one) * change * y.recip());
-            return w.splat(self.stiffness) * depth * lower * below * share;
+        let yielding = w.splat(self.stiffness * self.compliance);
+        let octaves = w.splat(self.at_one) + (n - one) * self.logarithm.of(w, depth);
+        let from = w.splat(FROM);
+        let beyond = octaves.greater(w.splat(FROM + OCTAVES));
+        let (far, near) = (octaves.greater(from), closed & from.greater(octaves));
+        if let (Some(of_far), Some(of_near)) = (&self.far, &self.near)
+            && !beyond.any()
+        {
+            // What is open has no force, whatever is said of it.
+            let t = (octaves.max(from) - from) * w.splat(2.0 / OCTAVES) - one;
+            let deep = w.splat(1.0 / self.compliance) * depth * of_far.of(w, t);
+            if !near.any() {
+                return deep;
+            }
+            let lower = self.lower.of(w, depth);
+            let r = yielding * lower;
+            let share = r * (one + r).recip();
+            let t =
+                share.min(w.splat(QUICK / (1.0 + QUICK))) * w.splat(2.0 * (1.0 + QUICK) / QUICK);
+            // F = K δⁿ yⁿ
+            let shallow = w.splat(self.stiffness) * depth * lower * of_near.of(w, t - one);
+            return far.select(deep, shallow);
         }
+        let r = yielding * self.lower.of(w, depth);
+        let beside = (one + r).recip();
         let mut x = depth * beside;
         for _ in 0..self.steps {
             // a = K xⁿ⁻¹/k_s,   x ← x − (x + a x − δ)/(1 + n a)
@@ -112,6 +138,32 @@ impl WithSimd for Ask<'_> {
         let w = Wide(simd);
         self.law.found(w, w.load(&self.depth, 0)).numbers()
     }
+}
+
+/// yⁿ for r up to [`QUICK`], if a polynomial is as near as it has to be.
+fn near(exponent: f64) -> Option<Polynomial<TERMS>> {
+    let of = |t: f64| {
+        let share = 0.5 * (t + 1.0) * QUICK / (1.0 + QUICK);
+        root(exponent, share / (1.0 - share)).powf(exponent)
+    };
+    fitted(of)
+}
+
+/// 1 − y for r of some octaves from [`QUICK`] on, likewise.
+fn far(exponent: f64) -> Option<Polynomial<TERMS>> {
+    let of = |t: f64| 1.0 - root(exponent, (FROM + 0.5 * (t + 1.0) * OCTAVES).exp2());
+    fitted(of)
+}
+
+/// A polynomial, if it is as near as it has to be.
+fn fitted(of: impl Fn(f64) -> f64) -> Option<Polynomial<TERMS>> {
+    let polynomial = Polynomial::through(&of);
+    let off = |i: i32| {
+        let t = f64::from(i) / 100.0;
+        (polynomial.at(t) / of(t) - 1.0).abs()
+    };
+    let near = (-100..=100).map(off).all(|error| error < ERROR);
+    near.then_some(polynomial)
 }
 
 /// y where y + r yⁿ = 1, by Newton's method until nothing changes.
@@ -164,8 +216,16 @@ mod tests {
         #[inline(always)]
         fn with_simd<S: Simd>(self, simd: S) {
             let w = Wide(simd);
-            let cases = [(8.5e8, 1.08), (6.6e10, 1.5), (3e12, 2.0), (4e8, 1.01)];
-            for ((stiffness, exponent), series) in cases.into_iter().zip([53e6, 5e8, 1e7, 1e12]) {
+            let cases = [
+                (8.5e8, 1.08),
+                (6.6e10, 1.5),
+                (3e12, 2.0),
+                (4e8, 1.01),
+                (8.5e8, 1.2),
+                (8.5e9, 1.17),
+            ];
+            let behind = [53e6, 5e8, 1e7, 1e12, 105e6, 105e6];
+            for ((stiffness, exponent), series) in cases.into_iter().zip(behind) {
                 let stacked = Stacked::new(stiffness, exponent, series);
                 let law = Law {
                     elastic: Elastic::Power(Power {

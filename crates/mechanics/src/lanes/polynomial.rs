@@ -4,17 +4,14 @@ use pulp::Simd;
 
 use super::{Lane, Wide};
 
-/// Coefficients of the polynomial.
-const TERMS: usize = 14;
-
-/// The polynomial through the values of a function at Chebyshev's nodes.
+/// The polynomial through the values of a function at Chebyshev's nodes; it has an even number of coefficients.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Polynomial {
+pub(crate) struct Polynomial<const TERMS: usize = 14> {
     /// Of rising powers.
     coefficients: [f64; TERMS],
 }
 
-impl Polynomial {
+impl<const TERMS: usize> Polynomial<TERMS> {
     pub(crate) fn through(f: impl Fn(f64) -> f64) -> Self {
         let count = TERMS as f64;
         let angle = |i: usize| std::f64::consts::PI * (i as f64 + 0.5) / count;
@@ -41,6 +38,12 @@ impl Polynomial {
         Self { coefficients: sum }
     }
 
+    /// The value at one place.
+    pub(crate) fn at(&self, t: f64) -> f64 {
+        self.of(Wide(pulp::Scalar), Wide(pulp::Scalar).splat(t))
+            .sum()
+    }
+
     #[inline(always)]
     pub(crate) fn of<S: Simd>(&self, w: Wide<S>, t: Lane<S>) -> Lane<S> {
         // Even and odd powers side by side.
@@ -48,9 +51,9 @@ impl Polynomial {
         let mut even = w.splat(self.coefficients[TERMS - 2]);
         let mut odd = w.splat(self.coefficients[TERMS - 1]);
         for k in (0..TERMS / 2 - 1).rev() {
-            even = even * squared + w.splat(self.coefficients[2 * k]);
-            odd = odd * squared + w.splat(self.coefficients[2 * k + 1]);
+            even = even.times_plus(squared, w.splat(self.coefficients[2 * k]));
+            odd = odd.times_plus(squared, w.splat(self.coefficients[2 * k + 1]));
         }
-        even + odd * t
+        odd.times_plus(t, even)
     }
 }

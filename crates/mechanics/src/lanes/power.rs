@@ -1,56 +1,51 @@
 //! One fixed power of many numbers, without logarithms.
 //!
 //! ```text
-//! x = m · Π 2^(−s),   m in [2^(−½), 1]     ⇒     xⁿ = mⁿ · Π 2^(−s n)
+//! x = 2^e m   ⇒   xⁿ = mⁿ 2^(n e),   n e = k + f,   k whole,   |f| ≤ ½
 //! ```
 //!
-//! The powers of two are taken off by comparing and selecting; mⁿ is a polynomial through its values at Chebyshev's
-//! nodes, worked out once for the exponent.
+//! mⁿ and 2^f are polynomials through their values at Chebyshev's nodes, worked out once for the exponent; 2^k is put together from
+//! its bits.
 
 use pulp::Simd;
 
+use super::octaves::{HALF, MIDDLE};
 use super::polynomial::Polynomial;
 use super::{Lane, Wide};
 
-/// Powers of two that are taken off, from the largest number on; they reach down to 10⁻³⁵.
-const OCTAVES: [f64; 8] = [64.0, 32.0, 16.0, 8.0, 4.0, 2.0, 1.0, 0.5];
-/// Numbers are below 2 to this power.
-const LARGEST: f64 = 8.0;
-/// Middle and half width of the interval of m.
-const MIDDLE: f64 = 0.5 * (1.0 + std::f64::consts::FRAC_1_SQRT_2);
-const HALF: f64 = 0.5 * (1.0 - std::f64::consts::FRAC_1_SQRT_2);
+/// Upper digits of the exponent, whose products with e are exact: e has at most twelve binary digits.
+const DIGITS: f64 = 1_099_511_627_776.0;
 
-/// x ↦ xⁿ for 10⁻³⁵ < x < 256.
+/// x ↦ xⁿ of positive numbers, as long as the result is a number with all of its digits.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FixedPower {
+    /// n, rounded to 40 digits behind the point, and what is missing.
+    exponent: [f64; 2],
     /// mⁿ of (m − MIDDLE)/HALF. For exponents up to 2 the error of the interpolation is below that of rounding.
     within: Polynomial,
-    /// 2^(−s), 2^s and 2^(−s n) of every octave.
-    octaves: [[f64; 3]; OCTAVES.len()],
-    /// 2^(8 n)
-    largest: f64,
+    /// 2^f of 2 f.
+    share: Polynomial,
 }
 
 impl FixedPower {
     pub(crate) fn new(exponent: f64) -> Self {
+        let upper = (exponent * DIGITS).round() / DIGITS;
         Self {
+            exponent: [upper, exponent - upper],
             within: Polynomial::through(|t| (MIDDLE + HALF * t).powf(exponent)),
-            octaves: OCTAVES.map(|s| [(-s).exp2(), s.exp2(), (-s * exponent).exp2()]),
-            largest: (LARGEST * exponent).exp2(),
+            share: Polynomial::through(|t| (0.5 * t).exp2()),
         }
     }
 
     #[inline(always)]
     pub(crate) fn of<S: Simd>(&self, w: Wide<S>, x: Lane<S>) -> Lane<S> {
-        let mut m = x * w.splat((-LARGEST).exp2());
-        let mut power = w.splat(self.largest);
-        for [least, scale, share] in self.octaves {
-            let below = w.splat(least).greater(m);
-            m = below.select(m * w.splat(scale), m);
-            power = below.select(power * w.splat(share), power);
-        }
-        let t = (m - w.splat(MIDDLE)) * w.splat(1.0 / HALF);
-        power * self.within.of(w, t)
+        let [e, t] = x.octaves();
+        let [upper, missing] = self.exponent.map(|part| w.splat(part));
+        let whole = e * upper;
+        let k = whole.nearest();
+        let f = (whole - k) + e * missing;
+        let share = self.share.of(w, f + f);
+        k.power_of_two() * share * self.within.of(w, t)
     }
 }
 
@@ -73,6 +68,7 @@ mod tests {
                 worst = worst.max((out[0] / x.powf(exponent) - 1.0).abs());
             }
         }
-        assert!(worst < 3e-15, "{worst:e}");
+        // Each of the two polynomials errs by some units of the last place.
+        assert!(worst < 6e-15, "{worst:e}");
     }
 }

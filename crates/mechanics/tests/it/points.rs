@@ -377,3 +377,65 @@ fn joints_are_solved_exactly() {
     }
     assert!(felt > 0.1, "no joint is closed: {felt}");
 }
+
+/// Largest eigenvalue of −∂a/∂q at a state, by power iteration on differences of accelerations.
+fn stiffest(system: &System, state: &State) -> f64 {
+    let accelerations = |q: &[f64]| {
+        let mut a = vec![0.0; q.len()];
+        let mut rates = vec![0.0; system.quadratures()];
+        let at = Moment {
+            t: state.t,
+            q,
+            v: &state.v,
+            z: &[],
+        };
+        system.evaluate(at, &mut a, &mut rates, &mut system.new_record());
+        a
+    };
+    let still = accelerations(&state.q);
+    let stride = still.len() / 6;
+    let start = |i: usize| (0.7 * (i / stride * 8 + i % stride % 8) as f64).sin();
+    let mut x: Vec<f64> = (0..still.len()).map(start).collect();
+    let mut value = 0.0;
+    for _ in 0..40 {
+        let largest = x.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        // Copies behind the originals move with them; nanometres leave contacts what they are.
+        let moved = |(q, x): (&f64, &f64)| q + 1e-11 * x / largest;
+        let moved: Vec<f64> = state.q.iter().zip(&x).map(moved).collect();
+        let there = accelerations(&moved);
+        let next: Vec<f64> = still
+            .iter()
+            .zip(&there)
+            .map(|(a, b)| (a - b) / 1e-11)
+            .collect();
+        let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+        value = norm(&next) * largest / norm(&x);
+        x = next;
+    }
+    value
+}
+
+/// What bounds the steps is not below the stiffest mode that the joints have while they strike, nor far above it.
+#[test]
+fn steps_are_bounded_by_the_stiffest_mode() {
+    let start = ring();
+    let mut system = start.system.clone();
+    let mut state = State::new(0.0, start.q.clone(), start.v.clone());
+    let mut stepper = Method::ImplicitDamping { step: 1e-6 }
+        .start(&mut system, &mut state)
+        .expect("the step is short enough");
+    let (mut found, mut bound) = (0.0_f64, 0.0_f64);
+    for step in 0..2000 {
+        stepper
+            .advance(&mut system, &mut state)
+            .expect("the step is short enough");
+        bound = bound.max(system.undamped_time_scale().powi(-2));
+        if step % 5 == 0 {
+            found = found.max(stiffest(&system, &state));
+        }
+    }
+    println!("stiffest mode {found:.3e}/s², bound {bound:.3e}/s²");
+    assert!(found > 1e10, "no joint is closed: {found:e}");
+    assert!(bound > 0.99 * found, "{bound:e} is below {found:e}");
+    assert!(bound < 3.0 * found, "{bound:e} is far above {found:e}");
+}

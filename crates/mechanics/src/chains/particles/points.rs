@@ -42,6 +42,8 @@ pub(crate) struct Points {
     /// Pins in bushes, and bushes in rollers.
     pin: Bearing,
     bush: Bearing,
+    /// Stiffness of both where they hardly touch \[N/m\]: that of contacts which are open now.
+    shallow: [f64; 2],
     /// One where the end after a joint is the bush, zero elsewhere.
     bush_after: Vec<f64>,
     rollers: usize,
@@ -103,8 +105,9 @@ struct Held {
     /// ∂F/∂δ \[N/m\] and ∂F/∂δ̇ \[N s/m\].
     stiffness: Vec<f64>,
     damping: Vec<f64>,
-    /// The greatest of them.
+    /// The greatest of each.
     stiffest: f64,
+    damped: f64,
 }
 
 impl Held {

@@ -15,6 +15,9 @@ use crate::contact::ContactMemory;
 use crate::drive::Surface;
 use crate::lanes::padded;
 
+/// Depth at which contacts that are open now are reckoned with \[m\].
+const SHALLOW: f64 = 1e-7;
+
 /// Share of the stiffness of a link that its joint may take away: the plates count as ten times as stiff at most.
 const MOST_OF_THE_JOINT: f64 = 0.9;
 
@@ -96,6 +99,7 @@ impl Points {
         let mut chain = Self {
             joints: Joints::new(laid.chain, links.rest.len()),
             link_rates: [0.0; 2],
+            shallow: [pin.stiffness(SHALLOW), bush.stiffness(SHALLOW)],
             links,
             pin,
             bush,

@@ -22,7 +22,7 @@ use super::{AFTER, BEFORE, Found, Points, ROLLERS};
 use crate::chains::links::{Mount, rail_mount, turned, wheel_mount};
 use crate::chains::{Loads, Record, Surroundings};
 use crate::contact::{Contacts, Frame, Touch};
-use crate::lanes::{LANES, Lane, Wide, dispatch, padded};
+use crate::lanes::{LANES, Lane, Mask, Wide, dispatch, padded};
 use crate::system::{GroupBodies, RailContact};
 
 /// One direction of a closed contact between a roller and a wheel or rail.
@@ -304,21 +304,16 @@ impl WithSimd for Joints<'_> {
         ]
         .map(|values| w.lanes(values));
         let [c, k] = [weights.damping, weights.stiffness].map(|weight| w.splat(weight));
-        let (one, half) = (w.splat(1.0), w.splat(0.5));
+        let [zero, half, one] = [0.0, 0.5, 1.0].map(|number| w.splat(number));
         for i in 0..count / Wide::<S>::COUNT {
             let start = i * Wide::<S>::COUNT;
             let b_r = [w.load(x, start), w.load(x, n + start)];
             let before = [w.load(x, 2 * n + start), w.load(x, 3 * n + start)];
             let after = [w.load(x, 4 * n + start), w.load(x, 5 * n + start)];
             let is_after = bush_after.get(i).greater(half);
-            let b_b = [
-                is_after.select(after[0], before[0]),
-                is_after.select(after[1], before[1]),
-            ];
-            let b_p = [
-                is_after.select(before[0], after[0]),
-                is_after.select(before[1], after[1]),
-            ];
+            let b_b = either(is_after, after, before);
+            let b_p = either(is_after, before, after);
+            let b_pin = [b_p[0] - b_b[0], b_p[1] - b_b[1]];
             let (im_before, im_after) = (of_before.get(i), of_after.get(i));
             let m_b = is_after.select(im_after, im_before);
             let m_p = is_after.select(im_before, im_after);
@@ -328,13 +323,22 @@ impl WithSimd for Joints<'_> {
             let n2 = [bush_x.get(i), bush_y.get(i)];
             let d1 = c * pin_d.get(i) + k * pin_k.get(i);
             let d2 = c * bush_d.get(i) + k * bush_k.get(i);
+            let (pressed_x, pressed_y) = (matrix_xx.get(i), matrix_yy.get(i));
+            if !(d2 + pressed_x + pressed_y).greater(zero).any() {
+                // Rollers that touch nothing, as those between sprockets mostly are: what is left is the pin in its bush.
+                let p1 = pin_alone(one, d1, [m_p, m_b], dot(n1, b_pin));
+                let of_before = p1 * is_after.select(-m_p, m_b);
+                let of_after = p1 * is_after.select(m_b, -m_p);
+                for axis in 0..2 {
+                    let (at_before, at_after) = ((2 + axis) * n + start, (4 + axis) * n + start);
+                    (before[axis] + of_before * n1[axis]).store(x, at_before);
+                    (after[axis] + of_after * n1[axis]).store(x, at_after);
+                }
+                continue;
+            }
             // y = A⁻¹ r,   A = m_r + Σ D e eᵀ
             let m_r = masses.get(i);
-            let (xx, xy, yy) = (
-                m_r + matrix_xx.get(i),
-                matrix_xy.get(i),
-                m_r + matrix_yy.get(i),
-            );
+            let (xx, xy, yy) = (m_r + pressed_x, matrix_xy.get(i), m_r + pressed_y);
             let inverse = (xx * yy - xy * xy).recip();
             let right = [m_r * b_r[0] + right_x.get(i), m_r * b_r[1] + right_y.get(i)];
             let y = [
@@ -350,7 +354,7 @@ impl WithSimd for Joints<'_> {
             let e2 = d2 * (one + d2 * (m_b + dot(n2, through))).recip();
             let cross = dot(n1, n2) * m_b;
             // p₁ = D₁ (w₁ + c E₂ w₂)/(1 + D₁ (1/m_p + 1/m_b − c² E₂))
-            let w1 = dot(n1, [b_p[0] - b_b[0], b_p[1] - b_b[1]]) + cross * e2 * w2;
+            let w1 = dot(n1, b_pin) + cross * e2 * w2;
             let p1 = d1 * w1 * (one + d1 * (m_p + m_b - cross * cross * e2)).recip();
             let p2 = e2 * (w2 + cross * p1);
             (y[0] + through[0] * p2).store(x, start);
@@ -366,6 +370,17 @@ impl WithSimd for Joints<'_> {
             (after[1] + is_after.select(on_bush[1], on_pin[1])).store(x, 5 * n + start);
         }
     }
+}
+
+/// p₁ = D₁ w₁/(1 + D₁ (1/m_p + 1/m_b)) of a pin in a bush that touches nothing else.
+#[inline(always)]
+fn pin_alone<S: Simd>(one: Lane<S>, d1: Lane<S>, [m_p, m_b]: [Lane<S>; 2], w1: Lane<S>) -> Lane<S> {
+    d1 * w1 * (one + d1 * (m_p + m_b)).recip()
+}
+
+#[inline(always)]
+fn either<S: Simd>(first: Mask<S>, yes: [Lane<S>; 2], no: [Lane<S>; 2]) -> [Lane<S>; 2] {
+    [first.select(yes[0], no[0]), first.select(yes[1], no[1])]
 }
 
 #[inline(always)]

@@ -5,16 +5,14 @@ use pulp::{Scalar128b, Simd, WithSimd};
 
 use super::{AFTER, BEFORE, Ends, Found, Held, Points, ROLLERS};
 use crate::chains::joints::Resistance;
-use crate::chains::links::{Apart, Bearing, Grip, Tally};
+use crate::chains::links::{Apart, Grip, Tally};
 use crate::chains::particles::articulation::{self, Turning};
 use crate::chains::particles::forces::{plate_forces, touch_bodies};
 use crate::chains::{Loads, Record, Surroundings};
 use crate::contact::{LaneTally, MemoryLanes, Rollers};
 use crate::energy::Flow;
 use crate::lanes::{LANES, Lane, Wide, padded};
-
-/// Depth at which contacts that are open now are reckoned with \[m\].
-const SHALLOW: f64 = 1e-7;
+use crate::system::RailContact;
 
 /// Steps take the damping of bodies by the contacts explicitly, and shall be at most so long in units of its time.
 const OF_BODIES: f64 = 4.0;
@@ -333,7 +331,9 @@ impl Points {
     /// ω² and D as estimated from the links, the contacts in the joints, the deepest contact with a body, and the damping.
     ///
     /// ```text
-    /// ω² = max over rollers, bushes and pins of Σ 2 k/m
+    ///     ⎡ (k₂ + k₃)/m_r   −k₂/√(m_r m)                 ⎤     k₁, k₂, k₃: pin in bush, bush in roller, roller on tooth,
+    /// ω²: ⎢ −k₂/√(m_r m)    (k₁ + k₂)/m + ℓ   −k₁/m      ⎥     all along one line, where they act together most
+    ///     ⎣                 −k₁/m             k₁/m + ℓ   ⎦     ℓ: largest 2 k/m of links, which bounds what they add
     /// ```
     ///
     /// The part that implicit steps take explicitly (dampers of links, viscous joints, and what contacts do to the bodies) counts as
@@ -347,14 +347,11 @@ impl Points {
             bodies, contacts, ..
         } = around;
         let found = &record.points;
-        let bear = |bearing: &Bearing, held: &Held| {
-            let damping = held.damping.iter().copied().fold(0.0, f64::max);
-            [held.stiffest.max(bearing.stiffness(SHALLOW)), damping]
-        };
-        let (pin, bush) = (
-            bear(&self.pin, &found.pins),
-            bear(&self.bush, &found.bushes),
-        );
+        let bear = |shallow: f64, held: &Held| [held.stiffest.max(shallow), held.damped];
+        let [pin, bush] = [
+            bear(self.shallow[0], &found.pins),
+            bear(self.shallow[1], &found.bushes),
+        ];
         let (mut tooth, mut of_bodies) = ([0.0_f64; 2], 0.0_f64);
         for (mount, (on, wrench)) in contacts
             .teeth
@@ -376,27 +373,35 @@ impl Points {
             tooth[0] = tooth[0].max(on.contacts.surface.stiffness(wrench.depth) * share);
             tooth[1] = tooth[1].max(wrench.damping * share);
         }
-        let mut plates = 0.0_f64;
+        let mut plates = [0.0_f64; 2];
         for (on, wrench) in contacts.rails.iter().zip(&record.loads.rail_wrenches) {
-            tooth[0] = tooth[0].max(on.contact.surface().stiffness(wrench.depth));
-            if matches!(on.contact, crate::system::RailContact::Plates(_)) {
-                plates = plates.max(wrench.damping);
+            let stiffness = on.contact.surface().stiffness(wrench.depth);
+            if matches!(on.contact, RailContact::Plates(_)) {
+                plates = [plates[0].max(stiffness), plates[1].max(wrench.damping)];
             } else {
+                tooth[0] = tooth[0].max(stiffness);
                 tooth[1] = tooth[1].max(wrench.damping);
             }
         }
         let lightest_end = self.lightest[BEFORE].max(self.lightest[AFTER]);
-        let row = |k: usize| {
-            let roller = self.lightest[ROLLERS] * (2.0 * bush[k] + tooth[k]);
-            let end = lightest_end * 2.0 * (pin[k] + bush[k]) + self.link_rates[k];
-            roller.max(end)
+        let along = |k: usize| {
+            let (roller, link) = (self.lightest[ROLLERS], self.link_rates[k]);
+            let between = (roller * lightest_end).sqrt();
+            largest(
+                [
+                    (bush[k] + tooth[k]) * roller,
+                    (pin[k] + bush[k]) * lightest_end + link,
+                    pin[k] * lightest_end + link,
+                ],
+                [bush[k] * between, pin[k] * lightest_end],
+            )
         };
-        let damping = row(1) + lightest_end * plates;
+        let [contacts, damping] = [along(0), along(1) + lightest_end * plates[1]];
         let turns = |slope: f64| 8.0 * slope * lightest_end / (self.pitch * self.pitch);
         let [across, drag] = record.resistance.slopes.map(turns);
-        let explicit = self.link_rates[1] + drag + lightest_end * plates;
+        let explicit = self.link_rates[1] + drag + lightest_end * plates[1];
         // ω = D + √(D² + ω²) of what damps explicitly
-        let stiff = row(0) + across;
+        let stiff = contacts + lightest_end * plates[0] + across;
         let frequency = explicit + (explicit * explicit + stiff).sqrt();
         let frequency = frequency.max(OF_BODIES * of_bodies);
         [frequency * frequency, damping + drag]
@@ -416,14 +421,37 @@ impl Points {
     }
 }
 
+/// Largest eigenvalue of a symmetric tridiagonal matrix with this diagonal and these numbers beside it, by Newton's method from above: that
+/// of the characteristic polynomial comes down to it and does not pass.
+///
+/// ```text
+/// p = (λ − a₀)((λ − a₁)(λ − a₂) − b₁²) − b₀² (λ − a₂)
+/// ```
+fn largest([a0, a1, a2]: [f64; 3], [b0, b1]: [f64; 2]) -> f64 {
+    let rows = [a0 + b0, a1 + b0 + b1, a2 + b1];
+    let mut value = rows.into_iter().fold(0.0, f64::max);
+    for _ in 0..6 {
+        let (x, y, z) = (value - a0, value - a1, value - a2);
+        let inner = y * z - b1 * b1;
+        let polynomial = x * inner - b0 * b0 * z;
+        let slope = inner + x * (y + z) - b0 * b0;
+        if slope <= 0.0 {
+            break;
+        }
+        value -= polynomial / slope;
+    }
+    value
+}
+
 /// Writes what joints of one kind exert, lane by lane.
 struct Grips<'a, S: Simd> {
     normal: [crate::lanes::LanesMut<'a, S>; 2],
     force: crate::lanes::LanesMut<'a, S>,
     stiffness: crate::lanes::LanesMut<'a, S>,
     damping: crate::lanes::LanesMut<'a, S>,
-    greatest: Lane<S>,
-    stiffest: &'a mut f64,
+    /// Of any lane so far: stiffness and damping.
+    greatest: [Lane<S>; 2],
+    of_all: [&'a mut f64; 2],
 }
 
 impl<'a, S: Simd> Grips<'a, S> {
@@ -438,8 +466,8 @@ impl<'a, S: Simd> Grips<'a, S> {
             force: Wide::<S>::lanes_mut(&mut held.force),
             stiffness: Wide::<S>::lanes_mut(&mut held.stiffness),
             damping: Wide::<S>::lanes_mut(&mut held.damping),
-            greatest: w.splat(0.0),
-            stiffest: &mut held.stiffest,
+            greatest: [w.splat(0.0); 2],
+            of_all: [&mut held.stiffest, &mut held.damped],
         }
     }
 
@@ -450,12 +478,15 @@ impl<'a, S: Simd> Grips<'a, S> {
         self.force.set(i, grip.force);
         self.stiffness.set(i, grip.stiffness);
         self.damping.set(i, grip.damping);
-        self.greatest = self.greatest.max(grip.stiffness);
+        let [stiffness, damping] = self.greatest;
+        self.greatest = [stiffness.max(grip.stiffness), damping.max(grip.damping)];
     }
 
     #[inline(always)]
     fn finish(self) {
-        *self.stiffest = self.greatest.largest();
+        for (value, greatest) in self.of_all.into_iter().zip(self.greatest) {
+            *value = greatest.largest();
+        }
     }
 }
 
@@ -484,5 +515,31 @@ impl WithSimd for Forces<'_> {
             filled,
         } = self;
         chain.forces(Wide(simd), around, at, a, rates, filled);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Matrix3;
+
+    use super::*;
+
+    /// Against a dense solver, and never below: it bounds steps.
+    #[test]
+    fn largest_eigenvalue_is_found_from_above() {
+        for i in 0..500 {
+            let number = |k: i32| 10.0_f64.powf(3.0 * (f64::from(17 * i + k)).sin().abs() + 8.0);
+            let [k1, k2, k3, link] = [1, 2, 3, 4].map(number);
+            let (roller, end) = (number(5) * 1e-6, number(6) * 1e-7);
+            let diagonal = [(k2 + k3) * roller, (k1 + k2) * end + link, k1 * end + link];
+            let beside = [k2 * (roller * end).sqrt(), k1 * end];
+            let mut matrix = Matrix3::from_diagonal(&diagonal.into());
+            for j in 0..2 {
+                (matrix[(j, j + 1)], matrix[(j + 1, j)]) = (-beside[j], -beside[j]);
+            }
+            let expected = matrix.symmetric_eigenvalues().max();
+            let share = largest(diagonal, beside) / expected - 1.0;
+            assert!((-1e-12..0.02).contains(&share), "{i}: {share}");
+        }
     }
 }
