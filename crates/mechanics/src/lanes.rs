@@ -4,6 +4,8 @@
 //! which one runs is decided when the system is built. No operation is fused, and sums are taken
 //! in a fixed order: the same machine gives the same bits.
 
+mod decay;
+mod logarithm;
 mod polynomial;
 mod power;
 mod turn;
@@ -258,6 +260,16 @@ impl<S: Simd> Lane<S> {
     #[inline(always)]
     fn fused(self, factor: Self, term: Self) -> Self {
         self.with(self.simd.mul_add_f64s(self.v, factor.v, term.v))
+    }
+
+    #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        self.with(self.simd.and_f64s(self.v, other.v))
+    }
+
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        self.with(self.simd.or_f64s(self.v, other.v))
     }
 
     #[inline(always)]
