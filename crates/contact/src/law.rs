@@ -230,6 +230,16 @@ impl Prepared {
         Some([power.stiffness, power.exponent, series])
     }
 
+    /// π E* L \[N/m\] and ln δ_max, δ_max in metres, of a logarithmic law, alone or with a spring behind it, for the same. Where it ends
+    /// says [`reach`](Self::reach).
+    #[inline]
+    pub fn logarithm(&self) -> Option<[f64; 2]> {
+        match self.stack.curve()? {
+            Curve::Logarithmic(law) => Some(law.constants()),
+            Curve::Linear(_) | Curve::Hertz(_) | Curve::Power(_) | Curve::Plain(_) => None,
+        }
+    }
+
     /// Action of the dissipation, its constants worked out.
     #[inline]
     pub fn action(&self) -> Action {

@@ -6,9 +6,12 @@
 //! and, while closed, the inverse of the speed at touch.
 
 mod ahead;
+mod bristles;
+mod friction;
 mod impacts;
 mod kernel;
 mod law;
+mod logarithm;
 mod look;
 mod memory;
 mod plates;
@@ -26,8 +29,10 @@ use chaindrive_contact::Law;
 use chaindrive_geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
 
+pub(crate) use bristles::Sweep;
+pub(crate) use friction::{LaneFriction, LaneSpring};
 pub use impacts::Impacts;
-pub(crate) use law::{LaneFriction, LaneSpring, SurfaceLaw};
+pub(crate) use law::SurfaceLaw;
 pub(crate) use memory::{ContactMemory, ContactState, MemoryLanes};
 pub(crate) use plates::{Drawn, OfPins, PlateContact, PlatePins, PlatePlaces, Pressing};
 pub(crate) use rollers::Rollers;

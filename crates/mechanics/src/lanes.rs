@@ -4,6 +4,8 @@
 //! which one runs is decided when the system is built. No operation is fused, and sums are taken
 //! in a fixed order: the same machine gives the same bits.
 
+mod decay;
+mod logarithm;
 mod octaves;
 mod polynomial;
 mod power;
@@ -13,7 +15,6 @@ use std::ops::{Add, AddAssign, BitAnd, Mul, Neg, Sub};
 
 use pulp::{Arch, Scalar128b, Simd, WithSimd};
 
-pub(crate) use octaves::Logarithm;
 pub(crate) use polynomial::Polynomial;
 pub(crate) use power::FixedPower;
 

@@ -66,6 +66,11 @@ impl Logarithmic {
         }
     }
 
+    /// π E* L \[N/m\] and ln δ_max, δ_max in metres.
+    pub(crate) fn constants(self) -> [f64; 2] {
+        [self.scale, self.end]
+    }
+
     /// Depth \[m\] from which on it is its own tangent.
     pub(super) fn reach(self) -> f64 {
         self.knee

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::MemoryError;
 use crate::articulation::Articulation;
-use crate::contact::{LaneFriction, LaneSpring};
+use crate::contact::{LaneFriction, LaneSpring, Sweep};
 use crate::lanes::{Lane, Wide, padded};
 
 /// The joints in flat arrays, and what their friction remembers.
@@ -44,6 +44,11 @@ pub(crate) struct Resistance {
     /// Torque of every joint on the link after it \[N m\], and whole lanes behind.
     #[serde(skip)]
     pub(super) torque: Vec<f64>,
+    /// Normal forces and slips, for laws that are asked for all joints at once.
+    #[serde(skip)]
+    normal: Vec<f64>,
+    #[serde(skip)]
+    slip: Vec<f64>,
     stick: Stick,
     /// Energy in the springs of friction that holds \[J\].
     pub(super) stored: f64,
@@ -132,11 +137,63 @@ impl Joints {
             found.stored = 0.5 * spring.stiffness * sums.squares.sum();
             return sums.power.sum();
         }
+        if let LaneFriction::Bristles(law) = &self.friction {
+            let [power, largest] = self.gather(w, found, turns);
+            let before = &self.memory.state;
+            let [lost, held, steepest] = w.call(Sweep {
+                law,
+                dt,
+                normal: &found.normal,
+                slip: &found.slip,
+                lever: &self.radius,
+                before,
+                now: &mut found.stick.state,
+                torque: &mut found.torque[..n],
+                beside: &self.damping,
+            });
+            found.slopes = [self.largest[0] * self.friction.stiffness(largest), steepest];
+            found.stored = held;
+            return power + lost;
+        }
         let sums = self.sweep::<S, false>(w, dt, found, turns, LaneSpring::default());
         let stiffness = self.friction.stiffness(sums.normal.largest());
         found.slopes = [self.largest[0] * stiffness, sums.steepest.largest()];
         found.stored = sums.held.sum();
         sums.power.sum()
+    }
+
+    /// Writes down normal forces, slips, and the torques of what is viscous; the power that goes into these, and the largest normal
+    /// force.
+    #[inline(always)]
+    fn gather<S: Simd>(
+        &self,
+        w: Wide<S>,
+        found: &mut Resistance,
+        turns: &impl Turns<S>,
+    ) -> [f64; 2] {
+        let n = self.radius.len();
+        for values in [&mut found.normal, &mut found.slip] {
+            values.resize(n, 0.0);
+        }
+        let zero = w.splat(0.0);
+        let radius = w.lanes(&self.radius);
+        let damping = w.lanes(&self.damping);
+        let mut normals = Wide::<S>::lanes_mut(&mut found.normal);
+        let mut slips = Wide::<S>::lanes_mut(&mut found.slip);
+        let mut moments = Wide::<S>::lanes_mut(&mut found.torque[..n]);
+        let [mut power, mut largest] = [zero; 2];
+        for i in 0..n / Wide::<S>::COUNT {
+            let (r, c) = (radius.get(i), damping.get(i));
+            let [rate, normal] = turns.at(w, i);
+            let normal = r.greater(zero).select(normal, zero);
+            let drag = c * rate;
+            normals.set(i, normal);
+            slips.set(i, r * rate);
+            moments.set(i, -drag);
+            power += drag * rate;
+            largest = largest.max(normal);
+        }
+        [power.sum(), largest.largest()]
     }
 
     /// All joints once; without closures, since those that are not inlined are compiled for the oldest processor.

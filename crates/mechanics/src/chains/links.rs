@@ -13,6 +13,7 @@ mod balance;
 mod bearing;
 mod blocks;
 pub(crate) mod build;
+mod by_link;
 mod drag;
 mod element;
 mod held;
@@ -44,6 +45,7 @@ pub(super) use balance::add_joint;
 pub(super) use bearing::{Apart, Grip};
 pub(crate) use bearing::{Bearing, Part, Tally};
 pub(crate) use blocks::Blocks;
+pub(super) use blocks::solve_dense;
 pub(crate) use element::{Element, Mount, Partner, cross, turned};
 pub(crate) use hinge::Hinges;
 pub(crate) use impulses::Impulses;
@@ -177,6 +179,9 @@ pub(crate) struct JointState {
     pub(crate) reactions: reactions::Reactions,
     #[serde(skip)]
     pub(crate) answers: held::Answers,
+    /// Forces on the links, and what ideal joints do to them.
+    #[serde(skip)]
+    pub(crate) loads: by_link::ByLink,
     /// Normal forces of pins in ideal joints without friction \[N\], whole lanes.
     #[serde(skip)]
     pub(crate) normal: Vec<f64>,

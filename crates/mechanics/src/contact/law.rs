@@ -10,10 +10,12 @@
 //! asked for one lane after the other, in the same place.
 
 use chaindrive_contact::dissipation::{Action, RATIO_LIMIT};
-use chaindrive_contact::{Approach, Friction, Law, Prepared, Rub};
+use chaindrive_contact::{Approach, Law, Prepared};
 use pulp::Simd;
 
 use super::ahead::Ahead;
+use super::friction::{LaneFriction, Rubbing};
+use super::logarithm::Logarithm;
 use super::memory::MemoryLanes;
 use super::stacked::Stacked;
 use super::wrench::LaneTally;
@@ -46,35 +48,10 @@ pub(super) enum LaneElastic {
     Power(f64, f64, Box<FixedPower>),
     /// A power with a spring behind it.
     Stacked(Box<Stacked>),
+    /// A logarithm, which may have a spring behind it.
+    Logarithm(Box<Logarithm>),
     /// Any law, one lane after the other.
     General(Box<Prepared>),
-}
-
-/// A spring and a slider, prepared.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct LaneSpring {
-    /// k \[N/m\]
-    pub(crate) stiffness: f64,
-    /// μ/k \[m/N\]
-    coefficient_by_stiffness: f64,
-}
-
-/// A friction law on lanes.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum LaneFriction {
-    None,
-    Coulomb {
-        /// μ \[–\]
-        coefficient: f64,
-        /// Square of the regularising slip speed \[m²/s²\].
-        slip_speed_squared: f64,
-        /// Slope at rest per normal force, μ/v_s \[s/m\].
-        slope: f64,
-    },
-    /// A spring and a slider.
-    SpringSlider(LaneSpring),
-    /// Any other law, one lane after the other.
-    General(Friction),
 }
 
 /// A flank on lanes.
@@ -99,19 +76,6 @@ pub(crate) struct Pressed<S: Simd> {
     stored: Lane<S>,
     /// Normal force \[N\], zero where open.
     pub(crate) force: Lane<S>,
-}
-
-/// Force of friction, and its derivatives.
-pub(crate) struct Rubbing<S: Simd> {
-    /// Force along the slip \[N\].
-    pub(crate) force: Lane<S>,
-    /// Its slope −∂R/∂slip, not negative \[N s/m\].
-    pub(crate) drag: Lane<S>,
-    /// |R/slip|, or the slope where that is steeper \[N s/m\]. With it a step cannot carry the slip beyond zero, where the
-    /// slope of a saturated friction would let it chatter.
-    pub(crate) secant: Lane<S>,
-    /// The slope that limits explicit steps \[N s/m\].
-    pub(crate) steepest: Lane<S>,
 }
 
 /// A depth \[m\] that no power is taken below; the force there is nothing beside rounding.
@@ -306,12 +270,15 @@ impl LaneElastic {
             Some([stiffness, n]) if is(n, 1.0) => Self::Linear(stiffness),
             Some([stiffness, n]) if is(n, 1.5) => Self::Hertz(stiffness),
             Some([stiffness, n]) => Self::Power(stiffness, n, Box::new(FixedPower::new(n - 1.0))),
-            None => match prepared.power_and_series() {
-                Some([stiffness, n, series]) => {
-                    Self::Stacked(Box::new(Stacked::new(stiffness, n, series)))
+            None => {
+                if let Some([stiffness, n, series]) = prepared.power_and_series() {
+                    return Self::Stacked(Box::new(Stacked::new(stiffness, n, series)));
                 }
-                None => Self::General(Box::new(prepared)),
-            },
+                match Logarithm::of(law) {
+                    Some(law) => Self::Logarithm(Box::new(law)),
+                    None => Self::General(Box::new(prepared)),
+                }
+            }
         }
     }
 
@@ -324,6 +291,7 @@ impl LaneElastic {
                 w.splat(*stiffness) * depth * lower.of(w, depth.max(w.splat(LEAST_DEPTH)))
             }
             Self::Stacked(stack) => stack.force(w, depth),
+            Self::Logarithm(law) => law.force(w, depth),
             Self::General(law) => general(w, law, depth, Part::Force),
         }
     }
@@ -336,6 +304,7 @@ impl LaneElastic {
             Self::Hertz(_) => 1.5,
             Self::Power(_, n, _) => *n,
             Self::Stacked(stack) => return stack.slope(w, depth, force),
+            Self::Logarithm(law) => return law.slope(w, depth, force),
             Self::General(law) => return general(w, law, depth, Part::Slope),
         };
         // k = n g/δ
@@ -371,210 +340,6 @@ fn respond_one_by_one(law: &Prepared, part: Part, numbers: &mut [f64]) {
             Part::Force => response.elastic,
             Part::Slope => response.stiffness,
         };
-    }
-}
-
-impl LaneSpring {
-    /// Friction, and the deflection of the spring.
-    #[inline(always)]
-    pub(crate) fn rub<S: Simd>(
-        &self,
-        w: Wide<S>,
-        dt: f64,
-        normal: Lane<S>,
-        slip: Lane<S>,
-        before: Lane<S>,
-    ) -> (Rubbing<S>, Lane<S>) {
-        // z′ = z + v h, drawn back to |z′| ≤ μ N/k;   f = −k z′,   −∂f/∂v = k h while it holds
-        let stiffness = w.splat(self.stiffness);
-        let limit = w.splat(self.coefficient_by_stiffness) * normal;
-        let tried = before + slip * w.splat(dt);
-        let stick = tried.max(-limit).min(limit);
-        let holds = limit.greater(tried.abs());
-        let drag = holds.select(stiffness * w.splat(dt), w.splat(0.0));
-        let rubbing = Rubbing {
-            force: -(stiffness * stick),
-            drag,
-            secant: drag,
-            steepest: drag,
-        };
-        (rubbing, stick)
-    }
-}
-
-impl LaneFriction {
-    pub(crate) fn new(friction: Friction) -> Self {
-        match friction {
-            Friction::None => Self::None,
-            Friction::Coulomb(coulomb) => Self::Coulomb {
-                coefficient: coulomb.coefficient,
-                slip_speed_squared: coulomb.slip_speed * coulomb.slip_speed,
-                slope: coulomb.coefficient / coulomb.slip_speed,
-            },
-            Friction::SpringSlider(spring) => Self::SpringSlider(LaneSpring {
-                stiffness: spring.stiffness,
-                coefficient_by_stiffness: spring.coefficient / spring.stiffness,
-            }),
-            other => Self::General(other),
-        }
-    }
-
-    /// Slope at rest under normal forces \[N s/m\].
-    #[inline(always)]
-    pub(super) fn at_rest<S: Simd>(&self, w: Wide<S>, force: Lane<S>) -> Lane<S> {
-        match self {
-            Self::None | Self::SpringSlider(_) => w.splat(0.0),
-            Self::Coulomb { slope, .. } => w.splat(*slope) * force,
-            Self::General(friction) => force.one_by_one(|force| friction.damping(force, 0.0)),
-        }
-    }
-
-    /// Friction under these normal forces at these slip speeds, `dt` after the accepted state, and its state then. There is
-    /// a contact where the first number is positive.
-    #[inline(always)]
-    pub(crate) fn rub<S: Simd>(
-        &self,
-        w: Wide<S>,
-        dt: f64,
-        [touching, normal]: [Lane<S>; 2],
-        slip: Lane<S>,
-        before: Lane<S>,
-    ) -> (Rubbing<S>, Lane<S>) {
-        let zero = w.splat(0.0);
-        match self {
-            Self::None => (Rubbing::none(w), zero),
-            Self::Coulomb {
-                coefficient,
-                slip_speed_squared,
-                slope,
-            } => {
-                // f = −μ F v/√(v² + v_s²),   −∂f/∂v = μ F v_s²/√(v² + v_s²)³
-                let regular = w.splat(*slip_speed_squared);
-                let inverse = (slip * slip + regular).inverse_root();
-                let limit = w.splat(*coefficient) * normal;
-                let secant = limit * inverse;
-                let rubbing = Rubbing {
-                    force: -(limit * slip * inverse),
-                    drag: secant * regular * inverse * inverse,
-                    secant,
-                    steepest: w.splat(*slope) * normal,
-                };
-                (rubbing, zero)
-            }
-            Self::SpringSlider(spring) => spring.rub(w, dt, normal, slip, before),
-            Self::General(friction) => {
-                one_by_one(w, friction, dt, [touching, normal], slip, before)
-            }
-        }
-    }
-
-    /// Energy of what sticks, in this state under a normal force \[J\].
-    #[inline(always)]
-    pub(crate) fn stored<S: Simd>(&self, w: Wide<S>, normal: Lane<S>, stick: Lane<S>) -> Lane<S> {
-        // U = ½ k z²
-        let half_square = w.splat(0.5) * stick * stick;
-        match self {
-            Self::None | Self::Coulomb { .. } => w.splat(0.0),
-            Self::SpringSlider(spring) => w.splat(spring.stiffness) * half_square,
-            Self::General(friction) if !friction.has_state() => w.splat(0.0),
-            Self::General(friction) => {
-                half_square * normal.one_by_one(|normal| friction.stiffness(normal))
-            }
-        }
-    }
-
-    /// Whether nothing but a spring holds what sticks.
-    pub(crate) fn is_elastic(&self) -> bool {
-        matches!(self, Self::SpringSlider(_))
-    }
-
-    /// Whether it has a state.
-    #[inline(always)]
-    fn remembers(&self) -> bool {
-        matches!(self, Self::SpringSlider(_) | Self::General(_))
-    }
-
-    /// Stiffness along the surface of what sticks under a normal force \[N/m\].
-    pub(crate) fn stiffness(&self, normal: f64) -> f64 {
-        match self {
-            Self::None | Self::Coulomb { .. } => 0.0,
-            Self::SpringSlider(spring) => spring.stiffness,
-            Self::General(friction) => friction.stiffness(normal),
-        }
-    }
-
-    #[inline(always)]
-    pub(crate) fn acts(&self) -> bool {
-        !matches!(self, Self::None)
-    }
-}
-
-impl<S: Simd> Rubbing<S> {
-    #[inline(always)]
-    fn none(w: Wide<S>) -> Self {
-        let zero = w.splat(0.0);
-        Self {
-            force: zero,
-            drag: zero,
-            secant: zero,
-            steepest: zero,
-        }
-    }
-}
-
-/// Friction of any law, and its state.
-#[inline(always)]
-fn one_by_one<S: Simd>(
-    w: Wide<S>,
-    friction: &Friction,
-    dt: f64,
-    [touching, normal]: [Lane<S>; 2],
-    slip: Lane<S>,
-    before: Lane<S>,
-) -> (Rubbing<S>, Lane<S>) {
-    let [mut rub, mut drag, mut secant, mut stick] = [[0.0; LANES]; 4];
-    normal.store(&mut rub, 0);
-    slip.store(&mut drag, 0);
-    before.store(&mut stick, 0);
-    // In the place of the answer: what says where there is a contact.
-    touching.store(&mut secant, 0);
-    rub_one_by_one(
-        friction,
-        dt,
-        [&mut rub, &mut drag, &mut secant, &mut stick].map(|lane| &mut lane[..Wide::<S>::COUNT]),
-    );
-    let drag = w.load(&drag, 0);
-    let rubbing = Rubbing {
-        force: w.load(&rub, 0),
-        drag,
-        secant: w.load(&secant, 0),
-        steepest: drag,
-    };
-    (rubbing, w.load(&stick, 0))
-}
-
-/// Turns normal forces into friction forces and slips into slopes; kept out of line like the laws.
-#[inline(never)]
-fn rub_one_by_one(friction: &Friction, dt: f64, lanes: [&mut [f64]; 4]) {
-    let [force, slip, secant, stick] = lanes;
-    let lanes = force.iter_mut().zip(slip).zip(secant.iter_mut().zip(stick));
-    for ((force, slip), (secant, stick)) in lanes {
-        if *secant <= 0.0 {
-            (*force, *slip, *secant, *stick) = (0.0, 0.0, 0.0, 0.0);
-            continue;
-        }
-        let Rub {
-            force: rub,
-            damping,
-            state,
-        } = friction.rub(*force, *slip, *stick, dt);
-        // A law with a state sticks by itself, and its slope knows how.
-        *secant = if friction.has_state() || slip.abs() < f64::MIN_POSITIVE {
-            damping
-        } else {
-            damping.max(-rub / *slip)
-        };
-        (*force, *slip, *stick) = (rub, damping, state);
     }
 }
 

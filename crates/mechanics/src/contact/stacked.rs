@@ -9,10 +9,12 @@
 //! Both are fitted once, and err by [`ERROR`] at most for exponents up to 1.5. Beyond, and for others, Newton's method begins at
 //! y = 1/(1 + r), which lies below the root; the first step passes it, and the rest come down to it: how many it takes is counted once.
 
+use std::f64::consts::LOG2_E;
+
 use pulp::{Simd, WithSimd};
 
 use super::law::LEAST_DEPTH;
-use crate::lanes::{FixedPower, LANES, Lane, Logarithm, Polynomial, Wide};
+use crate::lanes::{FixedPower, LANES, Lane, Polynomial, Wide};
 
 /// K δⁿ⁻¹/k_s that steps are counted for: beyond the last one the surfaces are as good as rigid, before the first what lies behind.
 const RATIOS: [f64; 2] = [1e-8, 1e8];
@@ -46,7 +48,6 @@ pub(super) struct Stacked {
     far: Option<Polynomial<TERMS>>,
     /// log₂ K/k_s
     at_one: f64,
-    logarithm: Logarithm,
     steps: usize,
 }
 
@@ -60,7 +61,6 @@ impl Stacked {
             near: near(exponent),
             far: far(exponent),
             at_one: (stiffness / series).log2(),
-            logarithm: Logarithm::new(),
             steps: steps(exponent),
         }
     }
@@ -79,7 +79,7 @@ impl Stacked {
         let depth = depth.max(w.splat(LEAST_DEPTH));
         let n = w.splat(self.exponent);
         let yielding = w.splat(self.stiffness * self.compliance);
-        let octaves = w.splat(self.at_one) + (n - one) * self.logarithm.of(w, depth);
+        let octaves = w.splat(self.at_one) + (n - one) * w.splat(LOG2_E) * depth.ln();
         let from = w.splat(FROM);
         let beyond = octaves.greater(w.splat(FROM + OCTAVES));
         let (far, near) = (octaves.greater(from), closed & from.greater(octaves));

@@ -11,7 +11,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 use pulp::{Simd, bytemuck};
 
-use super::{Lane, Polynomial, Wide};
+use super::{Lane, Wide};
 
 /// Bits of the exponent, and of the mantissa.
 const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
@@ -34,16 +34,23 @@ impl<S: Simd> Lane<S> {
     #[inline(always)]
     pub(super) fn octaves(self) -> [Self; 2] {
         let w = Wide(self.simd);
+        let [whole, m] = self.parts();
+        let large = m.greater(w.splat(SQRT_2));
+        let e = whole + large.select(w.splat(0.5), w.splat(0.0));
+        let m = large.select(m * w.splat(FRAC_1_SQRT_2), m);
+        [e, (m - w.splat(MIDDLE)) * w.splat(1.0 / HALF)]
+    }
+
+    /// Whole exponent of two and fraction, which is not below 1 and below 2, of such numbers.
+    #[inline(always)]
+    pub(super) fn parts(self) -> [Self; 2] {
+        let w = Wide(self.simd);
         let upper = w.splat(UPPER);
         let bits = self.simd.and_f64s(self.v, mask::<S>(w, EXPONENT));
         let bits = self.simd.or_f64s(self.shifted::<false>(bits), upper.v);
         let whole = self.with(bits) - w.splat(UPPER + BIAS);
         let bits = self.simd.and_f64s(self.v, mask::<S>(w, MANTISSA));
-        let m = self.with(self.simd.or_f64s(bits, w.splat(1.0).v));
-        let large = m.greater(w.splat(SQRT_2));
-        let e = whole + large.select(w.splat(0.5), w.splat(0.0));
-        let m = large.select(m * w.splat(FRAC_1_SQRT_2), m);
-        [e, (m - w.splat(MIDDLE)) * w.splat(1.0 / HALF)]
+        [whole, self.with(self.simd.or_f64s(bits, w.splat(1.0).v))]
     }
 
     /// The nearest whole numbers.
@@ -78,27 +85,6 @@ impl<S: Simd> Lane<S> {
     }
 }
 
-/// x ↦ log₂ x of positive numbers.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Logarithm {
-    /// log₂ m of (m − MIDDLE)/HALF.
-    within: Polynomial,
-}
-
-impl Logarithm {
-    pub(crate) fn new() -> Self {
-        Self {
-            within: Polynomial::through(|t| (MIDDLE + HALF * t).log2()),
-        }
-    }
-
-    #[inline(always)]
-    pub(crate) fn of<S: Simd>(&self, w: Wide<S>, x: Lane<S>) -> Lane<S> {
-        let [e, t] = x.octaves();
-        e + self.within.of(w, t)
-    }
-}
-
 #[inline(always)]
 fn mask<S: Simd>(w: Wide<S>, bits: u64) -> S::f64s {
     w.splat(f64::from_bits(bits)).v
@@ -124,8 +110,6 @@ mod tests {
                 let m = MIDDLE + HALF * t;
                 assert!(t.abs() < 1.0 + 1e-12 && (2.0 * e).fract().abs() < 1e-300);
                 assert!((e.exp2() * m / x - 1.0).abs() < 4e-16, "{x}: {e}, {m}");
-                let logarithm = Logarithm::new().of(w, w.splat(x)).numbers()[0];
-                assert!((logarithm - x.log2()).abs() < 1e-14, "{x}: {logarithm}");
                 let whole = w.splat(e + 0.1).nearest();
                 let power = whole.power_of_two().numbers()[0];
                 let expected = (e + 0.1).round().exp2();

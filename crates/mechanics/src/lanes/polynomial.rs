@@ -4,7 +4,7 @@ use pulp::Simd;
 
 use super::{Lane, Wide};
 
-/// The polynomial through the values of a function at Chebyshev's nodes; it has an even number of coefficients.
+/// The polynomial through the values of a function at Chebyshev's nodes, with an even number of coefficients.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Polynomial<const TERMS: usize = 14> {
     /// Of rising powers.
@@ -46,8 +46,21 @@ impl<const TERMS: usize> Polynomial<TERMS> {
 
     #[inline(always)]
     pub(crate) fn of<S: Simd>(&self, w: Wide<S>, t: Lane<S>) -> Lane<S> {
-        // Even and odd powers side by side.
         let squared = t * t;
+        if TERMS.is_multiple_of(4) {
+            // Four sums side by side: long polynomials wait for each of their products.
+            let fourth = squared * squared;
+            let mut sums =
+                [TERMS - 4, TERMS - 3, TERMS - 2, TERMS - 1].map(|k| w.splat(self.coefficients[k]));
+            for k in (0..TERMS / 4 - 1).rev() {
+                for (j, sum) in sums.iter_mut().enumerate() {
+                    *sum = *sum * fourth + w.splat(self.coefficients[4 * k + j]);
+                }
+            }
+            let [a, b, c, d] = sums;
+            return (a + b * t) + (c + d * t) * squared;
+        }
+        // Even and odd powers side by side.
         let mut even = w.splat(self.coefficients[TERMS - 2]);
         let mut odd = w.splat(self.coefficients[TERMS - 1]);
         for k in (0..TERMS / 2 - 1).rev() {

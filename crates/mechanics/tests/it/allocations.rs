@@ -4,9 +4,11 @@ use std::hint::black_box;
 
 use allocation_counter::measure;
 use chaindrive_contact::Friction;
-use chaindrive_contact::friction::SpringSlider;
+use chaindrive_contact::friction::{Lugre, SpringSlider};
 use chaindrive_integrate::Method;
-use chaindrive_mechanics::{Articulation, ChainModel, Joint, Parts};
+use chaindrive_mechanics::{
+    Articulation, ChainModel, FreeRoller, Joint, Parts, PointJoints, Support,
+};
 
 use crate::several_chains::{EVEN, assembled, chain, driven, pair, parts, with_play};
 
@@ -36,15 +38,62 @@ fn ideal(parts: &mut Parts) {
     }
 }
 
-fn rubbing(parts: &mut Parts) {
+fn rubbing_by(parts: &mut Parts, friction: Friction) {
     parts.chains[0].chain.articulation = Some(Articulation {
-        friction: Friction::SpringSlider(SpringSlider {
-            coefficient: 0.1,
-            stiffness: 1e6,
-        }),
+        friction,
         radius: 2e-3,
         damping: 1e-5,
     });
+}
+
+fn rubbing(parts: &mut Parts) {
+    let spring = SpringSlider {
+        coefficient: 0.1,
+        stiffness: 1e6,
+    };
+    rubbing_by(parts, Friction::SpringSlider(spring));
+}
+
+fn bristles(parts: &mut Parts) {
+    let lugre = Lugre {
+        static_coefficient: 0.12,
+        coefficient: 0.1,
+        slip_speed: 0.01,
+        stiffness: 1e4,
+        damping: 1.0,
+        viscosity: 0.0,
+    };
+    rubbing_by(parts, Friction::Lugre(lugre));
+}
+
+/// Rollers, bushes and pins as points, around a wheel on springs: bodies have equations of their own then.
+fn pointed(parts: &mut Parts) {
+    with_play(&mut parts.chains[0]);
+    let model = &mut parts.chains[0].chain.model;
+    let ChainModel::Rigid(links) = &*model else {
+        return;
+    };
+    let Joint::Clearance(joint) = links.joint else {
+        return;
+    };
+    let roller = FreeRoller {
+        mass: 0.453e-3,
+        inertia: 1e-8,
+        bush_radius: 2.5e-3,
+        bore_radius: 2.53e-3,
+        surface: joint.surface,
+    };
+    *model = ChainModel::Points(PointJoints {
+        inner: 3.01e-3,
+        outer: 3.71e-3,
+        outer_first: false,
+        joint,
+        roller,
+    });
+    parts.sprockets[1].support = Support::Springs {
+        stiffness: [1e7; 2],
+        damping: [1e3; 2],
+    };
 }
 
 /// Steps in which windows are renewed some times and every list has grown to its length, and steps in which nothing grows.
@@ -54,10 +103,12 @@ const STEPS: [usize; 2] = [1200, 1000];
 fn steps_allocate_nothing() {
     let counted = measure(|| drop(black_box(vec![0.0; STEPS[0]])));
     assert_eq!(counted.count_total, 1, "allocations are counted");
-    let chains: [(&str, Parts, usize); 5] = [
-        ("particles", drive(|_| {}), 3),
-        ("particles that rub", drive(rubbing), 3),
-        ("ideal joints", drive(ideal), 5),
+    let chains: [(&str, Parts, usize, f64); 7] = [
+        ("particles", drive(|_| {}), 3, 1e-6),
+        ("particles that rub", drive(rubbing), 3, 1e-6),
+        ("particles with bristles", drive(bristles), 3, 1e-6),
+        ("points", drive(pointed), 4, 2e-7),
+        ("ideal joints", drive(ideal), 5, 1e-6),
         (
             "ideal joints that rub",
             drive(|parts| {
@@ -65,16 +116,18 @@ fn steps_allocate_nothing() {
                 rubbing(parts);
             }),
             5,
+            1e-6,
         ),
         (
             "clearance",
             drive(|parts| with_play(&mut parts.chains[0])),
             5,
+            1e-6,
         ),
     ];
-    for (kind, parts, count) in chains {
+    for (kind, parts, count, step) in chains {
         let assembled = assembled(parts);
-        let methods = methods(1e-6);
+        let methods = methods(step);
         for method in &methods[..count] {
             let mut system = assembled.system.clone();
             let mut state = assembled.state();

@@ -175,13 +175,7 @@ impl Bearing {
         grip.force = pressed.force;
         grip.across = pressed.force * inverse;
         if law.friction.acts() {
-            // Both surfaces at the middle of the overlap: R_pin − δ/2 and R_hole + δ/2. Seen along n, that lies behind the
-            // pin's centre if the pin is on the side before.
-            let half = w.splat(0.5) * pressed.depth;
-            let pin = w.splat(self.radius) - half;
-            let hole = w.splat(self.radius + self.clearance) + half;
-            let pin_after = apart.pin_after;
-            grip.levers = [pin_after.select(hole, -pin), pin_after.select(pin, -hole)];
+            grip.levers = self.lever_lanes(w, apart.pin_after, pressed.depth);
             // The pin's slip along its own tangent is the same from either side.
             let slip =
                 nx * uy - ny * ux + grip.levers[1] * apart.spin[1] - grip.levers[0] * apart.spin[0];
@@ -253,6 +247,22 @@ impl Bearing {
             self.radius - 0.5 * depth,
             self.radius + self.clearance + 0.5 * depth,
         ]
+    }
+
+    /// From the centres of the sides before and after along n to where they touch \[m\], of a lane of joints.
+    #[inline(always)]
+    pub(super) fn lever_lanes<S: Simd>(
+        &self,
+        w: Wide<S>,
+        pin_after: Mask<S>,
+        depth: Lane<S>,
+    ) -> [Lane<S>; 2] {
+        // Both surfaces at the middle of the overlap: R_pin − δ/2 and R_hole + δ/2. Seen along n, that lies behind the
+        // pin's centre if the pin is on the side before.
+        let half = w.splat(0.5) * depth;
+        let pin = w.splat(self.radius) - half;
+        let hole = w.splat(self.radius + self.clearance) + half;
+        [pin_after.select(hole, -pin), pin_after.select(pin, -hole)]
     }
 
     /// From the centres of the sides before and after along n to where they touch \[m\].

@@ -24,7 +24,7 @@ pub(crate) struct Blocks {
     pub(crate) corner: DMatrix<f64>,
     pub(crate) right: Vec<Vector3<f64>>,
     pub(crate) right_border: DVector<f64>,
-    pub(super) inverse: Vec<Matrix3<f64>>,
+    inverse: Vec<Matrix3<f64>>,
 }
 
 impl Blocks {
@@ -46,12 +46,6 @@ impl Blocks {
             self.corner = DMatrix::zeros(border, border);
             self.right_border = DVector::zeros(border);
         }
-    }
-
-    /// Inverts the blocks of the links, for those that nothing but their joints couples; false if a pivot vanishes.
-    pub(super) fn invert(&mut self) -> bool {
-        let mut blocks = self.inverse.iter_mut().zip(&self.diagonal);
-        blocks.all(|(inverse, block)| block.try_inverse().map(|it| *inverse = it).is_some())
     }
 
     /// Solves for the border, once the links are eliminated.
@@ -113,7 +107,7 @@ impl Blocks {
 
 /// x of A x = b in the place of b, with pivots from the column; false if one vanishes. Unlike those of libraries it keeps nothing
 /// of its own, so that nothing is allocated.
-fn solve_dense(matrix: &mut DMatrix<f64>, right: &mut DVector<f64>) -> bool {
+pub(in crate::chains) fn solve_dense(matrix: &mut DMatrix<f64>, right: &mut DVector<f64>) -> bool {
     for i in 0..right.len() {
         let pivot = i + matrix.view_range(i.., i).icamax();
         if matrix[(pivot, i)] == 0.0 {

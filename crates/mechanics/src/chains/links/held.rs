@@ -16,12 +16,14 @@
 
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::Weights;
-use nalgebra::{Matrix2x3, Matrix3, Vector3};
+use pulp::{Simd, WithSimd};
 
+use super::by_link::ByLink;
 use super::implicit::Sum;
 use super::posture::Posture;
-use super::reactions::{Limb, Reactions};
-use super::{Blocks, JointState, Linkage};
+use super::reactions::{Inertia, Reactions, load};
+use super::{Blocks, JointState, Linkage, Mate};
+use crate::lanes::{Wide, dispatch};
 use crate::system::GroupBodies;
 
 /// Prescribed value of J x at the hinges.
@@ -29,17 +31,21 @@ use crate::system::GroupBodies;
 pub(super) enum Prescribed<'a> {
     /// That of J b, with all contacts.
     Kept,
-    /// These values, by joint, with none.
+    /// These values of P_pin − P_hole, by joint, with none.
     Given(&'a [Vector]),
 }
 
 /// Space for the answers of the links to what acts on them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Answers {
-    /// s.
-    asked: Vec<Vector>,
-    /// P(Wᵀ, 0), one column behind the other.
-    columns: Vec<Vector3<f64>>,
+    /// b of the links.
+    known: ByLink,
+    /// s, by joint, of P_after − P_before.
+    asked: [Vec<f64>; 2],
+    /// P(M b, s), then x.
+    whole: ByLink,
+    /// P(Wᵀ, 0), one a column.
+    columns: Vec<ByLink>,
 }
 
 impl Linkage {
@@ -59,7 +65,9 @@ impl Linkage {
             self.each_element(joint_state, |element| {
                 sum.add(element, &joint_state.mounts, weights);
             });
-            sum.add_hinge_turns(joint_state, weights.stiffness);
+            if weights.stiffness > 0.0 {
+                sum.add_hinge_turns(joint_state, weights.stiffness);
+            }
         }
         let JointState {
             reactions,
@@ -97,98 +105,170 @@ impl Held<'_> {
         b: &[f64],
         asked: Prescribed<'_>,
     ) -> bool {
-        let (linkage, posture) = (self.linkage, self.posture);
-        if !blocks.invert() {
-            return false;
-        }
-        let inverse = &blocks.inverse;
-        let sound = self
-            .reactions
-            .factor(linkage, posture, |link, place, force| {
-                at_place(place) * inverse[link] * at_place(force).transpose()
-            });
-        if !sound {
-            return false;
-        }
-        let Answers {
-            asked: values,
-            columns,
-        } = answers;
-        values.clear();
-        let each = self.reactions.each(linkage, posture);
-        values.extend(each.map(|(_, joint, limbs)| match asked {
-            Prescribed::Kept => opening(&limbs, |body| {
-                Vector3::from_column_slice(&b[3 * body..3 * body + 3])
-            }),
-            Prescribed::Given(given) => given[joint],
-        }));
-        self.answer(inverse, &mut blocks.right, Some(values));
+        let linkage = self.linkage;
         let (links, border) = (linkage.links, blocks.right_border.len());
-        columns.clear();
-        for j in 0..border {
-            columns.extend((0..links).map(|i| blocks.beside[i * border + j]));
-            self.answer(inverse, &mut columns[links * j..], None);
+        let inverted = self.reactions.invert(linkage, &blocks.diagonal);
+        let inertia = Inertia::OfBlocks;
+        if !inverted || !self.reactions.factor(linkage, self.posture, inertia) {
+            return false;
         }
-        for j in 0..border {
-            for i in 0..links {
-                let row = blocks.beside[i * border + j];
-                blocks.right_border[j] -= row.dot(&blocks.right[i]);
-                for k in 0..=j {
-                    blocks.corner[(j, k)] -= row.dot(&columns[links * k + i]);
-                }
+        let kept = match asked {
+            Prescribed::Kept => {
+                let b = b[..3 * links].as_chunks::<3>().0;
+                answers.known.read(linkage, b.iter().copied());
+                true
+            }
+            Prescribed::Given(given) => {
+                answers.ask(linkage, given);
+                false
+            }
+        };
+        let right = blocks.right.iter();
+        answers.whole.read(linkage, right.map(|r| [r.x, r.y, r.z]));
+        answers.columns.resize_with(border, ByLink::default);
+        for (j, column) in answers.columns.iter_mut().enumerate() {
+            let beside = blocks.beside[j..].iter().step_by(border);
+            column.read(linkage, beside.map(|r| [r.x, r.y, r.z]));
+        }
+        dispatch(
+            linkage.arch,
+            Answer {
+                held: self,
+                answers,
+                kept,
+            },
+        );
+        for (j, row) in answers.columns.iter().enumerate() {
+            let beside = || blocks.beside[j..].iter().step_by(border);
+            let through = |answer: &ByLink| -> f64 {
+                let each = beside().zip(answer.each(links));
+                each.map(|(r, [x, y, turn])| r.x * x + r.y * y + r.z * turn)
+                    .sum()
+            };
+            blocks.right_border[j] -= through(&answers.whole);
+            for (k, column) in answers.columns[..j].iter().chain([row]).enumerate() {
+                blocks.corner[(j, k)] -= through(column);
             }
         }
         if !blocks.solve_border() {
             return false;
         }
-        for j in 0..border {
-            let z = blocks.right_border[j];
-            let column = &columns[links * j..links * (j + 1)];
-            for (x, column) in blocks.right.iter_mut().zip(column) {
-                *x -= column * z;
+        let found = blocks.right.iter_mut().zip(answers.whole.each(links));
+        for (x, found) in found {
+            *x = found.into();
+        }
+        for (column, z) in answers.columns.iter().zip(blocks.right_border.iter()) {
+            for (x, [dx, dy, turn]) in blocks.right.iter_mut().zip(column.each(links)) {
+                x.x -= dx * z;
+                x.y -= dy * z;
+                x.z -= turn * z;
             }
         }
         true
     }
 
     /// r ← P(r, s); without s for s = 0.
-    fn answer(
-        &mut self,
-        inverse: &[Matrix3<f64>],
-        r: &mut [Vector3<f64>],
-        asked: Option<&[Vector]>,
-    ) {
-        for (r, inverse) in r.iter_mut().zip(inverse) {
-            *r = inverse * *r;
-        }
-        for (row, _, limbs) in self.reactions.each(self.linkage, self.posture) {
-            let asked = asked.map_or_else(Vector::zeros, |asked| asked[row]);
-            self.reactions.right[row] = opening(&limbs, |body| r[body]) - asked;
-        }
-        self.reactions.solve();
-        for (row, _, limbs) in self.reactions.each(self.linkage, self.posture) {
-            for limb in &limbs {
-                if let Some(body) = limb.body {
-                    r[body] -= inverse[body] * limb.load(self.reactions.right[row]);
+    #[inline(always)]
+    fn answer<S: Simd>(&mut self, w: Wide<S>, r: &mut ByLink, asked: Option<&[Vec<f64>; 2]>) {
+        let (linkage, posture) = (self.linkage, self.posture);
+        self.reactions.yield_to(w, linkage, r);
+        self.reactions.set_opening(w, linkage, posture, r);
+        if let Some(asked) = asked {
+            for (right, asked) in self.reactions.right.iter_mut().zip(asked) {
+                for (right, asked) in right.iter_mut().zip(asked) {
+                    *right -= asked;
                 }
             }
+        }
+        self.reactions.solve(w);
+        for link in (0..linkage.links).step_by(Wide::<S>::COUNT) {
+            let push = self.reactions.load(w, posture, link);
+            let [x, y, turn] = self.reactions.yielding(w, link, push);
+            let [r_x, r_y, r_turn] = load(w, r, link + 1);
+            (r_x - x).store(&mut r.x, link + 1);
+            (r_y - y).store(&mut r.y, link + 1);
+            (r_turn - turn).store(&mut r.turn, link + 1);
         }
     }
 }
 
-/// How a place on a body moves with the body.
-fn at_place(arm: Vector) -> Matrix2x3<f64> {
-    let turn = super::turned(arm);
-    Matrix2x3::from_columns(&[Vector::x(), Vector::y(), turn])
+impl Answers {
+    /// Takes in what is given, by joint.
+    fn ask(&mut self, linkage: &Linkage, given: &[Vector]) {
+        for (k, asked) in self.asked.iter_mut().enumerate() {
+            asked.clear();
+            asked.extend(given.iter().enumerate().map(|(joint, given)| {
+                match linkage.joints[joint].pair {
+                    Some(_) if linkage.pairs.pin_after(joint) => given[k],
+                    Some(_) => -given[k],
+                    None => 0.0,
+                }
+            }));
+        }
+    }
 }
 
-/// J u of one joint.
-fn opening(limbs: &[Limb; 2], moved: impl Fn(usize) -> Vector3<f64>) -> Vector {
-    let sides = limbs.iter().filter_map(|limb| {
-        let body = limb.body?;
-        Some(at_place(limb.arm) * moved(body) * limb.sign)
-    });
-    sides.sum()
+/// All answers, as one call that is compiled for every kind of processor.
+struct Answer<'a, 'b> {
+    held: &'a mut Held<'b>,
+    answers: &'a mut Answers,
+    /// Whether J x is to be J b.
+    kept: bool,
+}
+
+impl WithSimd for Answer<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let w = Wide(simd);
+        let Self {
+            held,
+            answers,
+            kept,
+        } = self;
+        let Answers {
+            known,
+            asked,
+            whole,
+            columns,
+        } = answers;
+        if kept {
+            held.reactions
+                .set_opening(w, held.linkage, held.posture, known);
+            for (asked, right) in asked.iter_mut().zip(&held.reactions.right) {
+                asked.resize(held.linkage.joints.len(), 0.0);
+                asked.copy_from_slice(&right[..held.linkage.joints.len()]);
+            }
+        }
+        held.answer(w, whole, Some(asked));
+        for column in columns {
+            held.answer(w, column, None);
+        }
+    }
+}
+
+/// One side of a joint: its link with place along it, or the frame.
+struct Limb {
+    body: Option<usize>,
+    arm: Vector,
+    sign: f64,
+}
+
+/// Hole and pin of a joint, with the sign of the joint force on them.
+fn limbs(mates: [Mate; 2], posture: &Posture) -> [Limb; 2] {
+    [(mates[0], -1.0), (mates[1], 1.0)].map(|(mate, sign)| match mate {
+        Mate::Link { link, end } => Limb {
+            body: Some(link),
+            arm: posture.arm(link, end),
+            sign,
+        },
+        Mate::Ground(_) => Limb {
+            body: None,
+            arm: Vector::zeros(),
+            sign,
+        },
+    })
 }
 
 impl Sum<'_> {
@@ -196,7 +276,7 @@ impl Sum<'_> {
     fn add_hinge_turns(&mut self, joint_state: &JointState, weight: f64) {
         for (joint, force) in self.linkage.joints.iter().zip(&joint_state.hinge_forces) {
             let Some(mates) = joint.pair else { continue };
-            for limb in super::reactions::limbs(mates, &joint_state.posture) {
+            for limb in limbs(mates, &joint_state.posture) {
                 if let Some(link) = limb.body {
                     let along = limb.sign * force.dot(&limb.arm);
                     self.add_turn(link, weight * along.max(0.0));
@@ -208,12 +288,28 @@ impl Sum<'_> {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{DMatrix, DVector};
+    use nalgebra::{DMatrix, DVector, Matrix2x3, Vector3};
 
     use super::*;
     use crate::chains::links::implicit::Equations;
     use crate::chains::links::tests::{bicycle, free_rollers, links, of, started, strand, whole};
+    use crate::chains::links::turned;
     use crate::{ChainModel, Joint, Parts, RollerModel, Support};
+
+    /// How a place on a body moves with the body.
+    fn at_place(arm: Vector) -> Matrix2x3<f64> {
+        let turn = turned(arm);
+        Matrix2x3::from_columns(&[Vector::x(), Vector::y(), turn])
+    }
+
+    /// J u of one joint.
+    fn opening(limbs: &[Limb; 2], moved: impl Fn(usize) -> Vector3<f64>) -> Vector {
+        let sides = limbs.iter().filter_map(|limb| {
+            let body = limb.body?;
+            Some(at_place(limb.arm) * moved(body) * limb.sign)
+        });
+        sides.sum()
+    }
 
     fn kinds() -> Vec<(&'static str, Parts)> {
         let ideal = |rollers: RollerModel| -> ChainModel { links(Joint::Ideal, rollers) };
@@ -258,7 +354,7 @@ mod tests {
                 // J x = J b
                 for (joint, mates) in linkage.joints.iter().enumerate() {
                     let Some(mates) = mates.pair else { continue };
-                    let limbs = super::super::reactions::limbs(mates, &joint_state.posture);
+                    let limbs = limbs(mates, &joint_state.posture);
                     let [now, before] = [&x, &b].map(|x| {
                         opening(&limbs, |body| {
                             Vector3::from_column_slice(&x[3 * body..3 * body + 3])
@@ -329,7 +425,7 @@ mod tests {
                 (0..2).for_each(|k| set(rows + k, rows + k, 1.0));
                 continue;
             };
-            for limb in super::super::reactions::limbs(mates, &joint_state.posture) {
+            for limb in limbs(mates, &joint_state.posture) {
                 let Some(body) = limb.body else { continue };
                 let row = at_place(limb.arm) * limb.sign;
                 for k in 0..2 {

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! J M⁻¹ Jᵀ λ = −(J a + J̇ v − s̈ + 2 α ċ + α² c),     a ← a + M⁻¹ Jᵀ λ
-//! c = P_pin − P_hole,   λ: force on the pin
+//! c = P_after − P_before,   λ: force on the side after
 //! ```
 //!
 //! The rate α draws what rounding and the time stepping leave of c back to zero.
@@ -12,11 +12,14 @@
 
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
+use pulp::{Simd, WithSimd};
 
-use super::reactions::{limbs, mobility};
-use super::{JointState, Linkage, Mate, supplied, turned};
+use super::by_link::ByLink;
+use super::reactions::{Inertia, Reactions, arms, load};
+use super::{JointState, Linkage, Mate, Posture, supplied};
 use crate::End;
 use crate::energy::Flow;
+use crate::lanes::{Wide, dispatch};
 
 /// Ideal joints.
 #[derive(Clone, Debug)]
@@ -35,11 +38,7 @@ impl Hinges {
             hinge_forces,
             ..
         } = joint_state;
-        reactions.factor(linkage, posture, |link, place, force| {
-            let body = &linkage.bodies[link];
-            mobility(body.mass, body.inertia, place, force)
-        });
-        hinge_forces.clear();
+        reactions.factor(linkage, posture, Inertia::OfLinks);
         hinge_forces.resize(linkage.joints.len(), Vector::zeros());
     }
 
@@ -52,16 +51,21 @@ impl Hinges {
         joint_state: &mut JointState,
     ) {
         self.find(linkage, at, joint_state);
-        for (index, joint) in linkage.joints.iter().enumerate() {
-            let Some(mates) = joint.pair else {
+        let loads = &mut joint_state.loads;
+        let forces = joint_state.forces[..linkage.links].iter_mut();
+        for (force, load) in forces.zip(loads.each(linkage.links)) {
+            force.x += load[0];
+            force.y += load[1];
+            force.z += load[2];
+        }
+        if linkage.closed {
+            return;
+        }
+        for joint in [0, linkage.links] {
+            let Some(mates) = linkage.joints[joint].pair else {
                 continue;
             };
-            let force = joint_state.hinge_forces[index];
-            for limb in limbs(mates, &joint_state.posture) {
-                if let Some(body) = limb.body {
-                    joint_state.forces[body] += limb.load(force);
-                }
-            }
+            let force = joint_state.hinge_forces[joint];
             let [hole, pin] = mates.map(|mate| linkage.part(mate, at, &joint_state.posture));
             rates[Flow::Motions as usize] += supplied(&mates, force, &hole, &pin);
         }
@@ -74,36 +78,113 @@ impl Hinges {
             posture,
             hinge_forces,
             forces,
+            loads,
             ..
         } = joint_state;
-        for (row, joint) in reactions.held().enumerate() {
-            let Some(mates) = linkage.joints[joint].pair else {
-                continue;
+        let of_links = forces[..linkage.links].iter();
+        loads.read(linkage, of_links.map(|force| [force.x, force.y, force.z]));
+        let ground = [0, 1].map(|end| {
+            let joint = linkage.joints[end * (linkage.joints.len() - 1)];
+            let mates = joint.pair.into_iter().flatten();
+            let by = mates.map(|mate| ground_acceleration(linkage, mate, at));
+            by.sum()
+        });
+        dispatch(
+            linkage.arch,
+            Find {
+                rate: self.rate,
+                linkage,
+                posture,
+                reactions,
+                ground,
+                loads,
+            },
+        );
+        for (joint, force) in hinge_forces.iter_mut().enumerate() {
+            let on_after = reactions.force(joint);
+            *force = if linkage.pairs.pin_after(joint) {
+                on_after
+            } else {
+                -on_after
             };
-            let [hole, pin] = mates.map(|mate| linkage.part(mate, at, posture));
-            // 2 α ċ + α² c
-            let mut drift = (pin.velocity - hole.velocity) * (2.0 * self.rate)
-                + (pin.place - hole.place) * (self.rate * self.rate);
-            for (mate, part, sign) in [(mates[0], &hole, -1.0), (mates[1], &pin, 1.0)] {
-                match part.body {
-                    Some(body) => {
-                        let b = &linkage.bodies[body];
-                        let across = turned(part.arm);
-                        let f = &forces[body];
-                        // J a + J̇ v = F/m + α ẑ × r − ω² r
-                        let acceleration = Vector::new(f.x, f.y) / b.mass
-                            + across * (f.z / b.inertia)
-                            - part.arm * (part.spin * part.spin);
-                        drift += acceleration * sign;
-                    }
-                    None => drift += ground_acceleration(linkage, mate, at) * sign,
-                }
-            }
-            reactions.right[row] = -drift;
         }
-        reactions.solve();
-        for (joint, force) in reactions.held().zip(&reactions.right) {
-            hinge_forces[joint] = *force;
+    }
+}
+
+/// Forces in the joints under the loads on the links, and then what they do to the links in the place of these loads.
+struct Find<'a> {
+    rate: f64,
+    linkage: &'a Linkage,
+    posture: &'a Posture,
+    reactions: &'a mut Reactions,
+    /// Accelerations of the supports before the first joint and behind the last \[m/s²\].
+    ground: [Vector; 2],
+    loads: &'a mut ByLink,
+}
+
+impl WithSimd for Find<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let w = Wide(simd);
+        let Self {
+            rate,
+            linkage,
+            posture,
+            reactions,
+            ground,
+            loads,
+        } = self;
+        let (shapes, zero) = (&linkage.shapes, w.splat(0.0));
+        let (before, after) = (&posture.before, &posture.after);
+        let [damping, stiffness] = [2.0 * rate, rate * rate].map(|rate| w.splat(rate));
+        let joints = linkage.joints.len();
+        for start in (0..joints).step_by(Wide::<S>::COUNT) {
+            let [bx, by, ax, ay] = arms(w, posture, start);
+            let mut drift = [zero; 2];
+            // J a + J̇ v = F/m + α ẑ × r − ω² r
+            for (place, x, y, side) in [(start, bx, by, before), (start + 1, ax, ay, after)] {
+                let mobility = w.load(&shapes.mobility, place);
+                let [fx, fy, moment] = load(w, loads, place);
+                let turning = moment * w.load(&shapes.turning, place);
+                let spin = w.load(&side.spin, start);
+                let squared = spin * spin;
+                drift = [
+                    (fx * mobility - turning * y - squared * x) - drift[0],
+                    (fy * mobility + turning * x - squared * y) - drift[1],
+                ];
+            }
+            // 2 α ċ + α² c
+            let present = linkage.pairs.present(w, start);
+            for (k, (to, [place, velocity])) in reactions
+                .right
+                .iter_mut()
+                .zip([
+                    [(&before.x, &after.x), (&before.vx, &after.vx)],
+                    [(&before.y, &after.y), (&before.vy, &after.vy)],
+                ])
+                .enumerate()
+            {
+                let apart = w.load(place.1, start) - w.load(place.0, start);
+                let opening = w.load(velocity.1, start) - w.load(velocity.0, start);
+                let drift = drift[k] + (damping * opening + stiffness * apart);
+                present.select(-drift, zero).store(to, start);
+            }
+        }
+        if !linkage.closed {
+            let [first, last] = ground;
+            for (k, right) in reactions.right.iter_mut().enumerate() {
+                right[0] += first[k];
+                right[joints - 1] -= last[k];
+            }
+        }
+        reactions.solve(w);
+        for link in (0..linkage.links).step_by(Wide::<S>::COUNT) {
+            let [x, y, turn] = reactions.load(w, posture, link);
+            x.store(&mut loads.x, link + 1);
+            y.store(&mut loads.y, link + 1);
+            turn.store(&mut loads.turn, link + 1);
         }
     }
 }

@@ -6,8 +6,8 @@
 //!
 //! Every joint has a row for its normal, and one for its tangent where pins rub; joints share a link with their
 //! neighbours only. Whatever else touches a link, or the free rollers on it, is eliminated first: it couples the two joints of
-//! that link, and the wheels. What is left is tridiagonal, with a border of wheels, tensioners, and the last joint of a
-//! closed chain. Wheels have a negative diagonal. Quasi-definite: no pivoting is needed.
+//! that link, and the wheels. What is left is tridiagonal, with a border of wheels and tensioners, and where there is one row a joint
+//! the last joint of a closed chain. Wheels have a negative diagonal. Quasi-definite: no pivoting is needed.
 //!
 //! # Source
 //! Quasi-definite systems: R. J. Vanderbei, *SIAM J. Optim.* **5**, 1995, 100–113.
@@ -19,6 +19,8 @@ mod tridiagonal;
 use chaindrive_integrate::Weights;
 use pulp::{Simd, WithSimd};
 
+use super::by_link::ByLink;
+use super::reactions::load;
 use super::{Bearing, Joining, JointState, Linkage};
 use crate::lanes::{Wide, dispatch};
 use crate::system::GroupBodies;
@@ -31,8 +33,8 @@ use tridiagonal::{Place, Tridiagonal};
 pub(crate) struct Impulses {
     /// Normals of the joints, and tangents.
     rows: [Rows; 2],
-    /// b of the links, that of link i behind place i + 1; before the first link of a closed chain comes the last.
-    known: [Vec<f64>; 3],
+    /// b of the links, then what changes of it.
+    known: ByLink,
     joints: Tridiagonal,
     local: Local,
 }
@@ -118,17 +120,18 @@ impl Impulses {
         let wheels = x.len() - linkage.coordinates();
         self.rows[0].set_normals(w, joint_state, c);
         if R == 2 {
-            self.rows[1].set_tangents(linkage, bearing, joint_state, c);
+            self.rows[1].set_tangents(w, linkage, bearing, joint_state, c);
         }
         self.joints.clear::<R, B>(linkage, wheels);
-        self.know(linkage, x);
+        let b = x[..3 * linkage.links].as_chunks::<3>().0;
+        self.known.read(linkage, b.iter().copied());
         self.fill::<S, R, B>(w, linkage);
         self.fill_wheels::<R, B>(linkage, bodies, c, x);
         self.local.gather(linkage, c, joint_state);
         let condensed = self
             .local
             .condense::<R, C, B>(linkage, &self.rows, &mut self.joints, x);
-        if !condensed || !self.joints.factor::<R, B>() {
+        if !condensed || !self.joints.factor::<S, R, B>(w, linkage) {
             return false;
         }
         self.joints.substitute::<R, B>(linkage);
@@ -136,27 +139,6 @@ impl Impulses {
         self.local.apply::<R, C>(linkage, &self.joints, x);
         x[linkage.coordinates()..].copy_from_slice(self.joints.wheels(wheels));
         true
-    }
-
-    /// Takes b apart.
-    #[inline(always)]
-    fn know(&mut self, linkage: &Linkage, b: &[f64]) {
-        let links = linkage.links;
-        for known in &mut self.known {
-            known.resize(linkage.shapes.lanes(), 0.0);
-        }
-        let [x, y, turn] = &mut self.known;
-        let all = b[..3 * links].as_chunks::<3>().0;
-        let places = x[1..].iter_mut().zip(&mut y[1..]).zip(&mut turn[1..]);
-        for (b, ((x, y), turn)) in all.iter().zip(places) {
-            [*x, *y, *turn] = *b;
-        }
-        if linkage.closed {
-            for known in &mut self.known {
-                known[0] = known[links];
-                known[links + 1] = known[1];
-            }
-        }
     }
 
     /// The rows of the joints among themselves, and J b.
@@ -172,7 +154,7 @@ impl Impulses {
             // The links before and after the joint, and for the coupling with the next joint the latter.
             let mass = [before, after].map(|at| w.load(&shapes.mobility, at));
             let inertia = [before, after].map(|at| w.load(&shapes.turning, at));
-            let b = [before, after].map(|at| [0, 1, 2].map(|k| w.load(&self.known[k], at)));
+            let b = [load(w, &self.known, before), load(w, &self.known, after)];
             for p in 0..R {
                 let row = rows[p].load(w, start);
                 let next = rows[p].load(w, start + 1);
@@ -201,7 +183,7 @@ impl Impulses {
                 right.store(self.joints.right(p), start);
             }
         }
-        self.joints.take_in::<R, B>(linkage);
+        self.joints.take_in::<R, B>();
     }
 
     #[inline(always)]
@@ -212,7 +194,7 @@ impl Impulses {
         c: f64,
         b: &[f64],
     ) {
-        let first = if linkage.closed { R } else { 0 };
+        let first = self.joints.first_wheel();
         for (j, &inertia) in bodies.inertias().iter().enumerate() {
             let place = Place::Border(first + j);
             self.joints.add::<R, B>(place, place, -inertia);
@@ -250,21 +232,11 @@ impl Impulses {
                 w.load(&shapes.mobility, start + 1),
                 w.load(&shapes.turning, start + 1),
             );
-            for ((impulse, mobility), change) in impulse
-                .into_iter()
-                .zip([mass, mass, inertia])
-                .zip(&mut self.known)
-            {
-                (impulse * mobility).store(change, start);
-            }
+            (impulse[0] * mass).store(&mut self.known.x, start + 1);
+            (impulse[1] * mass).store(&mut self.known.y, start + 1);
+            (impulse[2] * inertia).store(&mut self.known.turn, start + 1);
         }
-        let [dx, dy, turn] = &self.known;
-        let all = x[..3 * linkage.links].as_chunks_mut::<3>().0;
-        for (x, ((dx, dy), turn)) in all.iter_mut().zip(dx.iter().zip(dy).zip(turn)) {
-            x[0] -= dx;
-            x[1] -= dy;
-            x[2] -= turn;
-        }
+        self.known.subtract_from(&mut x[..3 * linkage.links]);
     }
 }
 

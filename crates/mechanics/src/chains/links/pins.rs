@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use super::bearing::Apart;
 use super::{Bearing, Element, JointMates, Linkage, Mate, Partner, Posture, Tally};
 use crate::contact::{ContactMemory, LaneTally, MemoryLanes};
-use crate::lanes::{LANES, Wide, padded};
+use crate::lanes::{LANES, Mask, Wide, padded};
 
 /// Forces of the joints, whole lanes.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -51,6 +51,8 @@ pub(crate) struct Pins {
 pub(crate) struct Pairs {
     /// One where there is a pin in a bush, zero elsewhere, whole lanes.
     present: Vec<f64>,
+    /// The same of the next joint, which after the last one is the first.
+    present_next: Vec<f64>,
     /// One where the side after has the pin, zero elsewhere, whole lanes.
     pin_after: Vec<f64>,
     /// One where the side after has what carries the roller, zero elsewhere, whole lanes.
@@ -68,11 +70,34 @@ impl Pairs {
             flags
         };
         let after = |mate| matches!(mate, Mate::Link { end: 0, .. } | Mate::Ground(1));
+        let present = flags(&|joint| joint.pair.is_some());
+        let mut present_next = present.clone();
+        present_next[..joints.len()].rotate_left(1);
         Self {
-            present: flags(&|joint| joint.pair.is_some()),
+            present,
+            present_next,
             pin_after: flags(&|joint| joint.pair.is_some_and(|[_, pin]| after(pin))),
             bush_after: flags(&|joint| after(joint.carrier)),
         }
+    }
+
+    /// Where there are two sides, of the joints from one on.
+    #[inline(always)]
+    pub(super) fn present<S: Simd>(&self, w: Wide<S>, joint: usize) -> Mask<S> {
+        w.load(&self.present, joint).greater(w.splat(0.0))
+    }
+
+    /// Where there are two sides in a joint and in the next, of the joints from one on.
+    #[inline(always)]
+    pub(super) fn both_present<S: Simd>(&self, w: Wide<S>, joint: usize) -> Mask<S> {
+        let next = w.load(&self.present_next, joint).greater(w.splat(0.0));
+        self.present(w, joint) & next
+    }
+
+    /// Where the side after has the pin, of the joints from one on.
+    #[inline(always)]
+    pub(super) fn pins_after<S: Simd>(&self, w: Wide<S>, joint: usize) -> Mask<S> {
+        w.load(&self.pin_after, joint).greater(w.splat(0.0))
     }
 
     /// Whether the side after a joint has the pin.
@@ -221,8 +246,8 @@ impl Contacts<'_> {
                     w.load(&after.vy, start) - w.load(&before.vy, start),
                 ],
                 spin: [w.load(&before.spin, start), w.load(&after.spin, start)],
-                present: w.load(&pairs.present, start).greater(zero),
-                pin_after: w.load(&pairs.pin_after, start).greater(zero),
+                present: pairs.present(w, start),
+                pin_after: pairs.pins_after(w, start),
             };
             let grip = bearing.grip(w, &mut memory, lane, &apart, self.dt, &mut tally);
             let [nx, ny] = grip.normal;

@@ -66,6 +66,8 @@ pub(crate) struct Shapes {
     pub(crate) mobilities: Vec<[f64; 2]>,
     /// Their roots.
     pub(crate) roots: Vec<[f64; 2]>,
+    /// Square of length between the joints over inertia of every link, p²/I² \[1/(kg² m²)\].
+    pub(crate) swing: Vec<f64>,
     /// Inertia of the link that turns most easily \[kg m²\].
     pub(crate) least_inertia: f64,
 }
@@ -96,7 +98,11 @@ impl Shapes {
             values
         };
         let inertias = links.iter().map(|link| link.inertia);
+        let swing = |link: &super::Body| {
+            (link.arms[1] - link.arms[0]).norm_squared() / (link.inertia * link.inertia)
+        };
         Self {
+            swing: links.iter().map(swing).collect(),
             least_inertia: inertias.fold(f64::INFINITY, f64::min),
             arms: [0, 1].map(|end| [all(&|link| link.arms[end].x), all(&|link| link.arms[end].y)]),
             mobility: shifted(&|link| 1.0 / link.mass),
@@ -169,9 +175,13 @@ impl Posture {
         Vector::new(side.arm_x[joint], side.arm_y[joint])
     }
 
+    /// Length of the sides: whole lanes of joints, of which a strand has one more than links, are read from one joint further on.
+    fn room(linkage: &Linkage) -> usize {
+        padded(linkage.links + 1) + LANES
+    }
+
     fn resize(&mut self, linkage: &Linkage) {
-        // Stores of whole lanes begin one joint behind the links.
-        let count = padded(linkage.links) + LANES;
+        let count = Self::room(linkage);
         let sides = [&mut self.before, &mut self.after];
         for values in sides.into_iter().flat_map(Sides::all) {
             values.resize(count, 0.0);
@@ -188,7 +198,7 @@ impl Posture {
 impl Linkage {
     /// Works out the posture of a state.
     pub(crate) fn pose_links(&self, at: Moment<'_>, posture: &mut Posture) {
-        if posture.links[0].len() != padded(self.links) {
+        if posture.before.x.len() != Posture::room(self) {
             posture.resize(self);
         }
         let [x, y, angle, vx, vy, spin] = &mut posture.links;

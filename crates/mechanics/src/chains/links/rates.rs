@@ -102,17 +102,14 @@ impl Linkage {
     /// ω² ≤ T p/I    every link turns about its centre of mass, against its neighbours
     /// ```
     fn pulled(&self, joint_state: &JointState) -> f64 {
-        let force = |joint: usize| {
-            let force = joint_state.hinge_forces.get(joint % self.joints.len());
-            force.map_or(0.0, Vector::norm)
-        };
-        let links = self.bodies[..self.links].iter().enumerate();
-        links
-            .map(|(link, body)| {
-                let tension = force(link).max(force(link + 1));
-                tension * (body.arms[1] - body.arms[0]).norm() / body.inertia
-            })
-            .fold(0.0, f64::max)
+        // Squares, of which one root is taken.
+        let squares = || joint_state.hinge_forces.iter().map(Vector::norm_squared);
+        let next = squares().skip(1).chain(squares().take(1));
+        let links = self.shapes.swing.iter().zip(squares().zip(next));
+        let largest = links.fold(0.0_f64, |largest, (swing, (at_first, at_second))| {
+            largest.max(at_first.max(at_second) * swing)
+        });
+        largest.sqrt()
     }
 
     /// ω² of the lightest body on the joints when they close gently: what the first step has to respect.

@@ -1,276 +1,475 @@
 //! Reactions of joints that hold the ends of links together: two unknowns a joint.
 //!
 //! ```text
-//! J A⁻¹ Jᵀ λ = r,     J x = P_pin − P_hole of every joint,   λ: force on the pin
+//! J A⁻¹ Jᵀ λ = r,     J x = P_after − P_before of every joint,   λ: force on the side after
 //! ```
 //!
 //! A has one block a link: its mass and inertia, or what an implicit step makes of them. Neighbours are coupled through the
-//! link between them: a cyclic block-tridiagonal system, factored once for all right-hand sides.
+//! link between them: a cyclic block-tridiagonal system, factored once for all right-hand sides. Joints without a second side have
+//! rows that say λ = 0.
 
-use std::ops::Range;
+mod ring;
+mod sections;
 
 use chaindrive_geometry::Vector;
-use nalgebra::{Matrix2, Vector3};
+use nalgebra::Matrix3;
+use pulp::{Simd, WithSimd};
 
+use super::by_link::ByLink;
 use super::posture::Posture;
-use super::{JointMates, Linkage, Mate, cross, turned};
-
-/// The factors, and a right-hand side that becomes the solution.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Reactions {
-    /// Joints with two sides, one after the other.
-    held: Range<usize>,
-    closed: bool,
-    diagonal: Vec<Matrix2<f64>>,
-    /// Block (i + 1, i); of the last joint of a closed chain that with the first.
-    below: Vec<Matrix2<f64>>,
-    /// Inverses of what the elimination leaves of the diagonal.
-    pivots: Vec<Matrix2<f64>>,
-    /// Couplings with the last joint of a closed chain, as the elimination leaves them.
-    last: Vec<Matrix2<f64>>,
-    /// r, then λ.
-    pub(super) right: Vec<Vector>,
-}
-
-/// One side of a joint: its link with place along it, or the frame.
-pub(super) struct Limb {
-    pub(super) body: Option<usize>,
-    pub(super) arm: Vector,
-    pub(super) sign: f64,
-}
-
-impl Limb {
-    /// Force and moment on the body under a force on the pin.
-    #[inline(always)]
-    pub(super) fn load(&self, force: Vector) -> Vector3<f64> {
-        let push = force * self.sign;
-        Vector3::new(push.x, push.y, cross(self.arm, push))
-    }
-}
-
-/// Hole and pin of a joint, with the sign of the joint force on them.
-#[inline(always)]
-pub(super) fn limbs(mates: [Mate; 2], posture: &Posture) -> [Limb; 2] {
-    [(mates[0], -1.0), (mates[1], 1.0)].map(|(mate, sign)| match mate {
-        Mate::Link { link, end } => Limb {
-            body: Some(link),
-            arm: posture.arm(link, end),
-            sign,
-        },
-        Mate::Ground(_) => Limb {
-            body: None,
-            arm: Vector::zeros(),
-            sign,
-        },
-    })
-}
+use super::{Linkage, Shapes};
+use crate::lanes::{LANES, Lane, Wide, dispatch, padded};
+pub(super) use sections::Sections;
 
 /// Share of its stiffest direction below which a block counts as singular: a strand that is straight between two
 /// supports to within 1e-6 of its length.
 const SINGULAR: f64 = 1e-12;
 
-/// Inverse of a symmetric block that was `whole` before others were eliminated; none if nothing is left in some direction.
-fn inverse_of(block: &Matrix2<f64>, whole: &Matrix2<f64>) -> Option<Matrix2<f64>> {
-    // The lesser eigenvalue is det/λ, and λ lies between half the trace and the trace.
-    let enough = SINGULAR * whole.trace() * block.trace();
-    (block.determinant() > enough)
-        .then(|| block.try_inverse())
-        .flatten()
+/// The factors, and a right-hand side that becomes the solution.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Reactions {
+    /// Entries (0, 0), (1, 0), (1, 1) of the joints' own blocks, whole lanes.
+    own: [Vec<f64>; 3],
+    /// Entries (0, 0), (0, 1), (1, 0), (1, 1) of the blocks (joint + 1, joint).
+    coupling: [Vec<f64>; 4],
+    sections: Sections,
+    /// Whether there are forces that keep the joints together.
+    sound: bool,
+    /// Inverses of the blocks of A, as [`ByLink`] has its numbers: entries (0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2).
+    inverse: [Vec<f64>; 6],
+    /// r, then λ, by joint; behind the last joint of a closed chain comes the first once more.
+    pub(super) right: [Vec<f64>; 2],
 }
 
-/// Joints with two sides: all but free and pulled ends of a strand.
-fn held(joints: &[JointMates]) -> Range<usize> {
-    let first = joints.iter().position(|joint| joint.pair.is_some());
-    let last = joints.iter().rposition(|joint| joint.pair.is_some());
-    first
-        .zip(last)
-        .map_or(0..0, |(first, last)| first..last + 1)
+/// What A is made of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Inertia {
+    /// Masses and inertias of the links.
+    OfLinks,
+    /// The blocks that were inverted last.
+    OfBlocks,
+}
+
+/// A⁻¹ of a lane of links.
+#[derive(Clone, Copy)]
+enum Yielding<S: Simd> {
+    /// 1/m and 1/I.
+    Free([Lane<S>; 2]),
+    Held([Lane<S>; 6]),
 }
 
 impl Reactions {
-    /// Sets up J A⁻¹ Jᵀ and factors it; false if it is singular. `between` is the motion of the first place on a link under
-    /// a force at the second.
-    pub(super) fn factor(
-        &mut self,
-        linkage: &Linkage,
-        posture: &Posture,
-        between: impl Fn(usize, Vector, Vector) -> Matrix2<f64>,
-    ) -> bool {
-        self.held = held(&linkage.joints);
-        self.closed = linkage.closed;
-        let count = self.held.len();
-        for blocks in [
-            &mut self.diagonal,
-            &mut self.below,
-            &mut self.pivots,
-            &mut self.last,
-        ] {
-            blocks.clear();
-            blocks.resize(count, Matrix2::zeros());
+    /// Inverts the blocks of the links; false if one is singular.
+    pub(super) fn invert(&mut self, linkage: &Linkage, blocks: &[Matrix3<f64>]) -> bool {
+        for values in &mut self.inverse {
+            values.resize(linkage.shapes.lanes(), 0.0);
         }
-        self.right.resize(count, Vector::zeros());
-        for (row, joint) in self.held.clone().enumerate() {
-            let Some(mates) = linkage.joints[joint].pair else {
-                continue;
-            };
-            let own = limbs(mates, posture);
-            for limb in &own {
-                if let Some(body) = limb.body {
-                    self.diagonal[row] += between(body, limb.arm, limb.arm);
-                }
-            }
-            // The next joint in the row: it shares the link of this number.
-            let next = self.held.start + (row + 1) % count;
-            let Some(mates) = linkage.joints[next].pair.filter(|_| count > 1) else {
-                continue;
-            };
-            for to in limbs(mates, posture) {
-                for from in &own {
-                    if from.body == Some(joint) && to.body == Some(joint) {
-                        let block = between(joint, to.arm, from.arm);
-                        self.below[row] = block * (from.sign * to.sign);
-                    }
-                }
-            }
+        let [xx, yx, yy, tx, ty, tt] = &mut self.inverse;
+        for (i, block) in blocks.iter().enumerate() {
+            let place = i + 1;
+            [xx[place], yx[place], yy[place]] = [block[(0, 0)], block[(1, 0)], block[(1, 1)]];
+            [tx[place], ty[place], tt[place]] = [block[(2, 0)], block[(2, 1)], block[(2, 2)]];
         }
-        let sound = self.eliminate().is_some();
-        if !sound {
-            // No forces keep these joints together: whoever asks for them learns that they are not numbers.
-            self.pivots.fill(Matrix2::repeat(f64::NAN));
+        let inverse = &mut self.inverse;
+        let sound = dispatch(linkage.arch, Invert { inverse, linkage });
+        for values in &mut self.inverse {
+            values[0] = if linkage.closed {
+                values[linkage.links]
+            } else {
+                0.0
+            };
+            let first = if linkage.closed { values[1] } else { 0.0 };
+            values[linkage.links + 1..].fill(0.0);
+            values[linkage.links + 1] = first;
         }
         sound
     }
 
-    /// Joints with two sides, one after the other.
-    pub(super) fn held(&self) -> Range<usize> {
-        self.held.clone()
-    }
-
-    /// Number of rows before the last one of a closed chain.
-    fn rows(&self) -> usize {
-        self.diagonal.len() - usize::from(self.closed)
-    }
-
-    fn eliminate(&mut self) -> Option<()> {
-        let count = self.diagonal.len();
-        if count == 0 {
-            return Some(());
-        }
-        let rows = self.rows();
-        let mut corner = self.diagonal[count - 1];
-        if self.closed {
-            self.last[0] += self.below[count - 1].transpose();
-            self.last[rows - 1] += self.below[rows - 1];
-        }
-        let mut left = self.diagonal[0];
-        for i in 0..rows {
-            let inverse = inverse_of(&left, &self.diagonal[i])?;
-            self.pivots[i] = inverse;
-            if i + 1 < rows {
-                let e = self.below[i];
-                left = self.diagonal[i + 1] - e * inverse * e.transpose();
-                if self.closed {
-                    let fill = self.last[i] * inverse * e.transpose();
-                    self.last[i + 1] -= fill;
-                }
+    /// Sets up J A⁻¹ Jᵀ and factors it; false if it is singular.
+    pub(super) fn factor(
+        &mut self,
+        linkage: &Linkage,
+        posture: &Posture,
+        inertia: Inertia,
+    ) -> bool {
+        let lanes = padded(linkage.joints.len());
+        if self.own[0].len() != lanes {
+            for values in self.own.iter_mut().chain(&mut self.coupling) {
+                values.resize(lanes, 0.0);
             }
-            if self.closed {
-                corner -= self.last[i] * inverse * self.last[i].transpose();
+            for values in &mut self.right {
+                values.resize(lanes + LANES, 0.0);
             }
         }
-        if self.closed {
-            self.pivots[count - 1] = inverse_of(&corner, &self.diagonal[count - 1])?;
-        }
-        Some(())
+        self.sections
+            .lay_out(linkage.joints.len(), linkage.closed, SINGULAR);
+        self.sound = dispatch(
+            linkage.arch,
+            Factor {
+                reactions: self,
+                linkage,
+                posture,
+                inertia,
+            },
+        );
+        self.sound
     }
 
     /// λ of the right-hand side, in its place.
-    pub(super) fn solve(&mut self) {
-        let count = self.diagonal.len();
-        if count == 0 {
-            return;
-        }
-        let rows = self.rows();
-        let right = &mut self.right;
-        let mut corner = right[count - 1];
-        for i in 0..rows {
-            let through = self.pivots[i] * right[i];
-            if i + 1 < rows {
-                right[i + 1] -= self.below[i] * through;
-            }
-            if self.closed {
-                corner -= self.last[i] * through;
-            }
-        }
-        if self.closed {
-            right[count - 1] = self.pivots[count - 1] * corner;
-        }
-        for i in (0..rows).rev() {
-            let mut rest = right[i];
-            if i + 1 < rows {
-                rest -= self.below[i].transpose() * right[i + 1];
-            }
-            if self.closed {
-                rest -= self.last[i].transpose() * right[count - 1];
-            }
-            right[i] = self.pivots[i] * rest;
+    #[inline(always)]
+    pub(super) fn solve<S: Simd>(&mut self, w: Wide<S>) {
+        self.sections.solve(w, &mut self.right);
+        if !self.sound {
+            // No forces keep these joints together: whoever asks for them learns that they are not numbers.
+            self.right
+                .iter_mut()
+                .for_each(|values| values.fill(f64::NAN));
         }
     }
 
-    /// Joints with two sides, each with the row of its unknowns and its sides.
-    pub(super) fn each<'a>(
+    /// Force on the side after a joint \[N\].
+    pub(super) fn force(&self, joint: usize) -> Vector {
+        Vector::new(self.right[0][joint], self.right[1][joint])
+    }
+
+    /// r ← P_after − P_before for links that move like that.
+    #[inline(always)]
+    pub(super) fn set_opening<S: Simd>(
+        &mut self,
+        w: Wide<S>,
+        linkage: &Linkage,
+        posture: &Posture,
+        moved: &ByLink,
+    ) {
+        let [right_x, right_y] = &mut self.right;
+        for start in (0..linkage.joints.len()).step_by(Wide::<S>::COUNT) {
+            let [bx, by, ax, ay] = arms(w, posture, start);
+            let before = load(w, moved, start);
+            let after = load(w, moved, start + 1);
+            // P = r + φ ẑ × arm
+            let x = (after[0] - after[2] * ay) - (before[0] - before[2] * by);
+            let y = (after[1] + after[2] * ax) - (before[1] + before[2] * bx);
+            let present = linkage.pairs.present(w, start);
+            present.select(x, w.splat(0.0)).store(right_x, start);
+            present.select(y, w.splat(0.0)).store(right_y, start);
+        }
+    }
+
+    /// Forces and moments Jᵀ λ on the links from one on.
+    #[inline(always)]
+    pub(super) fn load<S: Simd>(&self, w: Wide<S>, posture: &Posture, link: usize) -> [Lane<S>; 3] {
+        let [x, y] = &self.right;
+        let [first_x, first_y] = [w.load(x, link), w.load(y, link)];
+        let [second_x, second_y] = [w.load(x, link + 1), w.load(y, link + 1)];
+        let [ax, ay] = [
+            w.load(&posture.after.arm_x, link),
+            w.load(&posture.after.arm_y, link),
+        ];
+        let [bx, by] = [
+            w.load(&posture.before.arm_x, link + 1),
+            w.load(&posture.before.arm_y, link + 1),
+        ];
+        [
+            first_x - second_x,
+            first_y - second_y,
+            (ax * first_y - ay * first_x) - (bx * second_y - by * second_x),
+        ]
+    }
+
+    /// r ← A⁻¹ r of the blocks that were inverted last.
+    #[inline(always)]
+    pub(super) fn yield_to<S: Simd>(&self, w: Wide<S>, linkage: &Linkage, r: &mut ByLink) {
+        for link in (0..linkage.links).step_by(Wide::<S>::COUNT) {
+            let [x, y, turn] = self.yielding(w, link, load(w, r, link + 1));
+            x.store(&mut r.x, link + 1);
+            y.store(&mut r.y, link + 1);
+            turn.store(&mut r.turn, link + 1);
+        }
+        r.close(linkage);
+    }
+
+    /// A⁻¹ of a load on the links from one on.
+    #[inline(always)]
+    pub(super) fn yielding<S: Simd>(
         &self,
-        linkage: &'a Linkage,
-        posture: &'a Posture,
-    ) -> impl Iterator<Item = (usize, usize, [Limb; 2])> + use<'a> {
-        let joints = self.held.clone().enumerate();
-        joints.filter_map(|(row, joint)| {
-            let mates = linkage.joints[joint].pair?;
-            Some((row, joint, limbs(mates, posture)))
-        })
+        w: Wide<S>,
+        link: usize,
+        [x, y, turn]: [Lane<S>; 3],
+    ) -> [Lane<S>; 3] {
+        let [xx, yx, yy, tx, ty, tt] = blocks(w, &self.inverse, link + 1);
+        [
+            xx * x + yx * y + tx * turn,
+            yx * x + yy * y + ty * turn,
+            tx * x + ty * y + tt * turn,
+        ]
     }
 }
 
-/// I/m + (ẑ × r)(ẑ × s)ᵀ/I: how a place on a free body gives way to a force at another.
-pub(super) fn mobility(mass: f64, inertia: f64, place: Vector, force: Vector) -> Matrix2<f64> {
-    Matrix2::identity() / mass + turned(place) * turned(force).transpose() / inertia
+/// Inverses of the blocks, in their place.
+struct Invert<'a> {
+    inverse: &'a mut [Vec<f64>; 6],
+    linkage: &'a Linkage,
+}
+
+impl WithSimd for Invert<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
+        let w = Wide(simd);
+        let (links, inverse) = (self.linkage.links, self.inverse);
+        let one = w.splat(1.0);
+        let mut least = one;
+        for link in (0..links).step_by(Wide::<S>::COUNT) {
+            let [a, b, d, c, e, f] = blocks(w, inverse, link + 1);
+            // The adjoint of a symmetric block over its determinant
+            let [xx, yx, tx] = [d * f - e * e, c * e - b * f, b * e - c * d];
+            let determinant = a * xx + b * yx + c * tx;
+            let within = w.first(links - link);
+            least = least.min(within.select(determinant.abs(), one));
+            let scale = within.select(determinant, one).recip();
+            let found = [xx, yx, a * f - c * c, tx, b * c - a * e, a * d - b * b];
+            for (found, inverse) in found.into_iter().zip(&mut *inverse) {
+                (found * scale).store(inverse, link + 1);
+            }
+        }
+        least.smallest() > 0.0
+    }
+}
+
+/// The blocks of the joints and their factors, as one call that is compiled for every kind of processor.
+struct Factor<'a> {
+    reactions: &'a mut Reactions,
+    linkage: &'a Linkage,
+    posture: &'a Posture,
+    inertia: Inertia,
+}
+
+impl WithSimd for Factor<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
+        let w = Wide(simd);
+        let Self {
+            reactions,
+            linkage,
+            posture,
+            inertia,
+        } = self;
+        match inertia {
+            Inertia::OfLinks => reactions.fill::<S, true>(w, linkage, posture),
+            Inertia::OfBlocks => reactions.fill::<S, false>(w, linkage, posture),
+        }
+        let [xx, yx, yy] = &reactions.own;
+        let own = [&xx[..], &yx[..], &yy[..]];
+        reactions.sections.take_in(own, &reactions.coupling);
+        reactions.sections.factor(w)
+    }
+}
+
+impl Reactions {
+    #[inline(always)]
+    fn fill<S: Simd, const FREE: bool>(
+        &mut self,
+        w: Wide<S>,
+        linkage: &Linkage,
+        posture: &Posture,
+    ) {
+        let (zero, one) = (w.splat(0.0), w.splat(1.0));
+        for start in (0..linkage.joints.len()).step_by(Wide::<S>::COUNT) {
+            let [bx, by, ax, ay] = arms(w, posture, start);
+            let next = [
+                w.load(&posture.before.arm_x, start + 1),
+                w.load(&posture.before.arm_y, start + 1),
+            ];
+            let (before, after) = if FREE {
+                (
+                    Yielding::free(w, &linkage.shapes, start),
+                    Yielding::free(w, &linkage.shapes, start + 1),
+                )
+            } else {
+                (
+                    Yielding::Held(blocks(w, &self.inverse, start)),
+                    Yielding::Held(blocks(w, &self.inverse, start + 1)),
+                )
+            };
+            let first = before.between([bx, by], [bx, by]);
+            let second = after.between([ax, ay], [ax, ay]);
+            let across = after.between(next, [ax, ay]);
+            let present = linkage.pairs.present(w, start);
+            let both = linkage.pairs.both_present(w, start);
+            for (own, (k, empty)) in self.own.iter_mut().zip([(0, one), (2, zero), (3, one)]) {
+                present
+                    .select(first[k] + second[k], empty)
+                    .store(own, start);
+            }
+            for (coupling, across) in self.coupling.iter_mut().zip(across) {
+                both.select(-across, zero).store(coupling, start);
+            }
+        }
+    }
+}
+
+impl<S: Simd> Yielding<S> {
+    #[inline(always)]
+    fn free(w: Wide<S>, shapes: &Shapes, place: usize) -> Self {
+        Self::Free([
+            w.load(&shapes.mobility, place),
+            w.load(&shapes.turning, place),
+        ])
+    }
+
+    /// How a place on a link gives way to a force at another, both from the centre of mass: entries (0, 0), (0, 1), (1, 0), (1, 1).
+    #[inline(always)]
+    fn between(&self, [px, py]: [Lane<S>; 2], [fx, fy]: [Lane<S>; 2]) -> [Lane<S>; 4] {
+        match *self {
+            // I/m + (ẑ × p)(ẑ × f)ᵀ/I
+            Self::Free([mobility, turning]) => {
+                let [x, y] = [turning * px, turning * py];
+                [mobility + y * fy, -(y * fx), -(x * fy), mobility + x * fx]
+            }
+            // T_p G T_fᵀ,   T_p = [1 0 −p_y; 0 1 p_x]
+            Self::Held([xx, yx, yy, tx, ty, tt]) => {
+                let [first_t, second_t] = [tx - py * tt, ty + px * tt];
+                [
+                    (xx - py * tx) - fy * first_t,
+                    (yx - py * ty) + fx * first_t,
+                    (yx + px * tx) - fy * second_t,
+                    (yy + px * ty) + fx * second_t,
+                ]
+            }
+        }
+    }
+}
+
+/// Arms of both sides of the joints from one on: before, then after.
+#[inline(always)]
+pub(super) fn arms<S: Simd>(w: Wide<S>, posture: &Posture, joint: usize) -> [Lane<S>; 4] {
+    [
+        w.load(&posture.before.arm_x, joint),
+        w.load(&posture.before.arm_y, joint),
+        w.load(&posture.after.arm_x, joint),
+        w.load(&posture.after.arm_y, joint),
+    ]
+}
+
+/// Numbers of a lane of links, counted as [`ByLink`] does.
+#[inline(always)]
+pub(super) fn load<S: Simd>(w: Wide<S>, all: &ByLink, place: usize) -> [Lane<S>; 3] {
+    [
+        w.load(&all.x, place),
+        w.load(&all.y, place),
+        w.load(&all.turn, place),
+    ]
+}
+
+#[inline(always)]
+fn blocks<S: Simd>(w: Wide<S>, from: &[Vec<f64>; 6], place: usize) -> [Lane<S>; 6] {
+    let mut block = [w.splat(0.0); 6];
+    for k in 0..6 {
+        block[k] = w.load(&from[k], place);
+    }
+    block
 }
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::{DMatrix, DVector};
+    use pulp::{Arch, Scalar128b};
+
     use super::*;
 
-    /// A ring of two-by-two blocks against the dense system.
+    struct Solved<'a> {
+        sections: &'a mut Sections,
+        right: &'a mut [Vec<f64>; 2],
+    }
+
+    impl WithSimd for Solved<'_> {
+        type Output = bool;
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) -> bool {
+            let sound = self.sections.factor(Wide(simd));
+            self.sections.solve(Wide(simd), self.right);
+            sound
+        }
+    }
+
+    /// Rings and rows of two-by-two blocks, of any length, on lanes of any width, against the dense system.
     #[test]
-    fn cyclic_solution_is_exact() {
-        let identity = Matrix2::identity();
-        let e = Matrix2::new(-0.3, 0.1, 0.05, -0.4);
-        let right: Vec<Vector> = (0..4)
-            .map(|i| Vector::new(f64::from(i), 1.0 - f64::from(i)))
-            .collect();
-        let mut reactions = Reactions {
-            held: 0..4,
-            closed: true,
-            diagonal: vec![identity * 2.0; 4],
-            below: vec![e, e * 0.5, e * 0.7, e * 0.9],
-            pivots: vec![Matrix2::zeros(); 4],
-            last: vec![Matrix2::zeros(); 4],
-            right: right.clone(),
+    fn sections_are_solved_exactly() {
+        let mut state = 0.4_f64;
+        let mut next = || {
+            state = (state * 997.13 + 0.123).fract();
+            state - 0.5
         };
-        assert!(reactions.eliminate().is_some());
-        reactions.solve();
-        let Reactions {
-            diagonal,
-            below,
-            right: x,
-            ..
-        } = &reactions;
-        for i in 0..4 {
-            let before = (i + 3) % 4;
-            let after = (i + 1) % 4;
-            let found =
-                diagonal[i] * x[i] + below[before] * x[before] + below[i].transpose() * x[after];
-            assert!((found - right[i]).norm() < 1e-13, "row {i}");
+        let widths: [fn(Solved<'_>) -> bool; 3] = [
+            |solved| solved.with_simd(pulp::Scalar),
+            |solved| solved.with_simd(Scalar128b),
+            |solved| Arch::new().dispatch(solved),
+        ];
+        let mut sections = Sections::default();
+        for (count, closed) in (1..40).flat_map(|count| [(count, false), (count, true)]) {
+            // No ring is shorter.
+            if closed && count < 3 {
+                continue;
+            }
+            let values = |next: &mut dyn FnMut() -> f64| {
+                let mut values: Vec<f64> = (0..count).map(|_| next()).collect();
+                values.resize(padded(count) + LANES, 0.0);
+                values
+            };
+            let mut own: [Vec<f64>; 3] = std::array::from_fn(|_| values(&mut next));
+            let mut coupling: [Vec<f64>; 4] = std::array::from_fn(|_| values(&mut next));
+            let right: [Vec<f64>; 2] = std::array::from_fn(|_| values(&mut next));
+            for k in [0, 2] {
+                own[k].iter_mut().for_each(|own| *own += 3.0);
+            }
+            if !closed {
+                for all in &mut coupling {
+                    all[count - 1] = 0.0;
+                }
+            }
+            let mut dense = DMatrix::<f64>::zeros(2 * count, 2 * count);
+            for i in 0..count {
+                for (p, o, k) in [(0, 0, 0), (1, 0, 1), (0, 1, 1), (1, 1, 2)] {
+                    dense[(2 * i + p, 2 * i + o)] += own[k][i];
+                }
+                let after = (i + 1) % count;
+                for (p, o, k) in [(0, 0, 0), (0, 1, 1), (1, 0, 2), (1, 1, 3)] {
+                    if closed || i + 1 < count {
+                        dense[(2 * after + p, 2 * i + o)] += coupling[k][i];
+                        dense[(2 * i + o, 2 * after + p)] += coupling[k][i];
+                    }
+                }
+            }
+            let known = DVector::from_fn(2 * count, |i, _| right[i % 2][i / 2]);
+            let exact = dense.lu().solve(&known).unwrap();
+            for solve in widths {
+                let mut found = right.clone();
+                sections.lay_out(count, closed, SINGULAR);
+                sections.take_in([&own[0], &own[1], &own[2]], &coupling);
+                let right = &mut found;
+                let sections = &mut sections;
+                assert!(solve(Solved { sections, right }));
+                for i in 0..2 * count {
+                    let error = (found[i % 2][i / 2] - exact[i]).abs();
+                    assert!(error < 1e-13, "{count}, {closed}, {i}: {error:e}");
+                }
+                assert_eq!(found[0][count].to_bits(), found[0][0].to_bits());
+            }
+            // A row that says nothing.
+            for all in &mut own {
+                all[count / 2] = 0.0;
+            }
+            for all in &mut coupling {
+                all.fill(0.0);
+            }
+            sections.take_in([&own[0], &own[1], &own[2]], &coupling);
+            let (sections, mut right) = (&mut sections, right);
+            let right = &mut right;
+            assert!(!widths[2](Solved { sections, right }), "{count}, {closed}");
         }
     }
 }

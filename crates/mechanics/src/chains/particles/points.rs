@@ -93,6 +93,9 @@ pub(crate) struct Found {
     /// Rollers with them, in the matrix and on the right of an implicit step.
     #[serde(skip)]
     pressed: damp::Pressed,
+    /// Wheels and rails by themselves, in an implicit step.
+    #[serde(skip)]
+    own: damp::Own,
 }
 
 /// Contacts of one kind in all joints, whole lanes.

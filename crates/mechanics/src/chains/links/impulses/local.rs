@@ -131,7 +131,8 @@ impl Local {
                     factors[k * count + i] *= inverse;
                 }
                 factors[i * count + i] = inverse;
-                for (sum, value) in sum.iter_mut().zip(own) {
+                // Not all of them: where their number is known, whole columns are gathered and scattered side by side.
+                for (sum, value) in sum[..known].iter_mut().zip(own) {
                     let scaled = value * inverse;
                     for (sum, own) in sum.iter_mut().zip(own) {
                         *sum += scaled * own;

@@ -4,7 +4,7 @@
 
 use pulp::Simd;
 
-use crate::chains::links::element::turned;
+use crate::chains::links::reactions::arms;
 use crate::chains::links::{Bearing, JointState, Linkage};
 use crate::lanes::{Lane, Wide};
 
@@ -100,31 +100,41 @@ impl Rows {
     }
 
     /// The tangents of the joints whose pins rub.
-    pub(super) fn set_tangents(
+    #[inline(always)]
+    pub(super) fn set_tangents<S: Simd>(
         &mut self,
+        w: Wide<S>,
         linkage: &Linkage,
         bearing: &Bearing,
         joint_state: &JointState,
         c: f64,
     ) {
         let pins = &joint_state.pins;
-        self.resize(pins.normal_x.len());
-        self.all().into_iter().for_each(|values| values.fill(0.0));
-        for joint in 0..linkage.joints.len() {
-            let secant = pins.secant[joint];
-            if secant <= 0.0 {
-                continue;
+        let count = pins.normal_x.len();
+        if self.x.len() != count {
+            self.resize(count);
+        }
+        let zero = w.splat(0.0);
+        for start in (0..linkage.joints.len()).step_by(Wide::<S>::COUNT) {
+            let secant = w.load(&pins.secant, start);
+            let rubs = secant.greater(zero);
+            let depth = -w.load(&pins.gap, start);
+            let levers = bearing.lever_lanes(w, linkage.pairs.pins_after(w, start), depth);
+            // t = ẑ × n
+            let [tx, ty] = [
+                -w.load(&pins.normal_y, start),
+                w.load(&pins.normal_x, start),
+            ];
+            let [bx, by, ax, ay] = arms(w, &joint_state.posture, start);
+            for (value, to) in [
+                (tx, &mut self.x),
+                (ty, &mut self.y),
+                (bx * ty - by * tx + levers[0], &mut self.turn_before),
+                (ax * ty - ay * tx + levers[1], &mut self.turn_after),
+                (w.splat(c) * secant, &mut self.weight),
+            ] {
+                rubs.select(value, zero).store(to, start);
             }
-            let levers = bearing.side_levers(linkage.pairs.pin_after(joint), -pins.gap[joint]);
-            let t = turned(pins.normal(joint));
-            let (before, after) = (&joint_state.posture.before, &joint_state.posture.after);
-            self.x[joint] = t.x;
-            self.y[joint] = t.y;
-            self.turn_before[joint] =
-                before.arm_x[joint] * t.y - before.arm_y[joint] * t.x + levers[0];
-            self.turn_after[joint] =
-                after.arm_x[joint] * t.y - after.arm_y[joint] * t.x + levers[1];
-            self.weight[joint] = c * secant;
         }
         if linkage.closed {
             for values in self.all() {

@@ -2,8 +2,11 @@
 
 use std::cmp::Ordering;
 
+use pulp::Simd;
+
 use crate::chains::links::Linkage;
-use crate::lanes::{LANES, padded};
+use crate::chains::links::reactions::Sections;
+use crate::lanes::{LANES, Wide, padded};
 
 /// Where an unknown stands.
 #[derive(Clone, Copy, Debug)]
@@ -16,8 +19,9 @@ pub(super) enum Place {
 /// Blocks of R rows, a border, and one right-hand side: B columns beside the blocks, fewer than the C around a link, which sees the
 /// rows of two joints.
 ///
-/// The last joint of a closed chain stands first in the border, before the wheels. The elimination begins at both ends and meets
-/// in the middle: two recurrences at a time take as long as one.
+/// Single rows are eliminated one after the other: the last joint of a closed chain stands first in the border, before the wheels, and
+/// the elimination begins at both ends and meets in the middle, since two recurrences at a time take as long as one. Two rows a joint
+/// are eliminated in [`Sections`], where the last joint is as good as any, and the border after them, by one solution a column.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tridiagonal {
     /// Entries (p, o) of the joints' own blocks, o ≤ p, by joint; after the elimination of their inverses.
@@ -38,6 +42,9 @@ pub(super) struct Tridiagonal {
     edge: Vec<f64>,
     /// The unknowns of the joints, the first one of a closed chain once more behind the last.
     found: [Vec<f64>; 2],
+    sections: Sections,
+    /// Solutions of the sections for every column beside them.
+    columns: Vec<[Vec<f64>; 2]>,
 }
 
 /// Place of an entry of a block.
@@ -54,9 +61,9 @@ impl Tridiagonal {
         wheels: usize,
     ) {
         let joints = linkage.joints.len();
-        self.held = if linkage.closed { R } else { 0 };
+        self.held = usize::from(linkage.closed && R == 1);
         self.border = self.held + wheels;
-        self.count = joints - usize::from(linkage.closed);
+        self.count = joints - self.held;
         let lanes = padded(joints);
         if self.own[0].len() != lanes {
             for values in self
@@ -101,6 +108,12 @@ impl Tridiagonal {
         &self.found[p]
     }
 
+    /// Place of the first wheel in the border.
+    #[inline(always)]
+    pub(super) fn first_wheel(&self) -> usize {
+        self.held
+    }
+
     /// Unknowns of the wheels and tensioners.
     #[inline(always)]
     pub(super) fn wheels(&self, wheels: usize) -> &[f64] {
@@ -109,13 +122,13 @@ impl Tridiagonal {
 
     /// Moves right-hand sides, and the last joint of a closed chain, to where they are eliminated.
     #[inline(always)]
-    pub(super) fn take_in<const R: usize, const B: usize>(&mut self, linkage: &Linkage) {
+    pub(super) fn take_in<const R: usize, const B: usize>(&mut self) {
         for joint in 0..self.count {
             for p in 0..R {
                 self.beside[(R * joint + p) * B + self.border] = self.right[p][joint];
             }
         }
-        if !linkage.closed {
+        if self.held == 0 {
             return;
         }
         let last = self.count;
@@ -251,24 +264,17 @@ impl Tridiagonal {
 
     /// L D Lᵀ in place; border and right-hand sides are carried along. False if a pivot vanishes.
     #[inline(always)]
-    pub(super) fn factor<const R: usize, const B: usize>(&mut self) -> bool {
-        let middle = self.count / 2;
+    pub(super) fn factor<S: Simd, const R: usize, const B: usize>(
+        &mut self,
+        w: Wide<S>,
+        linkage: &Linkage,
+    ) -> bool {
         let mut corner = [[0.0; B]; B];
-        let mut sound = true;
-        for k in 0..=middle {
-            let behind = self.count - 1 - k;
-            if k < middle {
-                sound &= self.eliminate::<R, B>(k, Some((k + 1, k, false)), &mut corner);
-            }
-            if behind > middle {
-                sound &= self.eliminate::<R, B>(
-                    behind,
-                    Some((behind - 1, behind - 1, true)),
-                    &mut corner,
-                );
-            }
-        }
-        sound &= self.eliminate::<R, B>(middle, None, &mut corner);
+        let sound = if R == 1 {
+            self.eliminate_rows::<B>(&mut corner)
+        } else {
+            self.eliminate_sections::<S, B>(w, linkage, &mut corner)
+        };
         for (i, sum) in corner[..self.border].iter().enumerate() {
             for (j, sum) in sum[..=self.border].iter().enumerate() {
                 self.corner[i * B + j] -= sum;
@@ -277,61 +283,89 @@ impl Tridiagonal {
         sound && self.factor_corner::<B>()
     }
 
-    /// Eliminates a joint into (neighbour, place of their coupling, whether it is the neighbour's rows that come first).
     #[inline(always)]
-    fn eliminate<const R: usize, const B: usize>(
+    fn eliminate_rows<const B: usize>(&mut self, corner: &mut [[f64; B]; B]) -> bool {
+        let middle = self.count / 2;
+        let mut sound = true;
+        for k in 0..=middle {
+            let behind = self.count - 1 - k;
+            if k < middle {
+                sound &= self.eliminate::<B>(k, Some((k + 1, k)), corner);
+            }
+            if behind > middle {
+                sound &= self.eliminate::<B>(behind, Some((behind - 1, behind - 1)), corner);
+            }
+        }
+        sound & self.eliminate::<B>(middle, None, corner)
+    }
+
+    /// Eliminates a joint into (neighbour, place of their coupling).
+    #[inline(always)]
+    fn eliminate<const B: usize>(
         &mut self,
         joint: usize,
-        into: Option<(usize, usize, bool)>,
+        into: Option<(usize, usize)>,
         corner: &mut [[f64; B]; B],
     ) -> bool {
-        let block: [[f64; R]; R] = std::array::from_fn(|p| {
-            std::array::from_fn(|o| self.own[entry(p.max(o), p.min(o))][joint])
-        });
-        let Some(inverse) = inverse(block) else {
+        let inverse = 1.0 / self.own[0][joint];
+        if inverse.is_nan() || inverse <= 0.0 {
             return false;
-        };
-        for p in 0..R {
-            for o in 0..=p {
-                self.own[entry(p, o)][joint] = inverse[p][o];
-            }
         }
+        self.own[0][joint] = inverse;
         let rows = self.beside.as_chunks_mut::<B>().0;
-        let here: [[f64; B]; R] = std::array::from_fn(|p| rows[R * joint + p]);
+        let here = rows[joint];
         // D⁻¹ times everything beside.
-        let scaled: [[f64; B]; R] = std::array::from_fn(|p| {
-            std::array::from_fn(|b| (0..R).map(|o| inverse[p][o] * here[o][b]).sum())
-        });
-        for p in 0..R {
-            for (corner, own) in corner.iter_mut().zip(here[p]) {
-                for (corner, scaled) in corner.iter_mut().zip(scaled[p]) {
-                    *corner += own * scaled;
-                }
+        let scaled = here.map(|here| inverse * here);
+        for (corner, own) in corner.iter_mut().zip(here) {
+            for (corner, scaled) in corner.iter_mut().zip(scaled) {
+                *corner += own * scaled;
             }
         }
-        let Some((neighbour, coupling, first)) = into else {
+        let Some((neighbour, coupling)) = into else {
             return true;
         };
-        // Rows of the neighbour, columns of this joint.
-        let between: [[f64; R]; R] = std::array::from_fn(|p| {
-            std::array::from_fn(|o| {
-                let place = if first { entry(o, p) } else { entry(p, o) };
-                self.coupling[place][coupling]
-            })
-        });
-        let factor: [[f64; R]; R] = std::array::from_fn(|p| {
-            std::array::from_fn(|o| (0..R).map(|q| between[p][q] * inverse[q][o]).sum())
-        });
-        for p in 0..R {
-            for o in 0..R {
-                self.coupling[entry(p, o)][coupling] = factor[p][o];
-                if o <= p {
-                    let sum: f64 = (0..R).map(|q| factor[p][q] * between[o][q]).sum();
-                    self.own[entry(p, o)][neighbour] -= sum;
+        let between = self.coupling[0][coupling];
+        let factor = between * inverse;
+        self.coupling[0][coupling] = factor;
+        self.own[0][neighbour] -= factor * between;
+        for (there, here) in rows[neighbour].iter_mut().zip(here) {
+            *there -= factor * here;
+        }
+        true
+    }
+
+    /// All joints at once; what is left of the border is Wᵀ A⁻¹ W.
+    #[inline(always)]
+    fn eliminate_sections<S: Simd, const B: usize>(
+        &mut self,
+        w: Wide<S>,
+        linkage: &Linkage,
+        corner: &mut [[f64; B]; B],
+    ) -> bool {
+        // Quasi-definite: whatever is positive will do, since the rows of one joint may differ by any power of ten.
+        self.sections.lay_out(self.count, linkage.closed, 0.0);
+        let [xx, _, yx, yy] = &self.own;
+        self.sections
+            .take_in([&xx[..], &yx[..], &yy[..]], &self.coupling);
+        if !self.sections.factor(w) {
+            return false;
+        }
+        let joints = self.beside.as_chunks::<B>().0.as_chunks::<2>().0;
+        self.columns.resize_with(self.border + 1, Default::default);
+        for (j, column) in self.columns.iter_mut().enumerate() {
+            read_column::<B>(joints, j, column, self.found[0].len());
+            self.sections.solve(w, column);
+            let [x, y] = &*column;
+            let mut sums = [[0.0; B]; 2];
+            for ((x, y), beside) in x.iter().zip(y).zip(joints) {
+                for ((sum, beside), found) in sums.iter_mut().zip(beside).zip([x, y]) {
+                    for (sum, beside) in sum.iter_mut().zip(beside) {
+                        *sum += beside * found;
+                    }
                 }
-                for (there, here) in rows[R * neighbour + p].iter_mut().zip(here[o]) {
-                    *there -= factor[p][o] * here;
-                }
+            }
+            for (i, corner) in corner.iter_mut().enumerate() {
+                corner[j] = sums[0][i] + sums[1][i];
             }
         }
         true
@@ -366,77 +400,74 @@ impl Tridiagonal {
             let sum: f64 = known.map(|(a, x)| a * x).sum();
             self.edge[i] = (row[self.border] - sum) / row[i];
         }
+        if R == 1 {
+            self.substitute_rows::<B>(linkage);
+            return;
+        }
+        let (wheels, right) = self.columns.split_at(self.border);
+        for (p, found) in self.found.iter_mut().enumerate() {
+            found.copy_from_slice(&right[0][p]);
+            for (column, edge) in wheels.iter().zip(&self.edge) {
+                for (found, column) in found.iter_mut().zip(&column[p]) {
+                    *found -= column * edge;
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn substitute_rows<const B: usize>(&mut self, linkage: &Linkage) {
         let mut edge = [0.0; B];
         for (edge, found) in edge.iter_mut().zip(&self.edge) {
             *edge = -found;
         }
         edge[self.border] = 1.0;
         let middle = self.count / 2;
-        self.find::<R, B>(middle, None, &edge);
+        self.find::<B>(middle, None, &edge);
         for k in (0..middle).rev() {
-            self.find::<R, B>(k, Some((k + 1, k)), &edge);
+            self.find::<B>(k, Some((k + 1, k)), &edge);
             let behind = self.count - 1 - k;
             if behind > middle {
-                self.find::<R, B>(behind, Some((behind - 1, behind - 1)), &edge);
+                self.find::<B>(behind, Some((behind - 1, behind - 1)), &edge);
             }
         }
         if linkage.closed {
-            for p in 0..R {
-                self.found[p][self.count] = self.edge[p];
-                self.found[p][linkage.links] = self.found[p][0];
-            }
+            self.found[0][self.count] = self.edge[0];
+            self.found[0][linkage.links] = self.found[0][0];
         }
     }
 
     /// y = D⁻¹ (r − beside·edge) − Lᵀ y of the neighbour
     #[inline(always)]
-    fn find<const R: usize, const B: usize>(
+    fn find<const B: usize>(
         &mut self,
         joint: usize,
         from: Option<(usize, usize)>,
         edge: &[f64; B],
     ) {
-        let rows = self.beside.as_chunks::<B>().0;
-        let right: [f64; R] = std::array::from_fn(|p| {
-            rows[R * joint + p]
-                .iter()
-                .zip(edge)
-                .map(|(a, x)| a * x)
-                .sum()
-        });
-        for p in 0..R {
-            let mut value: f64 = (0..R)
-                .map(|o| self.own[entry(p.max(o), p.min(o))][joint] * right[o])
-                .sum();
-            if let Some((neighbour, coupling)) = from {
-                for o in 0..R {
-                    value -= self.coupling[entry(o, p)][coupling] * self.found[o][neighbour];
-                }
-            }
-            self.found[p][joint] = value;
+        let here = self.beside.as_chunks::<B>().0[joint];
+        let right: f64 = here.iter().zip(edge).map(|(a, x)| a * x).sum();
+        let mut value = self.own[0][joint] * right;
+        if let Some((neighbour, coupling)) = from {
+            value -= self.coupling[0][coupling] * self.found[0][neighbour];
         }
+        self.found[0][joint] = value;
     }
 }
 
-/// Inverse of a small symmetric matrix; none where it is not positive.
-#[inline(always)]
-fn inverse<const R: usize>(block: [[f64; R]; R]) -> Option<[[f64; R]; R]> {
-    if R == 1 {
-        let inverse = 1.0 / block[0][0];
-        return (inverse > 0.0).then_some([[inverse; R]; R]);
+/// Takes a column apart by the rows of the joints; out of line, as [`Sections`] goes from joints to sections.
+#[inline(never)]
+fn read_column<const B: usize>(
+    joints: &[[[f64; B]; 2]],
+    j: usize,
+    column: &mut [Vec<f64>; 2],
+    length: usize,
+) {
+    for values in &mut *column {
+        values.resize(length, 0.0);
     }
-    let determinant = block[0][0] * block[1][1] - block[1][0] * block[1][0];
-    let scale = 1.0 / determinant;
-    let sound = block[0][0] > 0.0 && scale > 0.0;
-    sound.then(|| {
-        std::array::from_fn(|p| {
-            std::array::from_fn(|o| {
-                if p == o {
-                    scale * block[1 - p][1 - p]
-                } else {
-                    -scale * block[1][0]
-                }
-            })
-        })
-    })
+    let [x, y] = column;
+    for ((x, y), beside) in x.iter_mut().zip(y).zip(joints) {
+        [*x, *y] = [beside[0][j], beside[1][j]];
+    }
 }

@@ -19,7 +19,7 @@ use pulp::{Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
 use super::{AFTER, BEFORE, Found, Points, ROLLERS};
-use crate::chains::links::{Mount, rail_mount, turned, wheel_mount};
+use crate::chains::links::{Mount, rail_mount, solve_dense, turned, wheel_mount};
 use crate::chains::{Loads, Record, Surroundings};
 use crate::contact::{Contacts, Frame, Touch};
 use crate::lanes::{LANES, Lane, Mask, Wide, dispatch, padded};
@@ -48,6 +48,13 @@ pub(super) struct Touching {
 pub(super) struct Pressed {
     matrix: [Vec<f64>; 3],
     right: [Vec<f64>; 2],
+}
+
+/// The equations of the bodies by themselves, kept for the next step.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Own {
+    matrix: DMatrix<f64>,
+    right: DVector<f64>,
 }
 
 impl Points {
@@ -178,18 +185,31 @@ impl Points {
         }
         let mut alone = true;
         bodies.each_own(weights, |_, weighted| alone &= weighted == 0.0);
-        if alone {
-            return true;
+        alone || found.own.solve(bodies, weights, beside)
+    }
+}
+
+impl Own {
+    /// (M + c C + k K) x = M b of the bodies by themselves, in the place of b; false if a pivot vanishes.
+    fn solve(&mut self, bodies: GroupBodies<'_>, weights: Weights, x: &mut [f64]) -> bool {
+        let inertias = bodies.inertias();
+        let Self { matrix, right } = self;
+        if right.len() == inertias.len() {
+            matrix.fill(0.0);
+        } else {
+            *matrix = DMatrix::zeros(inertias.len(), inertias.len());
+            *right = DVector::zeros(inertias.len());
         }
-        let mut matrix = DMatrix::from_diagonal(&DVector::from_column_slice(inertias));
+        for (j, (x, inertia)) in x.iter().zip(inertias).enumerate() {
+            matrix[(j, j)] = *inertia;
+            right[j] = x * inertia;
+        }
         bodies.each_own(weights, |[i, j], weighted| matrix[(i, j)] += weighted);
-        let right = beside.iter().zip(inertias).map(|(x, inertia)| x * inertia);
-        let right = DVector::from_iterator(inertias.len(), right);
-        let solution = matrix.lu().solve(&right);
-        if let Some(solution) = &solution {
-            beside.copy_from_slice(solution.as_slice());
+        let solved = solve_dense(matrix, right);
+        if solved {
+            x.copy_from_slice(right.as_slice());
         }
-        solution.is_some()
+        solved
     }
 }
 

@@ -1,0 +1,245 @@
+//! Laws of friction on lanes.
+
+use chaindrive_contact::{Friction, Rub};
+use pulp::Simd;
+
+use super::bristles::Bristles;
+use crate::lanes::{LANES, Lane, Wide};
+
+/// A spring and a slider, prepared.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct LaneSpring {
+    /// k \[N/m\]
+    pub(crate) stiffness: f64,
+    /// μ/k \[m/N\]
+    coefficient_by_stiffness: f64,
+}
+
+/// A friction law on lanes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum LaneFriction {
+    None,
+    Coulomb {
+        /// μ \[–\]
+        coefficient: f64,
+        /// Square of the regularising slip speed \[m²/s²\].
+        slip_speed_squared: f64,
+        /// Slope at rest per normal force, μ/v_s \[s/m\].
+        slope: f64,
+    },
+    /// A spring and a slider.
+    SpringSlider(LaneSpring),
+    /// Bristles that bend.
+    Bristles(Bristles),
+    /// Any other law, one lane after the other.
+    General(Friction),
+}
+
+/// Force of friction, and its derivatives.
+pub(crate) struct Rubbing<S: Simd> {
+    /// Force along the slip \[N\].
+    pub(crate) force: Lane<S>,
+    /// Its slope −∂R/∂slip, not negative \[N s/m\].
+    pub(crate) drag: Lane<S>,
+    /// |R/slip|, or the slope where that is steeper \[N s/m\]. With it a step cannot carry the slip beyond zero, where the
+    /// slope of a saturated friction would let it chatter.
+    pub(crate) secant: Lane<S>,
+    /// The slope that limits explicit steps \[N s/m\].
+    pub(crate) steepest: Lane<S>,
+}
+
+impl LaneSpring {
+    /// Friction, and the deflection of the spring.
+    #[inline(always)]
+    pub(crate) fn rub<S: Simd>(
+        &self,
+        w: Wide<S>,
+        dt: f64,
+        normal: Lane<S>,
+        slip: Lane<S>,
+        before: Lane<S>,
+    ) -> (Rubbing<S>, Lane<S>) {
+        // z′ = z + v h, drawn back to |z′| ≤ μ N/k;   f = −k z′,   −∂f/∂v = k h while it holds
+        let stiffness = w.splat(self.stiffness);
+        let limit = w.splat(self.coefficient_by_stiffness) * normal;
+        let tried = before + slip * w.splat(dt);
+        let stick = tried.max(-limit).min(limit);
+        let holds = limit.greater(tried.abs());
+        let drag = holds.select(stiffness * w.splat(dt), w.splat(0.0));
+        let rubbing = Rubbing {
+            force: -(stiffness * stick),
+            drag,
+            secant: drag,
+            steepest: drag,
+        };
+        (rubbing, stick)
+    }
+}
+
+impl LaneFriction {
+    pub(crate) fn new(friction: Friction) -> Self {
+        match friction {
+            Friction::None => Self::None,
+            Friction::Coulomb(coulomb) => Self::Coulomb {
+                coefficient: coulomb.coefficient,
+                slip_speed_squared: coulomb.slip_speed * coulomb.slip_speed,
+                slope: coulomb.coefficient / coulomb.slip_speed,
+            },
+            Friction::SpringSlider(spring) => Self::SpringSlider(LaneSpring {
+                stiffness: spring.stiffness,
+                coefficient_by_stiffness: spring.coefficient / spring.stiffness,
+            }),
+            Friction::Lugre(law) => Self::Bristles(Bristles::new(law)),
+            other => Self::General(other),
+        }
+    }
+
+    /// Slope at rest under normal forces \[N s/m\].
+    #[inline(always)]
+    pub(super) fn at_rest<S: Simd>(&self, w: Wide<S>, force: Lane<S>) -> Lane<S> {
+        match self {
+            Self::None | Self::SpringSlider(_) => w.splat(0.0),
+            Self::Coulomb { slope, .. } => w.splat(*slope) * force,
+            Self::Bristles(bristles) => bristles.at_rest(w, force),
+            Self::General(friction) => force.one_by_one(|force| friction.damping(force, 0.0)),
+        }
+    }
+
+    /// Friction under these normal forces at these slip speeds, `dt` after the accepted state, and its state then. There is
+    /// a contact where the first number is positive.
+    #[inline(always)]
+    pub(crate) fn rub<S: Simd>(
+        &self,
+        w: Wide<S>,
+        dt: f64,
+        [touching, normal]: [Lane<S>; 2],
+        slip: Lane<S>,
+        before: Lane<S>,
+    ) -> (Rubbing<S>, Lane<S>) {
+        let zero = w.splat(0.0);
+        match self {
+            Self::None => (Rubbing::none(w), zero),
+            Self::Coulomb {
+                coefficient,
+                slip_speed_squared,
+                slope,
+            } => {
+                // f = −μ F v/√(v² + v_s²),   −∂f/∂v = μ F v_s²/√(v² + v_s²)³
+                let regular = w.splat(*slip_speed_squared);
+                let inverse = (slip * slip + regular).inverse_root();
+                let limit = w.splat(*coefficient) * normal;
+                let secant = limit * inverse;
+                let rubbing = Rubbing {
+                    force: -(limit * slip * inverse),
+                    drag: secant * regular * inverse * inverse,
+                    secant,
+                    steepest: w.splat(*slope) * normal,
+                };
+                (rubbing, zero)
+            }
+            Self::SpringSlider(spring) => spring.rub(w, dt, normal, slip, before),
+            Self::Bristles(bristles) => bristles.rub(w, dt, [touching, normal], slip, before),
+            Self::General(friction) => one_by_one(w, friction, [touching, normal], slip),
+        }
+    }
+
+    /// Energy of what sticks, in this state under a normal force \[J\].
+    #[inline(always)]
+    pub(crate) fn stored<S: Simd>(&self, w: Wide<S>, normal: Lane<S>, stick: Lane<S>) -> Lane<S> {
+        // U = ½ k z²
+        let half_square = w.splat(0.5) * stick * stick;
+        match self {
+            Self::None | Self::Coulomb { .. } | Self::General(_) => w.splat(0.0),
+            Self::SpringSlider(spring) => w.splat(spring.stiffness) * half_square,
+            Self::Bristles(bristles) => w.splat(bristles.stiffness) * normal * half_square,
+        }
+    }
+
+    /// Whether nothing but a spring holds what sticks.
+    pub(crate) fn is_elastic(&self) -> bool {
+        matches!(self, Self::SpringSlider(_))
+    }
+
+    /// Whether it has a state.
+    #[inline(always)]
+    pub(super) fn remembers(&self) -> bool {
+        matches!(self, Self::SpringSlider(_) | Self::Bristles(_))
+    }
+
+    /// Stiffness along the surface of what sticks under a normal force \[N/m\].
+    pub(crate) fn stiffness(&self, normal: f64) -> f64 {
+        match self {
+            Self::None | Self::Coulomb { .. } | Self::General(_) => 0.0,
+            Self::SpringSlider(spring) => spring.stiffness,
+            Self::Bristles(bristles) => bristles.stiffness * normal,
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn acts(&self) -> bool {
+        !matches!(self, Self::None)
+    }
+}
+
+impl<S: Simd> Rubbing<S> {
+    #[inline(always)]
+    fn none(w: Wide<S>) -> Self {
+        let zero = w.splat(0.0);
+        Self {
+            force: zero,
+            drag: zero,
+            secant: zero,
+            steepest: zero,
+        }
+    }
+}
+
+/// Friction of any law without a state.
+#[inline(always)]
+fn one_by_one<S: Simd>(
+    w: Wide<S>,
+    friction: &Friction,
+    [touching, normal]: [Lane<S>; 2],
+    slip: Lane<S>,
+) -> (Rubbing<S>, Lane<S>) {
+    let [mut rub, mut drag, mut secant] = [[0.0; LANES]; 3];
+    normal.store(&mut rub, 0);
+    slip.store(&mut drag, 0);
+    // In the place of the answer: what says where there is a contact.
+    touching.store(&mut secant, 0);
+    rub_one_by_one(
+        friction,
+        [&mut rub, &mut drag, &mut secant].map(|lane| &mut lane[..Wide::<S>::COUNT]),
+    );
+    let drag = w.load(&drag, 0);
+    let rubbing = Rubbing {
+        force: w.load(&rub, 0),
+        drag,
+        secant: w.load(&secant, 0),
+        steepest: drag,
+    };
+    (rubbing, w.splat(0.0))
+}
+
+/// Turns normal forces into friction forces and slips into slopes; kept out of line like the laws.
+#[inline(never)]
+fn rub_one_by_one(friction: &Friction, lanes: [&mut [f64]; 3]) {
+    let [force, slip, secant] = lanes;
+    for ((force, slip), secant) in force.iter_mut().zip(slip).zip(secant) {
+        if *secant <= 0.0 {
+            (*force, *slip, *secant) = (0.0, 0.0, 0.0);
+            continue;
+        }
+        let Rub {
+            force: rub,
+            damping,
+            ..
+        } = friction.rub(*force, *slip, 0.0, 0.0);
+        *secant = if slip.abs() < f64::MIN_POSITIVE {
+            damping
+        } else {
+            damping.max(-rub / *slip)
+        };
+        (*force, *slip) = (rub, damping);
+    }
+}
