@@ -221,7 +221,7 @@ fn what_was_not_looked_at_is_said() {
     let timing = preset("timing_drive", &[("defaults", "\"0.1\"")]);
     let found = examined(&timing, &run(0.05, 50.0));
     assert_eq!(names(&found), ["not-examined"], "{found}");
-    assert_eq!(found.note(), "not examined beyond 3.9 ms of 50 ms");
+    assert_eq!(found.note(), "not examined beyond 4.3 ms of 50 ms");
     // A run as short as the window is examined throughout.
     let found = examined(&timing, &run(2e-4, 50.0));
     assert_eq!(found.trust, Trust::Trusted, "{found}");
