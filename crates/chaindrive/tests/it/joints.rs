@@ -145,7 +145,7 @@ fn joints_of_the_catalogue_rub_in_every_model() {
     }
 }
 
-/// What a pin needs is asked for, and what only pins with clearance have is refused.
+/// Keys that a pin needs are asked for, and those that only pins with clearance have are refused.
 #[test]
 fn joints_say_what_they_need() {
     let of_dimensions = r#"

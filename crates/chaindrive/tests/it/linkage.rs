@@ -1,4 +1,4 @@
-//! What every chain of rigid links keeps: momentum, energy to the order of the method, and the same motion by all
+//! Laws that every chain of rigid links keeps: momentum, energy to the order of the method, and the same motion by all
 //! methods.
 #![allow(clippy::print_stdout, reason = "measured errors are worth a look")]
 

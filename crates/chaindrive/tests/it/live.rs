@@ -119,7 +119,7 @@ fn a_run_in_a_hundred_pieces_is_the_run_in_one() {
     }
 }
 
-/// What was set when its time had come, and what was planned beforehand, is the same run.
+/// A change that is set when its time has come, and one that was planned beforehand, make the same run.
 #[test]
 fn equal_schedules_are_equal_runs() {
     let scene = preset("marine_engine");
@@ -220,7 +220,7 @@ fn a_run_by_snapshots_is_the_run_in_one() {
     }
 }
 
-/// What was set before a snapshot, and what was planned, goes on from it; what was set after it is gone.
+/// Changes set before a snapshot, and planned ones, go on from it; those set after it are gone.
 #[test]
 fn a_snapshot_knows_what_is_set() {
     let scene = preset("marine_engine");

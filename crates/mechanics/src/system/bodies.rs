@@ -408,9 +408,7 @@ impl Bodies {
         let moving = match &wheel.support {
             WheelSupport::Fixed | WheelSupport::Prescribed { .. } => 0.0,
             WheelSupport::Springs { .. } => 1.0 / wheel.mass,
-            WheelSupport::Carried(index) => {
-                self.slides[*index].mobility(&[wheel.centre, wheel.centre])
-            }
+            WheelSupport::Carried(index) => self.slides[*index].mobility(wheel.centre),
         };
         turning + moving
     }

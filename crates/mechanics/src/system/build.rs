@@ -347,7 +347,14 @@ fn wheel(sprocket: &Sprocket, angle: f64, turn: Turn, centre: Option<usize>) -> 
 fn rail(guide: &Guide, slides: &[Slide]) -> Rail {
     let mobility = match &guide.support {
         GuideSupport::Fixed | GuideSupport::Prescribed { .. } => 0.0,
-        GuideSupport::Tensioner(index) => slides[*index].mobility(&bounds(guide)),
+        GuideSupport::Tensioner(index) => {
+            // Nothing on the face has a longer lever than some corner of its box.
+            let [low, high] = bounds(guide);
+            let across = [Point::new(low.x, high.y), Point::new(high.x, low.y)];
+            let corners = [low, high].into_iter().chain(across);
+            let mobilities = corners.map(|corner| slides[*index].mobility(corner));
+            mobilities.fold(0.0, f64::max)
+        }
     };
     Rail {
         mobility,

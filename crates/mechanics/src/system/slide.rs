@@ -46,19 +46,10 @@ impl Slide {
         (place, first * pose.rate)
     }
 
-    /// How easily a force at any place within a box (low, high) moves the carrier where it is assembled \[1/kg\], at most.
-    pub(crate) fn mobility(&self, [low, high]: &[Point; 2]) -> f64 {
-        if self.dof.is_none() {
-            return 0.0;
-        }
-        let corners = [
-            *low,
-            *high,
-            Point::new(low.x, high.y),
-            Point::new(high.x, low.y),
-        ];
-        let levers = corners.map(|corner| self.carrier.squared_lever(0.0, corner));
-        levers.into_iter().fold(0.0, f64::max) / self.inertia
+    /// How easily a force at some place moves the carrier where it is assembled \[1/kg\].
+    pub(crate) fn mobility(&self, at: Point) -> f64 {
+        let lever = || self.carrier.squared_lever(0.0, at);
+        self.dof.map_or(0.0, |_| lever() / self.inertia)
     }
 
     /// Generalised force of a force at a carried point.

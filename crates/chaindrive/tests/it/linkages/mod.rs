@@ -194,7 +194,7 @@ impl Bench {
         }
     }
 
-    /// What can be read off the accepted state.
+    /// Readings of the accepted state.
     pub(crate) fn look(&mut self) -> &Observation {
         let at = Moment {
             t: self.state.t,
