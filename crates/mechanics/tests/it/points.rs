@@ -399,7 +399,7 @@ fn stiffest(system: &System, state: &State) -> f64 {
     let mut value = 0.0;
     for _ in 0..40 {
         let largest = x.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-        // Copies behind the originals move with them; nanometres leave contacts what they are.
+        // Copies behind the originals move with them; a hundredth of a nanometre leaves contacts what they are.
         let moved = |(q, x): (&f64, &f64)| q + 1e-11 * x / largest;
         let moved: Vec<f64> = state.q.iter().zip(&x).map(moved).collect();
         let there = accelerations(&moved);
@@ -415,7 +415,7 @@ fn stiffest(system: &System, state: &State) -> f64 {
     value
 }
 
-/// What bounds the steps is not below the stiffest mode that the joints have while they strike, nor far above it.
+/// The bound of the steps is not below the stiffest mode that the joints have while they strike, nor far above it.
 #[test]
 fn steps_are_bounded_by_the_stiffest_mode() {
     let start = ring();
