@@ -66,6 +66,7 @@ impl Coefficients {
     fn weights(self, h: f64) -> Weights {
         let ratio = (1.0 - self.force) / (1.0 - self.inertia);
         Weights {
+            once: false,
             damping: ratio * self.gamma * h,
             stiffness: ratio * self.beta * h * h,
         }

@@ -44,7 +44,7 @@ pub enum Method {
         /// Largest step \[s\]; with infinite tolerances the method takes this step throughout.
         max_step: f64,
     },
-    /// Damping implicit, stiffness explicit: first order, one evaluation and one solution of linear equations per step.
+    /// Damping implicit, stiffness explicit or carried as inertia: first order, one evaluation and one solution of linear equations per step.
     ///
     /// For damping far stiffer than the springs. Without damping it is the symplectic Euler method, whose
     /// energy does not drift.
@@ -223,9 +223,8 @@ impl Method {
         match self {
             Self::Verlet { .. } => system.predicted_time_scale(),
             Self::Rk4 { .. } | Self::DormandPrince { .. } => system.time_scale(),
-            Self::ImplicitDamping { .. } | Self::GeneralizedAlpha { .. } => {
-                system.undamped_time_scale()
-            }
+            Self::ImplicitDamping { .. } => system.carried_time_scale(),
+            Self::GeneralizedAlpha { .. } => system.undamped_time_scale(),
         }
     }
 

@@ -36,6 +36,10 @@ pub struct Weights {
     pub damping: f64,
     /// Weight k of the stiffness \[s²\].
     pub stiffness: f64,
+    /// Whether one solution makes the whole step. Friction is then taken so that no step carries a slip beyond zero, where
+    /// Newton's iteration wants the slope; and stiffness may be left out, as [`carried_time_scale`](SecondOrderSystem::carried_time_scale) has
+    /// to know.
+    pub once: bool,
 }
 
 /// Judgement on a candidate step.
@@ -178,6 +182,14 @@ pub trait SecondOrderSystem {
         self.time_scale()
     }
 
+    /// Time scale \[s\] that limits steps of one solution, whose springs are carried as inertia: 1/ω of the fastest mode of those that
+    /// [`solve`](Self::solve) leaves out there.
+    ///
+    /// Asked after each accepted step: keep it a field.
+    fn carried_time_scale(&self) -> f64 {
+        self.undamped_time_scale()
+    }
+
     /// Whether [`solve`](Self::solve) is there: implicit methods need it.
     fn can_solve(&self) -> bool {
         false
@@ -193,7 +205,7 @@ pub trait SecondOrderSystem {
     /// ⎣ −c ∂ż/∂q̇ − k ∂ż/∂q   1 − c ∂ż/∂z ⎦ ⎣y⎦ ← ⎣ y ⎦
     /// ```
     ///
-    /// C and K are those at the moment `record` was last evaluated at. Work space and factors may be
+    /// `weights.once` tells that no iteration follows. C and K are those at the moment `record` was last evaluated at. Work space and factors may be
     /// kept in the record; what [`inspect`](Self::inspect) and [`commit`](Self::commit) read there must stay, and a
     /// commit that swaps with the record must leave C and K in it. Approximate C and K are allowed: Newton's
     /// iteration then converges more slowly.

@@ -76,6 +76,8 @@ pub(crate) struct Rates {
     pub(crate) damping: f64,
     /// D without the damping that is taken at the end of a step whose velocities are predicted.
     pub(crate) predicted: f64,
+    /// ω² of what limits steps of one solution, those springs left out that are taken at their end \[1/s²\].
+    pub(crate) carried: f64,
 }
 
 impl Rates {
@@ -85,6 +87,7 @@ impl Rates {
             squared,
             damping,
             predicted: damping,
+            carried: squared,
         }
     }
 
@@ -94,6 +97,7 @@ impl Rates {
             squared: self.squared.max(other.squared),
             damping: self.damping.max(other.damping),
             predicted: self.predicted.max(other.predicted),
+            carried: self.carried.max(other.carried),
         }
     }
 }
@@ -300,7 +304,7 @@ impl Chain {
         match self {
             Self::Particles(chain) => chain.rates(around, record),
             Self::Points(chain) => Rates::of(chain.rates(around, record)),
-            Self::Links(chain) => Rates::of(chain.rates(around, record)),
+            Self::Links(chain) => chain.rates(around, record),
         }
     }
 

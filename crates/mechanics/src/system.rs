@@ -48,8 +48,9 @@ pub struct System {
     pub(crate) groups: Vec<Group>,
     /// The log of contacts, where one is kept.
     pub(crate) events: Option<EventLog>,
-    /// 1/ω of the stiffest mode \[s\]: damping included, without that of teeth on particles, without any.
-    time_scales: [f64; 3],
+    /// 1/ω of the stiffest mode \[s\]: damping included, without that of teeth on particles, without any, and without any and the springs
+    /// that steps of one solution carry.
+    time_scales: [f64; 4],
     /// Deepest first penetration accepted \[m\], when steps are to be rejected for it.
     onset_depth: Option<f64>,
     /// Time at which it was assembled \[s\].
@@ -320,6 +321,7 @@ impl System {
             squared,
             damping,
             predicted,
+            carried,
         } = all.fold(own, Rates::max);
         // τ = 1/(D + √(D² + ω²))
         let scale = |damping: f64| 1.0 / (damping + (damping * damping + squared).sqrt());
@@ -327,10 +329,12 @@ impl System {
             .chains
             .iter()
             .map(|member| member.chain.stabilisation());
+        let explicit = explicit.fold(0.0, f64::max);
         self.time_scales = [
             scale(damping),
             scale(predicted),
-            1.0 / explicit.fold(squared.sqrt(), f64::max),
+            1.0 / explicit.max(squared.sqrt()),
+            1.0 / explicit.max(carried.sqrt()),
         ];
     }
 }
@@ -443,6 +447,10 @@ impl SecondOrderSystem for System {
 
     fn undamped_time_scale(&self) -> f64 {
         self.time_scales[2]
+    }
+
+    fn carried_time_scale(&self) -> f64 {
+        self.time_scales[3]
     }
 
     fn can_solve(&self) -> bool {

@@ -27,6 +27,8 @@ struct Mass {
     solvable: f64,
     /// Share of the true derivatives that the solution reckons with.
     share: f64,
+    /// Whether steps of one solution carry the stiffness as inertia.
+    carries: bool,
 }
 
 impl Mass {
@@ -41,6 +43,7 @@ impl Mass {
             longest: f64::INFINITY,
             solvable: f64::INFINITY,
             share: 1.0,
+            carries: false,
         }
     }
 
@@ -101,11 +104,23 @@ impl SecondOrderSystem for Mass {
     fn undamped_time_scale(&self) -> f64 {
         1.0 / self.stiffness.sqrt()
     }
+    fn carried_time_scale(&self) -> f64 {
+        if self.carries {
+            f64::INFINITY
+        } else {
+            self.undamped_time_scale()
+        }
+    }
     fn can_solve(&self) -> bool {
         true
     }
     fn solve(&self, weights: Weights, (c, k): &mut (f64, f64), x: &mut [f64]) -> bool {
-        x[0] /= 1.0 + self.share * (weights.damping * *c + weights.stiffness * *k);
+        let carried = if weights.once && !self.carries {
+            0.0
+        } else {
+            weights.stiffness
+        };
+        x[0] /= 1.0 + self.share * (weights.damping * *c + carried * *k);
         weights.damping <= self.solvable
     }
 }
@@ -150,7 +165,49 @@ fn stiff_damping_creeps() {
     }
 }
 
-/// The limit of stability is ωh = 2 whatever the damping, as documented: (ωh)² < 2 (2 + λh).
+/// What is carried as inertia has no limit: (1 + hλ + (ωh)²/4)(z − 1)² + h (ω² h z + λ (z − 1)) is 4 + 2 hλ at z = −1.
+#[test]
+fn carried_stiffness_is_stable_with_every_step() {
+    for (step, damping) in [(1.8, 0.0), (20.0, 0.0), (20.0, 0.3), (1e3, 0.0), (1e3, 1e3)] {
+        let mut system = Mass {
+            carries: true,
+            ..Mass::linear(1.0, damping)
+        };
+        let (mut stepper, mut state) = system.start(Method::ImplicitDamping { step });
+        // (1 + h²/4) v² + q² − h v q = v² + (q − h v/2)² is kept without damping, and bounds q.
+        let (q, v) = (state.q[0], state.v[0]);
+        let bound = (1.0 + 0.5 * step) * v.hypot(q - 0.5 * step * v) * (1.0 + 1e-9);
+        for _ in 0..20_000 {
+            stepper.advance(&mut system, &mut state).unwrap();
+            assert!(state.q[0].abs() < bound, "h = {step}, λ = {damping}");
+        }
+    }
+}
+
+/// Carrying the stiffness leaves it of second order: the frequency is 2/h asin(ωh/√(4 + (ωh)²)) = 2/h atan(ωh/2), that of the trapezoidal rule.
+#[test]
+fn carried_stiffness_swings_as_with_the_trapezoidal_rule() {
+    for step in [0.1, 0.5, 2.0] {
+        let mut system = Mass {
+            carries: true,
+            ..Mass::linear(1.0, 0.0)
+        };
+        let (mut stepper, mut state) = system.start(Method::ImplicitDamping { step });
+        let angle = 2.0 * f64::atan(0.5 * step);
+        // q[n + 1] + q[n − 1] = 2 cos(ω′h) q[n] for every n.
+        let mut q = vec![state.q[0]];
+        for _ in 0..100 {
+            stepper.advance(&mut system, &mut state).unwrap();
+            q.push(state.q[0]);
+        }
+        for three in q.windows(3) {
+            let error = three[0] + three[2] - 2.0 * angle.cos() * three[1];
+            assert!(error.abs() < 1e-12, "h = {step}: {error}");
+        }
+    }
+}
+
+/// The limit of stability of stiffness that is left out is ωh = 2 whatever the damping, as documented: (ωh)² < 2 (2 + λh).
 #[test]
 fn implicit_damping_is_stable_to_its_limit() {
     for damping in [0.0, 0.3, 3.0, 1e3] {

@@ -174,6 +174,7 @@ fn relax(system: &mut System, q: &mut [f64], typical: f64) -> Balance {
         let weight = reach * reach;
         let mut step: Vec<f64> = a.iter().map(|a| a * weight).collect();
         let weights = Weights {
+            once: false,
             damping: 0.0,
             stiffness: weight,
         };

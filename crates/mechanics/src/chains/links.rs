@@ -185,9 +185,9 @@ pub(crate) struct JointState {
     /// Normal forces of pins in ideal joints without friction \[N\], whole lanes.
     #[serde(skip)]
     pub(crate) normal: Vec<f64>,
-    /// Stiffness and damping by body, for the time scales.
+    /// Stiffness, damping and springs of friction by body, for the time scales.
     #[serde(skip)]
-    pub(crate) sums: Vec<[rates::Packed; 2]>,
+    pub(crate) sums: Vec<[rates::Packed; 3]>,
     /// Accelerations and inverse masses of particles, which the kernel of the teeth asks for and links have no use for.
     #[serde(skip)]
     pub(crate) idle: Idle,

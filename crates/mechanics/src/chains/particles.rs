@@ -191,6 +191,7 @@ impl Particles {
             squared: squared + contact,
             damping: damping + drag,
             predicted: damping + predicted,
+            carried: squared + contact,
         }
     }
 

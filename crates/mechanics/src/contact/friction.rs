@@ -6,6 +6,9 @@ use pulp::Simd;
 use super::bristles::Bristles;
 use crate::lanes::{LANES, Lane, Wide};
 
+/// A slip \[m/s\] that no force is divided by less than.
+const LEAST_SLIP: f64 = 1e-30;
+
 /// A spring and a slider, prepared.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct LaneSpring {
@@ -59,17 +62,19 @@ impl LaneSpring {
         slip: Lane<S>,
         before: Lane<S>,
     ) -> (Rubbing<S>, Lane<S>) {
-        // z′ = z + v h, drawn back to |z′| ≤ μ N/k;   f = −k z′,   −∂f/∂v = k h while it holds
+        // z′ = z + v h, drawn back to |z′| ≤ μ N/k;   f = −k z′,   −∂f/∂v = k h while it holds, |f/v| ≤ k h while it slides
         let stiffness = w.splat(self.stiffness);
         let limit = w.splat(self.coefficient_by_stiffness) * normal;
         let tried = before + slip * w.splat(dt);
         let stick = tried.max(-limit).min(limit);
         let holds = limit.greater(tried.abs());
-        let drag = holds.select(stiffness * w.splat(dt), w.splat(0.0));
+        let spring = stiffness * w.splat(dt);
+        let drag = holds.select(spring, w.splat(0.0));
+        let sliding = stiffness * limit * slip.abs().max(w.splat(LEAST_SLIP)).recip();
         let rubbing = Rubbing {
             force: -(stiffness * stick),
             drag,
-            secant: drag,
+            secant: holds.select(spring, spring.min(sliding)),
             steepest: drag,
         };
         (rubbing, stick)

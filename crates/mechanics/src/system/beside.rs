@@ -40,10 +40,10 @@ impl System {
         whole.bodies.first = first;
         let inertias = systems.iter().map(|system| &system.bodies.inertias);
         whole.bodies.inertias = inertias.flatten().copied().collect();
-        let shortest = |scales: [f64; 3], system: &Self| {
-            [0, 1, 2].map(|kind| f64::min(scales[kind], system.time_scales[kind]))
+        let shortest = |scales: [f64; 4], system: &Self| {
+            [0, 1, 2, 3].map(|kind| f64::min(scales[kind], system.time_scales[kind]))
         };
-        whole.time_scales = systems.iter().fold([f64::INFINITY; 3], shortest);
+        whole.time_scales = systems.iter().fold([f64::INFINITY; 4], shortest);
         whole.groups = solved;
         whole.dofs = dofs;
 

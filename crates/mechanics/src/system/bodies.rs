@@ -185,6 +185,7 @@ impl Bodies {
             squared,
             damping,
             predicted,
+            carried: squared,
         }
     }
 

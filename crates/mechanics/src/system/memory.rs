@@ -22,7 +22,7 @@ pub struct SystemMemory {
     inputs: Inputs,
     centres: Vec<OnwardCentre>,
     events: Option<EventLog>,
-    time_scales: [f64; 3],
+    time_scales: [f64; 4],
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]

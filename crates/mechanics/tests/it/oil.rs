@@ -176,6 +176,7 @@ fn an_implicit_step_takes_the_oil_along() {
     let right = x.clone();
     let (c, k) = (1e-5, 4e-11);
     let weights = Weights {
+        once: false,
         damping: c,
         stiffness: k,
     };

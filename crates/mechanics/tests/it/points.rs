@@ -357,6 +357,7 @@ fn joints_are_solved_exactly() {
     }
     let asked = x.clone();
     let weights = Weights {
+        once: false,
         damping: c,
         stiffness: 0.0,
     };

@@ -443,6 +443,7 @@ fn an_implicit_step_joins_chains_of_rigid_links() {
     let b: Vec<f64> = (0..q.len()).map(|i| (7.0 * i as f64).sin()).collect();
     let damping = 2e-6;
     let weights = Weights {
+        once: false,
         damping,
         stiffness: 0.0,
     };

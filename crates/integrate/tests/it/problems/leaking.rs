@@ -65,6 +65,7 @@ impl SecondOrderSystem for Leaking {
         let Weights {
             damping: c,
             stiffness: k,
+            ..
         } = weights;
         let kappa = Self::STIFFNESS;
         // y = (y₀ + (c ∂ż/∂q̇ + k ∂ż/∂q) x)/(1 − c ∂ż/∂z),   ∂ż/∂q = κ ∂ż/∂F = −∂ż/∂z

@@ -234,12 +234,6 @@ impl Bearing {
         self.lanes.friction.acts()
     }
 
-    /// Whether a single step has to be solved with the friction of pins: a spring does without, which steps resolve as they do that
-    /// of the contact.
-    pub(super) fn rubs_by_step(&self) -> bool {
-        self.rubs() && !self.lanes.friction.is_elastic()
-    }
-
     /// From the centres of pin and hole to where they touch \[m\].
     pub(super) fn levers(&self, depth: f64) -> [f64; 2] {
         // Both surfaces at the middle of the overlap: R_pin − δ/2 and R_hole + δ/2.

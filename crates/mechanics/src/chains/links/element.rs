@@ -1,6 +1,7 @@
 //! One closed contact, as the forces it exerts and as rows of the implicit system.
 
 use chaindrive_geometry::Vector;
+use chaindrive_integrate::Weights;
 use serde::{Deserialize, Serialize};
 
 /// The other side of a contact.
@@ -74,6 +75,27 @@ pub(crate) fn turned(v: Vector) -> Vector {
 }
 
 impl Element {
+    /// Weights of its normal and its tangent in the matrix of a step of one solution, where the forces by themselves would change
+    /// its slip by `change`.
+    ///
+    /// ```text
+    /// c d + k ∂F/∂δ,   c r + k F/|e|
+    /// ```
+    ///
+    /// r is the secant where friction is about to stop the slip, and the slope where the slip grows: the secant would hold it back
+    /// with more than the friction.
+    pub(super) fn step_weights(&self, weights: Weights, change: f64) -> [f64; 2] {
+        let drag = if self.rub * change > 0.0 {
+            self.secant
+        } else {
+            self.drag
+        };
+        [
+            weights.damping * self.damping + weights.stiffness * self.stiffness,
+            weights.damping * drag + weights.stiffness * self.across.max(0.0),
+        ]
+    }
+
     pub(crate) fn tangent(&self) -> Vector {
         turned(self.normal)
     }

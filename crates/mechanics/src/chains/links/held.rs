@@ -63,7 +63,7 @@ impl Linkage {
         sum.add_masses(bodies, weights, x);
         if matches!(asked, Prescribed::Kept) {
             self.each_element(joint_state, |element| {
-                sum.add(element, &joint_state.mounts, weights);
+                sum.add(element, &joint_state.mounts, weights, x);
             });
             if weights.stiffness > 0.0 {
                 sum.add_hinge_turns(joint_state, weights.stiffness);
@@ -334,6 +334,7 @@ mod tests {
             for stiffness in [0.0, 1e-9] {
                 let (system, mut record, b) = started(parts.clone());
                 let weights = Weights {
+                    once: false,
                     damping: 2e-6,
                     stiffness,
                 };
@@ -378,7 +379,7 @@ mod tests {
         let mut sum = Sum::new(linkage, &mut equations, linkage.links, b);
         sum.add_masses(bodies, weights, b);
         linkage.each_element(joint_state, |element| {
-            sum.add(element, &joint_state.mounts, weights);
+            sum.add(element, &joint_state.mounts, weights, b);
         });
         sum.add_hinge_turns(joint_state, weights.stiffness);
         let Equations { blocks, loose } = equations;

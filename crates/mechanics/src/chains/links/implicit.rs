@@ -51,14 +51,28 @@ impl Linkage {
             impulses,
             ..
         } = record;
+        let weights = if weights.once && !self.carries() {
+            Weights {
+                stiffness: 0.0,
+                ..weights
+            }
+        } else {
+            weights
+        };
         if matches!(self.joining, Joining::Hinges(_)) {
             return self.solve_held(bodies, weights, joint_state, x, Prescribed::Kept);
         }
         let few = x.len() - self.coordinates() <= MOST_WHEELS;
-        if weights.stiffness <= 0.0 && few {
-            return self.damp(bodies, weights.damping, joint_state, impulses, x);
+        if weights.once && few {
+            return self.step(bodies, weights, joint_state, impulses, x);
         }
         self.eliminate(bodies, weights, joint_state, x)
+    }
+
+    /// Whether steps of one solution carry the stiffness of the contacts as inertia: in joints with play. Free rollers between two
+    /// contacts, lighter than what they would have to carry, strike twice as hard then.
+    pub(crate) fn carries(&self) -> bool {
+        matches!(self.joining, Joining::Clearance(_)) && self.free_rollers.is_none()
     }
 
     /// The least change of coordinates or velocities, of which there are `count`, that moves every pin towards its hole by what is
@@ -71,6 +85,7 @@ impl Linkage {
         count: usize,
     ) -> Option<Vec<f64>> {
         let none = Weights {
+            once: false,
             damping: 0.0,
             stiffness: 0.0,
         };
@@ -93,7 +108,7 @@ impl Linkage {
         let mut sum = Sum::new(self, &mut equations, row, x);
         sum.add_masses(bodies, weights, x);
         self.each_element(joint_state, |element| {
-            sum.add(element, &joint_state.mounts, weights);
+            sum.add(element, &joint_state.mounts, weights, x);
         });
         let solved = sum.eliminate_rollers() && sum.blocks.solve();
         if solved {
@@ -227,8 +242,8 @@ impl<'a> Sum<'a> {
         }
     }
 
-    pub(super) fn add(&mut self, element: &Element, mounts: &[Mount], weights: Weights) {
-        let normal = weights.damping * element.damping + weights.stiffness * element.stiffness;
+    /// Adds a contact; `b` is the change of velocities that the forces by themselves make.
+    pub(super) fn add(&mut self, element: &Element, mounts: &[Mount], weights: Weights, b: &[f64]) {
         let tangent = element.tangent();
         let rows = |direction: Vector, levers: [f64; 2]| {
             let a = Vector3::new(
@@ -238,8 +253,23 @@ impl<'a> Sum<'a> {
             );
             (a, partner_row(element, mounts, direction, levers[1]))
         };
-        let (a, b) = rows(element.normal, [0.0; 2]);
-        self.square(element.a, a, b, normal);
+        let along = rows(element.normal, [0.0; 2]);
+        let across = rows(tangent, [element.lever_a, element.lever_b]);
+        if weights.once {
+            let change = self.change(element.a, across, b);
+            let [normal, tangent] = element.step_weights(weights, change);
+            self.square(element.a, along.0, along.1, normal);
+            self.square(element.a, across.0, across.1, tangent);
+            return;
+        }
+        let normal = weights.damping * element.damping + weights.stiffness * element.stiffness;
+        self.square(element.a, along.0, along.1, normal);
+        self.square(
+            element.a,
+            across.0,
+            across.1,
+            weights.damping * element.drag,
+        );
         if weights.stiffness > 0.0 {
             let pivoting = Element {
                 arm_b: element.pivot_b,
@@ -250,15 +280,22 @@ impl<'a> Sum<'a> {
             self.square(element.a, a, b, weights.stiffness * element.across.max(0.0));
             self.add_bend(&pivoting, mounts, weights.stiffness);
         }
-        // Newton's method wants the tangent, a single step the secant.
-        let drag = if weights.stiffness > 0.0 {
-            element.drag
-        } else {
-            element.secant
+    }
+
+    /// How much velocities `b` move the two sides along a row past each other.
+    fn change(&self, a: Option<usize>, (row, partner): (Vector3<f64>, Row), b: &[f64]) -> f64 {
+        let of = |body: usize, row: Vector3<f64>| {
+            row.x * b[3 * body] + row.y * b[3 * body + 1] + row.z * b[3 * body + 2]
         };
-        if drag > 0.0 {
-            let (a, b) = rows(tangent, [element.lever_a, element.lever_b]);
-            self.square(element.a, a, b, weights.damping * drag);
+        let own = a.map_or(0.0, |body| of(body, row));
+        let wheels = &b[self.linkage.coordinates()..];
+        own - match partner {
+            Row::Nothing => 0.0,
+            Row::Body(body, row) => of(body, row),
+            Row::Border(entries) => {
+                let entries = entries.iter().filter(|(j, _)| *j != usize::MAX);
+                entries.map(|(j, value)| value * wheels[*j]).sum()
+            }
         }
     }
 

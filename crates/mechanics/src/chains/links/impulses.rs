@@ -1,10 +1,11 @@
-//! (M + c C) x = M b in the space of the contacts: one unknown a row of J instead of three a body.
+//! (M + c C + k K) x = M b of a step of one solution in the space of the contacts: one unknown a row of J instead of three a body.
 //!
 //! ```text
-//! y = c d J x,   x = b − M⁻¹ Jᵀ y     ⇒     (1/(c d) + J M⁻¹ Jᵀ) y = J b
+//! y = w J x,   x = b − M⁻¹ Jᵀ y     ⇒     (1/w + J M⁻¹ Jᵀ) y = J b
 //! ```
 //!
-//! Every joint has a row for its normal, and one for its tangent where pins rub; joints share a link with their
+//! w is the weight of a row: [`Element::step_weights`](super::Element::step_weights). Every joint has a row for its normal, and one for
+//! its tangent where pins rub or stiffness counts; joints share a link with their
 //! neighbours only. Whatever else touches a link, or the free rollers on it, is eliminated first: it couples the two joints of
 //! that link, and the wheels. What is left is tridiagonal, with a border of wheels and tensioners, and where there is one row a joint
 //! the last joint of a closed chain. Wheels have a negative diagonal. Quasi-definite: no pivoting is needed.
@@ -43,11 +44,11 @@ pub(crate) struct Impulses {
 pub(super) const MOST_WHEELS: usize = 19;
 
 impl Linkage {
-    /// x ← (M + c C)⁻¹ M x; false if a pivot vanishes.
-    pub(crate) fn damp(
+    /// x ← (M + c C + k K)⁻¹ M x; false if a pivot vanishes.
+    pub(crate) fn step(
         &self,
         bodies: GroupBodies<'_>,
-        c: f64,
+        weights: Weights,
         joint_state: &JointState,
         work: &mut Impulses,
         x: &mut [f64],
@@ -60,12 +61,12 @@ impl Linkage {
             linkage: self,
             bearing,
             bodies,
-            c,
+            weights,
             joint_state,
         };
         // Around a link there are its two joints, the wheels, and the right-hand side; beside a joint only the one that closes the
         // chain instead of two. Columns that are always empty cost as much as others: with friction and one wheel, some 30 % of the step.
-        match (bearing.rubs_by_step(), wheels) {
+        match (bearing.rubs() || weights.stiffness > 0.0, wheels) {
             (false, ..=1) => work.solve::<1, 4, 4>(step, x),
             (false, 2..=5) => work.solve::<1, 8, 8>(step, x),
             (true, ..=1) => work.solve::<2, 8, 4>(step, x),
@@ -82,7 +83,7 @@ struct Step<'a> {
     linkage: &'a Linkage,
     bearing: &'a Bearing,
     bodies: GroupBodies<'a>,
-    c: f64,
+    weights: Weights,
     joint_state: &'a JointState,
 }
 
@@ -114,20 +115,20 @@ impl Impulses {
             linkage,
             bearing,
             bodies,
-            c,
+            weights,
             joint_state,
         } = step;
         let wheels = x.len() - linkage.coordinates();
-        self.rows[0].set_normals(w, joint_state, c);
-        if R == 2 {
-            self.rows[1].set_tangents(w, linkage, bearing, joint_state, c);
-        }
-        self.joints.clear::<R, B>(linkage, wheels);
         let b = x[..3 * linkage.links].as_chunks::<3>().0;
         self.known.read(linkage, b.iter().copied());
+        self.rows[0].set_normals(w, joint_state, weights);
+        if R == 2 {
+            self.rows[1].set_tangents(w, linkage, bearing, joint_state, &self.known, weights);
+        }
+        self.joints.clear::<R, B>(linkage, wheels);
         self.fill::<S, R, B>(w, linkage);
-        self.fill_wheels::<R, B>(linkage, bodies, c, x);
-        self.local.gather(linkage, c, joint_state);
+        self.fill_wheels::<R, B>(linkage, bodies, weights, x);
+        self.local.gather(linkage, weights, joint_state, x);
         let condensed = self
             .local
             .condense::<R, C, B>(linkage, &self.rows, &mut self.joints, x);
@@ -191,7 +192,7 @@ impl Impulses {
         &mut self,
         linkage: &Linkage,
         bodies: GroupBodies<'_>,
-        c: f64,
+        weights: Weights,
         b: &[f64],
     ) {
         let first = self.joints.first_wheel();
@@ -201,10 +202,6 @@ impl Impulses {
             self.joints
                 .add_right::<R, B>(place, -inertia * b[linkage.coordinates() + j]);
         }
-        let weights = Weights {
-            damping: c,
-            stiffness: 0.0,
-        };
         bodies.each_own(weights, |places, weighted| {
             let [i, j] = places.map(|place| Place::Border(first + place));
             // Both halves are one.
@@ -267,15 +264,23 @@ mod tests {
     /// The bodies' own equations, block by block, give the same answer: two independent eliminations.
     #[test]
     fn agrees_with_the_equations_of_the_bodies() {
-        for (kind, parts) in kinds() {
+        let stiffnesses = [0.0, 1e-12];
+        let cases = kinds()
+            .into_iter()
+            .flat_map(|kind| stiffnesses.map(|k| (kind.clone(), k)));
+        for ((kind, parts), stiffness) in cases {
             let (system, mut record, b) = started(parts);
             let linkage = of(&system);
-            let c = 2e-6;
+            let weights = Weights {
+                damping: 2e-6,
+                stiffness,
+                once: true,
+            };
             let mut impulses = b.clone();
             let mut work = Impulses::default();
-            assert!(linkage.damp(
+            assert!(linkage.step(
                 whole(&system),
-                c,
+                weights,
                 &record.chains[0].joint_state,
                 &mut work,
                 &mut impulses
@@ -288,16 +293,12 @@ mod tests {
                 linkage,
                 bearing,
                 bodies: whole(&system),
-                c,
+                weights,
                 joint_state: &record.chains[0].joint_state,
             };
             let mut roomy = b.clone();
             assert!(work.solve::<2, 24, 24>(step, &mut roomy));
             let mut blocks = b.clone();
-            let weights = Weights {
-                damping: c,
-                stiffness: 0.0,
-            };
             assert!(linkage.eliminate(
                 whole(&system),
                 weights,

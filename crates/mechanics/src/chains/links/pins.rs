@@ -232,9 +232,7 @@ impl Contacts<'_> {
         let known = &self.linkage.memory.joints;
         let mut memory = MemoryLanes::new(w, known, self.memory, padded(joints));
         let mut tally = LaneTally::new(w);
-        let zero = w.splat(0.0);
         let rubs = bearing.rubs();
-        let by_step = bearing.rubs_by_step();
         for (lane, start) in (0..joints).step_by(Wide::<S>::COUNT).enumerate() {
             let apart = Apart {
                 offset: [
@@ -269,8 +267,7 @@ impl Contacts<'_> {
                 moment_after += rub * (ax * ty - ay * tx + lever_after);
                 rub.store(&mut pins.rub, start);
                 grip.drag.store(&mut pins.drag, start);
-                let secant = if by_step { grip.secant } else { zero };
-                secant.store(&mut pins.secant, start);
+                grip.secant.store(&mut pins.secant, start);
             }
             grip.gap.store(&mut pins.gap, start);
             force.store(&mut pins.force, start);

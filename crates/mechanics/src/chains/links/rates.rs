@@ -6,13 +6,16 @@ use pulp::Simd;
 
 use super::{Element, Joining, JointState, Linkage, Partner, Posture, cross, turned};
 use crate::chains::joints::Joints;
-use crate::chains::{Record, Surroundings};
+use crate::chains::{Rates, Record, Surroundings};
 use crate::contact::{Drawn, OfPins, PlatePins, PlatePlaces};
 use crate::lanes::{Lane, Wide};
 
 /// Shares of a contact between chain and wheel: 1 + ε and 1 + 1/ε with ε = 0.1.
 const WHEEL_SHARE: f64 = 1.1;
 const RIM_SHARE: f64 = 11.0;
+/// How much longer than explicit ones steps are that carry the stiffness of contacts as inertia. Assumed, with regard to contacts that open
+/// and close: the bicycle errs by 0.1 % in its tight span at the longest step that this leaves.
+const CARRIED: f64 = 2.0;
 /// Depth at which contacts that are open now are reckoned with \[m\].
 const SHALLOW: f64 = 1e-7;
 
@@ -25,12 +28,13 @@ impl Linkage {
     /// ```
     ///
     /// λ is the largest eigenvalue of a three-by-three matrix. Against a wheel the contact is shared unevenly:
-    /// 1.1 for the chain, 11 for the wheel, and 1 where the wheel does not answer. Friction counts as damping.
-    pub(crate) fn rates(&self, around: Surroundings<'_>, record: &mut Record) -> [f64; 2] {
+    /// 1.1 for the chain, 11 for the wheel, and 1 where the wheel does not answer. Friction counts as damping, but where springs hold what
+    /// sticks: steps of one solution take these at their end.
+    pub(crate) fn rates(&self, around: Surroundings<'_>, record: &mut Record) -> Rates {
         let joint_state = &mut record.joint_state;
         let mut sums = std::mem::take(&mut joint_state.sums);
         sums.clear();
-        sums.resize(self.bodies.len(), [Packed::default(); 2]);
+        sums.resize(self.bodies.len(), [Packed::default(); 3]);
         self.add_joints(joint_state, &mut sums);
         for element in &joint_state.elements {
             let share = match element.b {
@@ -61,23 +65,46 @@ impl Linkage {
                 add_square(&mut sum[1], across, share * element.drag);
             }
         }
-        let [mut squared, mut damping] = sums.iter().fold([0.0_f64; 2], |[k, d], sum| {
-            [k.max(largest(&sum[0])), d.max(largest(&sum[1]))]
-        });
+        let sticks = self.sticks();
+        let [mut squared, mut damping, mut sliding] =
+            sums.iter().fold([0.0_f64; 3], |[k, d, s], sum| {
+                let own = largest(&sum[0]);
+                let stuck = if sticks {
+                    largest(&std::array::from_fn(|i| sum[0][i] + sum[2][i]))
+                } else {
+                    own
+                };
+                [k.max(stuck), d.max(largest(&sum[1])), s.max(own)]
+            });
         joint_state.sums = sums;
-        squared = squared.max(self.resting());
+        let mut stiffest = self.resting();
         for [rim, drag] in joint_state.wheel_rates(around) {
-            squared = squared.max(RIM_SHARE * rim);
+            stiffest = stiffest.max(RIM_SHARE * rim);
             damping = damping.max(RIM_SHARE * drag);
         }
         let [turning, drag] = self.joint_rates(record.resistance.slopes);
-        squared = squared.max(turning);
+        stiffest = stiffest.max(turning);
         damping = damping.max(drag + self.drag_rate());
         if let Joining::Hinges(hinges) = &self.joining {
             damping = damping.max(hinges.rate);
-            squared = squared.max(self.pulled(joint_state));
+            stiffest = stiffest.max(self.pulled(joint_state));
         }
-        [squared, damping]
+        squared = squared.max(stiffest);
+        sliding = sliding.max(stiffest);
+        // The stiffness that a step carries as inertia has no limit, but has to be resolved.
+        let reach = if self.carries() { CARRIED } else { 1.0 };
+        Rates {
+            carried: sliding / (reach * reach),
+            ..Rates::of([squared, damping])
+        }
+    }
+
+    /// Whether springs hold what sticks in joints with play.
+    fn sticks(&self) -> bool {
+        match &self.joining {
+            Joining::Hinges(_) => false,
+            Joining::Clearance(bearing) => bearing.lanes.friction.is_elastic(),
+        }
     }
 
     /// Frequency \[1/s\] of the stabilisation of ideal joints, of torques in joints and of drag, which every method takes explicitly.
@@ -136,7 +163,7 @@ impl Linkage {
     }
 
     /// Pins in bushes, straight from their arrays.
-    fn add_joints(&self, joint_state: &JointState, sums: &mut [[Packed; 2]]) {
+    fn add_joints(&self, joint_state: &JointState, sums: &mut [[Packed; 3]]) {
         let Joining::Clearance(bearing) = &self.joining else {
             return;
         };
@@ -181,7 +208,7 @@ impl Linkage {
                 add_square(&mut sum[1], along, share * pins.damping[joint]);
                 if drag > 0.0 || spring > 0.0 {
                     let across = self.scaled_row(body, t, cross(arm, t) + lever);
-                    add_square(&mut sum[0], across, share * spring);
+                    add_square(&mut sum[2], across, share * spring);
                     add_square(&mut sum[1], across, share * drag);
                 }
             }

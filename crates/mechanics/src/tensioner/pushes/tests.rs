@@ -98,6 +98,7 @@ impl SecondOrderSystem for Plunger {
         let Weights {
             damping: c,
             stiffness: k,
+            ..
         } = weights;
         let mass = self.mass.expect("a mass that moves");
         let own = 1.0 + c * slopes.settling;

@@ -8,6 +8,7 @@
 //! y belong to these contacts, z to the two joints of the link and to the wheels.
 
 use chaindrive_geometry::Vector;
+use chaindrive_integrate::Weights;
 use nalgebra::Vector3;
 
 use super::rows::Rows;
@@ -24,11 +25,22 @@ struct Line {
     mobile: [Vector3<f64>; 2],
     /// Entries over the wheels and tensioners, as they stand on the partner's side.
     border: [(usize, f64); 3],
-    /// c d.
+    /// What the row weighs.
     weight: f64,
 }
 
 const NOBODY: usize = usize::MAX;
+/// Weight of a row that does nothing.
+const NOTHING: f64 = 1e-100;
+
+/// Whether the normal and the tangent of a contact can have a weight, however its slip changes.
+fn may_weigh(element: &Element, weights: Weights) -> [bool; 2] {
+    let stiff = weights.stiffness > 0.0;
+    [
+        element.damping > 0.0 || stiff && element.stiffness > 0.0,
+        element.drag > 0.0 || element.secant > 0.0 || stiff && element.across > 0.0,
+    ]
+}
 
 /// The rows by link, and their factors.
 #[derive(Clone, Debug, Default)]
@@ -45,13 +57,21 @@ pub(super) struct Local {
 
 impl Local {
     /// Collects the rows and sorts them by link.
-    pub(super) fn gather(&mut self, linkage: &Linkage, c: f64, joint_state: &JointState) {
+    pub(super) fn gather(
+        &mut self,
+        linkage: &Linkage,
+        weights: Weights,
+        joint_state: &JointState,
+        b: &[f64],
+    ) {
         // Counting sort by link.
         self.starts.clear();
         self.starts.resize(linkage.links + 1, 0);
         for element in &joint_state.elements {
-            self.starts[linkage.home(element) + 1] +=
-                usize::from(element.damping > 0.0) + usize::from(element.secant > 0.0);
+            self.starts[linkage.home(element) + 1] += may_weigh(element, weights)
+                .into_iter()
+                .filter(|may| *may)
+                .count();
         }
         for link in 0..linkage.links {
             self.starts[link + 1] += self.starts[link];
@@ -61,15 +81,16 @@ impl Local {
         self.lines.resize(self.starts[linkage.links], Line::EMPTY);
         for element in &joint_state.elements {
             let levers = [element.lever_a, element.lever_b];
-            let rows = [
-                (element.normal, [0.0; 2], element.damping),
-                (element.tangent(), levers, element.secant),
-            ];
-            for (direction, levers, damping) in rows {
-                if damping > 0.0 {
+            let rows = [(element.normal, [0.0; 2]), (element.tangent(), levers)];
+            let may = may_weigh(element, weights);
+            for (of, (direction, levers)) in rows.into_iter().enumerate() {
+                if may[of] {
                     let place = &mut self.order[linkage.home(element)];
-                    self.lines[*place].set(linkage, element, joint_state, direction, levers);
-                    self.lines[*place].weight = c * damping;
+                    let line = &mut self.lines[*place];
+                    line.set(linkage, element, joint_state, direction, levers);
+                    let change = line.change(linkage, b);
+                    // One of nothing still stands in its place.
+                    line.weight = element.step_weights(weights, change)[of].max(NOTHING);
                     *place += 1;
                 }
             }
@@ -293,6 +314,13 @@ impl Line {
                 }
             }
         }
+    }
+
+    /// J b.
+    fn change(&self, linkage: &Linkage, b: &[f64]) -> f64 {
+        let wheels = &b[linkage.coordinates()..];
+        let border = self.border.iter().filter(|(j, _)| *j != NOBODY);
+        self.applied(b) - border.map(|(j, value)| value * wheels[*j]).sum::<f64>()
     }
 
     /// J b over the chain's bodies.

@@ -2,9 +2,11 @@
 //!
 //! u over the velocity of the link after the joint and −u over that of the link before, with the levers of their rotations.
 
+use chaindrive_integrate::Weights;
 use pulp::Simd;
 
-use crate::chains::links::reactions::arms;
+use crate::chains::links::by_link::ByLink;
+use crate::chains::links::reactions::{arms, load};
 use crate::chains::links::{Bearing, JointState, Linkage};
 use crate::lanes::{Lane, Wide};
 
@@ -17,7 +19,7 @@ pub(super) struct Rows {
     y: Vec<f64>,
     turn_before: Vec<f64>,
     turn_after: Vec<f64>,
-    /// c d; zero where there is no contact.
+    /// What the row weighs; zero where there is no contact.
     pub(super) weight: Vec<f64>,
 }
 
@@ -77,7 +79,12 @@ impl Rows {
 
     /// The normals of all joints.
     #[inline(always)]
-    pub(super) fn set_normals<S: Simd>(&mut self, w: Wide<S>, joint_state: &JointState, c: f64) {
+    pub(super) fn set_normals<S: Simd>(
+        &mut self,
+        w: Wide<S>,
+        joint_state: &JointState,
+        weights: Weights,
+    ) {
         let pins = &joint_state.pins;
         let count = pins.normal_x.len();
         if self.x.len() != count {
@@ -85,7 +92,8 @@ impl Rows {
         }
         let zero = w.splat(0.0);
         for start in (0..count).step_by(Wide::<S>::COUNT) {
-            let weight = w.splat(c) * w.load(&pins.damping, start);
+            let weight = w.splat(weights.damping) * w.load(&pins.damping, start)
+                + w.splat(weights.stiffness) * w.load(&pins.stiffness, start);
             let present = weight.greater(zero);
             for (from, to) in [
                 (&pins.normal_x, &mut self.x),
@@ -99,15 +107,18 @@ impl Rows {
         }
     }
 
-    /// The tangents of the joints whose pins rub.
+    /// The tangents of the joints, where pins rub and where the force turns with them; `known` is the change of velocities that the forces by
+    /// themselves make. The weights are those of [`Element::step_weights`](crate::chains::links::Element::step_weights).
     #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "what the weights depend on")]
     pub(super) fn set_tangents<S: Simd>(
         &mut self,
         w: Wide<S>,
         linkage: &Linkage,
         bearing: &Bearing,
         joint_state: &JointState,
-        c: f64,
+        known: &ByLink,
+        weights: Weights,
     ) {
         let pins = &joint_state.pins;
         let count = pins.normal_x.len();
@@ -116,8 +127,6 @@ impl Rows {
         }
         let zero = w.splat(0.0);
         for start in (0..linkage.joints.len()).step_by(Wide::<S>::COUNT) {
-            let secant = w.load(&pins.secant, start);
-            let rubs = secant.greater(zero);
             let depth = -w.load(&pins.gap, start);
             let levers = bearing.lever_lanes(w, linkage.pairs.pins_after(w, start), depth);
             // t = ẑ × n
@@ -126,14 +135,25 @@ impl Rows {
                 w.load(&pins.normal_x, start),
             ];
             let [bx, by, ax, ay] = arms(w, &joint_state.posture, start);
+            let turn_before = bx * ty - by * tx + levers[0];
+            let turn_after = ax * ty - ay * tx + levers[1];
+            let [before, after] = [start, start + 1].map(|at| load(w, known, at));
+            let change =
+                tx * (after[0] - before[0]) + ty * (after[1] - before[1]) + turn_after * after[2]
+                    - turn_before * before[2];
+            let stops = (w.load(&pins.rub, start) * change).greater(zero);
+            let drag = stops.select(w.load(&pins.secant, start), w.load(&pins.drag, start));
+            let weight = w.splat(weights.damping) * drag
+                + w.splat(weights.stiffness) * w.load(&pins.across, start);
+            let present = weight.greater(zero);
             for (value, to) in [
                 (tx, &mut self.x),
                 (ty, &mut self.y),
-                (bx * ty - by * tx + levers[0], &mut self.turn_before),
-                (ax * ty - ay * tx + levers[1], &mut self.turn_after),
-                (w.splat(c) * secant, &mut self.weight),
+                (turn_before, &mut self.turn_before),
+                (turn_after, &mut self.turn_after),
+                (weight, &mut self.weight),
             ] {
-                rubs.select(value, zero).store(to, start);
+                present.select(value, zero).store(to, start);
             }
         }
         if linkage.closed {
