@@ -41,6 +41,11 @@ pub(crate) fn dispatch<Op: WithSimd>(arch: Arch, op: Op) -> Op::Output {
     }
 }
 
+/// Says that the branch it is called in is rarely taken. What a call in there needs on the stack is put there in that branch, not before it.
+#[cold]
+#[inline(never)]
+pub(crate) fn rarely() {}
+
 /// The processor's vector unit: makes lanes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wide<S: Simd>(pub(crate) S);

@@ -23,7 +23,7 @@ use pulp::Simd;
 pub(crate) use gap::{Extent, GapFace, Stretch};
 pub(crate) use rail::RailFace;
 
-use crate::lanes::{Lane, Wide};
+use crate::lanes::{Lane, Wide, rarely};
 
 /// One arc, straight or corner of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -173,6 +173,7 @@ impl Profile {
         radius: f64,
     ) -> Nearest<S> {
         let chosen = if self.features.len() > lookup::LONG {
+            rarely();
             self.looked_up(w, [x, y])
         } else {
             self.passed(w, [x, y])

@@ -229,7 +229,7 @@ impl Joints {
                 spring.rub(w, dt, normal, slip, before.get(i))
             } else {
                 self.friction
-                    .rub(w, dt, [normal, normal], slip, before.get(i))
+                    .rub::<S, true>(w, dt, [normal, normal], slip, before.get(i))
             };
             now.set(i, state);
             // M = r f − c ω

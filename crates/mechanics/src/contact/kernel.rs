@@ -1,6 +1,6 @@
 //! The inner loop: lanes of rollers against one body.
 
-use pulp::Simd;
+use pulp::{Simd, WithSimd};
 
 use super::ahead::Ahead;
 use super::look::{FacedSurface, Place, View};
@@ -27,43 +27,18 @@ impl Contacts {
         yielding: Option<f64>,
         touch: &mut Touch,
     ) -> Wrench {
-        let dt = t - self.accepted;
-        touch.resize(self.slots * self.sides());
-        let mut slots = Slots::new(w, self, touch);
-        let mut sums = Sums::new(w);
-        let mut touching = false;
-        // A copy: what may change while slots are written is read from memory again for every lane.
-        let frame = *frame;
-        for side in 0..self.sides() {
-            let view = self.view(side);
-            for (eight, run) in self.runs.iter().enumerate() {
-                for offset in (0..LANES).step_by(Wide::<S>::COUNT) {
-                    let place = (eight * LANES + offset) / Wide::<S>::COUNT;
-                    let lane = side * slots.lanes() + place;
-                    let wake = slots.wake(lane);
-                    if offset >= run.count || wake > t {
-                        slots.leave_open(w, lane, wake);
-                        continue;
-                    }
-                    let slot = RollerSlot {
-                        lane,
-                        axis: place,
-                        roller: run.start + offset,
-                        valid: w.first(run.count - offset),
-                        yielding,
-                    };
-                    let (slots, sums) = (&mut slots, &mut sums);
-                    touching |= self.lane(w, dt, &frame, view, slot, rollers, slots, sums);
-                }
-            }
-        }
-        if touching {
-            sums.total(self.law.friction.acts())
+        let touching = Touching {
+            contacts: self,
+            t,
+            frame,
+            rollers,
+            yielding,
+            touch,
+        };
+        if self.law.is_long() {
+            w.call(touching)
         } else {
-            Wrench {
-                first_share: 1.0,
-                ..Wrench::default()
-            }
+            touching.act::<S, false>(w)
         }
     }
 
@@ -73,7 +48,7 @@ impl Contacts {
         clippy::too_many_arguments,
         reason = "the inner loop, split for reading only"
     )]
-    fn lane<S: Simd>(
+    fn lane<S: Simd, const LONG: bool>(
         &self,
         w: Wide<S>,
         dt: f64,
@@ -119,7 +94,8 @@ impl Contacts {
             Shape::Rail { reference, .. } => Place::at_rail(w, *reference, frame, [dx, dy]),
         };
         let faced = view.faced(w, &place, self.radius, self.law.flank.is_some());
-        let Some(closing) = self.respond(w, dt, &motion, &faced, near, slot, rollers, slots, sums)
+        let Some(closing) =
+            self.respond::<S, LONG>(w, dt, &motion, &faced, near, slot, rollers, slots, sums)
         else {
             slots.set_wake(slot.lane, AWAKE);
             return true;
@@ -151,7 +127,7 @@ impl Contacts {
         clippy::too_many_arguments,
         reason = "the inner loop, split for reading only"
     )]
-    fn respond<S: Simd>(
+    fn respond<S: Simd, const LONG: bool>(
         &self,
         w: Wide<S>,
         dt: f64,
@@ -184,7 +160,9 @@ impl Contacts {
         };
         let (memory, tally) = (&mut slots.memory, &mut sums.tally);
         let surfaces = [gap, closing];
-        let Some(pressed) = law.press(w, memory, lane, surfaces, share, None, ahead, tally) else {
+        let Some(pressed) =
+            law.press::<S, LONG>(w, memory, lane, surfaces, share, None, ahead, tally)
+        else {
             return Some(closing);
         };
         let force = pressed.force;
@@ -200,7 +178,7 @@ impl Contacts {
             if !rollers.spin.is_empty() {
                 slip = slip - w.load(rollers.spin, roller) * radius;
             }
-            let rubbing = law.rub(w, memory, lane, dt, &pressed, slip, tally);
+            let rubbing = law.rub::<S, LONG>(w, memory, lane, dt, &pressed, slip, tally);
             let rub = rubbing.force;
             fx += rub * tx;
             fy += rub * ty;
@@ -222,7 +200,7 @@ impl Contacts {
         sums.moment += moment;
         sums.damping = sums.damping.max(damping);
         if let Some(faces) = &mut slots.faces {
-            let [stiffness, damping] = law.slopes(w, &pressed, share);
+            let [stiffness, damping] = law.slopes::<S, LONG>(w, &pressed, share);
             faces.stiffness.set(lane, stiffness);
             faces.damping.set(lane, damping);
             faces.normal_x.set(lane, faced.nx);
@@ -233,6 +211,78 @@ impl Contacts {
                 .set(lane, faced.bend.min(sharpest).max(-sharpest));
         }
         None
+    }
+}
+
+/// One body and what touches it, as one call: long laws do not burden the kernel that others are in.
+struct Touching<'a, 'b> {
+    contacts: &'a Contacts,
+    t: f64,
+    frame: &'a Frame,
+    rollers: &'a mut Rollers<'b>,
+    yielding: Option<f64>,
+    touch: &'a mut Touch,
+}
+
+impl WithSimd for Touching<'_, '_> {
+    type Output = Wrench;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Wrench {
+        self.act::<S, true>(Wide(simd))
+    }
+}
+
+impl Touching<'_, '_> {
+    #[inline(always)]
+    fn act<S: Simd, const LONG: bool>(self, w: Wide<S>) -> Wrench {
+        let Self {
+            contacts,
+            t,
+            frame,
+            rollers,
+            yielding,
+            touch,
+        } = self;
+        let dt = t - contacts.accepted;
+        touch.resize(contacts.slots * contacts.sides());
+        let mut slots = Slots::new(w, contacts, touch);
+        let mut sums = Sums::new(w);
+        let mut touching = false;
+        // A copy: what may change while slots are written is read from memory again for every lane.
+        let frame = *frame;
+        for side in 0..contacts.sides() {
+            let view = contacts.view(side);
+            for (eight, run) in contacts.runs.iter().enumerate() {
+                for offset in (0..LANES).step_by(Wide::<S>::COUNT) {
+                    let place = (eight * LANES + offset) / Wide::<S>::COUNT;
+                    let lane = side * slots.lanes() + place;
+                    let wake = slots.wake(lane);
+                    if offset >= run.count || wake > t {
+                        slots.leave_open(w, lane, wake);
+                        continue;
+                    }
+                    let slot = RollerSlot {
+                        lane,
+                        axis: place,
+                        roller: run.start + offset,
+                        valid: w.first(run.count - offset),
+                        yielding,
+                    };
+                    let (slots, sums) = (&mut slots, &mut sums);
+                    touching |=
+                        contacts.lane::<S, LONG>(w, dt, &frame, view, slot, rollers, slots, sums);
+                }
+            }
+        }
+        if touching {
+            sums.total(contacts.law.friction.acts())
+        } else {
+            Wrench {
+                first_share: 1.0,
+                ..Wrench::default()
+            }
+        }
     }
 }
 

@@ -20,7 +20,7 @@ use super::memory::MemoryLanes;
 use super::stacked::Stacked;
 use super::wrench::LaneTally;
 use crate::drive::{Flank, Surface};
-use crate::lanes::{FixedPower, LANES, Lane, Mask, Wide};
+use crate::lanes::{FixedPower, LANES, Lane, Mask, Wide, rarely};
 
 /// The laws of one pair of surfaces, taken apart once into what lanes need.
 #[derive(Clone, Debug)]
@@ -101,6 +101,16 @@ impl SurfaceLaw {
         }
     }
 
+    /// Whether one of the laws takes so many operations, or calls, that it would burden the kernels of those that do not: a kernel is
+    /// compiled with long laws and without, and asked accordingly.
+    #[inline]
+    pub(crate) fn is_long(&self) -> bool {
+        let flank = self.flank.as_ref();
+        self.elastic.is_long()
+            || flank.is_some_and(|flank| flank.elastic.is_long())
+            || self.friction.is_long()
+    }
+
     /// Onset and normal force of a lane of contacts with these gaps and closing speeds; none if all are open.
     ///
     /// Contacts are closed where the gap is negative. `share` is that of the flank's law, and `weight` the part of every contact
@@ -110,7 +120,7 @@ impl SurfaceLaw {
         clippy::too_many_arguments,
         reason = "lanes are handed on by value, and the rest is what they are reckoned with"
     )]
-    pub(crate) fn press<S: Simd>(
+    pub(crate) fn press<S: Simd, const LONG: bool>(
         &self,
         w: Wide<S>,
         memory: &mut MemoryLanes<'_, S>,
@@ -133,6 +143,7 @@ impl SurfaceLaw {
         let mut inverse_onset = closed.select(before, zero);
         let fresh = closed & w.splat(f64::MIN_POSITIVE).greater(before);
         if fresh.any() {
+            rarely();
             let onset = memory.onset(w, lane, depth, closing);
             let inverse = onset.speed.max(w.splat(self.floor)).recip();
             inverse_onset = fresh.select(inverse, inverse_onset);
@@ -141,11 +152,11 @@ impl SurfaceLaw {
         memory.keep_onset(lane, inverse_onset);
 
         // F = max(0, g + χ g min(δ̇/v, 4) + c δ̇)
-        let on_seat = self.elastic.force(w, depth);
+        let on_seat = self.elastic.force::<S, LONG>(w, depth);
         let mut stored = on_seat;
         if let (Some(flank), Some(share)) = (&self.flank, share) {
             // g = (1 − s) g_seat + s g_flank
-            stored = stored + share * (flank.elastic.force(w, depth) - stored);
+            stored = stored + share * (flank.elastic.force::<S, LONG>(w, depth) - stored);
             memory.keep_share(lane, share);
         }
         let [one, factor, damping] = [1.0, self.factor, self.damping].map(|x| w.splat(x));
@@ -188,7 +199,7 @@ impl SurfaceLaw {
         clippy::too_many_arguments,
         reason = "lanes are handed on by value, and the rest is what they are reckoned with"
     )]
-    pub(crate) fn rub<S: Simd>(
+    pub(crate) fn rub<S: Simd, const LONG: bool>(
         &self,
         w: Wide<S>,
         memory: &mut MemoryLanes<'_, S>,
@@ -205,7 +216,7 @@ impl SurfaceLaw {
         };
         let (rubbing, stick) =
             self.friction
-                .rub(w, dt, [pressed.depth, pressed.force], slip, before);
+                .rub::<S, LONG>(w, dt, [pressed.depth, pressed.force], slip, before);
         if self.friction.remembers() {
             memory.keep_stick(w, lane, pressed.closed, stick);
         }
@@ -223,7 +234,7 @@ impl SurfaceLaw {
 
     /// ∂F/∂δ \[N/m\] and ∂F/∂δ̇ \[N s/m\]; both are zero where a limit holds the force.
     #[inline(always)]
-    pub(crate) fn slopes<S: Simd>(
+    pub(crate) fn slopes<S: Simd, const LONG: bool>(
         &self,
         w: Wide<S>,
         pressed: &Pressed<S>,
@@ -231,9 +242,11 @@ impl SurfaceLaw {
     ) -> [Lane<S>; 2] {
         let zero = w.splat(0.0);
         let depth = pressed.depth;
-        let mut slope = self.elastic.slope(w, depth, pressed.on_seat);
+        let elastic = &self.elastic;
+        let mut slope = elastic.slope::<S, LONG>(w, depth, pressed.on_seat);
         if let (Some(flank), Some(share)) = (&self.flank, share) {
-            let other = flank.elastic.slope(w, depth, flank.elastic.force(w, depth));
+            let force = flank.elastic.force::<S, LONG>(w, depth);
+            let other = flank.elastic.slope::<S, LONG>(w, depth, force);
             slope = slope + share * (other - slope);
         }
         // ∂F/∂δ = k (1 + χ min(δ̇/v, 4)),   ∂F/∂δ̇ = χ g/v + c
@@ -282,11 +295,18 @@ impl LaneElastic {
         }
     }
 
+    /// Whether the law is long: see [`SurfaceLaw::is_long`].
+    fn is_long(&self) -> bool {
+        !matches!(self, Self::Linear(_) | Self::Hertz(_))
+    }
+
     #[inline(always)]
-    fn force<S: Simd>(&self, w: Wide<S>, depth: Lane<S>) -> Lane<S> {
+    fn force<S: Simd, const LONG: bool>(&self, w: Wide<S>, depth: Lane<S>) -> Lane<S> {
         match self {
             Self::Linear(stiffness) => w.splat(*stiffness) * depth,
             Self::Hertz(stiffness) => w.splat(*stiffness) * depth * depth.root(),
+            // No number, should a kernel without long laws be asked for one: a run does not go on with it.
+            _ if !LONG => w.splat(f64::NAN),
             Self::Power(stiffness, _, lower) => {
                 w.splat(*stiffness) * depth * lower.of(w, depth.max(w.splat(LEAST_DEPTH)))
             }
@@ -298,10 +318,16 @@ impl LaneElastic {
 
     /// dg/dδ of lanes with a force g.
     #[inline(always)]
-    fn slope<S: Simd>(&self, w: Wide<S>, depth: Lane<S>, force: Lane<S>) -> Lane<S> {
+    fn slope<S: Simd, const LONG: bool>(
+        &self,
+        w: Wide<S>,
+        depth: Lane<S>,
+        force: Lane<S>,
+    ) -> Lane<S> {
         let exponent = match self {
             Self::Linear(stiffness) => return w.splat(*stiffness),
             Self::Hertz(_) => 1.5,
+            _ if !LONG => f64::NAN,
             Self::Power(_, n, _) => *n,
             Self::Stacked(stack) => return stack.slope(w, depth, force),
             Self::Logarithm(law) => return law.slope(w, depth, force),

@@ -16,7 +16,7 @@ use chaindrive_geometry::Point;
 use pulp::{Simd, WithSimd};
 
 use super::{Contacts, Frame, Shape, Teeth};
-use crate::lanes::{LANES, Lane, Mask, Wide};
+use crate::lanes::{LANES, Lane, Mask, Wide, rarely};
 use crate::profile::{Extent, Nearest, Probe, Profile, RailFace, Stretch};
 
 /// Roller centres in gap frames, and the gap axes in the world.
@@ -217,6 +217,7 @@ impl View<'_> {
             View::Gap(stretches, side) => {
                 let faced = stretches[side].face(w, place.at, radius, measured);
                 if place.needs_more(w, stretches, side) {
+                    rarely();
                     Elsewhere::ask(w, stretches, side, place, radius, measured, faced)
                 } else {
                     faced
