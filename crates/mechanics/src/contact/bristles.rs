@@ -100,20 +100,21 @@ impl Bristles {
         let bound = stiff * speed;
         let left = (bound * w.splat(dt)).decay();
         let passed = -left;
-        let deflection = before + (sign * level * compliance - before) * passed;
+        let deflection = before.plus(sign * level * compliance - before, passed);
         // As the law has it: dz′/dv.
-        let pulled = (sign - stiff * before) * (sign - speed * bending);
+        let pulled = sign.minus(stiff, before) * sign.minus(speed, bending);
         let swing = w.splat(dt) * moves.select(pulled, one);
-        let bend = passed * sign * slope * compliance + (one + left) * swing;
+        let bend = (passed * sign * slope * compliance).plus(one + left, swing);
         let mut force = stiffness * deflection;
         let mut drag = stiffness * bend;
         if self.flows {
             let [damping, viscosity] = [self.damping, self.viscosity].map(|x| w.splat(x));
             // ż, and dż/dv
-            let rate = slip - bound * deflection;
-            let change = one - stiff * (sign * deflection + speed * (bend - deflection * bending));
-            force += damping * rate + viscosity * slip;
-            drag += damping * change + viscosity;
+            let rate = slip.minus(bound, deflection);
+            let moved = (sign * deflection).plus(speed, bend.minus(deflection, bending));
+            let change = one.minus(stiff, moved);
+            force = force.plus(damping, rate).plus(viscosity, slip);
+            drag = (drag + viscosity).plus(damping, change);
         }
         let drag = (normal * drag).max(zero);
         [-(normal * force), drag, touching.select(deflection, zero)]

@@ -62,7 +62,7 @@ impl LaneSpring {
         // z′ = z + v h, drawn back to |z′| ≤ μ N/k;   f = −k z′,   −∂f/∂v = k h while it holds
         let stiffness = w.splat(self.stiffness);
         let limit = w.splat(self.coefficient_by_stiffness) * normal;
-        let tried = before + slip * w.splat(dt);
+        let tried = before.plus(slip, w.splat(dt));
         let stick = tried.max(-limit).min(limit);
         let holds = limit.greater(tried.abs());
         let drag = holds.select(stiffness * w.splat(dt), w.splat(0.0));
@@ -126,7 +126,7 @@ impl LaneFriction {
             } => {
                 // f = −μ F v/√(v² + v_s²),   −∂f/∂v = μ F v_s²/√(v² + v_s²)³
                 let regular = w.splat(*slip_speed_squared);
-                let inverse = (slip * slip + regular).inverse_root();
+                let inverse = regular.plus(slip, slip).inverse_root();
                 let limit = w.splat(*coefficient) * normal;
                 let secant = limit * inverse;
                 let rubbing = Rubbing {

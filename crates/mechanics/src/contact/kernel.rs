@@ -8,16 +8,20 @@ use super::rest::{CLOSE, Clear};
 use super::slots::Slots;
 use super::window::FAR;
 use super::wrench::{Sums, Wrench};
-use super::{AWAKE, Contacts, Frame, Rollers, Shape, Touch};
+use super::{AWAKE, Contacts, Frame, Rollers, Shape, SurfaceLaw, Touch};
 use crate::lanes::{LANES, Lane, Mask, Wide};
 use crate::profile::SHARPEST;
 
 impl Contacts {
-    /// Adds the contact accelerations to `rollers` and returns what the body receives.
+    /// Adds the contact accelerations to `rollers`, and writes down what the body receives.
     ///
     /// Reads the memory of the last accepted state, writes the state here into `touch`. Where velocities are predicted, damping is
     /// taken at the end of the step if it is known by how much the body yields, 1/M \[1/kg\]: see [`Ahead`].
     #[inline(always)]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the whole of a body, split for reading only"
+    )]
     pub(crate) fn act<S: Simd>(
         &self,
         w: Wide<S>,
@@ -26,7 +30,8 @@ impl Contacts {
         rollers: &mut Rollers<'_>,
         yielding: Option<f64>,
         touch: &mut Touch,
-    ) -> Wrench {
+        wrench: &mut Wrench,
+    ) {
         let touching = Touching {
             contacts: self,
             t,
@@ -35,10 +40,11 @@ impl Contacts {
             yielding,
             touch,
         };
+        // Not one value of two calls: it would be put together in memory, and waited for.
         if self.law.is_long() {
-            w.call(touching)
+            *wrench = w.call(touching);
         } else {
-            touching.act::<S, false>(w)
+            *wrench = touching.act::<S, false>(w);
         }
     }
 
@@ -65,8 +71,8 @@ impl Contacts {
         let dy = w.load(rollers.y, i) - w.splat(frame.origin.y);
         let spin = w.splat(frame.spin);
         let motion = Motion {
-            ux: w.load(rollers.vx, i) - w.splat(frame.velocity.x) + spin * dy,
-            uy: w.load(rollers.vy, i) - w.splat(frame.velocity.y) - spin * dx,
+            ux: (w.load(rollers.vx, i) - w.splat(frame.velocity.x)).plus(spin, dy),
+            uy: (w.load(rollers.vy, i) - w.splat(frame.velocity.y)).minus(spin, dx),
             dx,
             dy,
             spin,
@@ -75,7 +81,7 @@ impl Contacts {
         let place = match &self.shape {
             Shape::Teeth(teeth) => {
                 let reach = teeth.tip_radius + self.radius;
-                let away = dx * dx + dy * dy - w.splat(reach * reach);
+                let away = (dx * dx - w.splat(reach * reach)).plus(dy, dy);
                 near = w.splat(0.0).greater(away) & near;
                 if !near.any() && self.writes_faces {
                     slots.leave_open(w, slot.lane, 0.0);
@@ -143,7 +149,7 @@ impl Contacts {
         let law = &self.law;
         let gap = near.select(faced.gap, w.splat(FAR));
         // δ̇ = −n·u
-        let closing = -(faced.nx * motion.ux + faced.ny * motion.uy);
+        let closing = -(faced.nx * motion.ux).plus(faced.ny, motion.uy);
         let share = law.share(w, faced.beyond);
         let inverse_mass = w.load(rollers.inverse_mass, roller);
         // Not a closure: one that is not inlined is compiled for the oldest processor.
@@ -151,7 +157,7 @@ impl Contacts {
             Some(yielding) => {
                 let (ax, ay) = (w.load(rollers.ax, roller), w.load(rollers.ay, roller));
                 Some(Ahead {
-                    thrust: -(faced.nx * ax + faced.ny * ay),
+                    thrust: -(faced.nx * ax).plus(faced.ny, ay),
                     half_step: w.splat(rollers.half_step),
                     mobility: inverse_mass + w.splat(yielding),
                 })
@@ -169,21 +175,23 @@ impl Contacts {
         let (tx, ty) = (-faced.ny, faced.nx);
         let (mut fx, mut fy) = (force * faced.nx, force * faced.ny);
         // M = −d × F
-        let mut moment = motion.dy * fx - motion.dx * fy;
-        let mut damping = law.steepest(w, &pressed);
+        let mut moment = (motion.dy * fx).minus(motion.dx, fy);
+        let mut damping = SurfaceLaw::steepest(w, &pressed);
         if law.friction.acts() {
             // slip = t·u + ω r − ω_a r: the circle turns with its body.
             let radius = w.splat(self.radius);
-            let mut slip = tx * motion.ux + ty * motion.uy + motion.spin * radius;
+            let mut slip = (motion.spin * radius)
+                .plus(tx, motion.ux)
+                .plus(ty, motion.uy);
             if !rollers.spin.is_empty() {
-                slip = slip - w.load(rollers.spin, roller) * radius;
+                slip = slip.minus(w.load(rollers.spin, roller), radius);
             }
             let rubbing = law.rub::<S, LONG>(w, memory, lane, dt, &pressed, slip, tally);
             let rub = rubbing.force;
-            fx += rub * tx;
-            fy += rub * ty;
+            fx = fx.plus(rub, tx);
+            fy = fy.plus(rub, ty);
             // M = −(d − r n) × F
-            moment = motion.dy * fx - motion.dx * fy + rub * radius;
+            moment = (motion.dy * fx).minus(motion.dx, fy).plus(rub, radius);
             damping += rubbing.steepest;
             sums.across = sums.across.max(rubbing.steepest);
             if let Some(faces) = &mut slots.faces {
@@ -192,11 +200,12 @@ impl Contacts {
                 faces.secant.set(lane, rubbing.secant);
             }
         }
-        (w.load(rollers.ax, roller) + fx * inverse_mass).store(rollers.ax, roller);
-        (w.load(rollers.ay, roller) + fy * inverse_mass).store(rollers.ay, roller);
+        let [ax, ay] = [w.load(rollers.ax, roller), w.load(rollers.ay, roller)];
+        ax.plus(fx, inverse_mass).store(rollers.ax, roller);
+        ay.plus(fy, inverse_mass).store(rollers.ay, roller);
 
-        sums.fx += -fx;
-        sums.fy += -fy;
+        sums.fx = sums.fx - fx;
+        sums.fy = sums.fy - fy;
         sums.moment += moment;
         sums.damping = sums.damping.max(damping);
         if let Some(faces) = &mut slots.faces {
@@ -245,6 +254,8 @@ impl Touching<'_, '_> {
             touch,
         } = self;
         let dt = t - contacts.accepted;
+        // Of one length that is seen here, places of lanes are checked once.
+        let rollers = &mut rollers.of_one_length();
         touch.resize(contacts.slots * contacts.sides());
         let mut slots = Slots::new(w, contacts, touch);
         let mut sums = Sums::new(w);
@@ -318,9 +329,9 @@ impl<S: Simd> RollerSlot<S> {
         Clear {
             gap: self.valid.select(gap, w.splat(f64::MAX)),
             closing: closing.map(only),
-            speed: only(motion.ux * motion.ux + motion.uy * motion.uy),
-            thrust: only(ax * ax + ay * ay),
-            lever: only(motion.dx * motion.dx + motion.dy * motion.dy),
+            speed: only((motion.ux * motion.ux).plus(motion.uy, motion.uy)),
+            thrust: only((ax * ax).plus(ay, ay)),
+            lever: only((motion.dx * motion.dx).plus(motion.dy, motion.dy)),
         }
     }
 }

@@ -74,6 +74,8 @@ pub(crate) struct Pressed<S: Simd> {
     /// Elastic force of the seat's law, and of both, of whole contacts \[N\].
     on_seat: Lane<S>,
     stored: Lane<S>,
+    /// −∂F/∂ġ without the limits \[N s/m\], of whole contacts; means something where closed.
+    steepest: Lane<S>,
     /// Normal force \[N\], zero where open.
     pub(crate) force: Lane<S>,
 }
@@ -156,14 +158,16 @@ impl SurfaceLaw {
         let mut stored = on_seat;
         if let (Some(flank), Some(share)) = (&self.flank, share) {
             // g = (1 − s) g_seat + s g_flank
-            stored = stored + share * (flank.elastic.force::<S, LONG>(w, depth) - stored);
+            stored = stored.plus(share, flank.elastic.force::<S, LONG>(w, depth) - stored);
             memory.keep_share(lane, share);
         }
         let [one, factor, damping] = [1.0, self.factor, self.damping].map(|x| w.splat(x));
         let ratio_at = |closing: Lane<S>| (closing * inverse_onset).min(w.splat(RATIO_LIMIT));
         let (mut closing, mut ratio) = (closing, ratio_at(closing));
-        let mut raw = stored * (one + factor * ratio) + damping * closing;
-        let mut steep = factor * stored * inverse_onset + damping;
+        let mut raw = (stored * one.plus(factor, ratio)).plus(damping, closing);
+        // −∂F/∂ġ = χ g/v + c
+        let steepest = damping.plus(stored, factor * inverse_onset);
+        let mut steep = steepest;
         let mut returned = stored;
         if let Some(weight) = weight {
             raw = weight * raw;
@@ -179,7 +183,8 @@ impl SurfaceLaw {
             force = closed.select(ahead, zero);
         }
         memory.keep_force(lane, force);
-        tally.normal_loss += (force - closed.select(returned, zero)) * closing;
+        // What is open has a depth of zero, and returns nothing.
+        tally.normal_loss = (tally.normal_loss).plus(force - returned, closing);
         tally.depth = tally.depth.max(depth);
         Some(Pressed {
             closed,
@@ -189,6 +194,7 @@ impl SurfaceLaw {
             ratio,
             on_seat,
             stored,
+            steepest,
             force,
         })
     }
@@ -220,16 +226,14 @@ impl SurfaceLaw {
         if self.friction.remembers() {
             memory.keep_stick(w, lane, pressed.closed, stick);
         }
-        tally.friction_loss += -(rubbing.force * slip);
+        tally.friction_loss = tally.friction_loss.minus(rubbing.force, slip);
         rubbing
     }
 
     /// −∂F/∂ġ without the limits \[N s/m\], for the choice of explicit steps.
     #[inline(always)]
-    pub(super) fn steepest<S: Simd>(&self, w: Wide<S>, pressed: &Pressed<S>) -> Lane<S> {
-        // χ g/v + c
-        w.splat(self.factor) * pressed.stored * pressed.inverse_onset
-            + pressed.closed.select(w.splat(self.damping), w.splat(0.0))
+    pub(super) fn steepest<S: Simd>(w: Wide<S>, pressed: &Pressed<S>) -> Lane<S> {
+        pressed.closed.select(pressed.steepest, w.splat(0.0))
     }
 
     /// ∂F/∂δ \[N/m\] and ∂F/∂δ̇ \[N s/m\]; both are zero where a limit holds the force.

@@ -59,7 +59,7 @@ impl<S: Simd> Place<S> {
         [dx, dy]: [Lane<S>; 2],
     ) -> Self {
         let (c, s) = (w.splat(frame.turn[0]), w.splat(frame.turn[1]));
-        // a = R(θ) e,   x = d × a,   y = d · a
+        // a = R(θ) e,   x = d × a,   y = d · a. Rounded alike on every processor: a last place of d is one of the gap.
         let ax = c * ex - s * ey;
         let ay = s * ex + c * ey;
         let x = dx * ay - dy * ax;
@@ -226,8 +226,8 @@ impl View<'_> {
         };
         // The gap's x axis is its y axis turned by −90°.
         FacedSurface {
-            nx: faced.nx * place.ay + faced.ny * place.ax,
-            ny: faced.ny * place.ay - faced.nx * place.ax,
+            nx: (faced.nx * place.ay).plus(faced.ny, place.ax),
+            ny: (faced.ny * place.ay).minus(faced.nx, place.ax),
             ..faced
         }
     }

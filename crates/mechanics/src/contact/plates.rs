@@ -355,7 +355,7 @@ impl PlateContact {
         let (mut fx, mut fy) = (force * nx, force * ny);
         // M = −d × F
         let mut moment = dy * fx - dx * fy;
-        let mut damping = law.steepest(w, &pressed);
+        let mut damping = SurfaceLaw::steepest(w, &pressed);
         if law.friction.acts() {
             // slip = t·u + ω h
             let slip = nx * uy - ny * ux + spin * height;
