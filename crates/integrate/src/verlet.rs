@@ -13,8 +13,6 @@ pub(crate) const LIMIT: f64 = 2.0;
 /// Work space of the method.
 #[derive(Clone, Debug)]
 pub(crate) struct Verlet {
-    /// Predicted velocities.
-    predicted: Vec<f64>,
     /// Predicted states.
     states: Vec<f64>,
     /// The processor's vector unit.
@@ -24,7 +22,6 @@ pub(crate) struct Verlet {
 impl Verlet {
     pub(crate) fn new(size: Size) -> Self {
         Self {
-            predicted: vec![0.0; size.dofs],
             states: vec![0.0; size.states],
             arch: Arch::new(),
         }
@@ -56,6 +53,7 @@ impl Verlet {
         record: &mut S::Record,
     ) -> bool {
         to.t = from.t + h;
+        // What is predicted stands where the velocities will: every array less leaves the others nearer to the processor.
         // Infinity and NaN get into the velocities from wherever they arise: watching those is enough.
         dispatch(
             self.arch,
@@ -63,7 +61,7 @@ impl Verlet {
                 h,
                 from,
                 q: &mut to.q,
-                predicted: &mut self.predicted,
+                predicted: &mut to.v,
             },
         );
         let flow = from.flow();
@@ -74,7 +72,7 @@ impl Verlet {
         let end = Moment {
             t: to.t,
             q: &to.q,
-            v: &self.predicted,
+            v: &to.v,
             z: &self.states,
         };
         let prediction = Prediction {

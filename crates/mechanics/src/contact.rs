@@ -97,6 +97,8 @@ pub(crate) struct Contacts {
     pub(crate) radius: f64,
     /// Runs of rollers that can touch.
     pub(crate) runs: Vec<Run>,
+    /// Number of rollers in them.
+    pub(crate) candidates: usize,
     /// Number of slots, whole lanes.
     pub(crate) slots: usize,
     /// Gap axis of each slot in the wheel frame (teeth only).
@@ -191,6 +193,7 @@ impl Contacts {
             law: SurfaceLaw::new(&surface, flank),
             radius,
             runs: Vec::new(),
+            candidates: 0,
             slots: 0,
             axis_x: Vec::new(),
             axis_y: Vec::new(),

@@ -23,7 +23,7 @@ use pulp::Simd;
 pub(crate) use gap::{Extent, GapFace, Stretch};
 pub(crate) use rail::RailFace;
 
-use crate::lanes::{Lane, Wide};
+use crate::lanes::{Lane, Wide, rarely};
 
 /// One arc, straight or corner of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,10 +36,12 @@ pub(crate) struct Feature {
     pub(crate) sign: f64,
     /// Outward normal of a straight, zero otherwise.
     pub(crate) straight: Vector,
-    /// The feature begins where (q − start)·along > 0.
+    /// The feature begins where q·along > start·along.
     pub(crate) start: Point,
     /// Direction of travel at the start.
     pub(crate) along: Vector,
+    /// start·along \[m\].
+    pub(crate) begin: f64,
 }
 
 /// A row of features in the order of travel.
@@ -173,6 +175,7 @@ impl Profile {
         radius: f64,
     ) -> Nearest<S> {
         let chosen = if self.features.len() > lookup::LONG {
+            rarely();
             self.looked_up(w, [x, y])
         } else {
             self.passed(w, [x, y])
@@ -197,16 +200,16 @@ impl Profile {
             straight: [mx, my],
         } = chosen;
         let (ex, ey) = (x - cx, y - cy);
-        let [distance, inverse] = (ex * ex + ey * ey).roots();
+        let [distance, inverse] = (ex * ex).plus(ey, ey).roots();
         let scale = sign * inverse;
         let contact_radius = w.splat(radius);
         // g = ±(|q − c| − R) − r
-        let mut gap = sign * (distance - r) - contact_radius;
+        let mut gap = (-contact_radius).plus(sign, distance - r);
         let (mut nx, mut ny, mut bend) = (scale * ex, scale * ey, scale);
         if self.has_straights {
             // g = n·(q − p) − r
             let straight = (mx * mx + my * my).greater(zero);
-            gap = straight.select(mx * ex + my * ey - contact_radius, gap);
+            gap = straight.select((mx * ex).plus(my, ey) - contact_radius, gap);
             nx = straight.select(mx, nx);
             ny = straight.select(my, ny);
             bend = straight.select(zero, bend);
@@ -262,8 +265,7 @@ impl Profile {
     #[inline(always)]
     fn ahead<S: Simd>(&self, w: Wide<S>, index: usize, [x, y]: [Lane<S>; 2]) -> Lane<S> {
         let f = &self.features[index];
-        (x - w.splat(f.start.x)) * w.splat(f.along.x)
-            + (y - w.splat(f.start.y)) * w.splat(f.along.y)
+        (x * w.splat(f.along.x) - w.splat(f.begin)).plus(y, w.splat(f.along.y))
     }
 }
 
@@ -288,11 +290,13 @@ fn corner(at: Point, along: Vector) -> Feature {
         straight: Vector::zeros(),
         start: at,
         along,
+        begin: at.coords.dot(&along),
     }
 }
 
 fn feature(piece: &Piece, along: Vector) -> Feature {
     let start = piece.start();
+    let begin = start.coords.dot(&along);
     match piece {
         Piece::Segment(_) => {
             let tangent = piece.start_tangent();
@@ -303,6 +307,7 @@ fn feature(piece: &Piece, along: Vector) -> Feature {
                 straight: Vector::new(tangent.y, -tangent.x),
                 start,
                 along,
+                begin,
             }
         }
         Piece::Arc(arc) => Feature {
@@ -312,6 +317,7 @@ fn feature(piece: &Piece, along: Vector) -> Feature {
             straight: Vector::zeros(),
             start,
             along,
+            begin,
         },
     }
 }

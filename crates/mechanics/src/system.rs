@@ -145,8 +145,7 @@ impl System {
         self.chains
             .iter()
             .flat_map(|member| member.contacts.circles())
-            .flat_map(|contacts| &contacts.runs)
-            .map(|run| run.count)
+            .map(|contacts| contacts.candidates)
             .sum()
     }
 

@@ -131,7 +131,7 @@ impl Joints {
         }
         // The law that most have gets a loop of its own.
         if let LaneFriction::SpringSlider(spring) = &self.friction {
-            let sums = self.sweep::<S, true>(w, dt, found, turns, *spring);
+            let sums = self.sweep::<S, true, false>(w, dt, found, turns, *spring);
             // What the spring resists within a step is in its stiffness already.
             found.slopes = [self.largest[0] * spring.stiffness, self.largest[1]];
             found.stored = 0.5 * spring.stiffness * sums.squares.sum();
@@ -155,7 +155,12 @@ impl Joints {
             found.stored = held;
             return power + lost;
         }
-        let sums = self.sweep::<S, false>(w, dt, found, turns, LaneSpring::default());
+        let spring = LaneSpring::default();
+        let sums = if self.friction.is_long() {
+            self.sweep::<S, false, true>(w, dt, found, turns, spring)
+        } else {
+            self.sweep::<S, false, false>(w, dt, found, turns, spring)
+        };
         let stiffness = self.friction.stiffness(sums.normal.largest());
         found.slopes = [self.largest[0] * stiffness, sums.steepest.largest()];
         found.stored = sums.held.sum();
@@ -198,7 +203,7 @@ impl Joints {
 
     /// All joints once; without closures, since those that are not inlined are compiled for the oldest processor.
     #[inline(always)]
-    fn sweep<S: Simd, const SPRING: bool>(
+    fn sweep<S: Simd, const SPRING: bool, const LONG: bool>(
         &self,
         w: Wide<S>,
         dt: f64,
@@ -229,14 +234,14 @@ impl Joints {
                 spring.rub(w, dt, normal, slip, before.get(i))
             } else {
                 self.friction
-                    .rub(w, dt, [normal, normal], slip, before.get(i))
+                    .rub::<S, LONG>(w, dt, [normal, normal], slip, before.get(i))
             };
             now.set(i, state);
             // M = r f − c ω
             let drag = c * rate;
-            moments.set(i, r * rubbing.force - drag);
-            sums.power += drag * rate - rubbing.force * slip;
-            sums.squares += state * state;
+            moments.set(i, (-drag).plus(r, rubbing.force));
+            sums.power = sums.power.plus(drag, rate).minus(rubbing.force, slip);
+            sums.squares = sums.squares.plus(state, state);
             if !SPRING {
                 sums.held += self.friction.stored(w, normal, state);
                 sums.steepest = sums.steepest.max(r * r * rubbing.steepest + c);

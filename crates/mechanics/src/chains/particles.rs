@@ -173,9 +173,8 @@ impl Particles {
         let (mut contact, mut drag, mut predicted) = (0.0_f64, 0.0_f64, 0.0_f64);
         for (on, wrench) in contacts.teeth.iter().zip(&record.loads.wheel_wrenches) {
             let stiffness = on.contacts.surface.stiffness(wrench.depth);
-            let seated: usize = on.contacts.runs.iter().map(|run| run.count).sum();
-            let mobility = bodies.mobility(on.wheel);
-            let shared = mobility * seated as f64;
+            let mobility = bodies.wheels[on.wheel].mobility;
+            let shared = mobility * on.contacts.candidates as f64;
             contact = contact.max(stiffness * (self.lightest + shared));
             drag = drag.max(wrench.damping * (self.lightest + shared));
             predicted = predicted.max(wrench.across * (self.lightest + shared));

@@ -44,10 +44,10 @@ impl<S: Simd> Ahead<S> {
         // A contact that begins has felt nothing yet.
         let grown = fresh.select(w.splat(0.0), self.thrust - thrust_before);
         let lag = self.half_step * damping;
-        let share = (w.splat(1.0) + lag * self.mobility).recip();
-        let ahead = force + lag * (self.mobility * force_before + grown);
+        let share = w.splat(1.0).plus(lag, self.mobility).recip();
+        let ahead = force.plus(lag, grown.plus(self.mobility, force_before));
         let ahead = (ahead * share).max(w.splat(0.0));
-        let change = self.half_step * (grown - (ahead - force_before) * self.mobility);
+        let change = self.half_step * grown.minus(ahead - force_before, self.mobility);
         [change, ahead]
     }
 }

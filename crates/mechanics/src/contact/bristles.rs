@@ -10,7 +10,7 @@ use chaindrive_contact::friction::Lugre;
 use pulp::{Simd, WithSimd};
 
 use super::friction::Rubbing;
-use crate::lanes::{LANES, Lane, Wide};
+use crate::lanes::{Lane, Wide};
 
 /// The law with its constants worked out.
 #[derive(Clone, Copy, Debug)]
@@ -51,34 +51,24 @@ impl Bristles {
     }
 
     /// Friction after `dt` at constant normal force and slip, and the deflection then; none where the first number is not positive.
-    ///
-    /// A call of its own: in the kernel of the particles it would cost those without such a law a fifteenth of their time.
     #[inline(always)]
     pub(super) fn rub<S: Simd>(
         &self,
         w: Wide<S>,
         dt: f64,
-        [touching, normal]: [Lane<S>; 2],
+        contact: [Lane<S>; 2],
         slip: Lane<S>,
         before: Lane<S>,
     ) -> (Rubbing<S>, Lane<S>) {
-        let [force, drag, deflection] = w.call(Ask {
-            law: self,
-            dt,
-            touching: touching.numbers(),
-            normal: normal.numbers(),
-            slip: slip.numbers(),
-            before: before.numbers(),
-        });
-        let drag = w.load(&drag, 0);
+        let [force, drag, deflection] = self.bend(w, dt, contact, slip, before);
         // It sticks by itself, and its slope knows how: the secant is no steeper.
         let rubbing = Rubbing {
-            force: w.load(&force, 0),
+            force,
             drag,
             secant: drag,
             steepest: drag,
         };
-        (rubbing, w.load(&deflection, 0))
+        (rubbing, deflection)
     }
 
     /// The same as force, slope and deflection.
@@ -110,46 +100,24 @@ impl Bristles {
         let bound = stiff * speed;
         let left = (bound * w.splat(dt)).decay();
         let passed = -left;
-        let deflection = before + (sign * level * compliance - before) * passed;
+        let deflection = before.plus(sign * level * compliance - before, passed);
         // As the law has it: dz′/dv.
-        let pulled = (sign - stiff * before) * (sign - speed * bending);
+        let pulled = sign.minus(stiff, before) * sign.minus(speed, bending);
         let swing = w.splat(dt) * moves.select(pulled, one);
-        let bend = passed * sign * slope * compliance + (one + left) * swing;
+        let bend = (passed * sign * slope * compliance).plus(one + left, swing);
         let mut force = stiffness * deflection;
         let mut drag = stiffness * bend;
         if self.flows {
             let [damping, viscosity] = [self.damping, self.viscosity].map(|x| w.splat(x));
             // ż, and dż/dv
-            let rate = slip - bound * deflection;
-            let change = one - stiff * (sign * deflection + speed * (bend - deflection * bending));
-            force += damping * rate + viscosity * slip;
-            drag += damping * change + viscosity;
+            let rate = slip.minus(bound, deflection);
+            let moved = (sign * deflection).plus(speed, bend.minus(deflection, bending));
+            let change = one.minus(stiff, moved);
+            force = force.plus(damping, rate).plus(viscosity, slip);
+            drag = (drag + viscosity).plus(damping, change);
         }
         let drag = (normal * drag).max(zero);
         [-(normal * force), drag, touching.select(deflection, zero)]
-    }
-}
-
-/// The bristles of one lane, as [`Bristles::rub`] is given them.
-struct Ask<'a> {
-    law: &'a Bristles,
-    dt: f64,
-    touching: [f64; LANES],
-    normal: [f64; LANES],
-    slip: [f64; LANES],
-    before: [f64; LANES],
-}
-
-impl WithSimd for Ask<'_> {
-    type Output = [[f64; LANES]; 3];
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let w = Wide(simd);
-        let contact = [w.load(&self.touching, 0), w.load(&self.normal, 0)];
-        let (slip, before) = (w.load(&self.slip, 0), w.load(&self.before, 0));
-        let [force, drag, deflection] = self.law.bend(w, self.dt, contact, slip, before);
-        [force.numbers(), drag.numbers(), deflection.numbers()]
     }
 }
 
@@ -205,6 +173,7 @@ mod tests {
     use pulp::Arch;
 
     use super::*;
+    use crate::lanes::LANES;
 
     struct Check(Lugre);
 

@@ -65,7 +65,7 @@ impl LaneSpring {
         // z′ = z + v h, drawn back to |z′| ≤ μ N/k;   f = −k z′,   −∂f/∂v = k h while it holds, |f/v| ≤ k h while it slides
         let stiffness = w.splat(self.stiffness);
         let limit = w.splat(self.coefficient_by_stiffness) * normal;
-        let tried = before + slip * w.splat(dt);
+        let tried = before.plus(slip, w.splat(dt));
         let stick = tried.max(-limit).min(limit);
         let holds = limit.greater(tried.abs());
         let spring = stiffness * w.splat(dt);
@@ -113,7 +113,7 @@ impl LaneFriction {
     /// Friction under these normal forces at these slip speeds, `dt` after the accepted state, and its state then. There is
     /// a contact where the first number is positive.
     #[inline(always)]
-    pub(crate) fn rub<S: Simd>(
+    pub(crate) fn rub<S: Simd, const LONG: bool>(
         &self,
         w: Wide<S>,
         dt: f64,
@@ -131,7 +131,7 @@ impl LaneFriction {
             } => {
                 // f = −μ F v/√(v² + v_s²),   −∂f/∂v = μ F v_s²/√(v² + v_s²)³
                 let regular = w.splat(*slip_speed_squared);
-                let inverse = (slip * slip + regular).inverse_root();
+                let inverse = regular.plus(slip, slip).inverse_root();
                 let limit = w.splat(*coefficient) * normal;
                 let secant = limit * inverse;
                 let rubbing = Rubbing {
@@ -143,9 +143,16 @@ impl LaneFriction {
                 (rubbing, zero)
             }
             Self::SpringSlider(spring) => spring.rub(w, dt, normal, slip, before),
+            // As with elastic laws.
+            _ if !LONG => (Rubbing::unknown(w), zero),
             Self::Bristles(bristles) => bristles.rub(w, dt, [touching, normal], slip, before),
             Self::General(friction) => one_by_one(w, friction, [touching, normal], slip),
         }
+    }
+
+    /// Whether the law is long: see [`SurfaceLaw::is_long`](super::SurfaceLaw::is_long).
+    pub(crate) fn is_long(&self) -> bool {
+        matches!(self, Self::Bristles(_) | Self::General(_))
     }
 
     /// Energy of what sticks, in this state under a normal force \[J\].
@@ -189,12 +196,21 @@ impl LaneFriction {
 impl<S: Simd> Rubbing<S> {
     #[inline(always)]
     fn none(w: Wide<S>) -> Self {
-        let zero = w.splat(0.0);
+        Self::all(w.splat(0.0))
+    }
+
+    #[inline(always)]
+    fn unknown(w: Wide<S>) -> Self {
+        Self::all(w.splat(f64::NAN))
+    }
+
+    #[inline(always)]
+    fn all(value: Lane<S>) -> Self {
         Self {
-            force: zero,
-            drag: zero,
-            secant: zero,
-            steepest: zero,
+            force: value,
+            drag: value,
+            secant: value,
+            steepest: value,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The inner loop: lanes of rollers against one body.
 
-use pulp::Simd;
+use pulp::{Simd, WithSimd};
 
 use super::ahead::Ahead;
 use super::look::{FacedSurface, Place, View};
@@ -8,16 +8,20 @@ use super::rest::{CLOSE, Clear};
 use super::slots::Slots;
 use super::window::FAR;
 use super::wrench::{Sums, Wrench};
-use super::{AWAKE, Contacts, Frame, Rollers, Shape, Touch};
+use super::{AWAKE, Contacts, Frame, Rollers, Shape, SurfaceLaw, Touch};
 use crate::lanes::{LANES, Lane, Mask, Wide};
 use crate::profile::SHARPEST;
 
 impl Contacts {
-    /// Adds the contact accelerations to `rollers` and returns what the body receives.
+    /// Adds the contact accelerations to `rollers`, and writes down what the body receives.
     ///
     /// Reads the memory of the last accepted state, writes the state here into `touch`. Where velocities are predicted, damping is
     /// taken at the end of the step if it is known by how much the body yields, 1/M \[1/kg\]: see [`Ahead`].
     #[inline(always)]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the whole of a body, split for reading only"
+    )]
     pub(crate) fn act<S: Simd>(
         &self,
         w: Wide<S>,
@@ -26,44 +30,21 @@ impl Contacts {
         rollers: &mut Rollers<'_>,
         yielding: Option<f64>,
         touch: &mut Touch,
-    ) -> Wrench {
-        let dt = t - self.accepted;
-        touch.resize(self.slots * self.sides());
-        let mut slots = Slots::new(w, self, touch);
-        let mut sums = Sums::new(w);
-        let mut touching = false;
-        // A copy: what may change while slots are written is read from memory again for every lane.
-        let frame = *frame;
-        for side in 0..self.sides() {
-            let view = self.view(side);
-            for (eight, run) in self.runs.iter().enumerate() {
-                for offset in (0..LANES).step_by(Wide::<S>::COUNT) {
-                    let place = (eight * LANES + offset) / Wide::<S>::COUNT;
-                    let lane = side * slots.lanes() + place;
-                    let wake = slots.wake(lane);
-                    if offset >= run.count || wake > t {
-                        slots.leave_open(w, lane, wake);
-                        continue;
-                    }
-                    let slot = RollerSlot {
-                        lane,
-                        axis: place,
-                        roller: run.start + offset,
-                        valid: w.first(run.count - offset),
-                        yielding,
-                    };
-                    let (slots, sums) = (&mut slots, &mut sums);
-                    touching |= self.lane(w, dt, &frame, view, slot, rollers, slots, sums);
-                }
-            }
-        }
-        if touching {
-            sums.total(self.law.friction.acts())
+        wrench: &mut Wrench,
+    ) {
+        let touching = Touching {
+            contacts: self,
+            t,
+            frame,
+            rollers,
+            yielding,
+            touch,
+        };
+        // Not one value of two calls: it would be put together in memory, and waited for.
+        if self.law.is_long() {
+            *wrench = w.call(touching);
         } else {
-            Wrench {
-                first_share: 1.0,
-                ..Wrench::default()
-            }
+            *wrench = touching.act::<S, false>(w);
         }
     }
 
@@ -73,7 +54,7 @@ impl Contacts {
         clippy::too_many_arguments,
         reason = "the inner loop, split for reading only"
     )]
-    fn lane<S: Simd>(
+    fn lane<S: Simd, const LONG: bool>(
         &self,
         w: Wide<S>,
         dt: f64,
@@ -90,8 +71,8 @@ impl Contacts {
         let dy = w.load(rollers.y, i) - w.splat(frame.origin.y);
         let spin = w.splat(frame.spin);
         let motion = Motion {
-            ux: w.load(rollers.vx, i) - w.splat(frame.velocity.x) + spin * dy,
-            uy: w.load(rollers.vy, i) - w.splat(frame.velocity.y) - spin * dx,
+            ux: (w.load(rollers.vx, i) - w.splat(frame.velocity.x)).plus(spin, dy),
+            uy: (w.load(rollers.vy, i) - w.splat(frame.velocity.y)).minus(spin, dx),
             dx,
             dy,
             spin,
@@ -100,7 +81,7 @@ impl Contacts {
         let place = match &self.shape {
             Shape::Teeth(teeth) => {
                 let reach = teeth.tip_radius + self.radius;
-                let away = dx * dx + dy * dy - w.splat(reach * reach);
+                let away = (dx * dx - w.splat(reach * reach)).plus(dy, dy);
                 near = w.splat(0.0).greater(away) & near;
                 if !near.any() && self.writes_faces {
                     slots.leave_open(w, slot.lane, 0.0);
@@ -119,7 +100,8 @@ impl Contacts {
             Shape::Rail { reference, .. } => Place::at_rail(w, *reference, frame, [dx, dy]),
         };
         let faced = view.faced(w, &place, self.radius, self.law.flank.is_some());
-        let Some(closing) = self.respond(w, dt, &motion, &faced, near, slot, rollers, slots, sums)
+        let Some(closing) =
+            self.respond::<S, LONG>(w, dt, &motion, &faced, near, slot, rollers, slots, sums)
         else {
             slots.set_wake(slot.lane, AWAKE);
             return true;
@@ -151,7 +133,7 @@ impl Contacts {
         clippy::too_many_arguments,
         reason = "the inner loop, split for reading only"
     )]
-    fn respond<S: Simd>(
+    fn respond<S: Simd, const LONG: bool>(
         &self,
         w: Wide<S>,
         dt: f64,
@@ -167,7 +149,7 @@ impl Contacts {
         let law = &self.law;
         let gap = near.select(faced.gap, w.splat(FAR));
         // δ̇ = −n·u
-        let closing = -(faced.nx * motion.ux + faced.ny * motion.uy);
+        let closing = -(faced.nx * motion.ux).plus(faced.ny, motion.uy);
         let share = law.share(w, faced.beyond);
         let inverse_mass = w.load(rollers.inverse_mass, roller);
         // Not a closure: one that is not inlined is compiled for the oldest processor.
@@ -175,7 +157,7 @@ impl Contacts {
             Some(yielding) => {
                 let (ax, ay) = (w.load(rollers.ax, roller), w.load(rollers.ay, roller));
                 Some(Ahead {
-                    thrust: -(faced.nx * ax + faced.ny * ay),
+                    thrust: -(faced.nx * ax).plus(faced.ny, ay),
                     half_step: w.splat(rollers.half_step),
                     mobility: inverse_mass + w.splat(yielding),
                 })
@@ -184,28 +166,32 @@ impl Contacts {
         };
         let (memory, tally) = (&mut slots.memory, &mut sums.tally);
         let surfaces = [gap, closing];
-        let Some(pressed) = law.press(w, memory, lane, surfaces, share, None, ahead, tally) else {
+        let Some(pressed) =
+            law.press::<S, LONG>(w, memory, lane, surfaces, share, None, ahead, tally)
+        else {
             return Some(closing);
         };
         let force = pressed.force;
         let (tx, ty) = (-faced.ny, faced.nx);
         let (mut fx, mut fy) = (force * faced.nx, force * faced.ny);
         // M = −d × F
-        let mut moment = motion.dy * fx - motion.dx * fy;
-        let mut damping = law.steepest(w, &pressed);
+        let mut moment = (motion.dy * fx).minus(motion.dx, fy);
+        let mut damping = SurfaceLaw::steepest(w, &pressed);
         if law.friction.acts() {
             // slip = t·u + ω r − ω_a r: the circle turns with its body.
             let radius = w.splat(self.radius);
-            let mut slip = tx * motion.ux + ty * motion.uy + motion.spin * radius;
+            let mut slip = (motion.spin * radius)
+                .plus(tx, motion.ux)
+                .plus(ty, motion.uy);
             if !rollers.spin.is_empty() {
-                slip = slip - w.load(rollers.spin, roller) * radius;
+                slip = slip.minus(w.load(rollers.spin, roller), radius);
             }
-            let rubbing = law.rub(w, memory, lane, dt, &pressed, slip, tally);
+            let rubbing = law.rub::<S, LONG>(w, memory, lane, dt, &pressed, slip, tally);
             let rub = rubbing.force;
-            fx += rub * tx;
-            fy += rub * ty;
+            fx = fx.plus(rub, tx);
+            fy = fy.plus(rub, ty);
             // M = −(d − r n) × F
-            moment = motion.dy * fx - motion.dx * fy + rub * radius;
+            moment = (motion.dy * fx).minus(motion.dx, fy).plus(rub, radius);
             damping += rubbing.steepest;
             sums.across = sums.across.max(rubbing.steepest);
             if let Some(faces) = &mut slots.faces {
@@ -214,15 +200,16 @@ impl Contacts {
                 faces.secant.set(lane, rubbing.secant);
             }
         }
-        (w.load(rollers.ax, roller) + fx * inverse_mass).store(rollers.ax, roller);
-        (w.load(rollers.ay, roller) + fy * inverse_mass).store(rollers.ay, roller);
+        let [ax, ay] = [w.load(rollers.ax, roller), w.load(rollers.ay, roller)];
+        ax.plus(fx, inverse_mass).store(rollers.ax, roller);
+        ay.plus(fy, inverse_mass).store(rollers.ay, roller);
 
-        sums.fx += -fx;
-        sums.fy += -fy;
+        sums.fx = sums.fx - fx;
+        sums.fy = sums.fy - fy;
         sums.moment += moment;
         sums.damping = sums.damping.max(damping);
         if let Some(faces) = &mut slots.faces {
-            let [stiffness, damping] = law.slopes(w, &pressed, share);
+            let [stiffness, damping] = law.slopes::<S, LONG>(w, &pressed, share);
             faces.stiffness.set(lane, stiffness);
             faces.damping.set(lane, damping);
             faces.normal_x.set(lane, faced.nx);
@@ -233,6 +220,80 @@ impl Contacts {
                 .set(lane, faced.bend.min(sharpest).max(-sharpest));
         }
         None
+    }
+}
+
+/// One body and what touches it, as one call: long laws do not burden the kernel that others are in.
+struct Touching<'a, 'b> {
+    contacts: &'a Contacts,
+    t: f64,
+    frame: &'a Frame,
+    rollers: &'a mut Rollers<'b>,
+    yielding: Option<f64>,
+    touch: &'a mut Touch,
+}
+
+impl WithSimd for Touching<'_, '_> {
+    type Output = Wrench;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Wrench {
+        self.act::<S, true>(Wide(simd))
+    }
+}
+
+impl Touching<'_, '_> {
+    #[inline(always)]
+    fn act<S: Simd, const LONG: bool>(self, w: Wide<S>) -> Wrench {
+        let Self {
+            contacts,
+            t,
+            frame,
+            rollers,
+            yielding,
+            touch,
+        } = self;
+        let dt = t - contacts.accepted;
+        // Of one length that is seen here, places of lanes are checked once.
+        let rollers = &mut rollers.of_one_length();
+        touch.resize(contacts.slots * contacts.sides());
+        let mut slots = Slots::new(w, contacts, touch);
+        let mut sums = Sums::new(w);
+        let mut touching = false;
+        // A copy: what may change while slots are written is read from memory again for every lane.
+        let frame = *frame;
+        for side in 0..contacts.sides() {
+            let view = contacts.view(side);
+            for (eight, run) in contacts.runs.iter().enumerate() {
+                for offset in (0..LANES).step_by(Wide::<S>::COUNT) {
+                    let place = (eight * LANES + offset) / Wide::<S>::COUNT;
+                    let lane = side * slots.lanes() + place;
+                    let wake = slots.wake(lane);
+                    if offset >= run.count || wake > t {
+                        slots.leave_open(w, lane, wake);
+                        continue;
+                    }
+                    let slot = RollerSlot {
+                        lane,
+                        axis: place,
+                        roller: run.start + offset,
+                        valid: w.first(run.count - offset),
+                        yielding,
+                    };
+                    let (slots, sums) = (&mut slots, &mut sums);
+                    touching |=
+                        contacts.lane::<S, LONG>(w, dt, &frame, view, slot, rollers, slots, sums);
+                }
+            }
+        }
+        if touching {
+            sums.total(contacts.law.friction.acts())
+        } else {
+            Wrench {
+                first_share: 1.0,
+                ..Wrench::default()
+            }
+        }
     }
 }
 
@@ -268,9 +329,9 @@ impl<S: Simd> RollerSlot<S> {
         Clear {
             gap: self.valid.select(gap, w.splat(f64::MAX)),
             closing: closing.map(only),
-            speed: only(motion.ux * motion.ux + motion.uy * motion.uy),
-            thrust: only(ax * ax + ay * ay),
-            lever: only(motion.dx * motion.dx + motion.dy * motion.dy),
+            speed: only((motion.ux * motion.ux).plus(motion.uy, motion.uy)),
+            thrust: only((ax * ax).plus(ay, ay)),
+            lever: only((motion.dx * motion.dx).plus(motion.dy, motion.dy)),
         }
     }
 }

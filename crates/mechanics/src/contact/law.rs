@@ -20,7 +20,7 @@ use super::memory::MemoryLanes;
 use super::stacked::Stacked;
 use super::wrench::LaneTally;
 use crate::drive::{Flank, Surface};
-use crate::lanes::{FixedPower, LANES, Lane, Mask, Wide};
+use crate::lanes::{FixedPower, LANES, Lane, Mask, Wide, rarely};
 
 /// The laws of one pair of surfaces, taken apart once into what lanes need.
 #[derive(Clone, Debug)]
@@ -74,6 +74,8 @@ pub(crate) struct Pressed<S: Simd> {
     /// Elastic force of the seat's law, and of both, of whole contacts \[N\].
     on_seat: Lane<S>,
     stored: Lane<S>,
+    /// −∂F/∂ġ without the limits \[N s/m\], of whole contacts; means something where closed.
+    steepest: Lane<S>,
     /// Normal force \[N\], zero where open.
     pub(crate) force: Lane<S>,
 }
@@ -101,6 +103,16 @@ impl SurfaceLaw {
         }
     }
 
+    /// Whether one of the laws takes so many operations, or calls, that it would burden the kernels of those that do not: a kernel is
+    /// compiled with long laws and without, and asked accordingly.
+    #[inline]
+    pub(crate) fn is_long(&self) -> bool {
+        let flank = self.flank.as_ref();
+        self.elastic.is_long()
+            || flank.is_some_and(|flank| flank.elastic.is_long())
+            || self.friction.is_long()
+    }
+
     /// Onset and normal force of a lane of contacts with these gaps and closing speeds; none if all are open.
     ///
     /// Contacts are closed where the gap is negative. `share` is that of the flank's law, and `weight` the part of every contact
@@ -110,7 +122,7 @@ impl SurfaceLaw {
         clippy::too_many_arguments,
         reason = "lanes are handed on by value, and the rest is what they are reckoned with"
     )]
-    pub(crate) fn press<S: Simd>(
+    pub(crate) fn press<S: Simd, const LONG: bool>(
         &self,
         w: Wide<S>,
         memory: &mut MemoryLanes<'_, S>,
@@ -133,6 +145,7 @@ impl SurfaceLaw {
         let mut inverse_onset = closed.select(before, zero);
         let fresh = closed & w.splat(f64::MIN_POSITIVE).greater(before);
         if fresh.any() {
+            rarely();
             let onset = memory.onset(w, lane, depth, closing);
             let inverse = onset.speed.max(w.splat(self.floor)).recip();
             inverse_onset = fresh.select(inverse, inverse_onset);
@@ -141,18 +154,20 @@ impl SurfaceLaw {
         memory.keep_onset(lane, inverse_onset);
 
         // F = max(0, g + χ g min(δ̇/v, 4) + c δ̇)
-        let on_seat = self.elastic.force(w, depth);
+        let on_seat = self.elastic.force::<S, LONG>(w, depth);
         let mut stored = on_seat;
         if let (Some(flank), Some(share)) = (&self.flank, share) {
             // g = (1 − s) g_seat + s g_flank
-            stored = stored + share * (flank.elastic.force(w, depth) - stored);
+            stored = stored.plus(share, flank.elastic.force::<S, LONG>(w, depth) - stored);
             memory.keep_share(lane, share);
         }
         let [one, factor, damping] = [1.0, self.factor, self.damping].map(|x| w.splat(x));
         let ratio_at = |closing: Lane<S>| (closing * inverse_onset).min(w.splat(RATIO_LIMIT));
         let (mut closing, mut ratio) = (closing, ratio_at(closing));
-        let mut raw = stored * (one + factor * ratio) + damping * closing;
-        let mut steep = factor * stored * inverse_onset + damping;
+        let mut raw = (stored * one.plus(factor, ratio)).plus(damping, closing);
+        // −∂F/∂ġ = χ g/v + c
+        let steepest = damping.plus(stored, factor * inverse_onset);
+        let mut steep = steepest;
         let mut returned = stored;
         if let Some(weight) = weight {
             raw = weight * raw;
@@ -168,7 +183,8 @@ impl SurfaceLaw {
             force = closed.select(ahead, zero);
         }
         memory.keep_force(lane, force);
-        tally.normal_loss += (force - closed.select(returned, zero)) * closing;
+        // What is open has a depth of zero, and returns nothing.
+        tally.normal_loss = (tally.normal_loss).plus(force - returned, closing);
         tally.depth = tally.depth.max(depth);
         Some(Pressed {
             closed,
@@ -178,6 +194,7 @@ impl SurfaceLaw {
             ratio,
             on_seat,
             stored,
+            steepest,
             force,
         })
     }
@@ -188,7 +205,7 @@ impl SurfaceLaw {
         clippy::too_many_arguments,
         reason = "lanes are handed on by value, and the rest is what they are reckoned with"
     )]
-    pub(crate) fn rub<S: Simd>(
+    pub(crate) fn rub<S: Simd, const LONG: bool>(
         &self,
         w: Wide<S>,
         memory: &mut MemoryLanes<'_, S>,
@@ -205,25 +222,23 @@ impl SurfaceLaw {
         };
         let (rubbing, stick) =
             self.friction
-                .rub(w, dt, [pressed.depth, pressed.force], slip, before);
+                .rub::<S, LONG>(w, dt, [pressed.depth, pressed.force], slip, before);
         if self.friction.remembers() {
             memory.keep_stick(w, lane, pressed.closed, stick);
         }
-        tally.friction_loss += -(rubbing.force * slip);
+        tally.friction_loss = tally.friction_loss.minus(rubbing.force, slip);
         rubbing
     }
 
     /// −∂F/∂ġ without the limits \[N s/m\], for the choice of explicit steps.
     #[inline(always)]
-    pub(super) fn steepest<S: Simd>(&self, w: Wide<S>, pressed: &Pressed<S>) -> Lane<S> {
-        // χ g/v + c
-        w.splat(self.factor) * pressed.stored * pressed.inverse_onset
-            + pressed.closed.select(w.splat(self.damping), w.splat(0.0))
+    pub(super) fn steepest<S: Simd>(w: Wide<S>, pressed: &Pressed<S>) -> Lane<S> {
+        pressed.closed.select(pressed.steepest, w.splat(0.0))
     }
 
     /// ∂F/∂δ \[N/m\] and ∂F/∂δ̇ \[N s/m\]; both are zero where a limit holds the force.
     #[inline(always)]
-    pub(crate) fn slopes<S: Simd>(
+    pub(crate) fn slopes<S: Simd, const LONG: bool>(
         &self,
         w: Wide<S>,
         pressed: &Pressed<S>,
@@ -231,9 +246,11 @@ impl SurfaceLaw {
     ) -> [Lane<S>; 2] {
         let zero = w.splat(0.0);
         let depth = pressed.depth;
-        let mut slope = self.elastic.slope(w, depth, pressed.on_seat);
+        let elastic = &self.elastic;
+        let mut slope = elastic.slope::<S, LONG>(w, depth, pressed.on_seat);
         if let (Some(flank), Some(share)) = (&self.flank, share) {
-            let other = flank.elastic.slope(w, depth, flank.elastic.force(w, depth));
+            let force = flank.elastic.force::<S, LONG>(w, depth);
+            let other = flank.elastic.slope::<S, LONG>(w, depth, force);
             slope = slope + share * (other - slope);
         }
         // ∂F/∂δ = k (1 + χ min(δ̇/v, 4)),   ∂F/∂δ̇ = χ g/v + c
@@ -282,11 +299,18 @@ impl LaneElastic {
         }
     }
 
+    /// Whether the law is long: see [`SurfaceLaw::is_long`].
+    fn is_long(&self) -> bool {
+        !matches!(self, Self::Linear(_) | Self::Hertz(_))
+    }
+
     #[inline(always)]
-    fn force<S: Simd>(&self, w: Wide<S>, depth: Lane<S>) -> Lane<S> {
+    fn force<S: Simd, const LONG: bool>(&self, w: Wide<S>, depth: Lane<S>) -> Lane<S> {
         match self {
             Self::Linear(stiffness) => w.splat(*stiffness) * depth,
             Self::Hertz(stiffness) => w.splat(*stiffness) * depth * depth.root(),
+            // No number, should a kernel without long laws be asked for one: a run does not go on with it.
+            _ if !LONG => w.splat(f64::NAN),
             Self::Power(stiffness, _, lower) => {
                 w.splat(*stiffness) * depth * lower.of(w, depth.max(w.splat(LEAST_DEPTH)))
             }
@@ -298,10 +322,16 @@ impl LaneElastic {
 
     /// dg/dδ of lanes with a force g.
     #[inline(always)]
-    fn slope<S: Simd>(&self, w: Wide<S>, depth: Lane<S>, force: Lane<S>) -> Lane<S> {
+    fn slope<S: Simd, const LONG: bool>(
+        &self,
+        w: Wide<S>,
+        depth: Lane<S>,
+        force: Lane<S>,
+    ) -> Lane<S> {
         let exponent = match self {
             Self::Linear(stiffness) => return w.splat(*stiffness),
             Self::Hertz(_) => 1.5,
+            _ if !LONG => f64::NAN,
             Self::Power(_, n, _) => *n,
             Self::Stacked(stack) => return stack.slope(w, depth, force),
             Self::Logarithm(law) => return law.slope(w, depth, force),

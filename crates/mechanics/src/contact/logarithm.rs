@@ -11,10 +11,10 @@
 //! The series in √(2t): R. M. Corless and others, *Adv. Comput. Math.* **5**, 1996, 329–359, section 4.
 
 use chaindrive_contact::{Approach, Law, Prepared};
-use pulp::{Simd, WithSimd};
+use pulp::Simd;
 
 use super::law::LEAST_DEPTH;
-use crate::lanes::{LANES, Lane, Polynomial, Wide};
+use crate::lanes::{Lane, Polynomial, Wide};
 
 /// The law.
 #[derive(Clone, Debug)]
@@ -63,15 +63,8 @@ impl Logarithm {
         })
     }
 
-    /// A call of its own, as for bristles.
     #[inline(always)]
     pub(super) fn force<S: Simd>(&self, w: Wide<S>, depth: Lane<S>) -> Lane<S> {
-        let depth = depth.numbers();
-        w.load(&w.call(Ask { law: self, depth }), 0)
-    }
-
-    #[inline(always)]
-    fn found<S: Simd>(&self, w: Wide<S>, depth: Lane<S>) -> Lane<S> {
         let curved = depth.max(w.splat(LEAST_DEPTH)).min(w.splat(self.knee));
         let t = w.splat(self.end) - curved.ln();
         let y = (t + t).root();
@@ -93,29 +86,14 @@ impl Logarithm {
     }
 }
 
-/// The force at some depths.
-struct Ask<'a> {
-    law: &'a Logarithm,
-    depth: [f64; LANES],
-}
-
-impl WithSimd for Ask<'_> {
-    type Output = [f64; LANES];
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let w = Wide(simd);
-        self.law.found(w, w.load(&self.depth, 0)).numbers()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use chaindrive_contact::elastic::Johnson;
     use chaindrive_contact::{Dissipation, Elastic};
-    use pulp::Arch;
+    use pulp::{Arch, WithSimd};
 
     use super::*;
+    use crate::lanes::LANES;
 
     struct Check;
 

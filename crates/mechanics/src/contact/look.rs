@@ -16,7 +16,7 @@ use chaindrive_geometry::Point;
 use pulp::{Simd, WithSimd};
 
 use super::{Contacts, Frame, Shape, Teeth};
-use crate::lanes::{LANES, Lane, Mask, Wide};
+use crate::lanes::{LANES, Lane, Mask, Wide, rarely};
 use crate::profile::{Extent, Nearest, Probe, Profile, RailFace, Stretch};
 
 /// Roller centres in gap frames, and the gap axes in the world.
@@ -59,7 +59,7 @@ impl<S: Simd> Place<S> {
         [dx, dy]: [Lane<S>; 2],
     ) -> Self {
         let (c, s) = (w.splat(frame.turn[0]), w.splat(frame.turn[1]));
-        // a = R(θ) e,   x = d × a,   y = d · a
+        // a = R(θ) e,   x = d × a,   y = d · a. Rounded alike on every processor: a last place of d is one of the gap.
         let ax = c * ex - s * ey;
         let ay = s * ex + c * ey;
         let x = dx * ay - dy * ax;
@@ -217,6 +217,7 @@ impl View<'_> {
             View::Gap(stretches, side) => {
                 let faced = stretches[side].face(w, place.at, radius, measured);
                 if place.needs_more(w, stretches, side) {
+                    rarely();
                     Elsewhere::ask(w, stretches, side, place, radius, measured, faced)
                 } else {
                     faced
@@ -225,8 +226,8 @@ impl View<'_> {
         };
         // The gap's x axis is its y axis turned by −90°.
         FacedSurface {
-            nx: faced.nx * place.ay + faced.ny * place.ax,
-            ny: faced.ny * place.ay - faced.nx * place.ax,
+            nx: (faced.nx * place.ay).plus(faced.ny, place.ax),
+            ny: (faced.ny * place.ay).minus(faced.nx, place.ax),
             ..faced
         }
     }

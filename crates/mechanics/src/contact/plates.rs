@@ -344,7 +344,9 @@ impl PlateContact {
         };
         let (weight, tally) = (Some(weight), &mut sums.tally);
         let surfaces = [gap, closing];
-        let Some(pressed) = law.press(w, memory, lane, surfaces, None, weight, ahead, tally) else {
+        let Some(pressed) =
+            law.press::<S, true>(w, memory, lane, surfaces, None, weight, ahead, tally)
+        else {
             let clear = near.select(found.gap, clear);
             let speeds = [[vx, vy], [wx, wy]];
             return Some(self.rest(w, dt, frame, link, clear, speeds, pins));
@@ -353,11 +355,11 @@ impl PlateContact {
         let (mut fx, mut fy) = (force * nx, force * ny);
         // M = −d × F
         let mut moment = dy * fx - dx * fy;
-        let mut damping = law.steepest(w, &pressed);
+        let mut damping = SurfaceLaw::steepest(w, &pressed);
         if law.friction.acts() {
             // slip = t·u + ω h
             let slip = nx * uy - ny * ux + spin * height;
-            let rubbing = law.rub(w, memory, lane, dt, &pressed, slip, tally);
+            let rubbing = law.rub::<S, true>(w, memory, lane, dt, &pressed, slip, tally);
             let rub = rubbing.force;
             fx += -(rub * ny);
             fy += rub * nx;

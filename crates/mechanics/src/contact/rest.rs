@@ -73,7 +73,7 @@ mod tests {
     use pulp::{Arch, WithSimd};
 
     use super::*;
-    use crate::contact::{Contacts, Frame, Places, Rollers, Shape, Teeth, Touch};
+    use crate::contact::{Contacts, Frame, Places, Rollers, Shape, Teeth, Touch, Wrench};
     use crate::drive::Surface;
     use crate::profile::{GapFace, RailFace};
 
@@ -91,8 +91,9 @@ mod tests {
         #[inline(always)]
         fn with_simd<S: Simd>(mut self, simd: S) {
             let (t, rollers, touch) = (self.t, &mut self.rollers, self.touch);
+            let wrench = &mut Wrench::default();
             self.contacts
-                .act(Wide(simd), t, &self.frame, rollers, None, touch);
+                .act(Wide(simd), t, &self.frame, rollers, None, touch, wrench);
         }
     }
 

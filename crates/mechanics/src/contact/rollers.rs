@@ -19,6 +19,23 @@ pub(crate) struct Rollers<'a> {
 }
 
 impl Rollers<'_> {
+    /// The same.
+    #[inline(always)]
+    pub(crate) fn of_one_length(&mut self) -> Rollers<'_> {
+        let n = self.x.len();
+        Rollers {
+            x: &self.x[..n],
+            y: &self.y[..n],
+            vx: &self.vx[..n],
+            vy: &self.vy[..n],
+            ax: &mut self.ax[..n],
+            ay: &mut self.ay[..n],
+            inverse_mass: &self.inverse_mass[..n],
+            spin: self.spin,
+            half_step: self.half_step,
+        }
+    }
+
     #[inline(always)]
     pub(crate) fn place(&self, roller: usize) -> Point {
         Point::new(self.x[roller], self.y[roller])

@@ -11,10 +11,10 @@
 
 use std::f64::consts::LOG2_E;
 
-use pulp::{Simd, WithSimd};
+use pulp::Simd;
 
 use super::law::LEAST_DEPTH;
-use crate::lanes::{FixedPower, LANES, Lane, Polynomial, Wide};
+use crate::lanes::{FixedPower, Lane, Polynomial, Wide};
 
 /// K δⁿ⁻¹/k_s that steps are counted for: beyond the last one the surfaces are as good as rigid, before the first what lies behind.
 const RATIOS: [f64; 2] = [1e-8, 1e8];
@@ -65,15 +65,8 @@ impl Stacked {
         }
     }
 
-    /// A call of its own, so that the kernels of all laws stay short.
     #[inline(always)]
     pub(super) fn force<S: Simd>(&self, w: Wide<S>, depth: Lane<S>) -> Lane<S> {
-        let depth = depth.numbers();
-        w.load(&w.call(Ask { law: self, depth }), 0)
-    }
-
-    #[inline(always)]
-    fn found<S: Simd>(&self, w: Wide<S>, depth: Lane<S>) -> Lane<S> {
         let one = w.splat(1.0);
         let closed = depth.greater(w.splat(LEAST_DEPTH));
         let depth = depth.max(w.splat(LEAST_DEPTH));
@@ -121,22 +114,6 @@ impl Stacked {
         // k = n F/(x + n F/k_s)
         let steep = w.splat(self.exponent) * force;
         steep * (x + steep * compliance).max(w.splat(LEAST_DEPTH)).recip()
-    }
-}
-
-/// The force at some depths.
-struct Ask<'a> {
-    law: &'a Stacked,
-    depth: [f64; LANES],
-}
-
-impl WithSimd for Ask<'_> {
-    type Output = [f64; LANES];
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let w = Wide(simd);
-        self.law.found(w, w.load(&self.depth, 0)).numbers()
     }
 }
 
@@ -204,9 +181,10 @@ fn steps(n: f64) -> usize {
 mod tests {
     use chaindrive_contact::elastic::Power;
     use chaindrive_contact::{Dissipation, Elastic, Law};
-    use pulp::Arch;
+    use pulp::{Arch, WithSimd};
 
     use super::*;
+    use crate::lanes::LANES;
 
     struct Check;
 

@@ -228,9 +228,9 @@ impl Roller {
         };
         let w = Wide(pulp::Scalar);
         let yielding = (self.half_step > 0.0).then_some(0.0);
-        let touch = &mut self.touch;
+        let (touch, wrench) = (&mut self.touch, &mut Wrench::default());
         self.contacts
-            .act(w, t, &self.frame, &mut rollers, yielding, touch);
+            .act(w, t, &self.frame, &mut rollers, yielding, touch, wrench);
         std::mem::swap(&mut self.contacts.memory, &mut self.touch);
         self.contacts.accepted = t;
         Vector::new(ax[0], ay[0])

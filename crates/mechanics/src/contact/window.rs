@@ -77,6 +77,7 @@ impl Contacts {
         });
         self.slots = slots;
         swap(&mut self.runs, &mut next.runs);
+        self.candidates = self.runs.iter().map(|run| run.count).sum();
         swap(&mut *self.memory, &mut next.memory);
         swap(&mut self.axis_x, &mut next.axis_x);
         swap(&mut self.axis_y, &mut next.axis_y);

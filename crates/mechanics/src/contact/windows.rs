@@ -48,6 +48,7 @@ impl Contacts {
         MemoryError::unless("lanes at rest", windows.memory.wake.len(), contacts)?;
         windows.memory.state.check(contacts)?;
         self.runs = windows.runs;
+        self.candidates = self.runs.iter().map(|run| run.count).sum();
         self.slots = slots;
         [self.axis_x, self.axis_y] = windows.axes;
         self.memory = windows.memory;

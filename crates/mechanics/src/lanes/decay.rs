@@ -53,11 +53,13 @@ impl<S: Simd> Lane<S> {
         let fourth = squared * squared;
         let mut pairs = [self; 5];
         for (k, pair) in pairs.iter_mut().enumerate() {
-            *pair = w.splat(SERIES[2 * k]) + w.splat(SERIES[2 * k + 1]) * self;
+            *pair = w
+                .splat(SERIES[2 * k])
+                .plus(w.splat(SERIES[2 * k + 1]), self);
         }
-        let second = pairs[1] + squared * pairs[2];
-        let third = pairs[3] + squared * pairs[4];
-        self * pairs[0] + self * squared * (second + fourth * third)
+        let second = pairs[1].plus(squared, pairs[2]);
+        let third = pairs[3].plus(squared, pairs[4]);
+        (self * pairs[0]).plus(self * squared, second.plus(fourth, third))
     }
 }
 

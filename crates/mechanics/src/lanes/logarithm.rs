@@ -30,11 +30,11 @@ impl<S: Simd> Lane<S> {
         let mut even = w.splat(2.0 / (2 * TERMS - 3) as f64);
         let mut odd = w.splat(2.0 / (2 * TERMS - 1) as f64);
         for k in (0..TERMS / 2 - 1).rev() {
-            even = even * fourth + w.splat(2.0 / (4 * k + 1) as f64);
-            odd = odd * fourth + w.splat(2.0 / (4 * k + 3) as f64);
+            even = even.times_plus(fourth, w.splat(2.0 / (4 * k + 1) as f64));
+            odd = odd.times_plus(fourth, w.splat(2.0 / (4 * k + 3) as f64));
         }
-        let sum = even + odd * squared;
-        exponent * w.splat(LN_2) + s * sum
+        let sum = even.plus(odd, squared);
+        (exponent * w.splat(LN_2)).plus(s, sum)
     }
 }
 

@@ -54,11 +54,11 @@ impl<const TERMS: usize> Polynomial<TERMS> {
                 [TERMS - 4, TERMS - 3, TERMS - 2, TERMS - 1].map(|k| w.splat(self.coefficients[k]));
             for k in (0..TERMS / 4 - 1).rev() {
                 for (j, sum) in sums.iter_mut().enumerate() {
-                    *sum = *sum * fourth + w.splat(self.coefficients[4 * k + j]);
+                    *sum = sum.times_plus(fourth, w.splat(self.coefficients[4 * k + j]));
                 }
             }
             let [a, b, c, d] = sums;
-            return (a + b * t) + (c + d * t) * squared;
+            return a.plus(b, t).plus(c.plus(d, t), squared);
         }
         // Even and odd powers side by side.
         let mut even = w.splat(self.coefficients[TERMS - 2]);

@@ -21,7 +21,7 @@ use chaindrive_geometry::{Arc, Piece, Point, Vector};
 use pulp::{Simd, WithSimd};
 
 use super::{Feature, Nearest, Probe, Profile};
-use crate::lanes::{LANES, Lane, Wide};
+use crate::lanes::{LANES, Lane, Wide, rarely};
 
 /// Working face of a guide.
 #[derive(Clone, Debug)]
@@ -59,6 +59,7 @@ impl RailFace {
         if self.others.is_empty() {
             return nearest;
         }
+        rarely();
         let found = w.call(OtherRows {
             rows: &self.others,
             at: at.map(Lane::numbers),

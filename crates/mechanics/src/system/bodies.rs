@@ -49,6 +49,8 @@ pub(crate) struct Wheel {
     /// Its own inertia \[kg m²\].
     pub(crate) inertia: f64,
     pub(crate) mass: f64,
+    /// How easily a force at the teeth moves its rim \[1/kg\]: R²/J of a free shaft, 1/m of a free centre.
+    pub(crate) mobility: f64,
     pub(crate) teeth: u32,
     pub(crate) pitch_radius: f64,
     pub(crate) pitch: f64,
@@ -274,6 +276,10 @@ impl Bodies {
         let mut inertias = vec![0.0; count];
         self.each_inertia(|dof, inertia| inertias[dof - self.first] += inertia);
         self.inertias = inertias;
+        let mobilities: Vec<f64> = self.wheels.iter().map(|it| self.mobility(it)).collect();
+        for (wheel, mobility) in self.wheels.iter_mut().zip(mobilities) {
+            wheel.mobility = mobility;
+        }
         self.rates = self.constant_rates();
     }
 
@@ -397,10 +403,8 @@ impl Wheel {
 }
 
 impl Bodies {
-    /// How easily a force at the teeth moves the rim of a wheel \[1/kg\]: R²/J of a free shaft, 1/m of a free
-    /// centre.
-    pub(crate) fn mobility(&self, wheel: usize) -> f64 {
-        let wheel = &self.wheels[wheel];
+    /// How easily a force at the teeth moves the rim of a wheel.
+    fn mobility(&self, wheel: &Wheel) -> f64 {
         let turning = match wheel.turn.turned_by() {
             // Rim and coordinate differ by the ratio.
             Some((dof, ratio)) => (wheel.pitch_radius * ratio).powi(2) / self.inertia(dof),

@@ -337,6 +337,7 @@ fn wheel(sprocket: &Sprocket, angle: f64, turn: Turn, centre: Option<usize>) -> 
         support,
         inertia: sprocket.inertia,
         mass: sprocket.mass,
+        mobility: 0.0,
         teeth: gap.teeth,
         pitch_radius: gap.pitch_radius,
         pitch: gap.pitch,

@@ -167,11 +167,12 @@ impl Bearing {
             levers: [zero, zero],
         };
         let law = &self.lanes;
-        let Some(pressed) = law.press(w, memory, lane, [gap, closing], None, None, None, tally)
+        let Some(pressed) =
+            law.press::<S, true>(w, memory, lane, [gap, closing], None, None, None, tally)
         else {
             return grip;
         };
-        [grip.stiffness, grip.damping] = law.slopes(w, &pressed, None);
+        [grip.stiffness, grip.damping] = law.slopes::<S, true>(w, &pressed, None);
         grip.force = pressed.force;
         grip.across = pressed.force * inverse;
         if law.friction.acts() {
@@ -179,7 +180,7 @@ impl Bearing {
             // The pin's slip along its own tangent is the same from either side.
             let slip =
                 nx * uy - ny * ux + grip.levers[1] * apart.spin[1] - grip.levers[0] * apart.spin[0];
-            let rubbing = law.rub(w, memory, lane, dt, &pressed, slip, tally);
+            let rubbing = law.rub::<S, true>(w, memory, lane, dt, &pressed, slip, tally);
             grip.rub = rubbing.force;
             grip.drag = rubbing.drag;
             grip.secant = rubbing.secant;

@@ -122,6 +122,7 @@ impl WithSimd for Touching<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) -> Wrench {
+        let mut wrench = Wrench::default();
         self.contacts.act(
             Wide(simd),
             self.t,
@@ -129,7 +130,9 @@ impl WithSimd for Touching<'_> {
             &mut self.rollers,
             None,
             self.touch,
-        )
+            &mut wrench,
+        );
+        wrench
     }
 }
 

@@ -260,7 +260,7 @@ impl JointState {
             bodies, contacts, ..
         } = around;
         contacts.teeth.iter().enumerate().map(move |(mount, on)| {
-            let mobility = bodies.mobility(on.wheel);
+            let mobility = bodies.wheels[on.wheel].mobility;
             let here = |element: &&Element| element.b == Partner::Mount(mount);
             let sum = self.elements.iter().filter(here).fold([0.0; 2], |sum, at| {
                 [sum[0] + at.stiffness, sum[1] + (at.damping + at.drag)]

@@ -157,8 +157,8 @@ fn pass_on<S: Simd>(w: Wide<S>, torque: &[f64], across: &[Vec<f64>; 2], rollers:
         let push = [couple * across_x.get(i), couple * across_y.get(i)];
         let fx = push[0].after(before[0]) - push[0];
         let fy = push[1].after(before[1]) - push[1];
-        ax.add(i, fx * inverse_mass.get(i));
-        ay.add(i, fy * inverse_mass.get(i));
+        ax.add_product(i, fx, inverse_mass.get(i));
+        ay.add_product(i, fy, inverse_mass.get(i));
         before = push;
     }
 }

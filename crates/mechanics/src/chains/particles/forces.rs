@@ -115,23 +115,24 @@ pub(super) fn touch_bodies<S: Simd>(
     // One call of the kernel serves wheels and rails: it is inlined, and long.
     let wheels = contacts.teeth.len();
     for i in 0..wheels + contacts.rails.len() {
-        let (contacts, yielding, touch) = if i < wheels {
+        let (contacts, yielding, (touch, wrench)) = if i < wheels {
             let on = &contacts.teeth[i];
             // All that may press on the wheel count, whether they do or not.
-            let all: usize = on.contacts.runs.iter().map(|run| run.count).sum();
-            let yielding = bodies.mobility(on.wheel) * all as f64;
-            (&on.contacts, yielding, &mut loads.teeth[i])
+            let yielding = bodies.wheels[on.wheel].mobility * on.contacts.candidates as f64;
+            let answer = (&mut loads.teeth[i], &mut loads.wheel_wrenches[i]);
+            (&on.contacts, yielding, answer)
         } else {
             let on = &contacts.rails[i - wheels];
             let RailContact::Circles(contacts) = &on.contact else {
                 continue;
             };
-            let all: usize = contacts.runs.iter().map(|run| run.count).sum();
-            let yielding = bodies.rails[on.rail].mobility * all as f64;
-            (contacts, yielding, &mut loads.rails[i - wheels])
+            let yielding = bodies.rails[on.rail].mobility * contacts.candidates as f64;
+            let rail = i - wheels;
+            let answer = (&mut loads.rails[rail], &mut loads.rail_wrenches[rail]);
+            (contacts, yielding, answer)
         };
         let yielding = Some(yielding);
-        let wrench = contacts.act(w, t, &loads.frames[i], rollers, yielding, touch);
+        contacts.act(w, t, &loads.frames[i], rollers, yielding, touch, wrench);
         let [loss, friction] = if i < wheels {
             [Flow::ToothLoss, Flow::ToothFriction]
         } else {
@@ -139,11 +140,6 @@ pub(super) fn touch_bodies<S: Simd>(
         };
         rates[loss as usize] += wrench.normal_loss;
         rates[friction as usize] += wrench.friction_loss;
-        if i < wheels {
-            loads.wheel_wrenches[i] = wrench;
-        } else {
-            loads.rail_wrenches[i - wheels] = wrench;
-        }
     }
 }
 

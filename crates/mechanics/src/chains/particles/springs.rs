@@ -94,21 +94,21 @@ impl Links {
             let dy = y_next.get(i) - y.get(i);
             let ux = vx_next.get(i) - vx.get(i);
             let uy = vy_next.get(i) - vy.get(i);
-            let square = dx * dx + dy * dy;
+            let square = (dx * dx).plus(dy, dy);
             let inverse = square.inverse_root();
             let length = square * inverse;
             // ℓ̇ = d·u/ℓ
-            let rate = (dx * ux + dy * uy) * inverse;
+            let rate = (dx * ux).plus(dy, uy) * inverse;
             let drag = damping.get(i) * rate;
             // T = k (ℓ − p) + d ℓ̇
-            let tension = stiffness.get(i) * (length - rest.get(i)) + drag;
+            let tension = drag.plus(stiffness.get(i), length - rest.get(i));
             let scale = tension * inverse;
             let pull = [scale * dx, scale * dy];
-            loss += drag * rate;
+            loss = loss.plus(drag, rate);
             if ARTICULATED {
                 let inverse_square = inverse * inverse;
                 // ω = d × u/ℓ²
-                turns.set(i, (dx * uy - dy * ux) * inverse_square);
+                turns.set(i, (dx * uy).minus(dy, ux) * inverse_square);
                 pulls.set(i, tension);
                 across[0].set(i, -dy * inverse_square);
                 across[1].set(i, dx * inverse_square);
@@ -116,8 +116,8 @@ impl Links {
             // m a = T₊ u₊ − T₋ u₋ + m g
             let fx = pull[0] - pull[0].after(before[0]);
             let fy = pull[1] - pull[1].after(before[1]);
-            ax.set(i, fx * inverse_mass.get(i) + gx);
-            ay.set(i, fy * inverse_mass.get(i) + gy);
+            ax.set(i, gx.plus(fx, inverse_mass.get(i)));
+            ay.set(i, gy.plus(fy, inverse_mass.get(i)));
             before = pull;
         }
         if self.closed {

@@ -359,7 +359,7 @@ impl Points {
             .zip(&record.loads.wheel_wrenches)
             .enumerate()
         {
-            let mobility = bodies.mobility(on.wheel);
+            let mobility = bodies.wheels[on.wheel].mobility;
             let here = found
                 .touching
                 .iter()
