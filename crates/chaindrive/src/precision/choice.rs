@@ -168,7 +168,8 @@ impl Trials<'_> {
 /// Candidates are tried from the cheapest on, each against a sharper one of the list, over half a [`Window`]. For runs within their
 /// chaos horizon, by the judge of the first candidate, the waveform of the tight span counts, for longer ones mean and root mean
 /// square of all spans. Where the losses are
-/// to be kept, the energy lost counts, less what chance makes of it, and what is unaccounted for: |R|/D ≤ accuracy. If none is
+/// to be kept, the energy lost counts, less what chance makes of it, and what is unaccounted for: |R|/D ≤ accuracy; with implicit damping no more than
+/// the accuracy may be unaccounted for of what was moved. If none is
 /// good enough, the run gets the best, and [`Choice::kept`] is false. Counts decide and never clocks: the same drive
 /// gets the same answer.
 ///
@@ -238,6 +239,10 @@ pub fn choose(
             let bound = apart * entry.caution();
             let error = match promise {
                 Promise::Losses => bound.max(candidate.energy.residual / judge.energy.scale()),
+                // Impacts shorter than a step feed themselves, and both of a pair may.
+                _ if entry.candidate.stepping == Stepping::ImplicitDamping => {
+                    bound.max(candidate.energy.open())
+                }
                 _ => bound,
             };
             let gap = candidate.gap.as_ref().or(judge.gap.as_ref());

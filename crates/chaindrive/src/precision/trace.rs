@@ -97,6 +97,16 @@ impl Lost {
         }
     }
 
+    /// Share of what was moved that is unaccounted for.
+    pub(super) fn open(&self) -> f64 {
+        let moved = self.supplied.max(self.losses);
+        if moved > 0.0 {
+            self.residual / moved
+        } else {
+            0.0
+        }
+    }
+
     /// Scale of relative errors of losses \[J\]: the losses, or the least that can be told from none.
     pub(super) fn scale(&self) -> f64 {
         self.losses.max(LEAST_LOSSES * self.supplied)
