@@ -110,7 +110,6 @@ impl Rows {
     /// The tangents of the joints, where pins rub and where the force turns with them; `known` is the change of velocities that the forces by
     /// themselves make. The weights are those of [`Element::step_weights`](crate::chains::links::Element::step_weights).
     #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "what the weights depend on")]
     pub(super) fn set_tangents<S: Simd>(
         &mut self,
         w: Wide<S>,
