@@ -227,8 +227,12 @@ impl Table {
     fn finish(mut self, ending: &Ending) -> Result<(), Failure> {
         self.commit()?;
         self.ended = true;
-        let closed = self.close(incomplete(ending));
-        closed.map_err(|source| failed(&self.claimed.path, source))
+        if let Err(source) = self.close(incomplete(ending)) {
+            // Some of a long line may stand there.
+            self.give_up(&format!("the result could not be written: {source}"));
+            return Err(failed(&self.claimed.path, source));
+        }
+        Ok(())
     }
 
     /// Puts a last line in the place of the one that says that the run goes on.

@@ -189,7 +189,8 @@ fn killed_at_any_moment_a_run_goes_on_as_if_nothing_had_happened() {
         }
         assert_eq!(names(at), ["whole.zarr"], "{}", case.name);
     }
-    assert!(carried > 40, "{carried} carried on, {anew} begun anew");
+    // Half of them or so, as fast as drives are assembled and stepped.
+    assert!(carried > 25, "{carried} carried on, {anew} begun anew");
 }
 
 /// A checkpoint with every sample: most of the time one is being written.

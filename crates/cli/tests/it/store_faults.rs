@@ -361,17 +361,21 @@ fn on_a_full_disk_it_keeps_what_was_written() {
     let length = &group["consolidated_metadata"]["metadata"]["roller_x"]["shape"][0];
     assert_eq!(length, &about["samples"]);
 
-    let (code, err) = on_a_full_disk(400, at, &[&long[..], &record, &["ring.csv"]].concat());
-    assert_eq!(code, Some(3), "{err}");
-    assert!(err.starts_with("ring.csv: File too large"), "{err}");
-    let table = at.join("ring.csv");
-    assert!(last_line(&table).starts_with("# incomplete: "));
-    let text = fs::read_to_string(&table).unwrap();
-    let cells: Vec<usize> = text.lines().map(|line| line.split(',').count()).collect();
-    assert!(
-        cells[..cells.len() - 1].iter().all(|&count| count == 41),
-        "{cells:?}"
-    );
+    // The limit falls into other places of a row, and leaves more or less room for the line behind the last.
+    for blocks in 400..408 {
+        let csv = ["ring.csv", "--overwrite"];
+        let (code, err) = on_a_full_disk(blocks, at, &[&long[..], &record, &csv].concat());
+        assert_eq!(code, Some(3), "{err}");
+        assert!(err.starts_with("ring.csv: File too large"), "{err}");
+        let table = at.join("ring.csv");
+        assert!(last_line(&table).starts_with("# incomplete: "));
+        let text = fs::read_to_string(&table).unwrap();
+        let cells: Vec<usize> = text.lines().map(|line| line.split(',').count()).collect();
+        assert!(
+            cells[..cells.len() - 1].iter().all(|&count| count == 41),
+            "{cells:?}"
+        );
+    }
     assert_eq!(names(at), ["ring.csv", "ring.zarr"]);
 }
 
