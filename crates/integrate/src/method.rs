@@ -46,8 +46,8 @@ pub enum Method {
     },
     /// Damping implicit, stiffness explicit or carried as inertia: first order, one evaluation and one solution of linear equations per step.
     ///
-    /// For damping far stiffer than the springs. Without damping it is the symplectic Euler method, whose
-    /// energy does not drift.
+    /// For damping far stiffer than the springs. Without damping it is the symplectic Euler method, with the masses that carry stiffness
+    /// where the system does that; its energy does not drift.
     ImplicitDamping {
         /// Step h \[s\].
         step: f64,

@@ -182,8 +182,8 @@ pub trait SecondOrderSystem {
         self.time_scale()
     }
 
-    /// Time scale \[s\] that limits steps of one solution, whose springs are carried as inertia: 1/ω of the fastest mode of those that
-    /// [`solve`](Self::solve) leaves out there.
+    /// Time scale \[s\] that limits steps of one solution: 1/ω of the fastest mode whose stiffness [`solve`](Self::solve) leaves out
+    /// there, or a longer one that the system asks carried contacts to be resolved with.
     ///
     /// Asked after each accepted step: keep it a field.
     fn carried_time_scale(&self) -> f64 {

@@ -1,4 +1,4 @@
-//! What a run says about its own exactness, against what more exact runs find.
+//! A run's word about its own exactness, against more exact runs.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use chaindrive::precision::{Attribute, Divergence, Estimate, estimate, horizon};

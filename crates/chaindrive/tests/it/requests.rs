@@ -1,4 +1,4 @@
-//! What goes before what when a run is asked for, and what is refused before it begins.
+//! The order of precedence when a run is asked for, and refusals before it begins.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use chaindrive::{

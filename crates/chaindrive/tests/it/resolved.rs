@@ -251,7 +251,7 @@ proptest! {
     }
 }
 
-/// What a result carries reproduces it: same bits, with nothing left to choose.
+/// The scene and settings of a result reproduce it: same bits, with nothing left to choose.
 #[test]
 fn every_result_carries_what_reproduces_it() {
     for name in ["spinning_ring", "pin_in_bush", "industrial_16b"] {

@@ -227,7 +227,7 @@ fn what_cannot_be_run_in_is_refused() {
     );
 }
 
-/// What a result carries simulates it again, to the last bit.
+/// The scene of a result simulates it again, to the last bit.
 #[test]
 fn the_resolved_scene_is_run_in_alike() {
     let scene = preset("marine_two_sprockets", &[]);

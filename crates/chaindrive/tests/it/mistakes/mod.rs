@@ -2,7 +2,7 @@
 
 use chaindrive::scene::{Problem, Scene, SceneError};
 
-/// What is replaced, by what, and the path, line and message of the problem that must follow.
+/// The text that is replaced, its replacement, and the path, line and message of the problem that must follow.
 pub(crate) type Mistake = (
     &'static str,
     &'static str,
