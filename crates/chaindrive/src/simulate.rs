@@ -194,6 +194,11 @@ impl Simulation {
         self.step_towards(time, budget, Changes::None)
     }
 
+    /// Goes on to another end \[s\], with samples at the same times.
+    pub(crate) fn go_on_until(&mut self, until: f64) {
+        self.until = until;
+    }
+
     fn sample(&mut self, time: f64) {
         self.observe(time);
         let ended = &mut self.moving.ended;

@@ -25,11 +25,11 @@ pub(super) struct Entry {
 /// Longest step of the ladder in units of the time scale that limits the method. A run may have 1.8 of it: a sixth is left for contacts
 /// that stiffen as they are pressed, and beyond that the run shortens its step.
 const LONGEST: f64 = 1.5;
-/// Ratio of a step of the ladder to the next.
-const RATIO: f64 = 1.15;
 /// Steps of the ladder.
 const RUNGS: usize = 22;
-/// Rungs from a candidate down to its judge, whose step is half as long: 1.15⁵ = 2.01.
+/// Ratio of a step of the ladder to the next: 2^⅕.
+const RATIO: f64 = 1.148_698_354_997_035;
+/// Rungs from a candidate down to its judge, whose step is half as long, to the last bit: an estimate of the run goes on with it.
 const TO_JUDGE: usize = 5;
 /// Runge–Kutta steps in units of 1/ω of the stiffest mode, with the depth \[m\] beyond which a first penetration is approached
 /// again; each is compared with the next, which has to have a shorter step: a shallower onset alone would show
@@ -53,12 +53,8 @@ impl Candidates {
             onset_depth,
         };
         let stepping = Stepping::Auto.suited(system);
-        let mut factor = LONGEST;
-        let mut rungs = Vec::new();
-        for _ in 0..RUNGS + TO_JUDGE {
-            rungs.push(of(stepping, factor, None));
-            factor /= RATIO;
-        }
+        let rungs = (0..RUNGS + TO_JUDGE).map(|place| of(stepping, rung(place), None));
+        let rungs: Vec<Candidate> = rungs.collect();
         let pairs_of = rungs.iter().zip(&rungs[TO_JUDGE..]);
         let ladder = pairs_of.map(|(&candidate, &judge)| Entry { candidate, judge });
         let mut entries: Vec<Entry> = ladder.collect();
@@ -82,7 +78,7 @@ impl Candidates {
     /// Place of the candidate to try after one that errs by more than the accuracy.
     ///
     /// ```text
-    /// e ∝ h²:   k = ln(e/accuracy)/(2 ln 1.15) rungs, one at least
+    /// e ∝ h²:   k = ln(e/accuracy)/(2 ln 2^⅕) rungs, one at least
     /// ```
     ///
     /// A step that fails says nothing of its error: the next one is that of its judge. From the last rung the other methods follow
@@ -106,6 +102,18 @@ impl Candidates {
         };
         (place + down).min(RUNGS - 1)
     }
+}
+
+/// A step of the ladder in units of the time scale.
+fn rung(place: usize) -> f64 {
+    let (mut factor, rest) = (LONGEST, place % TO_JUDGE);
+    for _ in 0..place / TO_JUDGE {
+        factor *= 0.5;
+    }
+    for _ in 0..rest {
+        factor /= RATIO;
+    }
+    factor
 }
 
 /// Every candidate with the next as its judge.

@@ -10,8 +10,9 @@ use super::accuracy::{Accuracy, Quantity};
 use super::attribute::Attribute;
 use super::candidates::{Candidate, Candidates, Entry, work};
 use super::compare::{Account, distances, rms};
-use super::estimate::pinned;
-use super::horizon::{APART, Horizon};
+use super::estimate::{pinned, sharper};
+use super::horizon::Horizon;
+use super::short_runs::{Beginning, ShortRuns};
 use super::trace::{Gap, Strands, Trace};
 use super::window::Window;
 use super::wording::{duration, percent};
@@ -69,51 +70,50 @@ pub struct Choice {
     pub gap: Option<Gap>,
     /// All that were tried, in that order.
     pub trials: Vec<Trial>,
-    /// Evaluations of all runs that it took, judges and twin included, but for runs that failed.
+    /// Evaluations of all runs that it took, those included of judges, the twin and runs that failed.
     pub evaluations: u64,
 }
 
-/// Traces of the runs so far, so that none is taken twice.
+/// The runs that a choice looks at.
 struct Trials<'a> {
     start: &'a Assembled,
     run: &'a Run,
     window: Window,
     watch: Watch<'a>,
-    taken: Vec<(Candidate, Option<Trace>)>,
-    evaluations: u64,
+    short_runs: &'a mut ShortRuns,
+    failed: Vec<Candidate>,
 }
 
 impl Trials<'_> {
+    fn take(&mut self, from: Beginning, of: Candidate) -> Result<usize, SimulationError> {
+        let run = of.run(self.run);
+        self.short_runs
+            .take(self.start, from, &run, &self.window, self.watch)
+    }
+
     /// Place of the trace of a candidate; none if it fails.
-    fn place(&mut self, candidate: Candidate) -> Result<Option<usize>, SimulationError> {
-        let known = self.taken.iter().position(|(known, _)| *known == candidate);
-        let place = if let Some(place) = known {
-            place
-        } else {
-            let run = candidate.run(self.run);
-            let trace = match Trace::take(self.start, &run, &self.window, self.watch) {
-                Ok(trace) => Some(trace),
-                Err(SimulationError::Interrupted) => return Err(SimulationError::Interrupted),
+    fn place(&mut self, of: Candidate) -> Result<Option<usize>, SimulationError> {
+        if self.failed.contains(&of) {
+            return Ok(None);
+        }
+        match self.take(Beginning::Start, of) {
+            Ok(place) => Ok(Some(place)),
+            Err(SimulationError::Interrupted) => Err(SimulationError::Interrupted),
+            Err(_) => {
                 // Too long a step for this drive: out of the race, not the end of it.
-                Err(_) => None,
-            };
-            self.evaluations += trace
-                .as_ref()
-                .map_or(0, |trace| trace.statistics.evaluations);
-            self.taken.push((candidate, trace));
-            self.taken.len() - 1
-        };
-        Ok(self.taken[place].1.is_some().then_some(place))
+                self.failed.push(of);
+                Ok(None)
+            }
+        }
     }
 
     /// The traces of a candidate and its judge, if both are there.
-    fn pair(&mut self, entry: &Entry) -> Result<Option<(&Trace, &Trace)>, SimulationError> {
+    fn pair(&mut self, entry: &Entry) -> Result<Option<[&Trace; 2]>, SimulationError> {
         let places = (self.place(entry.candidate)?, self.place(entry.judge)?);
         let (Some(candidate), Some(judge)) = places else {
             return Ok(None);
         };
-        let trace = |place: usize| self.taken[place].1.as_ref();
-        Ok(trace(candidate).zip(trace(judge)))
+        Ok(Some([candidate, judge].map(|at| self.short_runs.trace(at))))
     }
 
     /// Which promise the drive allows, and by how much the statistics of equal runs differ.
@@ -122,32 +122,19 @@ impl Trials<'_> {
         first: Candidate,
         of: Quantity,
     ) -> Result<(Promise, f64), SimulationError> {
-        let Some(place) = self.place(first)? else {
+        let Some(base) = self.place(first)? else {
             return Ok((Promise::Waveform, 0.0));
         };
-        let Some(base) = &self.taken[place].1 else {
-            return Ok((Promise::Waveform, 0.0));
-        };
-        // What is nothing has no relative error.
-        let nothing = match of {
-            Quantity::Tension => base.tensions(Strands::of([base])).mean() <= 0.0,
-            Quantity::Losses => base.energy.scale() <= 0.0,
-        };
-        if nothing {
+        if nothing(self.short_runs.trace(base), of) {
             return Ok((Promise::Nothing, 0.0));
         }
-        let twin = Trace::take(
-            &self.start.nudged(APART),
-            &first.run(self.run),
-            &self.window,
-            self.watch,
-        )?;
-        self.evaluations += twin.statistics.evaluations;
+        let twin = self.take(Beginning::Apart, first)?;
+        let [base, twin] = [base, twin].map(|at| self.short_runs.trace(at));
         if of == Quantity::Losses {
-            return Ok((Promise::Losses, losses_apart(&twin, base)));
+            return Ok((Promise::Losses, losses_apart(twin, base)));
         }
-        let strands = Strands::of([base, &twin]);
-        let horizon = Horizon::of(base, &twin, strands);
+        let strands = Strands::of([base, twin]);
+        let horizon = Horizon::of(base, twin, strands);
         let parted = [horizon.all, horizon.tight].map(|of| of.time());
         let within = |at: &f64| *at < self.run.until;
         let promise = if parted.iter().flatten().any(within) {
@@ -155,7 +142,15 @@ impl Trials<'_> {
         } else {
             Promise::Waveform
         };
-        Ok((promise, statistics(&twin, base)))
+        Ok((promise, statistics(twin, base)))
+    }
+}
+
+/// Whether there is nothing to compare: what is nothing has no relative error.
+fn nothing(base: &Trace, of: Quantity) -> bool {
+    match of {
+        Quantity::Tension => base.tensions(Strands::of([base])).mean() <= 0.0,
+        Quantity::Losses => base.energy.scale() <= 0.0,
     }
 }
 
@@ -166,8 +161,8 @@ impl Trials<'_> {
 /// ```
 ///
 /// Candidates are tried from the cheapest on, each against a sharper one of the list, over half a [`Window`]. For runs within their
-/// chaos horizon, by the judge of the first candidate, the waveform of the tight span counts, for longer ones mean and root mean
-/// square of all spans. Where the losses are
+/// chaos horizon, by the judge of the first candidate and its twin, the waveform of the tight span counts, for longer ones mean and root mean
+/// square of all spans; no twin is asked where one candidate keeps both from the first. Where the losses are
 /// to be kept, the energy lost counts, less what chance makes of it, and what is unaccounted for: |R|/D ≤ accuracy; with implicit damping no more than
 /// the accuracy may be unaccounted for of what was moved. If none is
 /// good enough, the run gets the best, and [`Choice::kept`] is false. Counts decide and never clocks: the same drive
@@ -177,6 +172,17 @@ impl Trials<'_> {
 /// [`SimulationError::Setting`] for an accuracy that is not between 0 and 1,
 /// [`SimulationError::Interrupted`] when `watch` says so, and what keeps the twin from running.
 pub fn choose(
+    start: &Assembled,
+    run: &Run,
+    accuracy: impl Into<Accuracy>,
+    watch: Watch<'_>,
+) -> Result<Choice, SimulationError> {
+    choose_with(&mut ShortRuns::default(), start, run, accuracy, watch)
+}
+
+/// The same, leaving its short runs to whoever looks at the run chosen.
+pub(crate) fn choose_with(
+    short_runs: &mut ShortRuns,
     start: &Assembled,
     run: &Run,
     accuracy: impl Into<Accuracy>,
@@ -193,75 +199,64 @@ pub fn choose(
             allowed: "between 0 and 1, such as 0.01",
         });
     }
-    let automatic = Run {
-        stepping: Stepping::Auto,
-        step: None,
-        onset_depth: None,
-        ..run.clone()
-    };
-    let window = Window::of(start, &pinned(start, &automatic)).first_half();
+    let automatic = automatic(run);
+    let window = examined(start, &automatic);
+    let before = short_runs.evaluations();
     let candidates = Candidates::of(start);
     let mut trials = Trials {
         start,
         run,
         window,
         watch,
-        taken: Vec::new(),
-        evaluations: 0,
+        short_runs,
+        failed: Vec::new(),
     };
-    let (promise, spread) = trials.promise(candidates.first_judge(), of)?;
     let mut choice = Choice {
         run: automatic,
         accuracy,
         error: f64::INFINITY,
         kept: false,
-        promise,
+        promise: Promise::Waveform,
         window: window.until,
         gap: None,
         trials: Vec::new(),
-        evaluations: trials.evaluations,
+        evaluations: 0,
     };
-    if promise == Promise::Nothing {
-        return Ok(choice);
-    }
+    // What twins make of the promise: taken where something turns on it.
+    let mut spread = None;
     let mut place = 0;
     while let Some(entry) = candidates.get(place) {
-        let found = trials.pair(entry)?.map(|(candidate, judge)| {
-            let apart = match promise {
-                Promise::Statistics => beyond(statistics(candidate, judge), spread),
-                Promise::Losses => beyond(losses_apart(candidate, judge), spread),
-                Promise::Waveform | Promise::Nothing => {
-                    let strands = Strands::of([candidate, judge]);
-                    let distances = distances(candidate, judge, strands);
-                    rms(distances.iter().map(|distance| distance.tight))
-                }
-            };
-            let bound = apart * entry.caution();
-            let error = match promise {
-                Promise::Losses => bound.max(candidate.energy.residual / judge.energy.scale()),
-                // Impacts shorter than a step feed themselves, and both of a pair may.
-                _ if entry.candidate.stepping == Stepping::ImplicitDamping => {
-                    bound.max(candidate.energy.open())
-                }
-                _ => bound,
-            };
-            let gap = candidate.gap.as_ref().or(judge.gap.as_ref());
-            (error, work(candidate), gap.cloned())
-        });
-        let (error, work, gap) = found.unwrap_or((f64::INFINITY, f64::NAN, None));
+        let found = trials.pair(entry)?;
+        let found = found.map(|[candidate, judge]| Found::of(candidate, judge, entry));
+        let keeps = |promise| {
+            let error = found.as_ref().map(|found| found.error(promise, 0.0));
+            error.is_some_and(|error| error <= accuracy)
+        };
+        let whatever =
+            of == Quantity::Tension && keeps(Promise::Waveform) && keeps(Promise::Statistics);
+        if spread.is_none() && !whatever {
+            let (promise, apart) = trials.promise(candidates.first_judge(), of)?;
+            choice.promise = promise;
+            spread = Some(apart);
+        }
+        if choice.promise == Promise::Nothing {
+            break;
+        }
+        let error = |found: &Found| found.error(choice.promise, spread.unwrap_or_default());
+        let error = found.as_ref().map_or(f64::INFINITY, error);
         let candidate = entry.candidate;
         choice.trials.push(Trial {
             stepping: candidate.stepping,
             step: candidate.step,
             onset_depth: candidate.onset_depth,
             error,
-            work,
+            work: found.as_ref().map_or(f64::NAN, |found| found.work),
         });
         // NaN is no error to be content with.
         if error < choice.error {
             choice.error = error;
             choice.run = candidate.run(run);
-            choice.gap = gap;
+            choice.gap = found.and_then(|found| found.gap);
         }
         if error <= accuracy {
             choice.kept = true;
@@ -269,8 +264,80 @@ pub fn choose(
         }
         place = Candidates::after(place, error, accuracy);
     }
-    choice.evaluations = trials.evaluations;
+    choice.evaluations = short_runs.evaluations() - before;
     Ok(choice)
+}
+
+/// The run without the method that is to be chosen.
+fn automatic(run: &Run) -> Run {
+    Run {
+        stepping: Stepping::Auto,
+        step: None,
+        onset_depth: None,
+        ..run.clone()
+    }
+}
+
+/// The window over which candidates are compared.
+fn examined(start: &Assembled, automatic: &Run) -> Window {
+    let window = Window::of(start, &pinned(start, automatic));
+    window.finely(start, automatic).first_half()
+}
+
+/// How far a candidate is from its judge.
+struct Found {
+    /// Of the waveform of the tight span, root mean square over the mean \[–\].
+    waveform: f64,
+    /// Of means and root mean squares, the largest \[–\].
+    statistics: f64,
+    /// Of the energy lost \[–\].
+    losses: f64,
+    /// Error over the difference.
+    caution: f64,
+    /// Energy unaccounted for over the losses \[–\].
+    unaccounted: f64,
+    /// The same over what was moved; 0 but with implicit damping.
+    open: f64,
+    work: f64,
+    gap: Option<Gap>,
+}
+
+impl Found {
+    fn of(candidate: &Trace, judge: &Trace, entry: &Entry) -> Self {
+        let strands = Strands::of([candidate, judge]);
+        let distances = distances(candidate, judge, strands);
+        // Impacts shorter than a step feed themselves, and both of a pair may.
+        let open = match entry.candidate.stepping {
+            Stepping::ImplicitDamping => candidate.energy.open(),
+            _ => 0.0,
+        };
+        Self {
+            waveform: rms(distances.iter().map(|distance| distance.tight)),
+            statistics: statistics(candidate, judge),
+            losses: losses_apart(candidate, judge),
+            caution: entry.caution(),
+            unaccounted: candidate.energy.residual / judge.energy.scale(),
+            open,
+            work: work(candidate),
+            gap: candidate.gap.as_ref().or(judge.gap.as_ref()).cloned(),
+        }
+    }
+
+    /// Bound of the error of what is promised, where equal runs differ by a spread; NaN where nothing can be compared.
+    fn error(&self, promise: Promise, spread: f64) -> f64 {
+        let (apart, energy) = match promise {
+            Promise::Statistics => (beyond(self.statistics, spread), self.open),
+            Promise::Losses => (beyond(self.losses, spread), self.unaccounted),
+            Promise::Waveform | Promise::Nothing => (self.waveform, self.open),
+        };
+        let bound = apart * self.caution;
+        // `f64::max` forgets what is not a number.
+        if bound.is_nan() {
+            bound
+        } else {
+            bound.max(energy)
+        }
+    }
 }
 
 /// Excess of a difference over the spread of equal runs; a spread without bound excuses nothing.
@@ -296,6 +363,28 @@ fn statistics(of: &Trace, from: &Trace) -> f64 {
 }
 
 impl Choice {
+    /// The short runs that were left to the estimate of the run, taken again: a run that is carried on tells what it
+    /// would have told.
+    ///
+    /// # Errors
+    /// As [`choose`].
+    pub(crate) fn short_runs(
+        &self,
+        start: &Assembled,
+        watch: Watch<'_>,
+    ) -> Result<ShortRuns, SimulationError> {
+        let mut short_runs = ShortRuns::default();
+        if self.run.step.is_none() {
+            return Ok(short_runs);
+        }
+        let window = examined(start, &automatic(&self.run));
+        let (sharper, _) = sharper(start, &self.run);
+        for run in [&self.run, &sharper] {
+            short_runs.take(start, Beginning::Start, run, &window, watch)?;
+        }
+        Ok(short_runs)
+    }
+
     /// The choice as attributes of a result.
     pub fn attributes(&self) -> Vec<(String, Attribute)> {
         let kept = match (self.promise, self.kept) {

@@ -37,9 +37,20 @@ pub(super) struct Distance {
 /// that all of them have. The mean is that of the samples compared: the tension may rise a hundredfold behind them.
 pub(super) fn distances(of: &Trace, from: &Trace, strands: Strands) -> Vec<Distance> {
     let samples = of.len().min(from.len());
+    let scale = from.tensions(strands).mean_of_first(samples);
+    distances_over(of, from, strands, scale)
+}
+
+/// The same over another scale \[N\].
+pub(super) fn distances_over(
+    of: &Trace,
+    from: &Trace,
+    strands: Strands,
+    scale: f64,
+) -> Vec<Distance> {
+    let samples = of.len().min(from.len());
     let (of, from) = (of.tensions(strands), from.tensions(strands));
     let (n, tight) = (from.strands, from.tight());
-    let scale = from.mean_of_first(samples);
     (0..samples)
         .map(|sample| {
             let apart = |strand: usize| {

@@ -3,10 +3,11 @@
 use chaindrive_mechanics::Assembled;
 
 use super::Watch;
-use super::compare::{Account, Comparison, distances, rms};
+use super::compare::{Account, Comparison, Distance, distances, distances_over, rms};
 use super::convergence::factor;
-use super::horizon::{APART, Divergence, Horizon, LIMIT};
-use super::trace::{Gap, Strands, Trace};
+use super::horizon::{Divergence, Horizon, LIMIT};
+use super::short_runs::{Beginning, ShortRuns};
+use super::trace::{Gap, Strands};
 use super::window::Window;
 use crate::{Channel, Run, SimulationError};
 
@@ -16,13 +17,13 @@ use crate::{Channel, Run, SimulationError};
 /// run      the beginning of the run, over the window
 /// twin     the same, started 1e-12 m apart                         → chaos horizon, spread of the statistics
 /// shadow   half the step, over half of the longest window          → difference d
-/// second   a quarter of the step, over the same                    → difference d₂ from the shadow, factor c
+/// second   a quarter of the step, over a quarter of it             → difference d₂ from the shadow, factor c
 ///
-/// e = max(c d, d + d₂)
+/// e = max(c d, d + d₂), where there is a d₂, and c d behind it
 /// ```
 ///
 /// Where a method shows its order p, c = 1/(1 − 2⁻ᵖ); contacts that open and close take the order away, and c is what
-/// the two shadows say of a quarter of the longest window. At moments where chance brings a run near to its first shadow, as
+/// the two shadows say of their first samples. At moments where chance brings a run near to its first shadow, as
 /// when a roller lets go in the second one only, the distances along the way say more. A difference of statistics that does not exceed the spread of equal
 /// runs says only that the error is no larger than that.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,9 +73,9 @@ pub struct ChannelHorizon {
     pub found_on: Channel,
 }
 
-/// Share of the longest window over which the two shadows are followed.
+/// Share of the longest window over which the first shadow is followed.
 const SHADOWS: f64 = 0.5;
-/// Share of it that tells the factor: farther on, chaos would.
+/// Share over which the second is followed, which costs as much as all others, and tells the factor: farther on, chaos would.
 const EARLY: f64 = 0.25;
 
 /// Estimates the error of a run from its beginning.
@@ -90,26 +91,43 @@ pub fn estimate(
     run: &Run,
     watch: Watch<'_>,
 ) -> Result<Estimate, SimulationError> {
+    estimate_with(&mut ShortRuns::default(), start, run, watch)
+}
+
+/// The same, going on with short runs from the same start.
+pub(crate) fn estimate_with(
+    short_runs: &mut ShortRuns,
+    start: &Assembled,
+    run: &Run,
+    watch: Watch<'_>,
+) -> Result<Estimate, SimulationError> {
+    let before = short_runs.evaluations();
     let run = pinned(start, run);
     let window = Window::of(start, &run).finely(start, &run);
-    let base = Trace::take(start, &run, &window, watch)?;
-    let twin = Trace::take(&start.nudged(APART), &run, &window, watch)?;
     let (better, shadow_words) = sharper(start, &run);
-    let examined = window.first(SHADOWS);
-    let shadow = Trace::take(start, &better, &examined, watch)?;
     let (best, _) = sharper(start, &better);
-    let second = Trace::take(start, &best, &examined, watch)?;
-
-    let traces = [&base, &twin, &shadow, &second];
+    let mut take =
+        |from, run: &Run, share| short_runs.take(start, from, run, &window.first(share), watch);
+    let places = [
+        take(Beginning::Start, &run, 1.0)?,
+        take(Beginning::Apart, &run, 1.0)?,
+        take(Beginning::Start, &better, SHADOWS)?,
+        take(Beginning::Start, &best, EARLY)?,
+    ];
+    let traces = places.map(|place| short_runs.trace(place));
+    let [base, twin, shadow, second] = traces;
     let strands = Strands::of(traces);
     let expected = expected_ratio(start, &run);
     let found = |strands: Strands| {
         let early = window.first(EARLY).samples();
-        let factor = factor([&base, &shadow, &second], strands, early, expected);
-        let near = distances(&shadow, &base, strands).into_iter();
-        let further = distances(&second, &shadow, strands).into_iter();
+        let factor = factor([base, shadow, second], strands, early, expected);
+        let near = distances(shadow, base, strands).into_iter();
+        // Of one scale, though the tension may rise behind the last sample of the second.
+        let scale = base.tensions(strands).mean_of_first(shadow.len());
+        let further = distances_over(second, shadow, strands, scale).into_iter();
+        let beyond = std::iter::repeat(Distance::default());
         let errors: Vec<[f64; 2]> = near
-            .zip(further)
+            .zip(further.chain(beyond))
             .map(|(near, further)| {
                 let error = |d: f64, d2: f64| (factor * d).max(d + d2);
                 [
@@ -118,7 +136,7 @@ pub fn estimate(
                 ]
             })
             .collect();
-        let horizon = Horizon::of(&base, &twin, strands);
+        let horizon = Horizon::of(base, twin, strands);
         let all = errors.iter().map(|[all, _]| *all);
         let over = window
             .period
@@ -142,7 +160,7 @@ pub fn estimate(
         pairs.filter(|(_, time)| **time <= within).map(|(e, _)| e)
     };
     let of = |trace| Account::of(trace, shadow.len(), strands);
-    let (run_account, twin_account, better_account) = (of(&base), of(&twin), of(&shadow));
+    let (run_account, twin_account, better_account) = (of(base), of(twin), of(shadow));
     let compared = |apart: &dyn Fn(&Account) -> f64| Comparison {
         difference: apart(&better_account),
         spread: apart(&twin_account),
@@ -162,10 +180,7 @@ pub fn estimate(
         horizon,
         waveform,
         link_waveform,
-        evaluations: traces
-            .map(|trace| trace.statistics.evaluations)
-            .iter()
-            .sum(),
+        evaluations: short_runs.evaluations() - before,
         until: run.until,
     })
 }
@@ -193,7 +208,7 @@ fn expected_ratio(start: &Assembled, run: &Run) -> f64 {
 }
 
 /// The same run, sharper, and in what.
-fn sharper(start: &Assembled, run: &Run) -> (Run, &'static str) {
+pub(super) fn sharper(start: &Assembled, run: &Run) -> (Run, &'static str) {
     let onset_depth = run.onset_depth.map(|depth| 0.1 * depth);
     if run.method(&start.system).is_adaptive() {
         let better = Run {

@@ -4,7 +4,8 @@ use std::fmt;
 
 use super::Watch;
 use super::attribute::Attribute;
-use super::estimate::{ChannelHorizon, Estimate, estimate};
+use super::estimate::{ChannelHorizon, Estimate, estimate_with};
+use super::short_runs::ShortRuns;
 use crate::{Channel, Run, Simulation, SimulationError};
 
 /// Statement about the error of a run, made at its end.
@@ -23,7 +24,17 @@ pub enum Judgement {
 impl Judgement {
     /// Judges a run, whatever becomes of the attempt.
     pub fn of(simulation: &Simulation, run: &Run, watch: Watch<'_>) -> Self {
-        match estimate(simulation.assembled(), run, watch) {
+        Self::with(&mut ShortRuns::default(), simulation, run, watch)
+    }
+
+    /// The same, going on with short runs from the start of the simulation.
+    pub(crate) fn with(
+        short_runs: &mut ShortRuns,
+        simulation: &Simulation,
+        run: &Run,
+        watch: Watch<'_>,
+    ) -> Self {
+        match estimate_with(short_runs, simulation.assembled(), run, watch) {
             Ok(made) => Self::Made(Box::new(made)),
             Err(SimulationError::Interrupted) => Self::Interrupted,
             Err(error) => Self::Failed(error.to_string()),

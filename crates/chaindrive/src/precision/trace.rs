@@ -3,7 +3,7 @@
 use std::fmt;
 
 use chaindrive_integrate::Statistics;
-use chaindrive_mechanics::{Assembled, Flow};
+use chaindrive_mechanics::{Assembled, Flow, Observation};
 use serde::{Deserialize, Serialize};
 
 use super::Watch;
@@ -124,34 +124,65 @@ impl Trace {
         window: &Window,
         watch: Watch<'_>,
     ) -> Result<Self, SimulationError> {
-        let run = Run {
-            until: window.until,
-            every: window.every,
-            events: chaindrive_mechanics::EventKinds::default(),
-            ..run.clone()
-        };
-        let mut simulation = Simulation::from_assembled(start.clone(), &run)?;
+        let mut simulation = Simulation::from_assembled(start.clone(), &window.of_run(run))?;
         let mut trace = Self::default();
+        trace.go_on(&mut simulation, window, watch)?;
+        Ok(trace)
+    }
+
+    /// Goes on to the end of a window with the samples of the simulation that has come so far.
+    pub(super) fn go_on(
+        &mut self,
+        simulation: &mut Simulation,
+        window: &Window,
+        watch: Watch<'_>,
+    ) -> Result<(), SimulationError> {
+        simulation.go_on_until(window.until);
+        let more = window.samples().saturating_sub(self.len());
         while let Some(sample) = simulation.next_sample()? {
-            trace.time.push(sample.time);
-            trace.spans.push(&sample.span_tension);
-            trace.links.push(&sample.link_tension);
-            trace.force.extend_from_slice(&sample.contact_force);
-            trace.angle.extend_from_slice(&sample.sprocket_angle);
-            trace.speed.extend_from_slice(&sample.sprocket_speed);
+            self.push(sample, more);
             if watch() {
                 return Err(SimulationError::Interrupted);
             }
         }
-        trace.energy = Lost::of(&simulation);
-        trace.statistics = *simulation.statistics();
-        trace.gap = trace.first_gap(&simulation.system().span_names());
-        Ok(trace)
+        self.energy = Lost::of(simulation);
+        self.statistics = *simulation.statistics();
+        self.gap = self.first_gap(&simulation.system().span_names());
+        Ok(())
     }
 
     /// Number of samples.
     pub(super) fn len(&self) -> usize {
         self.time.len()
+    }
+
+    /// Keeps a sample; makes room for all that will come where there is none: traces are long, and are not to be moved.
+    fn push(&mut self, sample: &Observation, samples: usize) {
+        let Self {
+            time,
+            spans,
+            links,
+            force,
+            angle,
+            speed,
+            ..
+        } = self;
+        let lists = [
+            (time, std::slice::from_ref(&sample.time)),
+            (&mut spans.values, &sample.span_tension),
+            (&mut links.values, &sample.link_tension),
+            (force, &sample.contact_force),
+            (angle, &sample.sprocket_angle),
+            (speed, &sample.sprocket_speed),
+        ];
+        for (list, values) in lists {
+            if list.len() == list.capacity() {
+                list.reserve_exact(samples.max(1) * values.len());
+            }
+            list.extend_from_slice(values);
+        }
+        spans.strands = sample.span_tension.len();
+        links.strands = sample.link_tension.len();
     }
 
     /// The tensions of some strands.
@@ -191,11 +222,6 @@ impl Strands {
 }
 
 impl Tensions {
-    fn push(&mut self, sample: &[f64]) {
-        self.strands = sample.len();
-        self.values.extend_from_slice(sample);
-    }
-
     /// Tensions of one strand \[N\].
     pub(super) fn of(&self, strand: usize) -> impl Iterator<Item = f64> {
         let values = self.values.iter().skip(strand);
@@ -241,8 +267,9 @@ mod tests {
             time: vec![0.0, 1e-3, 2e-3, 3e-3],
             ..Trace::default()
         };
+        trace.spans.strands = 2;
         for sample in [[1.0, 2.0], [1.0, f64::NAN], [1.0, 2.0], [1.0, f64::NAN]] {
-            trace.spans.push(&sample);
+            trace.spans.values.extend(sample);
         }
         let names = ["a-b".to_owned(), "b-a".to_owned()];
         trace.gap = trace.first_gap(&names);

@@ -1,7 +1,7 @@
 //! How much of a run is looked at: long enough for a few teeth, short enough to cost little.
 
 use chaindrive_integrate::{Moment, SecondOrderSystem};
-use chaindrive_mechanics::{Assembled, Observation};
+use chaindrive_mechanics::{Assembled, EventKinds, Observation};
 
 use crate::{Run, Stepping};
 
@@ -16,7 +16,7 @@ const OWN_STEPS: f64 = 64_000.0;
 const SAMPLES: f64 = 256.0;
 /// Samples of a window that is looked at for the first moment of an error: blows last a few default steps, and between
 /// fewer samples they pass unseen.
-const FINE_SAMPLES: f64 = 2048.0;
+const FINE_SAMPLES: f64 = 1024.0;
 
 /// A short stretch at the beginning of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,13 +42,7 @@ impl Window {
     /// compared over the same time.
     pub(super) fn of(start: &Assembled, run: &Run) -> Self {
         let period = period(start);
-        let default = Run {
-            stepping: Stepping::Auto,
-            step: None,
-            ..run.clone()
-        };
-        let steps =
-            (STEPS * typical_step(start, &default)).min(OWN_STEPS * typical_step(start, run));
+        let steps = (STEPS * default_step(start, run)).min(OWN_STEPS * typical_step(start, run));
         let teeth = period.map_or(f64::INFINITY, |period| TEETH * period);
         let longest = teeth.min(steps);
         let until = run.until.min(longest);
@@ -60,12 +54,22 @@ impl Window {
         }
     }
 
-    /// The same with samples so close that hardly a blow falls between two of them, but no closer than the steps.
+    /// The same with samples so close that hardly a blow falls between two of them, but no closer than default steps.
     pub(super) fn finely(&self, start: &Assembled, run: &Run) -> Self {
-        let steps = (self.until / typical_step(start, run)).round();
+        let steps = (self.until / default_step(start, run)).round();
         Self {
             every: self.until / steps.clamp(SAMPLES, FINE_SAMPLES),
             ..*self
+        }
+    }
+
+    /// A run over the window, sampled as it says, without events.
+    pub(super) fn of_run(&self, run: &Run) -> Run {
+        Run {
+            until: self.until,
+            every: self.every,
+            events: EventKinds::default(),
+            ..run.clone()
         }
     }
 
@@ -115,6 +119,16 @@ pub(super) fn typical_step(start: &Assembled, run: &Run) -> f64 {
     } else {
         method.step()
     }
+}
+
+/// The step that a run takes where nobody asks for another \[s\].
+fn default_step(start: &Assembled, run: &Run) -> f64 {
+    let default = Run {
+        stepping: Stepping::Auto,
+        step: None,
+        ..run.clone()
+    };
+    typical_step(start, &default)
 }
 
 /// p/v at the start \[s\]; none without spans, or for a chain at rest.

@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use super::checkpoint::NotAgain;
 use super::patience::{LOOK, patiently};
 use super::{Checkpoint, Request, run_in};
-use crate::precision::{Choice, Judgement, choose};
+use crate::precision::{Choice, Judgement, ShortRuns, choose_with};
 use crate::record::{Ending, Provenance, Summary, attributes};
 use crate::scene::SceneError;
 use crate::{Channel, RanIn, Run, Simulation, SimulationError, SnapshotError, Verdict};
@@ -219,6 +219,16 @@ pub(crate) fn resume<S: Sink>(
         NotAgain::Start(error) => not_begun(error),
         NotAgain::Snapshot(error) => RunError::Snapshot(error),
     })?;
+    let short_runs = match checkpoint.choice() {
+        Some(choice) if request.estimate && checkpoint.ran_in().is_none() => {
+            let mut left = choice
+                .short_runs(&start, &|| onlooker.stop())
+                .map_err(not_begun)?;
+            left.keep_for(&request.run);
+            left
+        }
+        _ => ShortRuns::default(),
+    };
     let simulation = Simulation::from_assembled(start, &request.run);
     let mut simulation = simulation.map_err(RunError::Start)?;
     let restored = simulation.restore(&checkpoint.snapshot);
@@ -232,6 +242,7 @@ pub(crate) fn resume<S: Sink>(
         drive,
         simulation,
         provenance,
+        short_runs,
         summary: checkpoint.summary.clone(),
     };
     complete(&request, begun, sink, onlooker)
@@ -248,6 +259,7 @@ fn complete<S: Sink>(
         drive,
         mut simulation,
         mut provenance,
+        mut short_runs,
         mut summary,
     } = begun;
     let watch = || onlooker.stop();
@@ -309,7 +321,7 @@ fn complete<S: Sink>(
         Stop::Failed(_) => None,
         _ if !request.estimate => Some(Judgement::SwitchedOff),
         Stop::Interrupted => Some(Judgement::Interrupted),
-        Stop::End => Some(Judgement::of(&simulation, &run, &watch)),
+        Stop::End => Some(Judgement::with(&mut short_runs, &simulation, &run, &watch)),
     };
     let ending = stop.ending();
     let judged = judgement.as_ref();
@@ -368,6 +380,8 @@ struct Begun {
     drive: Drive,
     simulation: Simulation,
     provenance: Provenance,
+    /// With which the choice was made, for the estimate.
+    short_runs: ShortRuns,
     summary: Summary,
 }
 
@@ -389,9 +403,11 @@ fn begin<E: std::error::Error>(
     let mut provenance = Provenance::of(&request.scene, &request.run);
     let drive = request.scene.drive().map_err(RunError::Scene)?;
     let start = assemble(&drive, watch).map_err(failed)?;
+    let mut short_runs = ShortRuns::default();
     if let Some(accuracy) = request.accuracy {
         let accuracy = (accuracy, request.accuracy_of);
-        let choice = choose(&start, &request.run, accuracy, watch).map_err(failed)?;
+        let choice = choose_with(&mut short_runs, &start, &request.run, accuracy, watch);
+        let choice = choice.map_err(failed)?;
         provenance.run = choice.run.clone();
         provenance.choice = Some(choice);
     }
@@ -404,12 +420,19 @@ fn begin<E: std::error::Error>(
         let step = provenance.run.step;
         provenance.run.step = step.map(|step| step.min(longest));
     }
+    if request.estimate && provenance.ran_in.is_none() {
+        short_runs.keep_for(&provenance.run);
+    } else {
+        // Nobody will go on with them: the run begins elsewhere.
+        short_runs = ShortRuns::default();
+    }
     let simulation = Simulation::from_assembled(start, &provenance.run).map_err(failed)?;
     Ok(Begun {
         summary: Summary::new(&simulation),
         drive,
         simulation,
         provenance,
+        short_runs,
     })
 }
 

@@ -3,7 +3,10 @@
 
 use chaindrive::precision::{Attribute, Divergence, Estimate, estimate, horizon};
 use chaindrive::record::{Ending, Existing, Provenance, ZarrWriter};
-use chaindrive::{Channel, Judgement, Run, Scene, Simulation, SimulationError, Stepping};
+use chaindrive::{
+    Channel, Given, Judgement, Memory, Request, Run, Scene, Settings, Simulation, SimulationError,
+    Stepping, execute,
+};
 
 fn never() -> bool {
     false
@@ -192,6 +195,31 @@ fn stored(path: &std::path::Path, name: &str) -> serde_json::Value {
     let text = std::fs::read(path.join(name).join("zarr.json")).unwrap();
     let document: serde_json::Value = serde_json::from_slice(&text).unwrap();
     document["attributes"].clone()
+}
+
+/// An estimate behind a choice goes on with its short runs: the same numbers, for less.
+#[test]
+fn an_estimate_behind_a_choice_is_that_of_the_run_for_less() {
+    let settings = Settings::default().with("until", Given::Number(0.1));
+    for scene in ["marine_two_sprockets", "bicycle"] {
+        let request = Request::new(&Scene::preset(scene).unwrap(), &settings).unwrap();
+        let report = execute(&request, &mut Memory::default(), &never).unwrap();
+        let told = report.judgement.unwrap().estimate().unwrap().clone();
+        let alone = estimate(report.simulation.assembled(), &report.run, &never).unwrap();
+        let (spent, of) = (told.evaluations as f64, alone.evaluations as f64);
+        // Of eight half windows, one of the run itself and two of its shadow were there.
+        assert!(
+            (0.5..0.7).contains(&(spent / of)),
+            "{scene}: {spent} of {of}"
+        );
+        assert_eq!(
+            told,
+            Estimate {
+                evaluations: told.evaluations,
+                ..alone
+            }
+        );
+    }
 }
 
 #[test]

@@ -242,6 +242,36 @@ fn stopped_by_a_signal_it_goes_on_and_leaves_no_checkpoint_behind() {
     }
 }
 
+/// The estimate goes on with short runs of the choice, which a process that was killed took with it.
+#[test]
+fn carried_on_it_tells_of_its_choice_and_error_what_it_would_have_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let run_to = |store, more: &[&'static str]| {
+        let run = ["run", "marine_two_sprockets", "--until", "0.1 s", "-q"];
+        let samples = ["--every", "2 us", "-o", store];
+        [&run[..], &samples, more].concat()
+    };
+    let (code, err) = run(at, &run_to("whole.zarr", &[]));
+    assert_eq!(code, Some(0), "{err}");
+    let mut child = start(at, &run_to("run.zarr", &["--checkpoint-every", "1 ms"]));
+    let store = at.join("run.zarr");
+    wait_for("there is no checkpoint", || {
+        store.join("checkpoint").exists() && status(&store) == "running"
+    });
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert_eq!(status(&store), "running");
+    let (code, err) = run(at, &["resume", "run.zarr", "-q"]);
+    assert_eq!(code, Some(0), "{err}");
+    let told = ["whole.zarr", "run.zarr"].map(|name| group(&at.join(name)).unwrap());
+    let told = told.map(|story| timeless(&story["attributes"]));
+    assert_eq!(told[0], told[1]);
+    for (name, least) in [("accuracy_evaluations", 1e3), ("error_evaluations", 1e3)] {
+        assert!(told[0][name].as_f64().unwrap() > least, "{name}");
+    }
+}
+
 /// To a later end, and once more after a kill on the way there.
 #[test]
 fn a_complete_run_goes_on_to_a_later_end() {
