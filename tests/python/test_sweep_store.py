@@ -462,8 +462,7 @@ settings = {"until": 20e-3, "every": 1e-3, "jobs": jobs}
 # What is imported when it is first needed takes as long as hundreds of variants.
 cd.sweep(cd.scenes.spinning_ring(), {"chain.mass": ["8 g"]}, until=1e-3, output=sys.argv[5])
 wall, cpu = time.perf_counter(), time.process_time()
-output = {"output": store} if store else {}
-result = cd.sweep(cd.scenes.spinning_ring(), design=design, **settings, **output)
+result = cd.sweep(cd.scenes.spinning_ring(), design=design, **settings, output=store)
 wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
 memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 assert result.attrs["finished"] == count
@@ -494,7 +493,9 @@ def test_ten_thousand_variants_keep_two_cores_busy_in_little_memory(tmp_path):
     walls, costs = [], []
     for pair in range(pairs):
         first, half = pair * each, each // 2
-        halves = measured(script, (first, half, 1, ""), (first + half, half, 1, ""))
+        stores = [tmp_path / f"{pair} {part}.zarr" for part in "ab"]
+        ranges = [(first, half, 1), (first + half, half, 1)]
+        halves = measured(script, *((*it, store) for it, store in zip(ranges, stores, strict=True)))
         [sweep] = measured(script, (first, each, 2, tmp_path / f"{pair}.zarr"))
         walls.append(max(it["wall"] for it in halves) / sweep["wall"])
         costs.append(sweep["cpu"] / sum(it["cpu"] for it in halves) - 1.0)

@@ -81,13 +81,14 @@ impl Candidates {
     /// e ∝ h²:   k = ln(e/accuracy)/(2 ln 2^⅕) rungs, one at least
     /// ```
     ///
-    /// A step that fails says nothing of its error: the next one is that of its judge. From the last rung the other methods follow
-    /// one by one.
-    pub(super) fn after(place: usize, error: f64, accuracy: f64) -> usize {
+    /// A step that fails says nothing of its error: the next one is that of its judge, and no later one where impacts feed
+    /// themselves. From the last rung the other methods follow one by one.
+    pub(super) fn after(place: usize, error: f64, accuracy: f64, feeds_itself: bool) -> usize {
         if place + 1 >= RUNGS {
             return place + 1;
         }
         let rungs = ((error / accuracy).ln() / (2.0 * RATIO.ln())).ceil();
+        let most = if feeds_itself { TO_JUDGE } else { RUNGS };
         let down = if rungs.is_finite() {
             #[expect(
                 clippy::cast_possible_truncation,
@@ -95,7 +96,7 @@ impl Candidates {
                 reason = "few rungs, one at least"
             )]
             {
-                rungs.clamp(1.0, RUNGS as f64) as usize
+                rungs.clamp(1.0, most as f64) as usize
             }
         } else {
             TO_JUDGE

@@ -164,7 +164,7 @@ fn nothing(base: &Trace, of: Quantity) -> bool {
 /// chaos horizon, by the judge of the first candidate and its twin, the waveform of the tight span counts, for longer ones mean and root mean
 /// square of all spans; no twin is asked where one candidate keeps both from the first. Where the losses are
 /// to be kept, the energy lost counts, less what chance makes of it, and what is unaccounted for: |R|/D ≤ accuracy; with implicit damping no more than
-/// the accuracy may be unaccounted for of what was moved. If none is
+/// the accuracy may be unaccounted for of what was moved, nor a quarter of the losses. If none is
 /// good enough, the run gets the best, and [`Choice::kept`] is false. Counts decide and never clocks: the same drive
 /// gets the same answer.
 ///
@@ -229,7 +229,9 @@ pub(crate) fn choose_with(
         let found = trials.pair(entry)?;
         let found = found.map(|[candidate, judge]| Found::of(candidate, judge, entry));
         let keeps = |promise| {
-            let error = found.as_ref().map(|found| found.error(promise, 0.0));
+            let error = found
+                .as_ref()
+                .map(|found| found.error(promise, 0.0, accuracy));
             error.is_some_and(|error| error <= accuracy)
         };
         let whatever =
@@ -242,7 +244,8 @@ pub(crate) fn choose_with(
         if choice.promise == Promise::Nothing {
             break;
         }
-        let error = |found: &Found| found.error(choice.promise, spread.unwrap_or_default());
+        let error =
+            |found: &Found| found.error(choice.promise, spread.unwrap_or_default(), accuracy);
         let error = found.as_ref().map_or(f64::INFINITY, error);
         let candidate = entry.candidate;
         choice.trials.push(Trial {
@@ -256,13 +259,16 @@ pub(crate) fn choose_with(
         if error < choice.error {
             choice.error = error;
             choice.run = candidate.run(run);
-            choice.gap = found.and_then(|found| found.gap);
+            choice.gap = found.as_ref().and_then(|found| found.gap.clone());
         }
         if error <= accuracy {
             choice.kept = true;
             break;
         }
-        place = Candidates::after(place, error, accuracy);
+        let feeds_itself = found
+            .as_ref()
+            .is_some_and(|found| found.fed(accuracy) > accuracy);
+        place = Candidates::after(place, error, accuracy, feeds_itself);
     }
     choice.evaluations = short_runs.evaluations() - before;
     Ok(choice)
@@ -284,6 +290,10 @@ fn examined(start: &Assembled, automatic: &Run) -> Window {
     window.finely(start, automatic).first_half()
 }
 
+/// Share of the losses that impacts shorter than a step may leave open, half of what a run is distrusted for: windows are shorter than
+/// runs. *Assumed*.
+const OPEN_LOSSES: f64 = 0.25;
+
 /// How far a candidate is from its judge.
 struct Found {
     /// Of the waveform of the tight span, root mean square over the mean \[–\].
@@ -296,8 +306,10 @@ struct Found {
     caution: f64,
     /// Energy unaccounted for over the losses \[–\].
     unaccounted: f64,
-    /// The same over what was moved; 0 but with implicit damping.
+    /// The same over what was moved \[–\].
     open: f64,
+    /// Whether impacts shorter than a step may feed themselves, in a candidate and its judge alike.
+    implicit: bool,
     work: f64,
     gap: Option<Gap>,
 }
@@ -306,29 +318,29 @@ impl Found {
     fn of(candidate: &Trace, judge: &Trace, entry: &Entry) -> Self {
         let strands = Strands::of([candidate, judge]);
         let distances = distances(candidate, judge, strands);
-        // Impacts shorter than a step feed themselves, and both of a pair may.
-        let open = match entry.candidate.stepping {
-            Stepping::ImplicitDamping => candidate.energy.open(),
-            _ => 0.0,
-        };
         Self {
             waveform: rms(distances.iter().map(|distance| distance.tight)),
             statistics: statistics(candidate, judge),
             losses: losses_apart(candidate, judge),
             caution: entry.caution(),
             unaccounted: candidate.energy.residual / judge.energy.scale(),
-            open,
+            open: candidate.energy.open(),
+            implicit: entry.candidate.stepping == Stepping::ImplicitDamping,
             work: work(candidate),
             gap: candidate.gap.as_ref().or(judge.gap.as_ref()).cloned(),
         }
     }
 
     /// Bound of the error of what is promised, where equal runs differ by a spread; NaN where nothing can be compared.
-    fn error(&self, promise: Promise, spread: f64) -> f64 {
-        let (apart, energy) = match promise {
-            Promise::Statistics => (beyond(self.statistics, spread), self.open),
-            Promise::Losses => (beyond(self.losses, spread), self.unaccounted),
-            Promise::Waveform | Promise::Nothing => (self.waveform, self.open),
+    fn error(&self, promise: Promise, spread: f64, accuracy: f64) -> f64 {
+        let apart = match promise {
+            Promise::Statistics => beyond(self.statistics, spread),
+            Promise::Losses => beyond(self.losses, spread),
+            Promise::Waveform | Promise::Nothing => self.waveform,
+        };
+        let energy = match promise {
+            Promise::Losses => self.unaccounted,
+            _ => self.fed(accuracy),
         };
         let bound = apart * self.caution;
         // `f64::max` forgets what is not a number.
@@ -336,6 +348,17 @@ impl Found {
             bound
         } else {
             bound.max(energy)
+        }
+    }
+
+    /// What impacts that feed themselves count as an error: what they leave open of the energy moved, and more than the accuracy where
+    /// they leave too much of the losses open.
+    fn fed(&self, accuracy: f64) -> f64 {
+        let of_losses = self.unaccounted / OPEN_LOSSES;
+        match (self.implicit, of_losses > 1.0) {
+            (true, true) => self.open.max(of_losses * accuracy),
+            (true, false) => self.open,
+            (false, _) => 0.0,
         }
     }
 }

@@ -3,7 +3,8 @@
 
 use chaindrive::precision::{ACCURACY, Choice, Promise, Quantity, choose};
 use chaindrive::{
-    Assembled, Given, Request, Run, Scene, Settings, Simulation, SimulationError, Stepping,
+    Assembled, Given, Memory, Request, Run, Scene, Settings, Simulation, SimulationError, Stepping,
+    Trust, execute,
 };
 use chaindrive_integrate::SecondOrderSystem;
 
@@ -279,4 +280,19 @@ fn steps_whose_energy_does_not_add_up_are_not_chosen() {
     let [calm, fast] = [calm, fast].map(|scene| step(&scene));
     assert!(calm > 8e-6, "{calm}");
     assert!(fast < 4e-6, "{fast}");
+}
+
+/// Where the waveform of the motorcycle's tension would allow twice the step, half of its losses would be open.
+#[test]
+fn no_run_is_chosen_whose_losses_nobody_would_trust() {
+    let scene = Scene::preset("motorcycle").unwrap();
+    let settings = Settings::default().with("until", Given::Number(0.05));
+    let request = Request::new(&scene, &settings).unwrap().without_estimate();
+    let report = execute(&request, &mut Memory::default(), &|| false).unwrap();
+    let choice = report.choice.unwrap();
+    assert!(choice.kept && choice.error <= 0.01, "{choice}");
+    assert_ne!(report.verdict.trust, Trust::Distrusted, "{choice}");
+    let energy = report.simulation.observation().energy;
+    let open = report.simulation.energy_residual().abs() / energy.dissipated();
+    assert!((0.05..0.4).contains(&open), "{open}");
 }
