@@ -16,6 +16,7 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 use nalgebra::DVector;
 use nalgebra_sparse::factorization::CscCholesky;
+use nalgebra_sparse::pattern::SparsityPattern;
 use nalgebra_sparse::{CooMatrix, CscMatrix};
 
 use crate::chains::{Balance, Load, Sum};
@@ -60,9 +61,10 @@ pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Static
         gravity: 0.0,
         torque: 0.0,
     };
-    let newton = Newton {
+    let mut newton = Newton {
         system,
         unknowns: &unknowns,
+        factored: None,
     };
     if taut {
         let mut found = newton.solve(q, at, 300);
@@ -224,6 +226,30 @@ struct Found {
 struct Newton<'a> {
     system: &'a System,
     unknowns: &'a Unknowns,
+    /// Of the last step: where contacts are the same, so are the places of what is not zero, and half the work is to find those.
+    factored: Option<Factored>,
+}
+
+/// A factorised matrix and the places of its entries.
+struct Factored {
+    pattern: SparsityPattern,
+    factor: CscCholesky<f64>,
+}
+
+impl Factored {
+    /// Factorises a matrix, in the places of another one where they are the same; none if it is not positive definite.
+    fn of(matrix: &CscMatrix<f64>, before: Option<Self>) -> Option<Self> {
+        match before {
+            Some(mut same) if same.pattern == *matrix.pattern() => {
+                let done = same.factor.refactor(matrix.values());
+                done.ok().map(|()| same)
+            }
+            _ => Some(Self {
+                pattern: matrix.pattern().clone(),
+                factor: CscCholesky::factor(matrix).ok()?,
+            }),
+        }
+    }
 }
 
 impl Newton<'_> {
@@ -253,7 +279,7 @@ impl Newton<'_> {
     ///
     /// Steps need not lower the energy one by one: the seats are strongly curved valleys of
     /// radius r_i − d₁/2, and a step along one first climbs and then falls back.
-    fn solve(&self, start: &[f64], load: Load, most: usize) -> Found {
+    fn solve(&mut self, start: &[f64], load: Load, most: usize) -> Found {
         let stiffness = self.stiffest();
         let cap = self.longest();
         let mut q = start.to_vec();
@@ -350,7 +376,7 @@ impl Newton<'_> {
     }
 
     /// −(H + λ D)⁻¹ ∇E, raising λ until the matrix is positive definite.
-    fn step(&self, balance: &Balance, shift: &mut f64, stiffness: f64) -> Option<Vec<f64>> {
+    fn step(&mut self, balance: &Balance, shift: &mut f64, stiffness: f64) -> Option<Vec<f64>> {
         let n = self.unknowns.count;
         while *shift < 1e3 * stiffness {
             let mut matrix = CooMatrix::new(n, n);
@@ -360,7 +386,8 @@ impl Newton<'_> {
             for (i, lever) in self.unknowns.scale.iter().enumerate() {
                 matrix.push(i, i, *shift * lever);
             }
-            if let Ok(factor) = CscCholesky::factor(&CscMatrix::from(&matrix)) {
+            self.factored = Factored::of(&CscMatrix::from(&matrix), self.factored.take());
+            if let Some(Factored { factor, .. }) = &self.factored {
                 let step = factor.solve(&(-&balance.gradient));
                 return Some(step.iter().copied().collect());
             }

@@ -30,6 +30,7 @@ pub(crate) fn curvature(system: &System, q: &[f64]) -> Curvature {
     let newton = Newton {
         system,
         unknowns: &unknowns,
+        factored: None,
     };
     let mut balance = newton.balance(q, Load::FULL);
     let count = unknowns.count;

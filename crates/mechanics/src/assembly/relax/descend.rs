@@ -29,7 +29,7 @@ impl Newton<'_> {
     /// # Source
     /// J. Nocedal and S. J. Wright, *Numerical Optimization*, Springer, 2006, chapter 4 (the shift as the multiplier of a
     /// trust region).
-    pub(super) fn descend(&self, start: &[f64], load: Load) -> Found {
+    pub(super) fn descend(&mut self, start: &[f64], load: Load) -> Found {
         let stiffness = self.stiffest();
         let cap = CAP / 0.2 * self.longest();
         let mut shift = 1e-4 * stiffness;
