@@ -104,7 +104,9 @@ def test_a_killed_run_goes_on(tmp_path):
     assert timeless(carried) == timeless(straight)
 
 
+# Modules are imported when they are first needed, and some of them swallow what interrupts them.
 LONG_SETTLING = """
+cd.scenes.hanging_chain().NAME()
 drive = cd.scenes.bicycle().replace(
     {"chain.links": 4000, "sprockets.rear.centre": ["-25.200144624366 m", "0 m"]})
 print("begun", flush=True)
