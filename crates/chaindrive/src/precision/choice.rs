@@ -351,7 +351,7 @@ impl Found {
         }
     }
 
-    /// What impacts that feed themselves count as an error: what they leave open of the energy moved, and more than the accuracy where
+    /// Error that impacts count as when they feed themselves: their open share of the energy moved, and more than the accuracy where
     /// they leave too much of the losses open.
     fn fed(&self, accuracy: f64) -> f64 {
         let of_losses = self.unaccounted / OPEN_LOSSES;

@@ -80,7 +80,7 @@ const EARLY: f64 = 0.25;
 
 /// Estimates the error of a run from its beginning.
 ///
-/// Costs 10 000 to 40 000 evaluations for a run with its default step, and the more the shorter the step, whatever the
+/// Costs some 10 000 evaluations for most runs with the step of a choice, and the more the shorter the step, whatever the
 /// length of the run: see [`Window`].
 ///
 /// # Errors

@@ -41,7 +41,7 @@ impl ShortRuns {
     /// Takes a run over a window, or goes on with what there is of it; tells its place.
     ///
     /// # Errors
-    /// What keeps it from running, and [`SimulationError::Interrupted`] when `watch` says so. A run that failed begins anew when it
+    /// The failure that ends it, and [`SimulationError::Interrupted`] when `watch` says so. A run that failed begins anew when it
     /// is asked for again.
     pub(super) fn take(
         &mut self,

@@ -423,7 +423,7 @@ fn begin<E: std::error::Error>(
     if request.estimate && provenance.ran_in.is_none() {
         short_runs.keep_for(&provenance.run);
     } else {
-        // Nobody will go on with them: the run begins elsewhere.
+        // Nobody asks for an estimate, or the run begins elsewhere.
         short_runs = ShortRuns::default();
     }
     let simulation = Simulation::from_assembled(start, &provenance.run).map_err(failed)?;

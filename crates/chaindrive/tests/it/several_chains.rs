@@ -316,7 +316,7 @@ fn the_rider_drives_the_wheel_through_a_spring() {
     assert!(mean > 0.5 * 3.0 * 18.0 / 44.0 && mean < 20.0, "{mean}");
 }
 
-/// What is addressed by path can be read, replaced, compared and resolved, in chains and shafts as elsewhere.
+/// Values addressed by path can be read, replaced, compared and resolved, in chains and shafts as elsewhere.
 #[test]
 fn paths_lead_into_chains_and_shafts() {
     let scene = Scene::preset("two_stage_timing").unwrap();

@@ -31,7 +31,7 @@ fn speed_and_pretension() -> [(String, Vec<Setting>); 2] {
     ]
 }
 
-/// What does not depend on the clock, as bits.
+/// The outcomes without their times, as bits.
 fn bits(outcome: &Outcome) -> Vec<(&'static str, Vec<u64>)> {
     let Outcome::Done(account) = outcome else {
         return Vec::new();
@@ -97,7 +97,7 @@ fn a_variant_is_the_run_of_its_scene() -> Checked {
     Ok(())
 }
 
-/// What one path puts in and another one replaces would be the same in every variant.
+/// A value that one path puts in and another one replaces would be the same in every variant.
 #[test]
 fn a_path_that_another_one_replaces_is_refused() -> Checked {
     let steps = texts("run.step", ["1 us", "2 us"]);
