@@ -278,6 +278,39 @@ fn joints_without_play_are_those_of_the_elastic_chain() {
     );
 }
 
+/// Play lets a loaded chain walk around its sprockets before it holds, farther the harder it is pulled, up to loads above its breaking load: statics finds
+/// the tight side that the torque asks for, and that of the same chain without play. Torque over pitch radius is the authority; a tenth covers the polygon,
+/// the weight and the first teeth.
+#[test]
+fn chains_with_play_settle_under_any_load() {
+    let bicycle = Scene::preset("bicycle").unwrap();
+    let radius = 0.5 * 0.0127 / (PI / 18.0).sin();
+    for torque in [60.0, 100.0, 364.0] {
+        let load = format!("[{{ kind = 'constant', torque = '{torque} N m' }}]");
+        let loose = bicycle.replace("sprockets.rear.load", &load).unwrap();
+        let rigid = loose.replace("chain.model", "particles").unwrap();
+        let tight = |scene: &Scene| {
+            let run = Run {
+                until: 1e-6,
+                every: 1e-6,
+                ..Run::default()
+            };
+            let mut simulation = Simulation::start(&scene.drive().unwrap(), &run).unwrap();
+            let sample = simulation.next_sample().unwrap().unwrap();
+            sample.span_tension.iter().copied().fold(0.0, f64::max)
+        };
+        let (found, without_play, asked) = (tight(&loose), tight(&rigid), torque / radius);
+        assert!(
+            (found / asked - 1.0).abs() < 0.1,
+            "{torque} N m: {found} N, {asked} N"
+        );
+        assert!(
+            (found / without_play - 1.0).abs() < 0.03,
+            "{torque} N m: {found} N, {without_play} N"
+        );
+    }
+}
+
 /// Play between bushes and rollers makes the circles smaller on which the bushes run, and the chain so much shorter: in the mean of its links
 /// it is as tight as that of lumped rollers, as long as neither load nor weight moves the bushes. The spans are a little tighter, as rollers
 /// that climb the flanks take tension off the links between them. Version 0.1 laid half a newton a µm of play into this chain.
