@@ -17,6 +17,7 @@ _BRINGS = {
     "imageio": "movie",
     "imageio_ffmpeg": "movie",
     "matplotlib": "plot",
+    "obstore": "object-store",
     "pyarrow": "parquet",
     "rainflow": "analysis",
     "scipy": "analysis",

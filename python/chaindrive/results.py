@@ -3,24 +3,30 @@
 from __future__ import annotations
 
 import warnings
-from os import PathLike, fspath
+from os import PathLike
+from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
 from chaindrive import _core
 from chaindrive.errors import ResultWarning
 from chaindrive.extras import extra
+from chaindrive.objects import Objects, Place, place_of
+
+if TYPE_CHECKING:
+    from obstore.store import ObjectStore
 
 __all__ = ["open_result"]
 
 
-def open_result(path: str | PathLike[str]) -> xr.Dataset:
+def open_result(path: str | PathLike[str] | ObjectStore) -> xr.Dataset:
     """Open a result that was written to disk, at its end or while it is being written.
 
     Parameters
     ----------
     path
-        The Zarr store of a run or a sweep.
+        The Zarr store of a run or a sweep: a path, or for sweeps in object stores an address or a
+        store of ``obstore``.
 
     Returns
     -------
@@ -28,7 +34,8 @@ def open_result(path: str | PathLike[str]) -> xr.Dataset:
         The dataset that `simulate` or `sweep` returned, read from the store on demand. Its
         attribute ``status`` is ``"complete"``, ``"running"`` while a process writes it,
         ``"interrupted"``, ``"failed"``, with the reason in ``failure``, or ``"killed"``: the
-        process that wrote it is gone without a word.
+        process that wrote it is gone without a word. In object stores nobody can tell the last from
+        ``"running"``.
 
     Raises
     ------
@@ -54,13 +61,13 @@ def open_result(path: str | PathLike[str]) -> xr.Dataset:
     'complete'
     """
     extra("zarr", "stores on disk")
-    name = fspath(path)
+    name = place_of(path)
     # A writer says how it ended before it gives its claim back: looked at again, a result that
     # nobody writes has ended, or its writer was killed.
     stored = _open(name)
-    if stored.attrs["status"] == "running" and not _core.is_being_written(name):
+    if isinstance(name, str) and _is_left(stored, name):
         stored = _open(name)
-        if stored.attrs["status"] == "running" and not _core.is_being_written(name):
+        if _is_left(stored, name):
             stored.attrs["status"] = "killed"
     status = stored.attrs["status"]
     if status not in ("complete", "running"):
@@ -72,11 +79,18 @@ def open_result(path: str | PathLike[str]) -> xr.Dataset:
     return stored
 
 
-def _open(name: str) -> xr.Dataset:
+def _is_left(stored: xr.Dataset, name: str) -> bool:
+    return stored.attrs["status"] == "running" and not _core.is_being_written(name)
+
+
+def _open(name: Place) -> xr.Dataset:
     import chaindrive.analysis.accessor  # noqa: F401  registers `run.drive`
 
+    store: Any = name
+    if isinstance(name, Objects):
+        store = extra("zarr.storage", "stores").ObjectStore(name.store, read_only=True)
     try:
-        stored: xr.Dataset = xr.open_zarr(name, chunks=None)
+        stored: xr.Dataset = xr.open_zarr(store, chunks=None)
     except FileNotFoundError as error:
         raise FileNotFoundError(
             f"{name}: there is no result here; check the path, a result's name ends in .zarr"

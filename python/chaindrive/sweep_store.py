@@ -17,6 +17,7 @@ import xarray as xr
 from chaindrive import _core
 from chaindrive.errors import DistrustedResultWarning, SimulationError
 from chaindrive.extras import extra
+from chaindrive.objects import Objects, Place
 from chaindrive.results import _open
 from chaindrive.signals import heard
 
@@ -32,7 +33,7 @@ _claims: set[int] = set()
 
 def into_store(
     core: _core.Sweep,
-    path: str,
+    place: Place,
     overwrite: bool,
     jobs: int | None,
     executor: Executor | None,
@@ -41,10 +42,14 @@ def into_store(
     """Begin a sweep in a store, or go on with it, and return the store as a dataset."""
     extra("zarr", "stores on disk")
     begin = time.perf_counter()
-    if overwrite or not os.path.lexists(path):
-        store = _core.SweepStore.begin(path, core, overwrite, jobs)
+    if isinstance(place, Objects):
+        is_there = place.size("zarr.json") is not None
     else:
-        store = _core.SweepStore.go_on(path, core)
+        is_there = os.path.lexists(place)
+    if overwrite or not is_there:
+        store = _core.SweepStore.begin(place, core, overwrite, jobs)
+    else:
+        store = _core.SweepStore.go_on(place, core)
     descriptor = store.descriptor() if hasattr(store, "descriptor") else None
     if descriptor is not None:
         _claims.add(descriptor)
@@ -55,20 +60,21 @@ def into_store(
             with heard():
                 stop = store.run(jobs, tell)
         else:
-            stop, lost = _spread(store, len(core), executor, tell)
+            to_workers = place if isinstance(place, Objects) else os.fspath(store.place())
+            stop, lost = _spread(store, to_workers, len(core), executor, tell)
         told = store.finish()
     finally:
         _claims.discard(descriptor or -1)
         store.close()
     if stop is not None and not isinstance(stop, KeyboardInterrupt):
         raise stop
-    dataset = _open(path)
+    dataset = _open(place)
     dataset.attrs["wall_time"] = time.perf_counter() - begin
     dataset.attrs["summary"] = told["summary"]
     if told["warning"]:
         warnings.warn(told["warning"], DistrustedResultWarning, stacklevel=3)
     goes_on = (
-        f"{path} holds {len(core) - told['open']} of {len(core)} variants: the same call goes on"
+        f"{place} holds {len(core) - told['open']} of {len(core)} variants: the same call goes on"
     )
     if stop is not None:
         # The very exception, for a class of its own would change the exit code of a script.
@@ -85,12 +91,13 @@ def into_store(
 
 def _spread(
     store: _core.SweepStore,
+    place: Place,
     variants: int,
     executor: Executor,
     tell: Callable[[float], object] | None,
 ) -> tuple[KeyboardInterrupt | None, list[Exception]]:
     """Have an executor carry out all open tasks; return an interrupt, and why tasks were lost."""
-    path, sweep = os.fspath(store.place()), uuid4().hex
+    sweep = uuid4().hex
     pending: set[Future[tuple[int, int, int]]] = set()
     lost: list[Exception] = []
     tasks = iter(store.open_tasks())
@@ -98,7 +105,7 @@ def _spread(
         while True:
             try:
                 for task in islice(tasks, _AHEAD - len(pending)):
-                    pending.add(executor.submit(_task, _core.__version__, path, sweep, task))
+                    pending.add(executor.submit(_task, _core.__version__, place, sweep, task))
             except Exception as error:
                 # Such as a pool whose worker was killed: it takes no more tasks.
                 lost.append(error)
@@ -123,18 +130,18 @@ def _spread(
             future.cancel()
 
 
-def _task(version: str, path: str, sweep: str, task: int) -> tuple[int, int, int]:
+def _task(version: str, place: Place, sweep: str, task: int) -> tuple[int, int, int]:
     """Carry out a task; called by an executor, in whatever process it likes."""
     if version != _core.__version__:
         message = f"a worker has chaindrive {_core.__version__} instead of {version}"
         raise SimulationError(message, "executor", "install the same version everywhere")
-    return _worker(path, sweep).carry_out(task)
+    return _worker(place, sweep).carry_out(task)
 
 
 @lru_cache(maxsize=1)
-def _worker(path: str, sweep: str) -> _core.SweepWorker:
+def _worker(place: Place, sweep: str) -> _core.SweepWorker:
     """Open a store, once in each process and for each call of `sweep`."""
-    return _core.SweepWorker(path)
+    return _core.SweepWorker(place)
 
 
 def _let_go() -> None:

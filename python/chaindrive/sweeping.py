@@ -7,8 +7,8 @@ import warnings
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Executor, Future, as_completed
 from functools import lru_cache
-from os import PathLike, fspath
-from typing import Any, TypeAlias
+from os import PathLike
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -16,10 +16,14 @@ import xarray as xr
 from chaindrive import _core
 from chaindrive.drive import Drive, _json, _needed
 from chaindrive.errors import DistrustedResultWarning, ParameterError, SimulationError
+from chaindrive.objects import place_of
 from chaindrive.progress import told
 from chaindrive.settings import Quantity, Recorded
 from chaindrive.simulation import _listed
 from chaindrive.sweep_store import into_store
+
+if TYPE_CHECKING:
+    from obstore.store import ObjectStore
 
 __all__ = ["sweep"]
 
@@ -41,7 +45,7 @@ def sweep(
     every: Quantity | None = None,
     record: Recorded | Iterable[Recorded] = (),
     accuracy: Quantity | None = None,
-    output: str | PathLike[str] | None = None,
+    output: str | PathLike[str] | ObjectStore | None = None,
     overwrite: bool = False,
     jobs: int | None = None,
     executor: Executor | None = None,
@@ -92,7 +96,9 @@ def sweep(
         Zarr store, a path that ends in ``.zarr``, for sweeps that outgrow the memory or the
         patience: takes the extra ``zarr``. Variants are computed in tasks of about a second, and
         whoever computes a task writes it, so that nothing but counts comes back. Where there is
-        such a store of the same sweep already, the sweep goes on with what it lacks.
+        such a store of the same sweep already, the sweep goes on with what it lacks. An address
+        such as ``"s3://bucket/name.zarr"``, or a store of the package ``obstore``, is a place in an
+        object store; that takes the extra ``object-store``.
     overwrite
         Begin anew in place of the earlier result of this name.
     jobs
@@ -191,7 +197,7 @@ def sweep(
     start = time.perf_counter()
     if output is not None:
         with told(progress, "sweep") as tell:
-            return into_store(core, fspath(output), overwrite, jobs, executor, tell)
+            return into_store(core, place_of(output), overwrite, jobs, executor, tell)
     with told(progress, "sweep") as tell:
         if executor is None:
             result = core.run(jobs, tell)

@@ -63,7 +63,7 @@ def test_description_of_the_package_stands_alone():
 def test_every_extra_is_explained(page):
     extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     text = (ROOT / page).read_text(encoding="utf-8")
-    told = set(re.findall(r"`([a-z]+)`", "".join(re.findall(r"^\|.*\|.*\|.*\|$", text, re.M))))
+    told = set(re.findall(r"`([a-z-]+)`", "".join(re.findall(r"^\|.*\|.*\|.*\|$", text, re.M))))
     assert set(extras["optional-dependencies"]) <= told
 
 

@@ -28,7 +28,8 @@ pub use summary::{
     ContactStatistics, ForceStatistics, Ledger, Load, SpanStatistics, Steadiness, Summary,
 };
 pub use zarr::{
-    Existing, Finished, ReadError, ResumeError, Stopped, SweepStore, Worker, ZarrWriter,
+    Existing, Finished, Object, Objects, ReadError, ResumeError, Stopped, SweepStore, Worker,
+    ZarrWriter,
 };
 
 /// One channel of a recording.

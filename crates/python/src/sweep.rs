@@ -1,5 +1,6 @@
 //! Sweeps: without the interpreter's lock, stopped by Ctrl-C, with outcomes that travel between processes.
 
+mod objects;
 mod stored;
 
 use std::time::Instant;

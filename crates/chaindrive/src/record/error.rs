@@ -31,6 +31,14 @@ pub enum WriteError {
     #[error("{}: the name of a Zarr store must end in .zarr", .path.display())]
     Name { path: PathBuf },
 
+    /// Somebody has begun a store in this place of an object store, and it is not laid out yet.
+    #[error("{}: somebody has begun a result here and not laid it out yet; wait a little, and where that process has died have the result replaced: `overwrite=True`", .path.display())]
+    HalfBegun { path: PathBuf },
+
+    /// The name is the address of an object store.
+    #[error("{}: this is an address and no folder; `chaindrive.sweep` in Python writes into object stores, everything else onto a disk", .path.display())]
+    Address { path: PathBuf },
+
     /// Somebody took the result away while it was written.
     #[error("{}: {what} was removed or moved while it was written; nothing more is", .path.display())]
     Vanished { path: PathBuf, what: String },

@@ -26,9 +26,11 @@
 //! A reader has to open the file of a chunk once, as `zarr-python` does. One that asks for its size
 //! first, as object stores do, may then find another file; once the run has ended this does not matter.
 
+mod bucket;
 mod content;
 mod error;
 mod events;
+mod files;
 mod folder;
 mod reader;
 mod stopped;
@@ -43,6 +45,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Map, Value};
 
+pub use bucket::{Object, Objects};
 pub use reader::ReadError;
 pub use variants::{Finished, SweepStore, Worker};
 
@@ -177,7 +180,7 @@ impl ZarrWriter {
             store,
         };
         // It may have another end by now, which a second interruption is not to forget.
-        let kept = writer.store.put(CHECKPOINT, checkpoint.to_bytes());
+        let kept = writer.store.put(CHECKPOINT, &checkpoint.to_bytes());
         kept.map_err(|fault| writer.store.fault(fault))?;
         writer.commit(simulation, &Ending::None)?;
         // Readers see the checkpoint's samples alone from here on.
@@ -200,7 +203,7 @@ impl ZarrWriter {
         self.flush(simulation)?;
         let bytes = checkpoint.to_bytes();
         self.or_give_up(|writer| {
-            let kept = writer.store.put(CHECKPOINT, bytes);
+            let kept = writer.store.put(CHECKPOINT, &bytes);
             kept.map_err(|fault| writer.store.fault(fault))
         })?;
         self.kept = true;

@@ -17,6 +17,7 @@ mod links;
 mod live;
 mod loads;
 mod mistakes;
+mod object_store;
 mod precision;
 mod reproducible;
 mod requests;

@@ -1,19 +1,21 @@
 //! Sweeps in a store: who hands out the tasks, and who carries them out.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Instant;
 
-use chaindrive::record::{self, Existing, Finished, Worker};
+use chaindrive::record::{self, Existing, Finished, Objects, Worker};
 use chaindrive::sweep::Go;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::Sweep;
+use super::objects::InPython;
 use crate::errors::OrRaise;
 use crate::run::{PATIENCE, look};
 
@@ -26,6 +28,19 @@ pub(crate) struct SweepStore(Mutex<Option<record::SweepStore>>);
 #[pyclass(frozen, module = "chaindrive._core")]
 #[derive(Debug)]
 pub(crate) struct SweepWorker(Worker);
+
+/// Where a store is: a path, or an object store that `chaindrive.objects` has made one of.
+#[derive(FromPyObject)]
+pub(crate) enum Place {
+    Disk(PathBuf),
+    Objects(Py<PyAny>),
+}
+
+impl Place {
+    fn objects(object: Py<PyAny>) -> Arc<dyn Objects> {
+        Arc::new(InPython(object))
+    }
+}
 
 /// Counts of a task: done, failed, distrusted.
 type Counts = (usize, usize, usize);
@@ -40,7 +55,7 @@ impl SweepStore {
     #[staticmethod]
     fn begin(
         py: Python<'_>,
-        path: PathBuf,
+        place: Place,
         sweep: &Sweep,
         overwrite: bool,
         workers: Option<usize>,
@@ -62,14 +77,25 @@ impl SweepStore {
         });
         let sample = sample.or_raise()?;
         raised.map_or(Ok(()), Err)?;
-        let begin = || record::SweepStore::begin(&path, &sweep.0, &sample, existing);
+        let begin = || match place {
+            Place::Disk(path) => record::SweepStore::begin(&path, &sweep.0, &sample, existing),
+            Place::Objects(object) => {
+                let objects = Place::objects(object);
+                record::SweepStore::begin_in(&objects, &sweep.0, &sample, existing)
+            }
+        };
         Ok(Self(Mutex::new(Some(py.detach(begin).or_raise()?))))
     }
 
     /// Goes on with a store that was left.
     #[staticmethod]
-    fn go_on(py: Python<'_>, path: PathBuf, sweep: &Sweep) -> PyResult<Self> {
-        let store = py.detach(|| record::SweepStore::go_on(&path, &sweep.0));
+    fn go_on(py: Python<'_>, place: Place, sweep: &Sweep) -> PyResult<Self> {
+        let store = py.detach(|| match place {
+            Place::Disk(path) => record::SweepStore::go_on(&path, &sweep.0),
+            Place::Objects(object) => {
+                record::SweepStore::go_on_in(&Place::objects(object), &sweep.0)
+            }
+        });
         Ok(Self(Mutex::new(Some(store.or_raise()?))))
     }
 
@@ -78,9 +104,9 @@ impl SweepStore {
         self.with(|store| Ok(store.place().to_owned()))
     }
 
-    /// Number of the open file that holds the claim, for processes that are forked.
+    /// Number of the open file that holds the claim, for processes that are forked; None in object stores.
     #[cfg(unix)]
-    fn descriptor(&self) -> PyResult<i32> {
+    fn descriptor(&self) -> PyResult<Option<i32>> {
         self.with(|store| Ok(store.descriptor()))
     }
 
@@ -154,8 +180,9 @@ impl SweepStore {
     }
 
     /// Gives the claim back.
-    fn close(&self) {
-        drop(self.inner().take());
+    fn close(&self, py: Python<'_>) {
+        // Last words may have to go through the interpreter, on any thread.
+        py.detach(|| drop(self.inner().take()));
     }
 }
 
@@ -174,10 +201,14 @@ impl SweepStore {
 
 #[pymethods]
 impl SweepWorker {
-    /// Opens a store by its path.
+    /// Opens a store by its place.
     #[new]
-    fn new(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        Ok(Self(py.detach(|| Worker::open(&path)).or_raise()?))
+    fn new(py: Python<'_>, place: Place) -> PyResult<Self> {
+        let worker = py.detach(|| match place {
+            Place::Disk(path) => Worker::open(&path),
+            Place::Objects(object) => Worker::open_in(&Place::objects(object)),
+        });
+        Ok(Self(worker.or_raise()?))
     }
 
     /// Computes the variants of a task and stores them; Ctrl-C is heard meanwhile.

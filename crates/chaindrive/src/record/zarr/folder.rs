@@ -3,18 +3,18 @@
 //! Folders are made once. A folder or file that was there and is not is an error: somebody removes the
 //! store, and to make it anew would leave a torso that looks like a result.
 
-use std::collections::HashSet;
-use std::fs;
+use std::collections::{BTreeSet, HashSet};
+use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
+use rayon::ThreadPool;
 use same_file::Handle;
-use zarrs::storage::byte_range::{ByteRangeIterator, extract_byte_ranges};
-use zarrs::storage::{
-    Bytes, MaybeBytes, MaybeBytesIterator, OffsetBytesIterator, ReadableStorageTraits,
-    StorageError, StoreKey, StorePrefix, WritableStorageTraits, store_set_partial_many,
-};
+use zarrs::storage::{Bytes, StorageError, StoreKey};
+
+use super::error::Fault;
+use super::files::{Change, Files};
 
 /// Begins the end of the name of a file on its way, the number of its process; readers of the store know no such key.
 pub(super) const STAGED: char = '#';
@@ -93,37 +93,9 @@ impl Folder {
         clear_staged(&self.state().root)
     }
 
-    /// Whether a file is there.
-    pub(super) fn holds(&self, key: &StoreKey) -> bool {
-        self.path(key).exists()
-    }
-
-    /// Removes the chunks of an array whose index along the first dimension is beyond `last`.
-    pub(super) fn clear_behind(&self, array: &str, last: u64) -> Result<(), StorageError> {
-        let chunks = format!("{array}/c/");
-        let behind = |key: &StoreKey| {
-            let place = key.as_str().strip_prefix(&chunks)?;
-            let index: u64 = place.split('/').next()?.parse().ok()?;
-            (index > last).then(|| key.clone())
-        };
-        let keys: Vec<StoreKey> = self.state().files.iter().filter_map(behind).collect();
-        keys.iter().try_for_each(|key| self.erase(key))
-    }
-
     /// Takes note that the folder was moved.
     pub(super) fn moved_to(&self, root: &Path) {
         root.clone_into(&mut self.state().root);
-    }
-
-    /// The first file that was written and is not there any more, if any.
-    pub(super) fn missing(&self) -> Option<String> {
-        let state = self.state();
-        if self.is_elsewhere(&state.root) {
-            return Some("the result".into());
-        }
-        let mut files = state.files.iter();
-        let missing = files.find(|key| !state.root.join(key.as_str()).exists());
-        missing.map(|key| format!("`{key}`"))
     }
 
     fn is_elsewhere(&self, root: &Path) -> bool {
@@ -212,70 +184,88 @@ impl State {
     }
 }
 
-impl WritableStorageTraits for Folder {
-    fn set(&self, key: &StoreKey, value: Bytes) -> Result<(), StorageError> {
-        Ok(self.write(key, &value)?)
+impl Files for Folder {
+    fn read(&self, key: &StoreKey) -> Result<Option<Bytes>, StorageError> {
+        Ok(if_there(fs::read(self.path(key)))?.map(Bytes::from))
     }
 
-    fn set_partial_many(
-        &self,
-        key: &StoreKey,
-        offset_values: OffsetBytesIterator,
-    ) -> Result<(), StorageError> {
-        store_set_partial_many(self, key, offset_values)
+    fn size(&self, key: &StoreKey) -> Result<Option<u64>, StorageError> {
+        let found = if_there(fs::metadata(self.path(key)))?;
+        Ok(found.map(|file| file.len()))
     }
 
-    fn erase(&self, key: &StoreKey) -> Result<(), StorageError> {
+    fn put(&self, key: &StoreKey, bytes: &[u8]) -> Result<(), StorageError> {
+        Ok(self.write(key, bytes)?)
+    }
+
+    fn remove(&self, key: &StoreKey) -> Result<(), StorageError> {
         let mut state = self.state();
         let noted = state.files.remove(key) || state.shared;
         drop(state);
         if noted {
-            fs::remove_file(self.path(key))?;
+            if_there(fs::remove_file(self.path(key)))?;
         }
         Ok(())
     }
 
-    fn erase_prefix(&self, prefix: &StorePrefix) -> Result<(), StorageError> {
-        let files: Vec<StoreKey> = self.state().files.iter().cloned().collect();
-        files
-            .iter()
-            .filter(|key| key.has_prefix(prefix))
-            .try_for_each(|key| self.erase(key))
+    fn held(&self, prefix: &str) -> Result<BTreeSet<StoreKey>, StorageError> {
+        let root = self.state().root.clone();
+        let mut found = BTreeSet::new();
+        gather(&root, Path::new(prefix), &mut found)?;
+        Ok(found)
     }
 
-    fn supports_set_partial(&self) -> bool {
-        false
+    fn change(&self, key: &StoreKey, change: &mut Change<'_>) -> Result<(), Fault> {
+        // The system lets go of the lock when the process ends, however it ends.
+        let lock = File::options()
+            .write(true)
+            .create(true)
+            .truncate(false)
+            .open(self.path(key).with_extension("lock"))?;
+        lock.lock()?;
+        if let Some(changed) = change(self.read(key)?)? {
+            self.write(key, &changed)?;
+        }
+        Ok(())
+    }
+
+    fn missing(&self) -> Option<String> {
+        let state = self.state();
+        if self.is_elsewhere(&state.root) {
+            return Some("the result".into());
+        }
+        let mut files = state.files.iter();
+        let missing = files.find(|key| !state.root.join(key.as_str()).exists());
+        missing.map(|key| format!("`{key}`"))
+    }
+
+    fn waiting(&self) -> Option<&ThreadPool> {
+        None
     }
 }
 
-impl ReadableStorageTraits for Folder {
-    fn get(&self, key: &StoreKey) -> Result<MaybeBytes, StorageError> {
-        match fs::read(self.path(key)) {
-            Ok(bytes) => Ok(Some(bytes.into())),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-            Err(error) => Err(error.into()),
+/// What was found; nothing where there is no such file.
+fn if_there<T>(found: io::Result<T>) -> io::Result<Option<T>> {
+    match found {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        found => found.map(Some),
+    }
+}
+
+/// Adds the names of all files in a folder, given from the root, but for those that are on their way.
+fn gather(root: &Path, within: &Path, found: &mut BTreeSet<StoreKey>) -> io::Result<()> {
+    for entry in if_there(fs::read_dir(root.join(within)))?
+        .into_iter()
+        .flatten()
+    {
+        let entry = entry?;
+        let place = within.join(entry.file_name());
+        let name = place.to_string_lossy();
+        if entry.file_type()?.is_dir() {
+            gather(root, &place, found)?;
+        } else if let (false, Ok(key)) = (is_staged(&name), StoreKey::new(name)) {
+            found.insert(key);
         }
     }
-
-    fn get_partial_many<'a>(
-        &'a self,
-        key: &StoreKey,
-        byte_ranges: ByteRangeIterator<'a>,
-    ) -> Result<MaybeBytesIterator<'a>, StorageError> {
-        let Some(bytes) = self.get(key)? else {
-            return Ok(None);
-        };
-        let parts = extract_byte_ranges(&bytes, byte_ranges)?;
-        Ok(Some(Box::new(
-            parts.into_iter().map(|part| Ok(part.into())),
-        )))
-    }
-
-    fn size_key(&self, key: &StoreKey) -> Result<Option<u64>, StorageError> {
-        Ok(self.get(key)?.map(|bytes| bytes.len() as u64))
-    }
-
-    fn supports_get_partial(&self) -> bool {
-        false
-    }
+    Ok(())
 }

@@ -7,6 +7,7 @@ use serde_json::{Map, Value};
 use zarrs::array::{ArrayMetadata, FromArrayBytes};
 
 use super::error::Fault;
+use super::files::Ground;
 use super::folder::Folder;
 use super::store::Storage;
 use super::target;
@@ -95,7 +96,7 @@ impl Stored {
     fn new(path: &Path, group: &Value) -> Result<Self, Fault> {
         let entries = |value: &Value| value.as_object().cloned().unwrap_or_default();
         Ok(Self {
-            storage: Arc::new(Folder::to_read(path)?),
+            storage: Ground::of(Arc::new(Folder::to_read(path)?)),
             attributes: entries(&group["attributes"]),
             arrays: entries(&group["consolidated_metadata"]["metadata"]),
         })

@@ -8,31 +8,36 @@ use std::sync::Arc;
 use serde_json::{Map, Value, json};
 use zarrs::group::Group;
 use zarrs::metadata::v3::{AdditionalFieldV3, GroupMetadataV3};
-use zarrs::storage::{
-    ReadableStorageTraits, ReadableWritableStorageTraits, StoreKey, WritableStorageTraits,
-};
+use zarrs::storage::StoreKey;
 
+use super::bucket::{Bucket, Objects};
 use super::error::Fault;
+use super::files::Ground;
 use super::folder::Folder;
 use super::{Ending, Existing, target};
 use crate::record::claim::Claim;
 use crate::record::error::WriteError;
 
 /// Where arrays write their chunks.
-pub(super) type Storage = Arc<dyn ReadableWritableStorageTraits>;
+pub(super) type Storage = Arc<Ground>;
 
 /// Space for a last group document on a full disk, beyond twice the length of the first.
 const RESERVE: usize = 1 << 16;
 
-/// A store with its claim, its files, and the last group document.
+/// A store with its files and the last group document.
 pub(in crate::record) struct Store {
     path: PathBuf,
-    claim: Claim,
-    folder: Arc<Folder>,
+    disk: Option<Disk>,
     storage: Storage,
     last: Document,
     /// Whether the last word was said: how it ended, or that it was given up.
     ended: bool,
+}
+
+/// What stores on a disk have: a claim that the system lets go of when the process ends, and a folder that takes its place whole.
+struct Disk {
+    claim: Claim,
+    folder: Arc<Folder>,
 }
 
 /// Contents of the group document.
@@ -55,6 +60,11 @@ impl Store {
                 path: path.to_owned(),
             });
         }
+        if path.to_string_lossy().contains("://") {
+            return Err(WriteError::Address {
+                path: path.to_owned(),
+            });
+        }
         if let Some(parent) = path.parent() {
             fs::create_dir_all(parent).map_err(io)?;
         }
@@ -63,9 +73,29 @@ impl Store {
         let folder = Arc::new(Folder::create(claim.workshop()).map_err(io)?);
         Ok(Self {
             path: path.to_owned(),
-            claim,
-            storage: folder.clone(),
-            folder,
+            storage: Ground::of(folder.clone()),
+            disk: Some(Disk { claim, folder }),
+            last: Document::default(),
+            ended: false,
+        })
+    }
+
+    /// Begins a store in an object store, where nobody else has begun one. What was in the place is removed at once.
+    pub(super) fn begin_in(
+        objects: &Arc<dyn Objects>,
+        existing: Existing,
+    ) -> Result<Self, WriteError> {
+        let path = PathBuf::from(objects.name());
+        target::clear(&path, objects.as_ref(), existing)?;
+        let begun = Bucket::begin(objects).map_err(|source| WriteError::Io {
+            path: path.clone(),
+            source,
+        })?;
+        let bucket = begun.ok_or_else(|| WriteError::HalfBegun { path: path.clone() })?;
+        Ok(Self {
+            path,
+            storage: Ground::of(Arc::new(bucket)),
+            disk: None,
             last: Document::default(),
             ended: false,
         })
@@ -96,19 +126,42 @@ impl Store {
         let claim = Claim::take(path)?;
         let group = target::group(path, claim.place())?;
         let folder = Arc::new(open(claim.place()).map_err(io)?);
-        let entries = |value: &Value| value.as_object().cloned().unwrap_or_default();
-        Ok(Self {
-            path: path.to_owned(),
+        let disk = Disk {
             claim,
-            storage: folder.clone(),
-            folder,
+            folder: Arc::clone(&folder),
+        };
+        Ok(Self::left(path, Ground::of(folder), Some(disk), &group))
+    }
+
+    /// A store in an object store, to go on with it together with other processes.
+    pub(super) fn reopen_in(objects: &Arc<dyn Objects>) -> Result<Self, WriteError> {
+        let path = PathBuf::from(objects.name());
+        let bucket = target::bucket(&path, objects)?;
+        let storage = Ground::of(Arc::new(bucket));
+        let group = objects
+            .get(target::GROUP)
+            .map_err(|source| WriteError::Io {
+                path: path.clone(),
+                source,
+            })?;
+        let group = group.as_ref().map(|object| object.bytes.as_slice());
+        let group = target::document(&path, group)?;
+        Ok(Self::left(&path, storage, None, &group))
+    }
+
+    fn left(path: &Path, storage: Storage, disk: Option<Disk>, group: &Value) -> Self {
+        let entries = |value: &Value| value.as_object().cloned().unwrap_or_default();
+        Self {
+            path: path.to_owned(),
+            storage,
+            disk,
             last: Document {
                 attributes: entries(&group["attributes"]),
                 arrays: entries(&group["consolidated_metadata"]["metadata"]),
             },
             // Nothing new has been said that could be broken off.
             ended: true,
-        })
+        }
     }
 
     /// Goes on: from here on the store is being written.
@@ -124,23 +177,31 @@ impl Store {
 
     /// A file of its own, beside the arrays.
     pub(super) fn read(&self, key: &str) -> Result<Option<Vec<u8>>, Fault> {
-        let bytes = self.folder.get(&StoreKey::new(key)?)?;
+        let bytes = self.storage.read(&StoreKey::new(key)?)?;
         Ok(bytes.map(Vec::from))
     }
 
     /// Puts such a file in place, whole or not at all.
-    pub(super) fn put(&self, key: &str, bytes: Vec<u8>) -> Result<(), Fault> {
-        Ok(self.folder.set(&StoreKey::new(key)?, bytes.into())?)
+    pub(super) fn put(&self, key: &str, bytes: &[u8]) -> Result<(), Fault> {
+        Ok(self.storage.put(&StoreKey::new(key)?, bytes)?)
     }
 
     /// Removes it, if it is there.
     pub(super) fn remove(&self, key: &str) -> Result<(), Fault> {
-        Ok(self.folder.erase(&StoreKey::new(key)?)?)
+        Ok(self.storage.remove(&StoreKey::new(key)?)?)
     }
 
-    /// Removes the chunks of an array behind the last that is used.
+    /// Removes the chunks of an array behind the last that is used along its first dimension.
     pub(super) fn clear_behind(&self, array: &str, last: u64) -> Result<(), Fault> {
-        Ok(self.folder.clear_behind(array, last)?)
+        let chunks = format!("{array}/c/");
+        for key in self.storage.held(&chunks)? {
+            let place = key.as_str().trim_start_matches(&chunks);
+            let index = place.split('/').next().and_then(|it| it.parse().ok());
+            if index.is_some_and(|index: u64| index > last) {
+                self.storage.remove(&key)?;
+            }
+        }
+        Ok(())
     }
 
     pub(in crate::record) fn path(&self) -> &Path {
@@ -153,37 +214,47 @@ impl Store {
 
     /// Where the store is, symbolic links followed.
     pub(super) fn place(&self) -> &Path {
-        self.claim.place()
+        let disk = self.disk.as_ref();
+        disk.map_or(&self.path, |disk| disk.claim.place())
     }
 
+    /// Number of the open file that holds the claim, on a disk.
     #[cfg(unix)]
-    pub(super) fn descriptor(&self) -> i32 {
-        self.claim.descriptor()
+    pub(super) fn descriptor(&self) -> Option<i32> {
+        self.disk.as_ref().map(|disk| disk.claim.descriptor())
     }
 
     /// Lets other processes write in the store as well, once it is in place.
     pub(super) fn share(&mut self) -> Result<(), WriteError> {
-        let folder = Folder::shared(self.claim.place());
-        self.folder = Arc::new(folder.map_err(|source| WriteError::Io {
-            path: self.path.clone(),
-            source,
-        })?);
-        self.storage = self.folder.clone();
+        if let Some(disk) = &mut self.disk {
+            let folder = Folder::shared(disk.claim.place());
+            let folder = folder.map_err(|source| WriteError::Io {
+                path: self.path.clone(),
+                source,
+            })?;
+            disk.folder = Arc::new(folder);
+            self.storage = Ground::of(disk.folder.clone());
+        }
         Ok(())
     }
 
     /// Puts the store in place, with space set aside for its last words.
     pub(super) fn publish(&self) -> Result<(), WriteError> {
         self.set_aside()?;
-        self.claim.put_in_place()?;
-        self.folder.moved_to(self.claim.place());
+        if let Some(Disk { claim, folder }) = &self.disk {
+            claim.put_in_place()?;
+            folder.moved_to(claim.place());
+        }
         Ok(())
     }
 
-    /// Sets space aside for the last words.
+    /// Sets space aside for the last words, where it may run out.
     fn set_aside(&self) -> Result<(), WriteError> {
+        let Some(disk) = &self.disk else {
+            return Ok(());
+        };
         let document = json!([self.last.attributes, self.last.arrays]).to_string();
-        let reserved = self.claim.reserve(2 * document.len() + RESERVE);
+        let reserved = disk.claim.reserve(2 * document.len() + RESERVE);
         reserved.map_err(|source| WriteError::Io {
             path: self.path.clone(),
             source,
@@ -205,7 +276,7 @@ impl Store {
             });
         }
         if *ending != Ending::None
-            && let Some(what) = self.folder.missing()
+            && let Some(what) = self.storage.missing()
         {
             return Err(self.vanished(what));
         }
@@ -217,6 +288,10 @@ impl Store {
     }
 
     fn write(&self, document: &Document) -> Result<(), Fault> {
+        // A folder knows itself, wherever it is. A place in an object store may have become that of another store.
+        if self.disk.is_none() && self.storage.missing().is_some() {
+            return Err(io::Error::from(io::ErrorKind::NotFound).into());
+        }
         let consolidated = json!({ "kind": "inline", "metadata": document.arrays });
         // `Group::set_consolidated_metadata` would do, but loses the order of the arrays.
         let fields = [(
@@ -234,7 +309,7 @@ impl Store {
 
     /// A fault with its place; that the store was taken away explains every other.
     pub(super) fn fault(&self, fault: Fault) -> WriteError {
-        match self.folder.missing() {
+        match self.storage.missing() {
             Some(what) => self.vanished(what),
             None => WriteError::Store {
                 path: self.path.clone(),
@@ -265,7 +340,9 @@ impl Store {
         attributes.insert("status".into(), failed.status().into());
         attributes.insert("complete".into(), 0.into());
         attributes.insert("failure".into(), reason.into());
-        self.claim.spend_reserve();
+        if let Some(disk) = &self.disk {
+            disk.claim.spend_reserve();
+        }
         // Where even this fails the store says `running`, and no lock is held: readers can tell.
         let _ = self.write(&document);
     }

@@ -1,11 +1,14 @@
-//! Targets that may be replaced: nothing, an empty folder, or an earlier result.
+//! Targets that may be replaced: nothing, an empty folder or place, or an earlier result.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::io;
 use std::path::Path;
+use std::sync::Arc;
 
 use serde_json::Value;
 
+use super::bucket::{Bucket, IDENTITY, Objects};
 use super::folder::STAGED;
 use super::{Existing, variants};
 use crate::record::attributes::FORMAT;
@@ -15,7 +18,7 @@ use crate::record::error::WriteError;
 pub(super) const CHECKPOINT: &str = "checkpoint";
 
 /// The document that makes a folder a Zarr group.
-const GROUP: &str = "zarr.json";
+pub(super) const GROUP: &str = "zarr.json";
 
 /// Refuses a place that holds what must stay. The caller has claimed the place: a result that says `running` there
 /// was left by a process that died.
@@ -28,15 +31,73 @@ pub(super) fn check(asked: &Path, place: &Path, existing: Existing) -> Result<()
         Ok(entries) => entries.collect::<Result<Vec<_>, _>>().map_err(io)?,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
         Err(_) if place.is_file() => {
-            return Err(foreign(asked, "this is a file, not a result".into()));
+            return Err(foreign(asked, "this is a file, not a result"));
         }
         Err(error) => return Err(io(error)),
     };
-    if entries.is_empty() {
+    let names = entries.iter().map(fs::DirEntry::file_name);
+    let names: BTreeSet<String> = names.map(|it| it.to_string_lossy().into_owned()).collect();
+    if names.is_empty() {
         return Ok(());
     }
     let group = group(asked, place)?;
-    if existing == Existing::Keep && !is_empty_torso(&group) {
+    check_names(asked, &names, &group, existing)
+}
+
+/// Refuses a place in an object store that holds what must stay, and empties it of what need not.
+pub(super) fn clear(
+    asked: &Path,
+    objects: &dyn Objects,
+    existing: Existing,
+) -> Result<(), WriteError> {
+    let io = |source| WriteError::Io {
+        path: asked.to_owned(),
+        source,
+    };
+    let mut keys = objects.list("").map_err(io)?;
+    if keys.is_empty() {
+        return Ok(());
+    }
+    let names = keys.iter().filter_map(|key| key.split('/').next());
+    let names: BTreeSet<String> = names.map(str::to_owned).collect();
+    let half_begun = names.contains(IDENTITY) && !names.contains(GROUP);
+    if !half_begun {
+        let text = objects.get(GROUP).map_err(io)?;
+        let group = document(asked, text.as_ref().map(|object| object.bytes.as_slice()))?;
+        check_names(asked, &names, &group, existing)?;
+    } else if existing == Existing::Keep {
+        return Err(WriteError::HalfBegun {
+            path: asked.to_owned(),
+        });
+    }
+    // Readers find nothing as soon as the first is gone, and nobody begins in this place before the last is.
+    keys.sort_by_key(|key| match key.as_str() {
+        GROUP => 0,
+        IDENTITY => 2,
+        _ => 1,
+    });
+    keys.iter()
+        .try_for_each(|key| objects.erase(key))
+        .map_err(io)
+}
+
+/// A store that was begun in an object store.
+pub(super) fn bucket(asked: &Path, objects: &Arc<dyn Objects>) -> Result<Bucket, WriteError> {
+    let found = Bucket::open(objects).map_err(|source| WriteError::Io {
+        path: asked.to_owned(),
+        source,
+    })?;
+    found.ok_or_else(|| foreign(asked, "there is no sweep of chaindrive here"))
+}
+
+/// Refuses a result that is to stay, and whatever is not of chaindrive.
+fn check_names(
+    asked: &Path,
+    names: &BTreeSet<String>,
+    group: &Value,
+    existing: Existing,
+) -> Result<(), WriteError> {
+    if existing == Existing::Keep && !is_empty_torso(group) {
         return Err(WriteError::Exists {
             path: asked.to_owned(),
         });
@@ -45,32 +106,30 @@ pub(super) fn check(asked: &Path, place: &Path, existing: Existing) -> Result<()
     let known = |name: &str| {
         // A killed run leaves files that it was about to put in place: `zarr.json#1234`.
         let name = name.split(STAGED).next().unwrap_or(name);
-        name == GROUP
-            || name == CHECKPOINT
+        [GROUP, CHECKPOINT, IDENTITY].contains(&name)
             || variants::FILES.contains(&name)
             || arrays.is_some_and(|arrays| arrays.contains_key(name))
     };
-    let names = entries
-        .iter()
-        .map(|entry| entry.file_name().to_string_lossy().into_owned());
-    match names.into_iter().find(|name| !known(name)) {
+    match names.iter().find(|name| !known(name)) {
         None => Ok(()),
-        Some(stranger) => Err(foreign(
-            asked,
-            format!("`{stranger}` in this folder is not of chaindrive"),
-        )),
+        Some(stranger) => {
+            let found = format!("`{stranger}` in this folder is not of chaindrive");
+            Err(foreign(asked, &found))
+        }
     }
 }
 
 /// The group document of an earlier result; an error if the folder is anything else.
 pub(super) fn group(asked: &Path, place: &Path) -> Result<Value, WriteError> {
-    let not_ours = || foreign(asked, "this folder is not a result of chaindrive".into());
-    let text = fs::read(place.join(GROUP)).map_err(|_| not_ours())?;
-    let group: Value = serde_json::from_slice(&text).map_err(|_| not_ours())?;
-    if group["attributes"]["format"] != FORMAT {
-        return Err(not_ours());
-    }
-    Ok(group)
+    document(asked, fs::read(place.join(GROUP)).ok().as_deref())
+}
+
+/// The same of what is in that file.
+pub(super) fn document(asked: &Path, text: Option<&[u8]>) -> Result<Value, WriteError> {
+    let group: Option<Value> = text.and_then(|text| serde_json::from_slice(text).ok());
+    group
+        .filter(|group| group["attributes"]["format"] == FORMAT)
+        .ok_or_else(|| foreign(asked, "this folder is not a result of chaindrive"))
 }
 
 /// Whether a result was begun and left before it held anything.
@@ -80,9 +139,9 @@ fn is_empty_torso(group: &Value) -> bool {
     attributes["status"] == "running" && held.is_some_and(|held| held == 0)
 }
 
-fn foreign(path: &Path, found: String) -> WriteError {
+fn foreign(path: &Path, found: &str) -> WriteError {
     WriteError::Foreign {
         path: path.to_owned(),
-        found,
+        found: found.to_owned(),
     }
 }

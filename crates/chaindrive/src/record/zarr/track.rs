@@ -5,14 +5,14 @@ use serde_json::{Map, Value};
 use zarrs::array::CodecOptions;
 use zarrs::array::codec::ZstdCodec;
 use zarrs::array::{Array, ArrayBuilder, ArrayMetadataOptions, data_type};
-use zarrs::storage::ReadableWritableStorageTraits;
 
 use super::error::Fault;
+use super::files::Ground;
 use super::store::Storage;
 use crate::record::{Axis, labels};
 
 /// An array of the store.
-pub(super) type StoredArray = Array<dyn ReadableWritableStorageTraits>;
+pub(super) type StoredArray = Array<Ground>;
 
 /// Numbers in a chunk, 1 MiB of them, and samples at most.
 const NUMBERS_PER_CHUNK: usize = 1 << 17;

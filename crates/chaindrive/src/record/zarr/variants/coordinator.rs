@@ -1,6 +1,7 @@
 //! Who begins a sweep on disk, hands out its tasks, and says in the store how far it is.
 
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread::{self, available_parallelism};
@@ -12,6 +13,7 @@ use zarrs::array::{CodecOptions, data_type};
 use super::layout::Layout;
 use super::{Arrays, Finished, LAYOUT, RECIPE, Worker, every_chunk};
 use crate::record::attributes::Story;
+use crate::record::zarr::bucket::Objects;
 use crate::record::zarr::error::Fault;
 use crate::record::zarr::store::Store;
 use crate::record::zarr::track::{StoredArray, metadata, store_metadata};
@@ -21,6 +23,9 @@ use crate::sweep::{Coordinate, Go, Outcome, Quantity, Recipe, Sample, Sweep, TEX
 
 /// Wall time between two accounts of a sweep in its store.
 const TELL_EVERY: Duration = Duration::from_secs(5);
+
+/// Tasks that are read back at a time.
+const TASKS_AT_A_TIME: usize = 64;
 
 /// Wall time between two looks at interrupts while no task ends.
 const LOOK: Duration = Duration::from_millis(50);
@@ -58,8 +63,23 @@ impl SweepStore {
         sample: &Sample,
         existing: Existing,
     ) -> Result<Self, WriteError> {
-        let path = path.as_ref();
-        let mut store = Store::begin(path, existing)?;
+        Self::begin_on(Store::begin(path.as_ref(), existing)?, sweep, sample)
+    }
+
+    /// Begins a sweep in an object store.
+    ///
+    /// # Errors
+    /// [`WriteError`] when the place is taken or cannot be written.
+    pub fn begin_in(
+        objects: &Arc<dyn Objects>,
+        sweep: &Sweep,
+        sample: &Sample,
+        existing: Existing,
+    ) -> Result<Self, WriteError> {
+        Self::begin_on(Store::begin_in(objects, existing)?, sweep, sample)
+    }
+
+    fn begin_on(mut store: Store, sweep: &Sweep, sample: &Sample) -> Result<Self, WriteError> {
         let layout = Layout::new(sweep, sample.variants_per_task, sample.account());
         let recipe = sweep.recipe();
         let begun = [
@@ -67,7 +87,7 @@ impl SweepStore {
             (LAYOUT, serde_json::to_vec(&layout)),
         ]
         .into_iter()
-        .try_for_each(|(name, bytes)| store.put(name, bytes?))
+        .try_for_each(|(name, bytes)| store.put(name, &bytes?))
         .and_then(|()| put_coordinates(&store, sweep, &layout))
         .and_then(|mut arrays| {
             arrays.extend(lay(&store, sweep, &layout)?);
@@ -79,7 +99,7 @@ impl SweepStore {
         store.tell(attributes, arrays.clone(), &Ending::None)?;
         store.publish()?;
         store.share()?;
-        let worker = Worker::open(store.place())?;
+        let worker = Worker::on(store.storage().clone(), store.path())?;
         let mut begun = Self {
             store,
             sweep: sweep.clone(),
@@ -104,24 +124,34 @@ impl SweepStore {
     /// # Errors
     /// [`WriteError::OtherSweep`] where it is another one, [`WriteError::Exists`] where it is another result, and all others.
     pub fn go_on(path: impl AsRef<Path>, sweep: &Sweep) -> Result<Self, WriteError> {
-        let path = path.as_ref();
-        let mut store = Store::reopen_shared(path)?;
+        Self::go_on_with(Store::reopen_shared(path.as_ref())?, sweep)
+    }
+
+    /// Goes on with a sweep in an object store.
+    ///
+    /// # Errors
+    /// As [`go_on`](Self::go_on).
+    pub fn go_on_in(objects: &Arc<dyn Objects>, sweep: &Sweep) -> Result<Self, WriteError> {
+        Self::go_on_with(Store::reopen_in(objects)?, sweep)
+    }
+
+    fn go_on_with(mut store: Store, sweep: &Sweep) -> Result<Self, WriteError> {
         let recipe = store.read(RECIPE).map_err(|fault| store.fault(fault))?;
         let Some(recipe) = recipe else {
             return Err(WriteError::Exists {
-                path: path.to_owned(),
+                path: store.path().to_owned(),
             });
         };
         let recipe: Result<Recipe, Fault> = serde_json::from_slice(&recipe).map_err(Fault::from);
         let recipe = recipe.map_err(|fault| store.fault(fault))?;
         if let Some(difference) = sweep.recipe().difference(&recipe) {
             return Err(WriteError::OtherSweep {
-                path: path.to_owned(),
+                path: store.path().to_owned(),
                 difference,
             });
         }
         store.go_on()?;
-        let worker = Worker::open(store.place())?;
+        let worker = Worker::on(store.storage().clone(), store.path())?;
         let layout = worker.layout().map_err(|fault| store.fault(fault))?;
         let arrays = put_coordinates(&store, sweep, &layout).and_then(|mut arrays| {
             arrays.extend(lay(&store, sweep, &layout)?);
@@ -153,9 +183,10 @@ impl SweepStore {
         self.store.place()
     }
 
-    /// Number of the open file that holds the claim, which processes that are forked inherit: they must close it.
+    /// Number of the open file that holds the claim, which processes that are forked inherit: they must close it. There is none in
+    /// object stores.
     #[cfg(unix)]
-    pub fn descriptor(&self) -> i32 {
+    pub fn descriptor(&self) -> Option<i32> {
         self.store.descriptor()
     }
 
@@ -164,12 +195,10 @@ impl SweepStore {
     /// # Errors
     /// [`WriteError`] when the store cannot be read.
     pub fn open_tasks(&self) -> Result<Vec<usize>, WriteError> {
-        let layout = &self.told;
-        let open = (0..self.tasks).map(|task| Ok((task, self.worker.holds(layout, task)?)));
-        let open: Result<Vec<(usize, bool)>, Fault> = open.collect();
-        let open = open.map_err(|fault| self.store.fault(fault))?;
-        let open = open.into_iter().filter(|(_, held)| !held);
-        Ok(open.map(|(task, _)| task).collect())
+        let stored = self.worker.stored(&self.told);
+        let stored = stored.map_err(|fault| self.store.fault(fault))?;
+        let tasks = 0..self.tasks;
+        Ok(tasks.filter(|task| !stored.contains(task)).collect())
     }
 
     /// Variants that are stored so far, as far as they were counted.
@@ -206,7 +235,7 @@ impl SweepStore {
         let open = self.open_tasks()?;
         let cores = || available_parallelism().map_or(1, usize::from);
         let jobs = jobs.unwrap_or_else(cores).clamp(1, open.len().max(1));
-        let worker = Worker::open(self.store.place())?;
+        let worker = Worker::on(self.store.storage().clone(), self.store.path())?;
         let stop = AtomicBool::new(false);
         let next = AtomicUsize::new(0);
         let (sender, receiver) = channel();
@@ -259,9 +288,21 @@ impl SweepStore {
         let mut tally = Tally::default();
         let layout = self.worker.layout();
         let read = layout.and_then(|layout| {
-            for task in 0..self.tasks {
-                for (variant, outcome) in self.worker.read_back(&layout, task)? {
-                    tally.push(variant, &outcome);
+            let stored = self.worker.stored(&layout)?;
+            let mut take = |variant, outcome| {
+                tally.push(variant, &outcome);
+                take(variant, outcome);
+            };
+            for task in (0..self.tasks).filter(|task| !stored.contains(task)) {
+                let open = layout.region(task).variants.into_iter();
+                open.for_each(|(variant, _)| take(variant, Outcome::Open));
+            }
+            // Some at a time, so that memory stays flat.
+            let stored: Vec<usize> = stored.into_iter().collect();
+            for tasks in stored.chunks(TASKS_AT_A_TIME) {
+                let read = |task: &usize| self.worker.read_back(&layout, *task);
+                let outcomes = self.store.storage().on_each(tasks, read)?;
+                for (variant, outcome) in outcomes.into_iter().flatten() {
                     take(variant, outcome);
                 }
             }

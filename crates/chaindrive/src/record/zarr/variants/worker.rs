@@ -1,20 +1,22 @@
 //! Who computes the variants of a task and stores them, in whatever process and on whatever machine.
 
-use std::fs::File;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use serde::de::DeserializeOwned;
 use serde_json::Map;
-use zarrs::storage::{ReadableStorageTraits, StoreKey, WritableStorageTraits};
+use zarrs::storage::{Bytes, StoreKey};
 
 use super::layout::{Layout, Region};
-use super::{
-    Arrays, LAYOUT, LOCK, MARK, RECIPE, Storage, blank, every_chunk, texts_before_the_mark,
-};
+use super::{Arrays, LAYOUT, MARK, RECIPE, Storage, blank, every_chunk, texts_before_the_mark};
 use crate::record::WriteError;
+use crate::record::zarr::bucket::Objects;
 use crate::record::zarr::error::Fault;
+use crate::record::zarr::files::Ground;
 use crate::record::zarr::folder::Folder;
+use crate::record::zarr::target;
 use crate::sweep::{Account, Entry, OPEN, Outcome, Quantity, Recipe, Sweep, TEXTS, fill, texts};
 use crate::verdict::WrittenVerdict;
 
@@ -32,8 +34,6 @@ pub struct Finished {
 /// A store of a sweep, opened to carry out tasks of it.
 pub struct Worker {
     path: PathBuf,
-    root: PathBuf,
-    folder: Arc<Folder>,
     storage: Storage,
     sweep: Sweep,
 }
@@ -58,8 +58,24 @@ impl Worker {
             source,
         };
         let root = path.canonicalize().map_err(io)?;
-        let folder = Arc::new(Folder::shared(&root).map_err(io)?);
-        let recipe = read(&folder, RECIPE).map_err(|fault| failure(path, fault))?;
+        Self::on(
+            Ground::of(Arc::new(Folder::shared(&root).map_err(io)?)),
+            path,
+        )
+    }
+
+    /// Opens the store of a sweep that was begun in an object store.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub fn open_in(objects: &Arc<dyn Objects>) -> Result<Self, WriteError> {
+        let path = PathBuf::from(objects.name());
+        let bucket = target::bucket(&path, objects)?;
+        Self::on(Ground::of(Arc::new(bucket)), &path)
+    }
+
+    pub(super) fn on(storage: Storage, path: &Path) -> Result<Self, WriteError> {
+        let recipe = read(&storage, RECIPE).map_err(|fault| failure(&storage, path, fault))?;
         let recipe: Recipe = recipe.ok_or_else(|| WriteError::Foreign {
             path: path.to_owned(),
             found: "this is not the store of a sweep that workers can carry out".into(),
@@ -80,9 +96,7 @@ impl Worker {
         })?;
         Ok(Self {
             path: path.to_owned(),
-            root,
-            storage: folder.clone(),
-            folder,
+            storage,
             sweep,
         })
     }
@@ -93,7 +107,7 @@ impl Worker {
     /// [`WriteError`] when the layout cannot be read.
     pub fn has(&self, task: usize) -> Result<bool, WriteError> {
         let stored = self.layout().and_then(|layout| self.holds(&layout, task));
-        stored.map_err(|fault| failure(&self.path, fault))
+        stored.map_err(|fault| self.failure(fault))
     }
 
     /// Computes the variants of a task on the calling thread and stores them; none if it is stopped before all of them have
@@ -106,7 +120,7 @@ impl Worker {
         task: usize,
         stop: &AtomicBool,
     ) -> Result<Option<Finished>, WriteError> {
-        let named = |fault| failure(&self.path, fault);
+        let named = |fault| self.failure(fault);
         let layout = self.layout().map_err(named)?;
         if self.holds(&layout, task).map_err(named)? {
             let outcomes = self.read_back(&layout, task).map_err(named)?;
@@ -130,24 +144,40 @@ impl Worker {
     /// # Errors
     /// [`WriteError`] when the store refuses.
     pub fn store(&self, task: usize, outcomes: &[Outcome]) -> Result<(), WriteError> {
+        // Another sweep may have taken the place while this task was computed.
+        if let Some(what) = self.storage.missing() {
+            let path = self.path.clone();
+            return Err(WriteError::Vanished { path, what });
+        }
         let stored = self.layout().and_then(|layout| {
             let layout = self.with_room(layout, outcomes)?;
             self.put(&layout, task, outcomes)
         });
-        stored.map_err(|fault| failure(&self.path, fault))
+        stored.map_err(|fault| self.failure(fault))
+    }
+
+    fn failure(&self, fault: Fault) -> WriteError {
+        failure(&self.storage, &self.path, fault)
     }
 
     pub(super) fn layout(&self) -> Result<Layout, Fault> {
-        read(&self.folder, LAYOUT)?.ok_or_else(|| Fault::Short {
-            name: LAYOUT.to_owned(),
-        })
+        read(&self.storage, LAYOUT)?.ok_or_else(no_layout)
     }
 
     pub(super) fn holds(&self, layout: &Layout, task: usize) -> Result<bool, Fault> {
         let arrays = self.arrays(layout);
         let place = layout.region(task).place;
         let mark = arrays.text(MARK, Map::new())?;
-        Ok(self.folder.holds(&mark.chunk_key(&place)))
+        Ok(self.storage.size(&mark.chunk_key(&place))?.is_some())
+    }
+
+    /// The tasks that are stored.
+    pub(super) fn stored(&self, layout: &Layout) -> Result<BTreeSet<usize>, Fault> {
+        let arrays = self.arrays(layout);
+        let mark = arrays.text(MARK, Map::new())?;
+        let held = self.storage.held(&format!("{MARK}/"))?;
+        let is_held = |task: &usize| held.contains(&mark.chunk_key(&layout.region(*task).place));
+        Ok((0..layout.tasks()).filter(is_held).collect())
     }
 
     fn arrays<'a>(&'a self, layout: &'a Layout) -> Arrays<'a> {
@@ -172,40 +202,35 @@ impl Worker {
         if !grow(&mut layout.clone()) {
             return Ok(layout);
         }
-        // Others may have made it grow meanwhile: what counts is read under the lock. The system lets go of it when the
-        // process ends, however it ends.
-        let lock = File::options()
-            .write(true)
-            .create(true)
-            .truncate(false)
-            .open(self.root.join(LOCK))?;
-        lock.lock()?;
-        layout = self.layout()?;
-        if grow(&mut layout) {
-            let bytes = serde_json::to_vec(&layout)?;
-            self.folder.set(&StoreKey::new(LAYOUT)?, bytes.into())?;
-        }
+        // Others may have made it grow meanwhile: what counts is what is there now.
+        self.storage.change(&StoreKey::new(LAYOUT)?, &mut |bytes| {
+            layout = parsed(bytes)?.ok_or_else(no_layout)?;
+            let grown = grow(&mut layout).then(|| serde_json::to_vec(&layout));
+            Ok(grown.transpose()?.map(Bytes::from))
+        })?;
         Ok(layout)
     }
 
     fn put(&self, layout: &Layout, task: usize, outcomes: &[Outcome]) -> Result<(), Fault> {
         let region = layout.region(task);
-        for (name, _) in &layout.quantities {
-            if let Some(quantity) = Quantity::from_name(name) {
-                self.put_numbers(layout, &region, quantity, outcomes)?;
-            }
-        }
-        let mark = TEXTS.iter().position(|(name, _)| *name == MARK);
-        let mark = mark.map(|index| (index, MARK));
-        for (index, name) in texts_before_the_mark().chain(mark) {
+        self.storage.on_each(&layout.quantities, |(name, _)| {
+            Quantity::from_name(name).map_or(Ok(()), |quantity| {
+                self.put_numbers(layout, &region, quantity, outcomes)
+            })
+        })?;
+        let put = |(index, name): &(usize, &str)| {
             let mut block = vec![blank(name).to_owned(); layout.block()];
             for ((_, local), outcome) in region.variants.iter().zip(outcomes) {
-                texts(outcome)[index].clone_into(&mut block[*local]);
+                texts(outcome)[*index].clone_into(&mut block[*local]);
             }
             let array = self.arrays(layout).text(name, Map::new())?;
-            array.store_chunk_opt(&region.place, block, &every_chunk())?;
-        }
-        Ok(())
+            Ok(array.store_chunk_opt(&region.place, block, &every_chunk())?)
+        };
+        let texts: Vec<(usize, &str)> = texts_before_the_mark().collect();
+        self.storage.on_each(&texts, put)?;
+        // The mark is last: who finds it finds all others.
+        let mark = TEXTS.iter().position(|(name, _)| *name == MARK);
+        mark.map_or(Ok(()), |index| put(&(index, MARK)))
     }
 
     /// Writes a quantity: a chunk, or several where it is cut along time or labels.
@@ -359,23 +384,29 @@ fn count<'a>(outcomes: impl Iterator<Item = &'a Outcome>) -> Finished {
 }
 
 /// A file of the store, if it is there.
-fn read<T: serde::de::DeserializeOwned>(folder: &Folder, key: &str) -> Result<Option<T>, Fault> {
-    match folder.get(&StoreKey::new(key)?)? {
-        Some(bytes) => Ok(Some(serde_json::from_slice(&bytes)?)),
-        None => Ok(None),
+fn read<T: DeserializeOwned>(storage: &Storage, key: &str) -> Result<Option<T>, Fault> {
+    parsed(storage.read(&StoreKey::new(key)?)?)
+}
+
+fn parsed<T: DeserializeOwned>(bytes: Option<Bytes>) -> Result<Option<T>, Fault> {
+    let parsed = bytes.map(|bytes| serde_json::from_slice(&bytes));
+    Ok(parsed.transpose()?)
+}
+
+fn no_layout() -> Fault {
+    Fault::Short {
+        name: LAYOUT.to_owned(),
     }
 }
 
-fn failure(path: &Path, fault: Fault) -> WriteError {
-    if path.exists() {
-        WriteError::Store {
-            path: path.to_owned(),
+/// A fault with its place; that the store was taken away explains every other.
+fn failure(storage: &Storage, path: &Path, fault: Fault) -> WriteError {
+    let path = path.to_owned();
+    match storage.missing() {
+        None => WriteError::Store {
+            path,
             source: Box::new(fault),
-        }
-    } else {
-        WriteError::Vanished {
-            path: path.to_owned(),
-            what: "the result".into(),
-        }
+        },
+        Some(what) => WriteError::Vanished { path, what },
     }
 }
