@@ -1,6 +1,10 @@
 """The cost of a whole step, by drive."""
 
+import json
+
 import chaindrive as cd
+import provenance
+from older_registers import STORED
 from page import Page
 from stepping import Stretch, in_turn
 
@@ -51,15 +55,42 @@ def report(page: Page) -> None:
             for name, pairs in found.items()
         ],
     )
-    page.add(
-        "The library takes the widest registers that the processor has (AVX-512, AVX2, SSE2) and "
-        "cannot be told to take others: only one of them is measured on one machine.",
-        "",
-    )
+    other_registers(page)
     first = next(iter(found.values()))
     page.target(
         "whole Verlet step, four sprockets, over the yardstick",
         "≥ 5 × as fast",
         f"{first.faster:.2f} × ({first.scatter})",
         first.faster >= 5.0,
+    )
+
+
+def other_registers(page: Page) -> None:
+    """Write the table of builds that take other registers: as it was found, not now."""
+    stored = json.loads(STORED.read_text(encoding="utf-8"))
+    widest, *_ = stored.values()
+    page.add(
+        "The library takes the widest registers that the processor has (AVX-512, AVX2, SSE2) and "
+        "cannot be told to take others. What others do was found with builds that do not take "
+        "the wider ones, on a processor that has all: the first drive, its yardstick with all "
+        f"registers throughout, medians of {widest['pairs']} pairs. **Not measured now**; as of "
+        f"{widest['machine']['date']}.",
+    )
+    page.table(
+        ["registers", "ns", "yardstick over it", "least to greatest", "library"],
+        [
+            [
+                kind,
+                f"{row['ns']:.1f}",
+                f"{row['ratio']:.2f}",
+                row["scatter"],
+                row["machine"]["library"],
+            ]
+            for kind, row in stored.items()
+        ],
+    )
+    page.add(
+        f"On file: {provenance.told(widest['machine'])}. How they were built: "
+        "`benchmarks/report/older_registers.py`.",
+        "",
     )

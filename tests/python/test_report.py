@@ -66,6 +66,17 @@ def test_what_was_not_measured_now_says_when_it_was(page):
     assert stored["machine"]["commit"] in body
 
 
+def test_registers_that_this_processor_does_not_take_are_told_as_of_when(page):
+    _, text = page
+    stored = json.loads((REPORT / "older_registers.json").read_text(encoding="utf-8"))
+    assert list(stored) == ["AVX-512", "AVX2", "SSE2"]
+    for kind, row in stored.items():
+        told = next(line for line in text.splitlines() if line.startswith(f"| {kind} |"))
+        assert f"| {row['ratio']:.2f} | {row['scatter']} | {row['machine']['library']} |" in told
+        assert f"**Not measured now**; as of {row['machine']['date'][:10]}" in text
+        assert f"commit {row['machine']['commit']};" in text
+
+
 @pytest.fixture
 def yardstick(monkeypatch):
     """The module, with the folder of the report on the path for as long as the test takes."""
