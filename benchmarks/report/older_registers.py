@@ -3,7 +3,7 @@
 Run it as ``python benchmarks/report/older_registers.py``, on a processor with AVX-512. The library
 takes the widest registers that the processor has, when a system is built. So it is built three
 times from the sources as they are, in a temporary folder: as it is, and with the choice replaced.
-Each build is measured beside the yardstick, which keeps the registers of the processor. It takes
+Builds take turns, each beside the yardstick, which keeps the registers of the processor. It takes
 some fifteen minutes.
 """
 
@@ -26,7 +26,8 @@ BUILDS = {
     "AVX2": "pulp::x86::V3::try_new().map_or(pulp::Arch::Scalar, pulp::Arch::V3)",
     "SSE2": "pulp::Arch::Scalar",
 }
-PAIRS = 21
+# Pairs with the yardstick in a process, and processes of each build: builds take turns.
+PAIRS, ROUNDS = 7, 5
 
 
 def build(choice: str, sources: Path, wheels: Path) -> Path:
@@ -60,10 +61,8 @@ def measure() -> dict[str, Any]:
     drive = cd.scenes.marine_engine_bare().replace({"guides": []})
     pairs = in_turn(Yardstick(), {"": Stretch(drive).time}, PAIRS)[""]
     return {
-        "ns": pairs.ns,
-        "ratio": pairs.faster,
-        "scatter": pairs.scatter,
-        "pairs": PAIRS,
+        "own": pairs.own.tolist(),
+        "yardstick": pairs.yardstick.tolist(),
         "machine": provenance.machine(),
     }
 
@@ -81,14 +80,31 @@ def build_all(folder: Path) -> dict[str, Path]:
 
 
 def measure_all(built: dict[str, Path]) -> dict[str, Any]:
-    """Measure every build in a process of its own."""
+    """Measure every build in processes of its own; return what is stored."""
+    import numpy as np
+
+    from stepping import Pairs
+
+    rounds: dict[str, list[dict[str, Any]]] = {kind: [] for kind in built}
+    for _ in range(ROUNDS):
+        for kind, place in built.items():
+            command = [sys.executable, __file__, "--measure"]
+            environment = os.environ | {"PYTHONPATH": str(place)}
+            done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, check=True)
+            rounds[kind].append(json.loads(done.stdout))
     found = {}
-    for kind, place in built.items():
-        command = [sys.executable, __file__, "--measure"]
-        environment = os.environ | {"PYTHONPATH": str(place)}
-        done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, check=True)
-        found[kind] = {"choice": BUILDS[kind], **json.loads(done.stdout)}
-        print(f"{kind}: {found[kind]['ratio']:.2f} ({found[kind]['scatter']})")
+    for kind, rows in rounds.items():
+        times = ("own", "yardstick")
+        pairs = Pairs(*(np.concatenate([row[name] for row in rows]) for name in times))
+        print(f"{kind}: {pairs.faster:.2f} ({pairs.scatter})")
+        found[kind] = {
+            "choice": BUILDS[kind],
+            "ns": pairs.ns,
+            "ratio": pairs.faster,
+            "scatter": pairs.scatter,
+            "pairs": len(pairs.own),
+            "machine": rows[-1]["machine"],
+        }
     return found
 
 
