@@ -32,19 +32,8 @@ impl Linkage {
         loss
     }
 
-    /// Largest damping rate of a link by itself \[1/s\], its centre of mass e away from its middle.
-    ///
-    /// ```text
-    /// D ≤ b ℓ/m + b ℓ (ℓ²/12 + e²)/I
-    /// ```
+    /// Largest damping rate of a link by itself \[1/s\].
     pub(super) fn drag_rate(&self) -> f64 {
-        let links = self.bodies[..self.links].iter();
-        let rates = links.map(|body| {
-            let length = (body.arms[1] - body.arms[0]).norm();
-            let off = 0.25 * (body.arms[0] + body.arms[1]).norm_squared();
-            let turning = (length * length / 12.0 + off) / body.inertia;
-            self.drag * length * (1.0 / body.mass + turning)
-        });
-        rates.fold(0.0, f64::max)
+        self.drag * self.shapes.most_dragged
     }
 }

@@ -70,6 +70,14 @@ pub(crate) struct Shapes {
     pub(crate) swing: Vec<f64>,
     /// Inertia of the link that turns most easily \[kg m²\].
     pub(crate) least_inertia: f64,
+    /// Largest damping rate of a link by itself over its drag per length b \[m/kg\], its centre of mass e away from its middle.
+    ///
+    /// ```text
+    /// D/b ≤ ℓ/m + ℓ (ℓ²/12 + e²)/I
+    /// ```
+    pub(crate) most_dragged: f64,
+    /// Masses of the lightest link and the lightest free roller \[kg\]; infinite where there is none.
+    pub(crate) lightest: [f64; 2],
 }
 
 impl Shapes {
@@ -101,9 +109,19 @@ impl Shapes {
         let swing = |link: &super::Body| {
             (link.arms[1] - link.arms[0]).norm_squared() / (link.inertia * link.inertia)
         };
+        let dragged = |link: &super::Body| {
+            let length = (link.arms[1] - link.arms[0]).norm();
+            let off = 0.25 * (link.arms[0] + link.arms[1]).norm_squared();
+            length * (1.0 / link.mass + (length * length / 12.0 + off) / link.inertia)
+        };
         Self {
             swing: links.iter().map(swing).collect(),
             least_inertia: inertias.fold(f64::INFINITY, f64::min),
+            most_dragged: links.iter().map(dragged).fold(0.0, f64::max),
+            lightest: [links, &bodies[count..]].map(|bodies| {
+                let masses = bodies.iter().map(|body| body.mass);
+                masses.fold(f64::INFINITY, f64::min)
+            }),
             arms: [0, 1].map(|end| [all(&|link| link.arms[end].x), all(&|link| link.arms[end].y)]),
             mobility: shifted(&|link| 1.0 / link.mass),
             turning: shifted(&|link| 1.0 / link.inertia),

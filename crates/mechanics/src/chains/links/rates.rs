@@ -148,16 +148,9 @@ impl Linkage {
         {
             stiffness = stiffness.max(bearing.stiffness(SHALLOW));
         }
-        let link = self.bodies[..self.links]
-            .iter()
-            .map(|body| body.mass)
-            .fold(f64::INFINITY, f64::min);
+        let [link, roller] = self.shapes.lightest;
         let mut squared = 4.0 * stiffness / link;
         if let Some(free) = &self.free_rollers {
-            let roller = self.bodies[self.links..]
-                .iter()
-                .map(|body| body.mass)
-                .fold(f64::INFINITY, f64::min);
             squared = squared.max(2.0 * free.bearing.stiffness(SHALLOW) / roller);
         }
         squared

@@ -25,6 +25,8 @@ struct Line {
     mobile: [Vector3<f64>; 2],
     /// Entries over the wheels and tensioners, as they stand on the partner's side.
     border: [(usize, f64); 3],
+    /// J b over the chain's bodies.
+    right: f64,
     /// What the row weighs.
     weight: f64,
 }
@@ -88,7 +90,8 @@ impl Local {
                     let place = &mut self.order[linkage.home(element)];
                     let line = &mut self.lines[*place];
                     line.set(linkage, element, joint_state, direction, levers);
-                    let change = line.change(linkage, b);
+                    line.right = line.applied(b);
+                    let change = line.change(&b[linkage.coordinates()..]);
                     // One of nothing still stands in its place.
                     line.weight = element.step_weights(weights, change)[of].max(NOTHING);
                     *place += 1;
@@ -129,36 +132,17 @@ impl Local {
                 }
                 factors[i * count + i] += 1.0 / line.weight;
                 line.look_around::<R>(linkage, rows, link, &mut here[i]);
-                here[i][known] = line.applied(b);
+                here[i][known] = line.right;
             }
+            // A roller in its gap has a normal and a tangent. Where the compiler knows their number it needs no loops.
             let mut sum = [[0.0; C]; C];
-            for i in 0..count {
-                let pivot = factors[i * count + i];
-                if pivot.is_nan() || pivot <= 0.0 {
-                    return false;
-                }
-                let inverse = 1.0 / pivot;
-                let own = here[i];
-                for k in i + 1..count {
-                    let factor = factors[k * count + i] * inverse;
-                    for j in i + 1..=k {
-                        factors[k * count + j] -= factor * factors[j * count + i];
-                    }
-                    for (below, own) in here[k].iter_mut().zip(own) {
-                        *below -= factor * own;
-                    }
-                }
-                for k in i + 1..count {
-                    factors[k * count + i] *= inverse;
-                }
-                factors[i * count + i] = inverse;
-                // Not all of them: where their number is known, whole columns are gathered and scattered side by side.
-                for (sum, value) in sum[..known].iter_mut().zip(own) {
-                    let scaled = value * inverse;
-                    for (sum, own) in sum.iter_mut().zip(own) {
-                        *sum += scaled * own;
-                    }
-                }
+            let eliminated = match count {
+                1 => eliminate(1, known, factors, here, &mut sum),
+                2 => eliminate(2, known, factors, here, &mut sum),
+                _ => eliminate(count, known, factors, here, &mut sum),
+            };
+            if !eliminated {
+                return false;
             }
             joints.subtract::<R, C, B>(link, linkage.joint_behind(link), &sum);
         }
@@ -185,17 +169,77 @@ impl Local {
             let found = joints.around::<R, C>(link, linkage.joint_behind(link));
             let (here, rest) = around.split_at_mut(count);
             around = rest;
-            for i in (0..count).rev() {
-                let known: f64 = here[i].iter().zip(found).map(|(a, z)| a * z).sum();
-                let mut value = known * factors[i * count + i];
-                for k in i + 1..count {
-                    value -= factors[k * count + i] * here[k][columns];
-                }
-                here[i][columns] = value;
-                lines[i].apply(value, x);
+            match count {
+                1 => substitute(1, columns, factors, here, &found),
+                2 => substitute(2, columns, factors, here, &found),
+                _ => substitute(count, columns, factors, here, &found),
+            }
+            for (line, here) in lines.iter().zip(here).rev() {
+                line.apply(here[columns], x);
             }
             factors = &factors[count * count..];
         }
+    }
+}
+
+/// L and the inverse of D in place of `count` rows; adds what these rows give to the columns around them. False if a pivot vanishes.
+#[inline(always)]
+fn eliminate<const C: usize>(
+    count: usize,
+    known: usize,
+    factors: &mut [f64],
+    here: &mut [[f64; C]],
+    sum: &mut [[f64; C]; C],
+) -> bool {
+    let (factors, here) = (&mut factors[..count * count], &mut here[..count]);
+    for i in 0..count {
+        let pivot = factors[i * count + i];
+        if pivot.is_nan() || pivot <= 0.0 {
+            return false;
+        }
+        let inverse = 1.0 / pivot;
+        let own = here[i];
+        for k in i + 1..count {
+            let factor = factors[k * count + i] * inverse;
+            for j in i + 1..=k {
+                factors[k * count + j] -= factor * factors[j * count + i];
+            }
+            for (below, own) in here[k].iter_mut().zip(own) {
+                *below -= factor * own;
+            }
+        }
+        for k in i + 1..count {
+            factors[k * count + i] *= inverse;
+        }
+        factors[i * count + i] = inverse;
+        // Not all of them: where their number is known, whole columns are gathered and scattered side by side.
+        for (sum, value) in sum[..known].iter_mut().zip(own) {
+            let scaled = value * inverse;
+            for (sum, own) in sum.iter_mut().zip(own) {
+                *sum += scaled * own;
+            }
+        }
+    }
+    true
+}
+
+/// y of `count` rows in the column `columns`, from what is known around them.
+#[inline(always)]
+fn substitute<const C: usize>(
+    count: usize,
+    columns: usize,
+    factors: &[f64],
+    here: &mut [[f64; C]],
+    found: &[f64; C],
+) {
+    let (factors, here) = (&factors[..count * count], &mut here[..count]);
+    for i in (0..count).rev() {
+        let known: f64 = here[i].iter().zip(found).map(|(a, z)| a * z).sum();
+        let mut value = known * factors[i * count + i];
+        for k in i + 1..count {
+            value -= factors[k * count + i] * here[k][columns];
+        }
+        here[i][columns] = value;
     }
 }
 
@@ -227,6 +271,7 @@ impl Line {
         bodies: [(NOBODY, Vector3::new(0.0, 0.0, 0.0)); 2],
         mobile: [Vector3::new(0.0, 0.0, 0.0); 2],
         border: [(NOBODY, 0.0); 3],
+        right: 0.0,
         weight: 0.0,
     };
 
@@ -316,11 +361,10 @@ impl Line {
         }
     }
 
-    /// J b.
-    fn change(&self, linkage: &Linkage, b: &[f64]) -> f64 {
-        let wheels = &b[linkage.coordinates()..];
+    /// J b, that of the wheels included.
+    fn change(&self, wheels: &[f64]) -> f64 {
         let border = self.border.iter().filter(|(j, _)| *j != NOBODY);
-        self.applied(b) - border.map(|(j, value)| value * wheels[*j]).sum::<f64>()
+        self.right - border.map(|(j, value)| value * wheels[*j]).sum::<f64>()
     }
 
     /// J b over the chain's bodies.

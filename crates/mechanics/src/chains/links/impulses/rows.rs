@@ -136,7 +136,7 @@ impl Rows {
             let [bx, by, ax, ay] = arms(w, &joint_state.posture, start);
             let turn_before = bx * ty - by * tx + levers[0];
             let turn_after = ax * ty - ay * tx + levers[1];
-            let [before, after] = [start, start + 1].map(|at| load(w, known, at));
+            let [before, after] = [load(w, known, start), load(w, known, start + 1)];
             let change =
                 tx * (after[0] - before[0]) + ty * (after[1] - before[1]) + turn_after * after[2]
                     - turn_before * before[2];
