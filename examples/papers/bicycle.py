@@ -335,7 +335,13 @@ def rollers(page: Page, length: Length) -> None:
 
 
 STEPS = [8e-6, 4e-6, 2e-6, 1e-6, 5e-7, 2e-7]  # s
-NEVER = 1e-3  # m: deeper than any contact
+# Where contacts may begin, by the step [s]: a depth [m], or None for no limit.
+ANYWHERE, SPEED, DEPTH = "anywhere", "as deep as 1 m/s takes it", "at most 0.1 µm deep"
+LIMITS: Mapping[str, Callable[[float], float | None]] = {
+    ANYWHERE: lambda _: None,
+    SPEED: lambda step: 1.0 * step,
+    DEPTH: lambda _: 1e-7,
+}
 LOST = 0.1  # of the energy moved: more than that unaccounted for, and a run is distrusted
 
 
@@ -343,11 +349,11 @@ def steps(page: Page, length: Length) -> None:
     """Control the step where contacts begin: one pin that falls, and a chain of impacts."""
     figure, axes = plt.subplots(1, 2, figsize=(12, 4.6), layout="constrained")
     methods = [
-        ("implicit-damping", NEVER),
-        ("implicit-damping", None),
-        ("implicit-damping", 1e-7),
-        ("rk4", NEVER),
-        ("rk4", 1e-7),
+        ("implicit-damping", ANYWHERE),
+        ("implicit-damping", SPEED),
+        ("implicit-damping", DEPTH),
+        ("rk4", ANYWHERE),
+        ("rk4", DEPTH),
     ]
     # A thousandfold weight makes impacts of 2 m/s. A replicate falls a little deeper, and so begins
     # its contact at another place within a step.
@@ -364,12 +370,12 @@ def steps(page: Page, length: Length) -> None:
         + " |",
         "|---|" + "---|" * len(STEPS),
     ]
-    for method, depth in methods:
+    for method, limit in methods:
         errors = []
         for step in STEPS:
-            found = [rebound(pin, method, step, depth) for pin in pins]
+            found = [rebound(pin, method, step, LIMITS[limit](step)) for pin in pins]
             errors.append(100.0 * float(np.sqrt(np.mean((np.divide(found, exact) - 1.0) ** 2))))
-        name = f"{method}, contacts begin {begin(depth)}"
+        name = f"{method}, contacts begin {limit}"
         lines.append(f"| {name} | " + " | ".join(f"{error:.2g}" for error in errors) + " |")
         axes[0].loglog(1e6 * np.array(STEPS), errors, "o-", label=name)
     page.add("a pin that falls", "\n".join(lines))
@@ -391,19 +397,20 @@ def steps(page: Page, length: Length) -> None:
         "evaluations": ("evaluations [1000]", 1e3),
     }
     cases: dict[str, Case] = {}
-    worst: dict[tuple[float, float | None], np.ndarray] = {}
-    for step, depth in [
-        (5e-7, 1e-7),
-        (5e-7, NEVER),
-        (1e-6, NEVER),
-        (2e-6, NEVER),
-        (2e-6, None),
-        (2e-6, 1e-7),
-        (1e-6, 1e-7),
+    worst: dict[tuple[float, str], np.ndarray] = {}
+    for step, limit in [
+        (5e-7, DEPTH),
+        (5e-7, ANYWHERE),
+        (1e-6, ANYWHERE),
+        (2e-6, ANYWHERE),
+        (2e-6, SPEED),
+        (2e-6, DEPTH),
+        (1e-6, DEPTH),
     ]:
+        depth = LIMITS[limit](step)
         one = partial(if_it_ends, columns=columns, length=short, step=step, onset_depth=depth)
-        ((name, case),) = study({f"{1e6 * step:g} µs, {begin(depth)}": fast}, one).items()
-        worst[step, depth] = case["residual"]
+        ((name, case),) = study({f"{1e6 * step:g} µs, {limit}": fast}, one).items()
+        worst[step, limit] = case["residual"]
         lost = int((case["residual"] > LOST).sum())
         if lost:
             # What such a run bears and holds says nothing.
@@ -411,12 +418,12 @@ def steps(page: Page, length: Length) -> None:
             case |= {k: np.full_like(v, np.nan) for k, v in case.items() if k != "evaluations"}
         cases[name] = case
     page.add("a chain of impacts", table(cases, columns, "slack chain at 100 rad/s"))
-    for depth in (NEVER, 1e-7):
-        sizes = sorted(step for step, at in worst if at == depth)
-        for five in np.transpose([worst[step, depth] for step in sizes]):
-            colour = "C3" if depth == NEVER else "C2"
+    for limit in (ANYWHERE, DEPTH):
+        sizes = sorted(step for step, at in worst if at == limit)
+        for five in np.transpose([worst[step, limit] for step in sizes]):
+            colour = "C3" if limit == ANYWHERE else "C2"
             axes[1].plot(1e6 * np.array(sizes), 100.0 * five, "o-", color=colour, linewidth=0.8)
-        axes[1].plot([], [], "o-", color=colour, label=begin(depth))
+        axes[1].plot([], [], "o-", color=colour, label=limit)
     axes[1].set(
         xscale="log",
         yscale="log",
@@ -437,13 +444,6 @@ def if_it_ends(drive: cd.Drive, columns: Iterable[str], **options: Any) -> dict[
         return measure(drive, **options)
     except cd.IntegrationError:
         return dict.fromkeys(columns, np.nan) | {"residual": np.inf}
-
-
-def begin(depth: float | None) -> str:
-    """Say where contacts may begin."""
-    if depth is None:
-        return "as deep as 1 m/s takes it"
-    return "anywhere" if depth == NEVER else f"at most {1e6 * depth:g} µm deep"
 
 
 def rebound(drive: cd.Drive, method: str, step: float, depth: float | None) -> float:

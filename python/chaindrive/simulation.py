@@ -83,8 +83,7 @@ def simulate(
         Relative tolerance of the adaptive method [–].
     onset_depth
         Deepest penetration at which a contact may begin [m]: deeper steps are rejected and
-        shortened. Absent: contacts begin wherever a step lands, but with implicit damping no
-        deeper than an approach at 1 m/s takes them in a step.
+        shortened. Absent: contacts begin wherever a step lands.
     accuracy
         Largest relative error of the tension [–], such as 0.01: method, step and onset depth are
         chosen for it by short trials at the beginning of the run, the same ones every time. 0.01

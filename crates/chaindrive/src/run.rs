@@ -42,8 +42,7 @@ pub struct Run {
     /// Relative tolerance of the adaptive method.
     pub tolerance: f64,
     /// Deepest penetration at which a contact may begin \[m\]; deeper steps are rejected and
-    /// shortened. Absent: contacts begin wherever the step lands, but with implicit damping no deeper than
-    /// an approach at 1 m/s takes them in a step.
+    /// shortened. Absent: contacts begin wherever the step lands.
     pub onset_depth: Option<f64>,
     /// Contacts to log; none cost nothing.
     pub events: EventKinds,
@@ -79,13 +78,6 @@ const NUMBERS: [&str; 6] = [
 
 /// Steps of a run at most: at a microsecond each they would take eleven days.
 const MOST_STEPS: f64 = 1e12;
-
-/// Speed of approach \[m/s\] up to which a contact may begin wherever a step of implicit damping lands.
-///
-/// A pin strikes its bush for three microseconds, hardly longer than a step. What it has gained in depth when it is
-/// first seen inside is energy from nowhere; at the speeds of heavy impacts that feeds itself. The bicycle drive with a
-/// slack chain at 100 rad/s overflows without this, and closes its ledger to 2 % with it, at the same cost.
-const ONSET_SPEED: f64 = 1.0;
 
 impl Run {
     /// A run of reference quality: RK4 at a quarter of 1/ω of the stiffest mode, with contacts that
@@ -176,14 +168,6 @@ impl Run {
             table.insert("onset_depth".into(), depth.into());
         }
         table
-    }
-
-    /// Deepest penetration at which a contact may begin \[m\], if there is a limit.
-    pub fn onset_depth_with(&self, method: &Method) -> Option<f64> {
-        match method {
-            Method::ImplicitDamping { step } => self.onset_depth.or(Some(ONSET_SPEED * step)),
-            _ => self.onset_depth,
-        }
     }
 
     /// The method for a system, with a default step where none is given.

@@ -123,7 +123,7 @@ impl Simulation {
         let mut state = assembled.state();
         slow_enough(&system, &state)?;
         let method = run.method(&system);
-        system.set_onset_depth(run.onset_depth_with(&method));
+        system.set_onset_depth(run.onset_depth);
         system.log_events(run.events);
         system.forget_impacts();
         let stepper = method

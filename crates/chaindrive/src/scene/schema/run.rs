@@ -39,8 +39,7 @@ pub(crate) struct Run {
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
     pub(crate) tolerance: Option<Ratio>,
     /// Deepest penetration at which a contact may begin [m]: deeper steps are shortened; absent:
-    /// contacts begin wherever the step lands, but with implicit damping no deeper than an approach at 1 m/s takes them
-    /// in a step.
+    /// contacts begin wherever the step lands.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) onset_depth: Option<Length>,
