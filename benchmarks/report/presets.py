@@ -192,8 +192,10 @@ def answer(page: Page, what: str, found: dict[str, float], most: float) -> None:
     """Answer a target that every preset has to meet, by the one that is farthest from it."""
     known = {name: value for name, value in found.items() if not np.isnan(value)}
     kept = [name for name, value in known.items() if value <= most]
-    worst = max(known, key=lambda name: known[name])
-    told = f"up to {known[worst]:.3g} ({worst}); {len(kept)} of {len(found)} keep it"
+    told = f"{len(kept)} of {len(found)} keep it"
+    if known:
+        worst = max(known, key=lambda name: known[name])
+        told = f"up to {known[worst]:.3g} ({worst}); {told}"
     if unknown := sorted(set(found) - set(known)):
         told += f", nothing to hold it against for {', '.join(unknown)}"
     page.target(what, f"≤ {most:g} for every preset", told, len(kept) == len(found))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Sequence
 from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -42,7 +43,7 @@ class Objects:
         global _has_spoken
         if _is_mute:
             how = "ProcessPoolExecutor(mp_context=multiprocessing.get_context('spawn'))"
-            message = "a process that was forked cannot write into an object store, for it lacks "
+            message = "a process that was forked cannot speak to an object store, for it lacks "
             message += f"the threads that would; have workers spawned: {how}"
             raise SimulationError(message, "executor", how)
         _has_spoken = True
@@ -50,12 +51,6 @@ class Objects:
 
     def __str__(self) -> str:
         return repr(self._store)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Objects) and bool(self._store == other._store)
-
-    def __hash__(self) -> int:
-        return hash(str(self))
 
     def get(self, key: str) -> tuple[bytes, str] | None:
         """Return an object, and what tells it from others that were put under its key."""
@@ -96,14 +91,17 @@ class Objects:
             raise _short(error) from error
         return True
 
-    def erase(self, key: str) -> None:
-        """Remove an object, if it is there."""
-        try:
-            self.store.delete(key)
-        except FileNotFoundError:
-            pass
-        except Exception as error:
-            raise _short(error) from error
+    def erase(self, keys: Sequence[str]) -> None:
+        """Remove objects in their order, as far as they are there."""
+        # In between their order does not matter, and thousands go at a time.
+        for part in (keys[:1], keys[1:-1], keys[1:][-1:]):
+            try:
+                if part:
+                    self.store.delete(list(part))
+            except FileNotFoundError:
+                pass
+            except Exception as error:
+                raise _short(error) from error
 
     def list(self, prefix: str) -> list[str]:
         """Return the keys that begin so."""
@@ -129,12 +127,15 @@ def place_of(output: str | PathLike[str] | ObjectStore) -> Place:
         Object stores take the extra ``object-store``.
     """
     if isinstance(output, PathLike):
-        return fspath(output)
+        output = fspath(output)
     stores = "stores in object stores"
     if isinstance(output, str):
         if "://" not in output:
             return output
-        if not output.endswith(".zarr"):
+        if output.startswith("file://"):
+            message = f"{output} is a folder, which has a path: give that"
+            raise ParameterError(message, "output", "the path of the folder itself")
+        if not output.rstrip("/").endswith(".zarr"):
             message = f"{output}: the name of a Zarr store must end in .zarr"
             raise ParameterError(message, "output", "s3://bucket/name.zarr")
         try:

@@ -7,7 +7,6 @@ import time
 import warnings
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from functools import lru_cache
 from itertools import islice
 from typing import Any
 from uuid import uuid4
@@ -15,7 +14,7 @@ from uuid import uuid4
 import xarray as xr
 
 from chaindrive import _core
-from chaindrive.errors import DistrustedResultWarning, SimulationError
+from chaindrive.errors import DistrustedResultWarning, SimulationError, WriteError
 from chaindrive.extras import extra
 from chaindrive.objects import Objects, Place
 from chaindrive.results import _open
@@ -25,6 +24,9 @@ __all__ = ["into_store"]
 
 # Tasks that an executor has at a time: enough for hundreds of workers, few beside a large sweep.
 _AHEAD = 1024
+
+# The worker of the sweep whose tasks this process carries out.
+_opened: dict[str, _core.SweepWorker] = {}
 
 # Open files that hold claims of this process. A process that is forked inherits them, and would
 # keep a claim alive when this one is killed.
@@ -47,7 +49,13 @@ def into_store(
     else:
         is_there = os.path.lexists(place)
     if overwrite or not is_there:
-        store = _core.SweepStore.begin(place, core, overwrite, jobs)
+        try:
+            store = _core.SweepStore.begin(place, core, overwrite, jobs)
+        except WriteError:
+            # The same sweep may have been begun by somebody else while some variants were timed.
+            if overwrite or isinstance(place, str) or place.size("zarr.json") is None:
+                raise
+            store = _core.SweepStore.go_on(place, core)
     else:
         store = _core.SweepStore.go_on(place, core)
     descriptor = store.descriptor() if hasattr(store, "descriptor") else None
@@ -138,10 +146,14 @@ def _task(version: str, place: Place, sweep: str, task: int) -> tuple[int, int, 
     return _worker(place, sweep).carry_out(task)
 
 
-@lru_cache(maxsize=1)
 def _worker(place: Place, sweep: str) -> _core.SweepWorker:
     """Open a store, once in each process and for each call of `sweep`."""
-    return _core.SweepWorker(place)
+    worker = _opened.get(sweep)
+    if worker is None:
+        worker = _core.SweepWorker(place)
+        _opened.clear()
+        _opened[sweep] = worker
+    return worker
 
 
 def _let_go() -> None:

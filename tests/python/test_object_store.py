@@ -9,6 +9,7 @@ import sys
 import textwrap
 import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -166,6 +167,24 @@ def test_killed_and_resumed_no_variant_is_lost_twice_or_different(server, tmp_pa
     assert_same(cd.open_result(store), cd.sweep(ring(), design=design, **run))
 
 
+def test_ctrl_c_leaves_a_store_that_says_so(server, tmp_path):
+    """Requests to the store go on meanwhile, and none of them takes Ctrl-C for its own error."""
+    script = tmp_path / "script.py"
+    script.write_text(textwrap.dedent(SCRIPT))
+    store = bucket(server, "interrupted.zarr")
+    arguments = [sys.executable, str(script), server, "interrupted.zarr", "threads"]
+    with subprocess.Popen(arguments, stderr=subprocess.PIPE, text=True) as process:
+        while not chunks(store):
+            assert process.poll() is None
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        told = process.communicate(timeout=60)[1]
+    assert "KeyboardInterrupt" in told
+    assert "the same call goes on" in told
+    with pytest.warns(cd.ResultWarning, match="interrupted"):
+        assert 1 <= cd.open_result(store).attrs["finished"] < 120
+
+
 def test_workers_that_were_forked_are_told_of(server, tmp_path):
     """They would wait for ever: threads that speak to the store are not inherited."""
     script = tmp_path / "script.py"
@@ -184,6 +203,10 @@ def test_what_cannot_hold_a_sweep_is_refused_with_a_reason(server, tmp_path):
     assert "Debug source" not in str(caught.value)
     with pytest.raises(cd.ParameterError, match=r"must end in \.zarr"):
         cd.sweep(ring(), SPEEDS, **RING, output="s3://sweeps/x")
+    with pytest.raises(cd.WriteError, match="an address and no folder"):
+        cd.sweep(ring(), SPEEDS, **RING, output=Path("s3://sweeps/x.zarr"))
+    with pytest.raises(cd.ParameterError, match="which has a path"):
+        cd.sweep(ring(), SPEEDS, **RING, output="file:///tmp/x.zarr")
     with pytest.raises(cd.ParameterError, match="gopher"):
         cd.sweep(ring(), SPEEDS, **RING, output="gopher://sweeps/x.zarr")
     with pytest.raises(cd.ParameterError, match="which has a path"):

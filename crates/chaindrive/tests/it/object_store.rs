@@ -101,8 +101,11 @@ impl Objects for InMemory {
         Ok(true)
     }
 
-    fn erase(&self, key: &str) -> io::Result<()> {
-        self.held().0.remove(key);
+    fn erase(&self, keys: &[String]) -> io::Result<()> {
+        let mut held = self.held();
+        for key in keys {
+            held.0.remove(key);
+        }
         Ok(())
     }
 
@@ -254,14 +257,10 @@ fn a_sweep_that_was_broken_off_goes_on() -> Checked {
         memory.room.store(usize::MAX, Ordering::SeqCst);
         let mut store = match SweepStore::go_on_in(&objects, &sweep) {
             Ok(store) => store,
+            // It had not been laid out: the place is free again.
             Err(WriteError::Foreign { .. }) => {
-                // Nobody knows whether who began it still lives, so that only the user can say.
-                let again = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep);
-                assert!(
-                    matches!(again, Err(WriteError::HalfBegun { .. })),
-                    "{again:?}"
-                );
-                SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Replace)?
+                assert!(objects.list("")?.is_empty());
+                SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep)?
             }
             Err(other) => return Err(other.into()),
         };
@@ -310,7 +309,7 @@ fn a_worker_of_an_earlier_sweep_writes_no_more() -> Checked {
     let sweep = sweep()?;
     let memory = InMemory::new();
     let objects: Arc<dyn Objects> = memory.clone();
-    let first = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep)?;
+    let mut first = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep)?;
     let worker = Worker::open_in(&objects)?;
     let never = AtomicBool::new(false);
     let refused = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep);
@@ -318,7 +317,14 @@ fn a_worker_of_an_earlier_sweep_writes_no_more() -> Checked {
         matches!(refused, Err(WriteError::Exists { .. })),
         "{refused:?}"
     );
-    let second = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Replace)?;
+    let vary = [(
+        "chain.start.speed".to_owned(),
+        ["300", "310"]
+            .map(|it| Setting::Text(it.to_owned()))
+            .to_vec(),
+    )];
+    let other = Sweep::new(&Scene::preset("spinning_ring")?, &vary, &[])?;
+    let second = SweepStore::begin_in(&objects, &other, &sample(&other), Existing::Replace)?;
     let before = memory.contents();
     let outcome = sweep.carry_out(5, &never);
     let refused = worker.store(5, &[outcome]);
@@ -327,11 +333,54 @@ fn a_worker_of_an_earlier_sweep_writes_no_more() -> Checked {
         "{refused:?}"
     );
     // Nor does who hands out its tasks.
+    let told = first.finish();
+    assert!(matches!(told, Err(WriteError::Vanished { .. })));
     drop(first);
     assert_eq!(memory.contents(), before);
     assert_eq!(memory.attribute("status"), Some("running".into()));
     drop(second);
     assert_eq!(memory.attribute("status"), Some("failed".into()));
+    Ok(())
+}
+
+/// Who died while it laid a sweep out has left an identity, and nobody but the user knows that it died.
+#[test]
+fn what_was_begun_and_not_laid_out_is_replaced_on_demand() -> Checked {
+    let sweep = sweep()?;
+    let memory = whole(&sweep)?;
+    let objects: Arc<dyn Objects> = memory.clone();
+    objects.erase(&["zarr.json".to_owned()])?;
+    let again = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep);
+    assert!(
+        matches!(again, Err(WriteError::HalfBegun { .. })),
+        "{again:?}"
+    );
+    let mut again = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Replace)?;
+    again.run(Some(2), |_| Go::On)?;
+    let (tally, _) = again.finish()?;
+    assert_eq!(tally.finished, 12);
+    Ok(())
+}
+
+#[test]
+fn a_sweep_that_was_copied_from_a_disk_goes_on() -> Checked {
+    let sweep = sweep()?;
+    let folder = tempfile::tempdir()?;
+    let path = folder.path().join("sweep.zarr");
+    let store = SweepStore::begin(&path, &sweep, &sample(&sweep), Existing::Keep)?;
+    drop(store);
+    let memory = InMemory::new();
+    let objects: Arc<dyn Objects> = memory.clone();
+    for (key, bytes) in files(&path)? {
+        objects.put(&key, &bytes)?;
+    }
+    objects.put("zarr.json", &std::fs::read(path.join("zarr.json"))?)?;
+    let mut store = SweepStore::go_on_in(&objects, &sweep)?;
+    assert_eq!(store.open_tasks()?.len(), 11);
+    store.run(Some(2), |_| Go::On)?;
+    let (tally, _) = store.finish()?;
+    assert_eq!(tally.finished, 12);
+    assert_eq!(memory.attribute("status"), Some("complete".into()));
     Ok(())
 }
 
@@ -345,8 +394,19 @@ fn what_is_not_a_sweep_of_chaindrive_stays() -> Checked {
         let refused = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), existing);
         assert!(refused.is_err());
     }
-    objects.erase("zarr.json")?;
-    objects.erase("identity")?;
+    objects.erase(&["zarr.json".to_owned()])?;
+    let refused = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Replace);
+    assert!(
+        matches!(refused, Err(WriteError::Foreign { .. })),
+        "{refused:?}"
+    );
+    objects.put("identity", b"of somebody else")?;
+    let refused = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Replace);
+    assert!(
+        matches!(refused, Err(WriteError::Foreign { .. })),
+        "{refused:?}"
+    );
+    objects.erase(&["identity".to_owned()])?;
     let refused = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Replace);
     assert!(
         matches!(refused, Err(WriteError::Foreign { .. })),

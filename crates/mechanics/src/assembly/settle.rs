@@ -23,7 +23,7 @@ use crate::{AssemblyError, Motion};
 const CONVERGED: f64 = 1e-7;
 /// And what is accepted where the iteration ends without getting there.
 const ACCEPTED: f64 = 1e-3;
-/// Iterations after which an accepted state is taken as it is.
+/// Iterations after which an accepted state is taken as it is, counted from that state where it is found later.
 const MOST: usize = 600;
 /// Iterations after which none is to be expected: ten times as many (assumed). Chains with play under load walk around their
 /// sprockets until every roller has found its tooth; 1.6 kN on a bicycle's took about a thousand.
@@ -173,14 +173,17 @@ fn relax(system: &mut System, q: &mut [f64], typical: f64) -> Balance {
     let mut reach = 10.0 * scale;
     let mut iterations = 0;
     let mut trial = q.to_vec();
-    let most = |residual: f64| {
-        if residual < ACCEPTED {
-            MOST
-        } else {
-            MOST_TO_BE_ACCEPTED
-        }
+    let mut accepted = None;
+    let most = |accepted: Option<usize>| match accepted {
+        None => MOST_TO_BE_ACCEPTED,
+        Some(..=MOST) => MOST,
+        // As many again as a drive near its equilibrium has from the start.
+        Some(late) => late + MOST,
     };
-    while residual > CONVERGED && iterations < most(best.1) {
+    while residual > CONVERGED && iterations < most(accepted) {
+        if best.1 < ACCEPTED {
+            accepted.get_or_insert(iterations);
+        }
         iterations += 1;
         let weight = reach * reach;
         let mut step: Vec<f64> = a.iter().map(|a| a * weight).collect();

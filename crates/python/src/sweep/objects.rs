@@ -1,6 +1,7 @@
 //! Object stores through the Python package that speaks to them, which brings credentials, retries and regions along.
 
 use std::io;
+use std::thread;
 
 use chaindrive::record::{Object, Objects};
 use pyo3::prelude::*;
@@ -11,9 +12,23 @@ use pyo3::types::PyBytes;
 pub(super) struct InPython(pub(super) Py<PyAny>);
 
 impl InPython {
-    fn ask<T>(&self, act: impl FnOnce(&Bound<'_, PyAny>) -> PyResult<T>) -> io::Result<T> {
-        let answer = Python::attach(|py| act(self.0.bind(py)));
-        answer.map_err(|error| Python::attach(|py| io::Error::other(error.value(py).to_string())))
+    /// Asks on a thread of its own: on the main thread an answer might be Ctrl-C, which is not for the store to hear. The caller
+    /// must not hold the interpreter's lock.
+    fn ask<T: Send>(
+        &self,
+        act: impl FnOnce(&Bound<'_, PyAny>) -> PyResult<T> + Send,
+    ) -> io::Result<T> {
+        let ask = || {
+            Python::attach(|py| {
+                let answer = act(self.0.bind(py));
+                answer.map_err(|error| io::Error::other(error.value(py).to_string()))
+            })
+        };
+        thread::scope(|scope| {
+            let answer = thread::Builder::new().spawn_scoped(scope, ask)?;
+            let answer = answer.join();
+            answer.unwrap_or_else(|_| Err(io::Error::other("a request to the store panicked")))
+        })
     }
 }
 
@@ -47,8 +62,8 @@ impl Objects for InPython {
         })
     }
 
-    fn erase(&self, key: &str) -> io::Result<()> {
-        self.ask(|it| it.call_method1("erase", (key,)).map(drop))
+    fn erase(&self, keys: &[String]) -> io::Result<()> {
+        self.ask(|it| it.call_method1("erase", (keys,)).map(drop))
     }
 
     fn list(&self, prefix: &str) -> io::Result<Vec<String>> {

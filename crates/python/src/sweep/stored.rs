@@ -99,15 +99,15 @@ impl SweepStore {
         Ok(Self(Mutex::new(Some(store.or_raise()?))))
     }
 
-    /// The path for workers.
-    fn place(&self) -> PyResult<PathBuf> {
-        self.with(|store| Ok(store.place().to_owned()))
+    /// The path for workers, of a store on disk.
+    fn place(&self, py: Python<'_>) -> PyResult<PathBuf> {
+        py.detach(|| self.with(|store| Ok(store.place().to_owned())))
     }
 
     /// Number of the open file that holds the claim, for processes that are forked; None in object stores.
     #[cfg(unix)]
-    fn descriptor(&self) -> PyResult<Option<i32>> {
-        self.with(|store| Ok(store.descriptor()))
+    fn descriptor(&self, py: Python<'_>) -> PyResult<Option<i32>> {
+        py.detach(|| self.with(|store| Ok(store.descriptor())))
     }
 
     /// Numbers of the tasks that are not stored.
@@ -116,8 +116,8 @@ impl SweepStore {
     }
 
     /// Number of variants that are stored.
-    fn stored(&self) -> PyResult<usize> {
-        self.with(|store| Ok(store.stored()))
+    fn stored(&self, py: Python<'_>) -> PyResult<usize> {
+        py.detach(|| self.with(|store| Ok(store.stored())))
     }
 
     /// Takes the counts of a task that a worker stored.
@@ -183,6 +183,13 @@ impl SweepStore {
     fn close(&self, py: Python<'_>) {
         // Last words may have to go through the interpreter, on any thread.
         py.detach(|| drop(self.inner().take()));
+    }
+}
+
+impl Drop for SweepStore {
+    /// Last words may have to go through the interpreter, on another thread.
+    fn drop(&mut self) {
+        Python::attach(|py| py.detach(|| drop(self.inner().take())));
     }
 }
 

@@ -2,8 +2,8 @@
 //!
 //! Nobody can see there whether a writer lives, so there is no claim. What takes its place:
 //!
-//! - the object [`IDENTITY`], which only one can be the first to put: who does, begins the store. Whoever writes looks first
-//!   whether it is still his, and leaves a place alone where another store has been begun meanwhile;
+//! - the object [`IDENTITY`], which only one can be the first to put: who does, begins the store. Who stores a task or tells how far the
+//!   sweep is looks first whether it is still his, and leaves a place alone where another store has been begun meanwhile;
 //! - changes on condition: the layout is put only where nobody has put another one since it was read;
 //! - the group document comes last, when all that it lists is there.
 
@@ -21,6 +21,9 @@ use super::files::{Change, Files};
 
 /// The object that tells one store from another that is begun in its place later.
 pub(super) const IDENTITY: &str = "identity";
+
+/// Begins every identity.
+const MARK: &str = "sweep of chaindrive ";
 
 /// Requests at a time: the answer of an object store takes some 10 to 50 ms (assumed), and a task some sixty of them.
 const AT_A_TIME: usize = 16;
@@ -69,11 +72,11 @@ pub trait Objects: fmt::Debug + Send + Sync {
     /// The store refuses, or knows no conditions.
     fn put_if(&self, key: &str, bytes: &[u8], tag: Option<&str>) -> io::Result<bool>;
 
-    /// Removes an object, if it is there.
+    /// Removes objects in their order, as far as they are there.
     ///
     /// # Errors
     /// The store refuses.
-    fn erase(&self, key: &str) -> io::Result<()>;
+    fn erase(&self, keys: &[String]) -> io::Result<()>;
 
     /// Keys that begin so; the prefix is empty or ends in a slash.
     ///
@@ -95,9 +98,19 @@ impl Bucket {
     pub(super) fn begin(objects: &Arc<dyn Objects>) -> io::Result<Option<Self>> {
         // Keys of hashing are drawn by lot.
         let lots = [(); 2].map(|()| RandomState::new().hash_one(std::process::id()));
-        let identity = format!("{:016x}{:016x}\n", lots[0], lots[1]).into_bytes();
-        let first = objects.put_if(IDENTITY, &identity, None)?;
+        let identity = format!("{MARK}{:016x}{:016x}\n", lots[0], lots[1]).into_bytes();
+        let mut first = objects.put_if(IDENTITY, &identity, None)?;
+        if !first {
+            // Where the answer to a first try was lost, a second one finds its own identity.
+            let found = objects.get(IDENTITY)?;
+            first = found.is_some_and(|object| object.bytes == identity);
+        }
         first.then(|| Self::of(objects, identity)).transpose()
+    }
+
+    /// Whether this is the identity of a store of this program.
+    pub(super) fn is_identity(bytes: &[u8]) -> bool {
+        bytes.starts_with(MARK.as_bytes())
     }
 
     /// A store that was begun; none where there is none.
@@ -132,7 +145,7 @@ impl Files for Bucket {
     }
 
     fn remove(&self, key: &StoreKey) -> Result<(), StorageError> {
-        Ok(self.objects.erase(key.as_str())?)
+        Ok(self.objects.erase(&[key.to_string()])?)
     }
 
     fn held(&self, prefix: &str) -> Result<BTreeSet<StoreKey>, StorageError> {

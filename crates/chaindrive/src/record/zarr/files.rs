@@ -31,6 +31,12 @@ pub(super) trait Files: Debug + Send + Sync {
     /// Removes a file, if it is there.
     fn remove(&self, key: &StoreKey) -> Result<(), StorageError>;
 
+    /// Removes all files.
+    fn remove_all(&self) -> Result<(), StorageError> {
+        let all = self.held("")?;
+        all.iter().try_for_each(|key| self.remove(key))
+    }
+
     /// All files whose names begin so; the prefix is empty or ends in a slash.
     fn held(&self, prefix: &str) -> Result<BTreeSet<StoreKey>, StorageError>;
 

@@ -176,7 +176,7 @@ impl State {
                 self.folders.insert(place);
             } else if is_staged(&name) {
                 fs::remove_file(entry.path())?;
-            } else if let Ok(key) = StoreKey::new(name) {
+            } else if let Some(key) = key_of(&place) {
                 self.files.insert(key);
             }
         }
@@ -252,6 +252,12 @@ fn if_there<T>(found: io::Result<T>) -> io::Result<Option<T>> {
     }
 }
 
+/// Key of a file, given from the root: slashes between its parts on every system.
+fn key_of(place: &Path) -> Option<StoreKey> {
+    let parts: Vec<_> = place.iter().map(|part| part.to_string_lossy()).collect();
+    StoreKey::new(parts.join("/")).ok()
+}
+
 /// Adds the names of all files in a folder, given from the root, but for those that are on their way.
 fn gather(root: &Path, within: &Path, found: &mut BTreeSet<StoreKey>) -> io::Result<()> {
     for entry in if_there(fs::read_dir(root.join(within)))?
@@ -260,10 +266,9 @@ fn gather(root: &Path, within: &Path, found: &mut BTreeSet<StoreKey>) -> io::Res
     {
         let entry = entry?;
         let place = within.join(entry.file_name());
-        let name = place.to_string_lossy();
         if entry.file_type()?.is_dir() {
             gather(root, &place, found)?;
-        } else if let (false, Ok(key)) = (is_staged(&name), StoreKey::new(name)) {
+        } else if let (false, Some(key)) = (is_staged(&place.to_string_lossy()), key_of(&place)) {
             found.insert(key);
         }
     }

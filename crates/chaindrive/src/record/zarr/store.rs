@@ -60,7 +60,10 @@ impl Store {
                 path: path.to_owned(),
             });
         }
-        if path.to_string_lossy().contains("://") {
+        // `s3://bucket`, or `s3:/bucket` where a path was made of it; `C:` is a drive.
+        let first = path.components().next();
+        let first = first.map(|it| it.as_os_str().to_string_lossy().into_owned());
+        if first.is_some_and(|it| it.len() > 2 && it.ends_with(':')) {
             return Err(WriteError::Address {
                 path: path.to_owned(),
             });
@@ -335,6 +338,10 @@ impl Store {
         let mut document = self.last.clone();
         let attributes = &mut document.attributes;
         if attributes.is_empty() {
+            // On a disk it was begun beside its place. Elsewhere the place would stay taken.
+            if self.disk.is_none() && self.storage.missing().is_none() {
+                let _ = self.storage.remove_all();
+            }
             return;
         }
         attributes.insert("status".into(), failed.status().into());

@@ -60,15 +60,34 @@ pub(super) fn clear(
     }
     let names = keys.iter().filter_map(|key| key.split('/').next());
     let names: BTreeSet<String> = names.map(str::to_owned).collect();
-    let half_begun = names.contains(IDENTITY) && !names.contains(GROUP);
-    if !half_begun {
+    let identity = objects.get(IDENTITY).map_err(io)?;
+    let is_ours = identity.is_some_and(|object| Bucket::is_identity(&object.bytes));
+    let path = || asked.to_owned();
+    if is_ours && !names.contains(GROUP) {
+        // Begun, and not laid out: nobody has listed the arrays, but they look like arrays.
+        let part = |key: &String| {
+            let rest = key.split_once('/').map_or("", |(_, rest)| rest);
+            key == IDENTITY
+                || variants::FILES.contains(&key.as_str())
+                || rest == GROUP
+                || rest == "c"
+                || rest.starts_with("c/")
+        };
+        if let Some(stranger) = keys.iter().find(|key| !part(key)) {
+            let found = format!("`{stranger}` is not of chaindrive");
+            return Err(foreign(asked, &found));
+        }
+        if existing == Existing::Keep {
+            return Err(WriteError::HalfBegun { path: path() });
+        }
+    } else {
         let text = objects.get(GROUP).map_err(io)?;
         let group = document(asked, text.as_ref().map(|object| object.bytes.as_slice()))?;
         check_names(asked, &names, &group, existing)?;
-    } else if existing == Existing::Keep {
-        return Err(WriteError::HalfBegun {
-            path: asked.to_owned(),
-        });
+        // Nobody can see whether a torso is left or in work.
+        if existing == Existing::Keep {
+            return Err(WriteError::Exists { path: path() });
+        }
     }
     // Readers find nothing as soon as the first is gone, and nobody begins in this place before the last is.
     keys.sort_by_key(|key| match key.as_str() {
@@ -76,14 +95,19 @@ pub(super) fn clear(
         IDENTITY => 2,
         _ => 1,
     });
-    keys.iter()
-        .try_for_each(|key| objects.erase(key))
-        .map_err(io)
+    objects.erase(&keys).map_err(io)
 }
 
-/// A store that was begun in an object store.
+/// A store that was begun in an object store, or copied there from a disk.
 pub(super) fn bucket(asked: &Path, objects: &Arc<dyn Objects>) -> Result<Bucket, WriteError> {
-    let found = Bucket::open(objects).map_err(|source| WriteError::Io {
+    let found = Bucket::open(objects).and_then(|found| match found {
+        None if objects.size(variants::RECIPE)?.is_some() => {
+            Bucket::begin(objects)?;
+            Bucket::open(objects)
+        }
+        found => Ok(found),
+    });
+    let found = found.map_err(|source| WriteError::Io {
         path: asked.to_owned(),
         source,
     })?;

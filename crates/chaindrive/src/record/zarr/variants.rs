@@ -1,4 +1,4 @@
-//! A sweep on disk that many write: every task puts its own chunk of every array in place.
+//! A sweep in a store that many write: every task puts its own chunk of every array in place.
 //!
 //! ```text
 //! sweep.zarr/
@@ -38,7 +38,7 @@ pub use worker::{Finished, Worker};
 
 /// Files of a sweep beside its arrays.
 pub(super) const FILES: [&str; 3] = [RECIPE, LAYOUT, LOCK];
-const RECIPE: &str = "sweep.json";
+pub(super) const RECIPE: &str = "sweep.json";
 const LAYOUT: &str = "layout.json";
 const LOCK: &str = "layout.lock";
 

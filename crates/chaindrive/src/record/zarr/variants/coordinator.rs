@@ -342,6 +342,11 @@ impl SweepStore {
     }
 
     fn tell(&mut self, ending: &Ending) -> Result<(), WriteError> {
+        // In another's store nothing is laid.
+        if let Some(what) = self.store.storage().missing() {
+            let path = self.store.path().to_owned();
+            return Err(WriteError::Vanished { path, what });
+        }
         let layout = self.worker.layout();
         let layout = layout.map_err(|fault| self.store.fault(fault))?;
         if layout != self.told {
