@@ -1,6 +1,8 @@
 """Sweeps in an object store: the bits of a sweep in memory, whoever computes or dies."""
 
+import contextlib
 import multiprocessing
+import os
 import pickle
 import signal
 import socket
@@ -20,7 +22,7 @@ pytest.importorskip("zarr")
 stores = pytest.importorskip("obstore.store")
 moto = pytest.importorskip("moto.server")
 
-from test_sweep_store import RING, assert_same, ring  # noqa: E402
+from test_sweep_store import RING, assert_same, children, ring  # noqa: E402
 
 # A task a variant: the server answers one request after the other.
 SPEEDS = {"chain.start.speed": np.linspace(300.0, 400.0, 4), "chain.mass": ["8 g", "9 g"]}
@@ -152,7 +154,12 @@ def test_killed_and_resumed_no_variant_is_lost_twice_or_different(server, tmp_pa
         while process.poll() is None and len(chunks(store)) < before + 1:
             time.sleep(0.01)
         if killed < 3 and process.poll() is None:
+            # Workers outlive a coordinator that was killed, and wait for it.
+            orphans = children(process.pid)
             process.send_signal(signal.SIGKILL)
+            for orphan in orphans:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(orphan, signal.SIGKILL)
             killed += 1
         process.wait(timeout=120)
         for path, contents in chunks(store).items():
