@@ -10,7 +10,7 @@ import subprocess
 import sys
 import textwrap
 import time
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +22,7 @@ pytest.importorskip("zarr")
 stores = pytest.importorskip("obstore.store")
 moto = pytest.importorskip("moto.server")
 
-from test_sweep_store import RING, assert_same, children, ring  # noqa: E402
+from test_sweep_store import RING, assert_same, children, cluster, local_executors, ring  # noqa: E402
 
 # A task a variant: the server answers one request after the other.
 SPEEDS = {"chain.start.speed": np.linspace(300.0, 400.0, 4), "chain.mass": ["8 g", "9 g"]}
@@ -52,22 +52,13 @@ def bucket(server, prefix, name="sweeps"):
     return stores.S3Store(name, prefix=prefix, endpoint=server, client_options=options, **ACCOUNT)
 
 
-def executors():
-    fresh = multiprocessing.get_context("spawn")
-    yield "threads of the core", None
-    with ThreadPoolExecutor(2) as executor:
-        yield "threads", executor
-    with ProcessPoolExecutor(2, mp_context=fresh) as executor:
-        yield "processes", executor
-
-
 @pytest.fixture(scope="module")
 def in_memory():
     return cd.sweep(ring(), SPEEDS, **RING)
 
 
 def test_every_executor_stores_the_bits_of_the_sweep_in_memory(server, in_memory):
-    for number, (name, executor) in enumerate(executors()):
+    for number, (name, executor) in enumerate(local_executors()):
         store = bucket(server, f"{number}.zarr")
         result = cd.sweep(ring(), SPEEDS, **RING, output=store, executor=executor)
         assert_same(result, in_memory)
@@ -96,14 +87,7 @@ def test_an_address_is_enough(server, in_memory, monkeypatch):
 
 
 def test_a_cluster_writes_into_a_bucket(server, in_memory, tmp_path):
-    distributed = pytest.importorskip("distributed")
-    here = {"n_workers": 2, "threads_per_worker": 1, "processes": True, "host": "127.0.0.1"}
-    here |= {"dashboard_address": None, "local_directory": tmp_path / "dask"}
-    with (
-        distributed.LocalCluster(**here) as cluster,
-        distributed.Client(cluster) as client,
-        client.get_executor() as executor,
-    ):
+    with cluster(tmp_path) as executor:
         store = bucket(server, "dask.zarr")
         result = cd.sweep(ring(), SPEEDS, **RING, output=store, executor=executor)
     assert_same(result, in_memory)
@@ -213,7 +197,7 @@ def test_what_cannot_hold_a_sweep_is_refused_with_a_reason(server, tmp_path):
     with pytest.raises(cd.WriteError, match="an address and no folder"):
         cd.sweep(ring(), SPEEDS, **RING, output=Path("s3://sweeps/x.zarr"))
     with pytest.raises(cd.ParameterError, match="which has a path"):
-        cd.sweep(ring(), SPEEDS, **RING, output="file:///tmp/x.zarr")
+        cd.sweep(ring(), SPEEDS, **RING, output=(tmp_path / "x.zarr").as_uri())
     with pytest.raises(cd.ParameterError, match="gopher"):
         cd.sweep(ring(), SPEEDS, **RING, output="gopher://sweeps/x.zarr")
     with pytest.raises(cd.ParameterError, match="which has a path"):

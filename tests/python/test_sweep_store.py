@@ -120,20 +120,31 @@ def test_a_wrong_table_is_refused_before_anything_runs(vary, design, error, word
         cd.sweep(marine(), vary, design=design, until=1e-3)
 
 
-def executors(tmp_path):
+def local_executors():
     fresh = multiprocessing.get_context("spawn")
     yield "threads of the core", None
     with ThreadPoolExecutor(2) as executor:
         yield "threads", executor
     with ProcessPoolExecutor(2, mp_context=fresh) as executor:
         yield "processes", executor
+
+
+@contextlib.contextmanager
+def cluster(tmp_path):
+    """An executor of a Dask cluster of two processes."""
     distributed = pytest.importorskip("distributed")
     here = {"n_workers": 2, "threads_per_worker": 1, "processes": True, "host": "127.0.0.1"}
     here |= {"dashboard_address": None, "local_directory": tmp_path / "dask"}
     with distributed.LocalCluster(**here) as cluster, distributed.Client(cluster) as client:
         assert len(set(client.run(os.getpid).values()) - {os.getpid()}) == 2
         with client.get_executor() as executor:
-            yield "a Dask cluster of two processes", executor
+            yield executor
+
+
+def executors(tmp_path):
+    yield from local_executors()
+    with cluster(tmp_path) as executor:
+        yield "a Dask cluster of two processes", executor
 
 
 def test_every_executor_stores_the_bits_of_the_sweep_in_memory(in_memory, tmp_path):

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use chaindrive::{Channel, Flow, Run, Scene, Simulation};
 use chaindrive_contact::Law;
-use chaindrive_mechanics::{ChainModel, Joint, Surface};
+use chaindrive_mechanics::{ChainModel, Joint, Observation, Surface};
 
 use crate::dynamics::{self, pairs};
 
@@ -278,6 +278,17 @@ fn joints_without_play_are_those_of_the_elastic_chain() {
     );
 }
 
+/// A drive as statics leaves it.
+fn at_rest(scene: &Scene) -> Observation {
+    let run = Run {
+        until: 1e-6,
+        every: 1e-6,
+        ..Run::default()
+    };
+    let mut simulation = Simulation::start(&scene.drive().unwrap(), &run).unwrap();
+    simulation.next_sample().unwrap().unwrap().clone()
+}
+
 /// Play lets a loaded chain walk around its sprockets before it holds, farther the harder it is pulled, up to loads above its breaking load: statics finds
 /// the tight side that the torque asks for, and that of the same chain without play. Torque over pitch radius is the authority; a tenth covers the polygon,
 /// the weight and the first teeth.
@@ -290,14 +301,8 @@ fn chains_with_play_settle_under_any_load() {
         let loose = bicycle.replace("sprockets.rear.load", &load).unwrap();
         let rigid = loose.replace("chain.model", "particles").unwrap();
         let tight = |scene: &Scene| {
-            let run = Run {
-                until: 1e-6,
-                every: 1e-6,
-                ..Run::default()
-            };
-            let mut simulation = Simulation::start(&scene.drive().unwrap(), &run).unwrap();
-            let sample = simulation.next_sample().unwrap().unwrap();
-            sample.span_tension.iter().copied().fold(0.0, f64::max)
+            let tensions = at_rest(scene).span_tension;
+            tensions.into_iter().fold(0.0, f64::max)
         };
         let (found, without_play, asked) = (tight(&loose), tight(&rigid), torque / radius);
         assert!(
@@ -319,24 +324,18 @@ fn chains_of_free_rollers_are_as_tight_as_those_of_lumped_ones() {
     let lumped = Scene::preset("bicycle").unwrap();
     let lumped = lumped.replace("sprockets.rear.load", "[]").unwrap();
     let lumped = lumped.replace("gravity", "[0, 0]").unwrap();
-    let at_rest = |scene: &Scene| {
-        let run = Run {
-            until: 1e-6,
-            every: 1e-6,
-            ..Run::default()
-        };
-        let mut simulation = Simulation::start(&scene.drive().unwrap(), &run).unwrap();
-        let sample = simulation.next_sample().unwrap().unwrap();
+    let tensions = |scene: &Scene| {
+        let sample = at_rest(scene);
         let links = sample.link_tension.iter().sum::<f64>() / sample.link_tension.len() as f64;
         [links, sample.span_tension[0], sample.span_tension[1]]
     };
-    let known = at_rest(&lumped);
+    let known = tensions(&lumped);
     for play in ["10 um", "50 um", "200 um"] {
         let free = lumped
             .replace("chain.rollers", "free")
             .and_then(|scene| scene.replace("chain.roller", &format!("{{ clearance = '{play}' }}")))
             .unwrap();
-        let found = at_rest(&free);
+        let found = tensions(&free);
         assert!(
             (found[0] / known[0] - 1.0).abs() < 0.02,
             "{play}: {found:?} N, {known:?} N"

@@ -18,7 +18,7 @@ fn circular(seat: f64) -> String {
     format!(r#"{{ kind = "circular", seat_radius = {seat:?} }}"#)
 }
 
-/// What a run comes to.
+/// Energies that a run comes to.
 #[derive(Debug, Default)]
 struct Ledger {
     kinetic: f64,
@@ -75,7 +75,7 @@ fn strand(teeth: u32, tooth: &str, pulls: [f64; 2]) -> String {
     )
 }
 
-/// What has settled stays at rest, whatever the shape of the gap, and five rollers have five contacts.
+/// A settled strand stays at rest, whatever the shape of the gap, and five rollers have five contacts.
 #[test]
 fn a_settled_strand_stays_at_rest_in_any_gap() {
     let r = 0.5 * ROLLER;

@@ -18,6 +18,7 @@ use super::error::Fault;
 /// New contents of a file, from what it holds; none where it stays as it is.
 pub(super) type Change<'a> = dyn FnMut(Option<Bytes>) -> Result<Option<Bytes>, Fault> + 'a;
 
+/// Files by key, in a folder or a bucket.
 pub(super) trait Files: Debug + Send + Sync {
     /// Contents of a file, if it is there.
     fn read(&self, key: &StoreKey) -> Result<Option<Bytes>, StorageError>;
@@ -51,7 +52,7 @@ pub(super) trait Files: Debug + Send + Sync {
     fn waiting(&self) -> Option<&ThreadPool>;
 }
 
-/// What `zarrs` reads from and writes to.
+/// The files as `zarrs` reads and writes them.
 #[derive(Debug)]
 pub(super) struct Ground(Arc<dyn Files>);
 

@@ -244,7 +244,7 @@ impl Files for Folder {
     }
 }
 
-/// What was found; nothing where there is no such file.
+/// The answer of the file system; none where there is no such file.
 fn if_there<T>(found: io::Result<T>) -> io::Result<Option<T>> {
     match found {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),

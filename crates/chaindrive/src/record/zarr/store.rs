@@ -34,7 +34,7 @@ pub(in crate::record) struct Store {
     ended: bool,
 }
 
-/// What stores on a disk have: a claim that the system lets go of when the process ends, and a folder that takes its place whole.
+/// Means of stores on a disk: a claim that the system lets go of when the process ends, and a folder that takes its place whole.
 struct Disk {
     claim: Claim,
     folder: Arc<Folder>,

@@ -13,9 +13,9 @@
 //!
 //! In an object store there are the same files, without the lock and with an identity (`bucket.rs`).
 //!
-//! Recipe and layout are all that a worker needs: it gets the path of the store and the number of a task, and returns three
-//! counts. What is done is read from the store itself, so it survives whoever dies. Every file is put in place by renaming it,
-//! so a chunk is there whole or not at all. A task whose worker died is carried out again and gives the same bits.
+//! Recipe and layout are all that a worker needs: it gets the place of the store and the number of a task, and returns three
+//! counts. What is done is read from the store itself, so it survives whoever dies. Every file is put in place whole (on a disk by
+//! renaming it), so a chunk is there or not. A task whose worker died is carried out again and gives the same bits.
 
 mod coordinator;
 mod layout;

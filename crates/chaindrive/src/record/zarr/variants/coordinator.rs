@@ -1,4 +1,4 @@
-//! Who begins a sweep on disk, hands out its tasks, and says in the store how far it is.
+//! Who begins a sweep in a store, hands out its tasks, and says in the store how far it is.
 
 use std::path::Path;
 use std::sync::Arc;
