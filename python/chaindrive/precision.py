@@ -30,7 +30,8 @@ def work_precision(
     """Measure work and precision of methods and steps on the beginning of a run.
 
     Every method is run with every step, or tolerance, and compared with a reference: Runge-Kutta
-    with small steps that an independent method has to confirm. Ctrl-C stops it.
+    with small steps that an independent method has to confirm. A run-in of the scene is carried out
+    once, and all begin where it ends. Ctrl-C stops it.
 
     Parameters
     ----------
@@ -62,7 +63,8 @@ def work_precision(
         ``error_contact_force_p50``, ``_p90``, ``_p99`` and ``error_mesh_amplitude`` over the whole
         window. ``remark`` says why a run failed, or that its error is below that of the reference.
         Attributes: ``agreement_…``, how far reference and check are apart; ``spread_…``, how far
-        replicates are; ``window`` [s], ``chaos_horizon`` [s], and a ``summary`` to print.
+        replicates are; ``run_in`` [s], where there is one; ``window`` [s], ``chaos_horizon`` [s],
+        and a ``summary`` to print.
 
     Raises
     ------

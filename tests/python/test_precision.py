@@ -50,6 +50,22 @@ def test_the_diagram_has_a_line_a_method(table):
     assert axes.get_xscale() == axes.get_yscale() == "log"
 
 
+def test_a_run_in_is_carried_out_before():
+    drive = cd.scenes.marine_two_sprockets()
+    settings = {"methods": "verlet", "steps": [1e-5], "until": 4e-3, "repeats": 1, "replicates": 1}
+    at_once = cd.work_precision(drive, **settings).attrs
+    after = cd.work_precision(drive.replace({"run.run_in": 0.02}), **settings).attrs
+    run = cd.simulate(
+        drive, run_in=0.02, until=4e-3, every=1e-5, record="span_tension", method="verlet"
+    )
+    mean = float(run["span_tension"].mean())
+    assert "run_in" not in at_once
+    assert after["run_in"] == 0.02
+    assert "run-in" in after["summary"]
+    assert after["mean_tension"] == pytest.approx(mean, rel=1e-3)
+    assert at_once["mean_tension"] != pytest.approx(mean, rel=1e-2)
+
+
 def test_steps_without_methods_are_refused():
     with pytest.raises(cd.ParameterError, match="belong to methods"):
         cd.work_precision(cd.scenes.spinning_ring(), steps=[1e-5])

@@ -73,6 +73,9 @@ fn columns<'py>(py: Python<'py>, table: &Table) -> PyResult<Bound<'py, PyList>> 
 
 fn attributes<'py>(py: Python<'py>, table: &Table) -> PyResult<Bound<'py, PyDict>> {
     let answer = PyDict::new(py);
+    if let Some(ran_in) = &table.ran_in {
+        answer.set_item("run_in", ran_in.time)?;
+    }
     answer.set_item("window", table.window)?;
     answer.set_item("reference", table.reference.describe())?;
     answer.set_item("check", table.check.describe())?;

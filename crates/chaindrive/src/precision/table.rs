@@ -216,6 +216,9 @@ fn errors(errors: &Errors) -> String {
 
 impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(ran_in) = &self.ran_in {
+            writeln!(f, "{ran_in}")?;
+        }
         writeln!(f, "window                   {:.3e} s", self.window)?;
         writeln!(f, "reference                {}", self.reference.describe())?;
         writeln!(

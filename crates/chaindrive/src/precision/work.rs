@@ -13,7 +13,7 @@ use super::horizon::{APART, Horizon};
 use super::trace::{Gap, Strands, Trace};
 use super::variant::{Variant, references, usual};
 use super::window::Window;
-use crate::{Run, SimulationError, Stepping};
+use crate::{RanIn, Run, SimulationError, Stepping, run_in};
 
 /// Settings of a work-precision study.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,6 +65,8 @@ pub struct Row {
 pub struct Table {
     /// One row a variant, in the order of the study.
     pub rows: Vec<Row>,
+    /// How the drive was run in before, if it was.
+    pub ran_in: Option<RanIn>,
     /// Time over which was compared \[s\].
     pub window: f64,
     /// How long twins of the reference stay together; pointwise errors end there.
@@ -89,6 +91,8 @@ pub struct Table {
 
 /// Measures work and precision of methods and steps on the beginning of a run.
 ///
+/// A run-in is carried out once, with the method of `run`, and all begin where it ends.
+///
 /// Pointwise errors are taken up to the horizon of the reference, statistics over the whole window, to be held
 /// against the spread of replicates. Everything but the times is the same to the last bit whenever the same
 /// binary does it again on the same kind of processor.
@@ -110,6 +114,8 @@ pub fn work_precision(
         };
         wanted.check()?;
     }
+    let (start, ran_in) = run_in(start.clone(), run, &|| watch())?;
+    let start = &start;
     let taken =
         |variant: &Variant, from: &Assembled| Trace::take(from, &variant.run(run), &window, watch);
     let [reference, check] = references(start);
@@ -163,6 +169,7 @@ pub fn work_precision(
     }
     Ok(Table {
         rows,
+        ran_in,
         window: window.until,
         horizon,
         reference,
