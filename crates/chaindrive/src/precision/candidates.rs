@@ -26,9 +26,11 @@ pub(super) struct Entry {
 /// that stiffen as they are pressed, and beyond that the run shortens its step.
 const LONGEST: f64 = 1.5;
 /// Steps of the ladder.
-const RUNGS: usize = 22;
+const RUNGS: usize = 26;
 /// Ratio of a step of the ladder to the next: 2^⅕.
 const RATIO: f64 = 1.148_698_354_997_035;
+/// Error over accuracy below which implicit damping is taken to be of first order. *Assumed*.
+const NEAR: f64 = 4.0;
 /// Rungs from a candidate down to its judge, whose step is half as long, to the last bit: an estimate of the run goes on with it.
 const TO_JUDGE: usize = 5;
 /// Runge–Kutta steps in units of 1/ω of the stiffest mode, with the depth \[m\] beyond which a first penetration is approached
@@ -78,16 +80,32 @@ impl Candidates {
     /// Place of the candidate to try after one that errs by more than the accuracy.
     ///
     /// ```text
-    /// e ∝ h²:   k = ln(e/accuracy)/(2 ln 2^⅕) rungs, one at least
+    /// e ∝ hᵖ:   k = ln(e/accuracy)/(p ln 2^⅕) rungs, one at least
     /// ```
     ///
+    /// p is 2, and 1 for implicit damping within a factor of [`NEAR`] of the accuracy: farther off its errors fall faster than that, and so
+    /// does what impacts bring in that feed themselves.
     /// A step that fails says nothing of its error: the next one is that of its judge, and no later one where impacts feed
     /// themselves. From the last rung the other methods follow one by one.
-    pub(super) fn after(place: usize, error: f64, accuracy: f64, feeds_itself: bool) -> usize {
+    pub(super) fn after(
+        &self,
+        place: usize,
+        error: f64,
+        accuracy: f64,
+        feeds_itself: bool,
+    ) -> usize {
         if place + 1 >= RUNGS {
             return place + 1;
         }
-        let rungs = ((error / accuracy).ln() / (2.0 * RATIO.ln())).ceil();
+        let far = (error / accuracy).ln();
+        let stepping = self.0.get(place).map(|entry| entry.candidate.stepping);
+        let implicit = stepping == Some(Stepping::ImplicitDamping);
+        let order = if implicit && !feeds_itself && far < NEAR.ln() {
+            1.0
+        } else {
+            2.0
+        };
+        let rungs = (far / (order * RATIO.ln())).ceil();
         let most = if feeds_itself { TO_JUDGE } else { RUNGS };
         let down = if rungs.is_finite() {
             #[expect(

@@ -268,7 +268,7 @@ pub(crate) fn choose_with(
         let feeds_itself = found
             .as_ref()
             .is_some_and(|found| found.fed(accuracy) > accuracy);
-        place = Candidates::after(place, error, accuracy, feeds_itself);
+        place = candidates.after(place, error, accuracy, feeds_itself);
     }
     choice.evaluations = short_runs.evaluations() - before;
     Ok(choice)

@@ -162,6 +162,8 @@ defaults! {
     JOINTS_FRICTION = [(Version::V0_1, 0.0), (Version::V0_2, 0.1)], "1", Assumed("steel on oiled steel with boundary lubrication, 0.1 to 0.15"), ["Contact.friction"];
     /// Spring with which friction in joints holds.
     JOINTS_SPRING = always(0.1), "link stiffnesses times the pitch over the radius of the pin, squared", Assumed("explicit steps stay those of the links, and a strand slides when its joints have turned by some 1e-5"), ["Friction.stiffness"];
+    /// The same where pins have play, and the spring resists motion as well as rotation.
+    PLAY_SPRING = always(0.82), "link stiffnesses", Source("2(1 − ν)/(2 − ν) with ν = 0.3: how much a contact resists across of what it resists along (R. D. Mindlin, J. Appl. Mech. 16, 1949, 259–268); assumed that pins and plates behind it do alike"), ["Friction.stiffness"];
     /// Restitution of bushes in free rollers.
     ROLLERS_RESTITUTION = always(0.7), "1", Assumed("steel in an oiled roller"), ["Contact.restitution"];
     /// Least closing speed that a restitution reckons with.

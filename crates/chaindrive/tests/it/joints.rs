@@ -124,6 +124,13 @@ fn joints_of_the_catalogue_rub_in_every_model() {
             resolved.contains("boundary lubrication"),
             "{model}: {resolved}"
         );
+        // What a contact resists across, or what leaves the steps of springs as they are.
+        let held = if model == "clearance-joints" {
+            "0.82 link stiffnesses"
+        } else {
+            "0.1 link stiffnesses times the pitch over the radius of the pin, squared"
+        };
+        assert!(resolved.contains(held), "{model}: {resolved}");
         assert!(
             resolved.contains("start = \"quiet\""),
             "{model}: {resolved}"

@@ -251,8 +251,9 @@ fn results_carry_the_verdict() {
     let settings = Settings::default()
         .with("until", Given::Number(1e-4))
         .with("every", Given::Number(1e-5))
-        .with("method", Given::Text("implicit-damping".to_owned()));
-    // Bare seats strike harder than a run of a tenth of a millisecond accounts for.
+        .with("method", Given::Text("implicit-damping".to_owned()))
+        .with("step", Given::Text("3 µs".to_owned()));
+    // Bare seats strike harder than steps of 3 µs account for.
     let bare = preset("motorcycle", &[("contact.teeth.series", "0")]);
     let request = Request::new(&bare, &settings).unwrap();
     let mut memory = Memory::default();

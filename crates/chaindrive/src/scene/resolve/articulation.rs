@@ -5,6 +5,7 @@ use chaindrive_contact::{Friction, Law};
 use chaindrive_mechanics::Articulation;
 use serde_json::json;
 
+use super::contact::Spring;
 use super::links::stiffness_under_pretension;
 use super::{Findings, contact};
 use crate::catalogue::{CatalogueChain, Number};
@@ -55,19 +56,32 @@ impl<'a> Joints<'a> {
     /// Friction of pin and bush: as the chain says, or as all chains do; or the usual one where the catalogue knows the pin.
     pub(super) fn friction(&self, findings: &mut Findings<'_>) -> Option<Friction> {
         let own = self.text.joint.as_ref().and_then(|it| it.contact.friction);
-        // k = 0.1 k_link (p/r)² on the surface is σ = 0.1 k_link p² in the joint.
-        let spring = || {
-            let lever = self.text.pitch?.0 / self.pin()?;
-            Some(self.link_stiffness? * lever * lever)
-        };
+        let spring = self.spring();
         match (own, self.scene.contact.joints.friction) {
-            (Some(text), _) => contact::friction(text, "chain.joint.contact", spring(), findings),
-            (None, Some(text)) => contact::friction(text, "contact.joints", spring(), findings),
-            (None, None) => Some(self.usual(spring(), findings)),
+            (Some(text), _) => contact::friction(text, "chain.joint.contact", spring, findings),
+            (None, Some(text)) => contact::friction(text, "contact.joints", spring, findings),
+            (None, None) => Some(self.usual(spring, findings)),
         }
     }
 
-    fn usual(&self, spring: Option<f64>, findings: &mut Findings<'_>) -> Friction {
+    /// What the spring of friction in the joints is a multiple of, and that default.
+    fn spring(&self) -> Option<Spring> {
+        let link = self.link_stiffness?;
+        if self.text.model == ChainModel::ClearanceJoints {
+            return Some(Spring {
+                unit: link,
+                factor: &defaults::PLAY_SPRING,
+            });
+        }
+        // k = 0.1 k_link (p/r)² on the surface is σ = 0.1 k_link p² in the joint.
+        let lever = self.text.pitch?.0 / self.pin()?;
+        Some(Spring {
+            unit: link * lever * lever,
+            factor: &defaults::JOINTS_SPRING,
+        })
+    }
+
+    fn usual(&self, spring: Option<Spring>, findings: &mut Findings<'_>) -> Friction {
         // What is common is that of the only chain.
         let common = "contact.joints.friction";
         let place = findings
@@ -82,11 +96,11 @@ impl<'a> Joints<'a> {
             findings.assume_kind(place, "none");
             return Friction::None;
         };
-        let soft = &defaults::JOINTS_SPRING;
+        let soft = spring.factor;
         let factor = soft.value(findings.version);
         let law = SpringSlider {
             coefficient,
-            stiffness: factor * spring,
+            stiffness: factor * spring.unit,
         };
         let text = json!({
             "kind": "spring-slider",

@@ -198,11 +198,20 @@ impl Said<'_> {
     }
 }
 
-/// The friction that a scene describes at `place`; a spring of unknown stiffness has a share of `spring` \[N/m\].
+/// Stiffness of a spring that holds what sticks, where the scene is silent.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spring {
+    /// What it is a multiple of \[N/m\].
+    pub(super) unit: f64,
+    /// The multiple.
+    pub(super) factor: &'static Default,
+}
+
+/// The friction that a scene describes at `place`; a spring of unknown stiffness is that of `spring`.
 pub(super) fn friction(
     text: schema::Friction,
     place: &str,
-    spring: Option<f64>,
+    spring: Option<Spring>,
     findings: &mut Findings<'_>,
 ) -> Option<Friction> {
     // Kinds and parameters are called the same in a scene and in the law, in SI units here: a law of its own needs nothing else.
@@ -228,7 +237,7 @@ pub(super) fn friction(
             return None;
         };
         *value = findings
-            .or_multiple(None, &path, &defaults::JOINTS_SPRING, spring)
+            .or_multiple(None, &path, spring.factor, spring.unit)
             .into();
     }
     let friction = Friction::deserialize(parameters)

@@ -114,7 +114,7 @@ pub(crate) enum Friction {
         #[schemars(extend("minimum" = 0))]
         coefficient: Ratio,
         /// Stiffness along the surface until it slides [N/m]; in joints of a chain whose links have a stiffness it may be
-        /// absent: a tenth of a link's, seen from its ends.
+        /// absent: a tenth of a link's, seen from its ends, or where pins have play four fifths of a link's.
         #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
         stiffness: Option<Stiffness>,

@@ -83,17 +83,22 @@ impl Element {
     /// ```
     ///
     /// r is the secant where friction is about to stop the slip, and the slope where the slip grows: the secant would hold it back
-    /// with more than the friction.
-    pub(super) fn step_weights(&self, weights: Weights, change: f64) -> [f64; 2] {
+    /// with more than the friction. Below `soft` \[N/m\] F/|e| is left to the forces, as [`Linkage::soft`](super::Linkage::soft) says.
+    pub(super) fn step_weights(&self, weights: Weights, soft: f64, change: f64) -> [f64; 2] {
         let drag = if self.rub * change > 0.0 {
             self.secant
         } else {
-            self.drag
+            self.drag.min(self.secant)
         };
         [
             weights.damping * self.damping + weights.stiffness * self.stiffness,
-            weights.damping * drag + weights.stiffness * self.across.max(0.0),
+            weights.damping * drag + weights.stiffness * self.stiffly_across(soft),
         ]
+    }
+
+    /// F/|e| \[N/m\] where it holds, and with no less than `soft`.
+    pub(super) fn stiffly_across(&self, soft: f64) -> f64 {
+        if self.across > soft { self.across } else { 0.0 }
     }
 
     pub(crate) fn tangent(&self) -> Vector {

@@ -36,11 +36,11 @@ const NOBODY: usize = usize::MAX;
 const NOTHING: f64 = 1e-100;
 
 /// Whether the normal and the tangent of a contact can have a weight, however its slip changes.
-fn may_weigh(element: &Element, weights: Weights) -> [bool; 2] {
+fn may_weigh(element: &Element, weights: Weights, soft: f64) -> [bool; 2] {
     let stiff = weights.stiffness > 0.0;
     [
         element.damping > 0.0 || stiff && element.stiffness > 0.0,
-        element.drag > 0.0 || element.secant > 0.0 || stiff && element.across > 0.0,
+        element.drag > 0.0 || element.secant > 0.0 || stiff && element.stiffly_across(soft) > 0.0,
     ]
 }
 
@@ -66,11 +66,12 @@ impl Local {
         joint_state: &JointState,
         b: &[f64],
     ) {
+        let soft = linkage.soft(weights);
         // Counting sort by link.
         self.starts.clear();
         self.starts.resize(linkage.links + 1, 0);
         for element in &joint_state.elements {
-            self.starts[linkage.home(element) + 1] += may_weigh(element, weights)
+            self.starts[linkage.home(element) + 1] += may_weigh(element, weights, soft)
                 .into_iter()
                 .filter(|may| *may)
                 .count();
@@ -84,7 +85,7 @@ impl Local {
         for element in &joint_state.elements {
             let levers = [element.lever_a, element.lever_b];
             let rows = [(element.normal, [0.0; 2]), (element.tangent(), levers)];
-            let may = may_weigh(element, weights);
+            let may = may_weigh(element, weights, soft);
             for (of, (direction, levers)) in rows.into_iter().enumerate() {
                 if may[of] {
                     let place = &mut self.order[linkage.home(element)];
@@ -93,7 +94,7 @@ impl Local {
                     line.right = line.applied(b);
                     let change = line.change(&b[linkage.coordinates()..]);
                     // One of nothing still stands in its place.
-                    line.weight = element.step_weights(weights, change)[of].max(NOTHING);
+                    line.weight = element.step_weights(weights, soft, change)[of].max(NOTHING);
                     *place += 1;
                 }
             }

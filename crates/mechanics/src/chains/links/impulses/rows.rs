@@ -125,6 +125,7 @@ impl Rows {
             self.resize(count);
         }
         let zero = w.splat(0.0);
+        let soft = w.splat(linkage.soft(weights));
         for start in (0..linkage.joints.len()).step_by(Wide::<S>::COUNT) {
             let depth = -w.load(&pins.gap, start);
             let levers = bearing.lever_lanes(w, linkage.pairs.pins_after(w, start), depth);
@@ -141,9 +142,11 @@ impl Rows {
                 tx * (after[0] - before[0]) + ty * (after[1] - before[1]) + turn_after * after[2]
                     - turn_before * before[2];
             let stops = (w.load(&pins.rub, start) * change).greater(zero);
-            let drag = stops.select(w.load(&pins.secant, start), w.load(&pins.drag, start));
-            let weight = w.splat(weights.damping) * drag
-                + w.splat(weights.stiffness) * w.load(&pins.across, start);
+            let secant = w.load(&pins.secant, start);
+            let drag = stops.select(secant, w.load(&pins.drag, start).min(secant));
+            let across = w.load(&pins.across, start);
+            let across = across.greater(soft).select(across, zero);
+            let weight = w.splat(weights.damping) * drag + w.splat(weights.stiffness) * across;
             let present = weight.greater(zero);
             for (value, to) in [
                 (tx, &mut self.x),
