@@ -10,7 +10,7 @@ use chaindrive_validation::Case;
 use chaindrive_validation::Tolerance::{Absolute, Relative};
 use dynamics::{mean, pairs, run};
 
-/// What the running drive of case T04 shows over its last turn.
+/// Means of the running drive of case T04 over its last turn.
 struct Running {
     slack: f64,
     tight: f64,

@@ -124,7 +124,7 @@ fn v14_speeds_of_direct_resonance() {
     case.judge_each(quantity, "rpm", &peaks, &listed, tolerance);
 }
 
-/// What a drive does half as fast as its teeth pass, in the mode of a row of case V14: amplitude
+/// Motion of a drive half as fast as its teeth pass, in the mode of a row of case V14: amplitude
 /// \[m\] over the first and over the last quarter of six hundred teeth.
 ///
 /// Between equal wheels a span of whole links is a parallelogram: its tension stays. A larger,

@@ -170,7 +170,7 @@ fn a_result_moved_aside_is_put_back() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }
 
-/// What `dask` asks of a dataset: all arrays are cut at the same times.
+/// Demand of `dask` on a dataset: all arrays are cut at the same times.
 #[test]
 fn all_arrays_have_the_same_samples_in_a_chunk() {
     let folder = tempfile::tempdir().unwrap();

@@ -44,9 +44,9 @@ pub(crate) struct Rubbing<S: Simd> {
     pub(crate) force: Lane<S>,
     /// Its slope −∂R/∂slip, not negative \[N s/m\].
     pub(crate) drag: Lane<S>,
-    /// What a step of one solution reckons with where friction is about to stop the slip \[N s/m\]: |R/slip|, or the slope where that
-    /// is steeper. With it a step cannot carry the slip beyond zero, where the slope of a saturated friction would let it chatter. Less
-    /// where a spring holds, see [`LaneSpring::rub`].
+    /// Resistance that a step of one solution reckons with where friction is about to stop the slip \[N s/m\]: |R/slip|, or the slope
+    /// where that is steeper. With it a step cannot carry the slip beyond zero, where the slope of a saturated friction would let it chatter. Of a
+    /// spring that sticks it is a share, [`HELD`], and [`SLIDING`] of one that slides.
     pub(crate) secant: Lane<S>,
     /// The slope that limits explicit steps \[N s/m\].
     pub(crate) steepest: Lane<S>,

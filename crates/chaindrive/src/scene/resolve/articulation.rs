@@ -64,7 +64,7 @@ impl<'a> Joints<'a> {
         }
     }
 
-    /// What the spring of friction in the joints is a multiple of, and that default.
+    /// The spring of friction in the joints, if the stiffness of a link is known.
     fn spring(&self) -> Option<Spring> {
         let link = self.link_stiffness?;
         if self.text.model == ChainModel::ClearanceJoints {

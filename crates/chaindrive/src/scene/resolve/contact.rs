@@ -201,9 +201,9 @@ impl Said<'_> {
 /// Stiffness of a spring that holds what sticks, where the scene is silent.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spring {
-    /// What it is a multiple of \[N/m\].
+    /// Unit of the multiple \[N/m\].
     pub(super) unit: f64,
-    /// The multiple.
+    /// How many of them.
     pub(super) factor: &'static Default,
 }
 
