@@ -56,6 +56,7 @@
 //! # Ok::<(), chaindrive_integrate::IntegrationError>(())
 //! ```
 
+mod array;
 mod dense;
 mod error;
 mod finite;
@@ -73,6 +74,7 @@ mod system;
 mod tableau;
 mod verlet;
 
+pub use array::Array;
 pub use error::{IntegrationError, Quantity};
 pub use memory::StepperMemory;
 pub use method::Method;

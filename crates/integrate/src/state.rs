@@ -5,7 +5,7 @@ use std::mem::swap;
 use serde::{Deserialize, Serialize};
 
 use crate::dense::{Interpolation, Interval};
-use crate::{IntegrationError, Moment, SecondOrderSystem};
+use crate::{Array, IntegrationError, Moment, SecondOrderSystem};
 
 /// The accepted state, with the interval that led to it.
 ///
@@ -16,21 +16,21 @@ pub struct State {
     /// Time t \[s\].
     pub t: f64,
     /// Positions q `(dofs)`.
-    pub q: Vec<f64>,
+    pub q: Array,
     /// Velocities q̇ `(dofs)`.
-    pub v: Vec<f64>,
+    pub v: Array,
     /// First-order states z `(states)`.
-    pub z: Vec<f64>,
+    pub z: Array,
     /// Accelerations q̈ `(dofs)` the next step begins with; Verlet's are those at the predicted velocities.
-    pub a: Vec<f64>,
+    pub a: Array,
     /// Quantities integrated along with the motion `(quadratures)`.
-    pub quadratures: Vec<f64>,
+    pub quadratures: Array,
     /// Rates of the quadratures, and of the states behind them, the next step begins with.
-    pub(crate) rates: Vec<f64>,
+    pub(crate) rates: Array,
     /// The accepted state before this one.
     pub(crate) previous: Snapshot,
     /// Accelerations and rates at the end of the last step, if a jump has replaced them.
-    pub(crate) before_jump: (Vec<f64>, Vec<f64>),
+    pub(crate) before_jump: (Array, Array),
     /// Whether a jump has replaced them.
     pub(crate) jumped: bool,
     /// How to read between the accepted states, as the method wants it.
@@ -41,12 +41,12 @@ pub struct State {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Snapshot {
     pub(crate) t: f64,
-    pub(crate) q: Vec<f64>,
-    pub(crate) v: Vec<f64>,
-    pub(crate) z: Vec<f64>,
-    pub(crate) a: Vec<f64>,
-    pub(crate) quadratures: Vec<f64>,
-    pub(crate) rates: Vec<f64>,
+    pub(crate) q: Array,
+    pub(crate) v: Array,
+    pub(crate) z: Array,
+    pub(crate) a: Array,
+    pub(crate) quadratures: Array,
+    pub(crate) rates: Array,
 }
 
 impl Snapshot {
@@ -58,12 +58,12 @@ impl Snapshot {
         } = size;
         Self {
             t: 0.0,
-            q: vec![0.0; dofs],
-            v: vec![0.0; dofs],
-            z: vec![0.0; states],
-            a: vec![0.0; dofs],
-            quadratures: vec![0.0; quadratures],
-            rates: vec![0.0; quadratures + states],
+            q: Array::zeros(dofs),
+            v: Array::zeros(dofs),
+            z: Array::zeros(states),
+            a: Array::zeros(dofs),
+            quadratures: Array::zeros(quadratures),
+            rates: Array::zeros(quadratures + states),
         }
     }
 
@@ -119,8 +119,8 @@ impl State {
     pub fn new(t: f64, q: Vec<f64>, v: Vec<f64>) -> Self {
         Self {
             t,
-            q,
-            v,
+            q: q.into(),
+            v: v.into(),
             ..Self::default()
         }
     }
@@ -128,7 +128,10 @@ impl State {
     /// The same with first-order states z `(states)`.
     #[must_use]
     pub fn with_states(self, z: Vec<f64>) -> Self {
-        Self { z, ..self }
+        Self {
+            z: z.into(),
+            ..self
+        }
     }
 
     /// Rates ż of the states.
@@ -184,7 +187,7 @@ impl State {
     }
 
     /// Cubics through the values at both ends; their rates stand from `first` on.
-    fn along(&self, t: f64, [from, to]: [&Vec<f64>; 2], first: usize, values: &mut [f64]) {
+    fn along(&self, t: f64, [from, to]: [&Array; 2], first: usize, values: &mut [f64]) {
         let past = &self.previous;
         let rates = if self.jumped {
             &self.before_jump.1
@@ -211,7 +214,7 @@ impl State {
         self.check(system)?;
         self.a.resize(dofs, 0.0);
         self.rates.resize(quadratures + states, 0.0);
-        self.before_jump = (vec![0.0; dofs], vec![0.0; quadratures + states]);
+        self.before_jump = (Array::zeros(dofs), Array::zeros(quadratures + states));
         self.jumped = false;
         Ok(())
     }

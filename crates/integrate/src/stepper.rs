@@ -9,7 +9,8 @@ use crate::method::{Kernel, Outcome};
 use crate::state::{Size, Snapshot, State};
 use crate::step_size::{Controller, FLOOR, Fixed, first_step, shortened, stable_step};
 use crate::{
-    Continuity, IntegrationError, Method, Moment, Quantity, SecondOrderSystem, Statistics, Verdict,
+    Array, Continuity, IntegrationError, Method, Moment, Quantity, SecondOrderSystem, Statistics,
+    Verdict,
 };
 
 /// An accepted step.
@@ -344,7 +345,7 @@ fn culprit(candidate: &Snapshot) -> IntegrationError {
 }
 
 /// Names the first entry that is not finite of positions, velocities, accelerations, quadratures and states.
-fn first_not_finite(t: f64, [q, v, a, quadratures, z]: [&Vec<f64>; 5]) -> IntegrationError {
+fn first_not_finite(t: f64, [q, v, a, quadratures, z]: [&Array; 5]) -> IntegrationError {
     let parts = [
         (Quantity::Acceleration, a),
         (Quantity::Position, q),

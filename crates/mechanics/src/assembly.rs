@@ -152,9 +152,9 @@ impl Assembled {
         Self {
             system,
             time: state.t,
-            q: state.q.clone(),
-            v: state.v.clone(),
-            z: state.z.clone(),
+            q: state.q.to_vec(),
+            v: state.v.to_vec(),
+            z: state.z.to_vec(),
             ..self.clone()
         }
     }

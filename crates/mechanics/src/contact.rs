@@ -27,13 +27,14 @@ mod wrench;
 
 use chaindrive_contact::Law;
 use chaindrive_geometry::{Point, Vector};
+use chaindrive_integrate::Array;
 use serde::{Deserialize, Serialize};
 
 pub(crate) use bristles::Sweep;
 pub(crate) use friction::{LaneFriction, LaneSpring};
 pub use impacts::Impacts;
 pub(crate) use law::SurfaceLaw;
-pub(crate) use memory::{ContactMemory, ContactState, MemoryLanes};
+pub(crate) use memory::{ContactMemory, ContactState, Kept, MemoryLanes};
 pub(crate) use plates::{Drawn, OfPins, PlateContact, PlatePins, PlatePlaces, Pressing};
 pub(crate) use rollers::Rollers;
 pub(crate) use window::{FAR, Places, Run, Spare};
@@ -102,8 +103,8 @@ pub(crate) struct Contacts {
     /// Number of slots, whole lanes.
     pub(crate) slots: usize,
     /// Gap axis of each slot in the wheel frame (teeth only).
-    pub(crate) axis_x: Vec<f64>,
-    pub(crate) axis_y: Vec<f64>,
+    pub(crate) axis_x: Array,
+    pub(crate) axis_y: Array,
     /// State of each slot at the last accepted step, for every side.
     pub(crate) memory: Box<Touch>,
     /// When that was \[s\].
@@ -132,17 +133,17 @@ pub(crate) struct Touch {
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Faces {
     /// Outward normal of the surface.
-    pub(crate) normal_x: Vec<f64>,
-    pub(crate) normal_y: Vec<f64>,
+    pub(crate) normal_x: Array,
+    pub(crate) normal_y: Array,
     /// Curvature of the level line of the gap through the roller centre \[1/m\], positive around a bulge.
-    pub(crate) bend: Vec<f64>,
+    pub(crate) bend: Array,
     /// ∂F/∂δ \[N/m\] and ∂F/∂δ̇ \[N s/m\].
-    pub(crate) stiffness: Vec<f64>,
-    pub(crate) damping: Vec<f64>,
+    pub(crate) stiffness: Array,
+    pub(crate) damping: Array,
     /// Friction \[N\], its slope and its secant \[N s/m\]; kept where there is friction.
-    pub(crate) rub: Vec<f64>,
-    pub(crate) drag: Vec<f64>,
-    pub(crate) secant: Vec<f64>,
+    pub(crate) rub: Array,
+    pub(crate) drag: Array,
+    pub(crate) secant: Array,
 }
 
 impl Faces {
@@ -195,8 +196,8 @@ impl Contacts {
             runs: Vec::new(),
             candidates: 0,
             slots: 0,
-            axis_x: Vec::new(),
-            axis_y: Vec::new(),
+            axis_x: Array::default(),
+            axis_y: Array::default(),
             memory: Box::default(),
             accepted: 0.0,
             writes_faces: false,
@@ -217,14 +218,11 @@ impl Contacts {
     pub(crate) fn stored(&self, touch: &Touch) -> f64 {
         let law = &self.surface.law;
         let of_flank = self.flank.as_ref().map(|flank| flank.law(&self.surface));
-        let closed = touch
-            .state
-            .gap
-            .iter()
-            .zip(&touch.state.share)
-            .filter(|(gap, _)| **gap < 0.0);
+        let state = &touch.state;
+        let contacts = state.each(Kept::Gap).zip(state.each(Kept::Share));
+        let closed = contacts.filter(|(gap, _)| *gap < 0.0);
         closed
-            .map(|(&gap, &share)| match &of_flank {
+            .map(|(gap, share)| match &of_flank {
                 None => law.energy(-gap),
                 Some(flank) => (1.0 - share) * law.energy(-gap) + share * flank.energy(-gap),
             })

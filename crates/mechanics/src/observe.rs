@@ -5,6 +5,7 @@ use chaindrive_integrate::{Moment, SecondOrderSystem};
 use serde::{Deserialize, Serialize};
 
 use crate::System;
+use crate::contact::Kept;
 use crate::energy::{Energy, Flow, Store};
 use crate::system::{Member, OnWheel, RailContact, Record, WheelSupport};
 use crate::tensioner::Reduced;
@@ -281,9 +282,9 @@ impl System {
                 let slots = on.contacts.slots;
                 on.contacts.for_each_slot(|slot, roller| {
                     for side in 0..on.contacts.sides() {
-                        let force = touch.state.force[side * slots + slot];
-                        out.contact_force[first + roller] += force;
-                        if touch.state.gap[side * slots + slot] < 0.0 {
+                        let (state, contact) = (&touch.state, side * slots + slot);
+                        out.contact_force[first + roller] += state.get(Kept::Force, contact);
+                        if state.get(Kept::Gap, contact) < 0.0 {
                             out.contacts[on.wheel] += 1.0;
                         }
                     }

@@ -30,7 +30,7 @@ fn assert_orders<P: Smooth>(name: &str, problem: &P) {
             let pairs = run(problem, method, n).into_iter().zip(&precise);
             let errors = pairs.map(|(state, precise)| {
                 let exact = problem.exact(state.t);
-                distance(&state.q, exact.as_ref().unwrap_or(&precise.q))
+                distance(&state.q, exact.as_deref().unwrap_or(&precise.q))
             });
             errors.fold(0.0, f64::max)
         };

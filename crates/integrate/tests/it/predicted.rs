@@ -22,7 +22,7 @@ struct Mass {
 impl Mass {
     fn run(&mut self, step: f64, until: f64) -> Result<Vec<State>, IntegrationError> {
         let mut state = State::new(0.0, vec![1.0], vec![0.0]);
-        state.z = vec![1.0];
+        state.z = vec![1.0].into();
         let mut stepper = Method::Verlet { step }.start(self, &mut state)?;
         let mut states = vec![state.clone()];
         while state.t < until - 0.5 * step {
@@ -136,7 +136,7 @@ fn does_not_limit_the_step() {
     }
     let step = 1.5;
     let mut state = State::new(0.0, vec![1.0], vec![0.0]);
-    state.z = vec![1.0];
+    state.z = vec![1.0].into();
     let mut mass = Mass {
         damping: 30.0,
         settling: 30.0,

@@ -8,6 +8,7 @@
 //! with clearance have their friction in the contact of pin and bush, and only c here.
 
 use chaindrive_contact::Friction;
+use chaindrive_integrate::Array;
 use pulp::Simd;
 use serde::{Deserialize, Serialize};
 
@@ -21,9 +22,9 @@ use crate::lanes::{Lane, Wide, padded};
 pub(super) struct Joints {
     friction: LaneFriction,
     /// Radius r of what slides \[m\], whole lanes; zero where no two links meet.
-    radius: Vec<f64>,
+    radius: Array,
     /// Viscous damping c \[N m s/rad\], likewise.
-    damping: Vec<f64>,
+    damping: Array,
     /// Largest r² \[m²\] and c \[N m s/rad\].
     largest: [f64; 2],
     pub(super) memory: Stick,
@@ -33,7 +34,7 @@ pub(super) struct Joints {
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Stick {
     time: f64,
-    state: Vec<f64>,
+    state: Array,
     /// Stiffness σ \[N m/rad\] and damping −∂M/∂ω \[N m s/rad\] of the stiffest joint.
     slopes: [f64; 2],
 }
@@ -43,12 +44,12 @@ pub(crate) struct Stick {
 pub(crate) struct Resistance {
     /// Torque of every joint on the link after it \[N m\], and whole lanes behind.
     #[serde(skip)]
-    pub(super) torque: Vec<f64>,
+    pub(super) torque: Array,
     /// Normal forces and slips, for laws that are asked for all joints at once.
     #[serde(skip)]
-    normal: Vec<f64>,
+    normal: Array,
     #[serde(skip)]
-    slip: Vec<f64>,
+    slip: Array,
     stick: Stick,
     /// Energy in the springs of friction that holds \[J\].
     pub(super) stored: f64,
@@ -67,7 +68,7 @@ impl Joints {
         let meet = |joint: usize| joint < chain.links() && (joint > 0 || chain.is_closed());
         let at_joints = |value: f64| {
             let each = |joint| if meet(joint) { value } else { 0.0 };
-            (0..entries).map(each).collect::<Vec<f64>>()
+            (0..entries).map(each).collect::<Array>()
         };
         let resists = friction != Friction::None || damping > 0.0;
         resists.then(|| Self {
@@ -77,7 +78,7 @@ impl Joints {
             largest: [radius * radius, damping],
             memory: Stick {
                 time: 0.0,
-                state: vec![0.0; entries],
+                state: Array::zeros(entries),
                 slopes: [0.0; 2],
             },
         })

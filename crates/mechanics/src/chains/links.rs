@@ -36,7 +36,7 @@ mod validation_slider_crank;
 
 use chaindrive_contact::Prepared;
 use chaindrive_geometry::Vector;
-use chaindrive_integrate::Moment;
+use chaindrive_integrate::{Array, Moment};
 use nalgebra::Vector3;
 use pulp::Arch;
 use serde::{Deserialize, Serialize};
@@ -56,7 +56,7 @@ pub(crate) use posture::{Posture, Shapes, free_part};
 use super::joints::Joints;
 use super::{Record, Surroundings};
 use crate::End;
-use crate::contact::{ContactMemory, LaneTally, MemoryLanes};
+use crate::contact::{ContactMemory, Kept, LaneTally, MemoryLanes};
 use crate::energy::Flow;
 use crate::lanes::{Wide, dispatch};
 use crate::system::HeldEnd;
@@ -149,11 +149,11 @@ pub(crate) struct Memory {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Idle {
     /// Accelerations that it adds to, and inverse masses: of links neither is used.
-    pub(crate) ax: Vec<f64>,
-    pub(crate) ay: Vec<f64>,
-    pub(crate) inverse_mass: Vec<f64>,
+    pub(crate) ax: Array,
+    pub(crate) ay: Array,
+    pub(crate) inverse_mass: Array,
     /// Angular speeds of the circles, where teeth rub \[rad/s\].
-    pub(crate) spin: Vec<f64>,
+    pub(crate) spin: Array,
 }
 
 /// Joints, contacts and work space after one evaluation of a linkage.
@@ -184,7 +184,7 @@ pub(crate) struct JointState {
     pub(crate) loads: by_link::ByLink,
     /// Normal forces of pins in ideal joints without friction \[N\], whole lanes.
     #[serde(skip)]
-    pub(crate) normal: Vec<f64>,
+    pub(crate) normal: Array,
     /// Stiffness, damping and springs of friction by body, for the time scales.
     #[serde(skip)]
     pub(crate) sums: Vec<[rates::Packed; 3]>,
@@ -352,13 +352,13 @@ impl Linkage {
     pub(crate) fn stored(&self, memory: &Memory) -> f64 {
         let mut sum = 0.0;
         if let Joining::Clearance(bearing) = &self.joining {
-            let gaps = &memory.joints.gap[..self.joints.len()];
-            let closed = gaps.iter().filter(|gap| **gap < 0.0);
-            sum += closed.map(|&gap| bearing.energy(gap)).sum::<f64>();
+            let gaps = memory.joints.each(Kept::Gap).take(self.joints.len());
+            let closed = gaps.filter(|gap| *gap < 0.0);
+            sum += closed.map(|gap| bearing.energy(gap)).sum::<f64>();
         }
         if let Some(free) = &self.free_rollers {
-            let closed = memory.bushes.gap.iter().filter(|gap| **gap < 0.0);
-            sum += closed.map(|&gap| free.bearing.energy(gap)).sum::<f64>();
+            let closed = memory.bushes.each(Kept::Gap).filter(|gap| *gap < 0.0);
+            sum += closed.map(|gap| free.bearing.energy(gap)).sum::<f64>();
         }
         sum
     }
@@ -369,14 +369,12 @@ impl Linkage {
             return 0.0;
         };
         let friction = &bearing.lanes.friction;
-        let ContactMemory {
-            gap, force, stick, ..
-        } = &memory.joints;
-        let joints = gap.iter().zip(force.iter().zip(stick));
-        let closed = joints.filter(|(gap, _)| **gap < 0.0);
+        let joints = &memory.joints;
+        let state = |joint| [Kept::Gap, Kept::Force, Kept::Stick].map(|it| joints.get(it, joint));
+        let closed = (0..joints.len()).map(state).filter(|[gap, ..]| *gap < 0.0);
         // U = ½ k z²
         closed
-            .map(|(_, (force, z))| 0.5 * friction.stiffness(*force) * z * z)
+            .map(|[_, force, z]| 0.5 * friction.stiffness(force) * z * z)
             .sum()
     }
 

@@ -20,7 +20,7 @@ mod springs;
 mod statics;
 
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::{Moment, Prediction};
+use chaindrive_integrate::{Array, Moment, Prediction};
 use pulp::Arch;
 
 use super::joints::Joints;
@@ -45,8 +45,8 @@ pub(crate) struct Particles {
     pub(super) stride: usize,
     pub(super) pitch: f64,
     /// Masses \[kg\] and inverse masses \[1/kg\] of the rollers; held ends have none of the latter.
-    pub(super) masses: Vec<f64>,
-    pub(super) inverse_masses: Vec<f64>,
+    pub(super) masses: Array,
+    pub(super) inverse_masses: Array,
     pub(super) ends: Vec<HeldEnd>,
     /// Inverse mass of the lightest roller \[1/kg\].
     lightest: f64,
@@ -81,7 +81,7 @@ impl Particles {
     }
 
     pub(super) fn inertias(&self) -> Vec<f64> {
-        [self.masses.as_slice(), &self.masses].concat()
+        [&*self.masses, &self.masses].concat()
     }
 
     pub(super) fn rollers(&self) -> usize {

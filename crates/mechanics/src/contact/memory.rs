@@ -4,30 +4,57 @@
 //! a contact that begins takes nothing from the one that was there before, neither the speed at touch nor the bristles of its
 //! friction.
 
+use chaindrive_integrate::Array;
 use pulp::Simd;
 use serde::{Deserialize, Serialize};
 
 use super::window::FAR;
 use crate::MemoryError;
-use crate::lanes::{Lane, Lanes, LanesMut, Mask, Wide};
+use crate::lanes::{LANES, Lane, Lanes, LanesMut, Mask, Wide};
 
-/// State of contacts at one instant, one number a contact, whole lanes.
+/// What is kept of a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kept {
+    /// Inverse of the closing speed at touch \[s/m\]; zero while open.
+    InverseOnset,
+    /// Gap \[m\], negative in contact.
+    Gap,
+    /// Closing speed \[m/s\].
+    Closing,
+    /// Normal force \[N\].
+    Force,
+    /// Acceleration of a closed contact's circle towards the surface by all else that acts on it \[m/s²\]; kept where steps look ahead.
+    Thrust,
+    /// State of a friction law that has one; means something while closed.
+    Stick,
+    /// Share of the flank's law, where there is one; means something while closed.
+    Share,
+}
+
+impl Kept {
+    const COUNT: usize = Self::Share as usize + 1;
+}
+
+/// State of contacts at one instant, whole lanes.
+///
+/// Contacts stand in blocks of eight, and a block has eight numbers of everything that is [`Kept`]: a kernel looks at one array, once,
+/// and what it wants of a lane is in one place.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ContactMemory {
-    /// Inverse of the closing speed at touch \[s/m\]; zero while open.
-    pub(crate) inverse_onset: Vec<f64>,
-    /// Gap \[m\], negative in contact.
-    pub(crate) gap: Vec<f64>,
-    /// Closing speed \[m/s\].
-    pub(crate) closing: Vec<f64>,
-    /// Normal force \[N\].
-    pub(crate) force: Vec<f64>,
-    /// Acceleration of a closed contact's circle towards the surface by all else that acts on it \[m/s²\]; kept where steps look ahead.
-    pub(crate) thrust: Vec<f64>,
-    /// State of a friction law that has one; means something while closed.
-    pub(crate) stick: Vec<f64>,
-    /// Share of the flank's law, where there is one; means something while closed.
-    pub(crate) share: Vec<f64>,
+    numbers: Array,
+}
+
+/// Numbers of a block.
+const BLOCK: usize = Kept::COUNT * LANES;
+
+/// Numbers of the blocks that hold as many contacts.
+const fn blocks(count: usize) -> usize {
+    count.div_ceil(LANES) * BLOCK
+}
+
+/// Where a number of a contact stands.
+const fn place(what: Kept, contact: usize) -> usize {
+    contact / LANES * BLOCK + what as usize * LANES + contact % LANES
 }
 
 /// One contact at one instant.
@@ -63,101 +90,79 @@ impl ContactMemory {
 
     /// Opens all of as many contacts.
     pub(crate) fn reopen(&mut self, count: usize) {
-        for values in self.all() {
-            values.clear();
-            values.resize(count, 0.0);
+        self.numbers.clear();
+        self.numbers.resize(blocks(count), 0.0);
+        for contact in 0..self.len() {
+            self.set(Kept::Gap, contact, FAR);
         }
-        self.gap.fill(FAR);
     }
 
     #[inline]
     pub(crate) fn resize(&mut self, count: usize) {
-        if self.gap.len() == count {
-            return;
+        if self.numbers.len() != blocks(count) {
+            self.numbers.resize(blocks(count), 0.0);
         }
-        for values in self.all() {
-            values.resize(count, 0.0);
-        }
+    }
+
+    /// Number of contacts, whole blocks.
+    pub(crate) fn len(&self) -> usize {
+        self.numbers.len() / Kept::COUNT
+    }
+
+    #[inline]
+    pub(crate) fn get(&self, what: Kept, contact: usize) -> f64 {
+        self.numbers[place(what, contact)]
+    }
+
+    #[inline]
+    pub(crate) fn set(&mut self, what: Kept, contact: usize, value: f64) {
+        self.numbers[place(what, contact)] = value;
+    }
+
+    /// One kind of number, of one contact after the other.
+    pub(crate) fn each(&self, what: Kept) -> impl Iterator<Item = f64> {
+        (0..self.len()).map(move |contact| self.get(what, contact))
     }
 
     /// Takes over one contact of another memory.
     pub(crate) fn carry(&mut self, to: usize, other: &Self, from: usize) {
-        self.inverse_onset[to] = other.inverse_onset[from];
-        self.gap[to] = other.gap[from];
-        self.closing[to] = other.closing[from];
-        self.force[to] = other.force[from];
-        self.thrust[to] = other.thrust[from];
-        self.stick[to] = other.stick[from];
-        self.share[to] = other.share[from];
+        let [to, from] = [to, from].map(|contact| place(Kept::InverseOnset, contact));
+        for row in (0..BLOCK).step_by(LANES) {
+            self.numbers[to + row] = other.numbers[from + row];
+        }
+    }
+
+    /// Whether a contact is closed.
+    #[inline]
+    pub(crate) fn is_closed(&self, contact: usize) -> bool {
+        self.get(Kept::InverseOnset, contact) > 0.0
     }
 
     /// Speed at touch \[m/s\] and force \[N\] of a closed contact.
-    pub(crate) fn closed(&self, index: usize) -> Option<(f64, f64)> {
-        let inverse = self.inverse_onset[index];
-        (inverse > 0.0).then(|| (1.0 / inverse, self.force[index]))
+    pub(crate) fn closed(&self, contact: usize) -> Option<(f64, f64)> {
+        let inverse = self.get(Kept::InverseOnset, contact);
+        (inverse > 0.0).then(|| (1.0 / inverse, self.get(Kept::Force, contact)))
     }
 
     /// Refuses a memory of another number of contacts.
     pub(crate) fn check(&self, count: usize) -> Result<(), MemoryError> {
-        for values in [
-            &self.inverse_onset,
-            &self.gap,
-            &self.closing,
-            &self.force,
-            &self.thrust,
-            &self.stick,
-            &self.share,
-        ] {
-            MemoryError::unless("contacts", values.len(), count)?;
-        }
-        Ok(())
+        MemoryError::unless("contacts", self.numbers.len(), blocks(count))
     }
 
     /// A contact as it is.
-    pub(crate) fn at(&self, index: usize) -> ContactState {
+    pub(crate) fn at(&self, contact: usize) -> ContactState {
         ContactState {
-            gap: self.gap[index],
-            closing: self.closing[index],
-            force: self.closed(index).map(|(_, force)| force),
+            gap: self.get(Kept::Gap, contact),
+            closing: self.get(Kept::Closing, contact),
+            force: self.closed(contact).map(|(_, force)| force),
         }
-    }
-
-    fn all(&mut self) -> [&mut Vec<f64>; 7] {
-        [
-            &mut self.inverse_onset,
-            &mut self.gap,
-            &mut self.closing,
-            &mut self.force,
-            &mut self.thrust,
-            &mut self.stick,
-            &mut self.share,
-        ]
     }
 }
 
 /// Contacts lane by lane: as the last accepted state left them, and as they are found now.
 pub(crate) struct MemoryLanes<'a, S: Simd> {
-    before: Before<'a, S>,
-    now: Now<'a, S>,
-}
-
-struct Before<'a, S: Simd> {
-    inverse_onset: Lanes<'a, S>,
-    gap: Lanes<'a, S>,
-    closing: Lanes<'a, S>,
-    force: Lanes<'a, S>,
-    thrust: Lanes<'a, S>,
-    stick: Lanes<'a, S>,
-}
-
-struct Now<'a, S: Simd> {
-    inverse_onset: LanesMut<'a, S>,
-    gap: LanesMut<'a, S>,
-    closing: LanesMut<'a, S>,
-    force: LanesMut<'a, S>,
-    thrust: LanesMut<'a, S>,
-    stick: LanesMut<'a, S>,
-    share: LanesMut<'a, S>,
+    before: Lanes<'a, S>,
+    now: LanesMut<'a, S>,
 }
 
 /// How a contact began between the last accepted state and now.
@@ -177,45 +182,49 @@ impl<'a, S: Simd> MemoryLanes<'a, S> {
         now: &'a mut ContactMemory,
         count: usize,
     ) -> Self {
+        let count = blocks(count);
         Self {
-            before: Before {
-                inverse_onset: w.lanes(&before.inverse_onset[..count]),
-                gap: w.lanes(&before.gap[..count]),
-                closing: w.lanes(&before.closing[..count]),
-                force: w.lanes(&before.force[..count]),
-                thrust: w.lanes(&before.thrust[..count]),
-                stick: w.lanes(&before.stick[..count]),
-            },
-            now: Now {
-                inverse_onset: Wide::<S>::lanes_mut(&mut now.inverse_onset[..count]),
-                gap: Wide::<S>::lanes_mut(&mut now.gap[..count]),
-                closing: Wide::<S>::lanes_mut(&mut now.closing[..count]),
-                force: Wide::<S>::lanes_mut(&mut now.force[..count]),
-                thrust: Wide::<S>::lanes_mut(&mut now.thrust[..count]),
-                stick: Wide::<S>::lanes_mut(&mut now.stick[..count]),
-                share: Wide::<S>::lanes_mut(&mut now.share[..count]),
-            },
+            before: w.lanes(&before.numbers[..count]),
+            now: Wide::<S>::lanes_mut(&mut now.numbers[..count]),
         }
+    }
+
+    /// Which lane of all numbers holds one kind of some contacts.
+    #[inline(always)]
+    fn place(what: Kept, lane: usize) -> usize {
+        // Lanes of a processor that a row of eight fills.
+        let row = LANES / Wide::<S>::COUNT;
+        lane / row * (Kept::COUNT * row) + what as usize * row + lane % row
+    }
+
+    #[inline(always)]
+    fn before(&self, what: Kept, lane: usize) -> Lane<S> {
+        self.before.get(Self::place(what, lane))
+    }
+
+    #[inline(always)]
+    fn keep(&mut self, what: Kept, lane: usize, value: Lane<S>) {
+        self.now.set(Self::place(what, lane), value);
     }
 
     /// Writes down where the surfaces of a lane are.
     #[inline(always)]
     pub(crate) fn look(&mut self, lane: usize, gap: Lane<S>, closing: Lane<S>) {
-        self.now.gap.set(lane, gap);
-        self.now.closing.set(lane, closing);
+        self.keep(Kept::Gap, lane, gap);
+        self.keep(Kept::Closing, lane, closing);
     }
 
     /// Opens a lane.
     #[inline(always)]
     pub(crate) fn open(&mut self, w: Wide<S>, lane: usize) {
-        self.now.inverse_onset.set(lane, w.splat(0.0));
-        self.now.force.set(lane, w.splat(0.0));
+        self.keep(Kept::InverseOnset, lane, w.splat(0.0));
+        self.keep(Kept::Force, lane, w.splat(0.0));
     }
 
     /// Inverse of the speed at touch of contacts that were closed before, zero for the others.
     #[inline(always)]
     pub(crate) fn inverse_onset(&self, lane: usize) -> Lane<S> {
-        self.before.inverse_onset.get(lane)
+        self.before(Kept::InverseOnset, lane)
     }
 
     /// Speed at touch, interpolated to zero gap as
@@ -229,8 +238,8 @@ impl<'a, S: Simd> MemoryLanes<'a, S> {
         closing: Lane<S>,
     ) -> Onset<S> {
         // v = v_a + s (v_b − v_a),   s = g_a/(g_a − g_b)
-        let gap_before = self.before.gap.get(lane).max(w.splat(0.0));
-        let closing_before = self.before.closing.get(lane);
+        let gap_before = self.before(Kept::Gap, lane).max(w.splat(0.0));
+        let closing_before = self.before(Kept::Closing, lane);
         let share = gap_before * (gap_before + depth).recip();
         Onset {
             speed: closing_before + share * (closing - closing_before),
@@ -241,43 +250,46 @@ impl<'a, S: Simd> MemoryLanes<'a, S> {
     /// Keeps the inverse speeds at touch, zero where open.
     #[inline(always)]
     pub(crate) fn keep_onset(&mut self, lane: usize, inverse: Lane<S>) {
-        self.now.inverse_onset.set(lane, inverse);
+        self.keep(Kept::InverseOnset, lane, inverse);
     }
 
     /// Forces \[N\], and what else drew the circles towards their surfaces \[m/s²\], at the last accepted state.
     #[inline(always)]
     pub(super) fn pushed(&self, lane: usize) -> [Lane<S>; 2] {
-        [self.before.force.get(lane), self.before.thrust.get(lane)]
+        [
+            self.before(Kept::Force, lane),
+            self.before(Kept::Thrust, lane),
+        ]
     }
 
     /// Keeps what else draws the circles.
     #[inline(always)]
     pub(super) fn keep_thrust(&mut self, lane: usize, thrust: Lane<S>) {
-        self.now.thrust.set(lane, thrust);
+        self.keep(Kept::Thrust, lane, thrust);
     }
 
     /// Keeps the forces, zero where open.
     #[inline(always)]
     pub(crate) fn keep_force(&mut self, lane: usize, force: Lane<S>) {
-        self.now.force.set(lane, force);
+        self.keep(Kept::Force, lane, force);
     }
 
     #[inline(always)]
     pub(crate) fn keep_share(&mut self, lane: usize, share: Lane<S>) {
-        self.now.share.set(lane, share);
+        self.keep(Kept::Share, lane, share);
     }
 
     /// State of the friction of contacts that were closed before; the others begin without.
     #[inline(always)]
     pub(crate) fn stick(&self, w: Wide<S>, lane: usize) -> Lane<S> {
         let zero = w.splat(0.0);
-        let was_closed = self.before.inverse_onset.get(lane).greater(zero);
-        was_closed.select(self.before.stick.get(lane), zero)
+        let was_closed = self.before(Kept::InverseOnset, lane).greater(zero);
+        was_closed.select(self.before(Kept::Stick, lane), zero)
     }
 
     /// Keeps the state of the friction where closed.
     #[inline(always)]
     pub(crate) fn keep_stick(&mut self, w: Wide<S>, lane: usize, closed: Mask<S>, stick: Lane<S>) {
-        self.now.stick.set(lane, closed.select(stick, w.splat(0.0)));
+        self.keep(Kept::Stick, lane, closed.select(stick, w.splat(0.0)));
     }
 }

@@ -237,8 +237,8 @@ impl Roller {
     }
 
     fn closed(&self) -> usize {
-        let onsets = &self.contacts.memory.state.inverse_onset;
-        onsets.iter().filter(|onset| **onset > 0.0).count()
+        let onsets = self.contacts.memory.state.each(Kept::InverseOnset);
+        onsets.filter(|onset| *onset > 0.0).count()
     }
 
     fn stored(&self) -> f64 {
@@ -424,17 +424,12 @@ fn a_contact_is_carried_over_the_tip() {
         let mut roller = Roller::new(contacts.clone(), place(-1.0));
         roller.force(0.0, place(-1.0), Vector::zeros());
         assert_eq!(roller.closed(), 1);
-        roller
-            .contacts
-            .memory
-            .state
-            .inverse_onset
-            .iter_mut()
-            .for_each(|onset| {
-                if *onset > 0.0 {
-                    *onset = 42.0;
-                }
-            });
+        let state = &mut roller.contacts.memory.state;
+        for contact in 0..state.len() {
+            if state.is_closed(contact) {
+                state.set(Kept::InverseOnset, contact, 42.0);
+            }
+        }
         for step in -99..=99_i32 {
             let at = place(0.01 * f64::from(step));
             let force = roller.force(f64::from(step + 100), at, Vector::zeros());
@@ -442,8 +437,8 @@ fn a_contact_is_carried_over_the_tip() {
                 (force.norm() - 100.0).abs() < 1e-3,
                 "{way}, {step}: {force:?}"
             );
-            let onsets = &roller.contacts.memory.state.inverse_onset;
-            let closed: Vec<f64> = onsets.iter().copied().filter(|v| *v > 0.0).collect();
+            let onsets = roller.contacts.memory.state.each(Kept::InverseOnset);
+            let closed: Vec<f64> = onsets.filter(|v| *v > 0.0).collect();
             assert_eq!(closed, [42.0], "{way}, {step}");
             if step % 7 == 0 {
                 // Windows are renewed, and with them the gap that is remembered.

@@ -3,9 +3,10 @@
 use std::mem::swap;
 
 use chaindrive_geometry::{Point, Vector};
+use chaindrive_integrate::Array;
 use serde::{Deserialize, Serialize};
 
-use super::{Contacts, Frame, Shape, Teeth, Touch};
+use super::{Contacts, Frame, Kept, Shape, Teeth, Touch};
 use crate::lanes::LANES;
 
 /// A run of consecutive rollers, no more than one lane of eight holds.
@@ -21,8 +22,8 @@ pub(crate) struct Run {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Spare {
     runs: Vec<Run>,
-    axis_x: Vec<f64>,
-    axis_y: Vec<f64>,
+    axis_x: Array,
+    axis_y: Array,
     memory: Touch,
 }
 
@@ -127,8 +128,9 @@ impl Contacts {
         let likely = |k: &usize| {
             let slot = self.slot_of(run.start + k);
             slot.is_some_and(|slot| {
-                let gap = &self.memory.state.gap;
-                let gaps = (0..self.sides()).map(|side| gap[side * self.slots + slot]);
+                let state = &self.memory.state;
+                let gap = |side| state.get(Kept::Gap, side * self.slots + slot);
+                let gaps = (0..self.sides()).map(gap);
                 gaps.fold(FAR, f64::min) < LIKELY * self.radius
             })
         };
@@ -267,7 +269,9 @@ mod tests {
         for first in 0..whole.count {
             for last in first..whole.count {
                 contacts.memory.open(contacts.slots);
-                contacts.memory.state.gap[first..=last].fill(-1e-6);
+                for slot in first..=last {
+                    contacts.memory.state.set(Kept::Gap, slot, -1e-6);
+                }
                 let cut: Vec<Run> = contacts.cut(whole).collect();
                 let rollers = cut.iter().flat_map(|run| run.start..run.start + run.count);
                 assert!(rollers.eq(36..36 + 27), "{cut:?}");

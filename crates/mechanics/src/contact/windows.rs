@@ -1,5 +1,6 @@
 //! Memory of the contacts with one body, as plain data.
 
+use chaindrive_integrate::Array;
 use serde::{Deserialize, Serialize};
 
 use super::{Contacts, PlateContact, Run, Touch};
@@ -10,7 +11,7 @@ use crate::lanes::{LANES, padded};
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Windows {
     runs: Vec<Run>,
-    axes: [Vec<f64>; 2],
+    axes: [Array; 2],
     memory: Box<Touch>,
     accepted: f64,
 }

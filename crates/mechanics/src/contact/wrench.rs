@@ -53,7 +53,7 @@ impl Begun {
     }
 }
 
-/// What contacts cost, and how they began, lane by lane.
+/// What contacts cost, lane by lane, and how they began.
 pub(crate) struct LaneTally<S: Simd> {
     /// Power lost along the normals \[W\].
     pub(crate) normal_loss: Lane<S>,
@@ -61,13 +61,10 @@ pub(crate) struct LaneTally<S: Simd> {
     pub(crate) friction_loss: Lane<S>,
     /// Deepest penetration \[m\].
     pub(super) depth: Lane<S>,
-    /// Whether contacts began; only then the rest counts.
-    fresh: bool,
-    first_depth: Lane<S>,
-    first_share: Lane<S>,
-    count: Lane<S>,
-    gentle: Lane<S>,
-    fastest: Lane<S>,
+    /// Numbers, not lanes, which would be put down and fetched in every loop for what is rare.
+    begun: Begun,
+    first_depth: f64,
+    first_share: f64,
 }
 
 impl<S: Simd> LaneTally<S> {
@@ -78,12 +75,9 @@ impl<S: Simd> LaneTally<S> {
             normal_loss: zero,
             friction_loss: zero,
             depth: zero,
-            fresh: false,
-            first_depth: zero,
-            first_share: w.splat(1.0),
-            count: zero,
-            gentle: zero,
-            fastest: zero,
+            begun: Begun::default(),
+            first_depth: 0.0,
+            first_share: 1.0,
         }
     }
 
@@ -98,14 +92,16 @@ impl<S: Simd> LaneTally<S> {
         floor: f64,
     ) {
         let (zero, one) = (w.splat(0.0), w.splat(1.0));
-        self.fresh = true;
-        let fresh_depth = fresh.select(depth, zero);
-        self.first_depth = self.first_depth.max(fresh_depth);
-        self.first_share = self.first_share.min(fresh.select(onset.share, one));
-        let gentle = w.splat(floor).greater(onset.speed);
-        self.count += fresh.select(one, zero);
-        self.gentle += (fresh & gentle).select(one, zero);
-        self.fastest = self.fastest.max(fresh.select(onset.speed, zero));
+        let depth = fresh.select(depth, zero).largest();
+        self.first_depth = self.first_depth.max(depth);
+        let share = fresh.select(onset.share, one).smallest();
+        self.first_share = self.first_share.min(share);
+        let gentle = fresh & w.splat(floor).greater(onset.speed);
+        self.begun = self.begun.and(Begun {
+            count: fresh.select(one, zero).sum(),
+            gentle: gentle.select(one, zero).sum(),
+            fastest: fresh.select(onset.speed, zero).largest(),
+        });
     }
 
     /// Deepest penetration \[m\].
@@ -114,28 +110,16 @@ impl<S: Simd> LaneTally<S> {
         self.depth.largest()
     }
 
-    /// The contact that began.
+    /// The contacts that began.
     #[inline(always)]
     pub(crate) fn begun(&self) -> Begun {
-        if self.fresh {
-            Begun {
-                count: self.count.sum(),
-                gentle: self.gentle.sum(),
-                fastest: self.fastest.largest(),
-            }
-        } else {
-            Begun::default()
-        }
+        self.begun
     }
 
     /// Deepest penetration \[m\] of the contacts that began, and the smallest share of the step that had passed then.
     #[inline(always)]
     pub(crate) fn first(&self) -> [f64; 2] {
-        if self.fresh {
-            [self.first_depth.largest(), self.first_share.smallest()]
-        } else {
-            [0.0, 1.0]
-        }
+        [self.first_depth, self.first_share]
     }
 
     /// Writes all of it into a wrench.

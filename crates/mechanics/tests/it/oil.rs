@@ -68,7 +68,7 @@ fn it_settles_where_stiff_oil_does() {
     assert!(stiff.z.is_empty() && stiff.system.oil_column_names().is_empty());
     assert_eq!(oil.system.oil_column_names(), ["plunger"]);
     let mut state = oil.state();
-    state.quadratures = vec![0.0; oil.system.quadratures()];
+    state.quadratures = vec![0.0; oil.system.quadratures()].into();
     let seen = observed(&oil.system, &state);
     let supply = 35.0 / OIL.area;
     assert!((seen.oil_pressure[0] / supply - 1.0).abs() < 1e-9);

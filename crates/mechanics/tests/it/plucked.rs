@@ -261,7 +261,7 @@ impl Span {
         let flows = if state.quadratures.is_empty() {
             vec![0.0; system.quadratures()]
         } else {
-            state.quadratures.clone()
+            state.quadratures.to_vec()
         };
         let mut out = Observation::default();
         system.observe(at, &flows, &mut system.new_record(), &mut out);

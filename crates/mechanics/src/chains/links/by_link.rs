@@ -1,6 +1,7 @@
 //! Three numbers a link, each kind by itself: what lanes of joints and of links read.
 
 use super::Linkage;
+use chaindrive_integrate::Array;
 
 /// Along x, along y, and of the turning; that of link i stands behind place i + 1, whole lanes.
 ///
@@ -8,9 +9,9 @@ use super::Linkage;
 /// nothing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ByLink {
-    pub(super) x: Vec<f64>,
-    pub(super) y: Vec<f64>,
-    pub(super) turn: Vec<f64>,
+    pub(super) x: Array,
+    pub(super) y: Array,
+    pub(super) turn: Array,
 }
 
 impl ByLink {

@@ -15,7 +15,7 @@
 //! ```
 
 use chaindrive_geometry::Vector;
-use chaindrive_integrate::Weights;
+use chaindrive_integrate::{Array, Weights};
 use pulp::{Simd, WithSimd};
 
 use super::by_link::ByLink;
@@ -41,7 +41,7 @@ pub(crate) struct Answers {
     /// b of the links.
     known: ByLink,
     /// s, by joint, of P_after − P_before.
-    asked: [Vec<f64>; 2],
+    asked: [Array; 2],
     /// P(M b, s), then x.
     whole: ByLink,
     /// P(Wᵀ, 0), one a column.
@@ -169,7 +169,7 @@ impl Held<'_> {
 
     /// r ← P(r, s); without s for s = 0.
     #[inline(always)]
-    fn answer<S: Simd>(&mut self, w: Wide<S>, r: &mut ByLink, asked: Option<&[Vec<f64>; 2]>) {
+    fn answer<S: Simd>(&mut self, w: Wide<S>, r: &mut ByLink, asked: Option<&[Array; 2]>) {
         let (linkage, posture) = (self.linkage, self.posture);
         self.reactions.yield_to(w, linkage, r);
         self.reactions.set_opening(w, linkage, posture, r);
@@ -196,14 +196,14 @@ impl Answers {
     /// Takes in what is given, by joint.
     fn ask(&mut self, linkage: &Linkage, given: &[Vector]) {
         for (k, asked) in self.asked.iter_mut().enumerate() {
-            asked.clear();
-            asked.extend(given.iter().enumerate().map(|(joint, given)| {
-                match linkage.joints[joint].pair {
+            asked.resize(given.len(), 0.0);
+            for (joint, (asked, given)) in asked.iter_mut().zip(given).enumerate() {
+                *asked = match linkage.joints[joint].pair {
                     Some(_) if linkage.pairs.pin_after(joint) => given[k],
                     Some(_) => -given[k],
                     None => 0.0,
-                }
-            }));
+                };
+            }
         }
     }
 }

@@ -2,14 +2,13 @@
 
 use chaindrive_contact::Friction;
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::Moment;
+use chaindrive_integrate::{Array, Moment};
 use pulp::{Simd, WithSimd};
 
 use super::rates::LinkPins;
 use super::{Element, JointState, Linkage, Mount, Partner, Posture};
 use crate::chains::{Loads, Surroundings, Way};
-use crate::contact::Rollers;
-use crate::contact::{Contacts, Frame, Pressing, Touch, Wrench};
+use crate::contact::{Contacts, Frame, Kept, Pressing, Rollers, Touch, Wrench};
 use crate::energy::Flow;
 use crate::lanes::{Wide, dispatch};
 use crate::system::{Bodies, RailContact, RailSupport, Wheel, WheelSupport};
@@ -181,7 +180,7 @@ impl Linkage {
         contacts.for_each_slot(|slot, joint| {
             for side in 0..contacts.sides() {
                 let index = side * contacts.slots + slot;
-                if touch.state.inverse_onset[index] <= 0.0 {
+                if !touch.state.is_closed(index) {
                     continue;
                 }
                 let faces = &touch.faces;
@@ -190,7 +189,7 @@ impl Linkage {
                 let (body, arm) = self.bearer(joint, &joint_state.posture);
                 // Elements look from the surface's material outward through the roller: n = −n_surface.
                 let normal = -Vector::new(faces.normal_x[index], faces.normal_y[index]);
-                let (force, bend) = (touch.state.force[index], faces.bend[index]);
+                let (force, bend) = (touch.state.get(Kept::Force, index), faces.bend[index]);
                 let radius = contacts.radius;
                 let mut element = Element {
                     joint: joint % self.joints.len(),
@@ -224,7 +223,7 @@ impl Linkage {
     }
 
     /// Angular speeds of the circles on the teeth \[rad/s\], zero where they do not turn with their body.
-    fn spin_of_circles(&self, at: Moment<'_>, posture: &Posture, spin: &mut Vec<f64>) {
+    fn spin_of_circles(&self, at: Moment<'_>, posture: &Posture, spin: &mut Array) {
         spin.clear();
         spin.resize(posture.x.len(), 0.0);
         for (joint, spin) in spin.iter_mut().enumerate() {

@@ -6,7 +6,7 @@ use chaindrive_integrate::Moment;
 use super::rates::LinkPlaces;
 use super::{Joining, JointState, Linkage, Mate, Partner, free_part};
 use crate::chains::Record;
-use crate::contact::{ContactState, Frame, PlateContact};
+use crate::contact::{ContactState, Frame, Kept, PlateContact};
 use crate::energy::{Energy, Store};
 use crate::observe::Observation;
 
@@ -35,7 +35,9 @@ impl Linkage {
             out.joint_force_y.push(force.y);
             out.joint_force.push(force.norm());
             out.joint_depth.push(match &self.joining {
-                Joining::Clearance(_) => (-joint_state.memory.joints.gap[index]).max(0.0),
+                Joining::Clearance(_) => {
+                    (-joint_state.memory.joints.get(Kept::Gap, index)).max(0.0)
+                }
                 Joining::Hinges(_) => 0.0,
             });
             out.joint_angle.push(match joint.pair {
@@ -61,7 +63,7 @@ impl Linkage {
             let (offset, force, depth) = body.map_or((nothing, nothing, f64::NAN), |body| {
                 let bush = self.part(joint.carrier, at, &joint_state.posture);
                 let offset = bush.place - free_part(body, at).place;
-                let gap = joint_state.memory.bushes.gap[index];
+                let gap = joint_state.memory.bushes.get(Kept::Gap, index);
                 (offset, forces[index], (-gap).max(0.0))
             });
             out.bush_offset_x.push(offset.x);

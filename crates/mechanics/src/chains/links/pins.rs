@@ -8,6 +8,7 @@
 //! Which side is the pin and which the bush matters for friction alone, whose levers differ.
 
 use chaindrive_geometry::Vector;
+use chaindrive_integrate::Array;
 use pulp::{Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
@@ -20,49 +21,49 @@ use crate::lanes::{LANES, Mask, Wide, padded};
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Pins {
     /// Gap \[m\] and normal force \[N\]. The memory has them too, but changes hands when a step is accepted.
-    pub(crate) gap: Vec<f64>,
-    pub(crate) force: Vec<f64>,
+    pub(crate) gap: Array,
+    pub(crate) force: Array,
     /// n, from the centre of the side before to that of the side after.
-    pub(crate) normal_x: Vec<f64>,
-    pub(crate) normal_y: Vec<f64>,
+    pub(crate) normal_x: Array,
+    pub(crate) normal_y: Array,
     /// arm × n of both sides \[m\].
-    pub(crate) turn_before: Vec<f64>,
-    pub(crate) turn_after: Vec<f64>,
+    pub(crate) turn_before: Array,
+    pub(crate) turn_after: Array,
     /// ∂F/∂δ \[N/m\].
-    pub(crate) stiffness: Vec<f64>,
+    pub(crate) stiffness: Array,
     /// ∂F/∂δ̇ \[N s/m\].
-    pub(crate) damping: Vec<f64>,
+    pub(crate) damping: Array,
     /// Stiffness across, F/|e| \[N/m\].
-    pub(crate) across: Vec<f64>,
+    pub(crate) across: Array,
     /// Force on the side after \[N\]; the side before feels the opposite.
-    pub(crate) push_x: Vec<f64>,
-    pub(crate) push_y: Vec<f64>,
+    pub(crate) push_x: Array,
+    pub(crate) push_y: Array,
     /// Moments on both links about their centres of mass \[N m\].
-    pub(crate) moment_before: Vec<f64>,
-    pub(crate) moment_after: Vec<f64>,
+    pub(crate) moment_before: Array,
+    pub(crate) moment_after: Array,
     /// Friction of the pin along ẑ × (P_pin − P_hole) \[N\], −∂R/∂slip and the secant |R/slip| \[N s/m\].
-    pub(crate) rub: Vec<f64>,
-    pub(crate) drag: Vec<f64>,
-    pub(crate) secant: Vec<f64>,
+    pub(crate) rub: Array,
+    pub(crate) drag: Array,
+    pub(crate) secant: Array,
 }
 
 /// Which joints there are, and how they are put together.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pairs {
     /// One where there is a pin in a bush, zero elsewhere, whole lanes.
-    present: Vec<f64>,
+    present: Array,
     /// The same of the next joint, which after the last one is the first.
-    present_next: Vec<f64>,
+    present_next: Array,
     /// One where the side after has the pin, zero elsewhere, whole lanes.
-    pin_after: Vec<f64>,
+    pin_after: Array,
     /// One where the side after has what carries the roller, zero elsewhere, whole lanes.
-    pub(crate) bush_after: Vec<f64>,
+    pub(crate) bush_after: Array,
 }
 
 impl Pairs {
     pub(crate) fn of(joints: &[JointMates]) -> Self {
         let flags = |flag: &dyn Fn(&JointMates) -> bool| {
-            let mut flags: Vec<f64> = joints
+            let mut flags: Array = joints
                 .iter()
                 .map(|joint| f64::from(u8::from(flag(joint))))
                 .collect();
@@ -107,7 +108,7 @@ impl Pairs {
 }
 
 impl Pins {
-    fn all(&mut self) -> [&mut Vec<f64>; 16] {
+    fn all(&mut self) -> [&mut Array; 16] {
         [
             &mut self.gap,
             &mut self.force,
@@ -295,6 +296,7 @@ mod tests {
     use super::*;
     use crate::chains::links::Joining;
     use crate::chains::links::tests::{kinds, of, set_off};
+    use crate::contact::Kept;
 
     /// Lanes of any width against one joint at a time, as free rollers and their bushes are looked at.
     #[test]
@@ -370,8 +372,9 @@ mod tests {
                 assert!(closed > 9, "{kind}: {closed}");
                 let sum = Tally::of(&sum);
                 for joint in 0..linkage.joints.len() {
-                    assert!((alone.gap[joint] - memory.gap[joint]).abs() < 1e-17);
-                    let onsets = [&alone, &memory].map(|memory| memory.inverse_onset[joint]);
+                    let both = |what| [&alone, &memory].map(|memory| memory.get(what, joint));
+                    let (gaps, onsets) = (both(Kept::Gap), both(Kept::InverseOnset));
+                    assert!((gaps[0] - gaps[1]).abs() < 1e-17);
                     assert!((onsets[0] - onsets[1]).abs() <= 1e-12 * onsets[0]);
                 }
                 let near = |a: f64, b: f64| (a - b).abs() <= 1e-12 * a.abs().max(1e-9);

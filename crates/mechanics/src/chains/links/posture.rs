@@ -1,7 +1,7 @@
 //! Where the links and rollers of a linkage are, and how they move.
 
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::Moment;
+use chaindrive_integrate::{Array, Moment};
 use pulp::{Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
@@ -24,13 +24,13 @@ pub(crate) struct Tip {
 /// One side of every joint, whole lanes: places, velocities, arms from the centre of mass, angular speeds.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Sides {
-    pub(crate) x: Vec<f64>,
-    pub(crate) y: Vec<f64>,
-    pub(crate) vx: Vec<f64>,
-    pub(crate) vy: Vec<f64>,
-    pub(crate) arm_x: Vec<f64>,
-    pub(crate) arm_y: Vec<f64>,
-    pub(crate) spin: Vec<f64>,
+    pub(crate) x: Array,
+    pub(crate) y: Array,
+    pub(crate) vx: Array,
+    pub(crate) vy: Array,
+    pub(crate) arm_x: Array,
+    pub(crate) arm_y: Array,
+    pub(crate) spin: Array,
 }
 
 /// Places and velocities that follow from the coordinates.
@@ -45,29 +45,29 @@ pub(crate) struct Posture {
     pub(crate) after: Sides,
     /// Centres of the circles that run on the teeth, (stride,), and their velocities; behind the last
     /// roller of a closed chain stand copies of the first ones.
-    pub(crate) x: Vec<f64>,
-    pub(crate) y: Vec<f64>,
-    pub(crate) vx: Vec<f64>,
-    pub(crate) vy: Vec<f64>,
+    pub(crate) x: Array,
+    pub(crate) y: Array,
+    pub(crate) vx: Array,
+    pub(crate) vy: Array,
     /// Coordinates and velocities of the links, each by itself.
-    links: [Vec<f64>; 6],
+    links: [Array; 6],
 }
 
 /// Constants of the links, whole lanes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Shapes {
     /// Both joint ends from the centre of mass, in the frame of the link \[m\].
-    arms: [[Vec<f64>; 2]; 2],
+    arms: [[Array; 2]; 2],
     /// Inverse mass \[1/kg\] and inertia \[1/(kg m²)\] of link i behind place i + 1; before the first link of a
     /// closed chain comes the last, and beside those of an open one nothing that moves.
-    pub(crate) mobility: Vec<f64>,
-    pub(crate) turning: Vec<f64>,
+    pub(crate) mobility: Array,
+    pub(crate) turning: Array,
     /// Inverse mass and inertia of every body, free rollers included.
     pub(crate) mobilities: Vec<[f64; 2]>,
     /// Their roots.
     pub(crate) roots: Vec<[f64; 2]>,
     /// Square of length between the joints over inertia of every link, p²/I² \[1/(kg² m²)\].
-    pub(crate) swing: Vec<f64>,
+    pub(crate) swing: Array,
     /// Inertia of the link that turns most easily \[kg m²\].
     pub(crate) least_inertia: f64,
     /// Largest damping rate of a link by itself over its drag per length b \[m/kg\], its centre of mass e away from its middle.
@@ -90,12 +90,12 @@ impl Shapes {
         let count = links;
         let links = &bodies[..count];
         let all = |value: &dyn Fn(&super::Body) -> f64| {
-            let mut values: Vec<f64> = links.iter().map(value).collect();
+            let mut values: Array = links.iter().map(value).collect();
             values.resize(padded(links.len()), 0.0);
             values
         };
         let shifted = |value: &dyn Fn(&super::Body) -> f64| {
-            let mut values = vec![0.0; padded(count + 1) + LANES];
+            let mut values = Array::zeros(padded(count + 1) + LANES);
             for (value_of, link) in values[1..].iter_mut().zip(links) {
                 *value_of = value(link);
             }
@@ -139,7 +139,7 @@ impl Shapes {
 }
 
 impl Sides {
-    fn all(&mut self) -> [&mut Vec<f64>; 7] {
+    fn all(&mut self) -> [&mut Array; 7] {
         [
             &mut self.x,
             &mut self.y,

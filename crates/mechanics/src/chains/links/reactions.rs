@@ -12,6 +12,7 @@ mod ring;
 mod sections;
 
 use chaindrive_geometry::Vector;
+use chaindrive_integrate::Array;
 use nalgebra::Matrix3;
 use pulp::{Simd, WithSimd};
 
@@ -29,16 +30,16 @@ const SINGULAR: f64 = 1e-12;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Reactions {
     /// Entries (0, 0), (1, 0), (1, 1) of the joints' own blocks, whole lanes.
-    own: [Vec<f64>; 3],
+    own: [Array; 3],
     /// Entries (0, 0), (0, 1), (1, 0), (1, 1) of the blocks (joint + 1, joint).
-    coupling: [Vec<f64>; 4],
+    coupling: [Array; 4],
     sections: Sections,
     /// Whether there are forces that keep the joints together.
     sound: bool,
     /// Inverses of the blocks of A, as [`ByLink`] has its numbers: entries (0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2).
-    inverse: [Vec<f64>; 6],
+    inverse: [Array; 6],
     /// r, then λ, by joint; behind the last joint of a closed chain comes the first once more.
-    pub(super) right: [Vec<f64>; 2],
+    pub(super) right: [Array; 2],
 }
 
 /// What A is made of.
@@ -207,7 +208,7 @@ impl Reactions {
 
 /// Inverses of the blocks, in their place.
 struct Invert<'a> {
-    inverse: &'a mut [Vec<f64>; 6],
+    inverse: &'a mut [Array; 6],
     linkage: &'a Linkage,
 }
 
@@ -365,7 +366,7 @@ pub(super) fn load<S: Simd>(w: Wide<S>, all: &ByLink, place: usize) -> [Lane<S>;
 }
 
 #[inline(always)]
-fn blocks<S: Simd>(w: Wide<S>, from: &[Vec<f64>; 6], place: usize) -> [Lane<S>; 6] {
+fn blocks<S: Simd>(w: Wide<S>, from: &[Array; 6], place: usize) -> [Lane<S>; 6] {
     let mut block = [w.splat(0.0); 6];
     for k in 0..6 {
         block[k] = w.load(&from[k], place);
@@ -382,7 +383,7 @@ mod tests {
 
     struct Solved<'a> {
         sections: &'a mut Sections,
-        right: &'a mut [Vec<f64>; 2],
+        right: &'a mut [Array; 2],
     }
 
     impl WithSimd for Solved<'_> {
@@ -416,13 +417,13 @@ mod tests {
                 continue;
             }
             let values = |next: &mut dyn FnMut() -> f64| {
-                let mut values: Vec<f64> = (0..count).map(|_| next()).collect();
+                let mut values: Array = (0..count).map(|_| next()).collect();
                 values.resize(padded(count) + LANES, 0.0);
                 values
             };
-            let mut own: [Vec<f64>; 3] = std::array::from_fn(|_| values(&mut next));
-            let mut coupling: [Vec<f64>; 4] = std::array::from_fn(|_| values(&mut next));
-            let right: [Vec<f64>; 2] = std::array::from_fn(|_| values(&mut next));
+            let mut own: [Array; 3] = std::array::from_fn(|_| values(&mut next));
+            let mut coupling: [Array; 4] = std::array::from_fn(|_| values(&mut next));
+            let right: [Array; 2] = std::array::from_fn(|_| values(&mut next));
             for k in [0, 2] {
                 own[k].iter_mut().for_each(|own| *own += 3.0);
             }

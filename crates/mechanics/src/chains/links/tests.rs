@@ -9,6 +9,7 @@ use chaindrive_integrate::{Moment, SecondOrderSystem};
 
 use super::Linkage;
 use crate::chains::Chain;
+use crate::contact::Kept;
 use crate::energy::Flow;
 use crate::system::GroupBodies;
 use crate::{
@@ -337,17 +338,20 @@ fn lanes_and_scalar_contacts_agree() {
                     return;
                 };
                 let touch = &touch.state;
-                let depth = -touch.gap[slot];
+                let depth = -touch.get(Kept::Gap, slot);
                 // The wheel turns under rollers at rest: only the elastic part is compared.
-                if depth <= 0.0 || touch.closing[slot].abs() > 0.0 && touch.force[slot] == 0.0 {
+                if depth <= 0.0
+                    || touch.get(Kept::Closing, slot).abs() > 0.0
+                        && touch.get(Kept::Force, slot) == 0.0
+                {
                     return;
                 }
-                assert!((probe.gap - touch.gap[slot]).abs() < 1e-16);
+                assert!((probe.gap - touch.get(Kept::Gap, slot)).abs() < 1e-16);
                 let share = flank.share(probe.beyond);
                 let elastic =
                     (1.0 - share) * law.elastic_force(depth) + share * flank.elastic.force(depth);
-                let factor = touch.force[slot] / elastic;
-                let rate = touch.closing[slot] * touch.inverse_onset[slot];
+                let factor = touch.get(Kept::Force, slot) / elastic;
+                let rate = touch.get(Kept::Closing, slot) * touch.get(Kept::InverseOnset, slot);
                 let damped =
                     (1.0 + law.dissipation.factor().unwrap_or(0.0) * rate.min(4.0)).max(0.0);
                 assert!(

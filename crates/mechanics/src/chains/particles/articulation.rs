@@ -10,6 +10,7 @@
 //! links pass them on to the rollers. The arrays of links begin one lane late, so that the joint before the first link finds its
 //! neighbour there.
 
+use chaindrive_integrate::Array;
 use pulp::Simd;
 
 use super::Particles;
@@ -22,11 +23,11 @@ use crate::lanes::{LANES, Lane, Lanes, Wide};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Turning {
     /// Turning of the links \[rad/s\], from entry [`LANES`] on.
-    pub(super) rate: Vec<f64>,
+    pub(super) rate: Array,
     /// Tension of the links \[N\], likewise.
-    pub(super) tension: Vec<f64>,
+    pub(super) tension: Array,
     /// n/ℓ of the links \[1/m\].
-    pub(super) across: [Vec<f64>; 2],
+    pub(super) across: [Array; 2],
 }
 
 impl Turning {
@@ -142,7 +143,7 @@ impl Particles {
 
 /// Turns the torques on the links into forces on the rollers at their ends.
 #[inline(always)]
-fn pass_on<S: Simd>(w: Wide<S>, torque: &[f64], across: &[Vec<f64>; 2], rollers: &mut Rollers<'_>) {
+fn pass_on<S: Simd>(w: Wide<S>, torque: &[f64], across: &[Array; 2], rollers: &mut Rollers<'_>) {
     let n = across[0].len();
     let zero = w.splat(0.0);
     let (here, next) = (w.lanes(&torque[..n]), w.lanes(&torque[1..=n]));

@@ -9,7 +9,7 @@
 //! That is −b v_n on every piece of the straight link, with the velocity linear between its ends.
 
 use chaindrive_geometry::Vector;
-use chaindrive_integrate::Moment;
+use chaindrive_integrate::{Array, Moment};
 use pulp::Simd;
 
 use super::Particles;
@@ -20,13 +20,14 @@ use crate::lanes::{Lane, Wide};
 
 /// Drag per length of every link \[N s/m²\], whole lanes; none behind the last.
 #[derive(Clone, Debug)]
-pub(super) struct Drag(Vec<f64>);
+pub(super) struct Drag(Array);
 
 impl Drag {
     /// None where nothing drags; `entries` are those of the links.
     pub(super) fn new(chain: &Chain, entries: usize) -> Option<Self> {
         (chain.drag > 0.0).then(|| {
-            let mut coefficients = vec![chain.drag; chain.links()];
+            let mut coefficients = Array::default();
+            coefficients.resize(chain.links(), chain.drag);
             coefficients.resize(entries, 0.0);
             Self(coefficients)
         })

@@ -19,7 +19,7 @@ mod observe;
 mod statics;
 
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::Moment;
+use chaindrive_integrate::{Array, Moment};
 use pulp::{Arch, Simd};
 use serde::{Deserialize, Serialize};
 
@@ -45,13 +45,13 @@ pub(crate) struct Points {
     /// Stiffness of both where they hardly touch \[N/m\]: that of contacts which are open now.
     shallow: [f64; 2],
     /// One where the end after a joint is the bush, zero elsewhere.
-    bush_after: Vec<f64>,
+    bush_after: Array,
     rollers: usize,
     stride: usize,
     pitch: f64,
     /// Masses \[kg\] and inverse masses \[1/kg\] of rollers, ends before and ends after.
-    masses: [Vec<f64>; 3],
-    inverse_masses: [Vec<f64>; 3],
+    masses: [Array; 3],
+    inverse_masses: [Array; 3],
     /// Inverse masses of the lightest of each \[1/kg\].
     lightest: [f64; 3],
     /// ω² of the links alone and twice their damping rate.
@@ -102,12 +102,12 @@ pub(crate) struct Found {
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Held {
     /// n, from the centre of what has the bore to that of what turns in it, or back.
-    normal_x: Vec<f64>,
-    normal_y: Vec<f64>,
-    force: Vec<f64>,
+    normal_x: Array,
+    normal_y: Array,
+    force: Array,
     /// ∂F/∂δ \[N/m\] and ∂F/∂δ̇ \[N s/m\].
-    stiffness: Vec<f64>,
-    damping: Vec<f64>,
+    stiffness: Array,
+    damping: Array,
     /// The greatest of each.
     stiffest: f64,
     damped: f64,
@@ -244,7 +244,7 @@ impl Points {
 
     pub(in crate::chains) fn inertias(&self) -> Vec<f64> {
         let each = self.masses.iter();
-        each.flat_map(|masses| [masses.as_slice(), masses].concat())
+        each.flat_map(|masses| [&**masses, masses].concat())
             .collect()
     }
 

@@ -1,6 +1,7 @@
 //! The forces of the links on the rollers.
 
 use chaindrive_geometry::{Point, Vector};
+use chaindrive_integrate::Array;
 use pulp::Simd;
 
 use super::articulation::Turning;
@@ -16,11 +17,11 @@ pub(crate) struct Links {
     /// Whether the last link returns to roller 0.
     pub(crate) closed: bool,
     /// Unstressed lengths \[m\].
-    pub(crate) rest: Vec<f64>,
+    pub(crate) rest: Array,
     /// Stiffness \[N/m\].
-    pub(crate) stiffness: Vec<f64>,
+    pub(crate) stiffness: Array,
     /// Damping \[N s/m\].
-    pub(crate) damping: Vec<f64>,
+    pub(crate) damping: Array,
 }
 
 impl Links {
@@ -28,7 +29,7 @@ impl Links {
         let count = chain.links();
         let size = padded(count + 1);
         let pad = |values: &[f64], fill: f64| {
-            let mut values = values.to_vec();
+            let mut values = Array::from(values);
             values.resize(size, fill);
             values
         };

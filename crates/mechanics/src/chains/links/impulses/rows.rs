@@ -2,7 +2,7 @@
 //!
 //! u over the velocity of the link after the joint and −u over that of the link before, with the levers of their rotations.
 
-use chaindrive_integrate::Weights;
+use chaindrive_integrate::{Array, Weights};
 use pulp::Simd;
 
 use crate::chains::links::by_link::ByLink;
@@ -15,12 +15,12 @@ use crate::lanes::{Lane, Wide};
 /// The number after the last joint of a closed chain stands for the first one again.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rows {
-    x: Vec<f64>,
-    y: Vec<f64>,
-    turn_before: Vec<f64>,
-    turn_after: Vec<f64>,
+    x: Array,
+    y: Array,
+    turn_before: Array,
+    turn_after: Array,
     /// What the row weighs; zero where there is no contact.
-    pub(super) weight: Vec<f64>,
+    pub(super) weight: Array,
 }
 
 /// Rows side by side.
@@ -40,7 +40,7 @@ impl<S: Simd> RowLane<S> {
 }
 
 impl Rows {
-    fn all(&mut self) -> [&mut Vec<f64>; 5] {
+    fn all(&mut self) -> [&mut Array; 5] {
         [
             &mut self.x,
             &mut self.y,

@@ -1,5 +1,6 @@
 //! A block-tridiagonal matrix with a border, one block a joint.
 
+use chaindrive_integrate::Array;
 use std::cmp::Ordering;
 
 use pulp::Simd;
@@ -25,26 +26,26 @@ pub(super) enum Place {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tridiagonal {
     /// Entries (p, o) of the joints' own blocks, o ≤ p, by joint; after the elimination of their inverses.
-    own: [Vec<f64>; 4],
+    own: [Array; 4],
     /// Entries of the blocks (joint + 1, joint): row p there, column o here; after the elimination of L.
-    coupling: [Vec<f64>; 4],
-    right: [Vec<f64>; 2],
+    coupling: [Array; 4],
+    right: [Array; 2],
     /// B columns for every row: the border, and the right-hand side behind it.
-    beside: Vec<f64>,
+    beside: Array,
     /// The border's own equations in the same columns.
-    corner: Vec<f64>,
+    corner: Array,
     border: usize,
     /// Rows of a joint in the border.
     held: usize,
     /// Joints with blocks.
     count: usize,
     /// The unknowns of the border, once they are found.
-    edge: Vec<f64>,
+    edge: Array,
     /// The unknowns of the joints, the first one of a closed chain once more behind the last.
-    found: [Vec<f64>; 2],
+    found: [Array; 2],
     sections: Sections,
     /// Solutions of the sections for every column beside them.
-    columns: Vec<[Vec<f64>; 2]>,
+    columns: Vec<[Array; 2]>,
 }
 
 /// Place of an entry of a block.
@@ -460,7 +461,7 @@ impl Tridiagonal {
 fn read_column<const B: usize>(
     joints: &[[[f64; B]; 2]],
     j: usize,
-    column: &mut [Vec<f64>; 2],
+    column: &mut [Array; 2],
     length: usize,
 ) {
     for values in &mut *column {

@@ -8,6 +8,7 @@
 //! the last row of the section before. The last rows are left: a ring of eight blocks, or a row of them where the chain is open.
 
 use chaindrive_geometry::Vector;
+use chaindrive_integrate::Array;
 use nalgebra::Matrix2;
 use pulp::Simd;
 
@@ -88,7 +89,7 @@ impl Sections {
     /// Like what else goes from joints to sections or back, it is kept out of line, and so compiled for the oldest processor: newer ones
     /// would gather and scatter, which takes several times as long as one by one.
     #[inline(never)]
-    pub(in crate::chains::links) fn take_in(&mut self, own: [&[f64]; 3], coupling: &[Vec<f64>; 4]) {
+    pub(in crate::chains::links) fn take_in(&mut self, own: [&[f64]; 3], coupling: &[Array; 4]) {
         let coupling = [0, 1, 2, 3].map(|k| &coupling[k][..self.count]);
         let own = own.map(|own| &own[..self.count]);
         for section in 0..self.ring.count {
@@ -174,11 +175,7 @@ impl Sections {
 
     /// Solves for one right-hand side in its place; behind the last joint that of the first comes once more.
     #[inline(always)]
-    pub(in crate::chains::links) fn solve<S: Simd>(
-        &mut self,
-        w: Wide<S>,
-        values: &mut [Vec<f64>; 2],
-    ) {
+    pub(in crate::chains::links) fn solve<S: Simd>(&mut self, w: Wide<S>, values: &mut [Array; 2]) {
         self.spread(values);
         let Some((last, rows)) = self.rows.split_last_mut() else {
             return;
@@ -247,7 +244,7 @@ impl Sections {
     }
 
     #[inline(never)]
-    fn spread(&mut self, values: &[Vec<f64>; 2]) {
+    fn spread(&mut self, values: &[Array; 2]) {
         for section in 0..self.ring.count {
             let (first, joints) = self.rows(section);
             let [x, y] = values;
@@ -259,7 +256,7 @@ impl Sections {
     }
 
     #[inline(never)]
-    fn collect(&self, values: &mut [Vec<f64>; 2]) {
+    fn collect(&self, values: &mut [Array; 2]) {
         for section in 0..self.ring.count {
             let (first, joints) = self.rows(section);
             let [x, y] = &mut *values;

@@ -2,7 +2,7 @@
 
 use chaindrive_contact::Friction;
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::Moment;
+use chaindrive_integrate::{Array, Moment};
 use pulp::Arch;
 
 use super::{AFTER, BEFORE, Memory, PointJoints, Points, ROLLERS};
@@ -67,7 +67,7 @@ impl Points {
             }
         }
 
-        let bush_after: Vec<f64> = (0..padded(count + 1))
+        let bush_after: Array = (0..padded(count + 1))
             .map(|joint| f64::from(u8::from(points.is_inner(joint % count))))
             .collect();
         let share = points.inner / (points.inner + points.outer);
@@ -86,7 +86,7 @@ impl Points {
             }
         }
         let inverse = |masses: &Vec<f64>| masses.iter().map(|mass| 1.0 / mass).collect();
-        let inverse_masses: [Vec<f64>; 3] = [
+        let inverse_masses: [Array; 3] = [
             inverse(&masses[ROLLERS]),
             inverse(&masses[BEFORE]),
             inverse(&masses[AFTER]),
@@ -107,7 +107,7 @@ impl Points {
             rollers: count,
             stride,
             pitch: particles.pitch,
-            masses,
+            masses: masses.map(Array::from),
             inverse_masses,
             lightest,
             memory: Memory {

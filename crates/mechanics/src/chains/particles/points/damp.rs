@@ -13,7 +13,7 @@
 
 use chaindrive_contact::Friction;
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::{Moment, Weights};
+use chaindrive_integrate::{Array, Moment, Weights};
 use nalgebra::{DMatrix, DVector};
 use pulp::{Simd, WithSimd};
 use serde::{Deserialize, Serialize};
@@ -46,8 +46,8 @@ pub(super) struct Touching {
 /// Σ D e eᵀ of every roller, and −Σ D e (Σ c_j x_j), whole lanes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pressed {
-    matrix: [Vec<f64>; 3],
-    right: [Vec<f64>; 2],
+    matrix: [Array; 3],
+    right: [Array; 2],
 }
 
 /// The equations of the bodies by themselves, kept for the next step.
@@ -106,11 +106,7 @@ impl Points {
         for side in 0..contacts.sides() {
             for (lane, run) in contacts.runs.iter().enumerate() {
                 let slots = side * contacts.slots + lane * LANES;
-                let onsets = &touch.state.inverse_onset[slots..slots + LANES];
-                if onsets.iter().all(|inverse| *inverse <= 0.0) {
-                    continue;
-                }
-                for (k, _) in onsets.iter().enumerate().filter(|(_, it)| **it > 0.0) {
+                for k in (0..LANES).filter(|k| touch.state.is_closed(slots + k)) {
                     let (faces, index) = (&touch.faces, slots + k);
                     let joint = (run.start + k) % self.rollers;
                     let arm = Point::new(at.q[joint], at.q[self.stride + joint]) - frame.origin;

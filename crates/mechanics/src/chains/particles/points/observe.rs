@@ -6,7 +6,7 @@ use chaindrive_integrate::Moment;
 
 use super::{AFTER, BEFORE, Ends, Points, ROLLERS};
 use crate::chains::Record;
-use crate::contact::{ContactState, Frame, PlateContact};
+use crate::contact::{ContactState, Frame, Kept, PlateContact};
 use crate::energy::{Energy, Store};
 use crate::observe::Observation;
 
@@ -108,10 +108,9 @@ impl Points {
         let memory = &record.points.memory;
         let bearings = [(&self.pin, &memory.pins), (&self.bush, &memory.bushes)];
         for (bearing, memory) in bearings {
-            let gaps = memory.gap[..self.rollers].iter();
-            let stored = gaps
-                .filter(|gap| **gap < 0.0)
-                .map(|gap| bearing.energy(*gap));
+            let gaps = memory.each(Kept::Gap).take(self.rollers);
+            let stored = gaps.filter(|gap| *gap < 0.0);
+            let stored = stored.map(|gap| bearing.energy(gap));
             out.stores[Store::Joints as usize] += stored.sum::<f64>();
         }
         out.hold_in_joints(record.resistance.stored);
