@@ -1,7 +1,7 @@
 //! Values as bytes that say what they are, by which version, and whether they are whole.
 //!
 //! ```text
-//! chaindrive checkpoint, layout 1, version 0.1.0, checksum 5f3a9c01↵
+//! chaindrive checkpoint, layout 2, version 0.1.0, checksum 5f3a9c01↵
 //! the value, by postcard: every number to its last bit
 //! ```
 //!
@@ -11,7 +11,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 /// Counts up when the form of the bytes changes within a version of the program.
-const LAYOUT: u32 = 1;
+const LAYOUT: u32 = 2;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
