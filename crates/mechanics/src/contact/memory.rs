@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::window::FAR;
 use crate::MemoryError;
-use crate::lanes::{LANES, Lane, Lanes, LanesMut, Mask, Wide};
+use crate::lanes::{LANES, Lane, Lanes, LanesMut, Mask, Wide, padded};
 
 /// What is kept of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,7 +49,7 @@ const BLOCK: usize = Kept::COUNT * LANES;
 
 /// Numbers of the blocks that hold as many contacts.
 const fn blocks(count: usize) -> usize {
-    count.div_ceil(LANES) * BLOCK
+    padded(count) * Kept::COUNT
 }
 
 /// Where a number of a contact stands.
@@ -146,7 +146,7 @@ impl ContactMemory {
 
     /// Refuses a memory of another number of contacts.
     pub(crate) fn check(&self, count: usize) -> Result<(), MemoryError> {
-        MemoryError::unless("contacts", self.numbers.len(), blocks(count))
+        MemoryError::unless("contacts", self.len(), padded(count))
     }
 
     /// A contact as it is.
