@@ -1,4 +1,4 @@
-//! What first users stumble over: each mistake as the command answers it.
+//! Mistakes of first users: each mistake as the command answers it.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use std::fs;
@@ -20,7 +20,7 @@ fn run(scene: &str, arguments: &[&str]) -> (i32, String, String) {
     )
 }
 
-/// What a command says of a mistake, which it refuses.
+/// Message of a command that refuses a mistake.
 fn refused(arguments: &[&str]) -> String {
     let (code, _, err) = run(TWO_SPROCKETS, arguments);
     assert_eq!(code, 2, "{arguments:?}: {err}");

@@ -12,7 +12,7 @@ use crate::store_faults::{
     chaindrive, group, names, on_a_full_disk, run, signal, start, status, wait_for,
 };
 
-/// What is run, how it is changed, and the simulated time between two checkpoints.
+/// A scene, how it is changed, and the simulated time between two checkpoints.
 struct Case {
     name: &'static str,
     scene: &'static [&'static str],

@@ -4,7 +4,7 @@
 //!   δ = x + g(x)/k_s,   F = g(x),   1/k = 1/g′(x) + 1/k_s,   U = U_g(x) + F²/(2 k_s)
 //! ```
 //!
-//! What lies behind two surfaces that touch, plates behind a pin or the rim behind a tooth, bears the same force. Of a linear and
+//! Parts behind two surfaces that touch, plates behind a pin or the rim behind a tooth, bear the same force. Of a linear and
 //! of a logarithmic law such a stack is again a law of its kind, with other constants; of any other x is found by Newton's method.
 
 use super::{Curve, Power};

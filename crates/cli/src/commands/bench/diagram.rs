@@ -86,7 +86,7 @@ fn lines(table: &Table) -> Vec<(String, Vec<(f64, f64)>)> {
     lines
 }
 
-/// What holds all values, with some room; `usual` where there are none.
+/// Range that holds all values, with some room; `usual` where there are none.
 fn range(values: impl Iterator<Item = f64>, usual: f64) -> (f64, f64) {
     let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), value| {
         (low.min(value), high.max(value))
