@@ -129,14 +129,14 @@ def account(run: xr.Dataset) -> np.ndarray:
 
 
 def statistics(page: Page, run: xr.Dataset, drive: cd.Drive) -> None:
-    """Hold the statistics of long runs against those of a finer method, five replicates each."""
+    """Hold the statistics of long runs against those of a finer method, ten replicates each."""
     until = float(run.attrs["until"])
     settings = {"until": until, "every": until / 2000, "record": "span_tension", "error": False}
     chosen = {"method": run.attrs["method"], "step": float(run.attrs["step"])}
     finer = {"method": "rk4", "step": 2e-5, "onset_depth": 1e-6}
 
     def replicates(**method: Any) -> np.ndarray:
-        twins = (15e3 * (1 + 1e-9 * twin) for twin in range(5))
+        twins = (15e3 * (1 + 1e-9 * twin) for twin in range(10))
         drives = (drive.replace({"route.pretension": pretension}) for pretension in twins)
         return np.array([account(cd.simulate(near, **method, **settings)) for near in drives])
 
@@ -145,7 +145,7 @@ def statistics(page: Page, run: xr.Dataset, drive: cd.Drive) -> None:
     spread = max(float(np.abs((it - it.mean(axis=0)) / centre).max()) for it in (found, exact))
     off = float(np.abs(found.mean(axis=0) / centre - 1).max())
     page.add(
-        f"Over {until:g} s the means and rms of the spans' tensions, averages of five runs that "
+        f"Over {until:g} s the means and rms of the spans' tensions, averages of ten runs that "
         f"begin with pretensions a billionth apart, lie within {100 * off:.2g} % of those of RK4 "
         "(20 µs, contacts begin no deeper than 1 µm); single runs scatter by "
         f"{100 * spread:.2g} % about the average of their kind.",

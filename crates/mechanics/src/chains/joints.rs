@@ -162,9 +162,8 @@ impl Joints {
         } else {
             self.sweep::<S, false, false>(w, dt, found, turns, spring)
         };
-        let stiffness = self.friction.stiffness(sums.normal.largest());
-        found.slopes = [self.largest[0] * stiffness, sums.steepest.largest()];
-        found.stored = sums.held.sum();
+        found.slopes = [0.0, sums.steepest.largest()];
+        found.stored = 0.0;
         sums.power.sum()
     }
 
@@ -222,32 +221,30 @@ impl Joints {
         let mut sums = Sums {
             power: zero,
             squares: zero,
-            held: zero,
             steepest: zero,
-            normal: zero,
         };
         for i in 0..n / Wide::<S>::COUNT {
             let (r, c) = (radius.get(i), damping.get(i));
             let [rate, normal] = turns.at(w, i);
             let normal = r.greater(zero).select(normal, zero);
             let slip = r * rate;
-            let (rubbing, state) = if SPRING {
-                spring.rub(w, dt, normal, slip, before.get(i))
+            let rubbing = if SPRING {
+                let (rubbing, state) = spring.rub(w, dt, normal, slip, before.get(i));
+                now.set(i, state);
+                sums.squares = sums.squares.plus(state, state);
+                rubbing
             } else {
-                self.friction
-                    .rub::<S, LONG>(w, dt, [normal, normal], slip, before.get(i))
+                // The laws that have a state went other ways.
+                let (rubbing, _) =
+                    self.friction
+                        .rub::<S, LONG>(w, dt, [normal, normal], slip, zero);
+                sums.steepest = sums.steepest.max(r * r * rubbing.steepest + c);
+                rubbing
             };
-            now.set(i, state);
             // M = r f − c ω
             let drag = c * rate;
             moments.set(i, (-drag).plus(r, rubbing.force));
             sums.power = sums.power.plus(drag, rate).minus(rubbing.force, slip);
-            sums.squares = sums.squares.plus(state, state);
-            if !SPRING {
-                sums.held += self.friction.stored(w, normal, state);
-                sums.steepest = sums.steepest.max(r * r * rubbing.steepest + c);
-                sums.normal = sums.normal.max(normal);
-            }
         }
         sums
     }
@@ -263,14 +260,10 @@ pub(super) trait Turns<S: Simd> {
 struct Sums<S: Simd> {
     /// Power that goes into the joints \[W\].
     power: Lane<S>,
-    /// Squares of the states of the friction.
+    /// Squares of the deflections of springs \[m²\].
     squares: Lane<S>,
-    /// Energy of what sticks \[J\].
-    held: Lane<S>,
-    /// Steepest −∂M/∂ω \[N m s/rad\].
+    /// Steepest −∂M/∂ω \[N m s/rad\], of laws without a spring.
     steepest: Lane<S>,
-    /// Largest normal force \[N\].
-    normal: Lane<S>,
 }
 
 /// Goes on from what the joints of another chain remembered; there must be some in both or in none.

@@ -170,18 +170,6 @@ impl LaneFriction {
         matches!(self, Self::Bristles(_) | Self::General(_))
     }
 
-    /// Energy of what sticks, in this state under a normal force \[J\].
-    #[inline(always)]
-    pub(crate) fn stored<S: Simd>(&self, w: Wide<S>, normal: Lane<S>, stick: Lane<S>) -> Lane<S> {
-        // U = ½ k z²
-        let half_square = w.splat(0.5) * stick * stick;
-        match self {
-            Self::None | Self::Coulomb { .. } | Self::General(_) => w.splat(0.0),
-            Self::SpringSlider(spring) => w.splat(spring.stiffness) * half_square,
-            Self::Bristles(bristles) => w.splat(bristles.stiffness) * normal * half_square,
-        }
-    }
-
     /// Whether nothing but a spring holds what sticks.
     pub(crate) fn is_elastic(&self) -> bool {
         matches!(self, Self::SpringSlider(_))

@@ -40,7 +40,7 @@ fn may_weigh(element: &Element, weights: Weights, soft: f64) -> [bool; 2] {
     let stiff = weights.stiffness > 0.0;
     [
         element.damping > 0.0 || stiff && element.stiffness > 0.0,
-        element.drag > 0.0 || element.secant > 0.0 || stiff && element.stiffly_across(soft) > 0.0,
+        element.drag > 0.0 || element.secant > 0.0 || element.stiffly_across(soft) > 0.0,
     ]
 }
 
