@@ -51,7 +51,11 @@ fn energy_that_does_not_add_up_is_distrusted() {
 /// Defect A5: of the energy moved 1 % is missing, which is more than all that is lost.
 #[test]
 fn losses_that_are_wrong_are_distrusted() {
-    let rough = verdict(&preset("motorcycle", &[BARE]), &run(1e-4, 10.0));
+    let long_steps = Run {
+        step: Some(2.2e-6),
+        ..run(1e-4, 10.0)
+    };
+    let rough = verdict(&preset("motorcycle", &[BARE]), &long_steps);
     assert_eq!(rough.trust, Trust::Distrusted, "{rough}");
     let found = names(&rough);
     assert!(found.contains(&"losses-wrong") && found.contains(&"efficiency-above-one"));
