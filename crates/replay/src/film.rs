@@ -5,7 +5,7 @@ use serde::Serialize;
 /// A recorded run, ready to be shown. All quantities are in SI units.
 #[derive(Clone, Debug, Default)]
 pub struct Film {
-    /// What the page says about the run.
+    /// Words of the page about the run.
     pub about: About,
     /// Sprockets, guides, arms: all that has an outline.
     pub bodies: Vec<Body>,
@@ -30,7 +30,7 @@ pub struct About {
     pub failure: String,
     /// Whether the result is to be trusted, in a word; empty where nobody judged.
     pub verdict: String,
-    /// What speaks against it, in a line.
+    /// Doubts of the verdict, in a line.
     pub note: String,
     /// The account of the run, verdict first.
     pub summary: String,
@@ -62,7 +62,7 @@ pub struct Body {
     pub outlines: Vec<Outline>,
 }
 
-/// What does not change of a chain.
+/// Constant properties of a chain.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Chain {
     /// Name in the scene.

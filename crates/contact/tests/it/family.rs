@@ -1,4 +1,4 @@
-//! What every law owes, whichever elastic law and dissipation it is made of.
+//! Duties of every law, whichever elastic law and dissipation it is made of.
 
 use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_contact::{Approach, Dissipation, Elastic, Friction, Law};

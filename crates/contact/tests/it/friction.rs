@@ -1,4 +1,4 @@
-//! What every friction law owes, and the values of each.
+//! Duties of every friction law, and the values of each.
 
 use chaindrive_contact::Friction;
 use chaindrive_contact::friction::{

@@ -7,7 +7,7 @@ use chaindrive_contact::{Approach, Dissipation, Elastic, Law};
 use chaindrive_validation::Case;
 use chaindrive_validation::Tolerance::{Absolute, Relative};
 
-/// What an impact leaves behind.
+/// Depth, force, duration and speed of an impact.
 #[derive(Clone, Copy, Debug)]
 struct Impact {
     penetration: f64,

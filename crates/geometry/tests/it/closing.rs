@@ -17,7 +17,7 @@ use chaindrive_geometry::{
 };
 use drives::{MARINE_CAMSHAFT, MARINE_PITCH, TIMING_PITCH, assert_close, marine, pair, timing};
 
-/// What the reference says of one wheel: wrap [degrees], pitches wrapped, angle of the first seat [degrees].
+/// Reference of one wheel: wrap [degrees], pitches wrapped, angle of the first seat [degrees].
 type Seated = (f64, u32, f64);
 
 /// Expected layout of a drive.

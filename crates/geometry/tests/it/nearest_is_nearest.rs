@@ -1,4 +1,4 @@
-//! What the curve calls nearest is nearest, and its normal is the gradient of the distance.
+//! Nearest points of a curve are nearest, and its normal is the gradient of the distance.
 
 use crate::shapes;
 

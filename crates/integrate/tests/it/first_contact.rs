@@ -191,7 +191,7 @@ fn endless_rejection_still_advances() {
     }
 }
 
-/// What standard runs cost; a change here is a change of the method.
+/// Counted cost of standard runs; a change here is a change of the method.
 #[test]
 fn statistics_of_standard_runs() {
     let runs = Method::specimens(2e-5).map(|method| {

@@ -1,4 +1,4 @@
-//! What must stop a run, and what must not.
+//! Faults that must stop a run, and oddities that must not.
 
 use crate::problems;
 

@@ -1,4 +1,4 @@
-//! What implicit methods promise: stiff damping, energy, annihilation, and steps that cannot be solved.
+//! Promises of implicit methods: stiff damping, energy, annihilation, and steps that cannot be solved.
 #![allow(clippy::print_stdout, reason = "measured numbers are worth a look")]
 
 use crate::problems;
@@ -165,7 +165,7 @@ fn stiff_damping_creeps() {
     }
 }
 
-/// What is carried as inertia has no limit: (1 + hλ + (ωh)²/4)(z − 1)² + h (ω² h z + λ (z − 1)) is 4 + 2 hλ at z = −1.
+/// Springs carried as inertia have no limit: (1 + hλ + (ωh)²/4)(z − 1)² + h (ω² h z + λ (z − 1)) is 4 + 2 hλ at z = −1.
 #[test]
 fn carried_stiffness_is_stable_with_every_step() {
     for (step, damping) in [(1.8, 0.0), (20.0, 0.0), (20.0, 0.3), (1e3, 0.0), (1e3, 1e3)] {

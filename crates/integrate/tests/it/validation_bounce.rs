@@ -38,7 +38,7 @@ fn rows(case: &Case) -> Vec<Row> {
     .collect()
 }
 
-/// What a run of many bounces found.
+/// Result of a run of many bounces.
 struct Found {
     /// Times \[s\] the surface was passed, downwards and upwards in turn.
     passages: Vec<f64>,

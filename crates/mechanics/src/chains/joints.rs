@@ -256,7 +256,7 @@ pub(super) trait Turns<S: Simd> {
     fn at(&self, w: Wide<S>, lane: usize) -> [Lane<S>; 2];
 }
 
-/// What a sweep over the joints adds up.
+/// Sums of a sweep over the joints.
 struct Sums<S: Simd> {
     /// Power that goes into the joints \[W\].
     power: Lane<S>,

@@ -12,7 +12,7 @@ use super::window::FAR;
 use crate::MemoryError;
 use crate::lanes::{LANES, Lane, Lanes, LanesMut, Mask, Wide, padded};
 
-/// What is kept of a contact.
+/// Quantities remembered of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kept {
     /// Inverse of the closing speed at touch \[s/m\]; zero while open.

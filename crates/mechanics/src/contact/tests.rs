@@ -82,7 +82,7 @@ fn side(bottom: Point, tilt: f64, radii: &[f64], flank: f64, shape: [f64; 2]) ->
     pen.pieces
 }
 
-/// What gaps are made of.
+/// Kinds of tooth gap.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     Symmetric,

@@ -25,7 +25,7 @@ pub(crate) struct Bounce {
     pub commits: u64,
 }
 
-/// What an evaluation leaves behind.
+/// Record of an evaluation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Record {
     pub t: f64,

@@ -41,7 +41,7 @@ pub(crate) struct Part {
     pub(crate) spin: f64,
 }
 
-/// What a contact costs, and how it began.
+/// Cost of a contact, and how it began.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Tally {
     /// Power lost along the normal \[W\].

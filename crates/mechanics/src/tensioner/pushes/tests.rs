@@ -29,7 +29,7 @@ fn linear() -> Hydraulic {
 /// Something over time or a step.
 type Over<T> = fn(f64) -> T;
 
-/// What makes a push wrong.
+/// Change that makes a push wrong.
 type Change = fn(&mut Hydraulic, &mut OilColumn);
 
 const STIFFNESS: f64 = 1e7;

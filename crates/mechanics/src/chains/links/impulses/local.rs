@@ -1,4 +1,4 @@
-//! What touches one link, or the free rollers on it: eliminated before the joints.
+//! Contacts of one link, or of the free rollers on it: eliminated before the joints.
 //!
 //! ```text
 //! [ L  C ] [y]   [r]
