@@ -4,10 +4,11 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip install --quiet --no-compile
 
 # What the wheel is made of.
 SOURCES := Cargo.toml Cargo.lock pyproject.toml \
-	$(shell find crates -type f \( -path '*/src/*' -o -path '*/scenes/*' -o -path '*/page/*' -o -name Cargo.toml \)) \
+	$(shell find crates -type f \( -path '*/src/*' -o -path '*/scenes/*' -o -path '*/page/*' -o -name Cargo.toml -o -name build.rs \)) \
 	$(shell find python -type f \( -name '*.py' -o -name '*.pyi' -o -name py.typed \))
 
 # Every test that judges a validation case appends to it.
@@ -16,8 +17,17 @@ VERDICTS := $(abspath target/verdicts.jsonl)
 # Cargo builds the bindings for the interpreter in .venv, whatever else is on the path.
 export PYO3_PYTHON := $(abspath $(BIN)/python)
 
+# One code generation for tests, command and wheel: the profile `release`, with its checks of overflow.
+# All crates at once, the bindings included, so that libraries have the same features and no crate is compiled twice.
+# nextest where it is installed, otherwise Cargo's own runner.
+ifneq ($(shell command -v cargo-nextest 2>/dev/null),)
+CARGO_TEST := cargo nextest run --cargo-profile release --workspace --status-level slow --final-status-level slow --no-fail-fast
+else
+CARGO_TEST := cargo test --release --workspace --quiet --no-fail-fast --lib --bins --tests
+endif
+
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check check-rust check-python test-rust test-python bench report estimates how-real validation validation-report docs pages site wheels clean
+.PHONY: help setup run test quick slowest check check-rust check-python test-rust test-python bench report estimates how-real validation validation-report docs pages site wheels clean
 # A build that failed leaves no stamp behind.
 .DELETE_ON_ERROR:
 
@@ -29,44 +39,52 @@ setup: $(VENV)/installed ## Make .venv and build and install the package in it
 run: setup ## Simulate one second of the marine engine drive; results go to results/
 	$(BIN)/python examples/marine_engine.py
 
-test: check test-rust test-python ## Run all checks and tests
+test: check test-rust test-python ## Run all checks, and every test that guards a change
+
+quick: $(VENV)/test-ready ## Check format, lints and types, test what changed, and run one small drive
+	$(BIN)/python tests/quick.py
+
+slowest: $(VENV)/test-ready ## List the twenty slowest tests of each language, after a run of all
+	$(BIN)/python tests/slowest.py
 
 check: check-rust check-python ## Check format, lints, documentation and types
 
+# In the profile of the tests, so that procedural macros and build scripts are built once.
 check-rust: $(VENV)/ready
 	cargo fmt --all --check
-	cargo clippy --workspace --all-targets -- -D warnings
-	RUSTDOCFLAGS='-D warnings' cargo doc --workspace --no-deps --quiet
+	cargo clippy --release --workspace --all-targets -- -D warnings
+	RUSTDOCFLAGS='-D warnings' cargo doc --release --workspace --no-deps --quiet
 
-check-python: setup
+check-python: setup $(VENV)/test-ready
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest chaindrive._core --mypy-config-file pyproject.toml
 
-test-rust:
-	cargo test --quiet
+test-rust: $(VENV)/ready
+	$(CARGO_TEST)
+	cargo test --release --workspace --quiet --doc
 
-test-python: setup
-	$(BIN)/pytest
+test-python: setup $(VENV)/test-ready
+	$(BIN)/pytest --numprocesses 2 --dist loadfile
 
 bench: ## Measure kernels and steps
 	cargo bench
 
-report: setup ## Measure speed and error on this machine, and write docs/how-fast-how-accurate.md
+report: setup $(VENV)/test-ready ## Measure speed and error on this machine, and write docs/how-fast-how-accurate.md
 	$(BIN)/python benchmarks/report
 
 estimates: ## Hold what runs say of their error against a reference, and write docs/estimates.md
 	cargo run --release --quiet -p chaindrive --example estimates > docs/estimates.md
 
-how-real: setup ## Try the assumptions and models of presets, and write docs/how-real.md
+how-real: setup $(VENV)/test-ready ## Try the assumptions and models of presets, and write docs/how-real.md
 	$(BIN)/python benchmarks/how_real
 
-validation: setup ## Run the slow studies as well
+validation: setup $(VENV)/test-ready ## Run the slow studies as well
 	cargo test --release -- --include-ignored
 	$(BIN)/pytest -m 'slow or not slow'
 
-validation-report: setup ## Run the tests that judge validation cases, and write docs/validation.md
+validation-report: setup $(VENV)/test-ready ## Run the tests that judge validation cases, and write docs/validation.md
 	rm -f $(VERDICTS)
 	@# A test that fails has left its miss behind: the report comes before the failure.
 	export CHAINDRIVE_VERDICTS=$(VERDICTS); failed=0; \
@@ -75,7 +93,7 @@ validation-report: setup ## Run the tests that judge validation cases, and write
 	$(BIN)/python tests/validation/report.py $(VERDICTS) && exit $$failed
 
 docs: ## Build the reference of the Rust crates in target/doc
-	RUSTDOCFLAGS='-D warnings' cargo doc --workspace --no-deps
+	RUSTDOCFLAGS='-D warnings' cargo doc --release --workspace --no-deps
 
 pages: setup $(VENV)/site-ready docs ## Build the documentation in target/site; tutorials are run
 	rm -rf target/site
@@ -98,25 +116,32 @@ browser:
 clean: ## Remove everything that was built
 	rm -rf $(VENV) target results dist
 
-# Virtual environment with the tools.
+# Virtual environment with what `make run` needs.
 $(VENV)/ready: pyproject.toml
 	@command -v cargo >/dev/null || { echo "cargo is missing: install a Rust toolchain, see https://rustup.rs" >&2; exit 1; }
 	@command -v $(PYTHON) >/dev/null || { echo "$(PYTHON) is missing: install Python 3.11 or newer, or name one: make PYTHON=…" >&2; exit 1; }
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "$(PYTHON) is older than 3.11; name a newer one: make PYTHON=…" >&2; exit 1; }
 	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || { echo "$(PYTHON) cannot make virtual environments with pip: install its venv package (Debian, Ubuntu: python3-venv)" >&2; exit 1; }
+	@echo "Making $(VENV) with maturin, numpy, xarray, matplotlib and zarr: some 20 seconds."
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --upgrade pip
-	$(BIN)/python -m pip install --quiet --group dev
+	$(PIP) --upgrade 'pip>=25.1'
+	$(PIP) --group run
 	@touch $@
 
-# Beside them, the tools of the documentation.
-$(VENV)/site-ready: $(VENV)/ready
-	$(BIN)/python -m pip install --quiet --group site
+# Beside them, what tests and checks need.
+$(VENV)/test-ready: $(VENV)/ready
+	@echo "Installing what the tests need: some 30 seconds."
+	$(PIP) --group test
 	@touch $@
 
-# Beside them, what links a wheel for old machines.
+# The tools of the documentation.
+$(VENV)/site-ready: $(VENV)/test-ready
+	$(PIP) --group site
+	@touch $@
+
+# What links a wheel for old machines.
 $(VENV)/wheels-ready: $(VENV)/ready
-	$(BIN)/python -m pip install --quiet --group wheels
+	$(PIP) --group wheels
 	@touch $@
 
 # The wheel, as a user would get it. The stamp is as old as the start of the build: what changes
@@ -124,6 +149,7 @@ $(VENV)/wheels-ready: $(VENV)/ready
 $(VENV)/installed: $(VENV)/ready $(SOURCES)
 	@touch $@.begun
 	rm -rf target/wheels/chaindrive-*.whl
+	@echo "Building the core in release: some four minutes on two cores the first time, and what changed later on."
 	$(BIN)/maturin build --release --quiet --interpreter $(BIN)/python --out target/wheels
-	$(BIN)/python -m pip install --quiet --force-reinstall --no-deps target/wheels/chaindrive-*.whl
+	$(PIP) --force-reinstall --no-deps target/wheels/chaindrive-*.whl
 	@mv $@.begun $@

@@ -17,6 +17,7 @@ import sys
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from chaindrive._core import __build__ as __build__
 from chaindrive._core import __version__ as __version__
 
 if TYPE_CHECKING:
@@ -114,7 +115,7 @@ _DEFINED_IN = {
 }
 _HOME = {name: module for module, names in _DEFINED_IN.items() for name in names}
 
-__all__ = sorted(["__version__", *_MODULES, *_HOME])
+__all__ = sorted(["__build__", "__version__", *_MODULES, *_HOME])
 
 
 # Type checkers know the names above, and would take any name for one of these.

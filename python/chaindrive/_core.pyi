@@ -21,6 +21,7 @@ __all__ = [
     "Sweep",
     "SweepStore",
     "SweepWorker",
+    "__build__",
     "__version__",
     "_cli",
     "adaptive_methods",
@@ -45,7 +46,9 @@ __all__ = [
 
 _Floats: TypeAlias = NDArray[np.float64]
 
+__build__: Final[str]
 __version__: Final[str]
+_origin: Final[dict[str, str]]
 
 @final
 class Drive:

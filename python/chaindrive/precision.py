@@ -127,7 +127,7 @@ def work_precision(
     variables["remark"] = ("run", np.asarray(result["remark"], dtype=np.str_))
     attributes = {
         "title": drive.title,
-        "chaindrive_version": _core.__version__,
+        **_core._origin,
         "scene_name": drive.name,
         "scene": drive.text,
         **result["attributes"],

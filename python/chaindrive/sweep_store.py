@@ -25,6 +25,9 @@ __all__ = ["into_store"]
 # Tasks that an executor has at a time: enough for hundreds of workers, few beside a large sweep.
 _AHEAD = 1024
 
+# Who computes here: workers of another origin would give other bits.
+ORIGIN = f"{_core.__build__} on {_core._origin['instruction_set']}"
+
 # The worker of the sweep whose tasks this process carries out.
 _opened: dict[str, _core.SweepWorker] = {}
 
@@ -113,7 +116,7 @@ def _spread(
         while True:
             try:
                 for task in islice(tasks, _AHEAD - len(pending)):
-                    pending.add(executor.submit(_task, _core.__version__, place, sweep, task))
+                    pending.add(executor.submit(_task, ORIGIN, place, sweep, task))
             except Exception as error:
                 # Such as a pool whose worker was killed: it takes no more tasks.
                 lost.append(error)
@@ -138,11 +141,19 @@ def _spread(
             future.cancel()
 
 
-def _task(version: str, place: Place, sweep: str, task: int) -> tuple[int, int, int]:
+def same_origin(origin: str) -> None:
+    """Refuse to compute for a process of another build, or on another instruction set."""
+    if origin != ORIGIN:
+        message = f"a worker has chaindrive {ORIGIN} instead of {origin}"
+        remedy = "install the same build everywhere"
+        if origin.split(" on ")[0] == _core.__build__:
+            remedy = "set CHAINDRIVE_INSTRUCTION_SET to the same everywhere"
+        raise SimulationError(message, "executor", remedy)
+
+
+def _task(origin: str, place: Place, sweep: str, task: int) -> tuple[int, int, int]:
     """Carry out a task; called by an executor, in whatever process it likes."""
-    if version != _core.__version__:
-        message = f"a worker has chaindrive {_core.__version__} instead of {version}"
-        raise SimulationError(message, "executor", "install the same version everywhere")
+    same_origin(origin)
     return _worker(place, sweep).carry_out(task)
 
 

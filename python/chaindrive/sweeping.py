@@ -20,7 +20,7 @@ from chaindrive.objects import place_of
 from chaindrive.progress import told
 from chaindrive.settings import Quantity, Recorded
 from chaindrive.simulation import _listed
-from chaindrive.sweep_store import into_store
+from chaindrive.sweep_store import ORIGIN, into_store, same_origin
 
 if TYPE_CHECKING:
     from obstore.store import ObjectStore
@@ -208,7 +208,7 @@ def sweep(
     attributes = {
         "title": base.title,
         "format": "chaindrive",
-        "chaindrive_version": _core.__version__,
+        **_core._origin,
         "scene_name": base.name,
         "scene": base.text,
         "method": ", ".join(result["methods"]) or base.run_defaults["method"],
@@ -310,7 +310,7 @@ def _spread(
     try:
         for first in range(0, count, size):
             chunk = range(first, min(first + size, count))
-            future = executor.submit(_part, _core.__version__, recipe, chunk.start, chunk.stop)
+            future = executor.submit(_part, ORIGIN, recipe, chunk.start, chunk.stop)
             pending[future] = chunk
         for future in as_completed(pending):
             chunk = pending[future]
@@ -336,11 +336,9 @@ def _spread(
     return outcomes, stop
 
 
-def _part(version: str, recipe: _Recipe, first: int, end: int) -> list[Any]:
+def _part(origin: str, recipe: _Recipe, first: int, end: int) -> list[Any]:
     """Compute some variants; called by an executor, in whatever process it likes."""
-    if version != _core.__version__:
-        message = f"a worker has chaindrive {_core.__version__} instead of {version}"
-        raise SimulationError(message, "executor", "install the same version everywhere")
+    same_origin(origin)
     return _made(recipe).part(first, end)
 
 

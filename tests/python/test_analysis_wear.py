@@ -39,7 +39,16 @@ def industrial() -> xr.Dataset:
 @pytest.fixture(scope="module")
 def bicycle() -> xr.Dataset:
     more = ("joint_angle", "joint_force")
-    return run_of(cd.scenes.bicycle(), more, until=0.05, run_in=0.05, every=1e-4)
+    return run_of(
+        cd.scenes.bicycle(),
+        more,
+        until=0.05,
+        run_in=0.05,
+        every=1e-4,
+        # The chosen step keeps the tension; at 13 µs the ledger of friction is off by 2 to 3 %.
+        method="implicit-damping",
+        step=2e-6,
+    )
 
 
 # Tension around the loop.
@@ -191,12 +200,19 @@ def test_losses_are_those_of_the_ledger(industrial):
 
 
 @pytest.mark.parametrize("name", ["industrial", "bicycle"])
-def test_friction_work_of_joints_is_the_loss_of_the_run(name, request):
-    """Σ μ N |r Δγ| from samples, against the energy that the simulation itself lost in joints."""
+def test_friction_work_of_joints_is_the_friction_loss_of_the_run(name, request):
+    """Σ μ N |r Δγ| from samples, against the friction of the ledger; impacts of pins are beside it."""
     run = request.getfixturevalue(name)
-    work = run.drive.joint_work()
+    flows = run["energy_flows"].isel(time=-1) - run["energy_flows"].isel(time=0)
+    rubbed, struck = (
+        float(flows.sel(flow=f"{kind}_dissipated")) for kind in ("articulation", "joints")
+    )
+    work = float(run.drive.joint_work()["friction_work"].sum())
+    assert work == pytest.approx(rubbed, rel=0.01)
+    # The place has both.
     lost = float(run.drive.losses()["energy"].sel(place="joints"))
-    assert float(work["friction_work"].sum()) == pytest.approx(lost, rel=0.03)
+    assert lost == pytest.approx(rubbed + struck, rel=1e-12)
+    assert (struck > 0.0) == (name == "bicycle")
 
 
 def test_work_of_an_articulation(industrial):

@@ -82,6 +82,8 @@ def test_provenance_reproduces_the_run():
     run = cd.simulate(drive, until=2e-3, every=1e-3, record="link_tension")
     story = run.attrs
     assert story["chaindrive_version"] == cd.__version__
+    assert story["chaindrive_build"] == cd.__build__
+    assert story["instruction_set"] in ("sse2", "avx2", "avx512", "neon", "baseline")
     assert story["title"] == drive.title
     assert story["steps"] > 0
     assert story["step"] > 0.0

@@ -15,6 +15,7 @@ assert_type(cd.load("drive.toml").replace({"chain.links": 124}), cd.Drive)
 assert_type(cd.simulate(drive, until="20 ms", record=["span_tension", "roller_x"]), xr.Dataset)
 assert_type(cd.simulate(drive, record="all", method="verlet", accuracy_of="losses"), xr.Dataset)
 assert_type(cd.channels()["span_tension"].unit, str)
+assert_type(cd.__build__, str)
 assert_type(cd.__version__, str)
 cd.simulate(drive, record=list(cd.channels()))
 

@@ -13,6 +13,7 @@ use std::fmt::Write;
 
 use chaindrive_mechanics::{Body, BodyKind, Figure, FigureChain, Placement, Pose};
 
+pub use path::escaped;
 use path::{id, millimetres, outline, placed, polygon};
 use view::View;
 

@@ -23,6 +23,7 @@ pub mod describe;
 pub mod design;
 pub mod draw;
 mod error;
+mod identity;
 pub mod precision;
 pub mod record;
 mod run;
@@ -34,7 +35,7 @@ pub mod sweep;
 pub mod verdict;
 
 pub use catalogue::CatalogueChain;
-pub use chaindrive_integrate::{Method, Statistics};
+pub use chaindrive_integrate::{InstructionSet, Method, Statistics};
 pub use chaindrive_mechanics::{
     Assembled, Body, BodyKind, Clash, ContactEvent, ContactPair, Drive, Energy, EventKinds, Figure,
     FigureChain, Flow, Instant, MissingChannel, Mode, Modes, Observation, Placement, PlateShape,
@@ -42,6 +43,7 @@ pub use chaindrive_mechanics::{
 };
 pub use describe::Description;
 pub use error::SimulationError;
+pub use identity::{Build, Origin};
 pub use precision::{Choice, Estimate, Judgement};
 pub use record::{Axis, Channel, EventTable, Memory, Recording, Summary};
 pub use run::{

@@ -1,19 +1,21 @@
-//! Values as bytes that say what they are, by which version, and whether they are whole.
+//! Values as bytes that say what they are, of which origin, and whether they are whole.
 //!
 //! ```text
-//! chaindrive checkpoint, layout 2, version 0.1.0, checksum 5f3a9c01↵
+//! chaindrive checkpoint, build 0.2.0-5f3a9c01d2e47b66, instruction set avx2, checksum 5f3a9c01↵
 //! the value, by postcard: every number to its last bit
 //! ```
 //!
-//! The layout of a value changes with the program, so that only the version that wrote it reads it.
+//! The layout of a value changes with the program, and another build goes on with other bits, so that only the build that
+//! wrote a value reads it.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// Counts up when the form of the bytes changes within a version of the program.
-const LAYOUT: u32 = 2;
+use crate::Origin;
 
-const VERSION: &str = env!("CARGO_PKG_VERSION");
+/// What stands before the parts of the origin.
+const BUILD: &str = "build ";
+const INSTRUCTION_SET: &str = "instruction set ";
 
 /// Values that can be written down.
 pub(crate) trait Sealed: Serialize + DeserializeOwned {
@@ -30,12 +32,9 @@ pub enum SealError {
     #[error("this is no {kind} of chaindrive")]
     Foreign { kind: &'static str },
 
-    /// Another version has written them.
-    #[error(
-        "the {kind} was written by chaindrive {found}, and this is {VERSION} with another layout; go on with the \
-         program that wrote it, or begin anew"
-    )]
-    Version { kind: &'static str, found: String },
+    /// Another build has written them, or one on another instruction set.
+    #[error("the {kind} cannot be read: {refusal}")]
+    Origin { kind: &'static str, refusal: String },
 
     /// They are not all there, or not what was written.
     #[error("the {kind} is damaged: its content is not what was written")]
@@ -62,17 +61,25 @@ pub(crate) fn opened<T: Sealed>(bytes: &[u8]) -> Result<T, SealError> {
     let content = &content[1..];
     let line = str::from_utf8(line).map_err(|_| foreign())?;
     let parts: Vec<&str> = line.split(", ").collect();
-    let &[what, layout, version, _] = parts.as_slice() else {
+    let &[what, build, instruction_set, _] = parts.as_slice() else {
         return Err(foreign());
     };
     if what != format!("chaindrive {kind}") {
         return Err(foreign());
     }
-    if layout != format!("layout {LAYOUT}") || version != format!("version {VERSION}") {
-        return Err(SealError::Version {
-            kind,
-            found: version.trim_start_matches("version ").to_owned(),
-        });
+    let origin = match (
+        build.strip_prefix(BUILD),
+        instruction_set.strip_prefix(INSTRUCTION_SET),
+    ) {
+        (Some(build), Some(instruction_set)) => Origin {
+            build: build.to_owned(),
+            instruction_set: instruction_set.to_owned(),
+        },
+        // Before builds had identities, a layout and a version stood there.
+        _ => Origin::default(),
+    };
+    if let Some(refusal) = origin.refusal() {
+        return Err(SealError::Origin { kind, refusal });
     }
     if format!("{line}\n") != heading::<T>(content) {
         return Err(SealError::Damaged { kind });
@@ -82,7 +89,13 @@ pub(crate) fn opened<T: Sealed>(bytes: &[u8]) -> Result<T, SealError> {
 
 fn heading<T: Sealed>(content: &[u8]) -> String {
     let (kind, checksum) = (T::KIND, crc32fast::hash(content));
-    format!("chaindrive {kind}, layout {LAYOUT}, version {VERSION}, checksum {checksum:08x}\n")
+    let Origin {
+        build,
+        instruction_set,
+    } = Origin::here();
+    format!(
+        "chaindrive {kind}, {BUILD}{build}, {INSTRUCTION_SET}{instruction_set}, checksum {checksum:08x}\n"
+    )
 }
 
 #[cfg(test)]
@@ -129,8 +142,11 @@ mod tests {
             opened::<Others>(&bytes).unwrap_err(),
             SealError::Foreign { kind }
         );
-        let text = String::from_utf8_lossy(&bytes).replace("version 0", "version 9");
-        let error = opened::<Numbers>(text.as_bytes()).unwrap_err();
-        assert!(matches!(error, SealError::Version { .. }), "{error}");
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        let old = "chaindrive list, layout 2, version 0.1.0, checksum 00000000\n";
+        for other in [text.replace("build 0", "build 9"), old.to_owned()] {
+            let error = opened::<Numbers>(other.as_bytes()).unwrap_err();
+            assert!(matches!(error, SealError::Origin { .. }), "{error}");
+        }
     }
 }

@@ -65,7 +65,7 @@ struct Moving {
 
 impl Moving {
     fn step(&mut self) -> Result<(), SimulationError> {
-        let step = self.stepper.advance(&mut self.system, &mut self.state);
+        let step = self.system.advance(&mut self.stepper, &mut self.state);
         step.map(drop)
             .map_err(|error| SimulationError::stepping(error, &self.system))
     }

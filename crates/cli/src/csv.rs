@@ -135,6 +135,11 @@ pub(crate) fn incomplete(ending: &Ending) -> Option<String> {
     Some(format!("# incomplete: {}\n", reason.replace('\n', "; ")))
 }
 
+/// The shortest last line of a table that failed. It is no longer than the one of a table that is running.
+fn failed_line() -> String {
+    incomplete(&Ending::Failed("failed".to_owned())).expect("a failure is no end")
+}
+
 /// A table in the making. Behind its last row stands that it is still running.
 #[derive(Debug)]
 struct Table {
@@ -208,8 +213,13 @@ impl Table {
         self.file.seek(SeekFrom::Start(self.length))?;
         let written = self.file.write_all(&self.pending);
         if written.is_err() {
-            // On a full disk some of the rows are there; whole ones are kept.
-            let end = self.file.metadata()?.len().saturating_sub(self.length);
+            // On a full disk some of the rows are there. Whole ones are kept that leave room for a closing line.
+            let room = failed_line().len() as u64;
+            let end = self
+                .file
+                .metadata()?
+                .len()
+                .saturating_sub(self.length + room);
             let there = &self.pending[..usize::try_from(end.min(rows)).unwrap_or(0)];
             self.length += there
                 .iter()
@@ -246,10 +256,10 @@ impl Table {
     /// Keeps the rows that were written whole, and says why there are no more.
     fn give_up(&mut self, reason: &str) {
         self.ended = true;
-        // The shorter line has room on a full disk: it is no longer than the one in its place.
-        for reason in [reason, "failed"] {
-            let last = incomplete(&Ending::Failed(reason.to_owned()));
-            if self.file.set_len(self.length).is_ok() && self.close(last).is_ok() {
+        let full = incomplete(&Ending::Failed(reason.to_owned()));
+        // Nothing is cut off beforehand: what stands there is room on a full disk, enough for the shorter line.
+        for last in [full, Some(failed_line())] {
+            if self.close(last).is_ok() {
                 return;
             }
         }

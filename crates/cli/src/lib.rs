@@ -42,10 +42,22 @@ Exit codes:
 
 /// Simulates roller chain drives that are described in scene files.
 #[derive(Debug, Parser)]
-#[command(name = "chaindrive", version, after_help = EXIT_CODES)]
+#[command(
+    name = "chaindrive",
+    disable_version_flag = true,
+    arg_required_else_help = true,
+    args_conflicts_with_subcommands = true,
+    after_help = EXIT_CODES
+)]
 struct Command {
+    /// Prints the version
+    #[arg(short = 'V', long)]
+    version: bool,
+    /// Beside the version: the identity of the build, and the instruction sets that it has and uses
+    #[arg(long, requires = "version")]
+    verbose: bool,
     #[command(subcommand)]
-    verb: Verb,
+    verb: Option<Verb>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -94,7 +106,13 @@ where
             return u8::try_from(error.exit_code()).unwrap_or(failure::BAD_INPUT);
         }
     };
-    let done = match &command.verb {
+    let Some(verb) = &command.verb else {
+        return match lists::version(command.verbose) {
+            Ok(()) => 0,
+            Err(failure) => told(&failure),
+        };
+    };
+    let done = match verb {
         Verb::Run(arguments) => run_command::run(arguments, interrupted),
         Verb::Resume(arguments) => resume::resume(arguments, interrupted),
         Verb::Replay(arguments) => replay::replay(arguments, interrupted),
@@ -115,9 +133,11 @@ where
     };
     match done {
         Ok(()) => 0,
-        Err(failure) => {
-            eprintln!("{failure}");
-            failure.exit_code()
-        }
+        Err(failure) => told(&failure),
     }
+}
+
+fn told(failure: &failure::Failure) -> u8 {
+    eprintln!("{failure}");
+    failure.exit_code()
 }

@@ -55,3 +55,7 @@ pub use friction::{Friction, Rub};
 pub use law::{Approach, Law, Prepared, Response};
 pub use material::Elasticity;
 pub use onset::interpolated_onset;
+
+/// Hash of the sources of this crate, a part of the identity of a build.
+#[doc(hidden)]
+pub const SOURCES: &str = env!("CHAINDRIVE_SOURCES");

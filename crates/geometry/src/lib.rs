@@ -85,3 +85,7 @@ pub use polygon_action::{
 };
 pub use route::{Route, Side, Span, Wheel, WheelKind};
 pub use two_wheels::TwoWheels;
+
+/// Hash of the sources of this crate, a part of the identity of a build.
+#[doc(hidden)]
+pub const SOURCES: &str = env!("CHAINDRIVE_SOURCES");

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::InstructionSetError;
+
 /// The quantity that is not finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
@@ -41,6 +43,10 @@ pub enum IntegrationError {
         value: f64,
         allowed: &'static str,
     },
+
+    /// The environment asks for an instruction set that cannot be used.
+    #[error(transparent)]
+    InstructionSet(#[from] &'static InstructionSetError),
 
     /// The state does not have the shape the system expects.
     #[error("the state has {found} {what}, the system {expected}")]

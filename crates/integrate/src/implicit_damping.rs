@@ -1,10 +1,10 @@
 //! Implicit damping: damping taken at the end of the step, stiffness at its beginning or carried as inertia.
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 use crate::finite::Watch;
 use crate::method::Outcome;
-use crate::registers::dispatch;
+use crate::registers::Registers;
 use crate::state::{Size, Snapshot, State};
 use crate::{Moment, SecondOrderSystem, Statistics, Weights};
 
@@ -73,9 +73,9 @@ impl ImplicitDamping {
             counts.evaluations += 1;
         }
         to.t = from.t + h;
-        let arch = Arch::new();
+        let registers = Registers::in_use();
         let change = &mut self.change;
-        dispatch(arch, Right { h, from, change });
+        registers.dispatch(Right { h, from, change });
         let weights = Weights {
             damping: h,
             stiffness: 0.25 * h * h,
@@ -86,19 +86,16 @@ impl ImplicitDamping {
             return Outcome::NoSolution;
         }
         let change = &self.change;
-        dispatch(
-            arch,
-            Ahead {
-                h,
-                from,
-                change,
-                to,
-            },
-        );
+        registers.dispatch(Ahead {
+            h,
+            from,
+            change,
+            to,
+        });
         to.evaluate(system, record);
         counts.evaluations += 1;
         to.trapezoidal(from, h);
-        Outcome::of(dispatch(arch, Finite(to)))
+        Outcome::of(registers.dispatch(Finite(to)))
     }
 }
 

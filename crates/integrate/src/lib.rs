@@ -78,7 +78,12 @@ pub use array::Array;
 pub use error::{IntegrationError, Quantity};
 pub use memory::StepperMemory;
 pub use method::Method;
+pub use registers::{InstructionSet, InstructionSetError, Registers};
 pub use state::State;
 pub use statistics::Statistics;
 pub use stepper::{Step, Stepper, slack};
 pub use system::{Continuity, Moment, Prediction, SecondOrderSystem, Verdict, Weights};
+
+/// Hash of the sources of this crate, a part of the identity of a build.
+#[doc(hidden)]
+pub const SOURCES: &str = env!("CHAINDRIVE_SOURCES");

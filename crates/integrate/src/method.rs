@@ -14,7 +14,7 @@ use crate::step_size::{Tolerance, stable_step};
 use crate::stepper::Stepper;
 use crate::tableau::{DORMAND_PRINCE, RK4};
 use crate::verlet::{self, Verlet};
-use crate::{IntegrationError, SecondOrderSystem};
+use crate::{InstructionSet, IntegrationError, SecondOrderSystem};
 
 /// A method of time stepping with its parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -284,13 +284,15 @@ impl Method {
     ///
     /// # Errors
     /// A parameter out of range, an implicit method for a system that cannot solve, a state of the wrong shape, a
-    /// step above [`longest_step`](Self::longest_step), or accelerations that are not finite.
+    /// step above [`longest_step`](Self::longest_step), accelerations that are not finite, or an instruction set asked for in vain
+    /// ([`InstructionSet::in_use`]).
     pub fn start<S: SecondOrderSystem>(
         &self,
         system: &mut S,
         state: &mut State,
     ) -> Result<Stepper<S>, IntegrationError> {
         self.check()?;
+        InstructionSet::in_use()?;
         if self.is_implicit() && !system.can_solve() {
             let method = self.name();
             return Err(IntegrationError::Unsupported { method });

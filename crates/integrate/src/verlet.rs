@@ -1,9 +1,9 @@
 //! Velocity Verlet with velocities predicted for the force evaluation.
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 use crate::finite::Watch;
-use crate::registers::dispatch;
+use crate::registers::Registers;
 use crate::state::{Size, Snapshot, State};
 use crate::{Moment, Prediction, SecondOrderSystem};
 
@@ -16,14 +16,14 @@ pub(crate) struct Verlet {
     /// Predicted states.
     states: Vec<f64>,
     /// The processor's vector unit.
-    arch: Arch,
+    registers: Registers,
 }
 
 impl Verlet {
     pub(crate) fn new(size: Size) -> Self {
         Self {
             states: vec![0.0; size.states],
-            arch: Arch::new(),
+            registers: Registers::in_use(),
         }
     }
 
@@ -55,15 +55,12 @@ impl Verlet {
         to.t = from.t + h;
         // What is predicted stands where the velocities will: every array less leaves the others nearer to the processor.
         // Infinity and NaN get into the velocities from wherever they arise: watching those is enough.
-        dispatch(
-            self.arch,
-            Drift {
-                h,
-                from,
-                q: &mut to.q,
-                predicted: &mut to.v,
-            },
-        );
+        self.registers.dispatch(Drift {
+            h,
+            from,
+            q: &mut to.q,
+            predicted: &mut to.v,
+        });
         let flow = from.flow();
         for ((predicted, z), flow) in self.states.iter_mut().zip(&from.z).zip(flow) {
             // z* = z + h ż
@@ -81,15 +78,12 @@ impl Verlet {
             flow,
         };
         system.evaluate_predicted(end, prediction, &mut to.a, &mut to.rates, record);
-        let mut watch = dispatch(
-            self.arch,
-            Kick {
-                h,
-                from,
-                a: &to.a,
-                v: &mut to.v,
-            },
-        );
+        let mut watch = self.registers.dispatch(Kick {
+            h,
+            from,
+            a: &to.a,
+            v: &mut to.v,
+        });
         // The trapezoidal rule: y⁺ = y + ½ h (r + r⁺)
         for (i, y) in to.quadratures.iter_mut().enumerate() {
             *y = from.quadratures[i] + 0.5 * h * (from.rates[i] + to.rates[i]);

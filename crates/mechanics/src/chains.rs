@@ -16,7 +16,7 @@ use std::ops::Range;
 
 use chaindrive_contact::Prepared;
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::{Moment, Prediction, Weights};
+use chaindrive_integrate::{Moment, Prediction, Registers, Weights};
 use serde::{Deserialize, Serialize};
 
 pub(crate) use balance::{Balance, Load, Moving, Sum, Unknown, Way};
@@ -353,12 +353,12 @@ impl Chain {
         }
     }
 
-    /// Computes as on a processor without AVX2.
-    pub(crate) fn compute_by_twos(&mut self) {
+    /// Computes on other registers from now on.
+    pub(crate) fn compute_on(&mut self, registers: Registers) {
         match self {
-            Self::Particles(chain) => chain.compute_by_twos(),
-            Self::Points(chain) => chain.compute_by_twos(),
-            Self::Links(_) => {}
+            Self::Particles(chain) => chain.registers = registers,
+            Self::Points(chain) => chain.registers = registers,
+            Self::Links(chain) => chain.registers = registers,
         }
     }
 

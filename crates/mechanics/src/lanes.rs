@@ -13,7 +13,7 @@ mod turn;
 
 use std::ops::{Add, AddAssign, BitAnd, Mul, Neg, Sub};
 
-use pulp::{Arch, Scalar128b, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 pub(crate) use polynomial::Polynomial;
 pub(crate) use power::FixedPower;
@@ -30,15 +30,6 @@ const SIGN: u64 = 1 << 63;
 /// `n` rounded up to whole lanes.
 pub(crate) const fn padded(n: usize) -> usize {
     n.div_ceil(LANES) * LANES
-}
-
-/// Runs a loop on the widest registers; SSE2, which every x86-64 has and the library does not name, has two lanes.
-#[inline]
-pub(crate) fn dispatch<Op: WithSimd>(arch: Arch, op: Op) -> Op::Output {
-    match arch {
-        Arch::Scalar => op.with_simd(Scalar128b),
-        wide => wide.dispatch(op),
-    }
 }
 
 /// Says that the branch it is called in is rarely taken. What a call in there needs on the stack is put there in that branch, not before it.
@@ -433,6 +424,9 @@ impl<S: Simd> AddAssign for Lane<S> {
     reason = "what is only moved about stays what it was"
 )]
 mod tests {
+    use chaindrive_integrate::{InstructionSet, Registers};
+    use pulp::Scalar128b;
+
     use super::*;
 
     fn check<S: Simd>(simd: S) {
@@ -511,6 +505,22 @@ mod tests {
         check(pulp::Scalar);
         check(Scalar128b);
         check(pulp::Scalar512b);
-        Arch::new().dispatch(Check);
+        Registers::in_use().dispatch(Check);
+    }
+
+    /// What lowers the instruction set lowers it for all tests of this program: they run again on every narrower one.
+    #[test]
+    fn kernels_hold_on_narrower_registers() {
+        let own = Registers::in_use().set();
+        for set in InstructionSet::available().filter(|set| *set < own) {
+            let again = std::process::Command::new(std::env::current_exe().unwrap())
+                .env(InstructionSet::VARIABLE, set.name())
+                .args(["--skip", "kernels_hold_on_narrower_registers"])
+                .output()
+                .unwrap();
+            let told = String::from_utf8_lossy(&again.stdout);
+            assert!(again.status.success(), "{set}: {told}");
+            assert!(told.contains("test result: ok."), "{set}: {told}");
+        }
     }
 }

@@ -18,7 +18,10 @@ mod slide;
 mod solve;
 
 use chaindrive_geometry::Point;
-use chaindrive_integrate::{Continuity, Moment, Prediction, SecondOrderSystem, Verdict, Weights};
+use chaindrive_integrate::{
+    Continuity, IntegrationError, Moment, Prediction, Registers, SecondOrderSystem, State, Step,
+    Stepper, Verdict, Weights,
+};
 use serde::{Deserialize, Serialize};
 
 pub(crate) use bodies::{Bodies, RailSupport, Wheel, WheelSupport};
@@ -83,12 +86,25 @@ impl System {
         self.onset_depth = depth;
     }
 
-    /// Computes the forces on particles as the oldest processor of this kind would, by twos: to see what wider lanes
-    /// gain.
-    pub fn compute_by_twos(&mut self) {
+    /// Computes the forces on other registers than those in use: to see what wider lanes gain, and that they agree.
+    pub fn compute_on(&mut self, registers: Registers) {
         for member in &mut self.chains {
-            member.chain.compute_by_twos();
+            member.chain.compute_on(registers);
         }
+    }
+
+    /// Takes one step ([`Stepper::advance`]), as it is compiled here, beside the forces: a crate that calls the generic one
+    /// compiles it anew, and as well as that crate is optimised.
+    ///
+    /// # Errors
+    /// Those of [`Stepper::advance`].
+    #[inline(never)]
+    pub fn advance(
+        &mut self,
+        stepper: &mut Stepper<Self>,
+        state: &mut State,
+    ) -> Result<Step, IntegrationError> {
+        stepper.advance(self, state)
     }
 
     /// Deepest penetration at which a contact may begin \[m\], if there is a limit.

@@ -33,7 +33,9 @@ mod core {
     use std::cell::Cell;
     use std::ffi::OsString;
 
+    use chaindrive::Origin;
     use pyo3::prelude::*;
+    use pyo3::types::IntoPyDict;
 
     #[pymodule_export]
     use crate::design::{layout_around, layouts_of};
@@ -64,6 +66,23 @@ mod core {
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "the name that Python expects")]
     const __version__: &str = env!("CARGO_PKG_VERSION");
+
+    /// The identity of the build, and the attributes that tell who computed a result.
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        let build = chaindrive::Build::here();
+        let Origin {
+            build: id,
+            instruction_set,
+        } = Origin::here();
+        let origin = [
+            ("chaindrive_version", build.version),
+            ("chaindrive_build", &id),
+            ("instruction_set", &instruction_set),
+        ];
+        module.add("__build__", &build.id)?;
+        module.add("_origin", origin.into_py_dict(module.py())?)
+    }
 
     /// Runs the command line with its arguments, the program's name first; returns the exit code.
     #[pyfunction]

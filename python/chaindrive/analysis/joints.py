@@ -38,6 +38,11 @@ def joint_work(
     surface; both are taken out. Samples must be close enough to see a joint articulate: ten or more
     while a tooth passes.
 
+    W is the ``articulation_dissipated`` of the run's ledger, to 1 % where the step resolves the
+    friction; the loss of the place ``joints`` has the impacts of pins in their bushes as well. A
+    step chosen for the tension may leave the ledger of friction off by some per cent, which W is
+    not.
+
     Parameters
     ----------
     run

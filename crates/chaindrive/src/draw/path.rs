@@ -78,8 +78,8 @@ pub(super) fn id(parts: &[&str]) -> String {
     out
 }
 
-/// A text as XML has it.
-pub(super) fn escaped(text: &str) -> String {
+/// A text as XML has it, between tags.
+pub fn escaped(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")

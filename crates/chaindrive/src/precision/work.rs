@@ -4,7 +4,6 @@ use std::time::Instant;
 
 use chaindrive_integrate::Statistics;
 use chaindrive_mechanics::Assembled;
-use cpu_time::ThreadTime;
 
 use super::Watch;
 use super::errors::Errors;
@@ -228,10 +227,10 @@ fn timed(
     let mut times = [Vec::new(), Vec::new()];
     for _ in 0..repeats {
         let mut simulation = crate::Simulation::from_assembled(start.clone(), &run)?;
-        let (wall, cpu) = (Instant::now(), ThreadTime::now());
+        let (wall, cpu) = (Instant::now(), on_processor());
         while simulation.next_sample()?.is_some() {}
         times[0].push(wall.elapsed().as_secs_f64());
-        times[1].push(cpu.elapsed().as_secs_f64());
+        times[1].push(on_processor() - cpu);
         if watch() {
             return Err(SimulationError::Interrupted);
         }
@@ -245,6 +244,18 @@ fn timed(
             0.5 * (times[half - 1] + times[half])
         }
     }))
+}
+
+/// Time of this thread on its processor \[s\]; NaN where the system's is not asked for.
+fn on_processor() -> f64 {
+    #[cfg(any(target_os = "linux", target_vendor = "apple"))]
+    {
+        use rustix::time::{ClockId, clock_gettime};
+        let time = clock_gettime(ClockId::ThreadCPUTime);
+        time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+    }
+    #[cfg(not(any(target_os = "linux", target_vendor = "apple")))]
+    f64::NAN
 }
 
 impl Row {

@@ -12,7 +12,7 @@ use super::Summary;
 use crate::RanIn;
 use crate::precision::{Attribute, Choice, Judgement};
 use crate::sweep::Outcome;
-use crate::{Run, Scene, Simulation, Stepping, Verdict};
+use crate::{Build, Origin, Run, Scene, Simulation, Stepping, Verdict};
 
 /// Tells a result of this program from any other group.
 pub(super) const FORMAT: &str = "chaindrive";
@@ -264,7 +264,10 @@ impl Story {
         let mut story = Self(Map::new());
         story.text("title", title);
         story.text("format", FORMAT);
-        story.text("chaindrive_version", env!("CARGO_PKG_VERSION"));
+        let origin = Origin::here();
+        story.text("chaindrive_version", Build::here().version);
+        story.text("chaindrive_build", &origin.build);
+        story.text("instruction_set", &origin.instruction_set);
         story.text("status", ending.status());
         story.count("complete", u64::from(*ending == Ending::Complete));
         if let Ending::Failed(reason) = ending {

@@ -7,7 +7,7 @@ use serde_json::Value as Json;
 
 use super::{CHOSEN, Dimension, MOST, Setting, Sweep, SweepError, dimension};
 use crate::scene::{Datum, Scene, SceneError};
-use crate::{Channel, Run};
+use crate::{Channel, Origin, Run};
 
 /// How the values of several paths become variants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -23,8 +23,9 @@ pub enum Arrangement {
 /// Everything that decides about the numbers of a sweep: who has it computes the same variants.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Recipe {
-    /// Version of the program: another one may give other bits.
-    pub chaindrive_version: String,
+    /// The build and the instruction set that the sweep was begun with: others give other bits.
+    #[serde(default)]
+    pub origin: Origin,
     /// Text of the scene that is varied.
     pub scene: String,
     /// Name of the scene.
@@ -152,7 +153,7 @@ impl Sweep {
     pub fn recipe(&self) -> Recipe {
         let vary = self.dimensions.iter();
         Recipe {
-            chaindrive_version: env!("CARGO_PKG_VERSION").to_owned(),
+            origin: Origin::here(),
             scene: self.scene.text().to_owned(),
             scene_name: self.scene.name().to_owned(),
             record: self.record.clone(),
@@ -196,9 +197,8 @@ impl Sweep {
 impl Recipe {
     /// The first thing in which another recipe differs, in words.
     pub fn difference(&self, other: &Self) -> Option<String> {
-        if self.chaindrive_version != other.chaindrive_version {
-            let version = &other.chaindrive_version;
-            return Some(format!("it is of chaindrive {version}"));
+        if let Some(refusal) = other.origin.refusal() {
+            return Some(refusal);
         }
         if self.scene != other.scene {
             let lines = self.scene.lines().zip(other.scene.lines());

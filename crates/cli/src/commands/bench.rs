@@ -213,6 +213,5 @@ fn save(table: &Table, [csv, svg]: &[PathBuf; 2], title: &str) -> Result<(), Fai
     let file = File::create(csv).map_err(|source| failed(csv, source))?;
     let written = table.write_csv(file);
     written.map_err(|error| failed(csv, error.into()))?;
-    diagram::draw(table, title, svg)
-        .map_err(|error| failed(svg, std::io::Error::other(error.to_string())))
+    diagram::draw(table, title, svg).map_err(|error| failed(svg, error))
 }

@@ -1,8 +1,8 @@
-//! `chaindrive scenes`, `schema`, `channels` and `catalogue`: what there is.
+//! `chaindrive scenes`, `schema`, `channels`, `catalogue` and `--version`: what there is.
 
 use chaindrive::catalogue::{CatalogueChain, Number, catalogue as chains};
 use chaindrive::scene::{presets, schema as scene_schema};
-use chaindrive::{Channel, Scene};
+use chaindrive::{Build, Channel, InstructionSet, Origin, Scene};
 use clap::Args;
 
 use crate::failure::Failure;
@@ -49,6 +49,34 @@ pub(crate) fn channels() -> Result<(), Failure> {
     print(
         "* recorded unless asked otherwise\n+ recorded with them where tensioners or centres move",
     )
+}
+
+/// Prints the version; with `verbose` the identity of the build, and its instruction sets.
+pub(crate) fn version(verbose: bool) -> Result<(), Failure> {
+    let build = Build::here();
+    print(format_args!("chaindrive {}", build.version))?;
+    if !verbose {
+        return Ok(());
+    }
+    let names = |sets: &mut dyn Iterator<Item = InstructionSet>| {
+        sets.map(InstructionSet::name)
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    print(build)?;
+    print(format_args!(
+        "kernels for   {}",
+        names(&mut InstructionSet::built())
+    ))?;
+    print(format_args!(
+        "processor has {}",
+        names(&mut InstructionSet::available())
+    ))?;
+    InstructionSet::in_use().map_err(|error| Failure::Argument(error.to_string()))?;
+    print(format_args!(
+        "in use        {}",
+        Origin::here().instruction_set
+    ))
 }
 
 /// Lists the chains that a scene can name, or all that is known of one.

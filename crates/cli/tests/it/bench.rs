@@ -3,8 +3,7 @@
 
 use std::fs;
 use std::path::Path;
-
-use assert_cmd::Command;
+use std::process::Command;
 
 fn folder() -> tempfile::TempDir {
     tempfile::tempdir().unwrap()
@@ -12,7 +11,7 @@ fn folder() -> tempfile::TempDir {
 
 /// Runs the command and returns exit code, stdout and stderr.
 fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::cargo_bin("chaindrive").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
     let output = command
         .current_dir(folder)
         .args(arguments)

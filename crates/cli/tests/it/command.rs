@@ -3,11 +3,10 @@
 
 use std::fs;
 use std::path::Path;
-
-use assert_cmd::Command;
+use std::process::Command;
 
 fn chaindrive(folder: &Path) -> Command {
-    let mut command = Command::cargo_bin("chaindrive").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
     command.current_dir(folder);
     command
 }
@@ -338,9 +337,11 @@ fn a_place_that_cannot_be_written_exits_3() {
 fn scenes_come_from_stdin_too() {
     let folder = folder();
     let (_, text, _) = run(folder.path(), &["scenes", "spinning_ring"]);
+    let file = folder.path().join("ring.toml");
+    fs::write(&file, text).unwrap();
     let output = chaindrive(folder.path())
         .args(["check", "-"])
-        .write_stdin(text)
+        .stdin(fs::File::open(&file).unwrap())
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(0));

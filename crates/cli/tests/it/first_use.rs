@@ -2,14 +2,13 @@
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use std::fs;
-
-use assert_cmd::Command;
+use std::process::Command;
 
 /// Runs the command with a scene beside it, and returns exit code, stdout and stderr.
 fn run(scene: &str, arguments: &[&str]) -> (i32, String, String) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scene.toml"), scene).unwrap();
-    let mut command = Command::cargo_bin("chaindrive").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
     let output = command.current_dir(folder.path()).args(arguments).output();
     let output = output.unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();

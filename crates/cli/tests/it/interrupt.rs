@@ -8,11 +8,9 @@ use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use assert_cmd::cargo::CommandCargoExt;
-
 /// A run that would take hours, into `out` of a folder.
 fn start(folder: &Path, out: &str) -> (Child, PathBuf) {
-    let mut command = Command::cargo_bin("chaindrive").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
     command
         .current_dir(folder)
         .args([

@@ -3,12 +3,11 @@
 
 use std::fs;
 use std::path::Path;
-
-use assert_cmd::Command;
+use std::process::Command;
 
 /// Runs the command and returns exit code and stderr.
 fn run(folder: &Path, arguments: &[&str]) -> (i32, String) {
-    let mut command = Command::cargo_bin("chaindrive").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
     let output = command
         .current_dir(folder)
         .args(arguments)

@@ -8,9 +8,8 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use crate::same_run::{files, timeless};
-use crate::store_faults::{
-    chaindrive, group, names, on_a_full_disk, run, signal, start, status, wait_for,
-};
+use crate::store_faults;
+use crate::store_faults::{chaindrive, group, names, run, signal, start, status, wait_for};
 
 /// A scene, how it is changed, and the simulated time between two checkpoints.
 struct Case {
@@ -157,15 +156,25 @@ fn kill_after(at: &Path, arguments: &[&str], delay: Duration) {
     child.wait().unwrap();
 }
 
-/// Killed at 6 or 20 moments from the first milliseconds to the end, every third time once more while it goes on.
 #[test]
 fn killed_at_any_moment_a_run_goes_on_as_if_nothing_had_happened() {
+    kill_and_go_on(4);
+}
+
+#[test]
+#[ignore = "takes four minutes"]
+fn killed_at_many_moments_a_run_goes_on_as_if_nothing_had_happened() {
+    kill_and_go_on(1);
+}
+
+/// Killed at a share of 6 or 20 moments from the first milliseconds to the end, every third time once more while it goes on.
+fn kill_and_go_on(share: u32) {
     let (mut carried, mut anew) = (0, 0);
     for case in CASES {
         let folder = tempfile::tempdir().unwrap();
         let at = folder.path();
         let takes = case.whole(at);
-        for (k, moment) in moments(case.kills).enumerate() {
+        for (k, moment) in moments(case.kills.div_ceil(share)).enumerate() {
             kill_after(at, &case.with_checkpoints(), takes.mul_f64(moment));
             let store = at.join("run.zarr");
             if k % 3 == 0 && store.join("checkpoint").exists() {
@@ -190,11 +199,12 @@ fn killed_at_any_moment_a_run_goes_on_as_if_nothing_had_happened() {
         assert_eq!(names(at), ["whole.zarr"], "{}", case.name);
     }
     // Half of them or so, as fast as drives are assembled and stepped.
-    assert!(carried > 25, "{carried} carried on, {anew} begun anew");
+    assert!(2 * carried > anew, "{carried} carried on, {anew} anew");
 }
 
 /// A checkpoint with every sample: most of the time one is being written.
 #[test]
+#[ignore = "takes two minutes"]
 fn killed_while_a_checkpoint_is_written_the_one_before_holds() {
     let case = Case {
         name: "a checkpoint with every sample",
@@ -349,12 +359,12 @@ fn what_cannot_go_on_is_refused() {
     *damaged.last_mut().unwrap() ^= 1;
     let line = whole.iter().position(|byte| *byte == b'\n').unwrap();
     let heading = String::from_utf8(whole[..line].to_vec()).unwrap();
-    let other = heading.replace("version ", "version 9");
+    let other = heading.replace("build ", "build 9");
     let other = [other.as_bytes(), &whole[line..]].concat();
     for (bytes, said) in [
         (damaged.as_slice(), "the checkpoint is damaged"),
         (&whole[..whole.len() / 2], "the checkpoint is damaged"),
-        (&other, "was written by chaindrive 9"),
+        (&other, "is of chaindrive 90."),
         (b"nothing", "this is no checkpoint of chaindrive"),
         (b"", "this is no checkpoint of chaindrive"),
     ] {
@@ -443,6 +453,7 @@ fn places_that_cannot_be_carried_on_are_refused() {
 
 /// The limit on the size of files refuses a chunk after some checkpoints: the run says why it stopped, and goes on where
 /// there is space.
+#[cfg(target_os = "linux")]
 #[test]
 fn on_a_full_disk_the_last_checkpoint_holds() {
     let case = &CASES[0];
@@ -450,7 +461,7 @@ fn on_a_full_disk_the_last_checkpoint_holds() {
     let at = folder.path();
     let whole = [&case.arguments()[..], &["whole.zarr"]].concat();
     assert_eq!(run(at, &whole).0, Some(0));
-    let (code, err) = on_a_full_disk(800, at, &case.with_checkpoints());
+    let (code, err) = store_faults::on_a_full_disk(400 << 10, at, &case.with_checkpoints());
     assert_eq!(code, Some(3), "{err}");
     let store = at.join("run.zarr");
     assert_eq!(status(&store), "failed");
@@ -463,49 +474,6 @@ fn on_a_full_disk_the_last_checkpoint_holds() {
     assert!(left.iter().all(|name| !name.contains('#')), "{left:?}");
     case.holds(at);
     assert_eq!(names(at), ["run.zarr", "whole.zarr"]);
-}
-
-/// Here it refuses the checkpoint itself, which for two hundred links with play is longer than all else.
-#[test]
-fn a_checkpoint_that_does_not_fit_ends_the_run_and_leaves_nothing_half_written() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = folder.path();
-    let scene = [
-        "run",
-        "bicycle",
-        "--until",
-        "0.2 ms",
-        "--method",
-        "implicit-damping",
-    ];
-    let longer = [
-        "--set",
-        "chain.links=200",
-        "--set",
-        "sprockets.rear.centre=['-1.070144624366 m', '0 m']",
-    ];
-    let to = [
-        "--no-error",
-        "-q",
-        "--record",
-        "span_tension",
-        "-o",
-        "run.zarr",
-        "--checkpoint-every",
-        "50 us",
-    ];
-    let (code, err) = on_a_full_disk(260, at, &[&scene[..], &longer, &to].concat());
-    assert_eq!(code, Some(3), "{err}");
-    let store = at.join("run.zarr");
-    assert_eq!(status(&store), "failed");
-    let left = names(&store);
-    assert!(
-        left.iter().all(|name| !name.starts_with("checkpoint")),
-        "{left:?}"
-    );
-    let (code, err) = run(at, &["resume", "run.zarr"]);
-    assert_eq!(code, Some(2), "{err}");
-    assert!(err.contains("File too large"), "{err}");
 }
 
 /// Every verb lets go of a pipe that nobody writes into, and of standard input that never ends.

@@ -5,8 +5,8 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
-use assert_cmd::Command;
 use chaindrive::record::{Existing, InStore};
 use chaindrive::scene::presets;
 use chaindrive::{Given, Memory, Request, Scene, Settings, Stop, execute};
@@ -88,7 +88,7 @@ fn group(store: &Path) -> Value {
 fn hold(preset: &str, name: &str, case: &[Choice]) {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    let mut command = Command::cargo_bin("chaindrive").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
     command.current_dir(folder.path());
     command.args([
         "run", preset, "--until", "400 us", "--every", "100 us", "-q", "-o",
@@ -97,7 +97,7 @@ fn hold(preset: &str, name: &str, case: &[Choice]) {
     for (_, option, value) in case {
         command.args([option, value]);
     }
-    command.assert().success();
+    assert!(command.status().unwrap().success());
 
     let request = request(preset, case);
     let mut store = InStore::new(at("rust.zarr"), Existing::Keep);

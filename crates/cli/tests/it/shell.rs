@@ -2,9 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use std::fs;
-use std::process;
-
-use assert_cmd::Command;
+use std::process::Command;
 
 /// The verbs that the help lists.
 fn verbs() -> Vec<String> {
@@ -24,7 +22,7 @@ fn verbs() -> Vec<String> {
 }
 
 fn chaindrive(arguments: &[&str]) -> (i32, String) {
-    let mut command = Command::cargo_bin("chaindrive").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
     let output = command.args(arguments).output().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
     (output.status.code().unwrap(), text)
@@ -61,7 +59,7 @@ fn bash_completes_verbs_methods_and_channels() {
         let (current, before) = (words[words.len() - 1], words[words.len() - 2]);
         let call = format!("_chaindrive chaindrive '{current}' '{before}'");
         let program = format!("{script}\n{line}\n{call}\nprintf '%s\\n' \"${{COMPREPLY[@]}}\"\n");
-        let bash = process::Command::new("bash")
+        let bash = Command::new("bash")
             .args(["--norc", "-c", &program])
             .output();
         let Ok(output) = bash else {
@@ -98,7 +96,7 @@ fn bash_completes_verbs_methods_and_channels() {
 #[test]
 fn an_unknown_channel_is_refused_by_name() {
     let arguments = ["run", "spinning_ring", "--record", "tensions", "--no-error"];
-    let mut command = Command::cargo_bin("chaindrive").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
     let output = command.args(arguments).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     let told = String::from_utf8(output.stderr).unwrap();

@@ -10,8 +10,6 @@ use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use assert_cmd::cargo::CommandCargoExt;
-
 const SHORT: [&str; 6] = [
     "run",
     "spinning_ring",
@@ -33,7 +31,7 @@ const LONG: [&str; 8] = [
 ];
 
 pub(crate) fn chaindrive(at: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::cargo_bin("chaindrive").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
     command.current_dir(at).args(arguments);
     command.stdout(Stdio::piped()).stderr(Stdio::piped());
     command
@@ -319,13 +317,15 @@ fn with_a_part_removed_it_says_that_it_failed() {
     assert_eq!(status(&store), "failed");
 }
 
-/// A limit on the size of files stands for a disk that is full; its signal would kill the program.
-pub(crate) fn on_a_full_disk(blocks: u32, at: &Path, arguments: &[&str]) -> (Option<i32>, String) {
-    let settings = format!("trap '' XFSZ; ulimit -f {blocks}");
+/// A limit on the size of files \[bytes\] stands for a disk that is full; its signal would kill the program.
+#[cfg(target_os = "linux")]
+pub(crate) fn on_a_full_disk(limit: u64, at: &Path, arguments: &[&str]) -> (Option<i32>, String) {
+    let settings = format!("trap '' XFSZ; prlimit --pid $$ --fsize={limit}");
     let plain = chaindrive(at, arguments);
     told(wrapped(&settings, &plain).output().unwrap())
 }
 
+#[cfg(target_os = "linux")]
 #[test]
 fn on_a_full_disk_it_keeps_what_was_written() {
     let folder = tempfile::tempdir().unwrap();
@@ -343,7 +343,11 @@ fn on_a_full_disk_it_keeps_what_was_written() {
     ];
     let record = ["--record", "roller_x,roller_vy", "-o"];
 
-    let (code, err) = on_a_full_disk(400, at, &[&long[..], &record, &["ring.zarr"]].concat());
+    let (code, err) = on_a_full_disk(
+        200 << 10,
+        at,
+        &[&long[..], &record, &["ring.zarr"]].concat(),
+    );
     assert_eq!(code, Some(3), "{err}");
     assert!(err.starts_with("ring.zarr: File too large"), "{err}");
     let store = at.join("ring.zarr");
@@ -361,24 +365,112 @@ fn on_a_full_disk_it_keeps_what_was_written() {
     let length = &group["consolidated_metadata"]["metadata"]["roller_x"]["shape"][0];
     assert_eq!(length, &about["samples"]);
 
-    // The limit falls into other places of a row, and leaves more or less room for the line behind the last.
-    for blocks in 400..408 {
-        let csv = ["ring.csv", "--overwrite"];
-        let (code, err) = on_a_full_disk(blocks, at, &[&long[..], &record, &csv].concat());
-        assert_eq!(code, Some(3), "{err}");
-        assert!(err.starts_with("ring.csv: File too large"), "{err}");
-        let table = at.join("ring.csv");
-        assert!(last_line(&table).starts_with("# incomplete: "));
-        let text = fs::read_to_string(&table).unwrap();
-        let cells: Vec<usize> = text.lines().map(|line| line.split(',').count()).collect();
-        assert!(
-            cells[..cells.len() - 1].iter().all(|&count| count == 41),
-            "{cells:?}"
-        );
-    }
+    // A table that grows until the disk is full under it.
+    let (code, err) = on_a_full_disk(200 << 10, at, &[&long[..], &record, &["ring.csv"]].concat());
+    assert_eq!(code, Some(3), "{err}");
+    assert!(err.starts_with("ring.csv: File too large"), "{err}");
+    let table = at.join("ring.csv");
+    assert!(last_line(&table).starts_with("# incomplete: "));
+    let text = fs::read_to_string(&table).unwrap();
+    let cells: Vec<usize> = text.lines().map(|line| line.split(',').count()).collect();
+    assert!(
+        cells[..cells.len() - 1].iter().all(|&count| count == 41),
+        "{cells:?}"
+    );
     assert_eq!(names(at), ["ring.csv", "ring.zarr"]);
 }
 
+/// The disk is full at every place of a row in the middle, and at every place from the last row to behind the line that
+/// says that the table is not at its end. All rows that leave room for a closing line are kept.
+#[cfg(target_os = "linux")]
+#[test]
+fn wherever_the_disk_is_full_whole_rows_and_a_closing_line_stay() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let plain = [
+        "run",
+        "spinning_ring",
+        "--until",
+        "1 ms",
+        "--every",
+        "10 us",
+        "--no-error",
+        "-q",
+        "--record",
+        "energy_kinetic",
+        "-o",
+    ];
+    assert_eq!(run(at, &[&plain[..], &["whole.csv"]].concat()).0, Some(0));
+    let whole = fs::read_to_string(at.join("whole.csv")).unwrap();
+    let ends: Vec<usize> = whole.match_indices('\n').map(|(at, _)| at + 1).collect();
+    let shortest = "# incomplete: failed\n".len();
+    let longest = "# incomplete: running\n".len();
+    let rows = ends.len();
+    assert!(rows > 90, "{rows}");
+    let middle = ends[rows / 2]..ends[rows / 2 + 1];
+    let last = ends[rows - 2]..ends[rows - 1] + longest;
+    for limit in middle.chain(last) {
+        let csv = ["ring.csv", "--overwrite"];
+        let (code, err) = on_a_full_disk(limit as u64, at, &[&plain[..], &csv].concat());
+        assert_eq!(code, Some(3), "{err}");
+        assert!(err.starts_with("ring.csv: File too large"), "{err}");
+        let kept = ends.iter().rfind(|&&end| end + shortest <= limit).unwrap();
+        let text = fs::read_to_string(at.join("ring.csv")).unwrap();
+        let (rows, closing) = text.split_at(*kept);
+        assert_eq!(rows, &whole[..*kept], "{limit}");
+        assert!(
+            closing.starts_with("# incomplete: ") && closing.lines().count() == 1,
+            "{limit}: {closing}"
+        );
+        assert!(closing.ends_with('\n'), "{limit}: {closing}");
+    }
+}
+
+/// The limit refuses the checkpoint itself, which for two hundred links with play is longer than all else.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_checkpoint_that_does_not_fit_ends_the_run_and_leaves_nothing_half_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let scene = [
+        "run",
+        "bicycle",
+        "--until",
+        "0.2 ms",
+        "--method",
+        "implicit-damping",
+    ];
+    let longer = [
+        "--set",
+        "chain.links=200",
+        "--set",
+        "sprockets.rear.centre=['-1.070144624366 m', '0 m']",
+    ];
+    let to = [
+        "--no-error",
+        "-q",
+        "--record",
+        "span_tension",
+        "-o",
+        "run.zarr",
+        "--checkpoint-every",
+        "50 us",
+    ];
+    let (code, err) = on_a_full_disk(130 << 10, at, &[&scene[..], &longer, &to].concat());
+    assert_eq!(code, Some(3), "{err}");
+    let store = at.join("run.zarr");
+    assert_eq!(status(&store), "failed");
+    let left = names(&store);
+    assert!(
+        left.iter().all(|name| !name.starts_with("checkpoint")),
+        "{left:?}"
+    );
+    let (code, err) = run(at, &["resume", "run.zarr"]);
+    assert_eq!(code, Some(2), "{err}");
+    assert!(err.contains("File too large"), "{err}");
+}
+
+#[cfg(target_os = "linux")]
 #[test]
 fn a_sweep_on_a_full_disk_leaves_nothing_half_done() {
     let folder = tempfile::tempdir().unwrap();
@@ -396,7 +488,7 @@ fn a_sweep_on_a_full_disk_leaves_nothing_half_done() {
     let few = [&sweep[..], &["chain.mass=8 g,9 g"]].concat();
     assert_eq!(run(at, &few).0, Some(0));
     let old = fs::read_to_string(at.join("s.csv")).unwrap();
-    let (code, err) = on_a_full_disk(1, at, &[&few[..], &["--overwrite"]].concat());
+    let (code, err) = on_a_full_disk(512, at, &[&few[..], &["--overwrite"]].concat());
     assert_eq!(code, Some(3), "{err}");
     assert_eq!(fs::read_to_string(at.join("s.csv")).unwrap(), old);
     assert_eq!(names(at), ["s.csv"]);

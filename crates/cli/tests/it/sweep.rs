@@ -7,11 +7,9 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use assert_cmd::cargo::CommandCargoExt;
-
 /// Runs a sweep and returns exit code, stdout and stderr.
 fn sweep(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::cargo_bin("chaindrive").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
     let command = command.current_dir(folder).arg("sweep").args(arguments);
     let output = command.output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
@@ -297,7 +295,7 @@ fn wait_for_a_variant(path: &Path) {
 fn interrupted_it_keeps_what_is_finished() {
     for out in ["long.zarr", "long.csv"] {
         let folder = tempfile::tempdir().unwrap();
-        let mut command = Command::cargo_bin("chaindrive").unwrap();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
         command
             .current_dir(folder.path())
             .args([

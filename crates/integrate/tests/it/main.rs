@@ -4,6 +4,7 @@ mod energy_drift;
 mod first_contact;
 mod guards;
 mod implicit;
+mod instruction_sets;
 mod memory;
 mod order;
 mod predicted;

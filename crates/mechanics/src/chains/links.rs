@@ -36,9 +36,8 @@ mod validation_slider_crank;
 
 use chaindrive_contact::Prepared;
 use chaindrive_geometry::Vector;
-use chaindrive_integrate::{Array, Moment};
+use chaindrive_integrate::{Array, Moment, Registers};
 use nalgebra::Vector3;
-use pulp::Arch;
 use serde::{Deserialize, Serialize};
 
 pub(super) use balance::add_joint;
@@ -58,7 +57,7 @@ use super::{Record, Surroundings};
 use crate::End;
 use crate::contact::{ContactMemory, Kept, LaneTally, MemoryLanes};
 use crate::energy::Flow;
-use crate::lanes::{Wide, dispatch};
+use crate::lanes::Wide;
 use crate::system::HeldEnd;
 
 /// A body of the chain: a link, or a free roller.
@@ -133,7 +132,7 @@ pub(crate) struct Linkage {
     pub(crate) elongation: f64,
     /// What the joints remember of the last accepted state.
     pub(crate) memory: Memory,
-    pub(crate) arch: Arch,
+    pub(crate) registers: Registers,
 }
 
 /// State of all joints at an accepted moment.
@@ -248,17 +247,14 @@ impl Linkage {
             return Tally::new();
         };
         let dt = at.t - self.memory.time;
-        let tally = dispatch(
-            self.arch,
-            pins::Contacts {
-                linkage: self,
-                bearing,
-                posture: &joint_state.posture,
-                memory: &mut joint_state.memory.joints,
-                pins: &mut joint_state.pins,
-                dt,
-            },
-        );
+        let tally = self.registers.dispatch(pins::Contacts {
+            linkage: self,
+            bearing,
+            posture: &joint_state.posture,
+            memory: &mut joint_state.memory.joints,
+            pins: &mut joint_state.pins,
+            dt,
+        });
         if self.closed {
             joint_state.pins.close(self.links);
         } else {

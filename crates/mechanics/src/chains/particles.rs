@@ -20,8 +20,7 @@ mod springs;
 mod statics;
 
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::{Array, Moment, Prediction};
-use pulp::Arch;
+use chaindrive_integrate::{Array, Moment, Prediction, Registers};
 
 use super::joints::Joints;
 use super::{Pose, Rates, Record, Surroundings};
@@ -52,9 +51,7 @@ pub(crate) struct Particles {
     lightest: f64,
     /// ω² of the links alone and twice their damping rate.
     link_rates: [f64; 2],
-    arch: Arch,
-    /// Whether to compute as on a processor without AVX2.
-    oldest: bool,
+    pub(super) registers: Registers,
 }
 
 /// The plates of the particle chain: link i between roller i and the next.
@@ -100,10 +97,6 @@ impl Particles {
         let rest: f64 = self.links.rest[..self.links.count].iter().sum();
         let nominal = self.links.count as f64 * self.pitch;
         rest / nominal
-    }
-
-    pub(super) fn compute_by_twos(&mut self) {
-        self.oldest = true;
     }
 
     #[inline(always)]

@@ -170,7 +170,7 @@ impl WithSimd for Sweep<'_> {
 
 #[cfg(test)]
 mod tests {
-    use pulp::Arch;
+    use chaindrive_integrate::Registers;
 
     use super::*;
     use crate::lanes::LANES;
@@ -238,7 +238,7 @@ mod tests {
         };
         for law in [dry, damped] {
             Check(law).with_simd(pulp::Scalar);
-            Arch::new().dispatch(Check(law));
+            Registers::in_use().dispatch(Check(law));
         }
     }
 }

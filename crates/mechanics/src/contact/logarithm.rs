@@ -90,7 +90,8 @@ impl Logarithm {
 mod tests {
     use chaindrive_contact::elastic::Johnson;
     use chaindrive_contact::{Dissipation, Elastic};
-    use pulp::{Arch, WithSimd};
+    use chaindrive_integrate::Registers;
+    use pulp::WithSimd;
 
     use super::*;
     use crate::lanes::LANES;
@@ -154,7 +155,7 @@ mod tests {
     /// As the law itself, which takes a logarithm and a step of fourth order.
     #[test]
     fn lanes_find_what_the_law_says() {
-        Arch::new().dispatch(Check);
+        Registers::in_use().dispatch(Check);
         Check.with_simd(pulp::Scalar);
     }
 }

@@ -70,7 +70,8 @@ mod tests {
     use chaindrive_contact::elastic::Power;
     use chaindrive_contact::{Elastic, Friction, Law};
     use chaindrive_geometry::{Piece, Point, Seat, Segment, Tip, ToothForm, ToothGap, Vector};
-    use pulp::{Arch, WithSimd};
+    use chaindrive_integrate::Registers;
+    use pulp::WithSimd;
 
     use super::*;
     use crate::contact::{Contacts, Frame, Places, Rollers, Shape, Teeth, Touch, Wrench};
@@ -151,7 +152,7 @@ mod tests {
                 spin: &[],
                 half_step: 0.0,
             };
-            Arch::new().dispatch(Look {
+            Registers::in_use().dispatch(Look {
                 contacts,
                 t,
                 frame: here,

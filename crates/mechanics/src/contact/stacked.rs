@@ -181,7 +181,8 @@ fn steps(n: f64) -> usize {
 mod tests {
     use chaindrive_contact::elastic::Power;
     use chaindrive_contact::{Dissipation, Elastic, Law};
-    use pulp::{Arch, WithSimd};
+    use chaindrive_integrate::Registers;
+    use pulp::WithSimd;
 
     use super::*;
     use crate::lanes::LANES;
@@ -233,7 +234,7 @@ mod tests {
     /// As the law itself, whose Newton method goes on until nothing changes.
     #[test]
     fn lanes_find_what_the_law_says() {
-        Arch::new().dispatch(Check);
+        Registers::in_use().dispatch(Check);
         Check.with_simd(pulp::Scalar);
     }
 

@@ -92,7 +92,8 @@ fn mask<S: Simd>(w: Wide<S>, bits: u64) -> S::f64s {
 
 #[cfg(test)]
 mod tests {
-    use pulp::{Arch, Scalar, Scalar128b, WithSimd};
+    use chaindrive_integrate::Registers;
+    use pulp::{Scalar, Scalar128b, WithSimd};
 
     use super::*;
 
@@ -122,6 +123,6 @@ mod tests {
     fn numbers_are_taken_apart_and_put_together() {
         Check.with_simd(Scalar);
         Check.with_simd(Scalar128b);
-        Arch::new().dispatch(Check);
+        Registers::in_use().dispatch(Check);
     }
 }

@@ -165,7 +165,8 @@ mod tests {
     use std::time::Instant;
 
     use chaindrive_geometry::{Arc, ArcSpline, Piece};
-    use pulp::{Arch, WithSimd};
+    use chaindrive_integrate::Registers;
+    use pulp::WithSimd;
 
     use super::*;
 
@@ -285,7 +286,7 @@ mod tests {
                     .collect();
                 compared += places.len();
                 let both = || Both(&profile, &places);
-                Arch::new().dispatch(both());
+                Registers::in_use().dispatch(both());
                 both().with_simd(pulp::Scalar);
                 both().with_simd(pulp::Scalar512b);
             }
@@ -364,7 +365,7 @@ mod tests {
                 let once = || {
                     let start = Instant::now();
                     for _ in 0..20 {
-                        black_box(Arch::new().dispatch(Timed(
+                        black_box(Registers::in_use().dispatch(Timed(
                             black_box(&profile),
                             halving,
                             &places,

@@ -3,6 +3,7 @@
 mod allocations;
 mod articulation;
 mod clashes;
+mod instruction_sets;
 mod loads;
 mod marine;
 mod marine_statics;

@@ -53,6 +53,7 @@ const CRATES: [Storeys; 4] = [
     Storeys {
         folder: "chaindrive",
         layers: &[
+            &["identity"],
             &["catalogue", "design", "draw", "seal", "stepping"],
             &["error", "scene"],
             &["run"],

@@ -3,8 +3,7 @@
 use std::ops::Range;
 
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::Moment;
-use pulp::Arch;
+use chaindrive_integrate::{Moment, Registers};
 
 use super::model::{Joint, RigidLinks, RollerModel};
 use super::{
@@ -387,7 +386,7 @@ fn compile(particles: &Particles, laid: &LaidAs<'_>, links: &RigidLinks) -> Link
         bush_turns: links.rollers == RollerModel::Bush,
         ends: particles.ends.clone(),
         elongation: particles.elongation(),
-        arch: Arch::new(),
+        registers: Registers::in_use(),
     }
 }
 

@@ -23,7 +23,7 @@ use super::implicit::Sum;
 use super::posture::Posture;
 use super::reactions::{Inertia, Reactions, load};
 use super::{Blocks, JointState, Linkage, Mate};
-use crate::lanes::{Wide, dispatch};
+use crate::lanes::Wide;
 use crate::system::GroupBodies;
 
 /// Prescribed value of J x at the hinges.
@@ -130,14 +130,11 @@ impl Held<'_> {
             let beside = blocks.beside[j..].iter().step_by(border);
             column.read(linkage, beside.map(|r| [r.x, r.y, r.z]));
         }
-        dispatch(
-            linkage.arch,
-            Answer {
-                held: self,
-                answers,
-                kept,
-            },
-        );
+        linkage.registers.dispatch(Answer {
+            held: self,
+            answers,
+            kept,
+        });
         for (j, row) in answers.columns.iter().enumerate() {
             let beside = || blocks.beside[j..].iter().step_by(border);
             let through = |answer: &ByLink| -> f64 {

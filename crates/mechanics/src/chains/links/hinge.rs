@@ -19,7 +19,7 @@ use super::reactions::{Inertia, Reactions, arms, load};
 use super::{JointState, Linkage, Mate, Posture, supplied};
 use crate::End;
 use crate::energy::Flow;
-use crate::lanes::{Wide, dispatch};
+use crate::lanes::Wide;
 
 /// Ideal joints.
 #[derive(Clone, Debug)]
@@ -89,17 +89,14 @@ impl Hinges {
             let by = mates.map(|mate| ground_acceleration(linkage, mate, at));
             by.sum()
         });
-        dispatch(
-            linkage.arch,
-            Find {
-                rate: self.rate,
-                linkage,
-                posture,
-                reactions,
-                ground,
-                loads,
-            },
-        );
+        linkage.registers.dispatch(Find {
+            rate: self.rate,
+            linkage,
+            posture,
+            reactions,
+            ground,
+            loads,
+        });
         for (joint, force) in hinge_forces.iter_mut().enumerate() {
             let on_after = reactions.force(joint);
             *force = if linkage.pairs.pin_after(joint) {

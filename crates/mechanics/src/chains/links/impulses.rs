@@ -23,7 +23,7 @@ use pulp::{Simd, WithSimd};
 use super::by_link::ByLink;
 use super::reactions::load;
 use super::{Bearing, Joining, JointState, Linkage};
-use crate::lanes::{Wide, dispatch};
+use crate::lanes::Wide;
 use crate::system::GroupBodies;
 use local::Local;
 use rows::Rows;
@@ -94,14 +94,11 @@ impl Impulses {
         step: Step<'_>,
         x: &mut [f64],
     ) -> bool {
-        dispatch(
-            step.linkage.arch,
-            Solution::<R, C, B> {
-                work: self,
-                step,
-                x,
-            },
-        )
+        step.linkage.registers.dispatch(Solution::<R, C, B> {
+            work: self,
+            step,
+            x,
+        })
     }
 
     #[inline(always)]

@@ -10,7 +10,7 @@ use super::{Element, JointState, Linkage, Mount, Partner, Posture};
 use crate::chains::{Loads, Surroundings, Way};
 use crate::contact::{Contacts, Frame, Kept, Pressing, Rollers, Touch, Wrench};
 use crate::energy::Flow;
-use crate::lanes::{Wide, dispatch};
+use crate::lanes::Wide;
 use crate::system::{Bodies, RailContact, RailSupport, Wheel, WheelSupport};
 
 impl Linkage {
@@ -64,7 +64,7 @@ impl Linkage {
                         yielding: 0.0,
                         touch: &mut loads.rails[i],
                     };
-                    dispatch(self.arch, pressing)
+                    self.registers.dispatch(pressing)
                 }
             };
             rates[Flow::GuideLoss as usize] += wrench.normal_loss;
@@ -157,26 +157,23 @@ impl Linkage {
         } else {
             idle.spin.clear();
         }
-        let wrench = dispatch(
-            self.arch,
-            Touching {
-                contacts,
-                frame,
-                t: at.t,
-                rollers: Rollers {
-                    x: &posture.x,
-                    y: &posture.y,
-                    vx: &posture.vx,
-                    vy: &posture.vy,
-                    ax: &mut idle.ax,
-                    ay: &mut idle.ay,
-                    inverse_mass: &idle.inverse_mass,
-                    spin: &idle.spin,
-                    half_step: 0.0,
-                },
-                touch,
+        let wrench = self.registers.dispatch(Touching {
+            contacts,
+            frame,
+            t: at.t,
+            rollers: Rollers {
+                x: &posture.x,
+                y: &posture.y,
+                vx: &posture.vx,
+                vy: &posture.vy,
+                ax: &mut idle.ax,
+                ay: &mut idle.ay,
+                inverse_mass: &idle.inverse_mass,
+                spin: &idle.spin,
+                half_step: 0.0,
             },
-        );
+            touch,
+        });
         contacts.for_each_slot(|slot, joint| {
             for side in 0..contacts.sides() {
                 let index = side * contacts.slots + slot;

@@ -290,7 +290,7 @@ impl Contacts<'_> {
 
 #[cfg(test)]
 mod tests {
-    use chaindrive_integrate::Moment;
+    use chaindrive_integrate::{Moment, Registers};
     use pulp::Scalar128b;
 
     use super::*;
@@ -317,7 +317,7 @@ mod tests {
             let widths: [fn(Contacts<'_>) -> Tally; 3] = [
                 |contacts| contacts.act(Wide(pulp::Scalar)),
                 |contacts| contacts.act(Wide(Scalar128b)),
-                |contacts| pulp::Arch::new().dispatch(contacts),
+                |contacts| Registers::in_use().dispatch(contacts),
             ];
             for act in widths {
                 let (mut memory, mut pins) = (ContactMemory::default(), Pins::default());

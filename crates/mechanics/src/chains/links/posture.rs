@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::bearing::Part;
 use super::{Linkage, Mate};
 use crate::End;
-use crate::lanes::{LANES, Lane, Wide, dispatch, padded};
+use crate::lanes::{LANES, Lane, Wide, padded};
 
 /// One joint end of a link.
 #[derive(Clone, Copy, Debug)]
@@ -226,13 +226,10 @@ impl Linkage {
                 [*a, *b, *c] = *from;
             }
         }
-        dispatch(
-            self.arch,
-            Ends {
-                linkage: self,
-                posture,
-            },
-        );
+        self.registers.dispatch(Ends {
+            linkage: self,
+            posture,
+        });
         self.pose_ends(at, posture);
         self.pose_rollers(at, posture);
     }
@@ -255,13 +252,10 @@ impl Linkage {
 
     fn pose_rollers(&self, at: Moment<'_>, posture: &mut Posture) {
         let joints = self.joints.len();
-        dispatch(
-            self.arch,
-            Circles {
-                on_after: &self.pairs.bush_after,
-                posture,
-            },
-        );
+        self.registers.dispatch(Circles {
+            on_after: &self.pairs.bush_after,
+            posture,
+        });
         if let Some(free) = &self.free_rollers {
             for (joint, body) in free.body.iter().enumerate() {
                 let Some(body) = *body else { continue };

@@ -19,7 +19,7 @@ use pulp::{Simd, WithSimd};
 use super::by_link::ByLink;
 use super::posture::Posture;
 use super::{Linkage, Shapes};
-use crate::lanes::{LANES, Lane, Wide, dispatch, padded};
+use crate::lanes::{LANES, Lane, Wide, padded};
 pub(super) use sections::Sections;
 
 /// Share of its stiffest direction below which a block counts as singular: a strand that is straight between two
@@ -72,7 +72,7 @@ impl Reactions {
             [tx[place], ty[place], tt[place]] = [block[(2, 0)], block[(2, 1)], block[(2, 2)]];
         }
         let inverse = &mut self.inverse;
-        let sound = dispatch(linkage.arch, Invert { inverse, linkage });
+        let sound = linkage.registers.dispatch(Invert { inverse, linkage });
         for values in &mut self.inverse {
             values[0] = if linkage.closed {
                 values[linkage.links]
@@ -104,15 +104,12 @@ impl Reactions {
         }
         self.sections
             .lay_out(linkage.joints.len(), linkage.closed, SINGULAR);
-        self.sound = dispatch(
-            linkage.arch,
-            Factor {
-                reactions: self,
-                linkage,
-                posture,
-                inertia,
-            },
-        );
+        self.sound = linkage.registers.dispatch(Factor {
+            reactions: self,
+            linkage,
+            posture,
+            inertia,
+        });
         self.sound
     }
 
@@ -376,8 +373,9 @@ fn blocks<S: Simd>(w: Wide<S>, from: &[Array; 6], place: usize) -> [Lane<S>; 6] 
 
 #[cfg(test)]
 mod tests {
+    use chaindrive_integrate::Registers;
     use nalgebra::{DMatrix, DVector};
-    use pulp::{Arch, Scalar128b};
+    use pulp::Scalar128b;
 
     use super::*;
 
@@ -408,7 +406,7 @@ mod tests {
         let widths: [fn(Solved<'_>) -> bool; 3] = [
             |solved| solved.with_simd(pulp::Scalar),
             |solved| solved.with_simd(Scalar128b),
-            |solved| Arch::new().dispatch(solved),
+            |solved| Registers::in_use().dispatch(solved),
         ];
         let mut sections = Sections::default();
         for (count, closed) in (1..40).flat_map(|count| [(count, false), (count, true)]) {

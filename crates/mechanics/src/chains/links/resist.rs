@@ -8,7 +8,7 @@ use super::posture::Posture;
 use super::{Joining, JointState, Linkage};
 use crate::chains::joints::{Joints, Resistance, Turns};
 use crate::energy::Flow;
-use crate::lanes::{Lane, Lanes, Wide, dispatch, padded};
+use crate::lanes::{Lane, Lanes, Wide, padded};
 
 impl Linkage {
     /// Adds the torques of the joints to those on the links.
@@ -26,16 +26,13 @@ impl Linkage {
         if let (Joining::Hinges(hinges), true) = (&self.joining, joints.rub()) {
             self.press(hinges, at, joint_state);
         }
-        let power = dispatch(
-            self.arch,
-            Torques {
-                joints,
-                posture: &joint_state.posture,
-                normal: &joint_state.normal,
-                t: at.t,
-                found: &mut *found,
-            },
-        );
+        let power = self.registers.dispatch(Torques {
+            joints,
+            posture: &joint_state.posture,
+            normal: &joint_state.normal,
+            t: at.t,
+            found: &mut *found,
+        });
         rates[Flow::ArticulationLoss as usize] += power;
         let torque = &mut found.torque;
         if self.closed {

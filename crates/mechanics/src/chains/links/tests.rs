@@ -5,7 +5,7 @@ use chaindrive_contact::elastic::{CylinderLaw, Cylinders, ElasticLaw, Power};
 use chaindrive_contact::friction::Coulomb;
 use chaindrive_contact::{Dissipation, Elastic, Friction, Law};
 use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
-use chaindrive_integrate::{Moment, SecondOrderSystem};
+use chaindrive_integrate::{InstructionSet, Moment, Registers, SecondOrderSystem};
 
 use super::Linkage;
 use crate::chains::Chain;
@@ -381,8 +381,8 @@ fn lanes_of_any_width_agree() {
     }
     let assembled = Drive::new(parts).unwrap().assemble().unwrap();
     let system = assembled.system;
-    let mut by_twos = system.clone();
-    by_twos.compute_by_twos();
+    let mut narrow = system.clone();
+    narrow.compute_on(Registers::of(InstructionSet::Baseline).unwrap());
     for shake in 0..40_u32 {
         let mut q = assembled.q.clone();
         let mut v = assembled.v.clone();
@@ -398,7 +398,7 @@ fn lanes_of_any_width_agree() {
             v: &v,
             z: &[],
         };
-        let [wide, narrow] = [&system, &by_twos].map(|system| {
+        let [wide, narrow] = [&system, &narrow].map(|system| {
             let mut record = system.new_record();
             let mut a = vec![0.0; q.len()];
             let mut rates = vec![0.0; Flow::ALL.len()];

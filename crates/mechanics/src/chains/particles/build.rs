@@ -1,7 +1,7 @@
 //! From places of rollers to flat arrays.
 
 use chaindrive_geometry::{Point, Vector};
-use pulp::Arch;
+use chaindrive_integrate::Registers;
 
 use super::drag::Drag;
 use super::{Links, Particles};
@@ -38,8 +38,7 @@ impl Particles {
             masses: masses.into(),
             inverse_masses: inverse_masses.into(),
             ends,
-            arch: Arch::new(),
-            oldest: matches!(Arch::new(), Arch::Scalar),
+            registers: Registers::in_use(),
         };
         (particles, q)
     }

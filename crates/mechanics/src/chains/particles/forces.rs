@@ -1,7 +1,7 @@
 //! One evaluation of the particle chain: links, teeth, guides, ends.
 
 use chaindrive_integrate::Moment;
-use pulp::{Scalar128b, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 use super::Particles;
 use super::articulation::{self, Turning};
@@ -30,19 +30,14 @@ impl Particles {
             turning,
             ..
         } = record;
-        if self.oldest {
-            let found = (&mut *loads, &mut *turning, &mut *resistance);
-            self.forces(Wide(Scalar128b), around, at, a, rates, found);
-        } else {
-            self.arch.dispatch(Forces {
-                chain: self,
-                around,
-                at,
-                a: &mut *a,
-                rates: &mut *rates,
-                found: (&mut *loads, &mut *turning, &mut *resistance),
-            });
-        }
+        self.registers.dispatch(Forces {
+            chain: self,
+            around,
+            at,
+            a: &mut *a,
+            rates: &mut *rates,
+            found: (loads, turning, resistance),
+        });
         let n = self.stride;
         if self.links.closed {
             // A ghost behind the first turn copies one of the turn before.

@@ -19,8 +19,8 @@ mod observe;
 mod statics;
 
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::{Array, Moment};
-use pulp::{Arch, Simd};
+use chaindrive_integrate::{Array, Moment, Registers};
+use pulp::Simd;
 use serde::{Deserialize, Serialize};
 
 pub use model::PointJoints;
@@ -60,9 +60,7 @@ pub(crate) struct Points {
     pub(in crate::chains) memory: Memory,
     /// None: the chain is closed.
     pub(in crate::chains) ends: Vec<HeldEnd>,
-    pub(in crate::chains) arch: Arch,
-    /// Whether to compute as on a processor without AVX2.
-    oldest: bool,
+    pub(in crate::chains) registers: Registers,
 }
 
 /// Rollers, ends before the joints, ends after them: the order of the blocks.
@@ -269,10 +267,6 @@ impl Points {
         let rest: f64 = self.links.rest[..self.links.count].iter().sum();
         // Every joint adds the play of its pin.
         rest / (self.links.count as f64 * self.pitch) + self.pin.clearance / self.pitch
-    }
-
-    pub(in crate::chains) fn compute_by_twos(&mut self) {
-        self.oldest = true;
     }
 
     pub(in crate::chains) fn pose<'a>(&self, at: Moment<'a>, _record: &'a mut Record) -> Pose<'a> {

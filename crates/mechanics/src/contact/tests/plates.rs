@@ -2,7 +2,8 @@
 
 use chaindrive_contact::friction::Coulomb;
 use chaindrive_geometry::{ArcSpline, bar, rail};
-use pulp::{Arch, WithSimd};
+use chaindrive_integrate::Registers;
+use pulp::WithSimd;
 
 use super::*;
 use crate::contact::{Places, PlateContact, PlatePlaces, Pressing, Rollers};
@@ -196,7 +197,7 @@ fn lanes_of_plates_press_as_plates_one_by_one() {
                     touch: &mut touch,
                 };
                 let wrench = match width {
-                    0 => Arch::new().dispatch(press),
+                    0 => Registers::in_use().dispatch(press),
                     1 => press.with_simd(pulp::Scalar128b),
                     _ => press.with_simd(pulp::Scalar),
                 };
@@ -246,7 +247,7 @@ fn no_plate_touches_unseen() {
         rested += plates.memory.wake.iter().filter(|wake| **wake > t).count();
         slack.thrust[0].fill(0.0);
         slack.thrust[1].fill(-600.0);
-        Arch::new().dispatch(Pressing {
+        Registers::in_use().dispatch(Pressing {
             plates: &plates,
             t,
             frame: Frame::fixed(),

@@ -50,7 +50,7 @@ impl Worker {
     /// Opens the store of a sweep that was begun.
     ///
     /// # Errors
-    /// [`WriteError`] where there is none, or one of another version of the program.
+    /// [`WriteError`] where there is none, or one of another build of the program or another instruction set.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, WriteError> {
         let path = path.as_ref();
         let io = |source| WriteError::Io {
@@ -80,14 +80,10 @@ impl Worker {
             path: path.to_owned(),
             found: "this is not the store of a sweep that workers can carry out".into(),
         })?;
-        if recipe.chaindrive_version != env!("CARGO_PKG_VERSION") {
+        if let Some(difference) = recipe.origin.refusal() {
             return Err(WriteError::OtherSweep {
                 path: path.to_owned(),
-                difference: format!(
-                    "it was begun by chaindrive {}, and here is {}",
-                    recipe.chaindrive_version,
-                    env!("CARGO_PKG_VERSION")
-                ),
+                difference,
             });
         }
         let sweep = Sweep::of_recipe(recipe).map_err(|error| WriteError::Store {

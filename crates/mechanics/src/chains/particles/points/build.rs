@@ -2,8 +2,7 @@
 
 use chaindrive_contact::Friction;
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::{Array, Moment};
-use pulp::Arch;
+use chaindrive_integrate::{Array, Moment, Registers};
 
 use super::{AFTER, BEFORE, Memory, PointJoints, Points, ROLLERS};
 use crate::chains::LaidAs;
@@ -116,8 +115,7 @@ impl Points {
                 bushes: open(),
             },
             ends: Vec::new(),
-            arch: Arch::new(),
-            oldest: matches!(Arch::new(), Arch::Scalar),
+            registers: Registers::in_use(),
         };
         chain.link_rates = chain.rates_of_links();
         let q = chain.seat(particles, laid, at);

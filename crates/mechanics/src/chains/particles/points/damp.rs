@@ -22,7 +22,7 @@ use super::{AFTER, BEFORE, Found, Points, ROLLERS};
 use crate::chains::links::{Mount, rail_mount, solve_dense, turned, wheel_mount};
 use crate::chains::{Loads, Record, Surroundings};
 use crate::contact::{Contacts, Frame, Touch};
-use crate::lanes::{LANES, Lane, Mask, Wide, dispatch, padded};
+use crate::lanes::{LANES, Lane, Mask, Wide, padded};
 use crate::system::{GroupBodies, RailContact};
 
 /// One direction of a closed contact between a roller and a wheel or rail.
@@ -155,15 +155,12 @@ impl Points {
             beside,
             padded(self.rollers),
         );
-        dispatch(
-            self.arch,
-            Joints {
-                chain: self,
-                weights,
-                found,
-                x: own,
-            },
-        );
+        self.registers.dispatch(Joints {
+            chain: self,
+            weights,
+            found,
+            x: own,
+        });
         self.copy_ghosts(own);
         // M x: what the contacts lose, the bodies receive.
         let inertias = bodies.inertias();

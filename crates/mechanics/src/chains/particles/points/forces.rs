@@ -1,7 +1,7 @@
 //! One evaluation of a chain of points: links, joints, teeth, guides.
 
 use chaindrive_integrate::Moment;
-use pulp::{Scalar128b, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 use super::{AFTER, BEFORE, Ends, Found, Held, Points, ROLLERS};
 use crate::chains::joints::Resistance;
@@ -42,19 +42,14 @@ impl Points {
             ..
         } = record;
         points.memory.time = at.t;
-        let all = Forces {
+        self.registers.dispatch(Forces {
             chain: self,
             around,
             at,
             a: &mut *a,
             rates: &mut *rates,
             filled: (&mut *loads, turning, resistance, &mut *points),
-        };
-        if self.oldest {
-            all.with_simd(Scalar128b);
-        } else {
-            self.arch.dispatch(all);
-        }
+        });
         self.list_touching(around, at, loads, points);
         self.copy_ghosts(a);
     }
