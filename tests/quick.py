@@ -1,7 +1,8 @@
-"""Checks what a change needs at once: format, lints, types, the tests of what changed, one small drive.
+"""Checks what a change needs: format, lints, types, the tests of what changed, one small drive.
 
-What changed is told by git: against the revision in `--base` (the last commit unless given), files that git does not know yet
-included. Crates that depend on a changed one are checked and not tested; `make test` tests them.
+What changed is told by git: against the revision in `--base` (the last commit unless given), files
+that git does not know yet included. Crates that depend on a changed one are checked and not tested;
+`make test` tests them.
 """
 
 import argparse
@@ -14,7 +15,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 BIN = Path(sys.executable).parent
 
-# Files of tests of the crate `chaindrive` by the room that they are about; other rooms are tested by all of them.
+# Tests of the crate `chaindrive` that are about scenes; other rooms are tested by all of them.
 SCENE = ["catalogue", "scene", "wrong_", "resolved", "robust_scenes", "describe", "requests"]
 
 # Tests of Python beside that of a module's own name: what every change of the package must keep.
@@ -58,7 +59,11 @@ def test_crate(crate: str, changed: list[str]) -> None:
     """Test a crate; of the large one, the room that changed."""
     manifest = tomllib.loads((ROOT / "crates" / crate / "Cargo.toml").read_text())
     command = ["cargo", "test", "--release", "--quiet", "-p", manifest["package"]["name"]]
-    rooms = ("crates/chaindrive/src/scene/", "crates/chaindrive/src/catalogue/", "crates/chaindrive/scenes/")
+    rooms = (
+        "crates/chaindrive/src/scene/",
+        "crates/chaindrive/src/catalogue/",
+        "crates/chaindrive/scenes/",
+    )
     if crate == "chaindrive" and all(path.startswith(rooms) for path in changed):
         step(*command, "--test", "it", "--", *SCENE)
     else:

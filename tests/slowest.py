@@ -19,7 +19,9 @@ def rust() -> list[tuple[float, str]]:
         text=True,
         check=False,
     ).stderr
-    times = re.findall(r"^\s+(?:PASS|FAIL) \[\s*([\d.]+)s\](?: \([^)]*\))? (.+)$", told, re.MULTILINE)
+    times = re.findall(
+        r"^\s+(?:PASS|FAIL) \[\s*([\d.]+)s\](?: \([^)]*\))? (.+)$", told, re.MULTILINE
+    )
     if not times:
         sys.exit(f"cargo-nextest times the tests of Rust; it said:\n{told}")
     return [(float(seconds), name) for seconds, name in times]

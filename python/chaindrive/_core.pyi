@@ -24,6 +24,7 @@ __all__ = [
     "__build__",
     "__version__",
     "_cli",
+    "_origin",
     "adaptive_methods",
     "catalogue",
     "centre_distance_for",

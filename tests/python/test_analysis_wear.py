@@ -201,7 +201,7 @@ def test_losses_are_those_of_the_ledger(industrial):
 
 @pytest.mark.parametrize("name", ["industrial", "bicycle"])
 def test_friction_work_of_joints_is_the_friction_loss_of_the_run(name, request):
-    """Σ μ N |r Δγ| from samples, against the friction of the ledger; impacts of pins are beside it."""
+    """Σ μ N |r Δγ| from samples, against the friction in the ledger; impacts are beside it."""
     run = request.getfixturevalue(name)
     flows = run["energy_flows"].isel(time=-1) - run["energy_flows"].isel(time=0)
     rubbed, struck = (
