@@ -1,4 +1,4 @@
-//! Who computed a result: the build of the program, and the instruction set that it used.
+//! Origin of a result: the build of the program, and the instruction set in use.
 //!
 //! Two results are equal to the last bit where both agree and the scene is the same. Stores of sweeps, their workers, snapshots
 //! and checkpoints are continued by nobody else.
@@ -120,7 +120,7 @@ impl Origin {
     }
 }
 
-/// What began before builds had identities.
+/// The origin of stores and bytes from before builds had identities.
 impl Default for Origin {
     fn default() -> Self {
         Self {

@@ -13,7 +13,7 @@ use serde::de::DeserializeOwned;
 
 use crate::Origin;
 
-/// What stands before the parts of the origin.
+/// Words before the parts of the origin.
 const BUILD: &str = "build ";
 const INSTRUCTION_SET: &str = "instruction set ";
 

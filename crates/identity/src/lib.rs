@@ -47,12 +47,12 @@ impl Hash {
     }
 }
 
-/// What a build script prints, so that the crate knows the hash of its sources as `env!("CHAINDRIVE_SOURCES")`.
+/// Gives the crate that is built the hash of its sources, as `env!("CHAINDRIVE_SOURCES")`.
 ///
 /// `data` are files and folders beside `src` that are compiled in.
 ///
 /// # Panics
-/// Where the sources of the crate cannot be read: there is nothing to build.
+/// If the sources of the crate cannot be read: there is nothing to build.
 pub fn emit(data: &[&str]) {
     let root = PathBuf::from(variable("CARGO_MANIFEST_DIR"));
     let hash = sources(&root, data).unwrap_or_else(|error| panic!("{}: {error}", root.display()));
@@ -67,7 +67,7 @@ pub fn emit(data: &[&str]) {
 /// `CHAINDRIVE_FEATURES` and `CHAINDRIVE_LIBRARIES`, the versions of the libraries that are named, as the lock file has them.
 ///
 /// # Panics
-/// Where there is no lock file: a build whose libraries are unknown has no identity.
+/// If there is no lock file: a build whose libraries are unknown has no identity.
 pub fn emit_surroundings(libraries: &[&str]) {
     let compiler = Command::new(variable("RUSTC")).arg("--version").output();
     let compiler = compiler.expect("the compiler that builds this can be asked for its version");
