@@ -57,6 +57,7 @@ def in_memory():
     return cd.sweep(ring(), SPEEDS, **RING)
 
 
+@pytest.mark.slow
 def test_every_executor_stores_the_bits_of_the_sweep_in_memory(server, in_memory):
     for number, (name, executor) in enumerate(local_executors()):
         store = bucket(server, f"{number}.zarr")
@@ -103,7 +104,7 @@ server, prefix, how = sys.argv[1:]
 store = S3Store("sweeps", prefix=prefix, endpoint=server, client_options={"allow_http": True},
                 access_key_id="nobody", secret_access_key="nothing", region="us-east-1")
 settings = {"until": 60e-3, "every": 1e-3, "record": "link_tension", "output": store}
-design = {"chain.start.speed": np.linspace(300.0, 400.0, 120)}
+design = {"chain.start.speed": np.linspace(300.0, 400.0, 60)}
 if __name__ == "__main__":
     if how == "threads":
         cd.sweep(cd.scenes.spinning_ring(), design=design, **settings)
@@ -123,7 +124,7 @@ def chunks(store):
     return {path: bytes(store.get(path).bytes()) for path in found}
 
 
-@pytest.mark.parametrize("how", ["threads", "spawn"])
+@pytest.mark.parametrize("how", ["threads", pytest.param("spawn", marks=pytest.mark.slow)])
 def test_killed_and_resumed_no_variant_is_lost_twice_or_different(server, tmp_path, how):
     script = tmp_path / "script.py"
     script.write_text(textwrap.dedent(SCRIPT))
@@ -153,7 +154,7 @@ def test_killed_and_resumed_no_variant_is_lost_twice_or_different(server, tmp_pa
         assert process.returncode == -signal.SIGKILL, (tmp_path / "told").read_text()
     assert process.returncode == 0
     assert killed >= 1
-    design = {"chain.start.speed": np.linspace(300.0, 400.0, 120)}
+    design = {"chain.start.speed": np.linspace(300.0, 400.0, 60)}
     run = {"until": 60e-3, "every": 1e-3, "record": "link_tension"}
     assert_same(cd.open_result(store), cd.sweep(ring(), design=design, **run))
 

@@ -26,6 +26,7 @@ def page(tmp_path_factory):
     return folder, (folder / "how-fast-how-accurate.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_every_part_and_target_is_on_the_page(page):
     folder, text = page
     parts = re.findall(r"^## (.*)$", text, flags=re.MULTILINE)
@@ -41,6 +42,7 @@ def test_every_part_and_target_is_on_the_page(page):
         assert 5_000 < (folder / figure).stat().st_size < 300_000
 
 
+@pytest.mark.slow
 def test_the_page_names_its_origin(page):
     """Machine, commit, date, and the yardstick by hash, version and instruction set."""
     _, text = page
@@ -52,6 +54,7 @@ def test_the_page_names_its_origin(page):
     assert sum(map(int, registers.groups())) > 0
 
 
+@pytest.mark.slow
 def test_what_was_not_measured_now_says_when_it_was(page):
     _, text = page
     _, _, body = text.partition("## Beside other programs")
@@ -66,6 +69,7 @@ def test_what_was_not_measured_now_says_when_it_was(page):
     assert stored["machine"]["commit"] in body
 
 
+@pytest.mark.slow
 def test_registers_that_this_processor_does_not_take_are_told_as_of_when(page):
     _, text = page
     stored = json.loads((REPORT / "older_registers.json").read_text(encoding="utf-8"))

@@ -132,6 +132,7 @@ def test_processes_give_the_same_bits(built_in):
     assert shares[-1] == 1.0
 
 
+@pytest.mark.slow
 def test_a_dask_cluster_gives_the_same_bits(built_in, tmp_path):
     distributed = pytest.importorskip("distributed")
     here = {

@@ -108,12 +108,12 @@ fn a_run_in_a_hundred_pieces_is_the_run_in_one() {
     ] {
         for stepping in METHODS {
             let mut whole = start(&scene, stepping);
-            let end = bits(whole.advance_to(1e-3).unwrap());
+            let end = bits(whole.advance_to(5e-4).unwrap());
             let mut pieces = start(&scene, stepping);
             for k in 0..100 {
-                pieces.advance_to(1e-5 * f64::from(k)).unwrap();
+                pieces.advance_to(5e-6 * f64::from(k)).unwrap();
             }
-            assert_eq!(bits(pieces.advance_to(1e-3).unwrap()), end, "{stepping:?}");
+            assert_eq!(bits(pieces.advance_to(5e-4).unwrap()), end, "{stepping:?}");
             assert_eq!(pieces.statistics(), whole.statistics(), "{stepping:?}");
         }
     }
