@@ -58,7 +58,8 @@ def changed_files(base: str) -> list[str]:
 def test_crate(crate: str, changed: list[str]) -> None:
     """Test a crate; of the large one, the room that changed."""
     manifest = tomllib.loads((ROOT / "crates" / crate / "Cargo.toml").read_text())
-    # With the bindings, of which nothing is built, libraries have the features that they have in `make test` and in the wheel.
+    # With the bindings, of which nothing is built, libraries have the features that they have in
+    # `make test` and in the wheel.
     selected = ["-p", manifest["package"]["name"], "-p", "chaindrive-python"]
     command = ["cargo", "test", "--release", "--quiet", *selected]
     rooms = (
