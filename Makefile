@@ -23,7 +23,7 @@ export PYO3_PYTHON := $(abspath $(BIN)/python)
 ifneq ($(shell command -v cargo-nextest 2>/dev/null),)
 CARGO_TEST := cargo nextest run --cargo-profile release --workspace --status-level slow --final-status-level slow --no-fail-fast
 else
-CARGO_TEST := cargo test --release --workspace --quiet --no-fail-fast --lib --bins --tests
+CARGO_TEST := cargo test --release --workspace --quiet --no-fail-fast --tests
 endif
 
 .DEFAULT_GOAL := help

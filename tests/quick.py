@@ -70,7 +70,7 @@ def test_crate(crate: str, changed: list[str]) -> None:
     if crate == "chaindrive" and all(path.startswith(rooms) for path in changed):
         step(*command, "--test", "it", "--", *SCENE)
     else:
-        step(*command, "--lib", "--tests")
+        step(*command, "--tests")
 
 
 def test_python(changed: list[str]) -> None:
