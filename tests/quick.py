@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 import tomllib
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -20,6 +21,22 @@ SCENE = ["catalogue", "scene", "wrong_", "resolved", "robust_scenes", "describe"
 
 # Tests of Python beside that of a module's own name: what every change of the package must keep.
 ALWAYS = ["test_api.py", "test_starting.py"]
+
+LINTS = ["cargo", "clippy", "--quiet", "--workspace", "--", "-D", "warnings"]
+
+# A small drive, and how it is run by a command that is hardly optimised, which is built in seconds.
+DRIVE = ["run", "marine_two_sprockets", "--until", "2 ms", "--no-error", "-q"]
+SMALL_DRIVE = [
+    "cargo",
+    "run",
+    "--quiet",
+    "-p",
+    "chaindrive-cli",
+    "--bin",
+    "chaindrive",
+    "--",
+    *DRIVE,
+]
 
 
 def main() -> None:
@@ -34,17 +51,21 @@ def main() -> None:
     step("cargo", "fmt", "--all", "--check")
     step(BIN / "ruff", "format", "--check", "--quiet", ".")
     step(BIN / "ruff", "check", "--quiet", ".")
+    # Lints and the small drive have a profile, and with it a folder and a lock of their own: they
+    # go beside the tests. Changed crates are looked at, and all that depend on them.
+    with ThreadPoolExecutor(1) as beside:
+        others = [beside.submit(told, *it) for it in (LINTS, SMALL_DRIVE)] if rust else []
+        for crate in crates:
+            if crate != "python":
+                test_crate(crate, [path for path in changed if path.startswith(f"crates/{crate}/")])
+        for other in others:
+            report(*other.result())
     if python:
         step(BIN / "mypy")
-    if rust:
-        # Changed crates and all that depend on them: the others are fresh.
-        step("cargo", "clippy", "--release", "--quiet", "--workspace", "--", "-D", "warnings")
-    for crate in crates:
-        if crate != "python":
-            test_crate(crate, [path for path in changed if path.startswith(f"crates/{crate}/")])
-    if python:
         test_python(python)
-    smoke(rust=rust)
+    if not rust:
+        install()
+        step(BIN / "python", "-m", "chaindrive", *DRIVE)
 
 
 def changed_files(base: str) -> list[str]:
@@ -86,17 +107,6 @@ def test_python(changed: list[str]) -> None:
     step(BIN / "pytest", *sorted(chosen))
 
 
-def smoke(*, rust: bool) -> None:
-    """Simulate a small drive by what there is now."""
-    drive = ["run", "marine_two_sprockets", "--until", "2 ms", "--no-error", "-q"]
-    if rust:
-        # Hardly optimised, which is built in seconds.
-        step("cargo", "run", "--quiet", "-p", "chaindrive-cli", "--bin", "chaindrive", "--", *drive)
-    else:
-        install()
-        step(BIN / "python", "-m", "chaindrive", *drive)
-
-
 def install() -> None:
     """Build and install the package, as far as it is not."""
     step("make", "--quiet", "setup")
@@ -104,11 +114,22 @@ def install() -> None:
 
 def step(*command: object) -> None:
     """Run a command, and say how long it took; the first one that fails ends it all."""
+    report(*told(*command, capture=False))
+
+
+def told(*command: object, capture: bool = True) -> tuple[str, float, int, str]:
+    """Run a command: what it was, how long it took, its exit code, and what it said if captured."""
     words = [str(word) for word in command]
     start = time.perf_counter()
-    code = subprocess.run(words, cwd=ROOT, check=False).returncode
+    pipe = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT} if capture else {}
+    done = subprocess.run(words, cwd=ROOT, check=False, text=True, **pipe)
     shown = " ".join(word.removeprefix(f"{ROOT}/") for word in words)
-    print(f"{time.perf_counter() - start:6.1f} s  {shown}", flush=True)
+    return shown, time.perf_counter() - start, done.returncode, done.stdout or ""
+
+
+def report(shown: str, seconds: float, code: int, said: str) -> None:
+    """Print a line for a command that was run; the first one that failed ends it all."""
+    print(f"{said}{seconds:6.1f} s  {shown}", flush=True)
     if code:
         sys.exit(code)
 
