@@ -72,6 +72,9 @@ pub use system::{Input, Record, System, SystemMemory};
 pub use tensioner::{Carrier, Push, PushForce, Tensioner, carriers, pushes};
 pub use torque::{Argument, Order, Torque};
 
+#[doc(hidden)]
+pub use chains::links::inside;
+
 /// Hash of the sources of this crate, a part of the identity of a build.
 #[doc(hidden)]
 pub const SOURCES: &str = env!("CHAINDRIVE_SOURCES");

@@ -20,6 +20,7 @@ mod held;
 mod hinge;
 mod implicit;
 mod impulses;
+pub mod inside;
 mod loose;
 mod meshing;
 pub(crate) mod model;
@@ -29,8 +30,6 @@ mod posture;
 pub(crate) mod rates;
 mod reactions;
 mod resist;
-#[cfg(test)]
-mod tests;
 #[cfg(test)]
 mod validation_slider_crank;
 

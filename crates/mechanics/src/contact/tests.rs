@@ -5,7 +5,7 @@ mod plates;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use chaindrive_contact::dissipation::Viscous;
-use chaindrive_contact::elastic::Power;
+use chaindrive_contact::elastic::{ElasticLaw, Power};
 use chaindrive_contact::friction::Lugre;
 use chaindrive_contact::{Dissipation, Elastic, Friction, Law};
 use chaindrive_geometry::{Arc, ArcSpline, Foot, Piece, Point, Segment, Vector};
@@ -522,4 +522,26 @@ fn a_force_ahead_is_that_of_the_law_at_the_end_of_the_step() {
         parted += u32::from(force == 0.0);
     }
     assert!((1..6).contains(&parted), "{parted}");
+}
+
+/// Pushed from the seat over to the flank at one depth, a roller meets no step in the force.
+#[test]
+fn the_law_changes_continuously_from_seat_to_flank() {
+    let flank = Flank {
+        elastic: Elastic::Power(Power::linear(4e7)),
+        width: 4e-4,
+    };
+    let seat = Power::linear(1e8);
+    let force = |beyond: f64| {
+        let share = flank.share(beyond);
+        (1.0 - share) * seat.force(1e-6) + share * flank.elastic.force(1e-6)
+    };
+    let mut last = force(-1e-3);
+    assert!((last - 100.0).abs() < 1e-9 && (force(1e-3) - 40.0).abs() < 1e-9);
+    for step in 1..=2000 {
+        let next = force(-1e-3 + 1e-6 * f64::from(step));
+        // The steepest part of the smooth step has a slope of 3/(4 w).
+        assert!(next <= last && last - next <= 60.0 * 0.75 / 4e-4 * 1e-6 * 1.0001);
+        last = next;
+    }
 }

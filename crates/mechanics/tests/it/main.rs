@@ -4,6 +4,7 @@ mod allocations;
 mod articulation;
 mod clashes;
 mod instruction_sets;
+mod linkages;
 mod loads;
 mod marine;
 mod marine_statics;

@@ -246,14 +246,14 @@ impl WithSimd for Answer<'_, '_> {
 }
 
 /// One side of a joint: its link with place along it, or the frame.
-struct Limb {
-    body: Option<usize>,
-    arm: Vector,
-    sign: f64,
+pub(super) struct Limb {
+    pub(super) body: Option<usize>,
+    pub(super) arm: Vector,
+    pub(super) sign: f64,
 }
 
 /// Hole and pin of a joint, with the sign of the joint force on them.
-fn limbs(mates: [Mate; 2], posture: &Posture) -> [Limb; 2] {
+pub(super) fn limbs(mates: [Mate; 2], posture: &Posture) -> [Limb; 2] {
     [(mates[0], -1.0), (mates[1], 1.0)].map(|(mate, sign)| match mate {
         Mate::Link { link, end } => Limb {
             body: Some(link),
@@ -270,7 +270,7 @@ fn limbs(mates: [Mate; 2], posture: &Posture) -> [Limb; 2] {
 
 impl Sum<'_> {
     /// What the joint forces add to the rotation of the links: λ·arm, where it holds them.
-    fn add_hinge_turns(&mut self, joint_state: &JointState, weight: f64) {
+    pub(super) fn add_hinge_turns(&mut self, joint_state: &JointState, weight: f64) {
         for (joint, force) in self.linkage.joints.iter().zip(&joint_state.hinge_forces) {
             let Some(mates) = joint.pair else { continue };
             for limb in limbs(mates, &joint_state.posture) {
@@ -280,161 +280,5 @@ impl Sum<'_> {
                 }
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use nalgebra::{DMatrix, DVector, Matrix2x3, Vector3};
-
-    use super::*;
-    use crate::chains::links::implicit::Equations;
-    use crate::chains::links::tests::{bicycle, free_rollers, links, of, started, strand, whole};
-    use crate::chains::links::turned;
-    use crate::{ChainModel, Joint, Parts, RollerModel, Support};
-
-    /// How a place on a body moves with the body.
-    fn at_place(arm: Vector) -> Matrix2x3<f64> {
-        let turn = turned(arm);
-        Matrix2x3::from_columns(&[Vector::x(), Vector::y(), turn])
-    }
-
-    /// J u of one joint.
-    fn opening(limbs: &[Limb; 2], moved: impl Fn(usize) -> Vector3<f64>) -> Vector {
-        let sides = limbs.iter().filter_map(|limb| {
-            let body = limb.body?;
-            Some(at_place(limb.arm) * moved(body) * limb.sign)
-        });
-        sides.sum()
-    }
-
-    fn kinds() -> Vec<(&'static str, Parts)> {
-        let ideal = |rollers: RollerModel| -> ChainModel { links(Joint::Ideal, rollers) };
-        let lumped = bicycle(ideal(RollerModel::Lumped { mass: 0.453e-3 }));
-        let mut sprung = lumped.clone();
-        sprung.sprockets[1].support = Support::Springs {
-            stiffness: [1e7; 2],
-            damping: [1e3; 2],
-        };
-        vec![
-            ("lumped rollers", lumped.clone()),
-            ("free rollers", bicycle(ideal(free_rollers()))),
-            ("sprung wheel", sprung),
-            ("strand", strand(lumped, 0.0)),
-        ]
-    }
-
-    /// Contacts, bodies and joints as one dense system that is solved with pivots: an elimination of its own.
-    #[test]
-    fn agrees_with_the_whole_system() {
-        for (kind, parts) in kinds() {
-            for stiffness in [0.0, 1e-9] {
-                let (system, mut record, b) = started(parts.clone());
-                let weights = Weights {
-                    once: false,
-                    damping: 2e-6,
-                    stiffness,
-                };
-                let linkage = of(&system);
-                let joint_state = &mut record.chains[0].joint_state;
-                let exact = dense(linkage, whole(&system), weights, joint_state, &b);
-                let mut x = b.clone();
-                let kept = Prescribed::Kept;
-                assert!(linkage.solve_held(whole(&system), weights, joint_state, &mut x, kept));
-                let size = exact.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-                let mut change = 0.0_f64;
-                for (i, (x, exact)) in x.iter().zip(&exact).enumerate() {
-                    let error = (x - exact).abs() / size;
-                    assert!(error < 1e-11, "{kind}, {i}: {x} {exact}");
-                    change = change.max((x - b[i]).abs() / size);
-                }
-                assert!(change > 1e-3 || kind == "strand", "{kind}: {change}");
-                // J x = J b
-                for (joint, mates) in linkage.joints.iter().enumerate() {
-                    let Some(mates) = mates.pair else { continue };
-                    let limbs = limbs(mates, &joint_state.posture);
-                    let [now, before] = [&x, &b].map(|x| {
-                        opening(&limbs, |body| {
-                            Vector3::from_column_slice(&x[3 * body..3 * body + 3])
-                        })
-                    });
-                    let left = (now - before).norm();
-                    assert!(left < 1e-12 * size, "{kind}, {joint}: {left}");
-                }
-            }
-        }
-    }
-
-    fn dense(
-        linkage: &Linkage,
-        bodies: GroupBodies<'_>,
-        weights: Weights,
-        joint_state: &JointState,
-        b: &[f64],
-    ) -> Vec<f64> {
-        let mut equations = Equations::default();
-        let mut sum = Sum::new(linkage, &mut equations, linkage.links, b);
-        sum.add_masses(bodies, weights, b);
-        linkage.each_element(joint_state, |element| {
-            sum.add(element, &joint_state.mounts, weights, b);
-        });
-        sum.add_hinge_turns(joint_state, weights.stiffness);
-        let Equations { blocks, loose } = equations;
-        let (links, chain) = (linkage.links, linkage.coordinates());
-        let size = b.len() + 2 * linkage.joints.len();
-        let mut matrix = DMatrix::zeros(size, size);
-        let mut right = DVector::zeros(size);
-        let mut set = |i: usize, j: usize, value: f64| {
-            matrix[(i, j)] += value;
-            if i != j {
-                matrix[(j, i)] += value;
-            }
-        };
-        let border = blocks.right_border.len();
-        for i in 0..links {
-            for k in 0..3 {
-                right[3 * i + k] = blocks.right[i][k];
-                (0..=k).for_each(|l| set(3 * i + k, 3 * i + l, blocks.diagonal[i][(k, l)]));
-                for j in 0..border {
-                    set(chain + j, 3 * i + k, blocks.beside[i * border + j][k]);
-                }
-            }
-        }
-        for (i, roller) in loose.iter().enumerate() {
-            for k in 0..3 {
-                let row = 3 * (links + i) + k;
-                right[row] = roller.right[k];
-                (0..=k).for_each(|l| set(row, 3 * (links + i) + l, roller.own[(k, l)]));
-                if let Some(link) = roller.link {
-                    (0..3).for_each(|l| set(row, 3 * link + l, roller.coupling[(l, k)]));
-                }
-                for (j, beside) in &roller.beside {
-                    set(chain + j, row, beside[k]);
-                }
-            }
-        }
-        for j in 0..border {
-            right[chain + j] = blocks.right_border[j];
-            (0..=j).for_each(|k| set(chain + j, chain + k, blocks.corner[(j, k)]));
-        }
-        for (joint, mates) in linkage.joints.iter().enumerate() {
-            let rows = b.len() + 2 * joint;
-            let Some(mates) = mates.pair else {
-                (0..2).for_each(|k| set(rows + k, rows + k, 1.0));
-                continue;
-            };
-            for limb in limbs(mates, &joint_state.posture) {
-                let Some(body) = limb.body else { continue };
-                let row = at_place(limb.arm) * limb.sign;
-                for k in 0..2 {
-                    for l in 0..3 {
-                        set(rows + k, 3 * body + l, row[(k, l)]);
-                        right[rows + k] += row[(k, l)] * b[3 * body + l];
-                    }
-                }
-            }
-        }
-        let found = matrix.lu().solve(&right).expect("a solution");
-        found.as_slice()[..b.len()].to_vec()
     }
 }

@@ -79,17 +79,17 @@ impl Linkage {
 
 /// What a step is solved with.
 #[derive(Clone, Copy)]
-struct Step<'a> {
-    linkage: &'a Linkage,
-    bearing: &'a Bearing,
-    bodies: GroupBodies<'a>,
-    weights: Weights,
-    joint_state: &'a JointState,
+pub(super) struct Step<'a> {
+    pub(super) linkage: &'a Linkage,
+    pub(super) bearing: &'a Bearing,
+    pub(super) bodies: GroupBodies<'a>,
+    pub(super) weights: Weights,
+    pub(super) joint_state: &'a JointState,
 }
 
 impl Impulses {
     /// With R rows a joint, and room for C columns around a link and B beside the joints.
-    fn solve<const R: usize, const C: usize, const B: usize>(
+    pub(super) fn solve<const R: usize, const C: usize, const B: usize>(
         &mut self,
         step: Step<'_>,
         x: &mut [f64],
@@ -248,70 +248,5 @@ impl<const R: usize, const C: usize, const B: usize> WithSimd for Solution<'_, R
     fn with_simd<S: Simd>(self, simd: S) -> bool {
         self.work
             .solve_on::<S, R, C, B>(Wide(simd), self.step, self.x)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use chaindrive_integrate::Weights;
-
-    use super::{Impulses, Joining, Step};
-    use crate::chains::links::tests::{kinds, of, started, whole};
-
-    /// The bodies' own equations, block by block, give the same answer: two independent eliminations.
-    #[test]
-    fn agrees_with_the_equations_of_the_bodies() {
-        let stiffnesses = [0.0, 1e-12];
-        let cases = kinds()
-            .into_iter()
-            .flat_map(|kind| stiffnesses.map(|k| (kind.clone(), k)));
-        for ((kind, parts), stiffness) in cases {
-            let (system, mut record, b) = started(parts);
-            let linkage = of(&system);
-            let weights = Weights {
-                damping: 2e-6,
-                stiffness,
-                once: true,
-            };
-            let mut impulses = b.clone();
-            let mut work = Impulses::default();
-            assert!(linkage.step(
-                whole(&system),
-                weights,
-                &record.chains[0].joint_state,
-                &mut work,
-                &mut impulses
-            ));
-            // With room for more rows and wheels than there are.
-            let Joining::Clearance(bearing) = &linkage.joining else {
-                panic!("{kind}");
-            };
-            let step = Step {
-                linkage,
-                bearing,
-                bodies: whole(&system),
-                weights,
-                joint_state: &record.chains[0].joint_state,
-            };
-            let mut roomy = b.clone();
-            assert!(work.solve::<2, 24, 24>(step, &mut roomy));
-            let mut blocks = b.clone();
-            assert!(linkage.eliminate(
-                whole(&system),
-                weights,
-                &mut record.chains[0].joint_state,
-                &mut blocks
-            ));
-            let size = b.iter().fold(0.0_f64, |m, b| m.max(b.abs()));
-            for found in [&impulses, &roomy] {
-                for (i, (found, exact)) in found.iter().zip(&blocks).enumerate() {
-                    let error = (found - exact).abs() / size;
-                    assert!(error < 1e-12, "{kind}, {i}: {found} {exact}");
-                }
-            }
-            // And it is not the undamped answer.
-            let change = impulses.iter().zip(&b).map(|(x, b)| (x - b).abs());
-            assert!(change.fold(0.0, f64::max) > 1e-3 * size, "{kind}");
-        }
     }
 }

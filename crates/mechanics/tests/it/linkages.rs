@@ -1,22 +1,26 @@
-//! The bicycle drive of the tests, and what must hold for every linkage.
+//! What must hold for every chain of rigid links: eliminations and contacts, each computed in two ways.
+#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use chaindrive_contact::dissipation::LankaraniNikravesh;
 use chaindrive_contact::elastic::{CylinderLaw, Cylinders, ElasticLaw, Power};
 use chaindrive_contact::friction::Coulomb;
 use chaindrive_contact::{Dissipation, Elastic, Friction, Law};
 use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
-use chaindrive_integrate::{InstructionSet, Moment, Registers, SecondOrderSystem};
-
-use super::Linkage;
-use crate::chains::Chain;
-use crate::contact::Kept;
-use crate::energy::Flow;
-use crate::system::GroupBodies;
-use crate::{
-    Adjust, ChainModel, Clearance, Drive, End, Ends, Fit, Flank, FreeRoller, Joint, Layout,
-    LinkBody, Motion, Parts, PlacedChain, PretensionAt, Record, RigidLinks, RollerModel, Rotation,
-    Shaft, SpanStart, Sprocket, Stop, Strength, Support, Surface, System, Tighten, Torque,
+use chaindrive_integrate::{InstructionSet, Moment, Registers, SecondOrderSystem, Weights};
+use chaindrive_mechanics::inside::{
+    by_blocks, by_impulses, by_roomy_impulses, equations, held, joints_at_once, joints_one_by_one,
+    teeth,
 };
+use chaindrive_mechanics::{
+    Adjust, Chain, ChainModel, Clearance, Drive, End, Ends, Fit, Flank, Flow, FreeRoller, Joint,
+    Layout, LinkBody, Motion, Observation, Parts, PlacedChain, PretensionAt, Record, RigidLinks,
+    RollerModel, Rotation, Shaft, SpanStart, Sprocket, Stop, Strength, Support, Surface, System,
+    Tighten, Torque,
+};
+use nalgebra::DVector;
+
+/// Coordinates of the rollers of the bicycle's chain, as particles.
+const ROLLERS: usize = 2 * 104;
 
 /// Steel on steel with a little friction, so that normals and tangents take part.
 fn surface(hole: f64, pin: f64, length: f64) -> Surface {
@@ -35,13 +39,8 @@ fn surface(hole: f64, pin: f64, length: f64) -> Surface {
     }
 }
 
-/// All bodies, of which there is one group.
-pub(super) fn whole(system: &System) -> GroupBodies<'_> {
-    system.group_bodies(0)
-}
-
 /// 44/18 teeth, 104 links of half an inch, centre distance computed so that they close without stress.
-pub(super) fn bicycle(model: ChainModel) -> Parts {
+fn bicycle(model: ChainModel) -> Parts {
     let (pitch, links, roller_diameter) = (0.0127, 104, 7.75e-3);
     let form = ToothForm::Iso606 {
         gap: 0.5,
@@ -69,7 +68,7 @@ pub(super) fn bicycle(model: ChainModel) -> Parts {
     Parts {
         chains: vec![PlacedChain {
             name: None,
-            chain: crate::Chain {
+            chain: Chain {
                 pitch,
                 lengths: vec![pitch; links],
                 stiffness: vec![47.7e6; links],
@@ -111,7 +110,7 @@ pub(super) fn bicycle(model: ChainModel) -> Parts {
     }
 }
 
-pub(super) fn links(joint: Joint, rollers: RollerModel) -> ChainModel {
+fn links(joint: Joint, rollers: RollerModel) -> ChainModel {
     let body = |mass: f64, inertia: f64| LinkBody {
         mass,
         inertia,
@@ -126,7 +125,7 @@ pub(super) fn links(joint: Joint, rollers: RollerModel) -> ChainModel {
     })
 }
 
-pub(super) fn clearance() -> Joint {
+fn clearance() -> Joint {
     Joint::Clearance(Clearance {
         pin_radius: 2.045e-3,
         bore_radius: 2.07e-3,
@@ -134,7 +133,7 @@ pub(super) fn clearance() -> Joint {
     })
 }
 
-pub(super) fn free_rollers() -> RollerModel {
+fn free_rollers() -> RollerModel {
     RollerModel::Free(FreeRoller {
         mass: 0.453e-3,
         inertia: 5.25e-9,
@@ -145,7 +144,7 @@ pub(super) fn free_rollers() -> RollerModel {
 }
 
 /// What the equations of the step must hold for.
-pub(super) fn kinds() -> Vec<(&'static str, Parts)> {
+fn kinds() -> Vec<(&'static str, Parts)> {
     let lumped = RollerModel::Lumped { mass: 0.453e-3 };
     let smooth = |mut parts: Parts| {
         if let ChainModel::Rigid(links) = &mut parts.chains[0].chain.model
@@ -186,7 +185,7 @@ pub(super) fn kinds() -> Vec<(&'static str, Parts)> {
 }
 
 /// Eleven links of a chain held at both ends, each laid longer than it is by so much.
-pub(super) fn strand(mut parts: Parts, longer: f64) -> Parts {
+fn strand(mut parts: Parts, longer: f64) -> Parts {
     let links = 11;
     let placed = &mut parts.chains[0];
     let chain = &mut placed.chain;
@@ -209,16 +208,8 @@ pub(super) fn strand(mut parts: Parts, longer: f64) -> Parts {
     parts
 }
 
-/// The rigid links of a drive that has one chain of them.
-pub(super) fn of(system: &System) -> &Linkage {
-    let Chain::Links(linkage) = &system.chains[0].chain else {
-        panic!("the chain is made of rigid links");
-    };
-    linkage
-}
-
 /// A drive at its start: coordinates and velocities.
-pub(super) fn set_off(parts: Parts) -> (System, Record, Vec<f64>, Vec<f64>) {
+fn set_off(parts: Parts) -> (System, Record, Vec<f64>, Vec<f64>) {
     let assembled = Drive::new(parts).unwrap().assemble().unwrap();
     let system = assembled.system;
     let mut record = system.new_record();
@@ -236,7 +227,7 @@ pub(super) fn set_off(parts: Parts) -> (System, Record, Vec<f64>, Vec<f64>) {
 }
 
 /// The same with the accelerations there.
-pub(super) fn started(parts: Parts) -> (System, Record, Vec<f64>) {
+fn started(parts: Parts) -> (System, Record, Vec<f64>) {
     let (system, mut record, q, v) = set_off(parts);
     let mut a = vec![0.0; system.dofs()];
     let mut rates = vec![0.0; Flow::ALL.len()];
@@ -270,9 +261,6 @@ fn pretension_is_met() {
         }
         let assembled = Drive::new(parts).unwrap().assemble().unwrap();
         let (system, q) = (assembled.system, assembled.q);
-        let mut record = system.new_record();
-        let mut a = vec![0.0; q.len()];
-        let mut rates = vec![0.0; Flow::ALL.len()];
         let still = vec![0.0; q.len()];
         let at = Moment {
             t: 0.0,
@@ -280,10 +268,10 @@ fn pretension_is_met() {
             v: &still,
             z: &[],
         };
-        system.evaluate(at, &mut a, &mut rates, &mut record);
-        let linkage = of(&system);
-        let sum: f64 = linkage.tensions(at, &record.chains[0]).iter().sum();
-        let mean = sum / linkage.links as f64;
+        let mut seen = Observation::default();
+        let flows = vec![0.0; Flow::ALL.len()];
+        system.observe(at, &flows, &mut system.new_record(), &mut seen);
+        let mean = seen.link_tension.iter().sum::<f64>() / seen.link_tension.len() as f64;
         assert!(
             (mean / 60.0 - 1.0).abs() < 2e-3,
             "{joint:?}, {rollers:?}: {mean} N"
@@ -295,21 +283,23 @@ fn pretension_is_met() {
 /// between them.
 #[test]
 fn lanes_and_scalar_contacts_agree() {
+    let flank = Flank {
+        elastic: Elastic::Power(Power::linear(4e7)),
+        width: 4e-4,
+    };
     let mut parts = bicycle(ChainModel::Particles);
     for sprocket in &mut parts.sprockets {
         sprocket.surface.friction = Friction::None;
-        sprocket.flank = Some(Flank {
-            elastic: Elastic::Power(Power::linear(4e7)),
-            width: 4e-4,
-        });
+        sprocket.flank = Some(flank);
     }
+    let law = parts.sprockets[0].surface.law;
     let assembled = Drive::new(parts).unwrap().assemble().unwrap();
     let (system, still) = (assembled.system, vec![0.0; assembled.q.len()]);
     let mut shares = [0; 3];
     // Shaking the rollers brings them onto the flanks.
     for shake in 0..40_u32 {
         let mut q = assembled.q.clone();
-        for (i, x) in q[..system.bodies.first].iter_mut().enumerate() {
+        for (i, x) in q[..ROLLERS].iter_mut().enumerate() {
             *x += 2e-5 * f64::from(shake) * (f64::from(shake) + i as f64 % 104.0).sin();
         }
         let mut record = system.new_record();
@@ -322,48 +312,28 @@ fn lanes_and_scalar_contacts_agree() {
             z: &[],
         };
         system.evaluate(at, &mut a, &mut rates, &mut record);
-        let member = &system.chains[0];
-        for (on, touch) in member
-            .contacts
-            .teeth
-            .iter()
-            .zip(&record.chains[0].loads.teeth)
-        {
-            let frame = system.bodies.wheel_frame(on.wheel, &on.anchor, at);
-            let contacts = &on.contacts;
-            let (law, flank) = (&contacts.surface.law, contacts.flank.unwrap());
-            contacts.for_each_slot(|slot, roller| {
-                let place = member.chain.roller_moving(&q, roller).place;
-                let Some(probe) = contacts.probes(&frame, place).pop() else {
-                    return;
-                };
-                let touch = &touch.state;
-                let depth = -touch.get(Kept::Gap, slot);
-                // The wheel turns under rollers at rest: only the elastic part is compared.
-                if depth <= 0.0
-                    || touch.get(Kept::Closing, slot).abs() > 0.0
-                        && touch.get(Kept::Force, slot) == 0.0
-                {
-                    return;
-                }
-                assert!((probe.gap - touch.get(Kept::Gap, slot)).abs() < 1e-16);
-                let share = flank.share(probe.beyond);
-                let elastic =
-                    (1.0 - share) * law.elastic_force(depth) + share * flank.elastic.force(depth);
-                let factor = touch.get(Kept::Force, slot) / elastic;
-                let rate = touch.get(Kept::Closing, slot) * touch.get(Kept::InverseOnset, slot);
-                let damped =
-                    (1.0 + law.dissipation.factor().unwrap_or(0.0) * rate.min(4.0)).max(0.0);
-                assert!(
-                    (factor / damped - 1.0).abs() < 1e-12,
-                    "{factor} {damped} {share}"
-                );
-                shares[if share <= 0.0 {
-                    0
-                } else {
-                    1 + usize::from(share >= 1.0)
-                }] += 1;
-            });
+        for tooth in teeth(&system, &record, at) {
+            let depth = -tooth.gaps[0];
+            // The wheel turns under rollers at rest: only the elastic part is compared.
+            if depth <= 0.0 || tooth.closing.abs() > 0.0 && tooth.force == 0.0 {
+                continue;
+            }
+            assert!((tooth.gaps[1] - tooth.gaps[0]).abs() < 1e-16);
+            let share = tooth.share;
+            let elastic =
+                (1.0 - share) * law.elastic_force(depth) + share * flank.elastic.force(depth);
+            let rate = tooth.closing * tooth.inverse_onset;
+            let damped = (1.0 + law.dissipation.factor().unwrap_or(0.0) * rate.min(4.0)).max(0.0);
+            let factor = tooth.force / elastic;
+            assert!(
+                (factor / damped - 1.0).abs() < 1e-12,
+                "{factor} {damped} {share}"
+            );
+            shares[if share <= 0.0 {
+                0
+            } else {
+                1 + usize::from(share >= 1.0)
+            }] += 1;
         }
     }
     assert!(shares.iter().all(|count| *count > 10), "{shares:?}");
@@ -386,10 +356,10 @@ fn lanes_of_any_width_agree() {
     for shake in 0..40_u32 {
         let mut q = assembled.q.clone();
         let mut v = assembled.v.clone();
-        for (i, x) in q[..system.bodies.first].iter_mut().enumerate() {
+        for (i, x) in q[..ROLLERS].iter_mut().enumerate() {
             *x += 2e-5 * f64::from(shake) * (f64::from(shake) + i as f64 % 104.0).sin();
         }
-        for (i, v) in v[..system.bodies.first].iter_mut().enumerate() {
+        for (i, v) in v[..ROLLERS].iter_mut().enumerate() {
             *v += 0.1 * (f64::from(3 * shake) + i as f64 % 104.0).cos();
         }
         let at = Moment {
@@ -413,24 +383,130 @@ fn lanes_of_any_width_agree() {
     }
 }
 
-/// Pushed from the seat over to the flank at one depth, a roller meets no step in the force.
+/// What ideal joints hold.
+fn held_kinds() -> Vec<(&'static str, Parts)> {
+    let ideal = |rollers: RollerModel| -> ChainModel { links(Joint::Ideal, rollers) };
+    let lumped = bicycle(ideal(RollerModel::Lumped { mass: 0.453e-3 }));
+    let mut sprung = lumped.clone();
+    sprung.sprockets[1].support = Support::Springs {
+        stiffness: [1e7; 2],
+        damping: [1e3; 2],
+    };
+    vec![
+        ("lumped rollers", lumped.clone()),
+        ("free rollers", bicycle(ideal(free_rollers()))),
+        ("sprung wheel", sprung),
+        ("strand", strand(lumped, 0.0)),
+    ]
+}
+
+/// Contacts, bodies and joints as one dense system that is solved with pivots: an elimination of its own.
 #[test]
-fn the_law_changes_continuously_from_seat_to_flank() {
-    let flank = Flank {
-        elastic: Elastic::Power(Power::linear(4e7)),
-        width: 4e-4,
-    };
-    let seat = Power::linear(1e8);
-    let force = |beyond: f64| {
-        let share = flank.share(beyond);
-        (1.0 - share) * seat.force(1e-6) + share * flank.elastic.force(1e-6)
-    };
-    let mut last = force(-1e-3);
-    assert!((last - 100.0).abs() < 1e-9 && (force(1e-3) - 40.0).abs() < 1e-9);
-    for step in 1..=2000 {
-        let next = force(-1e-3 + 1e-6 * f64::from(step));
-        // The steepest part of the smooth step has a slope of 3/(4 w).
-        assert!(next <= last && last - next <= 60.0 * 0.75 / 4e-4 * 1e-6 * 1.0001);
-        last = next;
+fn held_joints_agree_with_the_whole_system() {
+    for (kind, parts) in held_kinds() {
+        for stiffness in [0.0, 1e-9] {
+            let (system, mut record, b) = started(parts.clone());
+            let weights = Weights {
+                once: false,
+                damping: 2e-6,
+                stiffness,
+            };
+            let (matrix, right) = equations(&system, &record, weights, &b);
+            let exact = matrix.clone().lu().solve(&right).expect("a solution");
+            let x = held(&system, &mut record, weights, &b).expect("an answer");
+            let exact = &exact.as_slice()[..b.len()];
+            let size = exact.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            let mut change = 0.0_f64;
+            for (i, (x, exact)) in x.iter().zip(exact).enumerate() {
+                let error = (x - exact).abs() / size;
+                assert!(error < 1e-11, "{kind}, {i}: {x} {exact}");
+                change = change.max((x - b[i]).abs() / size);
+            }
+            assert!(change > 1e-3 || kind == "strand", "{kind}: {change}");
+            // J x = J b
+            let joints = matrix.view((b.len(), 0), (matrix.nrows() - b.len(), b.len()));
+            let moved = DVector::from_iterator(b.len(), x.iter().zip(&b).map(|(x, b)| x - b));
+            for (row, left) in (joints * moved).iter().enumerate() {
+                assert!(left.abs() < 1e-12 * size, "{kind}, {row}: {left}");
+            }
+        }
+    }
+}
+
+/// Lanes of any width against one joint at a time, as free rollers and their bushes are looked at.
+#[test]
+fn joints_at_once_are_as_one_by_one() {
+    for (kind, parts) in kinds() {
+        let (system, record, q, v) = set_off(parts);
+        let at = Moment {
+            t: 0.0,
+            q: &q,
+            v: &v,
+            z: &[],
+        };
+        let alone = joints_one_by_one(&system, &record, at);
+        let narrow = Registers::of(InstructionSet::Baseline).unwrap();
+        for registers in [narrow, Registers::in_use()] {
+            let all = joints_at_once(&system, &record, registers);
+            let mut closed = 0;
+            for (joint, pair) in alone.closed.iter().zip(&all.closed).enumerate() {
+                assert_eq!(pair.0.is_some(), pair.1.is_some(), "{kind}, {joint}");
+                let (Some(a), Some(b)) = pair else { continue };
+                closed += 1;
+                // Depths are differences of radii and lose four digits.
+                // A slip is a small difference of large velocities.
+                assert!((a.rub - b.rub).abs() <= 1e-12 * a.force, "{kind}, {joint}");
+                assert!(
+                    (a.secant - b.secant).abs() <= 1e-9 * a.secant,
+                    "{kind}, {joint}"
+                );
+                let pairs = a.others.into_iter().zip(b.others);
+                for (a, b) in pairs.chain([(a.force, b.force)]) {
+                    assert!(
+                        (a - b).abs() <= 1e-12 * a.abs() + 1e-15,
+                        "{kind}, {joint}: {a} {b}"
+                    );
+                }
+            }
+            assert!(closed > 9, "{kind}: {closed}");
+            for ([gap, onset], [gap_too, onset_too]) in alone.kept.iter().zip(&all.kept) {
+                assert!((gap - gap_too).abs() < 1e-17);
+                assert!((onset - onset_too).abs() <= 1e-12 * onset);
+            }
+            for (a, b) in alone.losses.into_iter().zip(all.losses) {
+                assert!((a - b).abs() <= 1e-12 * a.abs().max(1e-9), "{kind}");
+            }
+        }
+    }
+}
+
+/// The bodies' own equations, block by block, give the same answer as the impulses: two independent eliminations.
+#[test]
+fn impulses_agree_with_the_equations_of_the_bodies() {
+    let stiffnesses = [0.0, 1e-12];
+    let cases = kinds()
+        .into_iter()
+        .flat_map(|kind| stiffnesses.map(|k| (kind.clone(), k)));
+    for ((kind, parts), stiffness) in cases {
+        let (system, mut record, b) = started(parts);
+        let weights = Weights {
+            damping: 2e-6,
+            stiffness,
+            once: true,
+        };
+        let fitting = by_impulses(&system, &record, weights, &b).expect("an answer");
+        // With room for more rows and wheels than there are.
+        let roomy = by_roomy_impulses(&system, &record, weights, &b).expect("an answer");
+        let blocks = by_blocks(&system, &mut record, weights, &b).expect("an answer");
+        let size = b.iter().fold(0.0_f64, |m, b| m.max(b.abs()));
+        for found in [&fitting, &roomy] {
+            for (i, (found, exact)) in found.iter().zip(&blocks).enumerate() {
+                let error = (found - exact).abs() / size;
+                assert!(error < 1e-12, "{kind}, {i}: {found} {exact}");
+            }
+        }
+        // And it is not the undamped answer.
+        let change = fitting.iter().zip(&b).map(|(x, b)| (x - b).abs());
+        assert!(change.fold(0.0, f64::max) > 1e-3 * size, "{kind}");
     }
 }
