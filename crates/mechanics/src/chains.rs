@@ -21,6 +21,7 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) use balance::{Balance, Load, Moving, Sum, Unknown, Way};
 use links::Linkage;
+pub use links::inside::{Contact, Inside, Joints};
 pub use model::ChainModel;
 use particles::Particles;
 use particles::points::{self, Points};

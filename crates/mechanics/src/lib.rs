@@ -30,6 +30,8 @@ mod error;
 mod events;
 mod fights;
 mod groups;
+#[doc(hidden)]
+pub mod inside;
 mod lanes;
 mod modes;
 mod motion;
@@ -71,9 +73,6 @@ pub use struck::Struck;
 pub use system::{Input, Record, System, SystemMemory};
 pub use tensioner::{Carrier, Push, PushForce, Tensioner, carriers, pushes};
 pub use torque::{Argument, Order, Torque};
-
-#[doc(hidden)]
-pub use chains::links::inside;
 
 /// Hash of the sources of this crate, a part of the identity of a build.
 #[doc(hidden)]

@@ -2,6 +2,7 @@
 
 mod arrows;
 mod layers;
+mod libraries;
 
 use std::fs;
 use std::path::{Path, PathBuf};

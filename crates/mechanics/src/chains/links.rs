@@ -20,7 +20,7 @@ mod held;
 mod hinge;
 mod implicit;
 mod impulses;
-pub mod inside;
+pub(crate) mod inside;
 mod loose;
 mod meshing;
 pub(crate) mod model;

@@ -7,10 +7,7 @@ use chaindrive_contact::friction::Coulomb;
 use chaindrive_contact::{Dissipation, Elastic, Friction, Law};
 use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
 use chaindrive_integrate::{InstructionSet, Moment, Registers, SecondOrderSystem, Weights};
-use chaindrive_mechanics::inside::{
-    by_blocks, by_impulses, by_roomy_impulses, equations, held, joints_at_once, joints_one_by_one,
-    teeth,
-};
+use chaindrive_mechanics::inside::{chain, teeth};
 use chaindrive_mechanics::{
     Adjust, Chain, ChainModel, Clearance, Drive, End, Ends, Fit, Flank, Flow, FreeRoller, Joint,
     Layout, LinkBody, Motion, Observation, Parts, PlacedChain, PretensionAt, Record, RigidLinks,
@@ -411,9 +408,11 @@ fn held_joints_agree_with_the_whole_system() {
                 damping: 2e-6,
                 stiffness,
             };
-            let (matrix, right) = equations(&system, &record, weights, &b);
+            let (matrix, right) = chain(&system, &mut record).equations(weights, &b);
             let exact = matrix.clone().lu().solve(&right).expect("a solution");
-            let x = held(&system, &mut record, weights, &b).expect("an answer");
+            let x = chain(&system, &mut record)
+                .held(weights, &b)
+                .expect("an answer");
             let exact = &exact.as_slice()[..b.len()];
             let size = exact.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
             let mut change = 0.0_f64;
@@ -437,17 +436,18 @@ fn held_joints_agree_with_the_whole_system() {
 #[test]
 fn joints_at_once_are_as_one_by_one() {
     for (kind, parts) in kinds() {
-        let (system, record, q, v) = set_off(parts);
+        let (system, mut record, q, v) = set_off(parts);
         let at = Moment {
             t: 0.0,
             q: &q,
             v: &v,
             z: &[],
         };
-        let alone = joints_one_by_one(&system, &record, at);
+        let inside = chain(&system, &mut record);
+        let alone = inside.joints_one_by_one(at);
         let narrow = Registers::of(InstructionSet::Baseline).unwrap();
         for registers in [narrow, Registers::in_use()] {
-            let all = joints_at_once(&system, &record, registers);
+            let all = inside.joints_at_once(registers);
             let mut closed = 0;
             for (joint, pair) in alone.closed.iter().zip(&all.closed).enumerate() {
                 assert_eq!(pair.0.is_some(), pair.1.is_some(), "{kind}, {joint}");
@@ -494,10 +494,11 @@ fn impulses_agree_with_the_equations_of_the_bodies() {
             stiffness,
             once: true,
         };
-        let fitting = by_impulses(&system, &record, weights, &b).expect("an answer");
+        let mut inside = chain(&system, &mut record);
+        let fitting = inside.by_impulses(weights, &b).expect("an answer");
         // With room for more rows and wheels than there are.
-        let roomy = by_roomy_impulses(&system, &record, weights, &b).expect("an answer");
-        let blocks = by_blocks(&system, &mut record, weights, &b).expect("an answer");
+        let roomy = inside.by_roomy_impulses(weights, &b).expect("an answer");
+        let blocks = inside.by_blocks(weights, &b).expect("an answer");
         let size = b.iter().fold(0.0_f64, |m, b| m.max(b.abs()));
         for found in [&fitting, &roomy] {
             for (i, (found, exact)) in found.iter().zip(&blocks).enumerate() {

@@ -25,7 +25,7 @@ const CRATES: [Storeys; 4] = [
             &["events", "observe", "standing", "struck"],
             &["check", "fights"],
             &["assembly"],
-            &["modes", "nudge", "pose"],
+            &["inside", "modes", "nudge", "pose"],
         ],
         exceptions: &[
             (

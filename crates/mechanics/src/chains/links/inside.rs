@@ -10,164 +10,207 @@ use super::implicit::{Equations, Sum};
 use super::impulses::Step;
 use super::pins::{Contacts, Pins};
 use super::{Element, Impulses, Joining, JointState, Linkage, turned};
-use crate::chains::Chain;
+use crate::chains::{Chain, Record};
 use crate::contact::{ContactMemory, Kept, LaneTally, MemoryLanes};
 use crate::lanes::Wide;
-use crate::system::{Record, System};
+use crate::system::GroupBodies;
 
-/// The rigid links of a drive that has one chain of them.
-fn linkage(system: &System) -> &Linkage {
-    let Chain::Links(linkage) = &system.chains[0].chain else {
-        panic!("the chain is made of rigid links");
-    };
-    linkage
+/// A chain of rigid links with its state, and the bodies beside it.
+pub struct Inside<'a> {
+    linkage: &'a Linkage,
+    bodies: GroupBodies<'a>,
+    joint_state: &'a mut JointState,
 }
 
-fn state(record: &Record) -> &JointState {
-    &record.chains[0].joint_state
+impl std::fmt::Debug for Inside<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Inside").finish_non_exhaustive()
+    }
 }
 
-/// The equations of a step for b, with two rows at the end for each joint, J x = J b: as a dense system.
-pub fn equations(
-    system: &System,
-    record: &Record,
-    weights: Weights,
-    b: &[f64],
-) -> (DMatrix<f64>, DVector<f64>) {
-    let (linkage, joint_state) = (linkage(system), state(record));
-    let mut equations = Equations::default();
-    let mut sum = Sum::new(linkage, &mut equations, linkage.links, b);
-    sum.add_masses(system.group_bodies(0), weights, b);
-    linkage.each_element(joint_state, |element| {
-        sum.add(element, &joint_state.mounts, weights, b);
-    });
-    sum.add_hinge_turns(joint_state, weights.stiffness);
-    let Equations { blocks, loose } = equations;
-    let (links, chain) = (linkage.links, linkage.coordinates());
-    let size = b.len() + 2 * linkage.joints.len();
-    let mut matrix = DMatrix::zeros(size, size);
-    let mut right = DVector::zeros(size);
-    let mut set = |i: usize, j: usize, value: f64| {
-        matrix[(i, j)] += value;
-        if i != j {
-            matrix[(j, i)] += value;
-        }
-    };
-    let border = blocks.right_border.len();
-    for i in 0..links {
-        for k in 0..3 {
-            right[3 * i + k] = blocks.right[i][k];
-            (0..=k).for_each(|l| set(3 * i + k, 3 * i + l, blocks.diagonal[i][(k, l)]));
-            for j in 0..border {
-                set(chain + j, 3 * i + k, blocks.beside[i * border + j][k]);
-            }
-        }
-    }
-    for (i, roller) in loose.iter().enumerate() {
-        for k in 0..3 {
-            let row = 3 * (links + i) + k;
-            right[row] = roller.right[k];
-            (0..=k).for_each(|l| set(row, 3 * (links + i) + l, roller.own[(k, l)]));
-            if let Some(link) = roller.link {
-                (0..3).for_each(|l| set(row, 3 * link + l, roller.coupling[(l, k)]));
-            }
-            for (j, beside) in &roller.beside {
-                set(chain + j, row, beside[k]);
-            }
-        }
-    }
-    for j in 0..border {
-        right[chain + j] = blocks.right_border[j];
-        (0..=j).for_each(|k| set(chain + j, chain + k, blocks.corner[(j, k)]));
-    }
-    for (joint, mates) in linkage.joints.iter().enumerate() {
-        let rows = b.len() + 2 * joint;
-        let Some(mates) = mates.pair else {
-            (0..2).for_each(|k| set(rows + k, rows + k, 1.0));
-            continue;
+impl<'a> Inside<'a> {
+    /// None if the chain is made of anything else.
+    pub(crate) fn of(
+        chain: &'a Chain,
+        record: &'a mut Record,
+        bodies: GroupBodies<'a>,
+    ) -> Option<Self> {
+        let Chain::Links(linkage) = chain else {
+            return None;
         };
-        for limb in limbs(mates, &joint_state.posture) {
-            let Some(body) = limb.body else { continue };
-            // How a place on a body moves with the body.
-            let columns = [Vector::x(), Vector::y(), turned(limb.arm)];
-            let row = Matrix2x3::from_columns(&columns) * limb.sign;
-            for k in 0..2 {
-                for l in 0..3 {
-                    set(rows + k, 3 * body + l, row[(k, l)]);
-                    right[rows + k] += row[(k, l)] * b[3 * body + l];
+        Some(Self {
+            linkage,
+            bodies,
+            joint_state: &mut record.joint_state,
+        })
+    }
+
+    /// The equations of a step for b, with two rows at the end for each joint, J x = J b: as a dense system.
+    pub fn equations(&self, weights: Weights, b: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
+        let (linkage, joint_state) = (self.linkage, &*self.joint_state);
+        let mut equations = Equations::default();
+        let mut sum = Sum::new(linkage, &mut equations, linkage.links, b);
+        sum.add_masses(self.bodies, weights, b);
+        linkage.each_element(joint_state, |element| {
+            sum.add(element, &joint_state.mounts, weights, b);
+        });
+        sum.add_hinge_turns(joint_state, weights.stiffness);
+        let Equations { blocks, loose } = equations;
+        let (links, chain) = (linkage.links, linkage.coordinates());
+        let size = b.len() + 2 * linkage.joints.len();
+        let mut matrix = DMatrix::zeros(size, size);
+        let mut right = DVector::zeros(size);
+        let mut set = |i: usize, j: usize, value: f64| {
+            matrix[(i, j)] += value;
+            if i != j {
+                matrix[(j, i)] += value;
+            }
+        };
+        let border = blocks.right_border.len();
+        for i in 0..links {
+            for k in 0..3 {
+                right[3 * i + k] = blocks.right[i][k];
+                (0..=k).for_each(|l| set(3 * i + k, 3 * i + l, blocks.diagonal[i][(k, l)]));
+                for j in 0..border {
+                    set(chain + j, 3 * i + k, blocks.beside[i * border + j][k]);
                 }
             }
         }
+        for (i, roller) in loose.iter().enumerate() {
+            for k in 0..3 {
+                let row = 3 * (links + i) + k;
+                right[row] = roller.right[k];
+                (0..=k).for_each(|l| set(row, 3 * (links + i) + l, roller.own[(k, l)]));
+                if let Some(link) = roller.link {
+                    (0..3).for_each(|l| set(row, 3 * link + l, roller.coupling[(l, k)]));
+                }
+                for (j, beside) in &roller.beside {
+                    set(chain + j, row, beside[k]);
+                }
+            }
+        }
+        for j in 0..border {
+            right[chain + j] = blocks.right_border[j];
+            (0..=j).for_each(|k| set(chain + j, chain + k, blocks.corner[(j, k)]));
+        }
+        for (joint, mates) in linkage.joints.iter().enumerate() {
+            let rows = b.len() + 2 * joint;
+            let Some(mates) = mates.pair else {
+                (0..2).for_each(|k| set(rows + k, rows + k, 1.0));
+                continue;
+            };
+            for limb in limbs(mates, &joint_state.posture) {
+                let Some(body) = limb.body else { continue };
+                // How a place on a body moves with the body.
+                let columns = [Vector::x(), Vector::y(), turned(limb.arm)];
+                let row = Matrix2x3::from_columns(&columns) * limb.sign;
+                for k in 0..2 {
+                    for l in 0..3 {
+                        set(rows + k, 3 * body + l, row[(k, l)]);
+                        right[rows + k] += row[(k, l)] * b[3 * body + l];
+                    }
+                }
+            }
+        }
+        (matrix, right)
     }
-    (matrix, right)
-}
 
-/// The answer of a step whose ideal joints hold; none if there is none.
-pub fn held(system: &System, record: &mut Record, weights: Weights, b: &[f64]) -> Option<Vec<f64>> {
-    let mut x = b.to_vec();
-    let joint_state = &mut record.chains[0].joint_state;
-    let bodies = system.group_bodies(0);
-    linkage(system)
-        .solve_held(bodies, weights, joint_state, &mut x, Prescribed::Kept)
-        .then_some(x)
-}
+    /// The answer of a step whose ideal joints hold; none if there is none.
+    pub fn held(&mut self, weights: Weights, b: &[f64]) -> Option<Vec<f64>> {
+        let mut x = b.to_vec();
+        let bodies = self.bodies;
+        self.linkage
+            .solve_held(bodies, weights, self.joint_state, &mut x, Prescribed::Kept)
+            .then_some(x)
+    }
 
-/// The answer of a step by the impulses in joints with clearance, in the room that they need; none if there is none.
-pub fn by_impulses(
-    system: &System,
-    record: &Record,
-    weights: Weights,
-    b: &[f64],
-) -> Option<Vec<f64>> {
-    let mut x = b.to_vec();
-    let mut work = Impulses::default();
-    linkage(system)
-        .step(
-            system.group_bodies(0),
+    /// The answer of a step by the impulses in joints with clearance, in the room that they need; none if there is none.
+    pub fn by_impulses(&self, weights: Weights, b: &[f64]) -> Option<Vec<f64>> {
+        let mut x = b.to_vec();
+        let mut work = Impulses::default();
+        self.linkage
+            .step(self.bodies, weights, self.joint_state, &mut work, &mut x)
+            .then_some(x)
+    }
+
+    /// The same with room for more rows and wheels than there are.
+    pub fn by_roomy_impulses(&self, weights: Weights, b: &[f64]) -> Option<Vec<f64>> {
+        let linkage = self.linkage;
+        let Joining::Clearance(bearing) = &linkage.joining else {
+            return None;
+        };
+        let step = Step {
+            linkage,
+            bearing,
+            bodies: self.bodies,
             weights,
-            state(record),
-            &mut work,
-            &mut x,
-        )
-        .then_some(x)
-}
+            joint_state: self.joint_state,
+        };
+        let mut x = b.to_vec();
+        Impulses::default()
+            .solve::<2, 24, 24>(step, &mut x)
+            .then_some(x)
+    }
 
-/// The same with room for more rows and wheels than there are.
-pub fn by_roomy_impulses(
-    system: &System,
-    record: &Record,
-    weights: Weights,
-    b: &[f64],
-) -> Option<Vec<f64>> {
-    let linkage = linkage(system);
-    let Joining::Clearance(bearing) = &linkage.joining else {
-        return None;
-    };
-    let step = Step {
-        linkage,
-        bearing,
-        bodies: system.group_bodies(0),
-        weights,
-        joint_state: state(record),
-    };
-    let mut x = b.to_vec();
-    Impulses::default()
-        .solve::<2, 24, 24>(step, &mut x)
-        .then_some(x)
-}
+    /// The answer of a step by the equations of the bodies, block by block; none if there is none.
+    pub fn by_blocks(&mut self, weights: Weights, b: &[f64]) -> Option<Vec<f64>> {
+        let mut x = b.to_vec();
+        self.linkage
+            .eliminate(self.bodies, weights, self.joint_state, &mut x)
+            .then_some(x)
+    }
 
-/// The answer of a step by the equations of the bodies, block by block; none if there is none.
-pub fn by_blocks(
-    system: &System,
-    record: &mut Record,
-    weights: Weights,
-    b: &[f64],
-) -> Option<Vec<f64>> {
-    let mut x = b.to_vec();
-    let joint_state = &mut record.chains[0].joint_state;
-    linkage(system)
-        .eliminate(system.group_bodies(0), weights, joint_state, &mut x)
-        .then_some(x)
+    /// The contacts of pins in bushes, all at once on some registers.
+    ///
+    /// # Panics
+    /// If the joints have no clearance.
+    pub fn joints_at_once(&self, registers: Registers) -> Joints {
+        let linkage = self.linkage;
+        let Joining::Clearance(bearing) = &linkage.joining else {
+            panic!("the joints have no clearance");
+        };
+        let posture = &self.joint_state.posture;
+        let (mut memory, mut pins) = (ContactMemory::default(), Pins::default());
+        let tally = registers.dispatch(Contacts {
+            linkage,
+            bearing,
+            posture,
+            memory: &mut memory,
+            pins: &mut pins,
+            dt: 0.0,
+        });
+        let closed = (0..linkage.joints.len()).map(|joint| {
+            let element = pins.element(joint, linkage, bearing, posture);
+            element.as_ref().map(Contact::of)
+        });
+        Joints::new(closed.collect(), &memory, &tally)
+    }
+
+    /// The same one by one, as free rollers and their bushes are looked at.
+    ///
+    /// # Panics
+    /// If the joints have no clearance.
+    pub fn joints_one_by_one(&self, at: Moment<'_>) -> Joints {
+        let linkage = self.linkage;
+        let Joining::Clearance(bearing) = &linkage.joining else {
+            panic!("the joints have no clearance");
+        };
+        let posture = &self.joint_state.posture;
+        let w = Wide(pulp::Scalar);
+        let count = linkage.joints.len();
+        let mut memory = ContactMemory::open(count);
+        let mut lanes = MemoryLanes::new(w, &linkage.memory.joints, &mut memory, count);
+        let mut sum = LaneTally::new(w);
+        let mut closed = Vec::new();
+        for (joint, mates) in linkage.joints.iter().enumerate() {
+            closed.push(mates.pair.and_then(|mates| {
+                let [hole, pin] = mates.map(|mate| linkage.part(mate, at, posture));
+                let element = bearing.touch(joint, [&hole, &pin], &mut lanes, joint, 0.0, &mut sum);
+                element.as_ref().map(Contact::of)
+            }));
+        }
+        Joints::new(closed, &memory, &Tally::of(&sum))
+    }
 }
 
 /// Contacts of pins in their bushes.
@@ -224,103 +267,4 @@ impl Joints {
             losses: [tally.normal_loss, tally.friction_loss],
         }
     }
-}
-
-/// The contacts of pins in bushes, all at once on some registers.
-///
-/// # Panics
-/// If the joints have no clearance.
-pub fn joints_at_once(system: &System, record: &Record, registers: Registers) -> Joints {
-    let linkage = linkage(system);
-    let Joining::Clearance(bearing) = &linkage.joining else {
-        panic!("the joints have no clearance");
-    };
-    let posture = &state(record).posture;
-    let (mut memory, mut pins) = (ContactMemory::default(), Pins::default());
-    let tally = registers.dispatch(Contacts {
-        linkage,
-        bearing,
-        posture,
-        memory: &mut memory,
-        pins: &mut pins,
-        dt: 0.0,
-    });
-    let closed = (0..linkage.joints.len()).map(|joint| {
-        let element = pins.element(joint, linkage, bearing, posture);
-        element.as_ref().map(Contact::of)
-    });
-    Joints::new(closed.collect(), &memory, &tally)
-}
-
-/// The same one by one, as free rollers and their bushes are looked at.
-///
-/// # Panics
-/// If the joints have no clearance.
-pub fn joints_one_by_one(system: &System, record: &Record, at: Moment<'_>) -> Joints {
-    let linkage = linkage(system);
-    let Joining::Clearance(bearing) = &linkage.joining else {
-        panic!("the joints have no clearance");
-    };
-    let posture = &state(record).posture;
-    let w = Wide(pulp::Scalar);
-    let count = linkage.joints.len();
-    let mut memory = ContactMemory::open(count);
-    let mut lanes = MemoryLanes::new(w, &linkage.memory.joints, &mut memory, count);
-    let mut sum = LaneTally::new(w);
-    let mut closed = Vec::new();
-    for (joint, mates) in linkage.joints.iter().enumerate() {
-        closed.push(mates.pair.and_then(|mates| {
-            let [hole, pin] = mates.map(|mate| linkage.part(mate, at, posture));
-            let element = bearing.touch(joint, [&hole, &pin], &mut lanes, joint, 0.0, &mut sum);
-            element.as_ref().map(Contact::of)
-        }));
-    }
-    Joints::new(closed, &memory, &Tally::of(&sum))
-}
-
-/// A roller near a tooth: what the lanes have of it, and what a look at the surface says.
-#[derive(Clone, Copy, Debug)]
-pub struct Tooth {
-    /// Gap \[m\] by the lanes, and by the look.
-    pub gaps: [f64; 2],
-    /// Closing speed \[m/s\].
-    pub closing: f64,
-    /// 1/onset speed \[s/m\].
-    pub inverse_onset: f64,
-    /// Normal force \[N\].
-    pub force: f64,
-    /// How far it lies beyond the end of the seat \[m\].
-    pub beyond: f64,
-    /// Share of the law of the flank there.
-    pub share: f64,
-}
-
-/// All rollers of the first chain that face a tooth with a flank of its own.
-pub fn teeth(system: &System, record: &Record, at: Moment<'_>) -> Vec<Tooth> {
-    let member = &system.chains[0];
-    let mut found = Vec::new();
-    let loads = &record.chains[0].loads.teeth;
-    for (on, touch) in member.contacts.teeth.iter().zip(loads) {
-        let frame = system.bodies.wheel_frame(on.wheel, &on.anchor, at);
-        let contacts = &on.contacts;
-        let Some(flank) = contacts.flank else {
-            continue;
-        };
-        contacts.for_each_slot(|slot, roller| {
-            let place = member.chain.roller_moving(at.q, roller).place;
-            let Some(probe) = contacts.probes(&frame, place).pop() else {
-                return;
-            };
-            let kept = |what| touch.state.get(what, slot);
-            found.push(Tooth {
-                gaps: [kept(Kept::Gap), probe.gap],
-                closing: kept(Kept::Closing),
-                inverse_onset: kept(Kept::InverseOnset),
-                force: kept(Kept::Force),
-                beyond: probe.beyond,
-                share: flank.share(probe.beyond),
-            });
-        });
-    }
-    found
 }
