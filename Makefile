@@ -21,7 +21,7 @@ export PYO3_PYTHON := $(abspath $(BIN)/python)
 # All crates at once, the bindings included, so that libraries have the same features and no crate is compiled twice.
 # nextest where it is installed, otherwise Cargo's own runner.
 ifneq ($(shell command -v cargo-nextest 2>/dev/null),)
-CARGO_TEST := cargo nextest run --cargo-profile release --workspace --status-level slow --final-status-level slow --no-fail-fast
+CARGO_TEST := cargo nextest run --cargo-profile release --workspace --tests --status-level slow --final-status-level slow --no-fail-fast
 else
 CARGO_TEST := cargo test --release --workspace --quiet --no-fail-fast --tests
 endif

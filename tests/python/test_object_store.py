@@ -87,6 +87,7 @@ def test_an_address_is_enough(server, in_memory, monkeypatch):
     assert_same(replaced, cd.sweep(ring(), fewer, **RING))
 
 
+@pytest.mark.slow
 def test_a_cluster_writes_into_a_bucket(server, in_memory, tmp_path):
     with cluster(tmp_path) as executor:
         store = bucket(server, "dask.zarr")

@@ -22,6 +22,7 @@ def papers(monkeypatch):
     return importlib.import_module
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("script", "stem", "short"),
     [

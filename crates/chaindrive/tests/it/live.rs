@@ -197,16 +197,16 @@ fn a_run_by_snapshots_is_the_run_in_one() {
             }
             let fresh = start(&scene, stepping);
             let mut whole = fresh.clone();
-            let end = bits(whole.advance_to(4e-4).unwrap());
+            let end = bits(whole.advance_to(2e-4).unwrap());
             let mut bytes = fresh.snapshot().to_bytes();
-            for k in 1..=100 {
+            for k in 1..=50 {
                 let mut piece = fresh.clone();
                 piece
                     .restore(&Snapshot::from_bytes(&bytes).unwrap())
                     .unwrap();
-                piece.advance_to(4e-4 * f64::from(k) / 100.0).unwrap();
+                piece.advance_to(2e-4 * f64::from(k) / 50.0).unwrap();
                 bytes = piece.snapshot().to_bytes();
-                if k == 100 {
+                if k == 50 {
                     assert_eq!(
                         bits(piece.observation()),
                         end,

@@ -10,3 +10,4 @@ mod same_run;
 mod shell;
 mod store_faults;
 mod sweep;
+mod told;

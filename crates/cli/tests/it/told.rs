@@ -1,0 +1,78 @@
+//! What the command says, word for word: messages, the summary of a run, a description.
+//!
+//! After a change that is meant: `INSTA_UPDATE=always cargo test -p chaindrive-cli --test it told`, and look at what git shows.
+
+use std::fmt::Write as _;
+use std::fs;
+
+use crate::command::{folder, run};
+
+/// What a user mistypes, each with its exit code and what is told of it.
+#[test]
+fn mistakes() {
+    let folder = folder();
+    fs::write(
+        folder.path().join("wrong.toml"),
+        "defaults = \"0.2\"\n\n[chain]\npitch = \"8.5 mmm\"\nlinks = 1.5\n\n[[sprockets]]\nname = \"a\"\nteeth = \"many\"\n",
+    )
+    .unwrap();
+    let lines = [
+        "run nowhere.toml",
+        "run marine_engin",
+        "check wrong.toml",
+        "run marine_two_sprockets --until -1ms",
+        "run marine_two_sprockets --until 1ms --method verlt",
+        "run marine_two_sprockets --until 1ms --step 0s",
+        "run marine_two_sprockets --until 1ms --record tension",
+        "run marine_two_sprockets --until 1ms --set chain.pich=9mm",
+        "run marine_two_sprockets --until 1ms --set sprockets.crank.teeth=0",
+        "run marine_two_sprockets --until 1ms -o result.txt",
+        "run marine_two_sprockets --until 1ms --checkpoint-every 1ms",
+        "resume nothing.zarr",
+        "sweep marine_two_sprockets --until 1ms",
+        "replay nothing.zarr",
+    ];
+    let mut told = String::new();
+    for line in lines {
+        let arguments: Vec<&str> = line.split(' ').collect();
+        let (code, _, err) = run(folder.path(), &arguments);
+        writeln!(told, "$ chaindrive {line}\n{err}exit code {code}\n").unwrap();
+    }
+    insta::assert_snapshot!(told);
+}
+
+#[test]
+fn the_summary_of_a_run() {
+    let folder = folder();
+    let line = "run marine_two_sprockets --until 50ms --every 1ms -o result.zarr";
+    let arguments: Vec<&str> = line.split(' ').collect();
+    let (code, out, err) = run(folder.path(), &arguments);
+    assert_eq!(code, 0, "{err}");
+    insta::assert_snapshot!(without_numbers(&out));
+}
+
+#[test]
+fn a_description() {
+    let (code, out, err) = run(folder().path(), &["describe", "marine_engine"]);
+    assert_eq!(code, 0, "{err}");
+    insta::assert_snapshot!(without_numbers(&out));
+}
+
+/// The text with a # for every number, and one space where columns are apart: numbers are judged elsewhere, and differ in their
+/// last digits from processor to processor.
+fn without_numbers(text: &str) -> String {
+    let mut told = String::new();
+    let mut inside = false;
+    for c in text.chars() {
+        let digit = c.is_ascii_digit();
+        if digit && !inside {
+            told.push('#');
+        }
+        inside = digit || inside && c == '.';
+        let repeated = c == ' ' && told.ends_with(' ');
+        if !inside && !repeated {
+            told.push(c);
+        }
+    }
+    told
+}
