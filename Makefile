@@ -81,14 +81,14 @@ how-real: setup $(VENV)/test-ready ## Try the assumptions and models of presets,
 	$(BIN)/python benchmarks/how_real
 
 validation: setup $(VENV)/test-ready ## Run the slow studies as well
-	cargo test --release -- --include-ignored
+	cargo test --release --workspace --tests -- --include-ignored
 	$(BIN)/pytest -m 'slow or not slow'
 
 validation-report: setup $(VENV)/test-ready ## Run the tests that judge validation cases, and write docs/validation.md
 	rm -f $(VERDICTS)
 	@# A test that fails has left its miss behind: the report comes before the failure.
 	export CHAINDRIVE_VERDICTS=$(VERDICTS); failed=0; \
-	cargo test --release --quiet --no-fail-fast -- --include-ignored validation || failed=1; \
+	cargo test --release --workspace --tests --quiet --no-fail-fast -- --include-ignored validation || failed=1; \
 	$(BIN)/pytest -m 'slow or not slow' -k 'measured or validation_report' || failed=1; \
 	$(BIN)/python tests/validation/report.py $(VERDICTS) && exit $$failed
 

@@ -57,7 +57,7 @@ impl Build {
     }
 }
 
-/// Everything, a line each, and how the instruction sets are.
+/// Everything, a line each.
 impl fmt::Display for Build {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.id.is_empty() {

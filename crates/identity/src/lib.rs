@@ -100,7 +100,7 @@ fn variable(name: &str) -> String {
 /// Rust is taken as its [`tokens`], everything else as its text. Paths count, in their order and with `/`; line ends do not.
 ///
 /// # Errors
-/// What cannot be read, or is not Rust.
+/// An unreadable file, or a file that is not Rust.
 pub fn sources(root: &Path, data: &[&str]) -> io::Result<String> {
     let mut files = Vec::new();
     for place in std::iter::once("src").chain(data.iter().copied()) {

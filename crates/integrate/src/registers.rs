@@ -12,7 +12,7 @@ use pulp::{Arch, Scalar128b, Simd, WithSimd};
 /// A set of vector instructions that kernels are compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum InstructionSet {
-    /// What every processor of the target has: two lanes, SSE2 on x86-64.
+    /// The least of the target: two lanes, SSE2 on x86-64.
     Baseline,
     /// Two lanes of ARM processors, with product and sum in one.
     Neon,
@@ -167,7 +167,7 @@ fn chosen() -> &'static Result<Registers, InstructionSetError> {
 mod tests {
     use super::*;
 
-    /// What is available can be had, and is what it says.
+    /// Every available set leads to its registers, and these back to it.
     #[test]
     fn names_lead_to_registers_and_back() {
         for set in InstructionSet::available() {

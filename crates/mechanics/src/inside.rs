@@ -1,4 +1,4 @@
-//! What goes on inside a drive, as plain numbers: for the tests that hold one way to compute it against another.
+//! The inside of a drive, as plain numbers: for tests that compare two ways to compute them.
 
 use chaindrive_integrate::Moment;
 
@@ -16,7 +16,7 @@ pub fn chain<'a>(system: &'a System, record: &'a mut Record) -> Inside<'a> {
         .expect("a chain of rigid links")
 }
 
-/// A roller near a tooth: what the lanes have of it, and what a look at the surface says.
+/// A roller near a tooth, by the lanes and by a look at the surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Tooth {
     /// Gap \[m\] by the lanes, and by the look.
@@ -27,9 +27,7 @@ pub struct Tooth {
     pub inverse_onset: f64,
     /// Normal force \[N\].
     pub force: f64,
-    /// How far it lies beyond the end of the seat \[m\].
-    pub beyond: f64,
-    /// Share of the law of the flank there.
+    /// Share of the flank in the law at its place.
     pub share: f64,
 }
 
@@ -55,7 +53,6 @@ pub fn teeth(system: &System, record: &Record, at: Moment<'_>) -> Vec<Tooth> {
                 closing: kept(Kept::Closing),
                 inverse_onset: kept(Kept::InverseOnset),
                 force: kept(Kept::Force),
-                beyond: probe.beyond,
                 share: flank.share(probe.beyond),
             });
         });

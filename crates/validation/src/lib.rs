@@ -5,10 +5,14 @@
 //! these lines `tests/validation/report.py` makes `docs/validation.md`; a row that is judged without this crate would be
 //! missing there.
 //!
+//! Beside them stands [`run_again`], for tests that must hold on other instruction sets as well.
+//!
 //! For tests only: no crate depends on this one but for its own tests.
 
+mod again;
 mod case;
 mod verdict;
 
+pub use again::run_again;
 pub use case::Case;
 pub use verdict::Tolerance;

@@ -1,4 +1,4 @@
-//! What goes on in joints and teeth, as plain numbers: for the tests that hold one way to compute it against another.
+//! Equations and contacts of joints, as plain numbers: for tests that compare two ways to compute them.
 
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Moment, Registers, Weights};
@@ -216,7 +216,7 @@ impl<'a> Inside<'a> {
 /// Contacts of pins in their bushes.
 #[derive(Clone, Debug, Default)]
 pub struct Joints {
-    /// What each closed one does, in an order of its own.
+    /// Contact in every joint; none where it is open.
     pub closed: Vec<Option<Contact>>,
     /// Gap \[m\] and 1/onset speed \[s/m\] of every joint.
     pub kept: Vec<[f64; 2]>,

@@ -1,0 +1,24 @@
+//! A program of tests that runs itself again.
+
+use std::env;
+use std::process::Command;
+
+/// Runs all other tests of this program again, with a variable of the environment.
+///
+/// # Panics
+/// If one of them fails, or none is run.
+pub fn run_again(but: &str, variable: &str, value: &str) {
+    let program = env::current_exe().expect("a test is a program");
+    let again = Command::new(program)
+        .env(variable, value)
+        .args(["--skip", but])
+        .output()
+        .expect("what runs here can be run");
+    let told = String::from_utf8_lossy(&again.stdout);
+    assert!(again.status.success(), "{variable}={value}: {told}");
+    assert!(
+        told.contains("test result: ok."),
+        "{variable}={value}: {told}"
+    );
+    assert!(!told.contains(" 0 passed"), "{variable}={value}: {told}");
+}
