@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::f64::consts::PI;
 
-use chaindrive::{Run, Scene, Simulation, Stepping, Summary, Verdict};
+use chaindrive::{Flow, Run, Scene, Simulation, Stepping, Summary, Verdict};
 
 use crate::dynamics::{pairs, run};
 
@@ -217,6 +217,82 @@ fn a_chain_slides_over_half_a_turn_and_its_energy_adds_up() {
             assert!(moving > 0.01, "{moving} J");
             assert!(missing < 1e-5 * moving, "{missing} of {moving} J");
             assert!(deepest > face + 0.9 * half, "{deepest} m from the middle");
+        }
+    }
+}
+
+/// Theory: an end that moves against a pull F supplies F s, whichever end it is, and however the links are joined.
+#[test]
+fn a_driven_end_supplies_what_it_pulls() {
+    let (links, pitch, pull, until) = (3.0, 0.02, 50.0, 0.04);
+    let steady = (r#"{ kind = "constant", speed = SIGN0.1 }"#, 0.1 * until);
+    let swinging = (
+        r#"{ kind = "harmonics", terms = [{ amplitude = SIGN0.02, frequency = 5 }] }"#,
+        0.02 * (2.0 * PI * 5.0 * until).sin(),
+    );
+    let rigid = "rollers = \"none\"
+        outer_first = true
+        inner = { mass = 1e-3, inertia = 1e-7 }
+        outer = { mass = 1e-3, inertia = 1e-7 }";
+    for (model, body) in [
+        ("particles", "mass = 1e-3".to_owned()),
+        (
+            "ideal-joints",
+            format!("{rigid}\njoint = {{ pin_diameter = 0.004 }}"),
+        ),
+        (
+            "clearance-joints",
+            format!("{rigid}\njoint = {{ pin_diameter = 0.004, clearance = 5e-6, length = 0.01 }}"),
+        ),
+    ] {
+        for (motion, way) in [steady, swinging] {
+            for last in [false, true] {
+                let sign = if last { "" } else { "-" };
+                let driven = format!(
+                    "{{ kind = \"driven\", x = {} }}",
+                    motion.replace("SIGN", sign)
+                );
+                let pulled = format!(
+                    "{{ kind = \"pulled\", force = [{}, 0] }}",
+                    if last { -pull } else { pull }
+                );
+                let ends = if last {
+                    [pulled, driven]
+                } else {
+                    [driven, pulled]
+                };
+                let scene = format!(
+                    r#"
+                    gravity = [0, 0]
+                    [chain]
+                    model = "{model}"
+                    pitch = {pitch}
+                    links = {links}
+                    stiffness = 1e7
+                    roller_diameter = 0.01
+                    {body}
+                    ends = [{}]
+                    start = {{ kind = "line", from = [0, 0], to = [{}, 0] }}
+                    [run]
+                    until = {until}
+                    every = 2e-3
+                    "#,
+                    ends.join(", "),
+                    links * pitch,
+                );
+                let mut supplied = 0.0;
+                run(&scene, |sample| {
+                    supplied = sample.energy.flow(Flow::Motions)
+                });
+                // The swinging end sets three grams going, at up to 0.63 m/s.
+                let kinetic = 0.5 * 3e-3 * (0.02_f64 * 2.0 * PI * 5.0).powi(2);
+                let allowed = 1e-3 * pull * way + if motion == steady.0 { 2e-5 } else { kinetic };
+                assert!(
+                    (supplied - pull * way).abs() < allowed,
+                    "{model}, last end: {last}, {motion}: {supplied} J, not {} J",
+                    pull * way
+                );
+            }
         }
     }
 }

@@ -331,10 +331,10 @@ impl Spring<'_> {
             until = {until}
             every = {every}
             "#,
-            rod = spreading_rod(1.0, distance / pitch, radius, pitch),
+            rod = spreading_rod(1.0, distance, [radius; 2], pitch),
             stiffness = self.stiffness,
             roller = 0.6 * pitch,
-            tooth = holding_gap(teeth, pitch, 0.15).replace('\n', " "),
+            tooth = holding_gap(teeth, pitch, 10.0, 0.15).replace('\n', " "),
             speed = self.speed,
             inertia = input("J2"),
             load = self.viscous * self.speed - self.tension * radius,

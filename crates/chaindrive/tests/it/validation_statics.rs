@@ -371,3 +371,67 @@ fn a_worn_chain_sets_off_with_its_wheels() {
     }
     assert!(touching > 20, "{touching}");
 }
+
+/// Theory: chain on two held wheels, whole links between them, no gravity and no load: every link carries the pretension, however
+/// soft it is, and whatever its length.
+#[test]
+fn links_carry_the_pretension_that_is_asked_for() {
+    let (teeth, links, pitch, pull) = (24.0, 30.0, 0.0127, 800.0);
+    for stiffness in [2e5, 1e6, 1e8] {
+        for lengths in ["", "elongation = 5e-4"] {
+            let wheel = |name: &str, x: f64| {
+                format!(
+                    r#"
+                    [[sprockets]]
+                    name = "{name}"
+                    teeth = {teeth}
+                    centre = [{x}, 0]
+                    motion = "held"
+                    tooth = {{ kind = "circular", seat_radius = 0.0042555 }}
+                    "#
+                )
+            };
+            let scene = format!(
+                r#"
+                gravity = [0, 0]
+                [chain]
+                pitch = {pitch}
+                links = {}
+                mass = 9e-3
+                stiffness = {stiffness}
+                roller_diameter = 0.00851
+                {lengths}
+                {}{}
+                [contact.teeth]
+                law = {{ kind = "linear", stiffness = 1e12 }}
+                [route]
+                pretension = {pull}
+                "#,
+                teeth + 2.0 * links,
+                wheel("a", 0.0),
+                wheel("b", links * pitch),
+            );
+            for tension in settled(&scene).span_tension {
+                assert!(
+                    (tension / pull - 1.0).abs() < 1e-3,
+                    "{tension} N, not {pull} N, with links of {stiffness:e} N/m {lengths}"
+                );
+            }
+        }
+    }
+}
+
+/// A pretension that would stretch links to more than twice their length is refused.
+#[test]
+fn a_pretension_beyond_all_stretch_is_refused() {
+    let soft = Scene::preset("industrial_16b")
+        .and_then(|scene| scene.replace("chain.stiffness", "10 kN/m"))
+        .and_then(|scene| scene.replace("route.pretension", "3 kN"))
+        .unwrap_or_else(|error| panic!("{error}"));
+    let drive = soft.drive().unwrap_or_else(|error| panic!("{error}"));
+    let refused = drive.assemble().expect_err("3 kN on links of 10 kN/m");
+    assert!(
+        refused.to_string().contains("lower the pretension"),
+        "{refused}"
+    );
+}

@@ -143,8 +143,18 @@ fn around(
         } else {
             strain
         };
-        // ℓ₀ = p (1 + ε) / (1 + ε₀): the laid chain then carries T₀ in every link, in the mean of the phases with the mean of ε.
-        let scale = (1.0 + closed) / (1.0 + tightening);
+        // Σ ℓ₀ᵢ = n p (1 + ε) − T₀ Σ 1/kᵢ: the laid chain then carries T₀, in the mean of the phases with the mean of ε.
+        let scale = 1.0 + closed - tightening;
+        if scale <= 0.0 {
+            return Err(AssemblyError::Layout {
+                problem: format!(
+                    "a pretension of {:.4e} N stretches every link by {:.1} % of its length, of {:.4e} N/m; lower the pretension or give stiffer links",
+                    fit.pretension,
+                    tightening * 100.0,
+                    mean_stiffness,
+                ),
+            });
+        }
         for length in &mut moved.chains[index].chain.lengths {
             *length *= scale;
         }

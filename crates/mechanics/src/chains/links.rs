@@ -259,9 +259,9 @@ impl Linkage {
         } else {
             let push = |joint| joint_state.pins.push(joint);
             let part = |end| self.ground(end, at);
-            // The side before the first joint feels the opposite of the push.
+            // A push acts on what lies after its joint: on the chain at the first, on the support at the last.
             rates[Flow::Motions as usize] +=
-                part(1).velocity.dot(&push(self.links)) - part(0).velocity.dot(&push(0));
+                part(0).velocity.dot(&push(0)) - part(1).velocity.dot(&push(self.links));
         }
         rates[Flow::JointLoss as usize] += tally.normal_loss;
         rates[Flow::ArticulationLoss as usize] += tally.friction_loss;

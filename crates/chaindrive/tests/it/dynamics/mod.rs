@@ -4,7 +4,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Write as _;
 
-use chaindrive::{Observation, Run, Scene, Simulation};
+use chaindrive::{Observation, Run, Scene, Simulation, Summary};
 
 /// A simulation of a scene text, run as the text says.
 pub(crate) fn start(text: &str) -> Simulation {
@@ -14,13 +14,34 @@ pub(crate) fn start(text: &str) -> Simulation {
     Simulation::start(&drive, &run).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Runs a scene text to its end, and shows every sample.
-pub(crate) fn run(text: &str, mut see: impl FnMut(&Observation)) -> Simulation {
+/// Share of its energy that the ledger of a run may leave open which is judged by anything.
+const OPEN: f64 = 0.01;
+
+/// Runs a scene text to its end, and shows every sample. The ledger has to close.
+pub(crate) fn run(text: &str, see: impl FnMut(&Observation)) -> Simulation {
+    let (simulation, open) = run_open(text, see);
+    assert!(
+        open < OPEN,
+        "{open:.2e} of the energy moved is unaccounted for"
+    );
+    simulation
+}
+
+/// The same, with the share of the energy moved that the ledger leaves open.
+pub(crate) fn run_open(text: &str, mut see: impl FnMut(&Observation)) -> (Simulation, f64) {
     let mut simulation = start(text);
+    let mut summary = Summary::new(&simulation);
     loop {
         match simulation.next_sample() {
-            Ok(Some(sample)) => see(sample),
-            Ok(None) => return simulation,
+            Ok(Some(sample)) => {
+                summary.push(sample);
+                see(sample);
+            }
+            Ok(None) => {
+                let ledger = summary.ledger();
+                let open = ledger.residual.abs() / ledger.moved.max(ledger.kinetic);
+                return (simulation, open);
+            }
             Err(error) => panic!("{error}"),
         }
     }
@@ -42,13 +63,14 @@ pub(crate) fn numbers(values: impl IntoIterator<Item = f64>) -> String {
 }
 
 /// A tooth gap whose seat has the roller's own radius, 0.3 p, and holds it without a pull from the
-/// slack side: flanks 10° from the pull of a seated link, T' = T sin 10°/sin(10° + 2π/z) behind it.
+/// slack side: flanks β from the pull of a seated link, T' = T sin β/sin(β + 2π/z) behind it.
 ///
-/// The teeth end `tip` pitches above the pitch circle. The flank still opens by more than a link swings while its roller
-/// rises to the tip.
-pub(crate) fn holding_gap(teeth: f64, pitch: f64, tip: f64) -> String {
+/// The teeth end `tip` pitches above the pitch circle. The flank has to open by more than a link swings while its roller rises to the
+/// tip, and to leave so little tension behind the last tooth that a slack strand holds its rollers down: nine teeth seat four rollers,
+/// which leave 4e-4 of a pull at β = 6°, and 3e-3 at 10°.
+pub(crate) fn holding_gap(teeth: f64, pitch: f64, flank: f64, tip: f64) -> String {
     let roller = 0.3 * pitch;
-    gap(teeth, pitch, [roller, roller], [10.0, 10.0], tip)
+    gap(teeth, pitch, [roller, roller], [flank, flank], tip)
 }
 
 /// A tooth gap for rollers of one radius, with a seat of another and straight flanks that lie at these angles \[deg\] to the
@@ -93,27 +115,34 @@ pub(crate) fn gap(
     )
 }
 
-/// A rod between the wheels of an open drive, inside of the lower span: it takes up most of the
+/// A rod inside of the lower span of an open drive, from the driver at the origin to a wheel at (C, 0): it takes up most of the
 /// length that whole links have to spare, and leaves 0.3 p to hang.
 ///
-/// The route ends with it. `spare` and `distance` are in pitches, `radius` is that of the wheels.
-pub(crate) fn spreading_rod(spare: f64, distance: f64, radius: f64, pitch: f64) -> String {
-    let half = 0.5 * distance;
-    // 2 √(C²/4 + h²) = C + s - 0.3
+/// The route ends with it. `spare` is in pitches, all else in metres.
+pub(crate) fn spreading_rod(spare: f64, centres: f64, radii: [f64; 2], pitch: f64) -> String {
+    // The line that touches both wheels: n (c₂ − c₁) = R₁ − R₂, n its normal, out of the loop.
+    let x = (radii[0] - radii[1]) / centres;
+    let normal = [x, -(1.0 - x * x).sqrt()];
+    let half = 0.5 * centres * -normal[1] / pitch;
+    // 2 √(L²/4 + h²) = L + s - 0.3
     let depth = ((half + 0.5 * (spare - 0.3)).powi(2) - half * half)
         .max(0.0)
         .sqrt();
+    // The rollers of 0.3 p roll under it.
+    let out = 0.5 * (radii[0] + radii[1]) + (depth - 0.3 - 0.5) * pitch;
+    let towards = normal[1].atan2(normal[0]).to_degrees();
     format!(
         r#"
         [[guides]]
         name = "rod"
-        face = {{ kind = "arc", centre = [{x:?}, {y:?}], radius = {r:?}, from = "240 deg", to = "300 deg" }}
+        face = {{ kind = "arc", centre = [{x:?}, {y:?}], radius = {r:?}, from = "{from} deg", to = "{to} deg" }}
         contact = {{ law = {{ kind = "linear", stiffness = 1e6 }} }}
         "#,
-        x = half * pitch,
-        // The rollers of 0.3 p roll under it.
-        y = -radius - (depth - 0.3 - 0.5) * pitch,
+        x = 0.5 * centres + out * normal[0],
+        y = out * normal[1],
         r = 0.5 * pitch,
+        from = towards - 30.0,
+        to = towards + 30.0,
     )
 }
 
