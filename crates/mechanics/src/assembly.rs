@@ -23,7 +23,7 @@ use crate::drive::{Layout, Parts, PretensionAt};
 use crate::groups::groups;
 use crate::standing::Standing;
 use crate::system::{Laid, Member};
-use crate::{AssemblyError, Clash, Drive, System};
+use crate::{AssemblyError, Clash, Drive, Motion, System};
 use crate::{MemoryError, SystemMemory};
 use settle::Tightening;
 
@@ -89,24 +89,28 @@ impl Assembled {
 }
 
 impl Assembled {
-    /// Angular speed of every sprocket \[rad/s\], counter-clockwise positive, in the order of
-    /// [`System::sprocket_names`].
-    pub fn sprocket_speeds(&self) -> Vec<f64> {
+    /// Mean angular speed of every sprocket \[rad/s\], counter-clockwise positive, in the order of [`System::sprocket_names`]: about
+    /// which the sine terms of its motion swing, or of the motion that turns it through chains, gears and couplings; where none
+    /// does, its speed now.
+    pub fn mean_speeds(&self) -> Vec<f64> {
         let at = self.start();
+        let layouts: Vec<&Layout> = self.parts.chains.iter().map(|it| &it.layout).collect();
+        let mean = |motion: &Motion| motion.mean_rate(self.drive.begin);
+        let shafts = setting_off::speeds(&self.system, &layouts, mean);
         let wheels = self.system.bodies.wheels.iter();
         wheels
-            .map(|it| it.kinematics(at.t, at.q, at.v).rate)
+            .map(|it| shafts[it.shaft].unwrap_or_else(|| it.kinematics(at.t, at.q, at.v).rate))
             .collect()
     }
 
-    /// Time \[s\] that the slowest chain around sprockets takes for one circuit at the speed that it sets off with; infinite where
-    /// there is none, or it stands still.
+    /// Time \[s\] that the slowest chain around sprockets takes for one circuit at its mean speed; infinite where there is none, or it
+    /// stands still.
     ///
     /// ```text
-    /// t = n 2π/(z ω)     n: links, z and ω: teeth and speed of its first sprocket
+    /// t = n 2π/(z ω)     n: links, z and ω: teeth and mean speed of its first sprocket
     /// ```
     pub fn slowest_circuit(&self) -> f64 {
-        let speeds = self.sprocket_speeds();
+        let speeds = self.mean_speeds();
         let circuit = |member: &Member| {
             let first = *member.route.first()?;
             let teeth = f64::from(self.system.bodies.wheels[first].teeth);

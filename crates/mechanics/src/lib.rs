@@ -37,6 +37,7 @@ mod modes;
 mod motion;
 mod nudge;
 mod observe;
+mod order;
 mod pose;
 mod profile;
 mod standing;
@@ -65,6 +66,7 @@ pub use fights::Fight;
 pub use modes::{Mode, Modes};
 pub use motion::{Harmonic, Kinematics, Motion, Table};
 pub use observe::{ChainSize, Observation};
+pub use order::Order;
 pub use pose::{
     Body, BodyKind, Figure, FigureChain, Instant, MissingChannel, Placement, PlateShape, Pose,
 };
@@ -72,7 +74,7 @@ pub use strength::{Rating, Strength};
 pub use struck::Struck;
 pub use system::{Input, Record, System, SystemMemory};
 pub use tensioner::{Carrier, Push, PushForce, Tensioner, carriers, pushes};
-pub use torque::{Argument, Order, Torque};
+pub use torque::{Argument, Torque};
 
 /// Hash of the sources of this crate, a part of the identity of a build.
 #[doc(hidden)]

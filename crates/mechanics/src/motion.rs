@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::DriveError;
+use crate::order::Order;
 
 /// Position, rate and acceleration of a prescribed coordinate at one instant.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
@@ -26,7 +27,10 @@ pub struct Harmonic {
     pub phase: f64,
 }
 
-/// A coordinate as a function of time, with x(0) counted from the assembled position.
+/// A coordinate as a function of time, counted from the assembled position.
+///
+/// Times are those of the record: x(0) = 0, and a drive that is assembled before t = 0 stands where the function has it then. What
+/// repeats with the turns of a shaft counts them from where the drive was assembled, as torques over an angle do.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
     /// x = 0: held where it was assembled.
@@ -55,6 +59,17 @@ pub enum Motion {
         /// The sine terms.
         terms: Vec<Harmonic>,
     },
+    /// x = s τ + Σ Aᵢ (sin(nᵢ ω̄ τ + φᵢ) − sin φᵢ),   τ = t − t₀, ω̄ τ the angle of a shaft at its mean speed.
+    Orders {
+        /// Mean rate s \[m/s or rad/s\].
+        rate: f64,
+        /// Mean speed ω̄ of the shaft whose turns count \[rad/s\].
+        turning: f64,
+        /// The orders.
+        terms: Vec<Order>,
+        /// Time t₀ at which the drive is assembled \[s\].
+        since: f64,
+    },
     /// Positions at given times, joined by a natural cubic spline.
     Table(Table),
     /// On from a place and speed at a constant acceleration: x = x₀ + v τ + ½ a τ², τ = t − t₀.
@@ -74,11 +89,37 @@ pub enum Motion {
 }
 
 impl Motion {
-    /// The same motion for a drive that is assembled at a time t₀ \[s\] other than 0.
-    pub(crate) fn from(&self, begin: f64) -> Self {
-        Self::From {
-            place: self.at(begin).position,
-            motion: Box::new(self.clone()),
+    /// The same motion for a drive that is assembled at a time t₀ \[s\] other than 0, and how far \[m or rad\] it has moved the drive by
+    /// then from where it was drawn.
+    pub(crate) fn from(&self, begin: f64) -> (Self, f64) {
+        if let Self::Orders {
+            rate,
+            turning,
+            terms,
+            ..
+        } = self
+        {
+            let terms = terms.clone();
+            let (rate, turning, since) = (*rate, *turning, begin);
+            let again = Self::Orders {
+                rate,
+                turning,
+                terms,
+                since,
+            };
+            return (again, 0.0);
+        }
+        let place = self.at(begin).position;
+        let motion = Box::new(self.clone());
+        (Self::From { place, motion }, place)
+    }
+
+    /// Rate \[m/s or rad/s\] about which sine terms swing; that at time `t` \[s\] of a motion without any.
+    pub(crate) fn mean_rate(&self, t: f64) -> f64 {
+        match self {
+            Self::Harmonics { rate, .. } | Self::Orders { rate, .. } => *rate,
+            Self::From { motion, .. } => motion.mean_rate(t),
+            _ => self.at(t).rate,
         }
     }
 
@@ -115,6 +156,30 @@ impl Motion {
                     }
                 },
             ),
+            Self::Orders {
+                rate,
+                turning,
+                terms,
+                since,
+            } => {
+                let after = t - since;
+                let mean = Kinematics {
+                    position: rate * after,
+                    rate: *rate,
+                    acceleration: 0.0,
+                };
+                terms.iter().fold(mean, |sum, term| {
+                    // x = A (sin(n ω̄ τ + φ) − sin φ)
+                    let circular = term.order * turning;
+                    let (sine, cosine) = (circular * after + term.phase).sin_cos();
+                    let swing = term.amplitude * circular;
+                    Kinematics {
+                        position: sum.position + term.amplitude * (sine - term.phase.sin()),
+                        rate: sum.rate + swing * cosine,
+                        acceleration: sum.acceleration - swing * circular * sine,
+                    }
+                })
+            }
             Self::Table(table) => table.at(t),
             Self::Onward { from, since } => {
                 let after = t - since;
@@ -186,6 +251,17 @@ impl Motion {
                     *duration,
                     "positive [s]",
                 )
+            }
+            Self::Orders {
+                rate,
+                turning,
+                terms,
+                since,
+            } => {
+                finite("rate", *rate)?;
+                finite("turning", *turning)?;
+                finite("since", *since)?;
+                terms.iter().try_for_each(|term| term.check(name))
             }
             Self::Harmonics { rate, terms } => {
                 finite("rate", *rate)?;
@@ -378,6 +454,16 @@ mod tests {
                     frequency: 7.0,
                     phase: 0.4,
                 }],
+            },
+            Motion::Orders {
+                rate: -2.0,
+                turning: -4.0,
+                terms: vec![Order {
+                    amplitude: 0.01,
+                    order: 1.5,
+                    phase: 0.4,
+                }],
+                since: 0.0,
             },
             Motion::Table(Table::new(times, values).unwrap()),
         ]

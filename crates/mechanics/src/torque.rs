@@ -4,17 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::DriveError;
 use crate::motion::Table;
-
-/// One order of a torque: A sin(n θ + φ).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Order {
-    /// Amplitude A \[N m\].
-    pub amplitude: f64,
-    /// Order n, periods per turn \[–\].
-    pub order: f64,
-    /// Phase φ \[rad\].
-    pub phase: f64,
-}
+use crate::order::Order;
 
 /// A torque on a free shaft \[N m\], counter-clockwise positive; several add up.
 #[derive(Clone, Debug, PartialEq)]
@@ -173,11 +163,7 @@ impl Torque {
                 not_negative("linear", *linear)?;
                 not_negative("quadratic", *quadratic)
             }
-            Self::Orders { terms, .. } => terms.iter().try_for_each(|term| {
-                finite("amplitude", term.amplitude)?;
-                finite("order", term.order)?;
-                finite("phase", term.phase)
-            }),
+            Self::Orders { terms, .. } => terms.iter().try_for_each(|term| term.check(name)),
             Self::Table {
                 over: Argument::Angle { turns, .. },
                 ..

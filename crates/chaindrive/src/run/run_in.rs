@@ -25,7 +25,7 @@ pub enum RunIn {
     None,
     /// A time \[s\], positive.
     Time(f64),
-    /// So many turns of a sprocket at the speed that it sets off with; of the first one without a name.
+    /// So many turns of a sprocket at its mean speed; of the first one without a name.
     Turns {
         /// Turns, positive.
         turns: f64,
@@ -205,7 +205,7 @@ pub(crate) fn longest(start: &Assembled, run: &Run) -> Result<f64, SimulationErr
     }
 }
 
-/// Time \[s\] that a sprocket takes for some turns at the speed that it sets off with.
+/// Time \[s\] that a sprocket takes for some turns at its mean speed.
 fn turns_last(
     start: &Assembled,
     turns: f64,
@@ -225,7 +225,7 @@ fn turns_last(
         };
         return Err(refuse(format!("turns of {wanted}: {known}")));
     };
-    let speed = start.sprocket_speeds()[index].abs();
+    let speed = start.mean_speeds()[index].abs();
     // t = n 2π/ω
     let time = turns * TAU / speed;
     if time.is_finite() {
@@ -233,7 +233,7 @@ fn turns_last(
     } else {
         let name = &names[index];
         Err(refuse(format!(
-            "`{name}` sets off at {speed} rad/s: give a time, or turns of a sprocket that turns"
+            "`{name}` turns at {speed} rad/s in the mean: give a time, or turns of a sprocket that turns"
         )))
     }
 }

@@ -9,8 +9,9 @@ use crate::{AssemblyError, Drive, Motion};
 impl Drive {
     /// The drive as it stands at a time t₀ \[s\], to be assembled there: 0, or before.
     ///
-    /// What a motion moves stands where the motion has it at t₀, and goes on with it from there. Angles count from t₀,
-    /// those that are given in time as well as those that are coordinates, so that their phases stay together.
+    /// What is given in time stands where its time has it at t₀, and goes on from there. Angles count from t₀, those that are given
+    /// in time as well as those that are coordinates, and with them all that repeats with the turns of a shaft: however long before
+    /// t = 0 the drive begins, it is the same drive.
     ///
     /// # Errors
     /// A time after 0; a guide whose face does not stand where its motion takes it.
@@ -37,7 +38,7 @@ impl Drive {
         }
         for shaft in &mut parts.shafts {
             if let Rotation::Prescribed(motion) = &mut shaft.rotation {
-                *motion = motion.from(t);
+                *motion = motion.from(t).0;
             }
         }
         for placed in &mut parts.chains {
@@ -61,8 +62,8 @@ impl Drive {
 /// Where a pair of motions is at a time; from then on they are counted from there.
 fn gone_on(motions: [&mut Motion; 2], t: f64) -> Vector {
     let [x, y] = motions.map(|motion| {
-        let there = motion.at(t).position;
-        *motion = motion.from(t);
+        let (onward, there) = motion.from(t);
+        *motion = onward;
         there
     });
     Vector::new(x, y)

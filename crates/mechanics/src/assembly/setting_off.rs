@@ -5,13 +5,13 @@ use std::f64::consts::TAU;
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 
-use crate::System;
 use crate::drive::{Layout, SpanStart, Stop};
 use crate::system::{Member, Shaft, TurnedBy};
+use crate::{Motion, System};
 
 /// Gives chains the velocities that their layouts ask for, and along routes the sprockets too.
 pub(super) fn set_off(system: &System, layouts: &[&Layout], q: &[f64], v: &mut [f64]) {
-    let speeds = speeds(system, layouts);
+    let speeds = speeds(system, layouts, |motion| motion.at(system.begin).rate);
     for (shaft, speed) in system.bodies.shafts.iter().zip(&speeds) {
         if let (Some(dof), Some(speed)) = (shaft.led(), speed) {
             v[dof] = *speed;
@@ -34,9 +34,15 @@ pub(super) fn set_off(system: &System, layouts: &[&Layout], q: &[f64], v: &mut [
 /// ```text
 /// ω z p = the same for all sprockets of a route
 /// ```
-fn speeds(system: &System, layouts: &[&Layout]) -> Vec<Option<f64>> {
+///
+/// `rate`: that of a motion.
+pub(super) fn speeds(
+    system: &System,
+    layouts: &[&Layout],
+    rate: impl Fn(&Motion) -> f64,
+) -> Vec<Option<f64>> {
     let given = |shaft: &Shaft| match &shaft.turn.by {
-        TurnedBy::Motion(_) => Some(shaft.turn.kinematics(system.begin, &[], &[]).rate),
+        TurnedBy::Motion(motion) => Some(shaft.turn.ratio * rate(motion)),
         // That of a coordinate would be read off the state.
         TurnedBy::Coordinate(_) => None,
     };

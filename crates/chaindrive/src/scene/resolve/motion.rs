@@ -60,20 +60,7 @@ fn mean_speed(
     scene: &SceneText,
     findings: &mut Findings<'_>,
 ) -> Option<f64> {
-    let carrying = |sprocket: &str| {
-        let carries = |shaft: &&schema::Shaft| shaft.sprockets.iter().any(|it| it == sprocket);
-        scene.shafts.iter().find(carries)
-    };
-    let given = |shaft: &schema::Shaft| speed_given(shaft.motion.as_ref());
-    let shafts = scene.shafts.iter().map(|s| (s.name.as_str(), given(s)));
-    let sprockets = scene.sprockets.iter().map(|sprocket| {
-        let own = || speed_given(sprocket.motion.as_ref());
-        (
-            sprocket.name.as_str(),
-            carrying(&sprocket.name).map_or_else(own, given),
-        )
-    });
-    let all: Vec<(&str, Option<f64>)> = shafts.chain(sprockets).collect();
+    let all = mean_speeds(scene);
     let path = format!("{path}.of");
     match all.iter().find(|(known, _)| *known == name) {
         Some((_, Some(speed))) => Some(*speed),
@@ -95,6 +82,47 @@ fn mean_speed(
             None
         }
     }
+}
+
+/// Shafts and sprockets with the mean speeds \[rad/s\] that motions give them, through gears as well.
+///
+/// ```text
+/// ω₁ = ∓ (z₀/z₁) ω₀     − for gears side by side
+/// ```
+fn mean_speeds(scene: &SceneText) -> Vec<(&str, Option<f64>)> {
+    let shafts = scene.shafts.iter();
+    let own = shafts.map(|shaft| (shaft.name.as_str(), speed_given(shaft.motion.as_ref())));
+    let sprockets = scene.sprockets.iter();
+    let sprockets = sprockets.map(|it| (it.name.as_str(), speed_given(it.motion.as_ref())));
+    let mut all: Vec<(&str, Option<f64>)> = own.chain(sprockets).collect();
+    let place = |name: &str| {
+        let carrying = scene.shafts.iter().position(|shaft| {
+            shaft.name == name || shaft.sprockets.iter().any(|sprocket| sprocket == name)
+        });
+        let sprocket = || scene.sprockets.iter().position(|it| it.name == name);
+        carrying.or_else(|| sprocket().map(|index| scene.shafts.len() + index))
+    };
+    // Through as many gears as there are, one after the other.
+    for _ in 0..scene.gears.len() {
+        for gears in &scene.gears {
+            let [Some(first), Some(second)] = [0, 1].map(|end| place(&gears.between[end])) else {
+                continue;
+            };
+            let ratio = gears.ratio();
+            match (all[first].1, all[second].1) {
+                (Some(speed), None) => all[second].1 = Some(ratio * speed),
+                (None, Some(speed)) => all[first].1 = Some(speed / ratio),
+                _ => {}
+            }
+        }
+    }
+    // A sprocket turns with the shaft that carries it.
+    for index in scene.shafts.len()..all.len() {
+        if let Some(carrying) = place(all[index].0) {
+            all[index].1 = all[carrying].1;
+        }
+    }
+    all
 }
 
 /// Mean speed of a motion that has one, other than zero.
@@ -141,20 +169,11 @@ fn resolve<P: Copy, R: Copy>(
                 })
                 .collect(),
         },
-        schema::Motion::Orders { speed, terms, .. } => Motion::Harmonics {
+        schema::Motion::Orders { speed, terms, .. } => Motion::Orders {
             rate: speed.map_or(0.0, &rate),
-            terms: terms
-                .iter()
-                .map(|term| {
-                    // A sin(n ω t + φ) = ± A sin(2π f t ± φ),   f = n |ω| / 2π,   the sign that of ω
-                    let sign = turning.signum();
-                    Harmonic {
-                        amplitude: sign * position(term.amplitude),
-                        frequency: term.order.0 * turning.abs() / TAU,
-                        phase: sign * term.phase.0,
-                    }
-                })
-                .collect(),
+            turning,
+            terms: orders(terms, position),
+            since: 0.0,
         },
         schema::Motion::Table { times, values } => {
             let times = times.iter().map(|time| time.0).collect();
@@ -162,6 +181,15 @@ fn resolve<P: Copy, R: Copy>(
             Motion::Table(table(times, values, path, "times", findings)?)
         }
     })
+}
+
+fn orders<A: Copy>(terms: &[schema::OrderTerm<A>], amplitude: impl Fn(A) -> f64) -> Vec<Order> {
+    let order = |term: &schema::OrderTerm<A>| Order {
+        amplitude: amplitude(term.amplitude),
+        order: term.order.0,
+        phase: term.phase.0,
+    };
+    terms.iter().map(order).collect()
 }
 
 /// Torques of one list, each with its place.
@@ -225,14 +253,7 @@ fn torque(
         }),
         schema::Torque::Orders { terms, .. } => Some(Torque::Orders {
             of,
-            terms: terms
-                .iter()
-                .map(|term| Order {
-                    amplitude: term.amplitude.0,
-                    order: term.order.0,
-                    phase: term.phase.0,
-                })
-                .collect(),
+            terms: orders(terms, |torque| torque.0),
         }),
         schema::Torque::TimeTable { times, torques } => over(
             Argument::Time,

@@ -4,7 +4,7 @@ use chaindrive_mechanics::{Coupling, GearPair, Rotation, Shaft};
 
 use super::{Findings, Names, motion};
 use crate::scene::quantity::{Angle, AngularSpeed};
-use crate::scene::schema::{self, Mesh, SceneText};
+use crate::scene::schema::{self, SceneText};
 use crate::scene::suggest::one_of;
 
 /// All that turns.
@@ -80,16 +80,10 @@ pub(super) fn resolve(
         .iter()
         .enumerate()
         .map(|(i, text)| {
-            let [first, second] = text.teeth.map(|teeth| f64::from(teeth.0));
-            // i = ∓ z₀/z₁
-            let ratio = first / second;
             Some(GearPair {
                 name: text.name.clone(),
                 shafts: ends.find(&text.between, &format!("gears[{i}]"), findings)?,
-                ratio: match text.mesh {
-                    Mesh::External => -ratio,
-                    Mesh::Internal => ratio,
-                },
+                ratio: text.ratio(),
             })
         })
         .collect();

@@ -21,11 +21,11 @@ pub(crate) use contact::{Contact, Contacts, Cylinders, Dissipation, Elastic, Fla
 pub(crate) use friction::Friction;
 pub(crate) use guide::{Face, Guide, GuideSupport, TravelSide};
 pub(crate) use links::{ChainModel, Joint, Link, Roller, Rollers};
-pub(crate) use motion::{Motion, Torque};
+pub(crate) use motion::{Motion, OrderTerm, Torque};
 pub(crate) use route::{Adjust, Route};
 pub(crate) use run::Run;
 pub use run::RunDefaults;
-pub(crate) use shaft::{Coupling, Gears, Mesh, Shaft};
+pub(crate) use shaft::{Coupling, Gears, Shaft};
 pub(crate) use sprocket::{PathPiece, Seat, Side, Sprocket, Support, TipForm, Tooth};
 pub(crate) use tensioner::{Carrier, Oil, Push, Tensioner};
 

@@ -8,6 +8,9 @@ use crate::scene::quantity::{
 };
 
 /// A coordinate given in time, counted from the assembled position.
+///
+/// Times are those of the record, which begins at t = 0 after the run-in. Angles and turns count from where the simulation
+/// began, before the run-in.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 #[schemars(rename = "Motion_of_{Position}")]
@@ -42,13 +45,13 @@ pub(crate) enum Motion<Position, Rate> {
         terms: Vec<Term<Position>>,
     },
     /// A mean speed with sine terms that repeat with the turns of a shaft,
-    /// amplitude × (sin(order α + phase) − sin(phase)), α its angle at its mean speed.
+    /// amplitude × (sin(order α + phase) − sin(phase)), α its angle at its mean speed since the simulation began.
     Orders {
         /// Mean speed; absent: 0.
         #[serde(default)]
         speed: Option<Rate>,
-        /// Name of the shaft, or of a sprocket on it, whose turns count: its motion is given, with a mean speed. Absent: the shaft
-        /// that this motion turns.
+        /// Name of the shaft, or of a sprocket on it, whose turns count: its motion is given, with a mean speed, or gears join it with
+        /// such a shaft. Absent: the shaft that this motion turns.
         #[serde(default)]
         of: Option<String>,
         /// The orders.
@@ -73,7 +76,7 @@ pub(crate) struct Term<Position> {
     /// Frequency [Hz].
     #[schemars(extend("minimum" = 0))]
     pub(crate) frequency: Frequency,
-    /// Phase at t = 0 [rad]; absent: 0.
+    /// Phase at t = 0, where the record begins [rad]; absent: 0.
     #[serde(default)]
     pub(crate) phase: Angle,
 }
@@ -88,7 +91,7 @@ pub(crate) struct OrderTerm<Amplitude> {
     pub(crate) order: Ratio,
     /// Amplitude (an angle, a length or a torque).
     pub(crate) amplitude: Amplitude,
-    /// Phase where the shaft was assembled [rad]; absent: 0.
+    /// Phase where the simulation began, before the run-in [rad]; absent: 0.
     #[serde(default)]
     pub(crate) phase: Angle,
 }
@@ -106,6 +109,9 @@ impl Default for Turns {
 }
 
 /// A torque on a shaft, counter-clockwise positive.
+///
+/// Times are those of the record, which begins at t = 0 after the run-in. Angles count from where the simulation began, before
+/// the run-in.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum Torque {
@@ -142,11 +148,11 @@ pub(crate) enum Torque {
         amplitude: Moment,
         /// Periods per turn [–].
         order: Ratio,
-        /// Phase [rad]; absent: 0.
+        /// Phase where the simulation began, before the run-in [rad]; absent: 0.
         #[serde(default)]
         phase: Angle,
     },
-    /// Torques that repeat with the angle of a shaft, Σ amplitude × sin(order θ + phase), θ counted from where it was assembled.
+    /// Torques that repeat with the angle of a shaft, Σ amplitude × sin(order θ + phase), θ counted from where the simulation began.
     Orders {
         /// Name of the shaft, or of a sprocket on it, that θ belongs to; absent: the one that the torque acts on.
         #[serde(default)]

@@ -66,6 +66,18 @@ pub(crate) struct Gears {
     pub(crate) mesh: Mesh,
 }
 
+impl Gears {
+    /// Speed of the second shaft for that of the first.
+    pub(crate) fn ratio(&self) -> f64 {
+        let [first, second] = self.teeth.map(|teeth| f64::from(teeth.0));
+        // i = ∓ z₀/z₁
+        match self.mesh {
+            Mesh::External => -first / second,
+            Mesh::Internal => first / second,
+        }
+    }
+}
+
 /// Number of teeth of a gear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(transparent)]

@@ -16,6 +16,7 @@ const CRATES: [Storeys; 4] = [
         folder: "mechanics",
         layers: &[
             &["energy", "error", "lanes"],
+            &["order"],
             &["articulation", "motion", "profile", "strength", "tensioner"],
             &["chain", "torque"],
             &["drive"],
