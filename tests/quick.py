@@ -24,8 +24,8 @@ ALWAYS = ["test_api.py", "test_starting.py"]
 
 LINTS = ["cargo", "clippy", "--quiet", "--workspace", "--", "-D", "warnings"]
 
-# A small drive, and how it is run by a command that is not optimised, which is built in seconds. Its
-# kernels on wide registers would take more stack than a thread has.
+# A small drive, and how it is run by a command that is not optimised, which is built in seconds.
+# Its kernels on wide registers would take more stack than a thread has.
 DRIVE = ["run", "marine_two_sprockets", "--until", "2 ms", "--no-error", "-q"]
 SMALL_DRIVE = [
     "env",

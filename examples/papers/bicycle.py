@@ -18,7 +18,7 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 import xarray as xr
-from replicates import Case, Page, arrivals, study, table
+from replicates import Case, Page, arrivals, p99, study, table
 
 import chaindrive as cd
 
@@ -120,7 +120,7 @@ def measure(drive: cd.Drive, length: Length, **options: Any) -> dict[str, float]
         "tight": float(tension[:, 0].mean()),
         "tight_std": float(tension[:, 0].std()),
         "slack": float(tension[:, 1].mean()),
-        "contact_p99": float(np.percentile(force, 99)),
+        "contact_p99": p99(force),
         "ripple": float(rear.std() / abs(rear.mean())),
         "residual": abs(float(run.attrs["energy_residual_largest"])) / moved,
         "evaluations": float(run.attrs["evaluations"]),
@@ -136,7 +136,7 @@ def measure(drive: cd.Drive, length: Length, **options: Any) -> dict[str, float]
         found[f"arrival {name}"] = float(np.median(landed)) if landed.size else np.nan
     if "joint_force" in run:
         pins = run["joint_force"].values
-        found["joint_p99"] = float(np.percentile(pins, 99))
+        found["joint_p99"] = p99(pins)
         found["joint_open"] = float((pins == 0.0).mean())
         found["depth_p99"] = float(np.percentile(run["joint_depth"].values, 99))
         knocks = (run["event_kind"] == "joint").values & begun

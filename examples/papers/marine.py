@@ -33,7 +33,7 @@ from marine_drive import (
 )
 from marine_waves import polygon, vibration
 from matplotlib import pyplot as plt
-from replicates import JOBS, Case, Page, starts, study, table
+from replicates import JOBS, Case, Page, p99, starts, study, table
 
 import chaindrive as cd
 
@@ -125,7 +125,7 @@ def along_the_wrap(run: xr.Dataset, radius: float) -> tuple[np.ndarray, np.ndarr
         if here.size:
             middle.append(0.5 * (edges[k - 1] + edges[k]))
             means.append(here.mean())
-            high.append(np.percentile(here, 99))
+            high.append(p99(here))
     return np.array(middle), np.array(means), np.array(high)
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from replicates import arrivals
+from replicates import arrivals, p99
 
 import chaindrive as cd
 
@@ -178,7 +178,7 @@ def measure(drive: cd.Drive, length: Length) -> dict[str, float]:
         "tight_std": float(tight.std()),
         "slack": float(slack.mean()),
         "slack_std": float(slack.std()),
-        "contact_p99": float(np.percentile(run["contact_force"].values, 99)),
+        "contact_p99": p99(run["contact_force"].values),
         "arrival": float(np.median(landed)) if landed.size else np.nan,
         "arrival_p90": float(np.percentile(landed, 90)) if landed.size else np.nan,
         "ripple": float(camshaft.std() / abs(camshaft.mean())),

@@ -50,6 +50,12 @@ def half_width(values: np.ndarray) -> float:
     return CHANCE * float(np.std(values, ddof=1)) / np.sqrt(len(values))
 
 
+def p99(force: np.ndarray) -> float:
+    """99th percentile of forces [N] of what bears any, as runs and sweeps state it."""
+    loaded = force[force > 0.0]
+    return float(np.percentile(loaded, 99)) if loaded.size else 0.0
+
+
 def difference(base: np.ndarray, other: np.ndarray) -> tuple[float, float]:
     """Return by how much `other` is larger in the mean, and half of the 99 % interval.
 

@@ -126,6 +126,8 @@ impl Simulation {
         system.set_onset_depth(run.onset_depth);
         system.log_events(run.events);
         system.forget_impacts();
+        // A run may be read at its very beginning.
+        system.keep_forces_from(assembled.time);
         let stepper = method
             .start(&mut system, &mut state)
             .map_err(|error| SimulationError::starting(error, run))?;

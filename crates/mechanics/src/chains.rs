@@ -413,6 +413,16 @@ impl Chain {
         ask!(self, chain => chain.observe(at, record, out));
     }
 
+    /// Appends forces of joints, and tensions of links, as a record has them.
+    pub(crate) fn observe_forces(&self, at: Moment<'_>, record: &Record, out: &mut Observation) {
+        ask!(self, chain => chain.observe_forces(at, record, out));
+    }
+
+    /// Whether its links are springs, whose tension follows from where their ends are.
+    pub(crate) fn has_springs(&self) -> bool {
+        !matches!(self, Self::Links(_))
+    }
+
     /// Adds kinetic energy, weight, and what links or joints store.
     pub(crate) fn energies(
         &self,

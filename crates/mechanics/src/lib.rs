@@ -18,6 +18,7 @@
 //! SI units and radians throughout; counter-clockwise positive; tension positive; normals point
 //! out of the material; penetration positive.
 
+mod applied;
 mod articulation;
 mod assembly;
 mod chain;

@@ -5,6 +5,7 @@ use chaindrive_integrate::{Moment, SecondOrderSystem};
 use serde::{Deserialize, Serialize};
 
 use crate::System;
+use crate::applied::{LISTS, blended};
 use crate::contact::Kept;
 use crate::energy::{Energy, Flow, Store};
 use crate::system::{Member, OnWheel, RailContact, Record, WheelSupport};
@@ -223,7 +224,8 @@ impl System {
 
     /// Reads everything off a state between or at accepted steps.
     ///
-    /// Evaluates the forces once, on `record` as work space; the system does not change.
+    /// Evaluates the forces once, on `record` as work space; the system does not change. Forces of contacts and joints are those that
+    /// steps applied, where they are [kept](Self::keep_forces_from), and else those of the laws at this state.
     pub fn observe(
         &self,
         at: Moment<'_>,
@@ -239,25 +241,93 @@ impl System {
         for (member, record) in self.chains.iter().zip(&record.chains) {
             member.chain.observe(member.own(at), record, out);
         }
+        self.observe_forces(at, record, out);
+        self.blend_forces(at.t, out);
+        out.joint_force = lengths(&out.joint_force_x, &out.joint_force_y);
+        out.bush_force = lengths(&out.bush_force_x, &out.bush_force_y);
         self.observe_sprockets(at, record, out);
         self.observe_spans(out);
-        Self::observe_guides(record, out);
         self.observe_shafts(at, out);
         self.observe_tensioners(at, out);
         out.energy = self.energy(at, flows, record);
     }
 
-    fn observe_sprockets(&self, at: Moment<'_>, record: &Record, out: &mut Observation) {
-        out.contact_force.clear();
+    /// Forces of contacts and joints, as a record has them.
+    fn observe_forces(&self, at: Moment<'_>, record: &Record, out: &mut Observation) {
+        for list in forces(out) {
+            list.clear();
+        }
+        for (member, record) in self.chains.iter().zip(&record.chains) {
+            member.chain.observe_forces(member.own(at), record, out);
+        }
+        for wrench in &record.wheel_wrenches {
+            out.sprocket_torque.push(wrench.moment);
+            out.sprocket_force_x.push(wrench.force[0]);
+            out.sprocket_force_y.push(wrench.force[1]);
+        }
+        for wrench in &record.rail_wrenches {
+            out.guide_force_x.push(wrench.force[0]);
+            out.guide_force_y.push(wrench.force[1]);
+        }
         out.contact_force.resize(self.rollers(), 0.0);
+        let mut first = 0;
+        for (member, record) in self.chains.iter().zip(&record.chains) {
+            for (on, touch) in member.contacts.teeth.iter().zip(&record.loads.teeth) {
+                let slots = on.contacts.slots;
+                on.contacts.for_each_slot(|slot, roller| {
+                    for side in 0..on.contacts.sides() {
+                        let force = touch.state.get(Kept::Force, side * slots + slot);
+                        out.contact_force[first + roller] += force;
+                    }
+                });
+            }
+            first += member.chain.rollers();
+        }
+    }
+
+    /// Keeps the forces of a step that is accepted, as `record` has them.
+    pub(crate) fn note_applied(&mut self, at: Moment<'_>, record: &Record) {
+        let mut end = self.applied.next();
+        let mut seen = Observation::default();
+        for (list, kept) in forces(&mut seen).into_iter().zip(&mut end.lists) {
+            std::mem::swap(list, kept);
+        }
+        self.observe_forces(at, record, &mut seen);
+        for (list, kept) in forces(&mut seen).into_iter().zip(&mut end.lists) {
+            std::mem::swap(list, kept);
+        }
+        end.time = at.t;
+        self.applied.push(end);
+    }
+
+    /// Puts the forces that steps applied in the place of those of the laws, where they are known; the tension of links that are
+    /// springs is that of their law.
+    fn blend_forces(&self, t: f64, out: &mut Observation) {
+        let Some((share, [before, now])) = self.applied.around(t) else {
+            return;
+        };
+        // Links that are springs keep what their law says at t.
+        let springs = out.link_tension.clone();
+        let lists = before.lists.iter().zip(&now.lists);
+        for ((before, now), list) in lists.zip(forces(out)) {
+            blended(share, before, now, list);
+        }
+        let mut first = 0;
+        for member in &self.chains {
+            let links = first..first + member.chain.links();
+            first = links.end;
+            if member.chain.has_springs() {
+                out.link_tension[links.clone()].copy_from_slice(&springs[links]);
+            }
+        }
+    }
+
+    fn observe_sprockets(&self, at: Moment<'_>, record: &Record, out: &mut Observation) {
         for values in [
             &mut out.contact_depth,
             &mut out.contacts,
             &mut out.sprocket_angle,
             &mut out.sprocket_speed,
-            &mut out.sprocket_torque,
-            &mut out.sprocket_force_x,
-            &mut out.sprocket_force_y,
             &mut out.sprocket_x,
             &mut out.sprocket_y,
         ] {
@@ -270,27 +340,20 @@ impl System {
             out.contact_depth.push(wrench.depth);
             out.sprocket_angle.push(kinematics.position - wheel.angle);
             out.sprocket_speed.push(kinematics.rate);
-            out.sprocket_torque.push(wrench.moment);
-            out.sprocket_force_x.push(wrench.force[0]);
-            out.sprocket_force_y.push(wrench.force[1]);
             out.sprocket_x.push(centre.x);
             out.sprocket_y.push(centre.y);
         }
-        let mut first = 0;
         for (member, record) in self.chains.iter().zip(&record.chains) {
             for (on, touch) in member.contacts.teeth.iter().zip(&record.loads.teeth) {
                 let slots = on.contacts.slots;
-                on.contacts.for_each_slot(|slot, roller| {
+                on.contacts.for_each_slot(|slot, _| {
                     for side in 0..on.contacts.sides() {
-                        let (state, contact) = (&touch.state, side * slots + slot);
-                        out.contact_force[first + roller] += state.get(Kept::Force, contact);
-                        if state.get(Kept::Gap, contact) < 0.0 {
+                        if touch.state.get(Kept::Gap, side * slots + slot) < 0.0 {
                             out.contacts[on.wheel] += 1.0;
                         }
                     }
                 });
             }
-            first += member.chain.rollers();
         }
     }
 
@@ -368,15 +431,6 @@ impl System {
             })
             .max()
             .map(|(_, k)| (seated[k], seated[(k + count - 1) % count]))
-    }
-
-    fn observe_guides(record: &Record, out: &mut Observation) {
-        out.guide_force_x.clear();
-        out.guide_force_y.clear();
-        for wrench in &record.rail_wrenches {
-            out.guide_force_x.push(wrench.force[0]);
-            out.guide_force_y.push(wrench.force[1]);
-        }
     }
 
     fn observe_shafts(&self, at: Moment<'_>, out: &mut Observation) {
@@ -485,6 +539,28 @@ impl System {
     }
 }
 
+/// The lists of an observation that are forces of contacts and joints, or follow from them.
+fn forces(out: &mut Observation) -> [&mut Vec<f64>; LISTS] {
+    [
+        &mut out.contact_force,
+        &mut out.sprocket_torque,
+        &mut out.sprocket_force_x,
+        &mut out.sprocket_force_y,
+        &mut out.guide_force_x,
+        &mut out.guide_force_y,
+        &mut out.link_tension,
+        &mut out.joint_force_x,
+        &mut out.joint_force_y,
+        &mut out.bush_force_x,
+        &mut out.bush_force_y,
+    ]
+}
+
+/// Lengths of vectors.
+fn lengths(x: &[f64], y: &[f64]) -> Vec<f64> {
+    x.iter().zip(y).map(|(x, y)| x.hypot(*y)).collect()
+}
+
 impl Observation {
     /// Makes room for what every chain appends.
     fn clear_chains(&mut self) {
@@ -493,20 +569,13 @@ impl Observation {
             &mut self.roller_y,
             &mut self.roller_vx,
             &mut self.roller_vy,
-            &mut self.link_tension,
             &mut self.link_angle,
             &mut self.joint_offset_x,
             &mut self.joint_offset_y,
-            &mut self.joint_force_x,
-            &mut self.joint_force_y,
-            &mut self.joint_force,
             &mut self.joint_angle,
             &mut self.joint_depth,
             &mut self.bush_offset_x,
             &mut self.bush_offset_y,
-            &mut self.bush_force_x,
-            &mut self.bush_force_y,
-            &mut self.bush_force,
             &mut self.bush_depth,
         ] {
             values.clear();

@@ -34,12 +34,12 @@ pub use memory::SystemMemory;
 pub(crate) use shafts::{Shaft, Turn, TurnedBy};
 pub(crate) use slide::Slide;
 
-use crate::End;
 use crate::chains::{self, Chain, LaidAs, Rates};
 use crate::contact::Wrench;
 use crate::energy::Flow;
 use crate::events::EventLog;
 use crate::tensioner::Slopes;
+use crate::{End, applied};
 
 /// A drive ready to move.
 #[derive(Clone, Debug)]
@@ -51,6 +51,8 @@ pub struct System {
     pub(crate) groups: Vec<Group>,
     /// The log of contacts, where one is kept.
     pub(crate) events: Option<EventLog>,
+    /// Forces at the ends of the last steps.
+    pub(crate) applied: applied::Ends,
     /// 1/ω of the stiffest mode \[s\]: damping included, without that of teeth on particles, without any, and without any and the springs
     /// that steps of one solution carry.
     time_scales: [f64; 4],
@@ -84,6 +86,12 @@ impl System {
     /// Rejects steps in which a contact begins deeper than `depth` \[m\]; `None` accepts any.
     pub fn set_onset_depth(&mut self, depth: Option<f64>) {
         self.onset_depth = depth;
+    }
+
+    /// Keeps the forces of contacts and joints as steps apply them, of every step that ends at a time \[s\] or later: what is
+    /// [observed](Self::observe) within the last step then has them.
+    pub fn keep_forces_from(&mut self, from: f64) {
+        self.applied.keep_from(from);
     }
 
     /// Computes the forces on other registers than those in use: to see what wider lanes gain, and that they agree.
@@ -428,6 +436,9 @@ impl SecondOrderSystem for System {
     }
 
     fn commit(&mut self, t: f64, q: &mut [f64], v: &mut [f64], end: &mut Record) -> Continuity {
+        if self.applied.wants(t) {
+            self.note_applied(Moment { t, q, v, z: &[] }, end);
+        }
         for (member, record) in self.chains.iter_mut().zip(&mut end.chains) {
             member.commit(t, record, &self.bodies);
         }

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use chaindrive_mechanics::{Input, Observation, System};
 
 use super::{Moving, STEPS_PER_LOOK, Simulation};
-use crate::{Channel, SimulationError};
+use crate::{Channel, SimulationError, Stepping};
 
 /// Inputs that can be set while a drive moves, by the names of the scene.
 ///
@@ -97,6 +97,7 @@ impl Simulation {
                 } else if moving.state.t + moving.stepper.next_step() >= time {
                     self.before = Some(Box::new(moving.clone()));
                 }
+                moving.keep_forces_for(time);
                 moving.step()?;
             }
         }
@@ -173,6 +174,19 @@ impl Simulation {
 }
 
 impl Moving {
+    /// Keeps the forces at the ends of the step in which a time will lie.
+    fn keep_forces_for(&mut self, time: f64) {
+        let method = self.stepper.method();
+        let reach = if Stepping::from(method).is_adaptive() {
+            // The next step may be many times as long as this one.
+            f64::INFINITY
+        } else {
+            // Beside what rounding makes of times.
+            1.001 * self.stepper.next_step()
+        };
+        self.system.keep_forces_from(time - reach);
+    }
+
     /// Plans a change, and makes it if it is due.
     fn plan(&mut self, time: f64, input: Input, value: f64) -> Result<(), SimulationError> {
         let Self {

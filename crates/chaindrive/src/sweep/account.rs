@@ -58,10 +58,10 @@ statistics! {
     SpanTensionStd, "span_tension_std", "N", Some("span"), "standard deviation of the span tension";
     SpanTensionMin, "span_tension_min", "N", Some("span"), "least sample of the span tension";
     SpanTensionMax, "span_tension_max", "N", Some("span"), "greatest sample of the span tension";
-    ContactForceP50, "contact_force_p50", "N", None, "median of the forces between rollers and teeth";
-    ContactForceP90, "contact_force_p90", "N", None, "90th percentile of the forces between rollers and teeth";
-    ContactForceP99, "contact_force_p99", "N", None, "99th percentile of the forces between rollers and teeth";
-    ContactForceMax, "contact_force_max", "N", None, "largest sample of the forces between rollers and teeth";
+    ContactForceP50, "contact_force_p50", "N", None, "median of the forces of loaded rollers on teeth";
+    ContactForceP90, "contact_force_p90", "N", None, "90th percentile of the forces of loaded rollers on teeth";
+    ContactForceP99, "contact_force_p99", "N", None, "99th percentile of the forces of loaded rollers on teeth";
+    ContactForceMax, "contact_force_max", "N", None, "largest sample of the forces of rollers on teeth";
     EnergySupplied, "energy_supplied_total", "J", None, "energy put in by drivers, motions and torques";
     EnergyDissipated, "energy_dissipated_total", "J", None, "energy lost";
     EnergyResidualMax, "energy_residual_max", "J", None, "largest energy unaccounted for, with its sign";

@@ -18,6 +18,7 @@ mod live;
 mod loads;
 mod mistakes;
 mod object_store;
+mod one_force;
 mod precision;
 mod reproducible;
 mod requests;

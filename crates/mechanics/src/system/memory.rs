@@ -10,6 +10,7 @@ use super::bodies::Anchor;
 use super::inputs::{Inputs, OnwardCentre};
 use super::{BodyContacts, Member, RailContact, Record, System};
 use crate::MemoryError;
+use crate::applied;
 use crate::chains::{ChainMemory, Rates};
 use crate::contact::Impacts;
 use crate::contact::{PlateMemory, Windows};
@@ -22,6 +23,7 @@ pub struct SystemMemory {
     inputs: Inputs,
     centres: Vec<OnwardCentre>,
     events: Option<EventLog>,
+    applied: applied::Ends,
     time_scales: [f64; 4],
 }
 
@@ -49,6 +51,7 @@ impl System {
             inputs: self.bodies.inputs.clone(),
             centres: self.centres_set(),
             events: self.events.clone(),
+            applied: self.applied.clone(),
             time_scales: self.time_scales,
         }
     }
@@ -71,6 +74,7 @@ impl System {
         self.set_centres(&memory.centres)?;
         self.bodies.inputs = memory.inputs;
         self.events = memory.events;
+        self.applied = memory.applied;
         self.time_scales = memory.time_scales;
         Ok(())
     }

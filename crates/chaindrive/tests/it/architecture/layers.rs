@@ -15,7 +15,7 @@ const CRATES: [Storeys; 4] = [
     Storeys {
         folder: "mechanics",
         layers: &[
-            &["energy", "error", "lanes"],
+            &["applied", "energy", "error", "lanes"],
             &["order"],
             &["articulation", "motion", "profile", "strength", "tensioner"],
             &["chain", "torque"],

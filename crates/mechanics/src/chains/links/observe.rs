@@ -23,17 +23,12 @@ impl Linkage {
             .extend_from_slice(&joint_state.posture.vx[..count]);
         out.roller_vy
             .extend_from_slice(&joint_state.posture.vy[..count]);
-        out.link_tension.extend(self.tensions(at, record));
         out.link_angle
             .extend((0..self.links).map(|link| at.q[3 * link + 2]));
         for (index, joint) in self.joints.iter().enumerate() {
             let offset = self.offset(index, at, joint_state);
-            let force = self.pin_force(joint_state, index);
             out.joint_offset_x.push(offset.x);
             out.joint_offset_y.push(offset.y);
-            out.joint_force_x.push(force.x);
-            out.joint_force_y.push(force.y);
-            out.joint_force.push(force.norm());
             out.joint_depth.push(match &self.joining {
                 Joining::Clearance(_) => {
                     (-joint_state.memory.joints.get(Kept::Gap, index)).max(0.0)
@@ -48,29 +43,46 @@ impl Linkage {
         self.observe_bushes(at, joint_state, out);
     }
 
-    /// Appends how every bush stands to its roller, where rollers are free.
-    fn observe_bushes(&self, at: Moment<'_>, joint_state: &JointState, out: &mut Observation) {
-        let mut forces = vec![Vector::zeros(); self.joints.len()];
+    /// Appends the forces of joints and free rollers, and what they make of the tension of links.
+    pub(crate) fn observe_forces(&self, at: Moment<'_>, record: &Record, out: &mut Observation) {
+        let joint_state = &record.joint_state;
+        out.link_tension.extend(self.tensions(at, record));
+        for joint in 0..self.joints.len() {
+            let force = self.pin_force(joint_state, joint);
+            out.joint_force_x.push(force.x);
+            out.joint_force_y.push(force.y);
+        }
+        let nothing = Vector::new(f64::NAN, f64::NAN);
+        let free = self.free_rollers.as_ref();
+        let mut forces: Vec<Vector> = (0..self.joints.len())
+            .map(|joint| match free.and_then(|free| free.body[joint]) {
+                Some(_) => Vector::zeros(),
+                None => nothing,
+            })
+            .collect();
         // Only bushes press on another body of the chain here: pins are not among the elements.
         let bushes = joint_state.elements.iter();
         for bush in bushes.filter(|element| matches!(element.b, Partner::Body(_))) {
             forces[bush.joint] = bush.push();
         }
+        out.bush_force_x.extend(forces.iter().map(|force| force.x));
+        out.bush_force_y.extend(forces.iter().map(|force| force.y));
+    }
+
+    /// Appends how every bush stands to its roller, where rollers are free.
+    fn observe_bushes(&self, at: Moment<'_>, joint_state: &JointState, out: &mut Observation) {
         for (index, joint) in self.joints.iter().enumerate() {
             let free = self.free_rollers.as_ref();
             let body = free.and_then(|free| free.body[index]);
             let nothing = Vector::new(f64::NAN, f64::NAN);
-            let (offset, force, depth) = body.map_or((nothing, nothing, f64::NAN), |body| {
+            let (offset, depth) = body.map_or((nothing, f64::NAN), |body| {
                 let bush = self.part(joint.carrier, at, &joint_state.posture);
                 let offset = bush.place - free_part(body, at).place;
                 let gap = joint_state.memory.bushes.get(Kept::Gap, index);
-                (offset, forces[index], (-gap).max(0.0))
+                (offset, (-gap).max(0.0))
             });
             out.bush_offset_x.push(offset.x);
             out.bush_offset_y.push(offset.y);
-            out.bush_force_x.push(force.x);
-            out.bush_force_y.push(force.y);
-            out.bush_force.push(force.norm());
             out.bush_depth.push(depth);
         }
     }

@@ -10,13 +10,17 @@ use crate::energy::{Energy, Store};
 use crate::observe::Observation;
 
 impl Particles {
-    pub(crate) fn observe(&self, at: Moment<'_>, record: &Record, out: &mut Observation) {
+    pub(crate) fn observe(&self, at: Moment<'_>, _record: &Record, out: &mut Observation) {
         let n = self.stride;
         let count = self.rollers;
         out.roller_x.extend_from_slice(&at.q[..count]);
         out.roller_y.extend_from_slice(&at.q[n..n + count]);
         out.roller_vx.extend_from_slice(&at.v[..count]);
         out.roller_vy.extend_from_slice(&at.v[n..n + count]);
+    }
+
+    /// Appends the tensions of the links.
+    pub(crate) fn observe_forces(&self, at: Moment<'_>, record: &Record, out: &mut Observation) {
         out.link_tension.extend(self.tensions(at, record));
     }
 

@@ -10,11 +10,16 @@ use crate::contact::{ContactState, Frame, Kept, PlateContact};
 use crate::energy::{Energy, Store};
 use crate::observe::Observation;
 
+/// Sign of the force on a pin along n, which leads from the end before to the end after: the bush pushes it back.
+fn pushed_back(pin: usize) -> f64 {
+    if pin == AFTER { -1.0 } else { 1.0 }
+}
+
 impl Points {
     pub(in crate::chains) fn observe(
         &self,
         at: Moment<'_>,
-        record: &Record,
+        _record: &Record,
         out: &mut Observation,
     ) {
         let n = self.stride;
@@ -23,44 +28,50 @@ impl Points {
         out.roller_y.extend_from_slice(&at.q[n..n + count]);
         out.roller_vx.extend_from_slice(&at.v[..count]);
         out.roller_vy.extend_from_slice(&at.v[n..n + count]);
-        out.link_tension.extend(self.tensions(at, record));
         let angles: Vec<f64> = (0..count)
             .map(|link| {
                 let along = self.along(at.q, link);
                 along.y.atan2(along.x)
             })
             .collect();
-        let found = &record.points;
         for joint in 0..count {
             let [bush, pin] = self.sides(joint);
             let offset = self.point(at.q, pin, joint) - self.point(at.q, bush, joint);
-            let normal = Vector::new(found.pins.normal_x[joint], found.pins.normal_y[joint]);
-            // n leads from the end before to the end after, and the bush pushes the pin back.
-            let sense = if pin == AFTER { -1.0 } else { 1.0 };
-            let force = normal * (sense * found.pins.force[joint]);
             out.joint_offset_x.push(offset.x);
             out.joint_offset_y.push(offset.y);
-            out.joint_force_x.push(force.x);
-            out.joint_force_y.push(force.y);
-            out.joint_force.push(found.pins.force[joint]);
             out.joint_depth
                 .push((offset.norm() - self.pin.clearance).max(0.0));
             let offset = self.point(at.q, bush, joint) - self.point(at.q, ROLLERS, joint);
-            let normal = Vector::new(found.bushes.normal_x[joint], found.bushes.normal_y[joint]);
-            // n leads from the roller to the bush, which the roller pushes back.
-            let force = normal * -found.bushes.force[joint];
             out.bush_offset_x.push(offset.x);
             out.bush_offset_y.push(offset.y);
-            out.bush_force_x.push(force.x);
-            out.bush_force_y.push(force.y);
-            out.bush_force.push(found.bushes.force[joint]);
             out.bush_depth
                 .push((offset.norm() - self.bush.clearance).max(0.0));
             let before = angles[(joint + count - 1) % count];
-            let turned = (angles[joint] - before) * -sense;
+            let turned = (angles[joint] - before) * -pushed_back(pin);
             out.joint_angle.push(turned.sin().atan2(turned.cos()));
         }
         out.link_angle.extend(angles);
+    }
+
+    /// Appends the forces of joints and free rollers, and the tensions of the links.
+    pub(in crate::chains) fn observe_forces(
+        &self,
+        at: Moment<'_>,
+        record: &Record,
+        out: &mut Observation,
+    ) {
+        out.link_tension.extend(self.tensions(at, record));
+        let found = &record.points;
+        for joint in 0..self.rollers {
+            let [_, pin] = self.sides(joint);
+            let force = pushed_back(pin) * found.pins.force[joint];
+            out.joint_force_x.push(force * found.pins.normal_x[joint]);
+            out.joint_force_y.push(force * found.pins.normal_y[joint]);
+            // n leads from the roller to the bush, which the roller pushes back.
+            let force = -found.bushes.force[joint];
+            out.bush_force_x.push(force * found.bushes.normal_x[joint]);
+            out.bush_force_y.push(force * found.bushes.normal_y[joint]);
+        }
     }
 
     /// From the first end of a link to the second.
