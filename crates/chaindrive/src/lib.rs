@@ -38,14 +38,14 @@ pub use catalogue::CatalogueChain;
 pub use chaindrive_integrate::{InstructionSet, Method, Statistics};
 pub use chaindrive_mechanics::{
     Assembled, Body, BodyKind, Clash, ContactEvent, ContactPair, Drive, Energy, EventKinds, Figure,
-    FigureChain, Flow, Instant, MissingChannel, Mode, Modes, Observation, Placement, PlateShape,
-    Pose, Store,
+    FigureChain, Flow, Impact, Instant, MissingChannel, Mode, Modes, Observation, Placement,
+    PlateShape, Pose, Store,
 };
 pub use describe::Description;
 pub use error::SimulationError;
 pub use identity::{Build, Origin};
 pub use precision::{Choice, Estimate, Judgement};
-pub use record::{Axis, Channel, EventTable, Memory, Recording, Summary};
+pub use record::{Axis, Channel, EventTable, ImpactStatistics, Memory, Recording, Summary};
 pub use run::{
     Checkpoint, End, Given, MOST_CIRCUITS, Onlooker, RanIn, Report, Request, RequestError, Run,
     RunError, RunIn, Settings, Sink, Stop, assemble, execute, patiently, run_in,

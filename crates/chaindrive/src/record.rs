@@ -25,7 +25,8 @@ pub use memory::Memory;
 pub use recorded::{LoggedContact, Recorded, RecordedChannel};
 pub(crate) use summary::Batches;
 pub use summary::{
-    ContactStatistics, ForceStatistics, Ledger, Load, SpanStatistics, Steadiness, Summary,
+    ContactStatistics, ForceStatistics, ImpactStatistics, Ledger, Load, SpanStatistics, Steadiness,
+    Summary,
 };
 pub use zarr::{
     Existing, Finished, Object, Objects, ReadError, ResumeError, Stopped, SweepStore, Worker,

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Statistics, Stepper};
 use chaindrive_mechanics::{
-    Assembled, ContactEvent, Drive, Energy, EventKinds, Observation, Record, System,
+    Assembled, ContactEvent, Drive, Energy, EventKinds, Impact, Observation, Record, System,
 };
 
 use crate::SimulationError;
@@ -61,6 +61,8 @@ struct Moving {
     stepper: Stepper<System>,
     /// Contacts that ended before the last sample, and since then.
     ended: [Vec<ContactEvent>; 2],
+    /// Impacts of rollers that came to a sprocket, that ended before the last sample, and since then.
+    struck: [Vec<Impact>; 2],
 }
 
 impl Moving {
@@ -144,7 +146,8 @@ impl Simulation {
                 system,
                 state,
                 stepper,
-                ended: [Vec::new(), Vec::new()],
+                ended: Default::default(),
+                struck: Default::default(),
             },
             before: None,
             read: assembled.time,
@@ -203,9 +206,11 @@ impl Simulation {
 
     fn sample(&mut self, time: f64) {
         self.observe(time);
-        let ended = &mut self.moving.ended;
+        let Moving { ended, struck, .. } = &mut self.moving;
         ended.swap(0, 1);
         ended[1].clear();
+        struck.swap(0, 1);
+        struck[1].clear();
     }
 
     /// Reads everything off the state at a time \[s\] within the last step.
@@ -225,6 +230,11 @@ impl Simulation {
     /// ends; of the kinds that [`Run::events`] asks for.
     pub fn events(&self) -> &[ContactEvent] {
         &self.moving.ended[0]
+    }
+
+    /// Impacts of rollers that came to a sprocket, those that ended between the sample before the last and the last one.
+    pub fn impacts(&self) -> &[Impact] {
+        &self.moving.struck[0]
     }
 
     /// Contacts that [`events`](Self::events) has not handed out: those that ended after the last

@@ -70,7 +70,7 @@ impl Ends {
     /// Share of the last step after which it is t, and its two ends; none where that is not within it.
     pub(crate) fn around(&self, t: f64) -> Option<(f64, &[Applied; 2])> {
         let [before, now] = &self.ends;
-        let share = if t >= now.time && t <= now.time {
+        let share = if (now.time..=now.time).contains(&t) {
             1.0
         } else if before.time <= t && t < now.time {
             (t - before.time) / (now.time - before.time)

@@ -6,6 +6,7 @@
 //! and, while closed, the inverse of the speed at touch.
 
 mod ahead;
+mod arrivals;
 mod bristles;
 mod friction;
 mod impacts;
@@ -30,11 +31,12 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Array;
 use serde::{Deserialize, Serialize};
 
+pub(crate) use arrivals::Arrivals;
 pub(crate) use bristles::Sweep;
 pub(crate) use friction::{LaneFriction, LaneSpring};
 pub use impacts::Impacts;
 pub(crate) use law::SurfaceLaw;
-pub(crate) use memory::{ContactMemory, ContactState, Kept, MemoryLanes};
+pub(crate) use memory::{ContactMemory, ContactState, Kept, MemoryLanes, share_to_zero};
 pub(crate) use plates::{Drawn, OfPins, PlateContact, PlatePins, PlatePlaces, Pressing};
 pub(crate) use rollers::Rollers;
 pub(crate) use window::{FAR, Places, Run, Spare};

@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{ContactState, Contacts};
+use crate::contact::{ContactState, Contacts, share_to_zero};
 use crate::system::{RailContact, System};
 
 /// Kind of a contact: the two bodies that touch.
@@ -125,21 +125,6 @@ impl EventLog {
     }
 }
 
-/// Share of a step after which a gap that changes its sign is zero.
-///
-/// ```text
-/// s = g_a/(g_a − g_b)
-/// ```
-fn share_to_zero(before: f64, now: f64) -> f64 {
-    let share = before / (before - now);
-    // Not a number where nothing has moved.
-    if share.is_finite() {
-        share.clamp(0.0, 1.0)
-    } else {
-        1.0
-    }
-}
-
 impl System {
     /// Chooses which contacts are logged; forgets what was logged before.
     pub fn log_events(&mut self, kinds: EventKinds) {
@@ -235,12 +220,6 @@ impl Contacts {
     ///
     /// A roller is open long before it ceases to be near.
     fn each_candidate(&self, mut visit: impl FnMut(usize, ContactState)) {
-        let sides = self.sides();
-        self.for_each_slot(|slot, roller| {
-            // Both flanks of a gap count as one contact: their forces add up, the nearer one tells when it begins.
-            let state = |side| self.memory.state.at(side * self.slots + slot);
-            let both = (1..sides).map(state).fold(state(0), ContactState::with);
-            visit(roller, both);
-        });
+        self.for_each_slot(|slot, roller| visit(roller, self.both_sides(&self.memory.state, slot)));
     }
 }

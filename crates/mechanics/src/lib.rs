@@ -72,7 +72,7 @@ pub use pose::{
     Body, BodyKind, Figure, FigureChain, Instant, MissingChannel, Placement, PlateShape, Pose,
 };
 pub use strength::{Rating, Strength};
-pub use struck::Struck;
+pub use struck::{Impact, Struck};
 pub use system::{Input, Record, System, SystemMemory};
 pub use tensioner::{Carrier, Push, PushForce, Tensioner, carriers, pushes};
 pub use torque::{Argument, Torque};

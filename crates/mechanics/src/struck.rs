@@ -3,9 +3,10 @@
 //! Counted on accepted states, whether contacts are logged or not. A contact that is lost and found again within one step was never seen
 //! to end; where a tooth gap touches a roller at two places these are two.
 
+use serde::{Deserialize, Serialize};
+
 use crate::System;
 use crate::contact::Impacts;
-use crate::system::Member;
 
 /// Impacts between parts of one kind, of one body.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,12 +21,59 @@ pub struct Struck {
     pub floor: f64,
 }
 
+/// The impact of a roller that came to a sprocket: its first contact since it was away, farther than half a pitch from all teeth.
+///
+/// It ends where roller and tooth part, or close again after they have been opening. What follows are bounces and the load of the
+/// chain.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Impact {
+    /// Index of the sprocket.
+    pub sprocket: usize,
+    /// Number of the roller.
+    pub roller: usize,
+    /// When it touched \[s\].
+    pub time: f64,
+    /// Closing speed at touch, along the normal of the tooth \[m/s\].
+    pub speed: f64,
+    /// Largest normal force \[N\].
+    pub peak_force: f64,
+    /// ∫ F dt \[N s\].
+    pub impulse: f64,
+}
+
 impl System {
-    /// Counts contacts from here on; what lasts has begun before.
+    /// Counts contacts from here on; what lasts has begun before, and rollers that are near a sprocket have come.
     pub fn forget_impacts(&mut self) {
-        for impacts in self.chains.iter_mut().flat_map(Member::impacts_mut) {
-            *impacts = Impacts::default();
+        for member in &mut self.chains {
+            for impacts in member.impacts_mut() {
+                *impacts = Impacts::default();
+            }
+            let rollers = member.chain.rollers();
+            for on in &mut member.contacts.teeth {
+                on.arrivals.begin(&on.contacts, rollers);
+            }
         }
+    }
+
+    /// Impacts of rollers that came to a sprocket, those that ended since the last call.
+    pub fn take_impacts(&mut self) -> Vec<Impact> {
+        let mut impacts = Vec::new();
+        let mut first = 0;
+        for member in &mut self.chains {
+            for on in &mut member.contacts.teeth {
+                let sprocket = on.wheel;
+                impacts.extend(on.arrivals.take().map(|it| Impact {
+                    sprocket,
+                    roller: first + it.roller,
+                    time: it.time,
+                    speed: it.speed,
+                    peak_force: it.peak_force,
+                    impulse: it.impulse,
+                }));
+            }
+            first += member.chain.rollers();
+        }
+        impacts
     }
 
     /// Impacts since the start, of every sprocket, guide and chain where anything can touch.

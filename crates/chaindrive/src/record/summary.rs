@@ -2,10 +2,11 @@
 
 mod carried;
 mod counted;
+mod impacts;
 mod report;
 mod steadiness;
 
-use chaindrive_mechanics::{ContactEvent, Energy, Flow, Observation, Place};
+use chaindrive_mechanics::{ContactEvent, Energy, Flow, Impact, Observation, Place};
 use hdrhistogram::Histogram;
 use serde::{Deserialize, Serialize};
 
@@ -13,6 +14,7 @@ use super::event::{EventTable, kind};
 use crate::Simulation;
 use carried::Carried;
 pub use carried::Load;
+pub use impacts::ImpactStatistics;
 use report::Report;
 pub(crate) use steadiness::Batches;
 pub use steadiness::Steadiness;
@@ -25,6 +27,7 @@ pub struct Summary {
     #[serde(with = "counted")]
     forces: Histogram<u64>,
     largest_force: f64,
+    impacts: Vec<ImpactStatistics>,
     contacts: [ContactStatistics; EventTable::KINDS.len()],
     start: Option<Energy>,
     last: Energy,
@@ -232,8 +235,8 @@ impl Turnover {
 /// Forces are counted in millinewtons, to three digits.
 const COUNTS_PER_NEWTON: f64 = 1e3;
 
-/// No force yet.
-fn forces() -> Histogram<u64> {
+/// Nothing yet.
+fn histogram() -> Histogram<u64> {
     Histogram::new(3).expect("three digits are between one and five")
 }
 
@@ -257,8 +260,9 @@ impl Summary {
                 .into_iter()
                 .map(span)
                 .collect(),
-            forces: forces(),
+            forces: histogram(),
             largest_force: 0.0,
+            impacts: ImpactStatistics::of(simulation),
             contacts: Default::default(),
             start: None,
             last: Energy::default(),
@@ -291,13 +295,7 @@ impl Summary {
         }
         for &force in sample.contact_force.iter().filter(|force| **force > 0.0) {
             self.largest_force = self.largest_force.max(force);
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "forces are positive and far below 2^64 mN"
-            )]
-            let count = (force * COUNTS_PER_NEWTON) as u64;
-            self.forces.record(count.max(1)).ok();
+            counted::note(&mut self.forces, force * COUNTS_PER_NEWTON);
         }
         let before = self.start.map_or(sample.energy, |_| self.last);
         let start = *self.start.get_or_insert(sample.energy);
@@ -316,6 +314,18 @@ impl Summary {
         for event in events {
             self.contacts[kind(event.pair)].push(event, f64::INFINITY);
         }
+    }
+
+    /// Takes in impacts that ended.
+    pub fn strike(&mut self, impacts: &[Impact]) {
+        for impact in impacts {
+            self.impacts[impact.sprocket].push(impact);
+        }
+    }
+
+    /// Impacts of rollers that came to a sprocket, by sprocket.
+    pub fn impacts(&self) -> &[ImpactStatistics] {
+        &self.impacts
     }
 
     /// Contacts that have ended.

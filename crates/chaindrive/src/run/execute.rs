@@ -288,6 +288,7 @@ fn complete<S: Sink>(
         |simulation| -> Result<(), S::Error> {
             summary.push(simulation.observation());
             summary.count(simulation.events());
+            summary.strike(simulation.impacts());
             sink.push(simulation)?;
             if marks.pass(simulation) {
                 let checkpoint = Checkpoint::of(request, &provenance, simulation, &summary);

@@ -102,8 +102,14 @@ impl Simulation {
             }
         }
         self.stepping_time += begin.elapsed().as_secs_f64();
-        let Moving { system, ended, .. } = moving;
+        let Moving {
+            system,
+            ended,
+            struck,
+            ..
+        } = moving;
         ended[1].append(&mut system.take_events());
+        struck[1].append(&mut system.take_impacts());
         Ok(moving.state.t >= time)
     }
 

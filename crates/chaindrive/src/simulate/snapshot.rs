@@ -4,7 +4,9 @@ use std::fmt::{self, Write};
 use std::sync::Arc;
 
 use chaindrive_integrate::{IntegrationError, State, StepperMemory};
-use chaindrive_mechanics::{ContactEvent, Energy, MemoryError, Observation, Record, SystemMemory};
+use chaindrive_mechanics::{
+    ContactEvent, Energy, Impact, MemoryError, Observation, Record, SystemMemory,
+};
 use serde::{Deserialize, Serialize};
 
 use super::{Moving, Simulation};
@@ -51,6 +53,7 @@ struct Remembered {
     state: State,
     stepper: StepperMemory<Record>,
     ended: [Vec<ContactEvent>; 2],
+    struck: [Vec<Impact>; 2],
 }
 
 /// Why a simulation cannot go back to a snapshot.
@@ -146,6 +149,7 @@ impl Simulation {
             state: then.state.clone(),
             stepper,
             ended: then.ended.clone(),
+            struck: then.struck.clone(),
         })
     }
 
@@ -169,6 +173,7 @@ impl Moving {
             state: self.state.clone(),
             stepper: self.stepper.memory(),
             ended: self.ended.clone(),
+            struck: self.struck.clone(),
         }
     }
 }

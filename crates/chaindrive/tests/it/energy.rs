@@ -282,7 +282,7 @@ fn a_driven_end_supplies_what_it_pulls() {
                 );
                 let mut supplied = 0.0;
                 run(&scene, |sample| {
-                    supplied = sample.energy.flow(Flow::Motions)
+                    supplied = sample.energy.flow(Flow::Motions);
                 });
                 // The swinging end sets three grams going, at up to 0.63 m/s.
                 let kinetic = 0.5 * 3e-3 * (0.02_f64 * 2.0 * PI * 5.0).powi(2);

@@ -9,6 +9,7 @@ mod duty;
 mod dynamics;
 mod energy;
 mod horizons;
+mod impacts;
 mod joints;
 mod judged;
 mod linkage;

@@ -98,7 +98,7 @@ fn a_sample_at_the_end_of_a_step_is_the_force_that_it_applied() {
         let drive = Scene::preset(name).and_then(|scene| scene.drive());
         let drive = drive.unwrap_or_else(|error| panic!("{error}"));
         // A power of two: the times of samples and steps are the same to the last bit.
-        let step = 2.0_f64.powi((0.5 * step_of(&drive)).log2().floor() as i32);
+        let step = (0.5 * step_of(&drive)).log2().floor().exp2();
         let run = Run {
             until: 8192.0 * step,
             every: step,

@@ -159,6 +159,21 @@ impl ContactMemory {
     }
 }
 
+/// Share of a step after which a gap that changes its sign is zero.
+///
+/// ```text
+/// s = g_a/(g_a − g_b)
+/// ```
+pub(crate) fn share_to_zero(before: f64, now: f64) -> f64 {
+    let share = before / (before - now);
+    // Not a number where nothing has moved.
+    if share.is_finite() {
+        share.clamp(0.0, 1.0)
+    } else {
+        1.0
+    }
+}
+
 /// Contacts lane by lane: as the last accepted state left them, and as they are found now.
 pub(crate) struct MemoryLanes<'a, S: Simd> {
     before: Lanes<'a, S>,

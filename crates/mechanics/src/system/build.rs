@@ -9,7 +9,7 @@ use super::bodies::{Anchor, Bodies, Rail, RailSupport, Wheel, WheelSupport};
 use super::shafts::{Shaft, Turn, TurnedBy};
 use super::{BodyContacts, Group, Member, OnRail, OnWheel, RailContact, Slide, System};
 use crate::chains;
-use crate::contact::Impacts;
+use crate::contact::{Arrivals, Impacts};
 use crate::contact::{Contacts, PlateContact, Shape, Teeth};
 use crate::drive::{Guide, GuideSupport, Parts, PlacedChain, Rotation, Sprocket, Support, Touches};
 use crate::groups::groups;
@@ -136,6 +136,7 @@ fn contacts(
         contacts: teeth(&parts.sprockets[wheel], &placed.chain),
         anchor: Anchor::at(laid.gap_angles[wheel]),
         impacts: Impacts::default(),
+        arrivals: Arrivals::default(),
     });
     let rails = placed.guides.iter().map(|&rail| {
         Ok(OnRail {

@@ -5,7 +5,7 @@ use chaindrive_integrate::Moment;
 use super::Bodies;
 use super::bodies::Anchor;
 use crate::chains::{Loads, Pose, Way};
-use crate::contact::Impacts;
+use crate::contact::{Arrivals, Impacts};
 use crate::contact::{Contacts, Frame, Places, PlateContact};
 use crate::drive::Surface;
 
@@ -28,6 +28,8 @@ pub(crate) struct OnWheel {
     pub(crate) anchor: Anchor,
     /// Impacts since the start.
     pub(crate) impacts: Impacts,
+    /// Impacts of rollers that come.
+    pub(crate) arrivals: Arrivals,
 }
 
 /// Contacts with one guide.
@@ -129,6 +131,7 @@ impl BodyContacts {
             let rim = rate.abs() * wheel.pitch_radius + frame.velocity.norm();
             speed = speed.max(fastest + rim);
             on.contacts.renew(&frame, places, margin);
+            on.arrivals.look_around(&on.contacts);
         }
         for on in &mut self.rails {
             let frame = bodies.rail_frame(on.rail, at);
@@ -161,7 +164,9 @@ impl BodyContacts {
         for (on, wrench) in self.rails.iter_mut().zip(&loads.rail_wrenches) {
             on.impacts.note(&wrench.begun, wrench.depth);
         }
-        for (on, touch) in self.teeth.iter_mut().zip(&mut loads.teeth) {
+        for (k, (on, touch)) in self.teeth.iter_mut().zip(&mut loads.teeth).enumerate() {
+            let begun = loads.wheel_wrenches[k].begun.count > 0.0;
+            on.arrivals.note(&on.contacts, &touch.state, t, begun);
             std::mem::swap(&mut on.contacts.memory, touch);
             on.contacts.accepted = t;
         }

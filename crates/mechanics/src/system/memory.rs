@@ -12,8 +12,7 @@ use super::{BodyContacts, Member, RailContact, Record, System};
 use crate::MemoryError;
 use crate::applied;
 use crate::chains::{ChainMemory, Rates};
-use crate::contact::Impacts;
-use crate::contact::{PlateMemory, Windows};
+use crate::contact::{Arrivals, Impacts, PlateMemory, Windows};
 use crate::events::EventLog;
 
 /// Contacts, windows, inputs and the log of a [`System`].
@@ -30,7 +29,7 @@ pub struct SystemMemory {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct MemberMemory {
     chain: ChainMemory,
-    teeth: Vec<(Anchor, Windows)>,
+    teeth: Vec<(Anchor, Windows, Arrivals)>,
     rails: Vec<RailMemory>,
     renew: (f64, u32),
     rates: Rates,
@@ -107,7 +106,8 @@ impl System {
 impl Member {
     fn memory(&self) -> MemberMemory {
         let BodyContacts { teeth, rails } = &self.contacts;
-        let teeth = teeth.iter().map(|on| (on.anchor, on.contacts.windows()));
+        let teeth = teeth.iter();
+        let teeth = teeth.map(|on| (on.anchor, on.contacts.windows(), on.arrivals.clone()));
         let rails = rails.iter().map(|on| match &on.contact {
             RailContact::Circles(contacts) => RailMemory::Circles(contacts.windows()),
             RailContact::Plates(plates) => RailMemory::Plates(plates.remembered()),
@@ -127,8 +127,10 @@ impl Member {
         self.chain.remember(memory.chain)?;
         let BodyContacts { teeth, rails } = &mut self.contacts;
         MemoryError::unless("sprockets of a chain", memory.teeth.len(), teeth.len())?;
-        for (on, (anchor, windows)) in teeth.iter_mut().zip(memory.teeth) {
+        for (on, (anchor, windows, arrivals)) in teeth.iter_mut().zip(memory.teeth) {
             on.contacts.remember(windows, rollers)?;
+            arrivals.check(rollers)?;
+            on.arrivals = arrivals;
             on.anchor = anchor;
         }
         MemoryError::unless("guides of a chain", memory.rails.len(), rails.len())?;

@@ -62,8 +62,9 @@ impl fmt::Display for Report<'_> {
                 forces.p50, forces.p90, forces.p99, forces.max
             )?;
         }
+        impacts(f, summary)?;
         contacts(f, summary, simulation)?;
-        impacts(f, simulation)?;
+        touches(f, simulation)?;
         losses(f, summary)?;
         energy(f, summary)?;
         let steps = statistics.steps.max(1) as f64;
@@ -121,8 +122,35 @@ fn contacts(f: &mut fmt::Formatter<'_>, summary: &Summary, simulation: &Simulati
     Ok(())
 }
 
-/// One line a place where something has touched since the start, logged or not.
-fn impacts(f: &mut fmt::Formatter<'_>, simulation: &Simulation) -> fmt::Result {
+/// One line a sprocket that rollers came to.
+fn impacts(f: &mut fmt::Formatter<'_>, summary: &Summary) -> fmt::Result {
+    let struck = summary.impacts().iter().filter(|it| it.count > 0);
+    let struck: Vec<_> = struck.collect();
+    if struck.is_empty() {
+        return Ok(());
+    }
+    writeln!(
+        f,
+        "impacts of rollers       number    p50 [N]    p99 [N]   greatest   impulse [N s]   closing [m/s]"
+    )?;
+    for it in struck {
+        writeln!(
+            f,
+            "  {:20} {:>8}  {:>9.0}  {:>9.0}  {:>9.0}   {:>13.4}   {:>13.3}",
+            it.sprocket,
+            it.count,
+            it.force(0.5),
+            it.force(0.99),
+            it.greatest,
+            it.impulse(0.5),
+            it.speed(0.5),
+        )?;
+    }
+    Ok(())
+}
+
+/// One line a place where something has touched since the start, logged or not: each impact, and each bounce.
+fn touches(f: &mut fmt::Formatter<'_>, simulation: &Simulation) -> fmt::Result {
     let struck = simulation.system().struck();
     let struck: Vec<_> = struck.iter().filter(|it| it.impacts.count > 0).collect();
     if struck.is_empty() {
@@ -130,7 +158,7 @@ fn impacts(f: &mut fmt::Formatter<'_>, simulation: &Simulation) -> fmt::Result {
     }
     writeln!(
         f,
-        "impacts                  number   fastest [m/s]   deepest [µm]   below the floor of the law"
+        "touches and bounces      number   fastest [m/s]   deepest [µm]   below the floor of the law"
     )?;
     for Struck {
         place,

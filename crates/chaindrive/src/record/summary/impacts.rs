@@ -1,0 +1,74 @@
+//! Impacts of rollers that came to a sprocket.
+
+use chaindrive_mechanics::Impact;
+use hdrhistogram::Histogram;
+use serde::{Deserialize, Serialize};
+
+use super::{counted, histogram};
+use crate::Simulation;
+
+/// Impacts on one sprocket: the first contacts of rollers that came to it, each once a passage.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct ImpactStatistics {
+    /// The sprocket.
+    pub sprocket: String,
+    /// Their number.
+    pub count: u64,
+    /// Largest force of all \[N\].
+    pub greatest: f64,
+    #[serde(with = "counted")]
+    forces: Histogram<u64>,
+    #[serde(with = "counted")]
+    impulses: Histogram<u64>,
+    #[serde(with = "counted")]
+    speeds: Histogram<u64>,
+}
+
+/// Counts a unit, to three digits of whatever is there: forces in mN, impulses in µN s, speeds in µm/s.
+const PER_NEWTON: f64 = 1e3;
+const PER_NEWTON_SECOND: f64 = 1e6;
+const PER_METRE_A_SECOND: f64 = 1e6;
+
+impl ImpactStatistics {
+    /// Nothing yet, for every sprocket.
+    pub(super) fn of(simulation: &Simulation) -> Vec<Self> {
+        let names = simulation.system().sprocket_names().into_iter();
+        let none = |sprocket| Self {
+            sprocket,
+            count: 0,
+            greatest: 0.0,
+            forces: histogram(),
+            impulses: histogram(),
+            speeds: histogram(),
+        };
+        names.map(none).collect()
+    }
+
+    pub(super) fn push(&mut self, impact: &Impact) {
+        self.count += 1;
+        self.greatest = self.greatest.max(impact.peak_force);
+        for (histogram, value) in [
+            (&mut self.forces, impact.peak_force * PER_NEWTON),
+            (&mut self.impulses, impact.impulse * PER_NEWTON_SECOND),
+            (&mut self.speeds, impact.speed * PER_METRE_A_SECOND),
+        ] {
+            counted::note(histogram, value);
+        }
+    }
+
+    /// A quantile of the largest forces \[N\].
+    pub fn force(&self, quantile: f64) -> f64 {
+        // A class of the histogram reaches beyond the values that it counts.
+        (self.forces.value_at_quantile(quantile) as f64 / PER_NEWTON).min(self.greatest)
+    }
+
+    /// A quantile of the impulses \[N s\].
+    pub fn impulse(&self, quantile: f64) -> f64 {
+        self.impulses.value_at_quantile(quantile) as f64 / PER_NEWTON_SECOND
+    }
+
+    /// A quantile of the closing speeds at touch, along the normal of the tooth \[m/s\].
+    pub fn speed(&self, quantile: f64) -> f64 {
+        self.speeds.value_at_quantile(quantile) as f64 / PER_METRE_A_SECOND
+    }
+}

@@ -1,0 +1,153 @@
+//! Impacts of rollers that come to a body: the first contact of each since it was away.
+//!
+//! ```text
+//! v = v_a + s (v_b − v_a),   s = g_a/(g_a − g_b)     closing speed where the gap is zero
+//! J = ∫ F dt                                         F along straight lines between the ends of steps
+//! ```
+//!
+//! An impact ends where the surfaces part, or close again after they have been opening: what a seated roller bears from then on is
+//! the load of the chain. A roller has been away when it was farther than half a pitch from all that it could touch.
+
+use serde::{Deserialize, Serialize};
+
+use super::{ContactMemory, ContactState, Contacts, share_to_zero};
+use crate::MemoryError;
+
+/// The impact of one roller.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Arrival {
+    pub(crate) roller: usize,
+    /// When it touched \[s\].
+    pub(crate) time: f64,
+    /// Closing speed at touch, along the normal \[m/s\].
+    pub(crate) speed: f64,
+    /// Largest normal force \[N\].
+    pub(crate) peak_force: f64,
+    /// J \[N s\].
+    pub(crate) impulse: f64,
+}
+
+/// An impact that has not ended.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Lasting {
+    arrival: Arrival,
+    /// Force at the last accepted state \[N\].
+    force: f64,
+    /// Whether the surfaces have been opening.
+    opened: bool,
+}
+
+/// Impacts on one body.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Arrivals {
+    /// Whether a roller that is near has struck, by roller.
+    struck: Vec<bool>,
+    lasting: Vec<Lasting>,
+    ended: Vec<Arrival>,
+    /// Room for the next `struck`.
+    #[serde(skip)]
+    next: Vec<bool>,
+}
+
+impl Arrivals {
+    /// Begins anew: what is near has come before.
+    pub(crate) fn begin(&mut self, contacts: &Contacts, rollers: usize) {
+        self.lasting.clear();
+        self.ended.clear();
+        self.struck.clear();
+        self.struck.resize(rollers, false);
+        contacts.for_each_slot(|_, roller| self.struck[roller] = true);
+    }
+
+    /// Takes note of which rollers are near, once they have been looked for again.
+    pub(crate) fn look_around(&mut self, contacts: &Contacts) {
+        let Self { struck, next, .. } = self;
+        next.clear();
+        next.resize(struck.len(), false);
+        contacts.for_each_slot(|_, roller| {
+            if let Some(struck) = struck.get(roller) {
+                next[roller] = *struck;
+            }
+        });
+        std::mem::swap(struck, next);
+    }
+
+    /// Compares the state that is accepted at `t` with the one before, whose memory `contacts` still has; `begun`: whether a contact
+    /// began in between.
+    pub(crate) fn note(&mut self, contacts: &Contacts, now: &ContactMemory, t: f64, begun: bool) {
+        let dt = t - contacts.accepted;
+        let Self {
+            struck,
+            lasting,
+            ended,
+            ..
+        } = self;
+        lasting.retain_mut(|it| {
+            let slot = contacts.slot_of(it.arrival.roller);
+            let state = slot.map(|slot| contacts.both_sides(now, slot));
+            let force = state.and_then(|state| state.force);
+            let arrival = &mut it.arrival;
+            arrival.impulse += 0.5 * (it.force + force.unwrap_or(0.0)) * dt;
+            arrival.peak_force = arrival.peak_force.max(force.unwrap_or(0.0));
+            it.force = force.unwrap_or(0.0);
+            let closes = state.is_some_and(|state| state.closing > 0.0);
+            let is_over = force.is_none() || (it.opened && closes);
+            it.opened |= !closes;
+            if is_over {
+                ended.push(*arrival);
+            }
+            !is_over
+        });
+        if !begun {
+            return;
+        }
+        contacts.for_each_slot(|slot, roller| {
+            if struck.get(roller).is_none_or(|struck| *struck) {
+                return;
+            }
+            let [before, now] =
+                [&contacts.memory.state, now].map(|it| contacts.both_sides(it, slot));
+            let (None, Some(force)) = (before.force, now.force) else {
+                return;
+            };
+            struck[roller] = true;
+            let share = share_to_zero(before.gap, now.gap);
+            let speed = before.closing + share * (now.closing - before.closing);
+            let arrival = Arrival {
+                roller,
+                time: contacts.accepted + share * dt,
+                speed: speed.max(0.0),
+                peak_force: force,
+                impulse: 0.5 * force * dt,
+            };
+            lasting.push(Lasting {
+                arrival,
+                force,
+                opened: now.closing <= 0.0,
+            });
+        });
+    }
+
+    /// Impacts that ended since the last call.
+    pub(crate) fn take(&mut self) -> std::vec::Drain<'_, Arrival> {
+        self.ended.drain(..)
+    }
+
+    /// Refuses a memory of another number of rollers.
+    pub(crate) fn check(&self, rollers: usize) -> Result<(), MemoryError> {
+        let known = self.lasting.iter().map(|it| it.arrival.roller + 1).max();
+        MemoryError::unless_within("roller of an impact", known.unwrap_or(0), rollers)?;
+        MemoryError::unless("rollers of impacts", self.struck.len(), rollers)
+    }
+}
+
+impl Contacts {
+    /// How a roller stands to the body: both flanks of a gap count as one contact, whose forces add up; the nearer one tells when it
+    /// begins.
+    pub(crate) fn both_sides(&self, memory: &ContactMemory, slot: usize) -> ContactState {
+        let state = |side: usize| memory.at(side * self.slots + slot);
+        (1..self.sides())
+            .map(state)
+            .fold(state(0), ContactState::with)
+    }
+}
