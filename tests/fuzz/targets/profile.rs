@@ -9,7 +9,13 @@ libfuzzer_sys::fuzz_target!(|numbers: (Vec<[f32; 3]>, [f32; 2])| {
         .iter()
         .map(|[x, y, _]| Point::new(f64::from(*x), f64::from(*y)))
         .collect();
-    let radii: Vec<f64> = corners.iter().map(|[_, _, r]| f64::from(*r)).collect();
+    // The two ends have none.
+    let rounded = corners.get(1..corners.len().saturating_sub(1));
+    let radii: Vec<f64> = rounded
+        .unwrap_or_default()
+        .iter()
+        .map(|[_, _, r]| f64::from(*r))
+        .collect();
     let Ok(outline) = rail(&points, &radii) else {
         return;
     };
@@ -25,8 +31,14 @@ libfuzzer_sys::fuzz_target!(|numbers: (Vec<[f32; 3]>, [f32; 2])| {
     ];
     match (found, exact) {
         (Some(found), Some(exact)) => {
-            let apart = (found.distance - exact.distance).abs();
-            assert!(apart <= 1e-9 * size, "{} {}", found.distance, exact.distance);
+            // Of places equally near, on two sides of a rail that crosses itself, either may be told.
+            let apart = (found.distance.abs() - exact.distance.abs()).abs();
+            assert!(
+                apart <= 1e-9 * size,
+                "{} {}",
+                found.distance,
+                exact.distance
+            );
         }
         (None, None) => {}
         other => panic!("{other:?}"),
