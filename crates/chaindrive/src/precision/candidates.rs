@@ -183,3 +183,23 @@ pub(super) fn work(trace: &Trace) -> f64 {
     let counts = &trace.statistics;
     (counts.evaluations + counts.solves) as f64 / trace.time.last().copied().unwrap_or(1.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// However far off a step is, the last of the ladder is tried before another method.
+    #[test]
+    fn the_ladder_ends_before_other_methods_begin() {
+        let ladder = Candidates(Vec::new());
+        let after = |place, error| ladder.after(place, error, 0.01, false);
+        assert_eq!(after(0, 1e9), RUNGS - 1);
+        assert_eq!(after(RUNGS - 2, 1e9), RUNGS - 1);
+        assert_eq!(after(RUNGS - 1, 1e9), RUNGS);
+        // One rung at least; as many as the judge where nothing is known of the error.
+        assert_eq!(after(0, 0.010_001), 1);
+        assert_eq!(after(0, f64::NAN), TO_JUDGE);
+        // Steps whose impacts feed themselves say nothing beyond their judge.
+        assert_eq!(ladder.after(0, 1e9, 0.01, true), TO_JUDGE);
+    }
+}
