@@ -267,8 +267,14 @@ pub(crate) fn with_powers(text: &str) -> String {
     marked
 }
 
-/// Ways of writing a text as known symbols side by side.
+/// Letters of the longest text that is cut into symbols: each more multiplies the ways.
+const LONGEST: usize = 12;
+
+/// Ways of writing a text as known symbols side by side; none for a long one.
 fn known_parts(text: &str) -> Vec<String> {
+    if text.chars().nth(LONGEST).is_some() {
+        return Vec::new();
+    }
     let cuts = text.char_indices().map(|(at, _)| at).skip(1);
     let mut ways: Vec<String> = cuts
         .map(|at| text.split_at(at))
@@ -376,6 +382,13 @@ mod tests {
             assert!((found / factor - 1.0).abs() < 1e-12, "{text}: {found}");
             assert!(Powers(found_powers).matches(Powers(powers)), "{text}");
         }
+    }
+
+    #[test]
+    fn long_texts_are_not_cut_into_symbols() {
+        assert_eq!(known_parts("Nmm"), ["N m m", "N mm"]);
+        assert_eq!(known_parts(&"m".repeat(LONGEST)).len(), 233);
+        assert!(known_parts(&"m".repeat(77)).is_empty());
     }
 
     #[test]
