@@ -4,8 +4,8 @@
 //! F(t) = (1 − s) F_a + s F_b,   s = (t − a)/(b − a),   a and b the ends of the step around t
 //! ```
 //!
-//! What moved the rollers are the forces at the ends of steps. A law that is asked again in between, at a velocity that is
-//! interpolated, gives others: where a contact loses much they are several times as large, and nothing has felt them.
+//! The forces at the ends of steps moved the rollers. At an interpolated velocity the laws give others, several times as large where a
+//! contact loses much, and nothing has felt them.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,13 +14,13 @@ pub(crate) const LISTS: usize = 11;
 
 /// Forces at the end of an accepted step.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct Applied {
+pub(crate) struct StepEnd {
     /// Time \[s\]; not a number before there is one.
     pub(crate) time: f64,
     pub(crate) lists: [Vec<f64>; LISTS],
 }
 
-impl Default for Applied {
+impl Default for StepEnd {
     fn default() -> Self {
         Self {
             time: f64::NAN,
@@ -29,15 +29,15 @@ impl Default for Applied {
     }
 }
 
-/// The last two ends of steps that somebody wants to see.
+/// The last two ends of steps, from some time on.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct Ends {
-    ends: [Applied; 2],
-    /// Time \[s\] from which on ends are kept: to read them off takes as long as a good part of a step.
+pub(crate) struct AppliedForces {
+    ends: [StepEnd; 2],
+    /// That time \[s\]: to read forces off takes as long as a good part of a step.
     from: f64,
 }
 
-impl Default for Ends {
+impl Default for AppliedForces {
     fn default() -> Self {
         Self {
             ends: Default::default(),
@@ -46,36 +46,42 @@ impl Default for Ends {
     }
 }
 
-impl Ends {
+impl AppliedForces {
     /// Keeps the ends of steps from a time \[s\] on.
     pub(crate) fn keep_from(&mut self, from: f64) {
         self.from = from;
     }
 
-    /// Whether the end of a step at a time is to be kept.
+    /// Whether forces at time t are kept.
     pub(crate) fn wants(&self, t: f64) -> bool {
         t >= self.from
     }
 
-    /// Lists for another end, with what stands in them; they come back by [`push`](Self::push).
-    pub(crate) fn next(&mut self) -> Applied {
+    /// Takes in another end of a step, in the room of the last but one; `read` fills its lists.
+    pub(crate) fn push(&mut self, time: f64, read: impl FnOnce(&mut [Vec<f64>; LISTS])) {
         self.ends.swap(0, 1);
-        std::mem::take(&mut self.ends[1])
+        let end = &mut self.ends[1];
+        end.time = time;
+        read(&mut end.lists);
     }
 
-    pub(crate) fn push(&mut self, end: Applied) {
-        self.ends[1] = end;
-    }
-
-    /// Share of the last step after which it is t, and its two ends; none where that is not within it.
-    pub(crate) fn around(&self, t: f64) -> Option<(f64, &[Applied; 2])> {
+    /// Share of the last step at time t, and its two ends; none outside of it.
+    pub(crate) fn around(&self, t: f64) -> Option<(f64, &[StepEnd; 2])> {
         let [before, now] = &self.ends;
-        let share = if (now.time..=now.time).contains(&t) {
-            1.0
-        } else if before.time <= t && t < now.time {
-            (t - before.time) / (now.time - before.time)
+        // A drive begins with one end alone.
+        let from = if before.time.is_nan() {
+            now.time
         } else {
+            before.time
+        };
+        if !(from..=now.time).contains(&t) {
             return None;
+        }
+        let length = now.time - from;
+        let share = if length > 0.0 {
+            (t - from) / length
+        } else {
+            1.0
         };
         Some((share, &self.ends))
     }

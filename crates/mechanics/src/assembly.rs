@@ -89,9 +89,10 @@ impl Assembled {
 }
 
 impl Assembled {
-    /// Mean angular speed of every sprocket \[rad/s\], counter-clockwise positive, in the order of [`System::sprocket_names`]: about
-    /// which the sine terms of its motion swing, or of the motion that turns it through chains, gears and couplings; where none
-    /// does, its speed now.
+    /// Mean angular speed of every sprocket \[rad/s\], counter-clockwise positive, in the order of [`System::sprocket_names`].
+    ///
+    /// It is the speed of the motion that drives it, through chains, gears and couplings, without its sine terms; without such a
+    /// motion, the present speed.
     pub fn mean_speeds(&self) -> Vec<f64> {
         let at = self.start();
         let layouts: Vec<&Layout> = self.parts.chains.iter().map(|it| &it.layout).collect();

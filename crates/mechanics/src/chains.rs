@@ -418,7 +418,7 @@ impl Chain {
         ask!(self, chain => chain.observe_forces(at, record, out));
     }
 
-    /// Whether its links are springs, whose tension follows from where their ends are.
+    /// Whether the tension of its links follows from the places of their ends.
     pub(crate) fn has_springs(&self) -> bool {
         !matches!(self, Self::Links(_))
     }

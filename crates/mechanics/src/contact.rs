@@ -32,6 +32,7 @@ use chaindrive_integrate::Array;
 use serde::{Deserialize, Serialize};
 
 pub(crate) use arrivals::Arrivals;
+pub use arrivals::Impact;
 pub(crate) use bristles::Sweep;
 pub(crate) use friction::{LaneFriction, LaneSpring};
 pub use impacts::Impacts;

@@ -55,7 +55,7 @@ pub use chain::{Chain, End, Ends};
 pub use chains::ChainModel;
 pub use chains::links::model::{Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel};
 pub use chains::particles::points::PointJoints;
-pub use contact::Impacts;
+pub use contact::{Impact, Impacts};
 pub use drive::{
     Adjust, Coupling, Drive, Fit, Flank, GearPair, Guide, GuideSupport, Layout, Parts, PlacedChain,
     PretensionAt, Rotation, Shaft, SpanStart, Sprocket, Stop, Support, Surface, Tighten, Touches,
@@ -72,7 +72,7 @@ pub use pose::{
     Body, BodyKind, Figure, FigureChain, Instant, MissingChannel, Placement, PlateShape, Pose,
 };
 pub use strength::{Rating, Strength};
-pub use struck::{Impact, Struck};
+pub use struck::Struck;
 pub use system::{Input, Record, System, SystemMemory};
 pub use tensioner::{Carrier, Push, PushForce, Tensioner, carriers, pushes};
 pub use torque::{Argument, Torque};

@@ -92,25 +92,13 @@ impl Motion {
     /// The same motion for a drive that is assembled at a time t₀ \[s\] other than 0, and how far \[m or rad\] it has moved the drive by
     /// then from where it was drawn.
     pub(crate) fn from(&self, begin: f64) -> (Self, f64) {
-        if let Self::Orders {
-            rate,
-            turning,
-            terms,
-            ..
-        } = self
-        {
-            let terms = terms.clone();
-            let (rate, turning, since) = (*rate, *turning, begin);
-            let again = Self::Orders {
-                rate,
-                turning,
-                terms,
-                since,
-            };
+        let mut again = self.clone();
+        if let Self::Orders { since, .. } = &mut again {
+            *since = begin;
             return (again, 0.0);
         }
         let place = self.at(begin).position;
-        let motion = Box::new(self.clone());
+        let motion = Box::new(again);
         (Self::From { place, motion }, place)
     }
 
@@ -138,47 +126,22 @@ impl Motion {
                 start,
                 duration,
             } => ramp(*from, *to, *start, *duration, t),
-            Self::Harmonics { rate, terms } => terms.iter().fold(
-                Kinematics {
-                    position: rate * t,
-                    rate: *rate,
-                    acceleration: 0.0,
-                },
-                |sum, term| {
-                    // x = A (sin(2π f t + φ) − sin φ)
-                    let circular = std::f64::consts::TAU * term.frequency;
-                    let (sine, cosine) = (circular * t + term.phase).sin_cos();
-                    Kinematics {
-                        position: sum.position + term.amplitude * (sine - term.phase.sin()),
-                        rate: sum.rate + term.amplitude * circular * cosine,
-                        acceleration: sum.acceleration
-                            - term.amplitude * circular * circular * sine,
-                    }
-                },
-            ),
+            Self::Harmonics { rate, terms } => {
+                let circular = |term: &Harmonic| std::f64::consts::TAU * term.frequency;
+                let terms = terms
+                    .iter()
+                    .map(|it| [it.amplitude, circular(it), it.phase]);
+                swinging(*rate, t, terms)
+            }
             Self::Orders {
                 rate,
                 turning,
                 terms,
                 since,
             } => {
-                let after = t - since;
-                let mean = Kinematics {
-                    position: rate * after,
-                    rate: *rate,
-                    acceleration: 0.0,
-                };
-                terms.iter().fold(mean, |sum, term| {
-                    // x = A (sin(n ω̄ τ + φ) − sin φ)
-                    let circular = term.order * turning;
-                    let (sine, cosine) = (circular * after + term.phase).sin_cos();
-                    let swing = term.amplitude * circular;
-                    Kinematics {
-                        position: sum.position + term.amplitude * (sine - term.phase.sin()),
-                        rate: sum.rate + swing * cosine,
-                        acceleration: sum.acceleration - swing * circular * sine,
-                    }
-                })
+                let terms = terms.iter();
+                let terms = terms.map(|it| [it.amplitude, it.order * turning, it.phase]);
+                swinging(*rate, t - since, terms)
             }
             Self::Table(table) => table.at(t),
             Self::Onward { from, since } => {
@@ -278,6 +241,24 @@ impl Motion {
             }
         }
     }
+}
+
+/// A mean rate with sine terms: amplitude, circular frequency and phase of each.
+fn swinging(rate: f64, t: f64, terms: impl Iterator<Item = [f64; 3]>) -> Kinematics {
+    let mean = Kinematics {
+        position: rate * t,
+        rate,
+        acceleration: 0.0,
+    };
+    terms.fold(mean, |sum, [amplitude, circular, phase]| {
+        // x = A (sin(Ω t + φ) − sin φ)
+        let (sine, cosine) = (circular * t + phase).sin_cos();
+        Kinematics {
+            position: sum.position + amplitude * (sine - phase.sin()),
+            rate: sum.rate + amplitude * circular * cosine,
+            acceleration: sum.acceleration - amplitude * circular * circular * sine,
+        }
+    })
 }
 
 fn ramp(from: f64, to: f64, start: f64, duration: f64, t: f64) -> Kinematics {

@@ -287,17 +287,18 @@ impl System {
 
     /// Keeps the forces of a step that is accepted, as `record` has them.
     pub(crate) fn note_applied(&mut self, at: Moment<'_>, record: &Record) {
-        let mut end = self.applied.next();
-        let mut seen = Observation::default();
-        for (list, kept) in forces(&mut seen).into_iter().zip(&mut end.lists) {
-            std::mem::swap(list, kept);
-        }
-        self.observe_forces(at, record, &mut seen);
-        for (list, kept) in forces(&mut seen).into_iter().zip(&mut end.lists) {
-            std::mem::swap(list, kept);
-        }
-        end.time = at.t;
-        self.applied.push(end);
+        let mut applied = std::mem::take(&mut self.applied);
+        applied.push(at.t, |lists| {
+            let mut seen = Observation::default();
+            let mut lend = |seen: &mut Observation| {
+                let pairs = forces(seen).into_iter().zip(&mut *lists);
+                pairs.for_each(|(list, kept)| std::mem::swap(list, kept));
+            };
+            lend(&mut seen);
+            self.observe_forces(at, record, &mut seen);
+            lend(&mut seen);
+        });
+        self.applied = applied;
     }
 
     /// Puts the forces that steps applied in the place of those of the laws, where they are known; the tension of links that are

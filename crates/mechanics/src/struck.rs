@@ -3,10 +3,8 @@
 //! Counted on accepted states, whether contacts are logged or not. A contact that is lost and found again within one step was never seen
 //! to end; where a tooth gap touches a roller at two places these are two.
 
-use serde::{Deserialize, Serialize};
-
 use crate::System;
-use crate::contact::Impacts;
+use crate::contact::{Impact, Impacts};
 
 /// Impacts between parts of one kind, of one body.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,26 +17,6 @@ pub struct Struck {
     pub reach: Option<f64>,
     /// Floor of the law \[m/s\].
     pub floor: f64,
-}
-
-/// The impact of a roller that came to a sprocket: its first contact since it was away, farther than half a pitch from all teeth.
-///
-/// It ends where roller and tooth part, or close again after they have been opening. What follows are bounces and the load of the
-/// chain.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Impact {
-    /// Index of the sprocket.
-    pub sprocket: usize,
-    /// Number of the roller.
-    pub roller: usize,
-    /// When it touched \[s\].
-    pub time: f64,
-    /// Closing speed at touch, along the normal of the tooth \[m/s\].
-    pub speed: f64,
-    /// Largest normal force \[N\].
-    pub peak_force: f64,
-    /// ∫ F dt \[N s\].
-    pub impulse: f64,
 }
 
 impl System {
@@ -61,14 +39,9 @@ impl System {
         let mut first = 0;
         for member in &mut self.chains {
             for on in &mut member.contacts.teeth {
-                let sprocket = on.wheel;
-                impacts.extend(on.arrivals.take().map(|it| Impact {
-                    sprocket,
-                    roller: first + it.roller,
-                    time: it.time,
-                    speed: it.speed,
-                    peak_force: it.peak_force,
-                    impulse: it.impulse,
+                impacts.extend(on.arrivals.take().map(|impact| Impact {
+                    roller: first + impact.roller,
+                    ..impact
                 }));
             }
             first += member.chain.rollers();

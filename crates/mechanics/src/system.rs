@@ -52,7 +52,7 @@ pub struct System {
     /// The log of contacts, where one is kept.
     pub(crate) events: Option<EventLog>,
     /// Forces at the ends of the last steps.
-    pub(crate) applied: applied::Ends,
+    pub(crate) applied: applied::AppliedForces,
     /// 1/ω of the stiffest mode \[s\]: damping included, without that of teeth on particles, without any, and without any and the springs
     /// that steps of one solution carry.
     time_scales: [f64; 4],

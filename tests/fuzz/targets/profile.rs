@@ -31,7 +31,8 @@ libfuzzer_sys::fuzz_target!(|numbers: (Vec<[f32; 3]>, [f32; 2])| {
     ];
     match (found, exact) {
         (Some(found), Some(exact)) => {
-            // Of places equally near, on two sides of a rail that crosses itself, either may be told.
+            // Of places equally near, on two sides of a rail that crosses itself, either may be told: a wrong sign alone is
+            // not seen here.
             let apart = (found.distance.abs() - exact.distance.abs()).abs();
             assert!(
                 apart <= 1e-9 * size,

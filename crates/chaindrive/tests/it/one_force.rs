@@ -107,14 +107,9 @@ fn a_sample_at_the_end_of_a_step_is_the_force_that_it_applied() {
             ..Run::default()
         };
         let seen = seen(&drive, &run);
-        let end = 8192.0 * step;
-        let mut judged = 0;
-        for event in &seen.events {
-            // Neither what lay there from the start nor what lasts.
-            if event.start > 0.0 && event.end < end {
-                judged += 1;
-            }
-        }
+        // Neither those that lay there from the start nor those that last.
+        let whole = |it: &&ContactEvent| it.start > 0.0 && it.end < run.until;
+        let judged = seen.events.iter().filter(whole).count();
         assert!(judged > 2, "{name}, {method}: {judged} contacts");
         for (greatest, peak) in seen.peaks() {
             assert!(

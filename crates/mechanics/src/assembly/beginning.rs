@@ -9,9 +9,7 @@ use crate::{AssemblyError, Drive, Motion};
 impl Drive {
     /// The drive as it stands at a time t₀ \[s\], to be assembled there: 0, or before.
     ///
-    /// What is given in time stands where its time has it at t₀, and goes on from there. Angles count from t₀, those that are given
-    /// in time as well as those that are coordinates, and with them all that repeats with the turns of a shaft: however long before
-    /// t = 0 the drive begins, it is the same drive.
+    /// Functions of time begin at their value at t₀. Angles and turns count from t₀: the length of a run-in makes no other drive.
     ///
     /// # Errors
     /// A time after 0; a guide whose face does not stand where its motion takes it.

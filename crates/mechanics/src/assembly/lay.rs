@@ -148,10 +148,9 @@ fn around(
         if scale <= 0.0 {
             return Err(AssemblyError::Layout {
                 problem: format!(
-                    "a pretension of {:.4e} N stretches every link by {:.1} % of its length, of {:.4e} N/m; lower the pretension or give stiffer links",
+                    "a pretension of {:.4e} N would stretch links of {mean_stiffness:.4e} N/m by {:.0} %; lower the pretension, or give stiffer links",
                     fit.pretension,
                     tightening * 100.0,
-                    mean_stiffness,
                 ),
             });
         }

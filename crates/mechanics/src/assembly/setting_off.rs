@@ -35,7 +35,7 @@ pub(super) fn set_off(system: &System, layouts: &[&Layout], q: &[f64], v: &mut [
 /// ω z p = the same for all sprockets of a route
 /// ```
 ///
-/// `rate`: that of a motion.
+/// `rate` reads the speed off a motion.
 pub(super) fn speeds(
     system: &System,
     layouts: &[&Layout],

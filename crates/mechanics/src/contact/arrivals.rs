@@ -13,37 +13,42 @@ use serde::{Deserialize, Serialize};
 use super::{ContactMemory, ContactState, Contacts, share_to_zero};
 use crate::MemoryError;
 
-/// The impact of one roller.
+/// The impact of a roller that came to a sprocket: its first contact since it was away, farther than half a pitch from all teeth.
+///
+/// It ends where roller and tooth part, or close again after opening. Bounces and the load of the chain follow.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Arrival {
-    pub(crate) roller: usize,
+pub struct Impact {
+    /// Index of the sprocket.
+    pub sprocket: usize,
+    /// Number of the roller.
+    pub roller: usize,
     /// When it touched \[s\].
-    pub(crate) time: f64,
-    /// Closing speed at touch, along the normal \[m/s\].
-    pub(crate) speed: f64,
+    pub time: f64,
+    /// Closing speed at touch, along the normal of the tooth \[m/s\].
+    pub speed: f64,
     /// Largest normal force \[N\].
-    pub(crate) peak_force: f64,
-    /// J \[N s\].
-    pub(crate) impulse: f64,
+    pub peak_force: f64,
+    /// ∫ F dt \[N s\].
+    pub impulse: f64,
 }
 
 /// An impact that has not ended.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Lasting {
-    arrival: Arrival,
+    impact: Impact,
     /// Force at the last accepted state \[N\].
     force: f64,
-    /// Whether the surfaces have been opening.
+    /// Opening seen since the touch.
     opened: bool,
 }
 
-/// Impacts on one body.
+/// Impacts on one sprocket; rollers are numbered within their chain.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Arrivals {
-    /// Whether a roller that is near has struck, by roller.
+    /// Nearby rollers that have struck, by roller.
     struck: Vec<bool>,
     lasting: Vec<Lasting>,
-    ended: Vec<Arrival>,
+    ended: Vec<Impact>,
     /// Room for the next `struck`.
     #[serde(skip)]
     next: Vec<bool>,
@@ -72,9 +77,15 @@ impl Arrivals {
         std::mem::swap(struck, next);
     }
 
-    /// Compares the state that is accepted at `t` with the one before, whose memory `contacts` still has; `begun`: whether a contact
-    /// began in between.
-    pub(crate) fn note(&mut self, contacts: &Contacts, now: &ContactMemory, t: f64, begun: bool) {
+    /// Compares the state accepted at `t` with the one before, in the memory of `contacts`; `begun`: a contact began in between.
+    pub(crate) fn note(
+        &mut self,
+        sprocket: usize,
+        contacts: &Contacts,
+        now: &ContactMemory,
+        t: f64,
+        begun: bool,
+    ) {
         let dt = t - contacts.accepted;
         let Self {
             struck,
@@ -83,18 +94,18 @@ impl Arrivals {
             ..
         } = self;
         lasting.retain_mut(|it| {
-            let slot = contacts.slot_of(it.arrival.roller);
+            let slot = contacts.slot_of(it.impact.roller);
             let state = slot.map(|slot| contacts.both_sides(now, slot));
             let force = state.and_then(|state| state.force);
-            let arrival = &mut it.arrival;
-            arrival.impulse += 0.5 * (it.force + force.unwrap_or(0.0)) * dt;
-            arrival.peak_force = arrival.peak_force.max(force.unwrap_or(0.0));
+            let impact = &mut it.impact;
+            impact.impulse += 0.5 * (it.force + force.unwrap_or(0.0)) * dt;
+            impact.peak_force = impact.peak_force.max(force.unwrap_or(0.0));
             it.force = force.unwrap_or(0.0);
             let closes = state.is_some_and(|state| state.closing > 0.0);
             let is_over = force.is_none() || (it.opened && closes);
             it.opened |= !closes;
             if is_over {
-                ended.push(*arrival);
+                ended.push(*impact);
             }
             !is_over
         });
@@ -113,7 +124,8 @@ impl Arrivals {
             struck[roller] = true;
             let share = share_to_zero(before.gap, now.gap);
             let speed = before.closing + share * (now.closing - before.closing);
-            let arrival = Arrival {
+            let impact = Impact {
+                sprocket,
                 roller,
                 time: contacts.accepted + share * dt,
                 speed: speed.max(0.0),
@@ -121,7 +133,7 @@ impl Arrivals {
                 impulse: 0.5 * force * dt,
             };
             lasting.push(Lasting {
-                arrival,
+                impact,
                 force,
                 opened: now.closing <= 0.0,
             });
@@ -129,13 +141,13 @@ impl Arrivals {
     }
 
     /// Impacts that ended since the last call.
-    pub(crate) fn take(&mut self) -> std::vec::Drain<'_, Arrival> {
+    pub(crate) fn take(&mut self) -> std::vec::Drain<'_, Impact> {
         self.ended.drain(..)
     }
 
     /// Refuses a memory of another number of rollers.
     pub(crate) fn check(&self, rollers: usize) -> Result<(), MemoryError> {
-        let known = self.lasting.iter().map(|it| it.arrival.roller + 1).max();
+        let known = self.lasting.iter().map(|it| it.impact.roller + 1).max();
         MemoryError::unless_within("roller of an impact", known.unwrap_or(0), rollers)?;
         MemoryError::unless("rollers of impacts", self.struck.len(), rollers)
     }

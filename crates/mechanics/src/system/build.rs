@@ -100,7 +100,7 @@ impl System {
             dofs,
             groups: places.solved(first),
             events: None,
-            applied: crate::applied::Ends::default(),
+            applied: crate::applied::AppliedForces::default(),
             time_scales: [f64::INFINITY; 4],
             onset_depth: None,
             begin: laid.begin,

@@ -166,7 +166,8 @@ impl BodyContacts {
         }
         for (k, (on, touch)) in self.teeth.iter_mut().zip(&mut loads.teeth).enumerate() {
             let begun = loads.wheel_wrenches[k].begun.count > 0.0;
-            on.arrivals.note(&on.contacts, &touch.state, t, begun);
+            on.arrivals
+                .note(on.wheel, &on.contacts, &touch.state, t, begun);
             std::mem::swap(&mut on.contacts.memory, touch);
             on.contacts.accepted = t;
         }

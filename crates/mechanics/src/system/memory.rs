@@ -22,7 +22,7 @@ pub struct SystemMemory {
     inputs: Inputs,
     centres: Vec<OnwardCentre>,
     events: Option<EventLog>,
-    applied: applied::Ends,
+    applied: applied::AppliedForces,
     time_scales: [f64; 4],
 }
 

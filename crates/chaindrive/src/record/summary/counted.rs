@@ -20,7 +20,7 @@ pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Histogra
     Ok(forces)
 }
 
-/// Counts a value that is not negative, in units of which each is told apart to three digits; less than one counts as one.
+/// Counts a value, not negative, to three digits; less than one counts as one.
 pub(super) fn note(histogram: &mut Histogram<u64>, value: f64) {
     #[expect(
         clippy::cast_possible_truncation,

@@ -4,7 +4,7 @@ use chaindrive_mechanics::Impact;
 use hdrhistogram::Histogram;
 use serde::{Deserialize, Serialize};
 
-use super::{counted, histogram};
+use super::{COUNTS_PER_NEWTON, counted, histogram};
 use crate::Simulation;
 
 /// Impacts on one sprocket: the first contacts of rollers that came to it, each once a passage.
@@ -24,10 +24,9 @@ pub struct ImpactStatistics {
     speeds: Histogram<u64>,
 }
 
-/// Counts a unit, to three digits of whatever is there: forces in mN, impulses in µN s, speeds in µm/s.
-const PER_NEWTON: f64 = 1e3;
-const PER_NEWTON_SECOND: f64 = 1e6;
-const PER_METRE_A_SECOND: f64 = 1e6;
+/// Impulses are counted in µN s, speeds in µm/s.
+const COUNTS_PER_NEWTON_SECOND: f64 = 1e6;
+const COUNTS_PER_METRE_A_SECOND: f64 = 1e6;
 
 impl ImpactStatistics {
     /// Nothing yet, for every sprocket.
@@ -48,9 +47,12 @@ impl ImpactStatistics {
         self.count += 1;
         self.greatest = self.greatest.max(impact.peak_force);
         for (histogram, value) in [
-            (&mut self.forces, impact.peak_force * PER_NEWTON),
-            (&mut self.impulses, impact.impulse * PER_NEWTON_SECOND),
-            (&mut self.speeds, impact.speed * PER_METRE_A_SECOND),
+            (&mut self.forces, impact.peak_force * COUNTS_PER_NEWTON),
+            (
+                &mut self.impulses,
+                impact.impulse * COUNTS_PER_NEWTON_SECOND,
+            ),
+            (&mut self.speeds, impact.speed * COUNTS_PER_METRE_A_SECOND),
         ] {
             counted::note(histogram, value);
         }
@@ -59,16 +61,16 @@ impl ImpactStatistics {
     /// A quantile of the largest forces \[N\].
     pub fn force(&self, quantile: f64) -> f64 {
         // A class of the histogram reaches beyond the values that it counts.
-        (self.forces.value_at_quantile(quantile) as f64 / PER_NEWTON).min(self.greatest)
+        (self.forces.value_at_quantile(quantile) as f64 / COUNTS_PER_NEWTON).min(self.greatest)
     }
 
     /// A quantile of the impulses \[N s\].
     pub fn impulse(&self, quantile: f64) -> f64 {
-        self.impulses.value_at_quantile(quantile) as f64 / PER_NEWTON_SECOND
+        self.impulses.value_at_quantile(quantile) as f64 / COUNTS_PER_NEWTON_SECOND
     }
 
     /// A quantile of the closing speeds at touch, along the normal of the tooth \[m/s\].
     pub fn speed(&self, quantile: f64) -> f64 {
-        self.speeds.value_at_quantile(quantile) as f64 / PER_METRE_A_SECOND
+        self.speeds.value_at_quantile(quantile) as f64 / COUNTS_PER_METRE_A_SECOND
     }
 }

@@ -14,20 +14,17 @@ pub(crate) fn start(text: &str) -> Simulation {
     Simulation::start(&drive, &run).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Share of its energy that the ledger of a run may leave open which is judged by anything.
+/// Share of its energy that the ledger of a judged run may leave open.
 const OPEN: f64 = 0.01;
 
 /// Runs a scene text to its end, and shows every sample. The ledger has to close.
 pub(crate) fn run(text: &str, see: impl FnMut(&Observation)) -> Simulation {
     let (simulation, open) = run_open(text, see);
-    assert!(
-        open < OPEN,
-        "{open:.2e} of the energy moved is unaccounted for"
-    );
+    assert!(open < OPEN, "{open:.2e} of the energy is unaccounted for");
     simulation
 }
 
-/// The same, with the share of the energy moved that the ledger leaves open.
+/// The same without that judgement, for drives that hardly move: with the share left open of the energy moved, or of motion.
 pub(crate) fn run_open(text: &str, mut see: impl FnMut(&Observation)) -> (Simulation, f64) {
     let mut simulation = start(text);
     let mut summary = Summary::new(&simulation);
