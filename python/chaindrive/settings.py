@@ -40,7 +40,7 @@ MethodName: TypeAlias = Literal[
 ]
 """Methods of time stepping, see `simulate`."""
 
-Target: TypeAlias = Literal["tension", "losses"]
+Target: TypeAlias = Literal["tension", "losses", "impacts"]
 """Quantities that an accuracy can be one of."""
 
 ContactPlace: TypeAlias = Literal["teeth", "guides", "joints"]

@@ -90,8 +90,9 @@ def simulate(
         when neither the scene nor the caller gives one of them or a tolerance: unlike `sweep`,
         which chooses only where it is asked to. Not together with these.
     accuracy_of
-        Quantity to which the accuracy applies: ``"tension"``, the default, or ``"losses"``, and
-        with them the efficiency.
+        Quantity to which the accuracy applies: ``"tension"``, the default; ``"losses"``, and with
+        them the efficiency; or ``"impacts"``, forces and impulses of rollers that come to a
+        sprocket.
     events
         Contacts to log from touch to parting: of ``"teeth"``, ``"guides"``, ``"joints"``.
     output

@@ -122,7 +122,9 @@ def sweep(
         - statistics of each variant, such as ``span_tension_mean``, ``span_tension_half_width``
           (of the 95 % interval of the mean), ``span_tension_std``, ``span_tension_min``,
           ``span_tension_max`` (…, span), ``contact_force_p99``,
-          ``contact_force_max`` [N], ``energy_dissipated_total``, ``energy_residual_max`` [J],
+          ``contact_force_max`` [N], ``impact_force_p50``, ``impact_force_p99`` [N],
+          ``impact_impulse`` [N s], ``impact_speed`` [m/s] (…, sprocket), see the summary of a run,
+          ``energy_dissipated_total``, ``energy_residual_max`` [J],
           ``steps``; those of contacts by kind where the scene logs them; ``accuracy_error`` and
           ``accuracy_kept`` (1 or 0) where an accuracy was asked for. ``stepping_time`` and
           ``real_time_factor`` are measured, all others are the same with every sweep;

@@ -61,8 +61,8 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "RATIO", conflicts_with_all = ["method", "step", "tolerance", "onset_depth"])]
     accuracy: Option<String>,
 
-    /// Quantity that the accuracy is one of: the tension, or the losses and with them the efficiency
-    #[arg(long, value_name = "QUANTITY", value_parser = ["tension", "losses"], conflicts_with_all = ["method", "step", "tolerance", "onset_depth"])]
+    /// Quantity that the accuracy is one of: the tension, the losses and with them the efficiency, or the impacts of rollers
+    #[arg(long, value_name = "QUANTITY", value_parser = ["tension", "losses", "impacts"], conflicts_with_all = ["method", "step", "tolerance", "onset_depth"])]
     accuracy_of: Option<String>,
 
     /// Channels to record, separated by commas, or all; `chaindrive channels` lists them

@@ -204,6 +204,31 @@ impl ToothGap {
         ArcSpline::closed(&pieces)
     }
 
+    /// Pressure angle γ where the flank leaves the seat \[rad\]: between the line from roller to roller and the normal of the tooth.
+    ///
+    /// ```text
+    /// γ = π/2 − π/z − β,   β: half the angle of the seat arc
+    /// ```
+    ///
+    /// None where no arc of its own makes the bottom of the gap, or the arc is all of it.
+    pub fn pressure_angle(&self) -> Option<f64> {
+        let bottom = self
+            .pieces
+            .iter()
+            .enumerate()
+            .find_map(|(at, piece)| match piece {
+                Piece::Arc(arc) if arc.sweep < 0.0 && arc.centre.x.abs() < 1e-9 * self.pitch => {
+                    Some((at, arc))
+                }
+                _ => None,
+            });
+        let (at, arc) = bottom?;
+        let whole = at == 0 || at + 1 == self.pieces.len();
+        let beta = 0.5 * arc.sweep.abs();
+        let half = PI / f64::from(self.teeth);
+        (!whole && self.seat_clearance > 0.0).then_some(FRAC_PI_2 - half - beta)
+    }
+
     /// Direction of the axis of gap k in the frame of the wheel \[rad\]: π/2 + 2πk/z.
     pub fn gap_axis(&self, k: u32) -> f64 {
         FRAC_PI_2 + TAU * f64::from(k) / f64::from(self.teeth)

@@ -20,7 +20,7 @@ pub struct Struck {
 }
 
 impl System {
-    /// Counts contacts from here on; what lasts has begun before, and rollers that are near a sprocket have come.
+    /// Counts contacts from here on; what lasts has begun before, and rollers that lie on a sprocket have come.
     pub fn forget_impacts(&mut self) {
         for member in &mut self.chains {
             for impacts in member.impacts_mut() {
@@ -28,7 +28,7 @@ impl System {
             }
             let rollers = member.chain.rollers();
             for on in &mut member.contacts.teeth {
-                on.arrivals.begin(&on.contacts, rollers);
+                on.arrivals.begin(rollers);
             }
         }
     }

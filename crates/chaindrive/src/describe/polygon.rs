@@ -1,6 +1,6 @@
 //! Polygonal kinematics of every strand between two sprockets on the same side of the chain.
 
-use chaindrive_geometry::{Point, PolygonAction, mesh_frequency};
+use chaindrive_geometry::{Point, PolygonAction, PressureAngles, mesh_frequency};
 use chaindrive_mechanics::{Drive, Layout, Observation, PlacedChain, Stop};
 use serde::Serialize;
 
@@ -22,8 +22,15 @@ pub struct PolygonPair {
     pub greatest_ratio: f64,
     /// Transmission error, peak to peak, at the driven wheel \[rad\].
     pub transmission_error: f64,
-    /// Speed at which a roller meets its seat on the driver \[m/s\]; zero while it stands.
+    /// Speed of a roller relative to its seat on the driver, as it comes to it \[m/s\]; zero while it stands.
     pub seating_velocity: f64,
+    /// Part of it along the normal of the tooth where its flank leaves the seat \[m/s\], the closing speed of an impact there; none for a
+    /// profile without a seat of its own.
+    ///
+    /// ```text
+    /// v = p ω sin(2π/z + γ)
+    /// ```
+    pub closing_speed: Option<f64>,
     /// Frequency at which rollers seat \[Hz\].
     pub mesh_frequency: f64,
 }
@@ -81,6 +88,11 @@ fn pair(
         transmission_error: action.transmission_error_range(),
         // v_rel = (v_rel / p ω) p ω
         seating_velocity: action.seating_velocity().relative.abs() * pitch * speed.abs(),
+        closing_speed: drive.sprockets[driver]
+            .gap
+            .pressure_angle()
+            // v = p ω sin(2π/z + γ)
+            .map(|angle| PressureAngles::normal_speed(teeth(driver), angle) * pitch * speed.abs()),
         mesh_frequency: mesh_frequency(teeth(driver), speed),
     })
 }

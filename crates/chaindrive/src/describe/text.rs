@@ -188,8 +188,11 @@ impl Description {
         )?;
         for pair in &self.polygon {
             let ratio = |ratio: f64| (ratio / pair.mean_ratio - 1.0) * 100.0;
+            let closing = pair.closing_speed.map_or_else(String::new, |speed| {
+                format!(", {speed:.4} m/s along the normal of the tooth")
+            });
             let text = format!(
-                "ratio {:.5} {:+.4} to {:+.4} %, error {:.3e} rad peak to peak, seating at {:.4} m/s, {:.2} Hz",
+                "ratio {:.5} {:+.4} to {:+.4} %, error {:.3e} rad peak to peak, seating at {:.4} m/s{closing}, {:.2} Hz",
                 pair.mean_ratio,
                 ratio(pair.least_ratio),
                 ratio(pair.greatest_ratio),

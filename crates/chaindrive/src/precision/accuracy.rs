@@ -16,6 +16,8 @@ pub enum Quantity {
     Tension,
     /// The energy lost, and with it the efficiency.
     Losses,
+    /// The impacts of rollers that come to a sprocket: median and 99th percentile of their forces, median of their impulses.
+    Impacts,
 }
 
 /// An accuracy that is asked for.

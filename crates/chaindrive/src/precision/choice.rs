@@ -12,6 +12,7 @@ use super::candidates::{Candidate, Candidates, Entry, work};
 use super::compare::{Account, distances, rms};
 use super::estimate::{pinned, sharper};
 use super::horizon::Horizon;
+use super::impacts::ImpactErrors;
 use super::short_runs::{Beginning, ShortRuns};
 use super::trace::{Gap, Strands, Trace};
 use super::window::Window;
@@ -32,7 +33,10 @@ pub enum Promise {
     Statistics,
     /// The energy lost, as it is without what chance makes of it, and what is unaccounted for beside it.
     Losses,
-    /// Nothing: the chain carries no tension that could be compared, or loses nothing.
+    /// Median and 99th percentile of the forces of impacts and median of their impulses, on the sprocket that differs most, or no more than
+    /// chance makes of them.
+    Impacts,
+    /// Nothing: the chain carries no tension that could be compared, loses nothing, or strikes nothing.
     Nothing,
 }
 
@@ -133,6 +137,10 @@ impl Trials<'_> {
         if of == Quantity::Losses {
             return Ok((Promise::Losses, losses_apart(twin, base)));
         }
+        if of == Quantity::Impacts {
+            let names = self.start.system.sprocket_names();
+            return Ok((Promise::Impacts, impacts_apart(twin, base, &names, 1.0)));
+        }
         let strands = Strands::of([base, twin]);
         let horizon = Horizon::of(base, twin, strands);
         let parted = [horizon.all, horizon.tight].map(|of| of.time());
@@ -151,6 +159,7 @@ fn nothing(base: &Trace, of: Quantity) -> bool {
     match of {
         Quantity::Tension => base.tensions(Strands::of([base])).mean() <= 0.0,
         Quantity::Losses => base.energy.scale() <= 0.0,
+        Quantity::Impacts => base.impacts.is_empty(),
     }
 }
 
@@ -222,12 +231,13 @@ pub(crate) fn choose_with(
         trials: Vec::new(),
         evaluations: 0,
     };
+    let names = start.system.sprocket_names();
     // What twins make of the promise: taken where something turns on it.
     let mut spread = None;
     let mut place = 0;
     while let Some(entry) = candidates.get(place) {
         let found = trials.pair(entry)?;
-        let found = found.map(|[candidate, judge]| Found::of(candidate, judge, entry));
+        let found = found.map(|[candidate, judge]| Found::of(candidate, judge, entry, &names));
         let keeps = |promise| {
             let error = found
                 .as_ref()
@@ -303,6 +313,8 @@ struct Found {
     statistics: f64,
     /// Of the energy lost \[–\].
     losses: f64,
+    /// Of the impacts, with the caution already \[–\].
+    impacts: f64,
     /// Error over the difference.
     caution: f64,
     /// Energy unaccounted for over the losses \[–\].
@@ -316,13 +328,14 @@ struct Found {
 }
 
 impl Found {
-    fn of(candidate: &Trace, judge: &Trace, entry: &Entry) -> Self {
+    fn of(candidate: &Trace, judge: &Trace, entry: &Entry, names: &[String]) -> Self {
         let strands = Strands::of([candidate, judge]);
         let distances = distances(candidate, judge, strands);
         Self {
             waveform: rms(distances.iter().map(|distance| distance.tight)),
             statistics: statistics(candidate, judge),
             losses: losses_apart(candidate, judge),
+            impacts: impacts_apart(candidate, judge, names, entry.caution()),
             caution: entry.caution(),
             unaccounted: candidate.energy.residual / judge.energy.scale(),
             open: candidate.energy.open(),
@@ -337,6 +350,7 @@ impl Found {
         let apart = match promise {
             Promise::Statistics => beyond(self.statistics, spread),
             Promise::Losses => beyond(self.losses, spread),
+            Promise::Impacts => beyond(self.impacts, spread) / self.caution,
             Promise::Waveform | Promise::Nothing => self.waveform,
         };
         let energy = match promise {
@@ -371,6 +385,13 @@ fn beyond(difference: f64, spread: f64) -> f64 {
     } else {
         f64::INFINITY
     }
+}
+
+/// Largest relative difference of the impacts on a sprocket; infinite where one run lacks them.
+fn impacts_apart(of: &Trace, from: &Trace, names: &[String], factor: f64) -> f64 {
+    let found = ImpactErrors::of(of, from, names, factor);
+    let largest = found.iter().map(ImpactErrors::largest);
+    largest.reduce(f64::max).unwrap_or(f64::INFINITY)
 }
 
 /// Relative difference of the energies lost.
@@ -447,8 +468,9 @@ impl Choice {
                 format!("mean and rms of the link tensions (the motion is chaotic, {gap})")
             }
             (Promise::Losses, _) => "the losses".to_owned(),
+            (Promise::Impacts, _) => "the impacts of rollers".to_owned(),
             (Promise::Nothing, _) => {
-                return "the method's own step, because there is no tension or loss to compare"
+                return "the method's own step, because there is no tension, loss or impact to compare"
                     .to_owned();
             }
         };

@@ -6,6 +6,7 @@ use super::Watch;
 use super::compare::{Account, Comparison, Distance, distances, distances_over, rms};
 use super::convergence::factor;
 use super::horizon::{Divergence, Horizon, LIMIT};
+use super::impacts::ImpactErrors;
 use super::short_runs::{Beginning, ShortRuns};
 use super::trace::{Gap, Strands};
 use super::window::Window;
@@ -51,6 +52,8 @@ pub struct Estimate {
     pub rms: Comparison,
     /// 50th, 90th and 99th percentile of the contact forces.
     pub force: [Comparison; 3],
+    /// Impacts of rollers, by sprocket; none where no roller came to one.
+    pub impacts: Vec<ImpactErrors>,
     /// How long twins stay together.
     pub horizon: Horizon,
     /// Time from which on the waveform of the tensions compared differs from the exact one by 1 % \[s\]: when the
@@ -118,6 +121,7 @@ pub(crate) fn estimate_with(
     let [base, twin, shadow, second] = traces;
     let strands = Strands::of(traces);
     let expected = expected_ratio(start, &run);
+    let of_order = 1.0 / (1.0 - 1.0 / expected);
     let found = |strands: Strands| {
         let early = window.first(EARLY).samples();
         let factor = factor([base, shadow, second], strands, early, expected);
@@ -177,6 +181,7 @@ pub(crate) fn estimate_with(
         mean: compared(&|other| other.mean_apart(&run_account)),
         rms: compared(&|other| other.rms_apart(&run_account)),
         force: [0, 1, 2].map(|k| compared(&|other| other.force_apart(&run_account)[k])),
+        impacts: ImpactErrors::of(base, shadow, &start.system.sprocket_names(), of_order),
         horizon,
         waveform,
         link_waveform,

@@ -53,6 +53,11 @@ impl Estimate {
             number(&format!("error_{name}"), compared.difference);
             number(&format!("spread_{name}"), compared.spread);
         }
+        for it in &self.impacts {
+            for (name, error) in it.columns() {
+                number(&format!("error_{name}_{}", it.sprocket), error);
+            }
+        }
         number("chaos_window", self.horizon.window);
         let divergences = [("", self.horizon.all), ("_tight_span", self.horizon.tight)];
         for (name, divergence) in divergences {
@@ -176,6 +181,15 @@ impl fmt::Display for Estimate {
             writeln!(
                 f,
                 "  contact force          p50 {p50}, p90 {p90}, p99 {p99}"
+            )?;
+        }
+        for it in &self.impacts {
+            let [p50, p99, impulse, speed] = it.columns().map(|(_, error)| percent(error));
+            writeln!(
+                f,
+                "  {:22} force p50 {p50}, p99 {p99}, impulse {impulse}, closing speed {speed}; {} compared",
+                format!("impacts on {}", it.sprocket),
+                it.compared
             )?;
         }
         writeln!(f, "chaos                    {}", self.horizon.sentence())?;

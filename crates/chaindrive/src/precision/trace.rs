@@ -3,7 +3,7 @@
 use std::fmt;
 
 use chaindrive_integrate::Statistics;
-use chaindrive_mechanics::{Assembled, Flow, Observation};
+use chaindrive_mechanics::{Assembled, Flow, Impact, Observation};
 use serde::{Deserialize, Serialize};
 
 use super::Watch;
@@ -29,6 +29,8 @@ pub(super) struct Trace {
     pub(super) angle: Vec<f64>,
     /// Speed of the sprockets \[rad/s\], (samples, sprockets).
     pub(super) speed: Vec<f64>,
+    /// Impacts of rollers that came to a sprocket.
+    pub(super) impacts: Vec<Impact>,
     /// The energy of the run.
     pub(super) energy: Lost,
     /// Counts of the time stepping.
@@ -141,6 +143,7 @@ impl Trace {
         let more = window.samples().saturating_sub(self.len());
         while let Some(sample) = simulation.next_sample()? {
             self.push(sample, more);
+            self.impacts.extend_from_slice(simulation.impacts());
             if watch() {
                 return Err(SimulationError::Interrupted);
             }
@@ -154,6 +157,11 @@ impl Trace {
     /// Number of samples.
     pub(super) fn len(&self) -> usize {
         self.time.len()
+    }
+
+    /// Time of the last sample \[s\].
+    pub(super) fn end(&self) -> f64 {
+        self.time.last().copied().unwrap_or(0.0)
     }
 
     /// Keeps a sample; makes room for all that will come where there is none: traces are long, and are not to be moved.

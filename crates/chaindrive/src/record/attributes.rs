@@ -166,6 +166,12 @@ pub fn attributes(
         }
         story.number("energy_residual_largest", summary.residual);
         story.number("contact_force_largest", summary.forces().max);
+        for it in summary.impacts().iter().filter(|it| it.count > 0) {
+            story.count(&format!("impact_count_{}", it.sprocket), it.count);
+            for (name, value) in it.columns() {
+                story.number(&format!("{name}_{}", it.sprocket), value);
+            }
+        }
     }
     assembly(&mut story, simulation);
     speed(&mut story, simulation, provenance.wall_time());

@@ -7,7 +7,9 @@ use chaindrive_mechanics::EventKinds;
 
 use super::Outcome;
 use crate::precision::{Choice, Promise};
-use crate::record::{ContactStatistics, EventTable, Provenance, SpanStatistics, labels};
+use crate::record::{
+    ContactStatistics, EventTable, ImpactStatistics, Provenance, SpanStatistics, labels,
+};
 use crate::verdict::WrittenVerdict;
 use crate::{
     Channel, End, Recording, Report, Request, RunError, Scene, Settings, Simulation,
@@ -52,6 +54,9 @@ macro_rules! statistics {
 /// Dimension of statistics by kind of contact, see [`EventTable::KINDS`].
 const KIND: &str = "contact_kind";
 
+/// Dimension of statistics by sprocket.
+const SPROCKET: &str = "sprocket";
+
 statistics! {
     SpanTensionMean, "span_tension_mean", "N", Some("span"), "mean over time of the span tension";
     SpanTensionHalfWidth, "span_tension_half_width", "N", Some("span"), "half width of the 95 % interval of the mean, from means of batches; NaN below 20 samples";
@@ -62,6 +67,12 @@ statistics! {
     ContactForceP90, "contact_force_p90", "N", None, "90th percentile of the forces of loaded rollers on teeth";
     ContactForceP99, "contact_force_p99", "N", None, "99th percentile of the forces of loaded rollers on teeth";
     ContactForceMax, "contact_force_max", "N", None, "largest sample of the forces of rollers on teeth";
+    ImpactCount, "impact_count", "1", Some(SPROCKET), "number of impacts of rollers that came to the sprocket";
+    ImpactForceP50, "impact_force_p50", "N", Some(SPROCKET), "median of the largest forces of impacts";
+    ImpactForceP99, "impact_force_p99", "N", Some(SPROCKET), "99th percentile of the largest forces of impacts";
+    ImpactForceMax, "impact_force_max", "N", Some(SPROCKET), "largest force of all impacts";
+    ImpactImpulse, "impact_impulse", "N s", Some(SPROCKET), "median of the impulses of impacts";
+    ImpactSpeed, "impact_speed", "m/s", Some(SPROCKET), "median of the closing speeds of impacts, along the normal of the tooth";
     EnergySupplied, "energy_supplied_total", "J", None, "energy put in by drivers, motions and torques";
     EnergyDissipated, "energy_dissipated_total", "J", None, "energy lost";
     EnergyResidualMax, "energy_residual_max", "J", None, "largest energy unaccounted for, with its sign";
@@ -113,6 +124,7 @@ impl Statistic {
         let contacts = |of: fn(&ContactStatistics) -> f64| {
             summary.contacts(simulation).iter().map(of).collect()
         };
+        let impacts = |of: fn(&ImpactStatistics) -> f64| summary.impacts().iter().map(of).collect();
         let counts = simulation.statistics();
         let number = match self {
             Self::SpanTensionMean => return spans(SpanStatistics::mean),
@@ -124,6 +136,12 @@ impl Statistic {
             Self::ContactPeakMean => return contacts(ContactStatistics::mean),
             Self::ContactPeakMax => return contacts(|kind| kind.greatest),
             Self::ContactDuration => return contacts(|kind| kind.duration),
+            Self::ImpactCount => return impacts(|it| it.count as f64),
+            Self::ImpactForceP50 => return impacts(|it| it.columns()[0].1),
+            Self::ImpactForceP99 => return impacts(|it| it.columns()[1].1),
+            Self::ImpactForceMax => return impacts(|it| it.columns()[2].1),
+            Self::ImpactImpulse => return impacts(|it| it.columns()[3].1),
+            Self::ImpactSpeed => return impacts(|it| it.columns()[4].1),
             Self::ContactForceP50 => summary.forces().p50,
             Self::ContactForceP90 => summary.forces().p90,
             Self::ContactForceP99 => summary.forces().p99,
@@ -329,7 +347,10 @@ impl Account {
         let mut account = Self {
             method: Stepping::from(simulation.method()).name().to_owned(),
             time: recording.time,
-            labels: vec![("span".into(), names.collect())],
+            labels: vec![
+                ("span".into(), names.collect()),
+                (SPROCKET.into(), simulation.system().sprocket_names()),
+            ],
             entries: Vec::new(),
             verdict: report.verdict.written(),
         };

@@ -349,3 +349,28 @@ fn links_swing_out_freely() {
 fn unit(angle: f64) -> Vector {
     Vector::new(angle.cos(), angle.sin())
 }
+
+/// γ where the flank leaves the seat: 20° and 30° less 135°/z by the angles of seat arcs of ISO 606, 35° − 120°/z of the American form.
+#[test]
+fn pressure_angles_are_those_of_the_standards() {
+    for teeth in [9, 17, 45] {
+        let z = f64::from(teeth);
+        let angle = |form: &ToothForm| {
+            let gap = ToothGap::new(teeth, 0.0127, 0.00851, form).unwrap();
+            gap.pressure_angle().map(f64::to_degrees)
+        };
+        let iso = |gap| ToothForm::Iso606 {
+            gap,
+            tip: Tip::Mid,
+            seat: Seat::Bottom,
+        };
+        for (form, expected) in [
+            (iso(0.0), 20.0 - 135.0 / z),
+            (iso(1.0), 30.0 - 135.0 / z),
+            (ToothForm::AsaTypeII { tip: Tip::Mid }, 35.0 - 120.0 / z),
+        ] {
+            let found = angle(&form).unwrap();
+            assert!((found - expected).abs() < 1e-9, "{form:?}: {found}°");
+        }
+    }
+}

@@ -58,6 +58,18 @@ impl ImpactStatistics {
         }
     }
 
+    /// What results have of it, by name: forces \[N\], median impulse \[N s\], median closing speed \[m/s\]; NaN where nothing struck.
+    pub fn columns(&self) -> [(&'static str, f64); 5] {
+        let of = |value: f64| if self.count > 0 { value } else { f64::NAN };
+        [
+            ("impact_force_p50", of(self.force(0.5))),
+            ("impact_force_p99", of(self.force(0.99))),
+            ("impact_force_max", of(self.greatest)),
+            ("impact_impulse", of(self.impulse(0.5))),
+            ("impact_speed", of(self.speed(0.5))),
+        ]
+    }
+
     /// A quantile of the largest forces \[N\].
     pub fn force(&self, quantile: f64) -> f64 {
         // A class of the histogram reaches beyond the values that it counts.
