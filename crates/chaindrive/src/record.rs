@@ -23,10 +23,10 @@ pub use event::{EventColumn, EventTable};
 pub use in_store::InStore;
 pub use memory::Memory;
 pub use recorded::{LoggedContact, Recorded, RecordedChannel};
-pub(crate) use summary::Batches;
+pub(crate) use summary::Blocks;
 pub use summary::{
-    ContactStatistics, ForceStatistics, ImpactStatistics, Ledger, Load, SpanStatistics, Steadiness,
-    Summary,
+    ContactStatistics, ForceStatistics, ImpactStatistics, Known, Ledger, Load, SpanStatistics,
+    Steadiness, Summary,
 };
 pub use zarr::{
     Existing, Finished, Object, Objects, ReadError, ResumeError, Stopped, SweepStore, Worker,

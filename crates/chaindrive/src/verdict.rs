@@ -85,7 +85,9 @@ const LEAST_STEPS: u64 = 32;
 /// Share of the samples without a tension above which the statistics of a span are not those of the run: most of it is missing.
 const UNHELD: f64 = 0.5;
 /// Share of a mean below which the start of a run does not count. *Assumed*: below what anybody reads off a tension.
-const LEAST_SHIFT: f64 = 1e-3;
+const LEAST_SHIFT: f64 = 0.01;
+/// Half width of the interval of a mean, over that mean, above which it is uncertain. *Assumed*.
+const WIDE: f64 = 0.05;
 
 impl Verdict {
     /// The verdict on a run that ended: by its samples, how it was run in, the estimate of its error, and the choice of its
@@ -102,11 +104,12 @@ impl Verdict {
         reasons.extend(ledger(&summary.ledger(), simulation.statistics().steps));
         reasons.extend(spans(summary));
         reasons.extend(duty::found(summary, simulation));
-        let known = summary.spans.iter().filter_map(|span| {
-            let found = span.steadiness()?;
-            Some((span.name.as_str(), span.mean(), found))
-        });
-        reasons.extend(steadiness(&known.collect::<Vec<_>>(), simulation.time()));
+        let found = summary.steadiness().into_iter().zip(summary.scales());
+        let spans = summary.spans.iter().zip(found);
+        let known =
+            spans.filter_map(|(span, (found, scale))| Some((span.name.as_str(), found?, scale)));
+        let until = summary.known_from();
+        reasons.extend(steadiness(&known.collect::<Vec<_>>(), until));
         reasons.extend(ran_in.and_then(started));
         reasons.extend(choice.and_then(accuracy));
         reasons.extend(examination(judgement));
@@ -243,22 +246,17 @@ fn spans(summary: &Summary) -> impl Iterator<Item = Reason> {
         })
 }
 
-/// Reasons against means over a run up to some time \[s\]: names of spans, means of all samples, and those of their batches.
-fn steadiness(spans: &[(&str, f64, Steadiness)], time: f64) -> Vec<Reason> {
-    if let Some((span, ..)) = spans.iter().find(|(.., found)| !found.is_steady) {
+/// Reasons against statistics: names of spans, what is known of them, and what errors are measured by; `until` \[s\]: end of a record that
+/// would tell how well they are known.
+fn steadiness(spans: &[(&str, Steadiness, f64)], until: Option<f64>) -> Vec<Reason> {
+    if let Some((span, ..)) = spans.iter().find(|(_, found, _)| !found.is_steady) {
         let span = (*span).to_owned();
         return vec![Reason::NotSteady { span }];
     }
     let mut reasons = Vec::new();
-    let shifts = spans.iter().map(|(span, mean, found)| {
-        let shift = (mean - found.mean).abs();
-        let counts = shift > found.half_width;
-        let share = if counts {
-            shift / found.mean.abs()
-        } else {
-            0.0
-        };
-        (*span, found.before * time, share)
+    let shifts = spans.iter().map(|(span, found, scale)| {
+        let shift = (found.mean.value - found.settled).abs() / scale;
+        (*span, found.from, shift)
     });
     if let Some((span, until, shift)) = shifts.max_by(|a, b| a.2.total_cmp(&b.2))
         && shift > LEAST_SHIFT
@@ -266,9 +264,17 @@ fn steadiness(spans: &[(&str, f64, Steadiness)], time: f64) -> Vec<Reason> {
         let span = span.to_owned();
         reasons.push(Reason::StartCounts { span, until, shift });
     }
-    if let Some((span, ..)) = spans.iter().find(|(.., found)| !found.is_independent) {
-        let span = (*span).to_owned();
-        reasons.push(Reason::MeansUncertain { span });
+    if let Some(until) = until {
+        reasons.push(Reason::StatisticsUnknown { until });
+    }
+    let widths = spans
+        .iter()
+        .map(|(span, found, scale)| (*span, found.mean.half_width / scale));
+    if let Some((span, width)) = widths.max_by(|a, b| a.1.total_cmp(&b.1))
+        && width > WIDE
+    {
+        let span = span.to_owned();
+        reasons.push(Reason::MeansUncertain { span, width });
     }
     reasons
 }

@@ -95,13 +95,18 @@ impl Assembled {
     /// motion, the present speed.
     pub fn mean_speeds(&self) -> Vec<f64> {
         let at = self.start();
-        let layouts: Vec<&Layout> = self.parts.chains.iter().map(|it| &it.layout).collect();
-        let mean = |motion: &Motion| motion.mean_rate(self.drive.begin);
-        let shafts = setting_off::speeds(&self.system, &layouts, mean);
+        let shafts = self.shaft_speeds();
         let wheels = self.system.bodies.wheels.iter();
         wheels
             .map(|it| shafts[it.shaft].unwrap_or_else(|| it.kinematics(at.t, at.q, at.v).rate))
             .collect()
+    }
+
+    /// Mean angular speeds of the shafts \[rad/s\] that a motion drives, in the order of the drive.
+    pub(crate) fn shaft_speeds(&self) -> Vec<Option<f64>> {
+        let layouts: Vec<&Layout> = self.parts.chains.iter().map(|it| &it.layout).collect();
+        let mean = |motion: &Motion| motion.mean_rate(self.drive.begin);
+        setting_off::speeds(&self.system, &layouts, mean)
     }
 
     /// Time \[s\] that the slowest chain around sprockets takes for one circuit at its mean speed; infinite where there is none, or it

@@ -30,6 +30,7 @@ mod energy;
 mod error;
 mod events;
 mod fights;
+mod forcing;
 mod groups;
 #[doc(hidden)]
 pub mod inside;

@@ -1,5 +1,6 @@
 //! The short account that ends every run.
 
+mod blocks;
 mod carried;
 mod counted;
 mod impacts;
@@ -12,18 +13,22 @@ use serde::{Deserialize, Serialize};
 
 use super::event::{EventTable, kind};
 use crate::Simulation;
+pub(crate) use blocks::Blocks;
 use carried::Carried;
 pub use carried::Load;
 pub use impacts::ImpactStatistics;
 use report::Report;
-pub(crate) use steadiness::Batches;
-pub use steadiness::Steadiness;
+pub use steadiness::{Known, Steadiness};
 
 /// Collects statistics sample by sample, in bounded memory.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Summary {
     /// Spans of the route.
     pub spans: Vec<SpanStatistics>,
+    /// Period of the slowest forcing \[s\]; infinite where nothing repeats.
+    period: f64,
+    /// Time of the first sample \[s\].
+    began: Option<f64>,
     #[serde(with = "counted")]
     forces: Histogram<u64>,
     largest_force: f64,
@@ -52,35 +57,15 @@ pub struct SpanStatistics {
     pub least: f64,
     /// See `least`.
     pub greatest: f64,
-    sum: f64,
-    sum_of_squares: f64,
-    count: f64,
-    batches: Batches,
+    blocks: Blocks,
     /// Samples without a tension, because no roller holds the span.
     pub missing: u64,
 }
 
 impl SpanStatistics {
-    /// Time mean \[N\].
+    /// Time mean \[N\], of whole periods of the slowest forcing where there are three of them; NaN without a sample.
     pub fn mean(&self) -> f64 {
-        self.sum / self.count
-    }
-
-    /// Standard deviation \[N\].
-    pub fn deviation(&self) -> f64 {
-        (self.sum_of_squares / self.count - self.mean().powi(2))
-            .max(0.0)
-            .sqrt()
-    }
-
-    /// How well the mean is known, and whether it is that of a steady state; nothing of fewer than 20 samples.
-    pub fn steadiness(&self) -> Option<Steadiness> {
-        self.batches.steadiness()
-    }
-
-    /// Half width of the 95 % interval of the mean \[N\]; NaN where it is not known.
-    pub fn half_width(&self) -> f64 {
-        self.steadiness().map_or(f64::NAN, |found| found.half_width)
+        self.blocks.mean()
     }
 }
 
@@ -243,17 +228,17 @@ fn histogram() -> Histogram<u64> {
 impl Summary {
     /// An empty summary for a run.
     pub fn new(simulation: &Simulation) -> Self {
+        let period = simulation.assembled().slowest_forcing();
         let span = |name| SpanStatistics {
             name,
             least: f64::INFINITY,
             greatest: f64::NEG_INFINITY,
-            sum: 0.0,
-            sum_of_squares: 0.0,
-            count: 0.0,
-            batches: Batches::default(),
+            blocks: Blocks::new(simulation.every(), period),
             missing: 0,
         };
         Self {
+            period,
+            began: None,
             spans: simulation
                 .system()
                 .span_names()
@@ -277,14 +262,12 @@ impl Summary {
 
     /// Takes in one sample.
     pub fn push(&mut self, sample: &Observation) {
+        let time = sample.time - *self.began.get_or_insert(sample.time);
         for (span, &tension) in self.spans.iter_mut().zip(&sample.span_tension) {
             if tension.is_finite() {
                 span.least = span.least.min(tension);
                 span.greatest = span.greatest.max(tension);
-                span.sum += tension;
-                span.sum_of_squares += tension * tension;
-                span.count += 1.0;
-                span.batches.push(tension);
+                span.blocks.push(time, tension);
             } else {
                 span.missing += 1;
             }
@@ -307,6 +290,36 @@ impl Summary {
         self.last = sample.energy;
         self.carried.push(sample);
         self.samples += 1;
+    }
+
+    /// What is known of the steady tensions, by span; none of one that no roller held in any sample.
+    pub fn steadiness(&self) -> Vec<Option<Steadiness>> {
+        let scales = self.scales().into_iter();
+        let spans = self.spans.iter().zip(scales);
+        spans
+            .map(|(span, scale)| span.blocks.steadiness(scale))
+            .collect()
+    }
+
+    /// What errors and drifts of the tension of every span are measured by \[N\]: its own mean, or a tenth of that of the tight span.
+    pub fn scales(&self) -> Vec<f64> {
+        let means: Vec<f64> = self.spans.iter().map(|span| span.mean().abs()).collect();
+        let tight = means.iter().copied().fold(0.0, f64::max);
+        means.iter().map(|mean| mean.max(0.1 * tight)).collect()
+    }
+
+    /// End \[s\] of a record that would tell how well its statistics are known, where this one does not.
+    pub fn known_from(&self) -> Option<f64> {
+        let short = |it: &Steadiness| it.mean.half_width.is_nan();
+        let is_short = self.steadiness().iter().flatten().any(short);
+        // Three periods, and a sample behind them.
+        let until = 3.05 * self.period;
+        (is_short && until.is_finite()).then_some(until)
+    }
+
+    /// Period of the slowest forcing that is known \[s\]: teeth, orders, tables; infinite where nothing repeats.
+    pub fn slowest_forcing(&self) -> f64 {
+        self.period
     }
 
     /// Takes in contacts that ended.

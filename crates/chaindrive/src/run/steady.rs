@@ -6,7 +6,7 @@ use super::Run;
 use super::execute::Onlooker;
 use super::run_in::{MOST_CIRCUITS, before};
 use crate::SimulationError;
-use crate::record::Batches;
+use crate::record::{Blocks, Steadiness};
 
 /// Samples a circuit: enough for a dozen over the slowest swing of a span, which lasts a good part of one.
 const SAMPLES: u32 = 256;
@@ -27,7 +27,9 @@ pub(super) fn begins(
     let circuit = circuit(start)?;
     let longest = f64::from(MOST_CIRCUITS) * circuit;
     let mut moving = before(&start.drive, longest, run, stop)?;
-    let mut spans: Vec<Batches> = Vec::new();
+    let mut spans: Vec<Blocks> = Vec::new();
+    let every = circuit / f64::from(SAMPLES);
+    let period = start.slowest_forcing();
     let mut taken = 0;
     let mut circuits = 2;
     let mut was_steady = false;
@@ -36,11 +38,11 @@ pub(super) fn begins(
             taken += 1;
             let time = f64::from(taken) * circuit / f64::from(SAMPLES) - longest;
             let tensions = &moving.advance_to(time)?.span_tension;
-            spans.resize_with(tensions.len(), Batches::default);
+            spans.resize_with(tensions.len(), || Blocks::new(every, period));
             for (span, tension) in spans.iter_mut().zip(tensions) {
                 // A span without a tension says nothing.
                 if tension.is_finite() {
-                    span.push(*tension);
+                    span.push(time + longest, *tension);
                 }
             }
             onlooker.see_run_in(f64::from(taken) / f64::from(MOST_CIRCUITS * SAMPLES));
@@ -48,11 +50,19 @@ pub(super) fn begins(
                 return Err(SimulationError::Interrupted);
             }
         }
-        let found: Option<Vec<_>> = spans.iter().map(Batches::steadiness).collect();
-        let found = found.filter(|all| all.iter().all(|it| it.is_steady && it.is_independent));
+        let scale = spans
+            .iter()
+            .map(|span| span.mean().abs())
+            .fold(0.0, f64::max);
+        let of = |span: &Blocks| span.steadiness(span.mean().abs().max(0.1 * scale));
+        let found: Option<Vec<_>> = spans.iter().map(of).collect();
+        let found = found.filter(|all| {
+            let known = |it: &Steadiness| it.is_steady && it.mean.half_width.is_finite();
+            all.iter().all(known)
+        });
         if let (Some(found), true) = (&found, was_steady) {
-            let before = found.iter().map(|it| it.before).fold(0.0, f64::max);
-            return Ok((before * f64::from(circuits) * circuit, true));
+            let from = found.iter().map(|it| it.from).fold(0.0, f64::max);
+            return Ok((from, true));
         }
         was_steady = found.is_some();
         circuits *= 2;

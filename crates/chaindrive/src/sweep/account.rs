@@ -8,7 +8,7 @@ use chaindrive_mechanics::EventKinds;
 use super::Outcome;
 use crate::precision::{Choice, Promise};
 use crate::record::{
-    ContactStatistics, EventTable, ImpactStatistics, Provenance, SpanStatistics, labels,
+    ContactStatistics, EventTable, ImpactStatistics, Provenance, SpanStatistics, Steadiness, labels,
 };
 use crate::verdict::WrittenVerdict;
 use crate::{
@@ -58,9 +58,14 @@ const KIND: &str = "contact_kind";
 const SPROCKET: &str = "sprocket";
 
 statistics! {
-    SpanTensionMean, "span_tension_mean", "N", Some("span"), "mean over time of the span tension";
-    SpanTensionHalfWidth, "span_tension_half_width", "N", Some("span"), "half width of the 95 % interval of the mean, from means of batches; NaN below 20 samples";
+    SpanTensionMean, "span_tension_mean", "N", Some("span"), "mean of the span tension over whole periods of the slowest forcing";
+    SpanTensionHalfWidth, "span_tension_half_width", "N", Some("span"), "half width of the 95 % interval of the mean; NaN below three periods";
     SpanTensionStd, "span_tension_std", "N", Some("span"), "standard deviation of the span tension";
+    SpanTensionStdHalfWidth, "span_tension_std_half_width", "N", Some("span"), "half width of the 95 % interval of the standard deviation; NaN below three periods";
+    SpanTensionP1, "span_tension_p1", "N", Some("span"), "tension that the span has less of in 1 % of the time";
+    SpanTensionP1HalfWidth, "span_tension_p1_half_width", "N", Some("span"), "half width of its 95 % interval; NaN below three periods";
+    SpanTensionP99, "span_tension_p99", "N", Some("span"), "tension that the span has less of in 99 % of the time";
+    SpanTensionP99HalfWidth, "span_tension_p99_half_width", "N", Some("span"), "half width of its 95 % interval; NaN below three periods";
     SpanTensionMin, "span_tension_min", "N", Some("span"), "least sample of the span tension";
     SpanTensionMax, "span_tension_max", "N", Some("span"), "greatest sample of the span tension";
     ContactForceP50, "contact_force_p50", "N", None, "median of the forces of loaded rollers on teeth";
@@ -121,15 +126,24 @@ impl Statistic {
                 .map(|value| if value.is_finite() { value } else { f64::NAN })
                 .collect()
         };
+        let known = |of: fn(&Steadiness) -> f64| {
+            let spans = summary.steadiness().into_iter();
+            spans.map(|it| it.as_ref().map_or(f64::NAN, of)).collect()
+        };
         let contacts = |of: fn(&ContactStatistics) -> f64| {
             summary.contacts(simulation).iter().map(of).collect()
         };
         let impacts = |of: fn(&ImpactStatistics) -> f64| summary.impacts().iter().map(of).collect();
         let counts = simulation.statistics();
         let number = match self {
-            Self::SpanTensionMean => return spans(SpanStatistics::mean),
-            Self::SpanTensionHalfWidth => return spans(SpanStatistics::half_width),
-            Self::SpanTensionStd => return spans(SpanStatistics::deviation),
+            Self::SpanTensionMean => return known(|it| it.mean.value),
+            Self::SpanTensionHalfWidth => return known(|it| it.mean.half_width),
+            Self::SpanTensionStd => return known(|it| it.deviation.value),
+            Self::SpanTensionStdHalfWidth => return known(|it| it.deviation.half_width),
+            Self::SpanTensionP1 => return known(|it| it.p1.value),
+            Self::SpanTensionP1HalfWidth => return known(|it| it.p1.half_width),
+            Self::SpanTensionP99 => return known(|it| it.p99.value),
+            Self::SpanTensionP99HalfWidth => return known(|it| it.p99.half_width),
             Self::SpanTensionMin => return spans(|span| span.least),
             Self::SpanTensionMax => return spans(|span| span.greatest),
             Self::ContactCount => return contacts(|kind| kind.count as f64),

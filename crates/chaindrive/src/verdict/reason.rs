@@ -75,10 +75,17 @@ pub enum Reason {
         /// How long it was \[s\].
         time: f64,
     },
-    /// The run is too short for the interval of a mean to be believed.
+    /// The interval of a mean is wide.
     MeansUncertain {
-        /// Name of a span where that is so.
+        /// Name of the span where it is widest.
         span: String,
+        /// Half width over the mean \[–\].
+        width: f64,
+    },
+    /// The record is too short for intervals.
+    StatisticsUnknown {
+        /// End of a record that would have them \[s\].
+        until: f64,
     },
     /// The span tensions could not be compared with those of a sharper run.
     SpansNotExamined {
@@ -185,6 +192,7 @@ impl Reason {
             | Self::StartCounts { .. }
             | Self::NotRunIn { .. }
             | Self::MeansUncertain { .. }
+            | Self::StatisticsUnknown { .. }
             | Self::SpansNotExamined { .. }
             | Self::AccuracyMissed { .. }
             | Self::HorizonWithinRun { .. }
@@ -213,6 +221,7 @@ impl Reason {
             Self::StartCounts { .. } => "start-counts",
             Self::NotRunIn { .. } => "not-run-in",
             Self::MeansUncertain { .. } => "means-uncertain",
+            Self::StatisticsUnknown { .. } => "statistics-unknown",
             Self::SpansNotExamined { .. } => "spans-not-examined",
             Self::AccuracyMissed { .. } => "accuracy-missed",
             Self::HorizonWithinRun { .. } => "horizon-within-run",
@@ -288,9 +297,15 @@ impl fmt::Display for Reason {
                 "the motion was not steady after a run-in of {}, the longest that ends by itself: it swings slowly, or never settles",
                 duration(*time)
             ),
-            Self::MeansUncertain { span } => write!(
+            Self::MeansUncertain { span, width } => write!(
                 f,
-                "the mean tension of span {span} is known worse than its interval says: it swings slowly, simulate longer"
+                "the mean tension of span {span} is known to {} only: simulate longer",
+                percent(*width)
+            ),
+            Self::StatisticsUnknown { until } => write!(
+                f,
+                "the record has fewer than three periods of the slowest forcing, so statistics have no intervals: --until \"{}\"",
+                duration(*until)
             ),
             Self::SpansNotExamined { gap } => write!(
                 f,

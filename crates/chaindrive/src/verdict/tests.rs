@@ -1,6 +1,7 @@
 //! Where the ledger begins to speak against a run.
 
 use super::*;
+use crate::record::Known;
 
 /// A drive that takes in 100 J and loses 2 J.
 fn ledger_with(residual: f64) -> Ledger {
@@ -112,27 +113,30 @@ fn the_worst_reason_decides_and_comes_first() {
     assert_eq!(sound.to_string(), "verdict                  trusted");
 }
 
-/// A span with a mean over all samples, and a steady state of 1000 N ± 5 N that begins after 30 % of them.
-fn reached(mean: f64) -> (&'static str, f64, Steadiness) {
+/// A span with a mean, and a steady state of 1000 N that begins after 0.6 s.
+fn reached(mean: f64, half_width: f64) -> (&'static str, Steadiness, f64) {
+    let known = |value| Known { value, half_width };
     let found = Steadiness {
-        half_width: 5.0,
-        mean: 1000.0,
-        before: 0.3,
+        mean: known(mean),
+        deviation: known(10.0),
+        p1: known(970.0),
+        p99: known(1030.0),
+        settled: 1000.0,
+        from: 0.6,
         is_steady: true,
-        is_independent: true,
     };
-    ("a-b", mean, found)
+    ("a-b", found, 1000.0)
 }
 
 #[test]
 fn means_of_a_steady_state_are_not_spoken_against() {
-    assert_eq!(steadiness(&[reached(1004.0)], 2.0), []);
-    assert_eq!(steadiness(&[], 2.0), []);
+    assert_eq!(steadiness(&[reached(1004.0, 5.0)], None), []);
+    assert_eq!(steadiness(&[], None), []);
 }
 
 #[test]
 fn a_start_that_counts_is_told() {
-    let reasons = steadiness(&[reached(1003.0), reached(1020.0)], 2.0);
+    let reasons = steadiness(&[reached(1003.0, 5.0), reached(1020.0, 5.0)], None);
     let [Reason::StartCounts { until, shift, .. }] = reasons[..] else {
         panic!("{reasons:?}");
     };
@@ -141,9 +145,9 @@ fn a_start_that_counts_is_told() {
 
 #[test]
 fn what_is_not_steady_is_told_alone() {
-    let (span, mean, mut found) = reached(1020.0);
-    found.is_steady = false;
-    let reasons = steadiness(&[reached(1020.0), (span, mean, found)], 2.0);
+    let mut drifting = reached(1020.0, 80.0);
+    drifting.1.is_steady = false;
+    let reasons = steadiness(&[reached(1020.0, 80.0), drifting], None);
     assert!(
         matches!(reasons[..], [Reason::NotSteady { .. }]),
         "{reasons:?}"
@@ -151,12 +155,12 @@ fn what_is_not_steady_is_told_alone() {
 }
 
 #[test]
-fn an_interval_that_is_not_to_be_believed_is_told() {
-    let (span, mean, mut found) = reached(1000.0);
-    found.is_independent = false;
-    let reasons = steadiness(&[(span, mean, found)], 2.0);
+fn intervals_that_are_wide_or_missing_are_told() {
+    let reasons = steadiness(&[reached(1000.0, 51.0)], None);
     assert!(
         matches!(reasons[..], [Reason::MeansUncertain { .. }]),
         "{reasons:?}"
     );
+    let reasons = steadiness(&[reached(1000.0, f64::NAN)], Some(0.3));
+    assert_eq!(reasons, [Reason::StatisticsUnknown { until: 0.3 }]);
 }

@@ -197,15 +197,18 @@ fn means_that_are_not_those_of_a_steady_state_are_a_caution() {
     );
     let growing = verdict(&growing, &run(0.1, 100.0));
     let bare = preset("marine_engine_bare", &[]);
-    let short = Run {
-        every: 2e-4,
-        ..run(0.02, 100.0)
+    let of = |until| {
+        let run = Run {
+            every: 2e-4,
+            ..run(until, 100.0)
+        };
+        verdict(&bare, &run)
     };
-    let early = verdict(&bare, &short);
-    let late = verdict(&bare, &run(0.1, 100.0));
-    tells_apart("not-steady", &growing, &early);
-    tells_apart("start-counts", &early, &late);
-    tells_apart("means-uncertain", &early, &late);
+    let [unknown, wide, known] = [0.02, 0.07, 1.0].map(of);
+    tells_apart("not-steady", &growing, &known);
+    tells_apart("statistics-unknown", &unknown, &wide);
+    tells_apart("means-uncertain", &wide, &known);
+    assert!(unknown.note().contains("--until \"30 ms\""), "{unknown}");
 }
 
 /// Impacts counted without a log are those of the log.

@@ -572,7 +572,7 @@ fn a_result_that_contradicts_itself_is_told_of_even_quietly() {
     assert_eq!((code, out.as_str(), err.as_str()), (0, "", ""));
     let attributes = &group(&at.join("run.zarr"))["attributes"];
     assert_eq!(attributes["verdict"], "caution");
-    assert_eq!(attributes["reasons"], "not-steady not-estimated");
+    assert_eq!(attributes["reasons"], "statistics-unknown not-estimated");
 }
 
 #[test]

@@ -6,6 +6,7 @@ use chaindrive_mechanics::Struck;
 
 use super::Summary;
 use crate::Simulation;
+use crate::precision::wording::duration;
 use crate::record::EventTable;
 
 /// A summary as text.
@@ -24,35 +25,7 @@ impl fmt::Display for Report<'_> {
         let statistics = simulation.statistics();
         let time = simulation.time();
         if !summary.spans.is_empty() {
-            writeln!(
-                f,
-                "span tension [N]            mean     ± 95 %        std      least   greatest"
-            )?;
-            for span in &summary.spans {
-                let samples = summary.samples;
-                if span.missing == samples {
-                    writeln!(f, "  {:22} no roller holds it in any sample", span.name)?;
-                    continue;
-                }
-                let half_width = match span.steadiness() {
-                    Some(found) => format!("{:.1}", found.half_width),
-                    None => "not known".to_owned(),
-                };
-                write!(
-                    f,
-                    "  {:22} {:>9.1}  {half_width:>9}  {:>9.1}  {:>9.1}  {:>9.1}",
-                    span.name,
-                    span.mean(),
-                    span.deviation(),
-                    span.least,
-                    span.greatest
-                )?;
-                if span.missing > 0 {
-                    let missing = span.missing;
-                    write!(f, "  no roller holds it in {missing} of {samples} samples")?;
-                }
-                writeln!(f)?;
-            }
+            spans(f, summary)?;
         }
         let forces = summary.forces();
         if forces.max > 0.0 {
@@ -87,6 +60,44 @@ impl fmt::Display for Report<'_> {
             wall
         )
     }
+}
+
+/// One line a span, and one where the record is too short for intervals.
+fn spans(f: &mut fmt::Formatter<'_>, summary: &Summary) -> fmt::Result {
+    writeln!(
+        f,
+        "span tension [N]            mean   ± 95 %        std   ± 95 %         p1   ± 95 %        p99   ± 95 %      least   greatest"
+    )?;
+    let samples = summary.samples;
+    for (span, known) in summary.spans.iter().zip(summary.steadiness()) {
+        let Some(known) = known else {
+            writeln!(f, "  {:22} no roller holds it in any sample", span.name)?;
+            continue;
+        };
+        write!(f, "  {:22}", span.name)?;
+        for it in [known.mean, known.deviation, known.p1, known.p99] {
+            let half_width = match it.half_width {
+                unknown if unknown.is_nan() => "unknown".to_owned(),
+                half_width => format!("{half_width:.1}"),
+            };
+            write!(f, "  {:>9.1}  {half_width:>7}", it.value)?;
+        }
+        write!(f, "  {:>9.1}  {:>9.1}", span.least, span.greatest)?;
+        if span.missing > 0 {
+            let missing = span.missing;
+            write!(f, "  no roller holds it in {missing} of {samples} samples")?;
+        }
+        writeln!(f)?;
+    }
+    if let Some(until) = summary.known_from() {
+        let period = duration(summary.slowest_forcing());
+        let until = duration(until);
+        writeln!(
+            f,
+            "  intervals              unknown below three periods of {period}, the slowest forcing: --until \"{until}\""
+        )?;
+    }
+    Ok(())
 }
 
 /// One line a kind of contact that was logged.

@@ -26,7 +26,7 @@ const CRATES: [Storeys; 4] = [
             &["events", "observe", "standing", "struck"],
             &["check", "fights"],
             &["assembly"],
-            &["inside", "modes", "nudge", "pose"],
+            &["forcing", "inside", "modes", "nudge", "pose"],
         ],
         exceptions: &[
             (
