@@ -296,3 +296,35 @@ fn a_driven_end_supplies_what_it_pulls() {
         }
     }
 }
+
+/// Theory: links of length ℓ that turn at ω about the centre of a ring are dragged by their turning alone, P = Σ b ω² ℓ³/12; what they lose is what
+/// the motion has less, and a ring that nothing else touches keeps its centre.
+#[test]
+fn drag_on_a_closed_ring_takes_what_it_says() -> Result<(), Box<dyn Error>> {
+    let scene = Scene::preset("spinning_ring")?.replace("chain.drag", "200 N s/m^2")?;
+    let run = Run {
+        until: 1e-3,
+        every: 1e-4,
+        step: Some(1e-6),
+        ..Run::default()
+    };
+    let mut simulation = Simulation::start(&scene.drive()?, &run)?;
+    let first = simulation.next_sample()?.ok_or("no sample")?.clone();
+    let mut last = first.clone();
+    while let Some(sample) = simulation.next_sample()? {
+        last = sample.clone();
+    }
+    let lost = last.energy.flow(Flow::DragLoss) - first.energy.flow(Flow::DragLoss);
+    // Links are stretched to 14.859 mm.
+    let power = 20.0 * 200.0 * 400_f64.powi(2) * 14.859e-3_f64.powi(3) / 12.0;
+    assert!((lost / (power * 1e-3) - 1.0).abs() < 0.05, "{lost} J");
+    assert!(simulation.energy_residual().abs() < 1e-3 * lost);
+    let centre = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    for (before, after) in [
+        (&first.roller_x, &last.roller_x),
+        (&first.roller_y, &last.roller_y),
+    ] {
+        assert!((centre(before) - centre(after)).abs() < 1e-9);
+    }
+    Ok(())
+}

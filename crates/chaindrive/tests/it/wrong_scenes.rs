@@ -458,3 +458,11 @@ fn damage(seed: u64, each: usize, use_it: impl Fn(&Scene, &str)) -> (usize, usiz
     }
     (accepted, refused)
 }
+
+/// What was put in the place of an entry of a list stands on no line of the text that was read.
+#[test]
+fn what_was_changed_in_a_list_has_no_line() {
+    let scene = Scene::preset("marine_two_sprockets").unwrap();
+    let error = scene.replace("sprockets[1].teeth", "2").unwrap_err();
+    assert!(error.problems.iter().all(|it| it.line.is_none()), "{error}");
+}
