@@ -23,7 +23,7 @@ pub use event::{EventColumn, EventTable};
 pub use in_store::InStore;
 pub use memory::Memory;
 pub use recorded::{LoggedContact, Recorded, RecordedChannel};
-pub(crate) use summary::Blocks;
+pub(crate) use summary::drift;
 pub use summary::{
     ContactStatistics, ForceStatistics, ImpactStatistics, Known, Ledger, Load, SpanStatistics,
     Steadiness, Summary,

@@ -156,6 +156,29 @@ impl Assembled {
         })
     }
 
+    /// As it stands, with t = 0 here: the drive was assembled so long before.
+    ///
+    /// # Errors
+    /// As [`Drive::beginning`], for a time before the drive was assembled, and [`Drive::assemble`].
+    pub fn as_beginning(&self) -> Result<Self, AssemblyError> {
+        let before = self.drive.beginning(-self.time)?.assemble()?;
+        let mut system = before.system.clone();
+        system
+            .remember(self.system.memory())
+            .map_err(|error| AssemblyError::Layout {
+                problem: error.to_string(),
+            })?;
+        system.set_clock(0.0);
+        Ok(Self {
+            system,
+            time: 0.0,
+            q: self.q.clone(),
+            v: self.v.clone(),
+            z: self.z.clone(),
+            ..before
+        })
+    }
+
     /// The same drive as it stands after it has moved for a while: a run that begins from here goes on from there.
     #[must_use]
     pub fn come_to(&self, system: System, state: &State) -> Self {

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::assembly::Assembled;
-use crate::drive::{GuideSupport, Rotation, Support};
+use crate::drive::{GuideSupport, Rotation, Shaft, Support};
 use crate::drive::{Layout, Stop};
 use crate::order::Order;
 use crate::torque::Argument;
@@ -31,16 +31,7 @@ impl Assembled {
         };
         let mut slowest: f64 = 0.0;
         let mut repeats = |period: f64| slowest = slowest.max(period.abs());
-        for placed in &self.drive.chains {
-            let Layout::Route { stops, .. } = &placed.layout else {
-                continue;
-            };
-            for stop in stops {
-                if let Stop::Sprocket(wheel) = *stop {
-                    repeats(TAU / (f64::from(wheels[wheel].teeth) * speeds[wheel]));
-                }
-            }
-        }
+        repeats(self.slowest_tooth());
         for motion in self.motions() {
             periods(motion, &mut repeats);
         }
@@ -49,9 +40,9 @@ impl Assembled {
                 let turning = of_shaft(torque.follows().unwrap_or(shaft));
                 match torque {
                     Torque::Orders { terms, .. } => {
-                        terms
-                            .iter()
-                            .for_each(|it| period(it, turning, &mut repeats));
+                        for order in terms {
+                            period(order, turning, &mut repeats);
+                        }
                     }
                     Torque::Table {
                         over: Argument::Angle { turns, .. },
@@ -72,23 +63,37 @@ impl Assembled {
         }
     }
 
+    /// Time \[s\] in which a tooth passes, of the slowest chain; 0 where none runs around sprockets, infinite where it stands still.
+    pub fn slowest_tooth(&self) -> f64 {
+        let speeds = self.mean_speeds();
+        let routes = self.drive.chains.iter().filter_map(|it| match &it.layout {
+            Layout::Route { stops, .. } => Some(stops),
+            Layout::Points { .. } => None,
+        });
+        let wheels = routes.flatten().filter_map(|stop| match stop {
+            Stop::Sprocket(wheel) => Some(*wheel),
+            Stop::Guide(_) => None,
+        });
+        let teeth = |wheel: usize| f64::from(self.system.bodies.wheels[wheel].teeth);
+        wheels
+            .map(|wheel| (TAU / (teeth(wheel) * speeds[wheel])).abs())
+            .fold(0.0, f64::max)
+    }
+
     /// In words, the first thing that acts as a function of time, such as a ramp: its times are those of the record, and a run-in without a
     /// set length would move it. None where all that acts repeats with the turns of a shaft, or stays.
     pub fn function_of_time(&self) -> Option<&'static str> {
-        let motion = self.motions().find_map(|motion| of_time(motion));
-        let torques = self.drive.shafts.iter().flat_map(|shaft| shaft.torques());
-        motion.or_else(|| {
-            torques
-                .filter_map(|torque| match torque {
-                    Torque::Ramp { .. } => Some("a torque that is switched on at a time"),
-                    Torque::Table {
-                        over: Argument::Time,
-                        ..
-                    } => Some("a torque over time"),
-                    _ => None,
-                })
-                .next()
-        })
+        let of_torque = |torque: &Torque| match torque {
+            Torque::Ramp { .. } => Some("a torque that is switched on at a time"),
+            Torque::Table {
+                over: Argument::Time,
+                ..
+            } => Some("a torque over time"),
+            _ => None,
+        };
+        let mut torques = self.drive.shafts.iter().flat_map(Shaft::torques);
+        let motion = self.motions().find_map(of_time);
+        motion.or_else(|| torques.find_map(of_torque))
     }
 
     /// Every motion that is prescribed.
@@ -123,7 +128,9 @@ impl Assembled {
 fn periods(motion: &Motion, repeats: &mut impl FnMut(f64)) {
     match motion {
         Motion::Orders { turning, terms, .. } => {
-            terms.iter().for_each(|it| period(it, *turning, repeats));
+            for order in terms {
+                period(order, *turning, repeats);
+            }
         }
         Motion::Harmonics { terms, .. } => {
             let swinging = terms

@@ -169,7 +169,7 @@ mod tests {
     /// Forces that are a tenth too large, everywhere, with a factor of 4/3: e^(4/3 ln 1.1) − 1 = 13.5 % too large, 11.9 % of what is said.
     #[test]
     fn a_share_that_all_have_is_the_error() {
-        let sharper = (0..20).map(|i| impact(i, 100.0 + f64::from(i as u32)));
+        let sharper = (0..20).map(|i| impact(i, 100.0 + i as f64));
         let sharper: Vec<_> = sharper.collect();
         let run = sharper.iter().map(|it| Impact {
             peak_force: 1.1 * it.peak_force,

@@ -13,11 +13,12 @@ use serde::{Deserialize, Serialize};
 
 use super::event::{EventTable, kind};
 use crate::Simulation;
-pub(crate) use blocks::Blocks;
+use blocks::Blocks;
 use carried::Carried;
 pub use carried::Load;
 pub use impacts::ImpactStatistics;
 use report::Report;
+pub(crate) use steadiness::drift;
 pub use steadiness::{Known, Steadiness};
 
 /// Collects statistics sample by sample, in bounded memory.

@@ -53,8 +53,8 @@ impl fmt::Display for RanIn {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let how = match self.is_steady {
             None => "as it was asked for; whether it was enough, the means say",
-            Some(true) => "until the tension of every span was steady (MSER)",
-            Some(false) => "the longest that is tried, and not every span was steady (MSER)",
+            Some(true) => "until the tension of every span was steady",
+            Some(false) => "the longest that is tried, and not every span was steady",
         };
         write!(
             f,
@@ -150,21 +150,23 @@ pub fn run_in(
 ) -> Result<(Assembled, Option<RanIn>), SimulationError> {
     let stop = &|| onlooker.stop();
     run.check()?;
-    let (time, is_steady) = match &run.run_in {
+    let time = match &run.run_in {
         RunIn::None => return Ok((start, None)),
-        RunIn::Time(time) => (*time, None),
-        RunIn::Turns { turns, sprocket } => {
-            (turns_last(&start, *turns, sprocket.as_deref())?, None)
-        }
+        RunIn::Time(time) => *time,
+        RunIn::Turns { turns, sprocket } => turns_last(&start, *turns, sprocket.as_deref())?,
         RunIn::Auto => {
-            let (time, is_steady) = steady::begins(&start, run, onlooker)?;
-            (time, Some(is_steady))
+            let settled = steady::settle(&start, run, onlooker)?;
+            let ran_in = RanIn {
+                time: settled.start.time,
+                is_steady: Some(settled.is_steady),
+            };
+            return Ok((settled.start.as_beginning()?, Some(ran_in)));
         }
     };
-    let ran_in = Some(RanIn { time, is_steady });
-    if time == 0.0 {
-        return Ok((start, ran_in));
-    }
+    let ran_in = Some(RanIn {
+        time,
+        is_steady: None,
+    });
     let mut moving = before(&start.drive, time, run, stop)?;
     onlooker.see_run_in(0.0);
     while !moving.advance(LOOK)? {
@@ -177,7 +179,7 @@ pub fn run_in(
 }
 
 /// The drive in motion from so long before t = 0 \[s\]; nothing is logged on the way.
-pub(super) fn before(
+fn before(
     drive: &Drive,
     time: f64,
     run: &Run,
@@ -201,7 +203,7 @@ pub(crate) fn longest(start: &Assembled, run: &Run) -> Result<f64, SimulationErr
         RunIn::None => Ok(0.0),
         RunIn::Time(time) => Ok(*time),
         RunIn::Turns { turns, sprocket } => turns_last(start, *turns, sprocket.as_deref()),
-        RunIn::Auto => Ok(2.0 * f64::from(MOST_CIRCUITS) * steady::circuit(start)?),
+        RunIn::Auto => Ok(f64::from(MOST_CIRCUITS) * steady::circuit(start)?),
     }
 }
 

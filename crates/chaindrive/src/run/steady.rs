@@ -1,73 +1,286 @@
-//! When the motion is steady: how long a run-in has to be that ends by itself.
+//! When the motion is steady: a run-in that ends by itself.
+//!
+//! The drive is moved block by block, each a whole number of periods of its [slowest forcing](Assembled::slowest_forcing) and two and a half teeth at least, and
+//! its state at the end of each is kept. After every block all that may be the beginning of the steady state are tried, the earliest first: from
+//! there on
+//!
+//! ```text
+//! n − d ≥ d,  20 teeth,  three periods,  8 blocks,  three times c/k of every tensioner
+//! |Δ| ≤ max(chance, ½ %)               mean and standard deviation of the tension of every span
+//! |T_∞ − T|, |∂T/∂s (s_∞ − s)| ≤ ½ %,   s_∞ − s = (C − B) r/(1 − r),   r = (C − B)/(B − A)
+//! ```
+//!
+//! Δ is the change from one half of the blocks to the other along their straight line, and chance what the scatter about that line makes of
+//! it. States that creep are the places of tensioners and the speeds of shafts: A, B, C are their means over thirds, which die out like an
+//! exponential, and the slope is that of tension over state in all blocks so far. Per cent are of the span's own mean, or of a tenth of the tight
+//! span's.
 
-use chaindrive_mechanics::Assembled;
+use chaindrive_mechanics::{Assembled, EventKinds, Observation};
 
-use super::Run;
 use super::execute::Onlooker;
-use super::run_in::{MOST_CIRCUITS, before};
-use crate::SimulationError;
-use crate::record::{Blocks, Steadiness};
+use super::run_in::MOST_CIRCUITS;
+use super::{Run, RunIn};
+use crate::record::drift;
+use crate::{Simulation, SimulationError};
 
-/// Samples a circuit: enough for a dozen over the slowest swing of a span, which lasts a good part of one.
-const SAMPLES: u32 = 256;
+/// Teeth of a block at least, looks a tooth, and what has to be steady at least: teeth, and periods of the forcing and times of tensioners.
+const BLOCK: f64 = 2.5;
+const LOOKS: f64 = 16.0;
+const TEETH: f64 = 20.0;
+const PERIODS: f64 = 3.0;
+/// Blocks that have to be steady at least.
+const FEWEST: usize = 8;
+/// Share of the scale that may drift, or be left to creep. *Assumed*: half of what a verdict speaks against.
+const DRIFT: f64 = 0.005;
+/// Of the blocks so far, the share that is tried as the beginning at least: earlier ones have had their turn.
+const EARLIEST: f64 = 0.25;
 
-/// Time \[s\] after which the tension of every span is steady, and whether it is; else the longest that is tried.
-///
-/// The drive is moved for 2 circuits of its slowest chain, then on to 4, 8 and so on. Each time all samples so far say where
-/// the steady part begins, by the minimum of the standard error of the mean of the rest (MSER; K. P. White, *Simulation*
-/// **69**, 1997, 323–334), and whether the halves of the rest agree. The motion is steady once they do for every span, the
-/// rest is long against what its samples remember, and all this holds twice in a row: a drift that hides in the scatter of a
-/// short time shows in twice that.
-pub(super) fn begins(
+/// Where the steady state begins.
+pub(super) struct Settled {
+    /// The drive there.
+    pub(super) start: Assembled,
+    /// Whether it is steady; else the longest run-in that is tried is over.
+    pub(super) is_steady: bool,
+}
+
+/// Means over the blocks so far, of one quantity.
+type Series = Vec<f64>;
+
+/// Sums over a block.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    count: f64,
+    sum: f64,
+    squares: f64,
+}
+
+impl Sums {
+    fn push(&mut self, value: f64) {
+        // A span without a tension says nothing.
+        if value.is_finite() {
+            self.count += 1.0;
+            self.sum += value;
+            self.squares += value * value;
+        }
+    }
+
+    fn mean(&self) -> f64 {
+        self.sum / self.count
+    }
+
+    fn deviation(&self) -> f64 {
+        (self.squares / self.count - self.mean().powi(2))
+            .max(0.0)
+            .sqrt()
+    }
+}
+
+/// Moves a drive, assembled at t = 0, until it is steady.
+pub(super) fn settle(
     start: &Assembled,
     run: &Run,
     onlooker: &dyn Onlooker,
-) -> Result<(f64, bool), SimulationError> {
-    let stop = &|| onlooker.stop();
+) -> Result<Settled, SimulationError> {
     let circuit = circuit(start)?;
+    if let Some(what) = start.function_of_time() {
+        return Err(refused(&format!(
+            "there is {what}, whose times are those of the record: give a time"
+        )));
+    }
+    let (tooth, period) = (start.slowest_tooth(), start.slowest_forcing());
+    let block = period * (BLOCK * tooth / period).ceil();
+    let looks = (LOOKS * block / tooth).ceil();
+    let pushes = start.drive.tensioners.iter().map(|it| it.push.relaxation());
+    let slowest = pushes.fold(0.0, f64::max);
+    let least = (TEETH * tooth).max(PERIODS * period.max(slowest));
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a few blocks"
+    )]
+    let least = ((least / block).ceil() as usize).max(FEWEST);
     let longest = f64::from(MOST_CIRCUITS) * circuit;
-    let mut moving = before(&start.drive, longest, run, stop)?;
-    let mut spans: Vec<Blocks> = Vec::new();
-    let every = circuit / f64::from(SAMPLES);
-    let period = start.slowest_forcing();
-    let mut taken = 0;
-    let mut circuits = 2;
-    let mut was_steady = false;
-    while circuits <= MOST_CIRCUITS {
-        while taken < circuits * SAMPLES {
-            taken += 1;
-            let time = f64::from(taken) * circuit / f64::from(SAMPLES) - longest;
-            let tensions = &moving.advance_to(time)?.span_tension;
-            spans.resize_with(tensions.len(), || Blocks::new(every, period));
-            for (span, tension) in spans.iter_mut().zip(tensions) {
-                // A span without a tension says nothing.
-                if tension.is_finite() {
-                    span.push(time + longest, *tension);
-                }
+    let silent = Run {
+        run_in: RunIn::None,
+        events: EventKinds::default(),
+        ..run.clone()
+    };
+    let mut moving = Simulation::from_assembled(start.clone(), &silent)?;
+    let mut blocks = Blocks::default();
+    let mut starts = vec![Some(start.clone())];
+    let mut time = 0.0;
+    while time < longest {
+        let begun = blocks.count as f64 * block;
+        let (mut spans, mut states) = (Vec::new(), Vec::new());
+        for look in 1..=looks_of(looks) {
+            time = begun + f64::from(look) / looks * block;
+            if time > longest {
+                return given_up(&mut moving, longest);
             }
-            onlooker.see_run_in(f64::from(taken) / f64::from(MOST_CIRCUITS * SAMPLES));
-            if stop() {
+            let seen = moving.advance_to(time)?;
+            note(&mut spans, seen.span_tension.iter().copied());
+            note(&mut states, creeping(seen));
+            onlooker.see_run_in((time / longest).min(1.0));
+            if onlooker.stop() {
                 return Err(SimulationError::Interrupted);
             }
         }
-        let scale = spans
-            .iter()
-            .map(|span| span.mean().abs())
-            .fold(0.0, f64::max);
-        let of = |span: &Blocks| span.steadiness(span.mean().abs().max(0.1 * scale));
-        let found: Option<Vec<_>> = spans.iter().map(of).collect();
-        let found = found.filter(|all| {
-            let known = |it: &Steadiness| it.is_steady && it.mean.half_width.is_finite();
-            all.iter().all(known)
-        });
-        if let (Some(found), true) = (&found, was_steady) {
-            let from = found.iter().map(|it| it.from).fold(0.0, f64::max);
-            return Ok((from, true));
+        blocks.push(&spans, &states);
+        starts.push(Some(moving.as_start()));
+        let n = blocks.count;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a share of a count"
+        )]
+        let earliest = (EARLIEST * n as f64) as usize;
+        starts[..earliest].fill(None);
+        let candidates = (earliest..n).take_while(|d| n - d >= least.max(*d));
+        let found = candidates
+            .filter(|d| starts[*d].is_some())
+            .find(|d| blocks.are_steady_from(*d));
+        if let Some(start) = found.and_then(|d| starts[d].take()) {
+            return Ok(Settled {
+                start,
+                is_steady: true,
+            });
         }
-        was_steady = found.is_some();
-        circuits *= 2;
     }
-    Ok((longest, false))
+    given_up(&mut moving, longest)
+}
+
+/// The end of the longest run-in that is tried.
+fn given_up(moving: &mut Simulation, longest: f64) -> Result<Settled, SimulationError> {
+    moving.advance_to(longest)?;
+    Ok(Settled {
+        start: moving.as_start(),
+        is_steady: false,
+    })
+}
+
+/// As a number that counts.
+fn looks_of(looks: f64) -> u32 {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "sixteen a tooth"
+    )]
+    let looks = looks as u32;
+    looks
+}
+
+/// What creeps where a tensioner does: places of centres, and speeds of shafts.
+fn creeping(seen: &Observation) -> impl Iterator<Item = f64> {
+    let tensioners = seen.tensioner_position.iter();
+    tensioners.chain(&seen.sprocket_speed).copied()
+}
+
+fn note(sums: &mut Vec<Sums>, values: impl Iterator<Item = f64>) {
+    for (place, value) in values.enumerate() {
+        if place == sums.len() {
+            sums.push(Sums::default());
+        }
+        sums[place].push(value);
+    }
+}
+
+/// What is known of the blocks so far.
+#[derive(Default)]
+struct Blocks {
+    count: usize,
+    /// By span: means, and deviations within a block.
+    means: Vec<Series>,
+    deviations: Vec<Series>,
+    /// By state that creeps: means.
+    states: Vec<Series>,
+}
+
+impl Blocks {
+    fn push(&mut self, spans: &[Sums], states: &[Sums]) {
+        self.count += 1;
+        for (to, values) in [
+            (
+                &mut self.means,
+                spans.iter().map(Sums::mean).collect::<Vec<_>>(),
+            ),
+            (
+                &mut self.deviations,
+                spans.iter().map(Sums::deviation).collect(),
+            ),
+            (&mut self.states, states.iter().map(Sums::mean).collect()),
+        ] {
+            to.resize_with(values.len(), Vec::new);
+            for (series, value) in to.iter_mut().zip(values) {
+                series.push(value);
+            }
+        }
+    }
+
+    /// Whether nothing that counts changes from a block on.
+    fn are_steady_from(&self, first: usize) -> bool {
+        let mean = |series: &[f64]| series.iter().sum::<f64>() / series.len() as f64;
+        let means: Vec<f64> = self
+            .means
+            .iter()
+            .map(|it| mean(&it[first..]).abs())
+            .collect();
+        let tight = means.iter().copied().fold(0.0, f64::max);
+        let spans = self.means.iter().zip(&self.deviations).zip(means);
+        spans.into_iter().all(|((tension, deviation), mean)| {
+            let allowed = DRIFT * mean.max(0.1 * tight);
+            let holds = |series: &Series| {
+                let (drift, doubt) = drift(&series[first..]);
+                // A span that no roller held in some block has no drift to speak of.
+                drift.abs() <= doubt.max(allowed) || drift.is_nan()
+            };
+            let crept = |state: &Series| (slope(state, tension) * left(&state[first..])).abs();
+            holds(tension)
+                && holds(deviation)
+                && (left(&tension[first..]).abs() <= allowed
+                    || tension[first..].iter().any(|it| it.is_nan()))
+                && self.states.iter().all(|state| {
+                    let crept = crept(state);
+                    crept <= allowed || crept.is_nan()
+                })
+        })
+    }
+}
+
+/// How far a state still goes that dies out like an exponential; 0 where its drift is no more than chance.
+fn left(state: &[f64]) -> f64 {
+    let (drift, doubt) = drift(state);
+    let third = state.len() / 3;
+    if drift.abs() <= doubt || third == 0 {
+        return 0.0;
+    }
+    let mean = |part: usize| {
+        let part = &state[state.len() - (3 - part) * third..][..third];
+        part.iter().sum::<f64>() / third as f64
+    };
+    let [a, b, c] = [0, 1, 2].map(mean);
+    let ratio = (c - b) / (b - a);
+    if (0.0..1.0).contains(&ratio) {
+        (c - b) * ratio / (1.0 - ratio)
+    } else {
+        // It does not die out: all of it may come again.
+        c - a
+    }
+}
+
+/// Slope of the line through values over another quantity.
+fn slope(over: &[f64], values: &[f64]) -> f64 {
+    let n = values.len() as f64;
+    let mean = |of: &[f64]| of.iter().sum::<f64>() / n;
+    let (x, y) = (mean(over), mean(values));
+    let pairs = over.iter().zip(values);
+    let products: f64 = pairs.map(|(a, b)| (a - x) * (b - y)).sum();
+    products / over.iter().map(|a| (a - x).powi(2)).sum::<f64>()
+}
+
+fn refused(why: &str) -> SimulationError {
+    SimulationError::RunIn {
+        reason: format!("auto: {why}"),
+    }
 }
 
 /// Time \[s\] of a circuit of the slowest chain; refused where none runs around sprockets.
@@ -76,9 +289,44 @@ pub(super) fn circuit(start: &Assembled) -> Result<f64, SimulationError> {
     if circuit.is_finite() {
         return Ok(circuit);
     }
-    let reason =
-        "auto: no chain runs around sprockets here, so nothing says when to stop: give a time";
-    Err(SimulationError::RunIn {
-        reason: reason.to_owned(),
-    })
+    Err(refused(
+        "no chain runs around sprockets here, so nothing says when to stop: give a time",
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn dying(from: f64, blocks: usize) -> Vec<f64> {
+        (0..blocks)
+            .map(|i| from * (-(i as f64) / 4.0).exp())
+            .collect()
+    }
+
+    /// s = 8 exp(−i/4) at the end of 12 blocks: means of thirds of 4 blocks fall by 1/e, and what is left is C/(e − 1) · (e − 1)/1.
+    #[test]
+    fn what_is_left_to_creep_is_that_of_the_exponential() {
+        let state = dying(8.0, 12);
+        let last: f64 = state[8..].iter().sum::<f64>() / 4.0;
+        assert!((left(&state) + last).abs() < 1e-9, "{}", left(&state));
+        assert!(left(&[1.0; 12]).abs() < 1e-12);
+    }
+
+    /// Tension that follows a state which creeps is not steady while it does.
+    #[test]
+    fn a_state_that_creeps_is_waited_for() {
+        let blocks = |blocks: usize| {
+            let state = dying(1.0, blocks);
+            let tension: Vec<f64> = state.iter().map(|s| 100.0 + 20.0 * s).collect();
+            Blocks {
+                count: blocks,
+                deviations: vec![vec![5.0; blocks]],
+                means: vec![tension],
+                states: vec![state],
+            }
+        };
+        assert!(!blocks(12).are_steady_from(0) && !blocks(12).are_steady_from(6));
+        assert!(blocks(40).are_steady_from(20));
+    }
 }

@@ -118,6 +118,20 @@ impl Slopes {
 }
 
 impl Push {
+    /// Time c/k \[s\] in which a push outward dies out against its own damping; 0 without a spring.
+    pub fn relaxation(&self) -> f64 {
+        let [damping, stiffness] = match self {
+            Self::Locked => [0.0, 0.0],
+            Self::Spring(spring) => [spring.damping, spring.stiffness],
+            Self::Hydraulic(hydraulic) => [hydraulic.extending, hydraulic.stiffness],
+        };
+        if stiffness > 0.0 {
+            damping / stiffness
+        } else {
+            0.0
+        }
+    }
+
     /// Force \[N, or N m for a bare arm\] at extension x \[m or rad\], rate ẋ and state z.
     pub fn force(&self, x: f64, rate: f64, z: f64) -> PushForce {
         ask!(self, push => push.force(x, rate, z))

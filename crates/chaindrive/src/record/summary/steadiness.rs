@@ -163,7 +163,7 @@ fn scatter(values: &[f64], [least, most]: [f64; 2]) -> (f64, f64) {
 /// ```text
 /// Δ = ½ n β,   β = Σ xᵢ yᵢ/Σ xᵢ²,   xᵢ = i − ī,   σ_β² = Σ rᵢ² τ/((n − 2) Σ xᵢ²),   r: what the line leaves
 /// ```
-fn drift(values: &[f64]) -> (f64, f64) {
+pub(crate) fn drift(values: &[f64]) -> (f64, f64) {
     let n = values.len() as f64;
     let middle = 0.5 * (n - 1.0);
     let mean = values.iter().sum::<f64>() / n;
