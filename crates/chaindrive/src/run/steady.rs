@@ -30,6 +30,8 @@ const TEETH: f64 = 20.0;
 const PERIODS: f64 = 3.0;
 /// Blocks that have to be steady at least.
 const FEWEST: usize = 8;
+/// Beginnings that are kept at most, and a few more.
+const MOST_STARTS: usize = 32;
 /// Share of the scale that may drift, or be left to creep. *Assumed*: half of what a verdict speaks against.
 const DRIFT: f64 = 0.005;
 /// Of the blocks so far, the share that is tried as the beginning at least: earlier ones have had their turn.
@@ -88,6 +90,11 @@ pub(super) fn settle(
         )));
     }
     let (tooth, period) = (start.slowest_tooth(), start.slowest_forcing());
+    if !period.is_finite() {
+        return Err(refused(
+            "a shaft whose turns something follows stands still: give a time",
+        ));
+    }
     let block = period * (BLOCK * tooth / period).ceil();
     let looks = (LOOKS * block / tooth).ceil();
     let pushes = start.drive.tensioners.iter().map(|it| it.push.relaxation());
@@ -135,6 +142,11 @@ pub(super) fn settle(
         )]
         let earliest = (EARLIEST * n as f64) as usize;
         starts[..earliest].fill(None);
+        // Of many beginnings some are enough, and each takes room.
+        let apart = (n / MOST_STARTS).next_power_of_two();
+        for between in (earliest..n).filter(|d| d % apart != 0) {
+            starts[between] = None;
+        }
         let candidates = (earliest..n).take_while(|d| n - d >= least.max(*d));
         let found = candidates
             .filter(|d| starts[*d].is_some())
