@@ -202,10 +202,21 @@ fn moving(length: f64, tension: f64, line_mass: f64, v: f64, expected: f64) -> f
 }
 
 #[test]
-fn v05_frequencies_of_a_moving_span() {
+fn v05_frequency_of_a_moving_span() {
+    frequencies_of_moving_spans(0..1);
+}
+
+#[test]
+#[ignore = "slow"]
+fn v05_frequencies_of_faster_spans() {
+    frequencies_of_moving_spans(1..usize::MAX);
+}
+
+fn frequencies_of_moving_spans(judged: std::ops::Range<usize>) {
     let case = Case::read("V05");
     let rows = case.table("inputs.rows");
-    for (row, expected) in rows.iter().zip(case.table("expected.rows")) {
+    let rows = rows.iter().zip(case.table("expected.rows")).enumerate();
+    for (_, (row, expected)) in rows.filter(|(at, _)| judged.contains(at)) {
         let expected = expected[0];
         let found = moving(row[0], row[1], row[2], row[3], expected);
         let tolerance = Relative(case.number("tolerance.relative"));

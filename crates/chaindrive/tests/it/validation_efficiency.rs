@@ -50,7 +50,13 @@ fn chain(model: &str, [links, pitch]: [f64; 2], pin: f64, friction: f64) -> Stri
 /// The tensions are those of the run; the loss is that of the joints alone, in every chain model.
 #[test]
 fn f02_friction_of_the_joints() {
-    for model in ["clearance-joints", "ideal-joints", "particles"] {
+    joints_of("particles");
+}
+
+#[test]
+#[ignore = "slow"]
+fn f02_friction_of_the_joints_of_rigid_links() {
+    for model in ["clearance-joints", "ideal-joints"] {
         joints_of(model);
     }
 }
