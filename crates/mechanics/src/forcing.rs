@@ -1,10 +1,9 @@
-//! What drives or loads a drive again and again, and what does so once.
+//! Periods of the forcing of a drive, and its functions of time.
 
 use std::f64::consts::TAU;
 
 use crate::assembly::Assembled;
-use crate::drive::{GuideSupport, Rotation, Shaft, Support};
-use crate::drive::{Layout, Stop};
+use crate::drive::{GuideSupport, Layout, Rotation, Shaft, Stop, Support};
 use crate::order::Order;
 use crate::torque::Argument;
 use crate::{End, Ends, Motion, Torque};
@@ -19,7 +18,7 @@ impl Assembled {
     /// Period \[s\] of the slowest of all that is known to repeat: teeth that pass, orders and tables of shafts at their mean speeds, harmonic
     /// motions. Infinite where nothing does, or a shaft that counts stands still.
     ///
-    /// A record of whole periods of it holds nearly whole periods of the others.
+    /// Faster forcings need not fit into it: orders 4 and 7 of a shaft repeat together with its turn only.
     pub fn slowest_forcing(&self) -> f64 {
         let speeds = self.mean_speeds();
         let wheels = &self.system.bodies.wheels;

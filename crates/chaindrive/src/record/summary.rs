@@ -293,7 +293,7 @@ impl Summary {
         self.samples += 1;
     }
 
-    /// What is known of the steady tensions, by span; none of one that no roller held in any sample.
+    /// Statistics of the tension of every span, with their intervals; none of a span that no roller held in any sample.
     pub fn steadiness(&self) -> Vec<Option<Steadiness>> {
         let scales = self.scales().into_iter();
         let spans = self.spans.iter().zip(scales);
@@ -302,7 +302,7 @@ impl Summary {
             .collect()
     }
 
-    /// What errors and drifts of the tension of every span are measured by \[N\]: its own mean, or a tenth of that of the tight span.
+    /// Scale of errors and drifts, by span \[N\]: the mean tension of the span, or a tenth of that of the tight span, whichever is more.
     pub fn scales(&self) -> Vec<f64> {
         let means: Vec<f64> = self.spans.iter().map(|span| span.mean().abs()).collect();
         let tight = means.iter().copied().fold(0.0, f64::max);

@@ -34,8 +34,8 @@ const FEWEST: usize = 8;
 const MOST_STARTS: usize = 32;
 /// Share of the scale that may drift, or be left to creep. *Assumed*: half of what a verdict speaks against.
 const DRIFT: f64 = 0.005;
-/// Of the blocks so far, the share that is tried as the beginning at least: earlier ones have had their turn.
-const EARLIEST: f64 = 0.25;
+/// Beginnings in the first quarter of the blocks so far are tried no more: they have had their turn.
+const EARLIEST: usize = 4;
 
 /// Where the steady state begins.
 pub(super) struct Settled {
@@ -96,16 +96,11 @@ pub(super) fn settle(
         ));
     }
     let block = period * (BLOCK * tooth / period).ceil();
-    let looks = (LOOKS * block / tooth).ceil();
+    let looks = counted(LOOKS * block / tooth);
     let pushes = start.drive.tensioners.iter().map(|it| it.push.relaxation());
     let slowest = pushes.fold(0.0, f64::max);
     let least = (TEETH * tooth).max(PERIODS * period.max(slowest));
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a few blocks"
-    )]
-    let least = ((least / block).ceil() as usize).max(FEWEST);
+    let least = counted(least / block).max(FEWEST);
     let longest = f64::from(MOST_CIRCUITS) * circuit;
     let silent = Run {
         run_in: RunIn::None,
@@ -113,14 +108,14 @@ pub(super) fn settle(
         ..run.clone()
     };
     let mut moving = Simulation::from_assembled(start.clone(), &silent)?;
-    let mut blocks = Blocks::default();
+    let mut course = Course::default();
     let mut starts = vec![Some(start.clone())];
     let mut time = 0.0;
     while time < longest {
-        let begun = blocks.count as f64 * block;
+        let begun = course.count as f64 * block;
         let (mut spans, mut states) = (Vec::new(), Vec::new());
-        for look in 1..=looks_of(looks) {
-            time = begun + f64::from(look) / looks * block;
+        for look in 1..=looks {
+            time = begun + look as f64 / looks as f64 * block;
             if time > longest {
                 return given_up(&mut moving, longest);
             }
@@ -132,15 +127,10 @@ pub(super) fn settle(
                 return Err(SimulationError::Interrupted);
             }
         }
-        blocks.push(&spans, &states);
+        course.push(&spans, &states);
         starts.push(Some(moving.as_start()));
-        let n = blocks.count;
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a share of a count"
-        )]
-        let earliest = (EARLIEST * n as f64) as usize;
+        let n = course.count;
+        let earliest = n / EARLIEST;
         starts[..earliest].fill(None);
         // Of many beginnings some are enough, and each takes room.
         let apart = (n / MOST_STARTS).next_power_of_two();
@@ -150,7 +140,7 @@ pub(super) fn settle(
         let candidates = (earliest..n).take_while(|d| n - d >= least.max(*d));
         let found = candidates
             .filter(|d| starts[*d].is_some())
-            .find(|d| blocks.are_steady_from(*d));
+            .find(|d| course.is_steady_from(*d));
         if let Some(start) = found.and_then(|d| starts[d].take()) {
             return Ok(Settled {
                 start,
@@ -170,18 +160,18 @@ fn given_up(moving: &mut Simulation, longest: f64) -> Result<Settled, Simulation
     })
 }
 
-/// As a number that counts.
-fn looks_of(looks: f64) -> u32 {
+/// A number, rounded up.
+fn counted(number: f64) -> usize {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "sixteen a tooth"
+        reason = "some thousands at most"
     )]
-    let looks = looks as u32;
-    looks
+    let count = number.ceil() as usize;
+    count
 }
 
-/// What creeps where a tensioner does: places of centres, and speeds of shafts.
+/// States that may creep: places of tensioners and speeds of sprockets.
 fn creeping(seen: &Observation) -> impl Iterator<Item = f64> {
     let tensioners = seen.tensioner_position.iter();
     tensioners.chain(&seen.sprocket_speed).copied()
@@ -196,9 +186,9 @@ fn note(sums: &mut Vec<Sums>, values: impl Iterator<Item = f64>) {
     }
 }
 
-/// What is known of the blocks so far.
+/// Means and deviations of the blocks so far.
 #[derive(Default)]
-struct Blocks {
+struct Course {
     count: usize,
     /// By span: means, and deviations within a block.
     means: Vec<Series>,
@@ -207,7 +197,7 @@ struct Blocks {
     states: Vec<Series>,
 }
 
-impl Blocks {
+impl Course {
     fn push(&mut self, spans: &[Sums], states: &[Sums]) {
         self.count += 1;
         for (to, values) in [
@@ -229,7 +219,7 @@ impl Blocks {
     }
 
     /// Whether nothing that counts changes from a block on.
-    fn are_steady_from(&self, first: usize) -> bool {
+    fn is_steady_from(&self, first: usize) -> bool {
         let mean = |series: &[f64]| series.iter().sum::<f64>() / series.len() as f64;
         let means: Vec<f64> = self
             .means
@@ -331,14 +321,14 @@ mod tests {
         let blocks = |blocks: usize| {
             let state = dying(1.0, blocks);
             let tension: Vec<f64> = state.iter().map(|s| 100.0 + 20.0 * s).collect();
-            Blocks {
+            Course {
                 count: blocks,
                 deviations: vec![vec![5.0; blocks]],
                 means: vec![tension],
                 states: vec![state],
             }
         };
-        assert!(!blocks(12).are_steady_from(0) && !blocks(12).are_steady_from(6));
-        assert!(blocks(40).are_steady_from(20));
+        assert!(!blocks(12).is_steady_from(0) && !blocks(12).is_steady_from(6));
+        assert!(blocks(40).is_steady_from(20));
     }
 }

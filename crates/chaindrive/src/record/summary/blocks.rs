@@ -27,7 +27,7 @@ pub(crate) struct Blocks {
     open: Block,
     /// Number of blocks closed, those included that were joined since, at the present length.
     closed: u64,
-    /// What values are counted from: the first one. Squares of small differences keep their digits.
+    /// Origin of the sums: the first value. Squares of small differences keep their digits.
     origin: Option<f64>,
     grid: Grid,
 }

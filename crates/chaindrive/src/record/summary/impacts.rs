@@ -58,7 +58,7 @@ impl ImpactStatistics {
         }
     }
 
-    /// What results have of it, by name: forces \[N\], median impulse \[N s\], median closing speed \[m/s\]; NaN where nothing struck.
+    /// Names and values in results: forces \[N\], median impulse \[N s\], median closing speed \[m/s\]; NaN where nothing struck.
     pub fn columns(&self) -> [(&'static str, f64); 5] {
         let of = |value: f64| if self.count > 0 { value } else { f64::NAN };
         [

@@ -1,4 +1,4 @@
-//! How well statistics over time are known, and whether they are those of a steady state.
+//! Intervals of statistics over time, and their drift.
 //!
 //! Samples follow one another and are not independent, so their scatter says little about their mean. What counts is how much whole
 //! [blocks](super::blocks) of periods differ. Each of g blocks is left out in turn (the jackknife; Künsch, *Annals of Statistics* **17**, 1989),
@@ -59,12 +59,12 @@ pub struct Steadiness {
     pub settled: f64,
     /// When that ends \[s\].
     pub from: f64,
-    /// Whether neither mean nor standard deviation drifts.
+    /// Steady: neither mean nor standard deviation drifts.
     pub is_steady: bool,
 }
 
 impl Blocks {
-    /// What is known of the steady state; `scale`: value that errors and drifts are measured by. None without a sample.
+    /// Statistics with their intervals; `scale`: of errors and drifts. None without a sample.
     pub(crate) fn steadiness(&self, scale: f64) -> Option<Steadiness> {
         let found = self.statistics()?;
         let whole = self.whole();
