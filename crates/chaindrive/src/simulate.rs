@@ -1,8 +1,10 @@
 //! A drive in motion: step, read, set, sample.
 
 mod live;
+mod sample;
 mod snapshot;
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -38,6 +40,8 @@ pub struct Simulation {
     moving: Moving,
     /// The state before the last step, when that went beyond the time read: a change at that time begins from here.
     before: Option<Box<Moving>>,
+    /// Samples that were taken before anybody asked for them.
+    ahead: VecDeque<Sample>,
     /// Time of the last sample or reading \[s\].
     read: f64,
     assembled: Arc<Assembled>,
@@ -75,6 +79,7 @@ impl Moving {
 
 use live::Changes;
 pub use live::Control;
+pub(crate) use sample::Sample;
 pub use snapshot::{Snapshot, SnapshotError};
 
 /// Fastest that a chain may run at the start \[m/s\]: the speed of sound in steel.
@@ -150,7 +155,8 @@ impl Simulation {
                 struck: Default::default(),
             },
             before: None,
-            read: assembled.time,
+            ahead: VecDeque::new(),
+            read: assembled.time - assembled.zero,
             assembled: Arc::new(assembled),
             until: run.until,
             every: run.every,
@@ -174,8 +180,12 @@ impl Simulation {
         if time > self.until * (1.0 + 1e-12) {
             return Ok(None);
         }
+        if let Some(sample) = self.ahead.pop_front() {
+            self.hand_out(sample, time);
+            return Ok(Some(&self.observation));
+        }
         // Whoever has read beyond this sample cannot go back for it.
-        if time < self.moving.state.interval().0 {
+        if self.zero() + time < self.moving.state.interval().0 {
             return Err(SimulationError::Past {
                 time,
                 read: self.read,
@@ -195,6 +205,9 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::next_sample`].
     pub fn advance(&mut self, budget: Duration) -> Result<bool, SimulationError> {
+        if !self.ahead.is_empty() {
+            return Ok(true);
+        }
         let time = (self.next as f64 * self.every).min(self.until);
         self.step_towards(time, budget, Changes::None)
     }
@@ -204,24 +217,17 @@ impl Simulation {
         self.until = until;
     }
 
-    fn sample(&mut self, time: f64) {
-        self.observe(time);
-        let Moving { ended, struck, .. } = &mut self.moving;
-        ended.swap(0, 1);
-        ended[1].clear();
-        struck.swap(0, 1);
-        struck[1].clear();
-    }
-
     /// Reads everything off the state at a time \[s\] within the last step.
     fn observe(&mut self, time: f64) {
+        let clock = self.zero() + time;
         let [q, v, flows, z] = &mut self.buffers;
         let Moving { system, state, .. } = &self.moving;
-        state.at(time, q, v);
-        state.quadratures_at(time, flows);
-        state.states_at(time, z);
-        let at = Moment { t: time, q, v, z };
+        state.at(clock, q, v);
+        state.quadratures_at(clock, flows);
+        state.states_at(clock, z);
+        let at = Moment { t: clock, q, v, z };
         system.observe(at, flows, &mut self.record, &mut self.observation);
+        self.observation.time = time;
         self.start_energy.get_or_insert(self.observation.energy);
         self.read = time;
     }
@@ -242,6 +248,10 @@ impl Simulation {
     pub fn outstanding_events(&self) -> Vec<ContactEvent> {
         let mut events = self.moving.ended[1].clone();
         events.extend(self.moving.system.lasting_events());
+        let zero = self.zero();
+        events
+            .iter_mut()
+            .for_each(|it| sample::count_from(zero, it));
         events
     }
 
@@ -258,7 +268,7 @@ impl Simulation {
 
     /// Share of the run that is done, 0 to 1.
     pub fn progress(&self) -> f64 {
-        (self.moving.state.t / self.until).clamp(0.0, 1.0)
+        (self.time() / self.until).clamp(0.0, 1.0)
     }
 
     /// Time between two samples \[s\].
@@ -268,7 +278,12 @@ impl Simulation {
 
     /// Time reached \[s\].
     pub fn time(&self) -> f64 {
-        self.moving.state.t
+        self.moving.state.t - self.zero()
+    }
+
+    /// Time \[s\] on the clock of the drive at which that of the simulation begins.
+    fn zero(&self) -> f64 {
+        self.assembled.zero
     }
 
     /// Where another simulation can begin: the drive as it stands at the end of the last step, contacts that last included.

@@ -40,6 +40,8 @@ pub struct Assembled {
     pub system: System,
     /// Time \[s\] at which it stands so: the drive's [begin](Drive::begin), or when it has [come](Assembled::come_to) to later.
     pub time: f64,
+    /// Time \[s\] on the clock of the drive at which a record of it begins: its t = 0.
+    pub zero: f64,
     /// Coordinates.
     pub q: Vec<f64>,
     /// Velocities.
@@ -156,27 +158,10 @@ impl Assembled {
         })
     }
 
-    /// As it stands, with t = 0 here: the drive was assembled so long before.
-    ///
-    /// # Errors
-    /// As [`Drive::beginning`], for a time before the drive was assembled, and [`Drive::assemble`].
-    pub fn as_beginning(&self) -> Result<Self, AssemblyError> {
-        let before = self.drive.beginning(-self.time)?.assemble()?;
-        let mut system = before.system.clone();
-        system
-            .remember(self.system.memory())
-            .map_err(|error| AssemblyError::Layout {
-                problem: error.to_string(),
-            })?;
-        system.set_clock(0.0);
-        Ok(Self {
-            system,
-            time: 0.0,
-            q: self.q.clone(),
-            v: self.v.clone(),
-            z: self.z.clone(),
-            ..before
-        })
+    /// The same with the zero of the record elsewhere on the clock of the drive \[s\].
+    #[must_use]
+    pub fn recorded_from(self, zero: f64) -> Self {
+        Self { zero, ..self }
     }
 
     /// The same drive as it stands after it has moved for a while: a run that begins from here goes on from there.
@@ -246,6 +231,7 @@ impl Drive {
             drive: self.clone(),
             system,
             time: self.begin,
+            zero: 0.0,
             q,
             v,
             z,

@@ -55,6 +55,8 @@ pub struct Checkpoint {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Start {
     ran_in: RanIn,
+    /// Time \[s\] on the clock of the drive, and that of the record's t = 0.
+    clock: [f64; 2],
     system: SystemMemory,
     /// Coordinates, velocities, first-order states.
     state: [Vec<f64>; 3],
@@ -92,6 +94,7 @@ impl Checkpoint {
                 let system = start.system.memory();
                 Start {
                     ran_in,
+                    clock: [start.time, start.zero],
                     system,
                     state,
                 }
@@ -199,13 +202,19 @@ impl Checkpoint {
         drive: &Drive,
         stop: &dyn Fn() -> bool,
     ) -> Result<Assembled, NotAgain> {
-        let Some(start) = self.start.as_ref().filter(|it| it.ran_in.time > 0.0) else {
+        let Some(start) = &self.start else {
             return Ok(assemble(drive, stop)?);
         };
-        let drive = drive.beginning(-start.ran_in.time);
-        let before = assemble(&drive.map_err(SimulationError::from)?, stop)?;
-        let stood = before.stood(0.0, start.system.clone(), start.state.clone());
-        Ok(stood.map_err(SnapshotError::from)?)
+        let [time, zero] = start.clock;
+        let assembled_at = zero - start.ran_in.time;
+        let before = if assembled_at < 0.0 {
+            let drive = drive.beginning(assembled_at);
+            assemble(&drive.map_err(SimulationError::from)?, stop)?
+        } else {
+            assemble(drive, stop)?
+        };
+        let stood = before.stood(time, start.system.clone(), start.state.clone());
+        Ok(stood.map_err(SnapshotError::from)?.recorded_from(zero))
     }
 
     /// How method and step were chosen.

@@ -2,12 +2,14 @@
 
 use std::convert::Infallible;
 
+use chaindrive_integrate::Method;
 use chaindrive_mechanics::{Assembled, Drive};
 use serde_json::{Map, Value};
 
 use super::checkpoint::NotAgain;
 use super::patience::{LOOK, patiently};
-use super::{Checkpoint, Request, run_in};
+use super::run_in::{self, Beginning};
+use super::{Checkpoint, Request};
 use crate::precision::{Choice, Judgement, ShortRuns, choose_with};
 use crate::record::{Ending, Provenance, Summary, attributes};
 use crate::scene::SceneError;
@@ -290,7 +292,8 @@ fn complete<S: Sink>(
             summary.count(simulation.events());
             summary.strike(simulation.impacts());
             sink.push(simulation)?;
-            if marks.pass(simulation) {
+            // Those that the run-in took are gone through in no time.
+            if marks.pass(simulation) && !simulation.has_samples_ahead() {
                 let checkpoint = Checkpoint::of(request, &provenance, simulation, &summary);
                 sink.keep(simulation, &checkpoint)?;
             }
@@ -412,14 +415,22 @@ fn begin<E: std::error::Error>(
         provenance.run = choice.run.clone();
         provenance.choice = Some(choice);
     }
-    let (start, ran_in) = run_in(start, &provenance.run, onlooker).map_err(failed)?;
+    let beginning = run_in::begin(start, &provenance.run, onlooker).map_err(failed)?;
+    let Beginning {
+        start,
+        ran_in,
+        simulation: mut going_on,
+    } = beginning;
     provenance.ran_in = ran_in;
-    if provenance.choice.is_some() {
-        // The run-in may have pressed contacts until they bound the step that was chosen before it.
-        let method = provenance.run.method(&start.system);
-        let longest = method.longest_step(method.time_scale(&start.system));
-        let step = provenance.run.step;
-        provenance.run.step = step.map(|step| step.min(longest));
+    // The run-in may have pressed contacts until they bound the step that was chosen before it.
+    let longest = |method: Method| method.longest_step(method.time_scale(&start.system));
+    going_on = going_on.filter(|it| it.method().step() <= longest(it.method()));
+    let run = &mut provenance.run;
+    if let Some(simulation) = &going_on {
+        run.step = Some(simulation.method().step());
+    } else if provenance.choice.is_some() {
+        let longest = longest(run.method(&start.system));
+        run.step = run.step.map(|step| step.min(longest));
     }
     if request.estimate && provenance.ran_in.is_none() {
         short_runs.keep_for(&provenance.run);
@@ -427,7 +438,10 @@ fn begin<E: std::error::Error>(
         // Nobody asks for an estimate, or the run begins elsewhere.
         short_runs = ShortRuns::default();
     }
-    let simulation = Simulation::from_assembled(start, &provenance.run).map_err(failed)?;
+    let simulation = match going_on {
+        Some(simulation) => simulation,
+        None => Simulation::from_assembled(start, &provenance.run).map_err(failed)?,
+    };
     Ok(Begun {
         summary: Summary::new(&simulation),
         drive,
@@ -467,7 +481,13 @@ impl Simulation {
     /// # Errors
     /// [`RunError`] when the run cannot begin.
     pub fn of(request: &Request, onlooker: &dyn Onlooker) -> Result<Self, RunError<Infallible>> {
-        begin(request, onlooker).map(|begun| begun.simulation)
+        let begun = begin(request, onlooker)?;
+        if !begun.simulation.has_samples_ahead() {
+            return Ok(begun.simulation);
+        }
+        // It is read at any time from the beginning on.
+        let start = begun.simulation.assembled().clone();
+        Self::from_assembled(start, &begun.provenance.run).map_err(not_begun)
     }
 }
 

@@ -135,10 +135,11 @@ impl RunIn {
     }
 }
 
-/// Runs an assembled drive in, if the run says so: as it stands at t = 0 then.
+/// Runs an assembled drive in, if the run says so: as it stands at t = 0 of the record then.
 ///
 /// The drive is assembled again, so long before, and moved with the method, step and tolerance of the run. What this leaves is
-/// a start like any other: the error of the run counts from there.
+/// a start like any other: the error of the run counts from there. A run-in that ends by itself begins where the clock of the drive does, and leaves it at a
+/// time that is the [zero](Assembled::zero) of the record.
 ///
 /// # Errors
 /// As [`Simulation::start`]; a sprocket that does not turn, or is not there; [`SimulationError::Interrupted`] when the onlooker
@@ -148,19 +149,45 @@ pub fn run_in(
     run: &Run,
     onlooker: &dyn Onlooker,
 ) -> Result<(Assembled, Option<RanIn>), SimulationError> {
+    let beginning = begin(start, run, onlooker)?;
+    Ok((beginning.start, beginning.ran_in))
+}
+
+/// A drive where its record begins.
+pub(super) struct Beginning {
+    pub(super) start: Assembled,
+    pub(super) ran_in: Option<RanIn>,
+    /// The simulation from there, where the run-in has gone on with it.
+    pub(super) simulation: Option<Simulation>,
+}
+
+/// Runs an assembled drive in, if the run says so.
+pub(super) fn begin(
+    start: Assembled,
+    run: &Run,
+    onlooker: &dyn Onlooker,
+) -> Result<Beginning, SimulationError> {
     let stop = &|| onlooker.stop();
     run.check()?;
+    let beginning = |start, ran_in| Beginning {
+        start,
+        ran_in,
+        simulation: None,
+    };
     let time = match &run.run_in {
-        RunIn::None => return Ok((start, None)),
+        RunIn::None => return Ok(beginning(start, None)),
         RunIn::Time(time) => *time,
         RunIn::Turns { turns, sprocket } => turns_last(&start, *turns, sprocket.as_deref())?,
         RunIn::Auto => {
             let settled = steady::settle(&start, run, onlooker)?;
             let ran_in = RanIn {
-                time: settled.start.time,
+                time: settled.start.zero,
                 is_steady: Some(settled.is_steady),
             };
-            return Ok((settled.start.as_beginning()?, Some(ran_in)));
+            return Ok(Beginning {
+                simulation: Some(settled.simulation),
+                ..beginning(settled.start, Some(ran_in))
+            });
         }
     };
     let ran_in = Some(RanIn {
@@ -175,7 +202,7 @@ pub fn run_in(
             return Err(SimulationError::Interrupted);
         }
     }
-    Ok((moving.as_start(), ran_in))
+    Ok(beginning(moving.as_start(), ran_in))
 }
 
 /// The drive in motion from so long before t = 0 \[s\]; nothing is logged on the way.

@@ -15,13 +15,16 @@
 //! exponential, and the slope is that of tension over state in all blocks so far. Per cent are of the span's own mean, or of a tenth of the tight
 //! span's.
 
-use chaindrive_mechanics::{Assembled, EventKinds, Observation};
+use std::collections::VecDeque;
+
+use chaindrive_mechanics::{Assembled, Observation};
 
 use super::execute::Onlooker;
 use super::run_in::MOST_CIRCUITS;
 use super::{Run, RunIn};
 use crate::record::drift;
-use crate::{Simulation, SimulationError};
+use crate::simulate::Sample;
+use crate::{Channel, Simulation, SimulationError};
 
 /// Teeth of a block at least, looks a tooth, and what has to be steady at least: teeth, and periods of the forcing and times of tensioners.
 const BLOCK: f64 = 2.5;
@@ -34,15 +37,19 @@ const FEWEST: usize = 8;
 const MOST_STARTS: usize = 32;
 /// Share of the scale that may drift, or be left to creep. *Assumed*: half of what a verdict speaks against.
 const DRIFT: f64 = 0.005;
-/// Beginnings in the first quarter of the blocks so far are tried no more: they have had their turn.
+/// Beginnings in the first quarter of the blocks so far are tried no more.
 const EARLIEST: usize = 4;
+/// Room \[bytes\] for samples that may become the record; a record that needs more begins later.
+const ROOM: usize = 256 << 20;
 
-/// Where the steady state begins.
+/// Where the record begins.
 pub(super) struct Settled {
     /// The drive there.
     pub(super) start: Assembled,
     /// Whether it is steady; else the longest run-in that is tried is over.
     pub(super) is_steady: bool,
+    /// The simulation at its end, behind those samples that it took from there on.
+    pub(super) simulation: Simulation,
 }
 
 /// Means over the blocks so far, of one quantity.
@@ -78,6 +85,9 @@ impl Sums {
 }
 
 /// Moves a drive, assembled at t = 0, until it is steady.
+///
+/// What was simulated becomes the record: it begins at the first state from the steady one on from which the drive has not been moved for longer than the
+/// record is to last.
 pub(super) fn settle(
     start: &Assembled,
     run: &Run,
@@ -102,24 +112,14 @@ pub(super) fn settle(
     let least = (TEETH * tooth).max(PERIODS * period.max(slowest));
     let least = counted(least / block).max(FEWEST);
     let longest = f64::from(MOST_CIRCUITS) * circuit;
-    let silent = Run {
-        run_in: RunIn::None,
-        events: EventKinds::default(),
-        ..run.clone()
-    };
-    let mut moving = Simulation::from_assembled(start.clone(), &silent)?;
     let mut course = Course::default();
-    let mut starts = vec![Some(start.clone())];
-    let mut time = 0.0;
-    while time < longest {
+    let mut taken = Taken::new(start, run)?;
+    loop {
         let begun = course.count as f64 * block;
         let (mut spans, mut states) = (Vec::new(), Vec::new());
         for look in 1..=looks {
-            time = begun + look as f64 / looks as f64 * block;
-            if time > longest {
-                return given_up(&mut moving, longest);
-            }
-            let seen = moving.advance_to(time)?;
+            let time = begun + look as f64 / looks as f64 * block;
+            let seen = taken.look(time)?;
             note(&mut spans, seen.span_tension.iter().copied());
             note(&mut states, creeping(seen));
             onlooker.see_run_in((time / longest).min(1.0));
@@ -128,36 +128,114 @@ pub(super) fn settle(
             }
         }
         course.push(&spans, &states);
-        starts.push(Some(moving.as_start()));
         let n = course.count;
+        taken.starts.push(None);
+        // Beginnings in the first quarter have had their turn.
         let earliest = n / EARLIEST;
-        starts[..earliest].fill(None);
-        // Of many beginnings some are enough, and each takes room.
-        let apart = (n / MOST_STARTS).next_power_of_two();
-        for between in (earliest..n).filter(|d| d % apart != 0) {
-            starts[between] = None;
-        }
-        let candidates = (earliest..n).take_while(|d| n - d >= least.max(*d));
-        let found = candidates
-            .filter(|d| starts[*d].is_some())
-            .find(|d| course.is_steady_from(*d));
-        if let Some(start) = found.and_then(|d| starts[d].take()) {
-            return Ok(Settled {
-                start,
-                is_steady: true,
-            });
+        taken.forget(earliest);
+        let mut candidates = (earliest..n).take_while(|d| n - d >= least.max(*d));
+        let found = candidates.find(|d| taken.starts[*d].is_some() && course.is_steady_from(*d));
+        if found.is_some() || (n + 1) as f64 * block > longest {
+            return taken.recorded_from(found.unwrap_or(earliest), found.is_some());
         }
     }
-    given_up(&mut moving, longest)
 }
 
-/// The end of the longest run-in that is tried.
-fn given_up(moving: &mut Simulation, longest: f64) -> Result<Settled, SimulationError> {
-    moving.advance_to(longest)?;
-    Ok(Settled {
-        start: moving.as_start(),
-        is_steady: false,
-    })
+/// What has been simulated, as far as it may become the record.
+struct Taken<'a> {
+    simulation: Simulation,
+    run: &'a Run,
+    /// By block: the drive at its beginning, and the number of the sample there. Of many some are enough, and each takes room.
+    starts: Vec<Option<(Assembled, usize)>>,
+    /// The last samples, and how many were taken before them.
+    samples: VecDeque<Sample>,
+    before: usize,
+    /// Samples that are kept at most.
+    most: usize,
+}
+
+impl<'a> Taken<'a> {
+    fn new(start: &Assembled, run: &'a Run) -> Result<Self, SimulationError> {
+        let plain = Run {
+            run_in: RunIn::None,
+            ..run.clone()
+        };
+        let mut simulation = Simulation::from_assembled(start.clone(), &plain)?;
+        let mut taken = Self {
+            samples: VecDeque::from([simulation.take_sample(0.0, false)?.0]),
+            run,
+            starts: vec![Some((start.clone(), 0))],
+            before: 0,
+            most: 0,
+            simulation,
+        };
+        let channels = Channel::ALL.iter();
+        let numbers = channels.map(|it| taken.simulation.channel(*it).len());
+        let bytes = size_of::<f64>() * numbers.sum::<usize>();
+        let wanted = counted(run.until / run.every + 1.0);
+        taken.most = wanted.min(ROOM / bytes.max(1)).max(1);
+        Ok(taken)
+    }
+
+    /// Reads everything off the drive at a time \[s\], with the samples before it on the way.
+    fn look(&mut self, time: f64) -> Result<&Observation, SimulationError> {
+        while self.next() < time {
+            self.take()?;
+        }
+        self.simulation.look(time)
+    }
+
+    /// Time of the next sample \[s\].
+    fn next(&self) -> f64 {
+        (self.before + self.samples.len()) as f64 * self.run.every
+    }
+
+    fn take(&mut self) -> Result<(), SimulationError> {
+        let number = self.before + self.samples.len();
+        let time = self.next();
+        let due = self.starts.last().is_some_and(Option::is_none);
+        let (sample, start) = self.simulation.take_sample(time, due)?;
+        if let (Some(start), Some(last)) = (start, self.starts.last_mut()) {
+            *last = Some((start.recorded_from(time), number));
+        }
+        self.samples.push_back(sample);
+        if self.samples.len() > self.most {
+            self.samples.pop_front();
+            self.before += 1;
+        }
+        Ok(())
+    }
+
+    /// Forgets beginnings before a block, and some of many behind it.
+    fn forget(&mut self, earliest: usize) {
+        let last = self.starts.len() - 1;
+        self.starts[..earliest].fill(None);
+        let apart = (last / MOST_STARTS).next_power_of_two();
+        for between in (earliest..last).filter(|d| d % apart != 0) {
+            self.starts[between] = None;
+        }
+    }
+
+    /// Ends the run-in with the first beginning from a block on that is near enough to the end.
+    fn recorded_from(mut self, block: usize, is_steady: bool) -> Result<Settled, SimulationError> {
+        while self.starts.last().is_some_and(Option::is_none) {
+            self.take()?;
+        }
+        let (time, before) = (self.simulation.time(), self.before);
+        let is_near = |(start, number): &(Assembled, usize)| {
+            time - start.zero <= self.run.until && *number >= before
+        };
+        let known = self.starts.drain(block..).flatten();
+        let (start, number) = { known }
+            .find(is_near)
+            .expect("the last beginning is at the end");
+        let ahead = self.samples.drain(number - before..);
+        Ok(Settled {
+            simulation: self.simulation.begun_at(start.clone(), self.run, ahead),
+            start,
+            is_steady,
+        })
+    }
 }
 
 /// A number, rounded up.

@@ -78,7 +78,7 @@ impl Simulation {
         Ok(reached)
     }
 
-    /// Steps until the state is at a time or beyond it, for at most about `budget` of wall time.
+    /// Steps until the state is at a time of the simulation or beyond it, for at most about `budget` of wall time.
     pub(super) fn step_towards(
         &mut self,
         time: f64,
@@ -86,6 +86,7 @@ impl Simulation {
         changes: Changes,
     ) -> Result<bool, SimulationError> {
         let begin = Instant::now();
+        let time = self.zero() + time;
         let moving = &mut self.moving;
         while moving.state.t < time && begin.elapsed() < budget {
             for _ in 0..STEPS_PER_LOOK {
@@ -147,17 +148,18 @@ impl Simulation {
                 allowed: "finite",
             });
         }
-        if time < self.moving.state.t {
+        if time < self.time() {
             match self.before.take() {
                 Some(before) => self.moving = *before,
                 None => {
                     return Err(SimulationError::Past {
                         time,
-                        read: self.moving.state.t,
+                        read: self.time(),
                     });
                 }
             }
         }
+        let time = self.zero() + time;
         // Somebody may yet go back behind this plan.
         if let Some(before) = &mut self.before {
             before.plan(time, input, value)?;

@@ -9,7 +9,7 @@ use chaindrive_mechanics::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::{Moving, Simulation};
+use super::{Moving, Sample, Simulation};
 use crate::SealError;
 use crate::seal::{Sealed, opened, sealed};
 
@@ -40,6 +40,9 @@ pub struct Snapshot {
     fingerprint: u32,
     moving: Remembered,
     before: Option<Remembered>,
+    ahead: Vec<Sample>,
+    /// Time reached \[s\].
+    time: f64,
     read: f64,
     next: u64,
     observation: Box<Observation>,
@@ -82,7 +85,7 @@ impl Sealed for Snapshot {
 impl Snapshot {
     /// Time that the simulation had reached \[s\].
     pub(crate) fn time(&self) -> f64 {
-        self.moving.state.t
+        self.time
     }
 
     /// The snapshot as bytes, for this version of the program to read back.
@@ -106,6 +109,8 @@ impl Simulation {
             fingerprint: self.fingerprint(),
             moving: self.moving.remembered(),
             before: self.before.as_ref().map(|before| before.remembered()),
+            ahead: self.ahead.iter().cloned().collect(),
+            time: self.time(),
             read: self.read,
             next: self.next,
             observation: Box::new(self.observation.clone()),
@@ -126,6 +131,7 @@ impl Simulation {
         let before = before.map(|before| self.recalled(before).map(Box::new));
         self.before = before.transpose()?;
         self.moving = moving;
+        self.ahead = snapshot.ahead.iter().cloned().collect();
         self.read = snapshot.read;
         self.next = snapshot.next;
         self.observation.clone_from(&snapshot.observation);

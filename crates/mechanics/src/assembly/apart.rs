@@ -34,6 +34,7 @@ impl Drive {
             drive: self.clone(),
             system,
             time: self.begin,
+            zero: 0.0,
             q,
             v,
             z,

@@ -1,0 +1,115 @@
+//! Samples, and those that were taken before anybody asked for them.
+
+use chaindrive_mechanics::{Assembled, ContactEvent, EventKinds, Impact, Observation};
+use serde::{Deserialize, Serialize};
+
+use super::live::Changes;
+use super::{Arc, Duration, Simulation};
+use crate::{Run, SimulationError};
+
+/// All that a sample says, on the clock of the drive.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Sample {
+    observation: Observation,
+    ended: Vec<ContactEvent>,
+    struck: Vec<Impact>,
+}
+
+/// Tells the times of a contact from a zero of the clock on.
+pub(super) fn count_from(zero: f64, event: &mut ContactEvent) {
+    event.start -= zero;
+    event.end -= zero;
+}
+
+impl Simulation {
+    /// Reads everything off the state at a time \[s\] within the last step, and gathers what ended since the last sample.
+    pub(super) fn sample(&mut self, time: f64) {
+        self.observe(time);
+        let zero = self.zero();
+        let moving = &mut self.moving;
+        let [handed, since] = &mut moving.ended;
+        std::mem::swap(handed, since);
+        since.clear();
+        handed.iter_mut().for_each(|it| count_from(zero, it));
+        let [handed, since] = &mut moving.struck;
+        std::mem::swap(handed, since);
+        since.clear();
+        handed.iter_mut().for_each(|it| it.time -= zero);
+    }
+
+    /// Goes on to a time \[s\] and takes a sample there; with the drive as it stood before the last step, where one is wanted.
+    pub(crate) fn take_sample(
+        &mut self,
+        time: f64,
+        with_start: bool,
+    ) -> Result<(Sample, Option<Assembled>), SimulationError> {
+        let changes = if with_start {
+            Changes::AtTheEnd
+        } else {
+            Changes::None
+        };
+        while !self.step_towards(time, Duration::MAX, changes)? {}
+        let before = self.before.take();
+        let start = before.map(|it| {
+            let mut system = it.system;
+            // Whoever begins there says what is logged.
+            system.log_events(EventKinds::default());
+            self.assembled.come_to(system, &it.state)
+        });
+        self.sample(time);
+        let sample = Sample {
+            observation: self.observation.clone(),
+            ended: self.moving.ended[0].clone(),
+            struck: self.moving.struck[0].clone(),
+        };
+        Ok((sample, start))
+    }
+
+    /// The simulation as one that began later, where the record of `run` begins: it stands behind samples of that.
+    pub(crate) fn begun_at(
+        self,
+        start: Assembled,
+        run: &Run,
+        ahead: impl IntoIterator<Item = Sample>,
+    ) -> Self {
+        Self {
+            assembled: Arc::new(start),
+            until: run.until,
+            every: run.every,
+            ahead: ahead.into_iter().collect(),
+            next: 0,
+            start_energy: None,
+            ..self
+        }
+    }
+
+    /// Goes on to a time \[s\] and reads everything off the drive there, for one who does not go back.
+    pub(crate) fn look(&mut self, time: f64) -> Result<&Observation, SimulationError> {
+        while !self.step_towards(time, Duration::MAX, Changes::None)? {}
+        self.observe(time);
+        Ok(&self.observation)
+    }
+
+    /// Whether samples are there that nobody has asked for yet.
+    pub(crate) fn has_samples_ahead(&self) -> bool {
+        !self.ahead.is_empty()
+    }
+
+    /// Hands out a sample that was taken before, as that of a time \[s\].
+    pub(super) fn hand_out(&mut self, sample: Sample, time: f64) {
+        let zero = self.zero();
+        self.observation = sample.observation;
+        self.observation.time = time;
+        self.start_energy.get_or_insert(self.observation.energy);
+        self.read = time;
+        self.next += 1;
+        let ended = &mut self.moving.ended[0];
+        *ended = sample.ended;
+        ended.iter_mut().for_each(|it| count_from(zero, it));
+        let struck = &mut self.moving.struck[0];
+        *struck = sample.struck;
+        struck.iter_mut().for_each(|it| it.time -= zero);
+        // Those before the record are not of it.
+        struck.retain(|it| it.time >= 0.0);
+    }
+}
