@@ -26,6 +26,7 @@ def run(drive, until, every=1e-4, **options):
     return cd.simulate(
         drive,
         until=until,
+        run_in=0,
         every=every,
         progress=False,
         error=False,

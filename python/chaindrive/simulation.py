@@ -66,6 +66,9 @@ def simulate(
         Time simulated before t = 0, so that the record begins where the motion is steady: seconds
         [s], turns of a sprocket (``"5 turns"`` of the first one, ``"5 turns of camshaft"``), or
         ``"auto"``: until the tension of every span is steady, at most 32 circuits of the chain.
+        Where neither this nor the scene says anything, closed chains that a motion drives and whose
+        inputs repeat are run in by ``"auto"``; 0 begins at the start. Functions of time (ramps,
+        tables over time, frequencies), open chains and starts from rest are not run in by default.
     every
         Interval between samples [s]. Samples are interpolated: more of them do not change the
         motion.

@@ -42,6 +42,7 @@ def sweep(
     *,
     design: Any = None,
     until: Quantity | None = None,
+    run_in: Quantity | None = None,
     every: Quantity | None = None,
     record: Recorded | Iterable[Recorded] = (),
     accuracy: Quantity | None = None,
@@ -81,6 +82,9 @@ def sweep(
     until
         End of the runs [s], or a text with a unit. This and the next come from the scene when
         absent.
+    run_in
+        Time simulated before t = 0 in every variant, as `simulate` takes it. Where neither this nor
+        the scene says anything, closed chains whose inputs repeat are run in until they are steady.
     every
         Interval between samples [s], or a text with a unit. Statistics are those of the samples.
     record
@@ -189,7 +193,7 @@ def sweep(
         raise ParameterError(message, "jobs", "leave it out, or give it to the executor")
     if jobs is not None and jobs < 1:
         raise ParameterError(f"jobs = {jobs}, must be at least 1", "jobs", "at least 1")
-    arguments = {"until": until, "every": every, "accuracy": accuracy}
+    arguments = {"until": until, "run_in": run_in, "every": every, "accuracy": accuracy}
     settings = {f"run.{name}": value for name, value in arguments.items() if value is not None}
     base = drive.replace(settings) if settings else drive
     varied = tuple((path, _values(values, path)) for path, values in columns.items())

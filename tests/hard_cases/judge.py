@@ -77,14 +77,19 @@ def run(case, settings, drive):
     if case.step_factor != 1.0 and settings["method"] != "dormand-prince":
         settings["step"] = case.step_factor * automatic_step(case, settings, drive)
     return cd.simulate(
-        drive, until=case.until, every=every, record=CHANNELS, **(case.settings | settings)
+        drive,
+        until=case.until,
+        run_in=0,
+        every=every,
+        record=CHANNELS,
+        **(case.settings | settings),
     )
 
 
 def automatic_step(case, settings, drive):
     """Return the step that the method chooses [s]."""
     every = case.until / SAMPLES
-    probe = cd.simulate(drive, until=1e-9, every=every, record="span_tension", **settings)
+    probe = cd.simulate(drive, until=1e-9, run_in=0, every=every, record="span_tension", **settings)
     return probe.attrs["step"]
 
 

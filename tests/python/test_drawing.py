@@ -141,7 +141,9 @@ def check(drive, *, samples=20, until=None):
     wanted += ["guide_force_y", "sprocket_angle", "sprocket_x", "sprocket_y", "tensioner_position"]
     until = until or min(drive.run_defaults["until"], 5e-3)
     every = until / (samples - 1)
-    run = cd.simulate(drive, until=until, every=every, record=wanted, events="teeth", error=False)
+    run = cd.simulate(
+        drive, until=until, every=every, run_in=0, record=wanted, events="teeth", error=False
+    )
     assert run.sizes["time"] >= samples
     # Forces between two steps are those of both: a roller may bear one when it has parted within
     # the step, or is yet to touch in it.
@@ -289,7 +291,7 @@ def test_plates_lie_on_the_guides_that_carry_them():
     drive = cd.scenes.timing_drive()
     wanted = ["roller_x", "roller_y", "sprocket_angle", "tensioner_position"]
     wanted += ["guide_force_x", "guide_force_y"]
-    run = cd.simulate(drive, until=4e-3, every=2e-3, record=wanted, error=False)
+    run = cd.simulate(drive, until=4e-3, every=2e-3, run_in=0, record=wanted, error=False)
     pressed = 0
     for now in (run.isel(time=index) for index in range(run.sizes["time"])):
         svg = cd.plot.svg(run, float(now["time"]))
@@ -358,7 +360,9 @@ def test_the_command_draws_scenes_and_results(tmp_path):
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "timing.svg").read_text() == drive.svg()
     assert "--overwrite" in told("draw", "timing_drive", "-o", "timing.svg").stderr
-    run = cd.simulate(drive, until=1e-3, every=1e-4, output=tmp_path / "run.zarr", error=False)
+    run = cd.simulate(
+        drive, until=1e-3, every=1e-4, run_in=0, output=tmp_path / "run.zarr", error=False
+    )
     done = told("draw", "run.zarr", "--at", "0.52 ms")
     assert done.returncode == 0, done.stderr
     expected = cd.plot.svg(run, 5e-4)
@@ -368,7 +372,9 @@ def test_the_command_draws_scenes_and_results(tmp_path):
 
 def test_a_frame_says_which_channel_is_missing():
     drive = cd.scenes.timing_drive()
-    run = cd.simulate(drive, until=1e-4, every=1e-4, record=["roller_x", "roller_y"], error=False)
+    run = cd.simulate(
+        drive, until=1e-4, every=1e-4, run_in=0, record=["roller_x", "roller_y"], error=False
+    )
     with pytest.raises(KeyError, match=r"sprocket_angle.*'sprocket_angle', 'tensioner_position'"):
         cd.plot.svg(run, 0.0)
 

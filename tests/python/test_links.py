@@ -26,7 +26,9 @@ JOINT_CHANNELS = [
 @pytest.fixture(scope="module")
 def bicycle():
     drive = cd.scenes.bicycle()
-    return cd.simulate(drive, until=4e-3, every=1e-4, record="all", events=["teeth", "joints"])
+    return cd.simulate(
+        drive, until=4e-3, every=1e-4, run_in=0, record="all", events=["teeth", "joints"]
+    )
 
 
 @pytest.fixture(scope="module")
@@ -118,7 +120,7 @@ def test_contacts_are_logged(bicycle):
 
 
 def test_nothing_is_logged_unasked():
-    run = cd.simulate(cd.scenes.bicycle(), until=1e-3, every=1e-3, events=[])
+    run = cd.simulate(cd.scenes.bicycle(), until=1e-3, every=1e-3, run_in=0, events=[])
     assert "event" not in run.dims
     with pytest.raises(cd.ParameterError, match="teeth, guides, joints"):
         cd.simulate(cd.scenes.bicycle(), until=1e-3, events="tooth")
@@ -141,7 +143,7 @@ def test_events_on_disk_are_those_in_memory(tmp_path, pin):
 
 KILLED = """
 import sys, chaindrive as cd
-cd.simulate(cd.scenes.bicycle_slack(), until=100.0, every=1e-4, output=sys.argv[1],
+cd.simulate(cd.scenes.bicycle_slack(), until=100.0, every=1e-4, run_in=0, output=sys.argv[1],
             events=["teeth", "joints"], record="span_tension")
 """
 

@@ -37,7 +37,9 @@ def test_a_controller_holds_the_speed():
 
 def test_channels_are_those_of_a_run():
     drive = cd.scenes.marine_two_sprockets()
-    run = cd.simulate(drive, until=2e-3, every=1e-3, method="verlet", record="all", error=False)
+    run = cd.simulate(
+        drive, until=2e-3, every=1e-3, run_in=0, method="verlet", record="all", error=False
+    )
     simulation = cd.Simulation(drive, method="verlet")
     for time in run["time"].to_numpy():
         simulation.advance_to(time)

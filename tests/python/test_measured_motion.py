@@ -100,6 +100,7 @@ def test_m08_a_longer_camshaft_chain() -> None:
             run = cd.simulate(
                 drive.replace({"chain.elongation": elongation}),
                 until=1e-4,
+                run_in=0,
                 every=1e-4,
                 method="verlet",
                 record=["roller_x", "roller_y", "sprocket_y"],

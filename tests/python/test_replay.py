@@ -22,6 +22,7 @@ def run():
     return cd.simulate(
         cd.scenes.timing_drive(),
         until=3e-3,
+        run_in=0,
         every=1e-5,
         step=3e-7,
         record=CHANNELS,

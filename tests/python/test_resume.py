@@ -20,6 +20,7 @@ WALL = ["stepping_time", "real_time_factor", "ns_per_link_step", "wall_time", "s
 def whole(**settings):
     drive = cd.scenes.bicycle()
     given = {"every": 1e-5, "method": "implicit-damping", "error": False, "events": "joints"}
+    given["run_in"] = 0
     return cd.simulate(drive, **given | settings)
 
 
@@ -81,7 +82,7 @@ KILLED = """
 import sys
 import chaindrive as cd
 cd.simulate(cd.scenes.bicycle(), until=1.0, every=1e-5, method="implicit-damping", error=False,
-            events="joints", output=sys.argv[1], checkpoint_every=1e-4)
+            run_in=0, events="joints", output=sys.argv[1], checkpoint_every=1e-4)
 """
 
 

@@ -12,10 +12,10 @@ import chaindrive as cd
 def test_a_drive_in_full_is_the_same_drive() -> None:
     drive = cd.scenes.industrial_16b()
     full = drive.resolved()
-    assert full.text.startswith('format = "0.2"\ndefaults = "0.2"\n')
+    assert full.text.startswith('format = "0.3"\ndefaults = "0.3"\n')
     assert "poisson = 0.3 # assumed: steel on steel" in full.text
     assert cd.diff(drive, full) == []
-    settings = {"until": 5e-4, "every": 1e-4, "error": False, "method": "verlet"}
+    settings = {"until": 5e-4, "run_in": 0, "every": 1e-4, "error": False, "method": "verlet"}
     first, second = (cd.simulate(of, **settings) for of in (drive, full))
     assert first["span_tension"].identical(second["span_tension"])
     assert cd.diff(first, second) == []

@@ -30,7 +30,7 @@ SPEEDS = {"chain.start.speed": np.linspace(300.0, 400.0, 40), "chain.mass": ["8 
 
 
 def marine():
-    return cd.scenes.marine_two_sprockets()
+    return cd.scenes.marine_two_sprockets().replace({"run.run_in": 0})
 
 
 def ring():
@@ -468,7 +468,7 @@ import numpy as np
 import chaindrive as cd
 
 first, count, jobs, store = *map(int, sys.argv[1:4]), sys.argv[4]
-drive = cd.scenes.marine_two_sprockets()
+drive = cd.scenes.marine_two_sprockets().replace({"run.run_in": 0})
 design = {"chain.damping_ratio": np.linspace(0.02, 0.06, 21_000)[first : first + count]}
 settings = {"until": 20e-3, "every": 1e-3, "jobs": jobs}
 # What is imported when it is first needed takes as long as hundreds of variants.

@@ -155,7 +155,7 @@ impl Run {
     pub(crate) fn table(&self, method: Method) -> Map<String, Json> {
         let mut table = Map::new();
         table.insert("until".into(), self.until.into());
-        if self.run_in != RunIn::None {
+        if self.run_in != RunIn::Usual {
             table.insert("run_in".into(), self.run_in.to_string().into());
         }
         table.insert("every".into(), self.every.into());

@@ -249,9 +249,9 @@ impl Simulation {
         let mut events = self.moving.ended[1].clone();
         events.extend(self.moving.system.lasting_events());
         let zero = self.zero();
-        events
-            .iter_mut()
-            .for_each(|it| sample::count_from(zero, it));
+        for event in &mut events {
+            sample::count_from(zero, event);
+        }
         events
     }
 

@@ -95,7 +95,7 @@ impl Verdict {
     pub fn of(
         summary: &Summary,
         simulation: &Simulation,
-        ran_in: Option<RanIn>,
+        ran_in: Option<&RanIn>,
         choice: Option<&Choice>,
         judgement: Option<&Judgement>,
     ) -> Self {
@@ -280,7 +280,7 @@ fn steadiness(spans: &[(&str, Steadiness, f64)], until: Option<f64>) -> Vec<Reas
 }
 
 /// Reason against a run-in that was to end by itself and did not.
-fn started(ran_in: RanIn) -> Option<Reason> {
+fn started(ran_in: &RanIn) -> Option<Reason> {
     let gave_up = ran_in.is_steady == Some(false);
     gave_up.then_some(Reason::NotRunIn { time: ran_in.time })
 }

@@ -95,6 +95,28 @@ impl Assembled {
         motion.or_else(|| torques.find_map(of_torque))
     }
 
+    /// In words, why the motion of this drive need not come to repeat itself: a chain has ends, is driven by no motion, or by one that is a function of
+    /// time. None where it can.
+    pub fn why_it_does_not_repeat(&self) -> Option<&'static str> {
+        let chains = &self.drive.chains;
+        if chains
+            .iter()
+            .any(|it| matches!(it.chain.ends, Ends::Open(_)))
+        {
+            return Some("a chain has ends");
+        }
+        let shafts = self.shaft_speeds();
+        let wheels = &self.system.bodies.wheels;
+        let turns = |wheel: &usize| shafts[wheels[*wheel].shaft].is_some_and(|it| it != 0.0);
+        let members = &self.system.chains;
+        if members.is_empty() || members.iter().any(|it| !it.route.iter().any(turns)) {
+            return Some("no motion turns a sprocket of a chain");
+        }
+        let stands = !self.slowest_forcing().is_finite();
+        let stands = stands.then_some("a shaft whose turns something follows stands still");
+        self.function_of_time().or(stands)
+    }
+
     /// Every motion that is prescribed.
     fn motions(&self) -> impl Iterator<Item = &Motion> {
         let drive = &self.drive;

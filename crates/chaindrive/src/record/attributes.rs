@@ -119,7 +119,7 @@ pub fn attributes(
     }
 
     story.number("until", provenance.run.until);
-    if let Some(ran_in) = provenance.ran_in {
+    if let Some(ran_in) = &provenance.ran_in {
         story.number("run_in", ran_in.time);
         if let Some(is_steady) = ran_in.is_steady {
             story.count("run_in_steady", u64::from(is_steady));
@@ -177,8 +177,20 @@ pub fn attributes(
     speed(&mut story, simulation, provenance.wall_time());
     let choice = provenance.choice.as_ref();
     let verdict = summary.map(|summary| {
-        let verdict = Verdict::of(summary, simulation, provenance.ran_in, choice, judgement);
-        let figures = figures(summary, simulation, provenance.ran_in, choice, judgement);
+        let verdict = Verdict::of(
+            summary,
+            simulation,
+            provenance.ran_in.as_ref(),
+            choice,
+            judgement,
+        );
+        let figures = figures(
+            summary,
+            simulation,
+            provenance.ran_in.as_ref(),
+            choice,
+            judgement,
+        );
         story.text("summary", &format!("{verdict}\n{figures}"));
         verdict.attributes()
     });
@@ -197,7 +209,7 @@ pub fn attributes(
 pub fn figures(
     summary: &Summary,
     simulation: &Simulation,
-    ran_in: Option<RanIn>,
+    ran_in: Option<&RanIn>,
     choice: Option<&Choice>,
     judgement: Option<&Judgement>,
 ) -> String {

@@ -62,6 +62,10 @@ impl Sink for InStore {
         provenance: &Provenance,
     ) -> Result<(), WriteError> {
         let provenance = provenance.clone();
+        if let Some(writer) = &mut self.writer {
+            writer.goes_by(provenance);
+            return Ok(());
+        }
         self.writer = match std::mem::replace(&mut self.place, Place::Begun) {
             Place::New(path, existing) => {
                 let made = ZarrWriter::create(&path, simulation, channels, provenance, existing);

@@ -191,6 +191,11 @@ impl ZarrWriter {
         Ok(writer)
     }
 
+    /// Takes note of what is known of the run once it has been run in.
+    pub(super) fn goes_by(&mut self, provenance: Provenance) {
+        self.provenance = provenance;
+    }
+
     /// Keeps what the run goes on from when it is stopped or killed, with all samples before it.
     ///
     /// # Errors

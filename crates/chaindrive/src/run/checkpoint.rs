@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use chaindrive_mechanics::{Assembled, Drive, SystemMemory};
 
 use super::execute::assemble;
-use super::{Given, RanIn, Request, Run};
+use super::{Given, RanIn, Request, Run, RunIn};
 use crate::precision::{Choice, Quantity};
 use crate::record::{Provenance, Summary};
 use crate::scene::SceneError;
@@ -46,7 +46,8 @@ pub struct Checkpoint {
     /// Wall time of the run so far, and that of its stepping \[s\].
     spent: [f64; 2],
     pub(super) summary: Summary,
-    pub(super) snapshot: Snapshot,
+    /// None before the first sample of a run that is run in: it begins anew.
+    pub(super) snapshot: Option<Snapshot>,
     /// Where the record begins, if the drive was run in.
     start: Option<Start>,
 }
@@ -74,21 +75,16 @@ impl Checkpoint {
         simulation: &Simulation,
         summary: &Summary,
     ) -> Self {
+        let beginning = Self::of_beginning(request, provenance, simulation);
+        if simulation.has_samples_ahead() {
+            // The run-in gives them once more.
+            return beginning;
+        }
         Self {
-            scene: provenance.scene.clone(),
-            scene_name: provenance.scene_name.clone(),
             run: provenance.run.clone(),
-            record: request.record.clone(),
-            estimate: request.estimate,
-            every: request.checkpoint_every,
-            choice: provenance.choice.clone(),
-            spent: [
-                provenance.wall_time().as_secs_f64(),
-                simulation.stepping_time(),
-            ],
             summary: summary.clone(),
-            snapshot: simulation.snapshot(),
-            start: provenance.ran_in.map(|ran_in| {
+            snapshot: Some(simulation.snapshot()),
+            start: provenance.ran_in.clone().map(|ran_in| {
                 let start = simulation.assembled();
                 let state = [&start.q, &start.v, &start.z].map(Clone::clone);
                 let system = start.system.memory();
@@ -99,6 +95,35 @@ impl Checkpoint {
                     state,
                 }
             }),
+            ..beginning
+        }
+    }
+
+    /// A run before its run-in.
+    pub(super) fn of_beginning(
+        request: &Request,
+        provenance: &Provenance,
+        simulation: &Simulation,
+    ) -> Self {
+        let mut run = provenance.run.clone();
+        if provenance.ran_in.as_ref().is_some_and(|it| it.by_default) {
+            run.run_in = RunIn::Usual;
+        }
+        Self {
+            scene: provenance.scene.clone(),
+            scene_name: provenance.scene_name.clone(),
+            run,
+            record: request.record.clone(),
+            estimate: request.estimate,
+            every: request.checkpoint_every,
+            choice: provenance.choice.clone(),
+            spent: [
+                provenance.wall_time().as_secs_f64(),
+                simulation.stepping_time(),
+            ],
+            summary: Summary::new(simulation),
+            snapshot: None,
+            start: None,
         }
     }
 
@@ -144,7 +169,7 @@ impl Checkpoint {
 
     /// Time that the simulation has reached \[s\].
     pub fn time(&self) -> f64 {
-        self.snapshot.time()
+        self.snapshot.as_ref().map_or(0.0, Snapshot::time)
     }
 
     /// End of the run \[s\].
@@ -190,7 +215,12 @@ impl Checkpoint {
 
     /// How the drive was run in, if it was.
     pub(super) fn ran_in(&self) -> Option<RanIn> {
-        self.start.as_ref().map(|start| start.ran_in)
+        self.start.as_ref().map(|start| start.ran_in.clone())
+    }
+
+    /// Whether the record begins elsewhere than the drive was assembled.
+    pub(super) fn has_moved(&self) -> bool {
+        self.ran_in().is_some_and(|it| it.time > 0.0)
     }
 
     /// The drive where the record begins. It is assembled as far before as it was, and not moved again.

@@ -13,14 +13,14 @@ use super::{Checkpoint, Request};
 use crate::precision::{Choice, Judgement, ShortRuns, choose_with};
 use crate::record::{Ending, Provenance, Summary, attributes};
 use crate::scene::SceneError;
-use crate::{Channel, RanIn, Run, Simulation, SimulationError, SnapshotError, Verdict};
+use crate::{Channel, RanIn, Run, RunIn, Simulation, SimulationError, SnapshotError, Verdict};
 
 /// Where samples go: memory, a store, a table.
 pub trait Sink {
     /// Why it refuses.
     type Error: std::error::Error;
 
-    /// Takes note of a run that is about to begin.
+    /// Takes note of a run that is about to begin: once, or before its run-in and behind it.
     ///
     /// # Errors
     /// The place is taken, or cannot be written.
@@ -200,7 +200,33 @@ pub fn execute<S: Sink>(
     sink: &mut S,
     onlooker: &dyn Onlooker,
 ) -> Result<Report, RunError<S::Error>> {
-    let begun = begin(request, onlooker)?;
+    let chosen = choose(request, onlooker)?;
+    let waiting =
+        if request.checkpoint_every.is_some() && chosen.provenance.run.run_in != RunIn::None {
+            // Whoever is stopped or killed in the run-in goes on from here.
+            let simulation = chosen.simulation().map_err(not_begun)?;
+            let mut provenance = chosen.provenance.clone();
+            announce(request, &mut provenance, &simulation, sink)?;
+            let summary = Summary::new(&simulation);
+            let checkpoint = Checkpoint::of_beginning(request, &provenance, &simulation);
+            sink.keep(&simulation, &checkpoint)
+                .map_err(RunError::Sink)?;
+            Some((simulation, provenance, summary))
+        } else {
+            None
+        };
+    let begun = match (set_off(request, chosen, onlooker), waiting) {
+        (Err(error), Some((simulation, provenance, summary))) => {
+            let ending = match &error {
+                RunError::Interrupted => Ending::Interrupted,
+                error => Ending::Failed(error.to_string()),
+            };
+            close(sink, &provenance, &simulation, &summary, &ending, None)
+                .map_err(RunError::Sink)?;
+            return Err(error);
+        }
+        (begun, _) => begun?,
+    };
     complete(request, begun, sink, onlooker)
 }
 
@@ -215,30 +241,36 @@ pub(crate) fn resume<S: Sink>(
 ) -> Result<Report, RunError<S::Error>> {
     let request = checkpoint.request().map_err(RunError::Scene)?;
     let mut provenance = Provenance::of(&request.scene, &request.run);
+    let [wall, stepping] = checkpoint.spent();
+    provenance.earlier = wall;
+    provenance.choice = checkpoint.choice().cloned();
     let drive = request.scene.drive().map_err(RunError::Scene)?;
+    let Some(snapshot) = &checkpoint.snapshot else {
+        let start = assemble(&drive, &|| onlooker.stop()).map_err(not_begun)?;
+        let chosen = Chosen {
+            drive,
+            start,
+            provenance,
+            short_runs: None,
+        };
+        let begun = set_off(&request, chosen, onlooker)?;
+        return complete(&request, begun, sink, onlooker);
+    };
     let start = checkpoint.start(&drive, &|| onlooker.stop());
     let start = start.map_err(|error| match error {
         NotAgain::Start(error) => not_begun(error),
         NotAgain::Snapshot(error) => RunError::Snapshot(error),
     })?;
-    let short_runs = match checkpoint.choice() {
-        Some(choice) if request.estimate && checkpoint.ran_in().is_none() => {
-            let mut left = choice
-                .short_runs(&start, &|| onlooker.stop())
-                .map_err(not_begun)?;
-            left.keep_for(&request.run);
-            left
-        }
-        _ => ShortRuns::default(),
+    let short_runs = if checkpoint.has_moved() {
+        ShortRuns::default()
+    } else {
+        short_runs(&request, &provenance, &start, onlooker).map_err(not_begun)?
     };
     let simulation = Simulation::from_assembled(start, &request.run);
     let mut simulation = simulation.map_err(RunError::Start)?;
-    let restored = simulation.restore(&checkpoint.snapshot);
+    let restored = simulation.restore(snapshot);
     restored.map_err(RunError::Snapshot)?;
-    let [wall, stepping] = checkpoint.spent();
     simulation.has_spent(stepping);
-    provenance.earlier = wall;
-    provenance.choice = checkpoint.choice().cloned();
     provenance.ran_in = checkpoint.ran_in();
     let begun = Begun {
         drive,
@@ -266,15 +298,7 @@ fn complete<S: Sink>(
     } = begun;
     let watch = || onlooker.stop();
     let run = provenance.run.clone();
-    let full = request.scene.resolved_for(&run, simulation.method());
-    provenance.resolved_scene = Some(full.map_err(RunError::Scene)?.text().to_owned());
-    let channels = if request.record.is_empty() {
-        Channel::defaults(&simulation.assembled().drive)
-    } else {
-        Channel::chosen(&request.record, simulation.system()).map_err(RunError::Start)?
-    };
-    sink.begin(&simulation, &channels, &provenance)
-        .map_err(RunError::Sink)?;
+    announce(request, &mut provenance, &simulation, sink)?;
     summary.kept = sink.keeps_samples();
 
     if request.checkpoint_every.is_some() && summary.samples == 0 {
@@ -336,7 +360,8 @@ fn complete<S: Sink>(
         stop = Stop::Interrupted;
     }
     let choice = provenance.choice.as_ref();
-    let verdict = Verdict::of(&summary, &simulation, provenance.ran_in, choice, judged);
+    let ran_in = provenance.ran_in.as_ref();
+    let verdict = Verdict::of(&summary, &simulation, ran_in, choice, judged);
     Ok(Report {
         verdict,
         simulation,
@@ -349,6 +374,26 @@ fn complete<S: Sink>(
         stop,
         attributes: told,
     })
+}
+
+/// Tells the sink of a run that is about to begin.
+fn announce<S: Sink>(
+    request: &Request,
+    provenance: &mut Provenance,
+    simulation: &Simulation,
+    sink: &mut S,
+) -> Result<(), RunError<S::Error>> {
+    let full = request
+        .scene
+        .resolved_for(&provenance.run, simulation.method());
+    provenance.resolved_scene = Some(full.map_err(RunError::Scene)?.text().to_owned());
+    let channels = if request.record.is_empty() {
+        Channel::defaults(&simulation.assembled().drive)
+    } else {
+        Channel::chosen(&request.record, simulation.system()).map_err(RunError::Start)?
+    };
+    sink.begin(simulation, &channels, provenance)
+        .map_err(RunError::Sink)
 }
 
 /// Tells the sink how the run ended; returns what the result says about itself.
@@ -397,30 +442,88 @@ fn not_begun<E: std::error::Error>(error: SimulationError) -> RunError<E> {
     }
 }
 
-/// Assembles the drive, chooses method and step where an accuracy is asked for, and starts the clock.
-fn begin<E: std::error::Error>(
+/// A drive that is assembled, and how it is to move.
+struct Chosen {
+    drive: Drive,
+    start: Assembled,
+    provenance: Provenance,
+    /// With which the choice was made; none of a choice that was made before.
+    short_runs: Option<ShortRuns>,
+}
+
+impl Chosen {
+    /// The simulation that is run in.
+    fn simulation(&self) -> Result<Simulation, SimulationError> {
+        Simulation::from_assembled(self.start.clone(), &self.provenance.run)
+    }
+}
+
+/// Assembles the drive, and chooses method and step where an accuracy is asked for.
+fn choose<E: std::error::Error>(
     request: &Request,
     onlooker: &dyn Onlooker,
-) -> Result<Begun, RunError<E>> {
+) -> Result<Chosen, RunError<E>> {
     let watch = &|| onlooker.stop();
-    let failed = not_begun;
     let mut provenance = Provenance::of(&request.scene, &request.run);
     let drive = request.scene.drive().map_err(RunError::Scene)?;
-    let start = assemble(&drive, watch).map_err(failed)?;
+    let start = assemble(&drive, watch).map_err(not_begun)?;
     let mut short_runs = ShortRuns::default();
     if let Some(accuracy) = request.accuracy {
         let accuracy = (accuracy, request.accuracy_of);
         let choice = choose_with(&mut short_runs, &start, &request.run, accuracy, watch);
-        let choice = choice.map_err(failed)?;
+        let choice = choice.map_err(not_begun)?;
         provenance.run = choice.run.clone();
         provenance.choice = Some(choice);
     }
+    Ok(Chosen {
+        drive,
+        start,
+        provenance,
+        short_runs: Some(short_runs),
+    })
+}
+
+/// What the estimate goes on with that begins where the choice did.
+fn short_runs(
+    request: &Request,
+    provenance: &Provenance,
+    start: &Assembled,
+    onlooker: &dyn Onlooker,
+) -> Result<ShortRuns, SimulationError> {
+    match &provenance.choice {
+        Some(choice) if request.estimate => choice.short_runs(start, &|| onlooker.stop()),
+        _ => Ok(ShortRuns::default()),
+    }
+}
+
+/// Runs the drive in, and starts the clock.
+fn set_off<E: std::error::Error>(
+    request: &Request,
+    chosen: Chosen,
+    onlooker: &dyn Onlooker,
+) -> Result<Begun, RunError<E>> {
+    let failed = not_begun;
+    let Chosen {
+        drive,
+        start,
+        mut provenance,
+        short_runs: known,
+    } = chosen;
     let beginning = run_in::begin(start, &provenance.run, onlooker).map_err(failed)?;
     let Beginning {
         start,
         ran_in,
         simulation: mut going_on,
     } = beginning;
+    if provenance.run.run_in == RunIn::Usual {
+        let is_left_out = ran_in.as_ref().is_none_or(|it| it.left_out.is_some());
+        provenance.run.run_in = if is_left_out {
+            RunIn::None
+        } else {
+            RunIn::Auto
+        };
+    }
+    let has_moved = ran_in.as_ref().is_some_and(|it| it.time > 0.0);
     provenance.ran_in = ran_in;
     // The run-in may have pressed contacts until they bound the step that was chosen before it.
     let longest = |method: Method| method.longest_step(method.time_scale(&start.system));
@@ -432,12 +535,13 @@ fn begin<E: std::error::Error>(
         let longest = longest(run.method(&start.system));
         run.step = run.step.map(|step| step.min(longest));
     }
-    if request.estimate && provenance.ran_in.is_none() {
-        short_runs.keep_for(&provenance.run);
-    } else {
-        // Nobody asks for an estimate, or the run begins elsewhere.
-        short_runs = ShortRuns::default();
-    }
+    // Nobody asks for an estimate, or the run begins elsewhere than the choice.
+    let mut short_runs = match known {
+        _ if !request.estimate || has_moved => ShortRuns::default(),
+        Some(known) => known,
+        None => short_runs(request, &provenance, &start, onlooker).map_err(failed)?,
+    };
+    short_runs.keep_for(&provenance.run);
     let simulation = match going_on {
         Some(simulation) => simulation,
         None => Simulation::from_assembled(start, &provenance.run).map_err(failed)?,
@@ -481,7 +585,11 @@ impl Simulation {
     /// # Errors
     /// [`RunError`] when the run cannot begin.
     pub fn of(request: &Request, onlooker: &dyn Onlooker) -> Result<Self, RunError<Infallible>> {
-        let begun = begin(request, onlooker)?;
+        let mut request = request.clone();
+        if request.run.run_in == RunIn::Usual {
+            request.run.run_in = RunIn::None;
+        }
+        let begun = set_off(&request, choose(&request, onlooker)?, onlooker)?;
         if !begun.simulation.has_samples_ahead() {
             return Ok(begun.simulation);
         }

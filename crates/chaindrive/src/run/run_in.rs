@@ -34,6 +34,9 @@ pub enum RunIn {
     },
     /// Until the tension of every span is steady, at most [`MOST_CIRCUITS`] circuits of the slowest chain.
     Auto,
+    /// What a scene means that says nothing: [`Auto`](Self::Auto) where [the motion repeats](Assembled::why_it_does_not_repeat), and nothing elsewhere
+    /// or where somebody moves the drive from outside.
+    Usual,
 }
 
 /// Circuits of the chain \[–\] after which a run-in that ends by itself gives up. *Assumed*: what swings longer than that is no
@@ -41,12 +44,27 @@ pub enum RunIn {
 pub const MOST_CIRCUITS: u32 = 32;
 
 /// How a run was run in.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RanIn {
     /// Simulated before t = 0 \[s\].
     pub time: f64,
     /// Whether the tensions were found steady by then; nobody looked where the time was given.
     pub is_steady: Option<bool>,
+    /// Whether nobody asked for it.
+    pub by_default: bool,
+    /// Why it was left out, where nobody asked for one or against it.
+    pub left_out: Option<String>,
+}
+
+impl RanIn {
+    fn lasted(time: f64, is_steady: Option<bool>) -> Self {
+        Self {
+            time,
+            is_steady,
+            by_default: false,
+            left_out: None,
+        }
+    }
 }
 
 impl fmt::Display for RanIn {
@@ -56,11 +74,15 @@ impl fmt::Display for RanIn {
             Some(true) => "until the tension of every span was steady",
             Some(false) => "the longest that is tried, and not every span was steady",
         };
-        write!(
-            f,
-            "run-in                   {} before t = 0, {how}",
-            duration(self.time)
-        )
+        if let Some(why) = &self.left_out {
+            return write!(f, "run-in                   none: {why}");
+        }
+        let time = duration(self.time);
+        write!(f, "run-in                   {time} before t = 0, {how}")?;
+        if self.by_default {
+            write!(f, "; --run-in 0 leaves it out")?;
+        }
+        Ok(())
     }
 }
 
@@ -78,6 +100,7 @@ impl fmt::Display for RunIn {
                 sprocket: Some(name),
             } => write!(f, "{turns} turns of {name}"),
             Self::Auto => write!(f, "auto"),
+            Self::Usual => write!(f, "as usual"),
         }
     }
 }
@@ -120,7 +143,7 @@ impl RunIn {
     /// Names what is out of range.
     pub(super) fn check(&self) -> Result<(), SimulationError> {
         let (value, allowed) = match self {
-            Self::None | Self::Auto => return Ok(()),
+            Self::None | Self::Auto | Self::Usual => return Ok(()),
             Self::Time(time) => (*time, "a time that is not negative"),
             Self::Turns { turns, .. } => (*turns, "a positive number of turns"),
         };
@@ -149,6 +172,9 @@ pub fn run_in(
     run: &Run,
     onlooker: &dyn Onlooker,
 ) -> Result<(Assembled, Option<RanIn>), SimulationError> {
+    if run.run_in == RunIn::Usual {
+        return Ok((start, None));
+    }
     let beginning = begin(start, run, onlooker)?;
     Ok((beginning.start, beginning.ran_in))
 }
@@ -178,22 +204,35 @@ pub(super) fn begin(
         RunIn::None => return Ok(beginning(start, None)),
         RunIn::Time(time) => *time,
         RunIn::Turns { turns, sprocket } => turns_last(&start, *turns, sprocket.as_deref())?,
+        RunIn::Usual => {
+            if let Some(why) = start.why_it_does_not_repeat() {
+                let ran_in = RanIn {
+                    by_default: true,
+                    left_out: Some(why.to_owned()),
+                    ..RanIn::lasted(0.0, None)
+                };
+                return Ok(beginning(start, Some(ran_in)));
+            }
+            let asked = Run {
+                run_in: RunIn::Auto,
+                ..run.clone()
+            };
+            let mut found = begin(start, &asked, onlooker)?;
+            if let Some(ran_in) = &mut found.ran_in {
+                ran_in.by_default = true;
+            }
+            return Ok(found);
+        }
         RunIn::Auto => {
             let settled = steady::settle(&start, run, onlooker)?;
-            let ran_in = RanIn {
-                time: settled.start.zero,
-                is_steady: Some(settled.is_steady),
-            };
+            let ran_in = RanIn::lasted(settled.start.zero, Some(settled.is_steady));
             return Ok(Beginning {
                 simulation: Some(settled.simulation),
                 ..beginning(settled.start, Some(ran_in))
             });
         }
     };
-    let ran_in = Some(RanIn {
-        time,
-        is_steady: None,
-    });
+    let ran_in = Some(RanIn::lasted(time, None));
     let mut moving = before(&start.drive, time, run, stop)?;
     onlooker.see_run_in(0.0);
     while !moving.advance(LOOK)? {
@@ -228,9 +267,10 @@ fn before(
 pub(crate) fn longest(start: &Assembled, run: &Run) -> Result<f64, SimulationError> {
     match &run.run_in {
         RunIn::None => Ok(0.0),
+        RunIn::Usual if start.why_it_does_not_repeat().is_some() => Ok(0.0),
         RunIn::Time(time) => Ok(*time),
         RunIn::Turns { turns, sprocket } => turns_last(start, *turns, sprocket.as_deref()),
-        RunIn::Auto => Ok(f64::from(MOST_CIRCUITS) * steady::circuit(start)?),
+        RunIn::Auto | RunIn::Usual => Ok(f64::from(MOST_CIRCUITS) * steady::circuit(start)?),
     }
 }
 

@@ -119,7 +119,10 @@ pub(super) fn settle(
         let (mut spans, mut states) = (Vec::new(), Vec::new());
         for look in 1..=looks {
             let time = begun + look as f64 / looks as f64 * block;
-            let seen = taken.look(time)?;
+            let seen = match taken.look(time) {
+                Ok(seen) => seen,
+                Err(failure) => return taken.failed(failure),
+            };
             note(&mut spans, seen.span_tension.iter().copied());
             note(&mut states, creeping(seen));
             onlooker.see_run_in((time / longest).min(1.0));
@@ -216,6 +219,19 @@ impl<'a> Taken<'a> {
         }
     }
 
+    /// Ends a run-in that cannot go on with what there is of the record: that fails as well.
+    fn failed(mut self, failure: SimulationError) -> Result<Settled, SimulationError> {
+        while self.starts.last().is_some_and(Option::is_none) {
+            self.starts.pop();
+        }
+        let last = self.starts.last().and_then(Option::as_ref);
+        let reached = self.simulation.time();
+        if last.is_none_or(|(start, _)| start.zero + self.run.until < reached) {
+            return Err(failure);
+        }
+        self.recorded_from(0, false)
+    }
+
     /// Ends the run-in with the first beginning from a block on that is near enough to the end.
     fn recorded_from(mut self, block: usize, is_steady: bool) -> Result<Settled, SimulationError> {
         while self.starts.last().is_some_and(Option::is_none) {
@@ -225,10 +241,10 @@ impl<'a> Taken<'a> {
         let is_near = |(start, number): &(Assembled, usize)| {
             time - start.zero <= self.run.until && *number >= before
         };
-        let known = self.starts.drain(block..).flatten();
-        let (start, number) = { known }
-            .find(is_near)
-            .expect("the last beginning is at the end");
+        let mut known: Vec<_> = self.starts.drain(block..).flatten().collect();
+        // The last one is at the end, whatever is shorter than a step.
+        let first = known.iter().position(is_near);
+        let (start, number) = known.swap_remove(first.unwrap_or(known.len() - 1));
         let ahead = self.samples.drain(number - before..);
         Ok(Settled {
             simulation: self.simulation.begun_at(start.clone(), self.run, ahead),

@@ -101,6 +101,21 @@ pub(crate) static PRETENSION_AT: Choice<PretensionAt> = Choice {
     ],
 };
 
+/// Motion before t = 0.
+pub(crate) static RUN_IN: Choice<&str> = Choice {
+    keys: &["Run.run_in"],
+    basis: Assumed(
+        "whoever simulates a closed chain whose inputs repeat wants its steady motion; others begin as they stand",
+    ),
+    values: &[
+        (Version::V0_1, "0 s"),
+        (
+            Version::V0_3,
+            "auto where the inputs of closed chains repeat, else 0 s",
+        ),
+    ],
+};
+
 /// How impacts lose energy.
 pub(crate) static DISSIPATION: Choice<Dissipation> = Choice {
     keys: &["Contact.dissipation"],
@@ -211,6 +226,7 @@ pub(crate) fn put_into(schema: &mut Json) {
     tell_choice(schema, &SPAN_START);
     tell_choice(schema, &PRETENSION_AT);
     tell_choice(schema, &DISSIPATION);
+    tell_choice(schema, &RUN_IN);
 }
 
 fn tell_choice<T: Copy + Serialize>(schema: &mut Json, choice: &Choice<T>) {
@@ -287,6 +303,6 @@ mod tests {
             values: &[(Version::V0_1, 1.0), (Version::V0_2, 2.0)],
         };
         let values = Version::ALL.map(|version| changed.value(version).to_bits());
-        assert_eq!(values, [1.0_f64.to_bits(), 2.0_f64.to_bits()]);
+        assert_eq!(values, [1.0_f64, 2.0, 2.0].map(f64::to_bits));
     }
 }

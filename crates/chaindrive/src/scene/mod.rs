@@ -174,7 +174,8 @@ impl Scene {
 
     /// Settings of a run and channels to record, unless the caller gives others.
     pub fn run_defaults(&self) -> RunDefaults {
-        self.content.run.suggestions()
+        let version = self.content.defaults.unwrap_or_default();
+        self.content.run.suggestions(version)
     }
 }
 

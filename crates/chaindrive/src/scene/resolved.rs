@@ -12,7 +12,7 @@ use super::schema::SceneText;
 use super::tree::{Node, is_json, steps};
 use super::validate::below;
 use super::{Scene, SceneError, schema, unreadable, validate};
-use crate::run::{Run, RunIn, STEPPING_KEYS};
+use crate::run::{Run, STEPPING_KEYS};
 use chaindrive_integrate::Method;
 
 /// Remark about a value that is simply not there.
@@ -202,9 +202,6 @@ fn run_defaults(scene: &Scene) -> Vec<Assumption> {
     let mut open = Vec::new();
     if wanted.until.is_none() {
         open.push(assumed("until", run.until.into()));
-    }
-    if wanted.run_in == RunIn::None {
-        open.push(assumed("run_in", 0.0.into()));
     }
     if wanted.every.is_none() {
         open.push(assumed("every", run.every.into()));

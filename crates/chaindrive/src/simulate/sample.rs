@@ -1,14 +1,13 @@
 //! Samples, and those that were taken before anybody asked for them.
 
 use chaindrive_mechanics::{Assembled, ContactEvent, EventKinds, Impact, Observation};
-use serde::{Deserialize, Serialize};
 
 use super::live::Changes;
 use super::{Arc, Duration, Simulation};
 use crate::{Run, SimulationError};
 
 /// All that a sample says, on the clock of the drive.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 pub(crate) struct Sample {
     observation: Observation,
     ended: Vec<ContactEvent>,
@@ -30,11 +29,15 @@ impl Simulation {
         let [handed, since] = &mut moving.ended;
         std::mem::swap(handed, since);
         since.clear();
-        handed.iter_mut().for_each(|it| count_from(zero, it));
+        for event in handed {
+            count_from(zero, event);
+        }
         let [handed, since] = &mut moving.struck;
         std::mem::swap(handed, since);
         since.clear();
-        handed.iter_mut().for_each(|it| it.time -= zero);
+        for impact in handed {
+            impact.time -= zero;
+        }
     }
 
     /// Goes on to a time \[s\] and takes a sample there; with the drive as it stood before the last step, where one is wanted.
@@ -105,10 +108,14 @@ impl Simulation {
         self.next += 1;
         let ended = &mut self.moving.ended[0];
         *ended = sample.ended;
-        ended.iter_mut().for_each(|it| count_from(zero, it));
+        for event in ended {
+            count_from(zero, event);
+        }
         let struck = &mut self.moving.struck[0];
         *struck = sample.struck;
-        struck.iter_mut().for_each(|it| it.time -= zero);
+        for impact in struck.iter_mut() {
+            impact.time -= zero;
+        }
         // Those before the record are not of it.
         struck.retain(|it| it.time >= 0.0);
     }

@@ -9,7 +9,7 @@ use chaindrive_mechanics::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::{Moving, Sample, Simulation};
+use super::{Moving, Simulation};
 use crate::SealError;
 use crate::seal::{Sealed, opened, sealed};
 
@@ -40,7 +40,6 @@ pub struct Snapshot {
     fingerprint: u32,
     moving: Remembered,
     before: Option<Remembered>,
-    ahead: Vec<Sample>,
     /// Time reached \[s\].
     time: f64,
     read: f64,
@@ -109,7 +108,6 @@ impl Simulation {
             fingerprint: self.fingerprint(),
             moving: self.moving.remembered(),
             before: self.before.as_ref().map(|before| before.remembered()),
-            ahead: self.ahead.iter().cloned().collect(),
             time: self.time(),
             read: self.read,
             next: self.next,
@@ -131,7 +129,7 @@ impl Simulation {
         let before = before.map(|before| self.recalled(before).map(Box::new));
         self.before = before.transpose()?;
         self.moving = moving;
-        self.ahead = snapshot.ahead.iter().cloned().collect();
+        self.ahead.clear();
         self.read = snapshot.read;
         self.next = snapshot.next;
         self.observation.clone_from(&snapshot.observation);

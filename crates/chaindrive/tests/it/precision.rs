@@ -200,7 +200,9 @@ fn stored(path: &std::path::Path, name: &str) -> serde_json::Value {
 /// An estimate behind a choice goes on with its short runs: the same numbers, for less.
 #[test]
 fn an_estimate_behind_a_choice_is_that_of_the_run_for_less() {
-    let settings = Settings::default().with("until", Given::Number(0.1));
+    let settings = Settings::default()
+        .with("until", Given::Number(0.1))
+        .with("run_in", Given::Number(0.0));
     for scene in ["marine_two_sprockets", "bicycle"] {
         let request = Request::new(&Scene::preset(scene).unwrap(), &settings).unwrap();
         let report = execute(&request, &mut Memory::default(), &never).unwrap();

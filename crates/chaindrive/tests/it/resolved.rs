@@ -38,7 +38,7 @@ fn every_preset_in_full_is_the_same_drive() {
         let full = full(&scene);
         let text = full.text();
         assert!(
-            text.starts_with("format = \"0.2\"\ndefaults = \"0.2\"\n"),
+            text.starts_with("format = \"0.3\"\ndefaults = \"0.3\"\n"),
             "{text}"
         );
         assert!(left_open(text) > 3, "{name}\n{text}");
@@ -165,7 +165,10 @@ fn versions_that_nobody_knows_are_refused_with_a_hint() {
             "format: `9.0` is not a known version; chaindrive",
         ),
         ("format = 0.2", "a version is a text: \"0.2\""),
-        ("defaults = \"0.0\"", "knows 0.1, 0.2; take a newer one"),
+        (
+            "defaults = \"0.0\"",
+            "knows 0.1, 0.2, 0.3; take a newer one",
+        ),
         ("format = []", "format: `a list` is not a known version"),
     ] {
         let error = Scene::from_toml(&format!("{line}\n{}", ring.text()), "ring");

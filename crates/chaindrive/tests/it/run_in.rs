@@ -62,7 +62,7 @@ fn a_run_that_was_run_in_is_the_rest_of_a_longer_run() {
         ];
         ran(&scene, &[&fixed, settings].concat())
     };
-    let (_, whole) = with(&[("until", "40 ms")]);
+    let (_, whole) = with(&[("until", "40 ms"), ("run_in", "0 s")]);
     let (report, rest) = with(&[("until", "20 ms"), ("run_in", "20 ms")]);
     let [whole, rest] = [&whole, &rest].map(|it| channel(it, Channel::SpanTension));
     let behind = &whole[whole.len() - rest.len()..];
@@ -262,50 +262,136 @@ fn what_a_run_in_examined_becomes_the_record() {
     }
 }
 
-/// Stopped in the record of a run-in by itself, or before the samples that it took are handed out, and carried on: the same bits.
+/// Stopped in the run-in, before the samples that it took are handed out, or in the record, and carried on: the same bits.
 #[test]
 fn a_run_in_by_itself_is_carried_on_to_the_same_bits() {
     let scene = preset("marine_two_sprockets", &[]);
     let settings = Settings::default()
-        .with("until", Given::Number(2.0))
+        .with("until", Given::Number(1.5))
         .with("every", Given::Number(1e-2))
         .with("events", Given::Names(vec!["teeth".to_owned()]))
-        .with("method", Given::Text("verlet".to_owned()))
-        .with("run_in", Given::Text("auto".to_owned()));
-    let request = Request::new(&scene, &settings).unwrap().without_estimate();
+        .with("accuracy", Given::Number(0.02));
+    let request = Request::new(&scene, &settings).unwrap();
     let request = request.with_checkpoints(&Given::Number(0.1)).unwrap();
     let mut whole = Memory::default();
     let report = execute(&request, &mut whole, &|| false).unwrap();
-    for samples in [0, 3, 190] {
+    for stopped_in in [
+        StoppedIn::RunIn,
+        StoppedIn::Record(3),
+        StoppedIn::Record(140),
+    ] {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("run.zarr");
         let mut store = InStore::new(path.clone(), Existing::Keep);
-        let seen = AfterSamples(samples, Cell::new(0));
-        execute(&request, &mut store, &seen).unwrap();
+        let seen = Stopping(stopped_in, Cell::new(0));
+        let ended = execute(&request, &mut store, &seen);
+        let is_in_run_in = matches!(ended, Err(RunError::Interrupted));
+        assert_eq!(is_in_run_in, stopped_in == StoppedIn::RunIn);
         let stopped = Stopped::open(&path, None).unwrap();
         let resumed = stopped.resume(&|| false).unwrap();
         let last = |report: &Report| report.simulation.observation().link_tension.clone();
-        assert_eq!(last(&resumed), last(&report), "{samples}");
+        assert_eq!(last(&resumed), last(&report), "{stopped_in:?}");
         let told = |report: &Report| {
-            let names = ["run_in", "samples", "impact_count_crank"];
+            let names = [
+                "run_in",
+                "samples",
+                "impact_count_crank",
+                "error_span_tension",
+                "verdict_note",
+                "error_evaluations",
+            ];
             let attributes = names.map(|it| report.attributes[it].clone());
             (attributes, report.summary.spans.clone())
         };
-        assert_eq!(told(&resumed), told(&report), "{samples}");
+        assert_eq!(told(&resumed), told(&report), "{stopped_in:?}");
+        let sentences = [&resumed, &report].map(|it| it.ran_in.as_ref().unwrap().to_string());
+        assert_eq!(sentences[0], sentences[1]);
+        assert!(sentences[0].ends_with("--run-in 0 leaves it out"));
     }
 }
 
-/// Stops a run after so many samples.
-struct AfterSamples(u64, Cell<u64>);
+/// Stops a run in its run-in, or after so many samples.
+struct Stopping(StoppedIn, Cell<u64>);
 
-impl Onlooker for AfterSamples {
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum StoppedIn {
+    RunIn,
+    Record(u64),
+}
+
+impl Onlooker for Stopping {
     fn stop(&self) -> bool {
-        self.1.get() > self.0
+        match self.0 {
+            StoppedIn::RunIn => self.1.get() == u64::MAX,
+            StoppedIn::Record(samples) => self.1.get() > samples,
+        }
     }
 
     fn see(&self, _: &Simulation) {
         self.1.set(self.1.get() + 1);
     }
+
+    fn see_run_in(&self, share: f64) {
+        if self.0 == StoppedIn::RunIn && share > 0.005 {
+            self.1.set(u64::MAX);
+        }
+    }
+}
+
+/// Open chains, starts from rest and functions of time are not run in unless somebody asks; the result says why.
+#[test]
+fn only_what_repeats_is_run_in_by_itself() {
+    let ramp = r#"{ kind = "ramp", from = "-100 rpm", to = "-120 rpm", start = "5 ms", duration = "10 ms" }"#;
+    let swings = r#"{ kind = "prescribed", x = { kind = "harmonics", terms = [{ amplitude = "0.1 mm", frequency = "7 Hz" }] } }"#;
+    let pushed = r#"[{ kind = "constant", torque = "1 kN m" }]"#;
+    let two = "marine_two_sprockets";
+    for (name, changes, why) in [
+        ("hanging_chain", vec![], "a chain has ends"),
+        (
+            "spinning_ring",
+            vec![],
+            "no motion turns a sprocket of a chain",
+        ),
+        (
+            two,
+            vec![("sprockets.crank.motion", ramp)],
+            "a speed that changes at a time",
+        ),
+        (
+            two,
+            vec![("sprockets.crank.support", swings)],
+            "a motion by frequencies",
+        ),
+        (two, vec![("run.run_in", "0 s")], ""),
+    ] {
+        let (report, _) = ran(
+            &preset(name, &changes),
+            &[("until", "1 ms"), ("method", "verlet")],
+        );
+        let told = report.ran_in.map(|it| it.to_string()).unwrap_or_default();
+        assert!(
+            told.ends_with(why) && told.is_empty() == why.is_empty(),
+            "{name}: {told}"
+        );
+    }
+    let old = format!("defaults = \"0.2\"\n{}", Scene::preset(two).unwrap().text());
+    let old = Scene::from_toml(&old, "old").unwrap();
+    let (report, _) = ran(&old, &[("until", "1 ms"), ("method", "verlet")]);
+    assert_eq!(report.ran_in, None);
+    let free = preset(
+        two,
+        &[("sprockets.crank.load", pushed), ("settle", "false")],
+    );
+    let free = free.without("sprockets.crank.motion").unwrap();
+    let free = free
+        .replace("sprockets.crank.inertia", "10 kg m^2")
+        .unwrap();
+    let (report, _) = ran(&free, &[("until", "1 ms"), ("method", "verlet")]);
+    let told = report.ran_in.unwrap().to_string();
+    assert!(
+        told.ends_with("no motion turns a sprocket of a chain"),
+        "{told}"
+    );
 }
 
 /// Where the tensions creep with a plunger, the run-in lasts until they do no more; its steady mean, from four seconds on, is 659.8 to 660.7 N
@@ -477,6 +563,8 @@ fn the_summary_tells_of_the_run_in() {
         RanIn {
             time: 0.5,
             is_steady,
+            by_default: false,
+            left_out: None,
         }
         .to_string()
     };

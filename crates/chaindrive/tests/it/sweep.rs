@@ -18,7 +18,9 @@ fn texts<const N: usize>(path: &str, values: [&str; N]) -> (String, Vec<Setting>
 
 fn marine(until: &str) -> Result<Scene, Box<dyn Error>> {
     let scene = Scene::preset("marine_two_sprockets")?;
-    Ok(scene.replace("run.until", until)?)
+    Ok(scene
+        .replace("run.until", until)?
+        .replace("run.run_in", "0 s")?)
 }
 
 fn speed_and_pretension() -> [(String, Vec<Setting>); 2] {

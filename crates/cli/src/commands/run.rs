@@ -165,7 +165,13 @@ impl Onlooker for Terminal<'_> {
 fn told(report: &Report) -> String {
     let (choice, judgement) = (report.choice.as_ref(), report.judgement.as_ref());
     let (summary, simulation) = (&report.summary, &report.simulation);
-    let figures = figures(summary, simulation, report.ran_in, choice, judgement);
+    let figures = figures(
+        summary,
+        simulation,
+        report.ran_in.as_ref(),
+        choice,
+        judgement,
+    );
     format!("{}\n{}{figures}", report.verdict, at_rest(report))
 }
 

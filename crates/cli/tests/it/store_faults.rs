@@ -437,6 +437,8 @@ fn a_checkpoint_that_does_not_fit_ends_the_run_and_leaves_nothing_half_written()
         "bicycle",
         "--until",
         "0.2 ms",
+        "--run-in",
+        "0",
         "--method",
         "implicit-damping",
     ];

@@ -115,21 +115,25 @@ pub(crate) enum Version {
     /// The first one.
     #[serde(rename = "0.1")]
     V0_1,
-    /// The present one.
-    #[default]
+    /// The second one.
     #[serde(rename = "0.2")]
     V0_2,
+    /// The present one.
+    #[default]
+    #[serde(rename = "0.3")]
+    V0_3,
 }
 
 impl Version {
     /// Every version, the first one first.
-    pub(crate) const ALL: [Self; 2] = [Self::V0_1, Self::V0_2];
+    pub(crate) const ALL: [Self; 3] = [Self::V0_1, Self::V0_2, Self::V0_3];
 
     /// Its name, as a scene writes it.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::V0_1 => "0.1",
             Self::V0_2 => "0.2",
+            Self::V0_3 => "0.3",
         }
     }
 }

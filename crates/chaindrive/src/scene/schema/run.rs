@@ -10,6 +10,8 @@ use crate::precision::Quantity;
 use crate::scene::quantity::{Length, Ratio, Time};
 use crate::{RunIn, Stepping};
 
+use super::Version;
+
 /// Settings of a run and channels to record, unless the caller gives others.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -20,7 +22,8 @@ pub(crate) struct Run {
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) until: Option<Time>,
     /// Time simulated before t = 0, so that the record begins where the motion is steady: seconds [s], turns of a
-    /// sprocket ("5 turns" of the first one, "5 turns of camshaft"), or "auto"; absent: nothing.
+    /// sprocket ("5 turns" of the first one, "5 turns of camshaft"), or "auto"; absent: "auto" for closed chains that a motion drives and whose inputs
+    /// repeat, else nothing.
     #[serde(default)]
     pub(crate) run_in: Option<RunInText>,
     /// Time between two samples of the recording [s].
@@ -89,7 +92,7 @@ impl From<RunInText> for Written {
         match run_in {
             RunIn::None => Self::Seconds(0.0),
             RunIn::Time(time) => Self::Seconds(time),
-            RunIn::Turns { .. } | RunIn::Auto => Self::Text(run_in.to_string()),
+            RunIn::Turns { .. } | RunIn::Auto | RunIn::Usual => Self::Text(run_in.to_string()),
         }
     }
 }
@@ -127,10 +130,15 @@ pub(crate) enum Events {
 
 impl Run {
     /// The same in SI units.
-    pub(crate) fn suggestions(&self) -> RunDefaults {
+    pub(crate) fn suggestions(&self, version: Version) -> RunDefaults {
+        let by_itself = if version < Version::V0_3 {
+            RunIn::None
+        } else {
+            RunIn::Usual
+        };
         RunDefaults {
             until: self.until.map(|time| time.0),
-            run_in: self.run_in.clone().unwrap_or_default().0,
+            run_in: self.run_in.clone().map_or(by_itself, |it| it.0),
             every: self.every.map(|time| time.0),
             method: self.method,
             step: self.step.map(|time| time.0),
