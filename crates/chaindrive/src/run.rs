@@ -5,6 +5,7 @@ pub(crate) mod execute;
 mod patience;
 mod request;
 mod run_in;
+mod set_off;
 mod settings;
 mod steady;
 
@@ -18,11 +19,12 @@ use crate::{SimulationError, Stepping};
 
 pub use checkpoint::Checkpoint;
 pub(crate) use execute::resume;
-pub use execute::{End, Onlooker, Report, RunError, Sink, Stop, assemble, execute};
+pub use execute::{End, Onlooker, Report, RunError, Sink, Stop, execute};
 pub use patience::patiently;
 pub use request::{Request, RequestError};
 pub(crate) use run_in::longest;
 pub use run_in::{MOST_CIRCUITS, RanIn, RunIn, run_in};
+pub use set_off::assemble;
 pub use settings::{Given, Settings};
 
 /// Settings of one run.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use chaindrive_mechanics::{Assembled, Drive, SystemMemory};
 
-use super::execute::assemble;
+use super::set_off::assemble;
 use super::{Given, RanIn, Request, Run, RunIn};
 use crate::precision::{Choice, Quantity};
 use crate::record::{Provenance, Summary};

@@ -2,15 +2,14 @@
 
 use std::convert::Infallible;
 
-use chaindrive_integrate::Method;
-use chaindrive_mechanics::{Assembled, Drive};
+use chaindrive_mechanics::Drive;
 use serde_json::{Map, Value};
 
 use super::checkpoint::NotAgain;
-use super::patience::{LOOK, patiently};
-use super::run_in::{self, Beginning};
+use super::patience::LOOK;
+use super::set_off::{Begun, Chosen, assemble, choose, not_begun, set_off, short_runs};
 use super::{Checkpoint, Request};
-use crate::precision::{Choice, Judgement, ShortRuns, choose_with};
+use crate::precision::{Choice, Judgement, ShortRuns};
 use crate::record::{Ending, Provenance, Summary, attributes};
 use crate::scene::SceneError;
 use crate::{Channel, RanIn, Run, RunIn, Simulation, SimulationError, SnapshotError, Verdict};
@@ -424,137 +423,6 @@ fn close<S: Sink>(
     Ok(attributes)
 }
 
-/// A run that is ready to move.
-struct Begun {
-    drive: Drive,
-    simulation: Simulation,
-    provenance: Provenance,
-    /// With which the choice was made, for the estimate.
-    short_runs: ShortRuns,
-    summary: Summary,
-}
-
-/// Why a run could not begin.
-fn not_begun<E: std::error::Error>(error: SimulationError) -> RunError<E> {
-    match error {
-        SimulationError::Interrupted => RunError::Interrupted,
-        error => RunError::Start(error),
-    }
-}
-
-/// A drive that is assembled, and how it is to move.
-struct Chosen {
-    drive: Drive,
-    start: Assembled,
-    provenance: Provenance,
-    /// With which the choice was made; none of a choice that was made before.
-    short_runs: Option<ShortRuns>,
-}
-
-impl Chosen {
-    /// The simulation that is run in.
-    fn simulation(&self) -> Result<Simulation, SimulationError> {
-        Simulation::from_assembled(self.start.clone(), &self.provenance.run)
-    }
-}
-
-/// Assembles the drive, and chooses method and step where an accuracy is asked for.
-fn choose<E: std::error::Error>(
-    request: &Request,
-    onlooker: &dyn Onlooker,
-) -> Result<Chosen, RunError<E>> {
-    let watch = &|| onlooker.stop();
-    let mut provenance = Provenance::of(&request.scene, &request.run);
-    let drive = request.scene.drive().map_err(RunError::Scene)?;
-    let start = assemble(&drive, watch).map_err(not_begun)?;
-    let mut short_runs = ShortRuns::default();
-    if let Some(accuracy) = request.accuracy {
-        let accuracy = (accuracy, request.accuracy_of);
-        let choice = choose_with(&mut short_runs, &start, &request.run, accuracy, watch);
-        let choice = choice.map_err(not_begun)?;
-        provenance.run = choice.run.clone();
-        provenance.choice = Some(choice);
-    }
-    Ok(Chosen {
-        drive,
-        start,
-        provenance,
-        short_runs: Some(short_runs),
-    })
-}
-
-/// What the estimate goes on with that begins where the choice did.
-fn short_runs(
-    request: &Request,
-    provenance: &Provenance,
-    start: &Assembled,
-    onlooker: &dyn Onlooker,
-) -> Result<ShortRuns, SimulationError> {
-    match &provenance.choice {
-        Some(choice) if request.estimate => choice.short_runs(start, &|| onlooker.stop()),
-        _ => Ok(ShortRuns::default()),
-    }
-}
-
-/// Runs the drive in, and starts the clock.
-fn set_off<E: std::error::Error>(
-    request: &Request,
-    chosen: Chosen,
-    onlooker: &dyn Onlooker,
-) -> Result<Begun, RunError<E>> {
-    let failed = not_begun;
-    let Chosen {
-        drive,
-        start,
-        mut provenance,
-        short_runs: known,
-    } = chosen;
-    let beginning = run_in::begin(start, &provenance.run, onlooker).map_err(failed)?;
-    let Beginning {
-        start,
-        ran_in,
-        simulation: mut going_on,
-    } = beginning;
-    if provenance.run.run_in == RunIn::Usual {
-        let is_left_out = ran_in.as_ref().is_none_or(|it| it.left_out.is_some());
-        provenance.run.run_in = if is_left_out {
-            RunIn::None
-        } else {
-            RunIn::Auto
-        };
-    }
-    let has_moved = ran_in.as_ref().is_some_and(|it| it.time > 0.0);
-    provenance.ran_in = ran_in;
-    // The run-in may have pressed contacts until they bound the step that was chosen before it.
-    let longest = |method: Method| method.longest_step(method.time_scale(&start.system));
-    going_on = going_on.filter(|it| it.method().step() <= longest(it.method()));
-    let run = &mut provenance.run;
-    if let Some(simulation) = &going_on {
-        run.step = Some(simulation.method().step());
-    } else if provenance.choice.is_some() {
-        let longest = longest(run.method(&start.system));
-        run.step = run.step.map(|step| step.min(longest));
-    }
-    // Nobody asks for an estimate, or the run begins elsewhere than the choice.
-    let mut short_runs = match known {
-        _ if !request.estimate || has_moved => ShortRuns::default(),
-        Some(known) => known,
-        None => short_runs(request, &provenance, &start, onlooker).map_err(failed)?,
-    };
-    short_runs.keep_for(&provenance.run);
-    let simulation = match going_on {
-        Some(simulation) => simulation,
-        None => Simulation::from_assembled(start, &provenance.run).map_err(failed)?,
-    };
-    Ok(Begun {
-        summary: Summary::new(&simulation),
-        drive,
-        simulation,
-        provenance,
-        short_runs,
-    })
-}
-
 /// Simulated times at which checkpoints are due: counted, so that a run that is carried on has the same.
 struct Marks {
     every: Option<f64>,
@@ -623,13 +491,4 @@ pub(crate) fn carry_out<E>(
             return Ok(Stop::Interrupted);
         }
     }
-}
-
-/// Assembles a drive on a thread of its own, so that the user need not wait for a chain that settles.
-///
-/// # Errors
-/// [`SimulationError`] when the drive does not assemble, or somebody wants to stop.
-pub fn assemble(drive: &Drive, stop: &dyn Fn() -> bool) -> Result<Assembled, SimulationError> {
-    let drive = drive.clone();
-    Ok(patiently(move || drive.assemble(), stop)??)
 }

@@ -7,8 +7,9 @@ use std::str::FromStr;
 use chaindrive_mechanics::{Assembled, Drive, EventKinds};
 use serde::{Deserialize, Serialize};
 
-use super::execute::{Onlooker, assemble};
+use super::execute::Onlooker;
 use super::patience::LOOK;
+use super::set_off::assemble;
 use super::{Run, steady};
 use crate::precision::wording::duration;
 use crate::scene::read_time;
