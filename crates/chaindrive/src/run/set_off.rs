@@ -7,7 +7,7 @@ use super::execute::{Onlooker, RunError};
 use super::patience::patiently;
 use super::run_in::{self, Beginning};
 use super::{Request, RunIn};
-use crate::precision::{Choice, ShortRuns, choose_with};
+use crate::precision::{ShortRuns, choose_with};
 use crate::record::{Provenance, Summary};
 use crate::{Simulation, SimulationError};
 

@@ -26,6 +26,7 @@ mod requests;
 mod resolved;
 mod robust_scenes;
 mod run_in;
+mod run_in_by_itself;
 mod scenes;
 mod several_chains;
 mod stack;

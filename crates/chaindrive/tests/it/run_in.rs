@@ -1,18 +1,18 @@
-//! Before t = 0: a run-in by time, by turns, and until the motion is steady.
+//! Before t = 0: a run-in by time and by turns.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 use std::f64::consts::PI;
 
 use chaindrive::record::{Existing, InStore, Stopped};
 use chaindrive::{
-    Assembled, Channel, Description, Given, MOST_CIRCUITS, Memory, Onlooker, RanIn, Reason, Report,
-    Request, Run, RunError, RunIn, Scene, Settings, Simulation, SimulationError, execute, run_in,
+    Assembled, Channel, Description, Given, Memory, Onlooker, RanIn, Report, Request, Run,
+    RunError, RunIn, Scene, Settings, Simulation, SimulationError, execute, run_in,
 };
 
 use crate::judged::preset;
 
-fn ran(scene: &Scene, settings: &[(&str, &str)]) -> (Report, Memory) {
+pub(crate) fn ran(scene: &Scene, settings: &[(&str, &str)]) -> (Report, Memory) {
     let settings = settings
         .iter()
         .fold(Settings::default(), |all, (key, text)| {
@@ -30,7 +30,7 @@ fn ran(scene: &Scene, settings: &[(&str, &str)]) -> (Report, Memory) {
 }
 
 /// Samples of a channel, in their order.
-fn channel(memory: &Memory, channel: Channel) -> &[f64] {
+pub(crate) fn channel(memory: &Memory, channel: Channel) -> &[f64] {
     let mut columns = memory.recording.columns.iter();
     &columns.find(|it| it.channel == channel).unwrap().values
 }
@@ -146,271 +146,6 @@ fn a_ramp_begins_with_the_record() {
         rpm.collect::<Vec<_>>(),
         [-100.0, -100.0, -110.0, -120.0, -120.0]
     );
-}
-
-/// A drive that rubs comes to rest in its tensions, and says when; one that nothing damps does not.
-#[test]
-fn a_run_in_ends_where_the_tensions_are_steady() {
-    let settled = preset("marine_two_sprockets", &[("chain.type", "56B-1")]);
-    let (report, _) = ran(&settled, &[("until", "0.5 s"), ("run_in", "auto")]);
-    assert_eq!(report.attributes["run_in_steady"], 1, "{}", report.verdict);
-    let names: Vec<_> = report.verdict.reasons.iter().map(Reason::name).collect();
-    assert!(
-        !names.contains(&"not-run-in") && !names.contains(&"start-counts"),
-        "{names:?}"
-    );
-}
-
-/// A load that repeats every fifty turns only: the longest run-in that is tried does not see three periods.
-#[test]
-fn a_run_in_that_gives_up_says_so() {
-    let slow = r#"[{ kind = "harmonic", amplitude = "1 kN m", order = 0.02 }, { kind = "constant", torque = "10 kN m" }]"#;
-    let scene = preset(
-        "marine_two_sprockets",
-        &[
-            ("sprockets.camshaft.load", slow),
-            ("sprockets.crank.motion.speed", "-300 rpm"),
-        ],
-    );
-    let settings = [("until", "10 ms"), ("method", "verlet"), ("run_in", "auto")];
-    let (report, _) = ran(&scene, &settings);
-    assert_eq!(report.attributes["run_in_steady"], 0, "{}", report.verdict);
-    let longest = f64::from(MOST_CIRCUITS) * report.simulation.assembled().slowest_circuit();
-    // Another fifty turns would be longer than that.
-    let time = report.attributes["run_in"].as_f64().unwrap();
-    let period = report.summary.slowest_forcing();
-    assert!(
-        time + 0.01 <= longest && longest < time + 0.01 + period,
-        "{time} s of {longest} s"
-    );
-    let reasons: Vec<_> = report.verdict.reasons.iter().map(Reason::name).collect();
-    assert!(reasons.contains(&"not-run-in"), "{reasons:?}");
-}
-
-/// A run-in that ends by itself is the one of that time: its record goes on from the state that was found steady, on a clock that begins there.
-#[test]
-fn a_run_in_by_itself_is_that_of_its_time() {
-    let scene = preset("marine_two_sprockets", &[]);
-    let with = |run_in: &str| {
-        let settings = [
-            ("method", "verlet"),
-            ("step", "4 us"),
-            ("until", "20 ms"),
-            ("every", "1 ms"),
-            ("run_in", run_in),
-            ("record", "span_tension,sprocket_angle"),
-        ];
-        ran(&scene, &settings)
-    };
-    let (found, by_itself) = with("auto");
-    let time = found.attributes["run_in"].as_f64().unwrap();
-    assert!(time > 0.0, "{time} s");
-    let (_, given) = with(&format!("{time} s"));
-    for name in [Channel::SpanTension, Channel::SprocketAngle] {
-        let [by_itself, given] = [&by_itself, &given].map(|it| channel(it, name));
-        let scale = given.iter().fold(0.0_f64, |most, t| most.max(t.abs()));
-        let apart = by_itself.iter().zip(given).map(|(a, b)| (a - b).abs());
-        let apart = apart.fold(0.0, f64::max);
-        assert!(apart < 1e-6 * scale, "{name:?}: {apart} of {scale}");
-    }
-}
-
-/// No time is simulated twice: what was examined is the record, as far as that reaches. Its samples are those that a simulation takes that goes on from the
-/// first of them by itself.
-#[test]
-fn what_a_run_in_examined_becomes_the_record() {
-    let scene = preset("marine_two_sprockets", &[]);
-    for [until, kept] in [[2.0, 1.0], [0.5, 1.0], [2e-3, 0.0]] {
-        let settings = Settings::default()
-            .with("until", Given::Number(until))
-            .with("every", Given::Number(1e-3))
-            .with("method", Given::Text("verlet".to_owned()))
-            .with("run_in", Given::Text("auto".to_owned()));
-        let request = Request::new(&scene, &settings).unwrap().without_estimate();
-        let mut memory = Memory::default();
-        let report = execute(&request, &mut memory, &|| false).unwrap();
-        let found = report.ran_in.unwrap();
-        assert_eq!(found.is_steady, Some(true));
-        let statistics = report.simulation.statistics();
-        let simulated = statistics.steps as f64 * statistics.largest_step;
-        assert!(
-            simulated < found.time + until + 2.0 * statistics.largest_step,
-            "{simulated} s for {found:?} and {until} s"
-        );
-
-        let mut alone =
-            Simulation::from_assembled(report.simulation.assembled().clone(), &report.run).unwrap();
-        let tensions = channel(&memory, Channel::SpanTension);
-        for (number, told) in tensions.chunks(2).enumerate().take(10) {
-            let Some(sample) = alone.next_sample().unwrap() else {
-                break;
-            };
-            assert!((sample.time - number as f64 * 1e-3).abs() < 1e-15);
-            // A method that begins anew sees no step before: what that makes of the state grows from roller to roller.
-            let near = if number < 2 { 1e-6 } else { 1e-3 };
-            for (alone, told) in sample.span_tension.iter().zip(told) {
-                assert!(
-                    (alone - told).abs() < near * told.abs(),
-                    "{until}: {number}"
-                );
-            }
-        }
-        let impacts: u64 = report.summary.impacts().iter().map(|it| it.count).sum();
-        assert!(kept == 0.0 || impacts > 10, "{impacts}");
-        let moved = report.summary.energy_moved();
-        assert!(report.simulation.energy_residual().abs() < 1e-3 * moved);
-    }
-}
-
-/// Stopped in the run-in, before the samples that it took are handed out, or in the record, and carried on: the same bits.
-#[test]
-fn a_run_in_by_itself_is_carried_on_to_the_same_bits() {
-    let scene = preset("marine_two_sprockets", &[]);
-    let settings = Settings::default()
-        .with("until", Given::Number(1.5))
-        .with("every", Given::Number(1e-2))
-        .with("events", Given::Names(vec!["teeth".to_owned()]))
-        .with("accuracy", Given::Number(0.02));
-    let request = Request::new(&scene, &settings).unwrap();
-    let request = request.with_checkpoints(&Given::Number(0.1)).unwrap();
-    let mut whole = Memory::default();
-    let report = execute(&request, &mut whole, &|| false).unwrap();
-    for stopped_in in [
-        StoppedIn::RunIn,
-        StoppedIn::Record(3),
-        StoppedIn::Record(140),
-    ] {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("run.zarr");
-        let mut store = InStore::new(path.clone(), Existing::Keep);
-        let seen = Stopping(stopped_in, Cell::new(0));
-        let ended = execute(&request, &mut store, &seen);
-        let is_in_run_in = matches!(ended, Err(RunError::Interrupted));
-        assert_eq!(is_in_run_in, stopped_in == StoppedIn::RunIn);
-        let stopped = Stopped::open(&path, None).unwrap();
-        let resumed = stopped.resume(&|| false).unwrap();
-        let last = |report: &Report| report.simulation.observation().link_tension.clone();
-        assert_eq!(last(&resumed), last(&report), "{stopped_in:?}");
-        let told = |report: &Report| {
-            let names = [
-                "run_in",
-                "samples",
-                "impact_count_crank",
-                "error_span_tension",
-                "verdict_note",
-                "error_evaluations",
-            ];
-            let attributes = names.map(|it| report.attributes[it].clone());
-            (attributes, report.summary.spans.clone())
-        };
-        assert_eq!(told(&resumed), told(&report), "{stopped_in:?}");
-        let sentences = [&resumed, &report].map(|it| it.ran_in.as_ref().unwrap().to_string());
-        assert_eq!(sentences[0], sentences[1]);
-        assert!(sentences[0].ends_with("--run-in 0 leaves it out"));
-    }
-}
-
-/// Stops a run in its run-in, or after so many samples.
-struct Stopping(StoppedIn, Cell<u64>);
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum StoppedIn {
-    RunIn,
-    Record(u64),
-}
-
-impl Onlooker for Stopping {
-    fn stop(&self) -> bool {
-        match self.0 {
-            StoppedIn::RunIn => self.1.get() == u64::MAX,
-            StoppedIn::Record(samples) => self.1.get() > samples,
-        }
-    }
-
-    fn see(&self, _: &Simulation) {
-        self.1.set(self.1.get() + 1);
-    }
-
-    fn see_run_in(&self, share: f64) {
-        if self.0 == StoppedIn::RunIn && share > 0.005 {
-            self.1.set(u64::MAX);
-        }
-    }
-}
-
-/// Open chains, starts from rest and functions of time are not run in unless somebody asks; the result says why.
-#[test]
-fn only_what_repeats_is_run_in_by_itself() {
-    let ramp = r#"{ kind = "ramp", from = "-100 rpm", to = "-120 rpm", start = "5 ms", duration = "10 ms" }"#;
-    let swings = r#"{ kind = "prescribed", x = { kind = "harmonics", terms = [{ amplitude = "0.1 mm", frequency = "7 Hz" }] } }"#;
-    let pushed = r#"[{ kind = "constant", torque = "1 kN m" }]"#;
-    let two = "marine_two_sprockets";
-    for (name, changes, why) in [
-        ("hanging_chain", vec![], "a chain has ends"),
-        (
-            "spinning_ring",
-            vec![],
-            "no motion turns a sprocket of a chain",
-        ),
-        (
-            two,
-            vec![("sprockets.crank.motion", ramp)],
-            "a speed that changes at a time",
-        ),
-        (
-            two,
-            vec![("sprockets.crank.support", swings)],
-            "a motion by frequencies",
-        ),
-        (two, vec![("run.run_in", "0 s")], ""),
-    ] {
-        let (report, _) = ran(
-            &preset(name, &changes),
-            &[("until", "1 ms"), ("method", "verlet")],
-        );
-        let told = report.ran_in.map(|it| it.to_string()).unwrap_or_default();
-        assert!(
-            told.ends_with(why) && told.is_empty() == why.is_empty(),
-            "{name}: {told}"
-        );
-    }
-    let old = format!("defaults = \"0.2\"\n{}", Scene::preset(two).unwrap().text());
-    let old = Scene::from_toml(&old, "old").unwrap();
-    let (report, _) = ran(&old, &[("until", "1 ms"), ("method", "verlet")]);
-    assert_eq!(report.ran_in, None);
-    let free = preset(
-        two,
-        &[("sprockets.crank.load", pushed), ("settle", "false")],
-    );
-    let free = free.without("sprockets.crank.motion").unwrap();
-    let free = free
-        .replace("sprockets.crank.inertia", "10 kg m^2")
-        .unwrap();
-    let (report, _) = ran(&free, &[("until", "1 ms"), ("method", "verlet")]);
-    let told = report.ran_in.unwrap().to_string();
-    assert!(
-        told.ends_with("no motion turns a sprocket of a chain"),
-        "{told}"
-    );
-}
-
-/// Where the tensions creep with a plunger, the run-in lasts until they do no more; its steady mean, from four seconds on, is 659.8 to 660.7 N
-/// for other beginnings (`route.phase` 0 to 0.71).
-#[test]
-fn a_run_in_waits_for_a_plunger_that_creeps() {
-    let (report, _) = ran(
-        &preset("timing_drive", &[]),
-        &[("run_in", "auto"), ("method", "verlet")],
-    );
-    assert_eq!(report.attributes["run_in_steady"], 1, "{}", report.verdict);
-    let known = report.summary.steadiness()[0].unwrap();
-    let apart = (known.mean.value - 660.3).abs();
-    assert!(
-        apart < known.mean.half_width + 0.5 && apart < 0.005 * 660.0,
-        "{known:?}"
-    );
-    let names: Vec<_> = report.verdict.reasons.iter().map(Reason::name).collect();
-    assert_eq!(names, ["not-estimated"], "{}", report.verdict);
 }
 
 #[test]
