@@ -54,4 +54,4 @@ pub use scene::Scene;
 pub use seal::SealError;
 pub use simulate::{Control, Simulation, Snapshot, SnapshotError};
 pub use stepping::Stepping;
-pub use verdict::{Reason, Trust, Verdict};
+pub use verdict::{Reason, Rule, Trust, Verdict};

@@ -2,22 +2,24 @@
 //!
 //! | verdict | means |
 //! |---|---|
-//! | trusted | examined to the end of the run, and nothing was found |
-//! | caution | some of the result is uncertain or was not examined; the reasons say what |
+//! | trusted | nothing speaks against its statistics; notes say up to when its waveforms can be followed |
+//! | caution | some of the result is uncertain; every reason ends with what to type |
 //! | distrusted | the result contradicts itself |
 //!
-//! [`Reason`] is the list of everything that is looked at; [`Verdict::of`] looks.
+//! [`Reason`] is the list of everything that is looked at, [`Verdict::rules`] say when each speaks, and [`Verdict::of`] looks.
 
 mod duty;
 mod reason;
+mod rules;
 
 use std::fmt;
 
-use crate::precision::{Attribute, Choice, Judgement, LEAST_LOSSES, Promise};
+use crate::precision::{Attribute, Choice, Estimate, Judgement, LEAST_LOSSES, Promise};
 use crate::record::{Ledger, Steadiness, Summary};
 use crate::{Channel, RanIn, Simulation};
 
 pub use reason::Reason;
+pub use rules::Rule;
 
 /// How far a result can be trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -48,6 +50,8 @@ pub struct Verdict {
     pub trust: Trust,
     /// Reasons against the result, the worst first.
     pub reasons: Vec<Reason>,
+    /// What its reader is to know, and what speaks against nothing.
+    pub notes: Vec<Reason>,
 }
 
 /// A verdict in the words of results.
@@ -57,7 +61,7 @@ pub struct WrittenVerdict {
     pub verdict: String,
     /// The attribute `reasons`: names, with blanks between them.
     pub reasons: String,
-    /// The attribute `verdict_note`: the reasons in words.
+    /// The attribute `verdict_note`: the reasons in words, the notes behind them.
     pub note: String,
 }
 
@@ -88,6 +92,10 @@ const UNHELD: f64 = 0.5;
 const LEAST_SHIFT: f64 = 0.01;
 /// Half width of the interval of a mean, over that mean, above which it is uncertain. *Assumed*.
 const WIDE: f64 = 0.05;
+/// Share of the tension of the tight span from which on a link that is pressed counts, and share of links and time above which that is no note any more.
+/// *Assumed*: links between seated rollers are pressed for a moment when one is struck, and a strand that is pressed for longer would fold.
+const PRESSED: f64 = Summary::PRESSED;
+const LONG_PRESSED: f64 = 0.01;
 
 impl Verdict {
     /// The verdict on a run that ended: by its samples, how it was run in, the estimate of its error, and the choice of its
@@ -109,18 +117,27 @@ impl Verdict {
         let known =
             spans.filter_map(|(span, (found, scale))| Some((span.name.as_str(), found?, scale)));
         let until = summary.known_from();
-        reasons.extend(steadiness(&known.collect::<Vec<_>>(), until));
+        let time = simulation.time();
+        reasons.extend(steadiness(&known.collect::<Vec<_>>(), until, time));
         reasons.extend(ran_in.and_then(started));
-        reasons.extend(choice.and_then(accuracy));
+        let estimate = judgement.and_then(Judgement::estimate);
+        reasons.extend(choice.and_then(|it| accuracy(it, estimate, summary)));
+        reasons.extend(estimate.and_then(inexact));
         reasons.extend(examination(judgement));
         Self::from_reasons(reasons)
     }
 
     /// The verdict that some reasons make.
-    pub fn from_reasons(mut reasons: Vec<Reason>) -> Self {
+    pub fn from_reasons(found: Vec<Reason>) -> Self {
+        let is_note = |reason: &Reason| reason.trust() == Trust::Trusted;
+        let (notes, mut reasons): (Vec<_>, Vec<_>) = found.into_iter().partition(is_note);
         reasons.sort_by_key(|reason| std::cmp::Reverse(reason.trust()));
         let trust = reasons.first().map_or(Trust::Trusted, Reason::trust);
-        Self { trust, reasons }
+        Self {
+            trust,
+            reasons,
+            notes,
+        }
     }
 
     /// Whether the result contradicts itself.
@@ -153,15 +170,17 @@ impl Verdict {
         ]
     }
 
-    /// The reasons in words, with semicolons between them.
+    /// The reasons in words, and the notes behind them, with semicolons between them.
     pub fn note(&self) -> String {
-        let words: Vec<String> = self.reasons.iter().map(Reason::to_string).collect();
-        words.join("; ")
+        let all = self.reasons.iter().chain(&self.notes);
+        all.map(Reason::to_string).collect::<Vec<_>>().join("; ")
     }
 
     /// The reasons in a line, where they are cautions and nothing worse.
     pub fn caution(&self) -> Option<String> {
-        (self.trust == Trust::Caution).then(|| format!("be careful with this run: {}", self.note()))
+        let words: Vec<String> = self.reasons.iter().map(Reason::to_string).collect();
+        (self.trust == Trust::Caution)
+            .then(|| format!("be careful with this run: {}", words.join("; ")))
     }
 
     /// One line for whoever asked to hear of errors only; none unless the result is distrusted.
@@ -178,6 +197,9 @@ impl fmt::Display for Verdict {
         write!(f, "verdict                  {}", self.trust.name())?;
         for reason in &self.reasons {
             write!(f, "\n  {:22} {reason}", reason.trust().name())?;
+        }
+        for note in &self.notes {
+            write!(f, "\n  {:22} {note}", "note")?;
         }
         Ok(())
     }
@@ -247,8 +269,8 @@ fn spans(summary: &Summary) -> impl Iterator<Item = Reason> {
 }
 
 /// Reasons against statistics: names of spans, what is known of them, and what errors are measured by; `until` \[s\]: end of a record that
-/// would tell how well they are known.
-fn steadiness(spans: &[(&str, Steadiness, f64)], until: Option<f64>) -> Vec<Reason> {
+/// would tell how well they are known; `time` \[s\]: its present end.
+fn steadiness(spans: &[(&str, Steadiness, f64)], until: Option<f64>, time: f64) -> Vec<Reason> {
     if let Some((span, ..)) = spans.iter().find(|(_, found, _)| !found.is_steady) {
         let span = (*span).to_owned();
         return vec![Reason::NotSteady { span }];
@@ -274,7 +296,9 @@ fn steadiness(spans: &[(&str, Steadiness, f64)], until: Option<f64>) -> Vec<Reas
         && width > WIDE
     {
         let span = span.to_owned();
-        reasons.push(Reason::MeansUncertain { span, width });
+        // Half widths fall with the root of the time.
+        let until = time * (width / WIDE).powi(2);
+        reasons.push(Reason::MeansUncertain { span, width, until });
     }
     reasons
 }
@@ -285,12 +309,28 @@ fn started(ran_in: &RanIn) -> Option<Reason> {
     gave_up.then_some(Reason::NotRunIn { time: ran_in.time })
 }
 
-fn accuracy(choice: &Choice) -> Option<Reason> {
-    let missed = choice.promise != Promise::Nothing && !choice.kept;
-    missed.then_some(Reason::AccuracyMissed {
+/// Reason from an accuracy that the choice, or the run in its own judgement, does not keep.
+fn accuracy(choice: &Choice, estimate: Option<&Estimate>, summary: &Summary) -> Option<Reason> {
+    let of_losses = {
+        let ledger = summary.ledger();
+        ledger.residual.abs() / ledger.losses.max(LEAST_LOSSES * ledger.moved)
+    };
+    let found = match choice.promise {
+        Promise::Nothing => return None,
+        _ if !choice.kept => choice.error,
+        Promise::Losses => of_losses,
+        promise => estimate?.of(promise),
+    };
+    (found > choice.accuracy).then_some(Reason::AccuracyMissed {
         accuracy: choice.accuracy,
-        error: choice.error,
+        error: found,
+        was_chosen: choice.kept,
     })
+}
+
+fn inexact(estimate: &Estimate) -> Option<Reason> {
+    let error = estimate.of(Promise::Statistics);
+    (error > WIDE).then_some(Reason::MeansInexact { error })
 }
 
 /// Reasons from the estimate of the error, and from parts of the run that it did not look at.

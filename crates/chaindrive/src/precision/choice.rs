@@ -431,9 +431,12 @@ impl Choice {
     }
 
     /// The choice as attributes of a result.
-    pub fn attributes(&self) -> Vec<(String, Attribute)> {
+    ///
+    /// `is_missed`: whether the run finds in its own judgement that it does not keep the accuracy.
+    pub fn attributes(&self, is_missed: bool) -> Vec<(String, Attribute)> {
         let kept = match (self.promise, self.kept) {
             (Promise::Nothing, _) => "nothing to compare",
+            (_, true) if is_missed => "not kept",
             (_, true) => "kept",
             (_, false) => "not reached",
         };

@@ -3,6 +3,7 @@
 use chaindrive_mechanics::Assembled;
 
 use super::Watch;
+use super::choice::Promise;
 use super::compare::{Account, Comparison, Distance, distances, distances_over, rms};
 use super::convergence::factor;
 use super::horizon::{Divergence, Horizon, LIMIT};
@@ -188,6 +189,22 @@ pub(crate) fn estimate_with(
         evaluations: short_runs.evaluations() - before,
         until: run.until,
     })
+}
+
+impl Estimate {
+    /// Error \[–\] of what a choice promises, as far as it is more than chance; 0 for what is not estimated.
+    pub fn of(&self, promise: Promise) -> f64 {
+        let beyond = |it: &Comparison| (it.difference - it.spread).max(0.0);
+        match promise {
+            Promise::Waveform => self.tight_tension,
+            Promise::Statistics => beyond(&self.mean).max(beyond(&self.rms)),
+            Promise::Impacts => {
+                let errors = self.impacts.iter().map(ImpactErrors::largest);
+                errors.fold(0.0, f64::max)
+            }
+            Promise::Losses | Promise::Nothing => 0.0,
+        }
+    }
 }
 
 /// The run with the step that it would choose for itself, so that other samples do not change it.

@@ -12,7 +12,7 @@ use super::Summary;
 use crate::RanIn;
 use crate::precision::{Attribute, Choice, Judgement};
 use crate::sweep::Outcome;
-use crate::{Build, Origin, Run, Scene, Simulation, Stepping, Verdict};
+use crate::{Build, Origin, Reason, Run, Scene, Simulation, Stepping, Verdict};
 
 /// Tells a result of this program from any other group.
 pub(super) const FORMAT: &str = "chaindrive";
@@ -176,6 +176,7 @@ pub fn attributes(
     assembly(&mut story, simulation);
     speed(&mut story, simulation, provenance.wall_time());
     let choice = provenance.choice.as_ref();
+    let mut is_missed = false;
     let verdict = summary.map(|summary| {
         let verdict = Verdict::of(
             summary,
@@ -192,9 +193,11 @@ pub fn attributes(
             judgement,
         );
         story.text("summary", &format!("{verdict}\n{figures}"));
+        let missed = |it: &Reason| matches!(it, Reason::AccuracyMissed { .. });
+        is_missed = verdict.reasons.iter().any(missed);
         verdict.attributes()
     });
-    let choice = choice.map(Choice::attributes);
+    let choice = choice.map(|it| it.attributes(is_missed));
     let judgement = judgement.map(Judgement::attributes);
     for (name, value) in [verdict, choice, judgement].into_iter().flatten().flatten() {
         match value {

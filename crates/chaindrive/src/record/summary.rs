@@ -227,6 +227,9 @@ fn histogram() -> Histogram<u64> {
 }
 
 impl Summary {
+    /// Share of the greatest span tension by which a link has to be pressed to count as pressed. *Assumed*: less is the swing of its own mass.
+    pub const PRESSED: f64 = 0.05;
+
     /// An empty summary for a run.
     pub fn new(simulation: &Simulation) -> Self {
         let period = simulation.assembled().slowest_forcing();

@@ -9,12 +9,12 @@ use crate::{Simulation, Summary};
 
 /// Samples a tooth passing below which the mesh is seen at another frequency than its own: H. Nyquist, *Trans. AIEE* **47**, 1928,
 /// 617–644.
-const LEAST_SAMPLES: f64 = 2.0;
+pub(super) const LEAST_SAMPLES: f64 = 2.0;
 /// Share of the energy that loads exchange, above which they drive in the net. *Assumed*: those that swing, as the torque of cams does,
 /// leave less in a run that is cut off at any moment.
-const DRIVES: f64 = 0.25;
+pub(super) const DRIVES: f64 = 0.25;
 /// Share of the energy moved below which it does not matter who drives. *Assumed*.
-const MATTERS: f64 = 0.01;
+pub(super) const MATTERS: f64 = 0.01;
 
 /// Reasons against a run from the duty that it asks of the drive.
 pub(super) fn found(summary: &Summary, simulation: &Simulation) -> Vec<Reason> {
@@ -22,6 +22,7 @@ pub(super) fn found(summary: &Summary, simulation: &Simulation) -> Vec<Reason> {
     let loads = summary.carried();
     reasons.extend(loads.iter().filter_map(broken));
     reasons.extend(loads.iter().filter_map(overloaded));
+    reasons.extend(loads.iter().filter_map(pressed));
     let struck = simulation.system().struck();
     reasons.extend(deepest(&struck));
     reasons.extend(fastest(&struck));
@@ -55,6 +56,14 @@ fn overloaded(load: &Load) -> Option<Reason> {
         speed: speed.abs(),
         power: load.power,
         rated,
+    })
+}
+
+fn pressed(load: &Load) -> Option<Reason> {
+    (load.pressed > 0.0).then(|| Reason::LinksPressed {
+        chain: load.chain.clone(),
+        force: -load.least,
+        share: load.pressed,
     })
 }
 

@@ -1,11 +1,11 @@
-//! The list of reasons not to trust a result without a second look.
+//! The list of reasons not to trust a result without a second look, and of what its reader is to know.
 
 use std::f64::consts::TAU;
 use std::fmt;
 
 use chaindrive_mechanics::Fight;
 
-use super::Trust;
+use super::{LONG_PRESSED, PRESSED, Trust};
 use crate::precision::wording::{duration, percent};
 use crate::precision::{ChannelHorizon, Gap};
 
@@ -81,6 +81,22 @@ pub enum Reason {
         span: String,
         /// Half width over the mean \[–\].
         width: f64,
+        /// End of a record that would make it narrow enough \[s\].
+        until: f64,
+    },
+    /// The step moves means and root mean squares of tensions.
+    MeansInexact {
+        /// By how much, beyond chance \[–\].
+        error: f64,
+    },
+    /// Links are pressed.
+    LinksPressed {
+        /// Name of the chain; empty where there is one only.
+        chain: String,
+        /// Greatest compression of a link \[N\].
+        force: f64,
+        /// Share of links and samples in which it counts \[–\].
+        share: f64,
     },
     /// The record is too short for intervals.
     StatisticsUnknown {
@@ -98,6 +114,8 @@ pub enum Reason {
         accuracy: f64,
         /// Found \[–\]; infinite if nothing could be compared.
         error: f64,
+        /// Whether a step was found that seemed to keep it.
+        was_chosen: bool,
     },
     /// Waveforms differ from the exact motion before the run ends.
     HorizonWithinRun {
@@ -175,7 +193,7 @@ pub enum Reason {
 }
 
 impl Reason {
-    /// How far a result can be trusted that this speaks against.
+    /// How far a result can be trusted that this speaks against: trusted where it is a note.
     pub fn trust(&self) -> Trust {
         match self {
             Self::NotFinite { .. }
@@ -192,17 +210,20 @@ impl Reason {
             | Self::StartCounts { .. }
             | Self::NotRunIn { .. }
             | Self::MeansUncertain { .. }
+            | Self::MeansInexact { .. }
             | Self::StatisticsUnknown { .. }
-            | Self::SpansNotExamined { .. }
             | Self::AccuracyMissed { .. }
-            | Self::HorizonWithinRun { .. }
             | Self::AboveRating { .. }
             | Self::DeepContact { .. }
             | Self::FastImpact { .. }
             | Self::LoadDrives { .. }
             | Self::SamplesRare { .. }
-            | Self::NotExamined { .. }
             | Self::NotEstimated { .. } => Trust::Caution,
+            Self::LinksPressed { share, .. } if *share > LONG_PRESSED => Trust::Caution,
+            Self::LinksPressed { .. }
+            | Self::SpansNotExamined { .. }
+            | Self::HorizonWithinRun { .. }
+            | Self::NotExamined { .. } => Trust::Trusted,
         }
     }
 
@@ -221,6 +242,8 @@ impl Reason {
             Self::StartCounts { .. } => "start-counts",
             Self::NotRunIn { .. } => "not-run-in",
             Self::MeansUncertain { .. } => "means-uncertain",
+            Self::MeansInexact { .. } => "means-inexact",
+            Self::LinksPressed { .. } => "links-pressed",
             Self::StatisticsUnknown { .. } => "statistics-unknown",
             Self::SpansNotExamined { .. } => "spans-not-examined",
             Self::AccuracyMissed { .. } => "accuracy-missed",
@@ -239,7 +262,16 @@ impl Reason {
 }
 
 /// Advice about energy that is missing.
-const SHARPER: &str = "take a smaller step, or method generalized-alpha for rigid links";
+const SHARPER: &str =
+    "--accuracy-of losses, a smaller --step, or --method generalized-alpha for rigid links";
+
+/// In words, the chain of a name, where there are several.
+fn of(chain: &str) -> String {
+    match chain {
+        "" => String::new(),
+        name => format!(" of {name}"),
+    }
+}
 
 impl fmt::Display for Reason {
     #[expect(
@@ -251,7 +283,7 @@ impl fmt::Display for Reason {
             Self::NotFinite { samples } => {
                 write!(
                     f,
-                    "{samples} samples hold tensions or forces that are not numbers"
+                    "{samples} samples hold tensions or forces that are not numbers: a smaller --step"
                 )
             }
             Self::EnergyMissing { of_moved } => write!(
@@ -266,7 +298,7 @@ impl fmt::Display for Reason {
             ),
             Self::LossesUncertain { of_losses } => write!(
                 f,
-                "losses are uncertain by {}, the energy unaccounted for",
+                "losses are uncertain by {}, the energy unaccounted for: {SHARPER}",
                 percent(*of_losses)
             ),
             Self::EfficiencyAboveOne { efficiency } => write!(
@@ -275,32 +307,57 @@ impl fmt::Display for Reason {
                 100.0 * efficiency
             ),
             Self::TooShort { steps } => {
-                write!(f, "{steps} steps are too few to judge the energy by")
+                write!(
+                    f,
+                    "{steps} steps are too few to judge the energy by: a later --until"
+                )
             }
             Self::SpanRarelyHeld { span, share } | Self::SpanNotHeld { span, share } => write!(
                 f,
-                "span {span} has no tension in {} of the samples, no roller holds it there: its statistics are of the rest",
+                "span {span} has no tension in {} of the samples, no roller holds it there, and its statistics are of the rest: more pretension, --set \"route.pretension=…\", or a lower speed",
                 percent(*share)
             ),
             Self::NotSteady { span } => write!(
                 f,
-                "the tension of span {span} has not become steady: its mean is that of a transient, simulate longer"
+                "the tension of span {span} has not become steady: its mean is that of a transient: --run-in auto, or a later --until"
             ),
             Self::StartCounts { span, until, shift } => write!(
                 f,
-                "the mean tension of span {span} is off by {} because the start counts: the motion is steady from {} on",
+                "the mean tension of span {span} is off by {} because the start counts: --run-in \"{}\"",
                 percent(*shift),
                 duration(*until)
             ),
             Self::NotRunIn { time } => write!(
                 f,
-                "the motion was not steady after a run-in of {}, the longest that ends by itself: it swings slowly, or never settles",
+                "the motion was not steady after a run-in of {}, the longest that ends by itself; it swings slowly, or never settles: give --run-in a time",
                 duration(*time)
             ),
-            Self::MeansUncertain { span, width } => write!(
+            Self::MeansUncertain { span, width, until } => write!(
                 f,
-                "the mean tension of span {span} is known to {} only: simulate longer",
-                percent(*width)
+                "the mean tension of span {span} is known to {} only: --until \"{}\"",
+                percent(*width),
+                duration(*until)
+            ),
+            Self::MeansInexact { error } => write!(
+                f,
+                "the step moves means or swings of tensions by {}: --accuracy \"1 %\", or half the --step",
+                percent(*error)
+            ),
+            Self::LinksPressed {
+                chain,
+                force,
+                share,
+            } => write!(
+                f,
+                "links{} are pressed, in {} of links and time by more than {} of the tight span, at most with {force:.0} N, where real links may fold{}",
+                of(chain),
+                percent(*share),
+                percent(PRESSED),
+                if *share > LONG_PRESSED {
+                    ": more pretension, --set \"route.pretension=…\""
+                } else {
+                    ""
+                }
             ),
             Self::StatisticsUnknown { until } => write!(
                 f,
@@ -311,12 +368,24 @@ impl fmt::Display for Reason {
                 f,
                 "span tensions are not examined, link tensions are instead: {gap}"
             ),
-            Self::AccuracyMissed { accuracy, error } => write!(
-                f,
-                "an accuracy of {} was asked for, the error found is {}",
-                percent(*accuracy),
-                percent(*error)
-            ),
+            Self::AccuracyMissed {
+                accuracy,
+                error,
+                was_chosen,
+            } => {
+                write!(
+                    f,
+                    "an accuracy of {} was asked for, the error found is {}",
+                    percent(*accuracy),
+                    percent(*error)
+                )?;
+                if *was_chosen {
+                    let needed = accuracy * accuracy / error;
+                    write!(f, ": --accuracy \"{}\"", percent(needed))
+                } else {
+                    write!(f, ", the best of all steps tried: give a shorter --step")
+                }
+            }
             Self::HorizonWithinRun { spans, links } => {
                 let of =
                     |horizon: &ChannelHorizon, name| format!("{name} to {}", duration(horizon.at));
@@ -325,7 +394,7 @@ impl fmt::Display for Reason {
                 let ends: Vec<String> = spans.into_iter().chain(links).collect();
                 write!(
                     f,
-                    "follow waveforms of {}: beyond, use statistics",
+                    "follow waveforms of {}, and use statistics beyond",
                     ends.join(", of ")
                 )
             }
@@ -334,13 +403,10 @@ impl fmt::Display for Reason {
                 tension,
                 breaking,
             } => {
-                let of_chain = match chain.as_str() {
-                    "" => String::new(),
-                    name => format!(" of {name}"),
-                };
                 write!(
                     f,
-                    "a link{of_chain} bears {:.1} kN, and the chain breaks at {:.1} kN: nothing yields in the model",
+                    "a link{} bears {:.1} kN, and the chain breaks at {:.1} kN, though nothing yields in the model: a stronger chain, --set \"chain.type=…\"",
+                    of(chain),
                     tension * 1e-3,
                     breaking * 1e-3
                 )
@@ -352,7 +418,7 @@ impl fmt::Display for Reason {
                 rated,
             } => write!(
                 f,
-                "the chain carries {:.1} kW at {:.0} rpm of {sprocket}, and is rated for {:.1} kW there: it would not last 15 000 hours",
+                "the chain carries {:.1} kW at {:.0} rpm of {sprocket}, and is rated for {:.1} kW there, for 15 000 hours: a stronger chain, see chaindrive design",
                 power * 1e-3,
                 speed * 60.0 / TAU,
                 rated * 1e-3
@@ -363,7 +429,7 @@ impl fmt::Display for Reason {
                 reach,
             } => write!(
                 f,
-                "{place}: indented by {:.1} µm, and the law reaches to {:.1} µm: beyond, its forces are no prediction",
+                "{place}: indented by {:.1} µm, and the law reaches to {:.1} µm, beyond which its forces are no prediction: another law, --set \"contact.….law=…\"",
                 depth * 1e6,
                 reach * 1e6
             ),
@@ -373,11 +439,11 @@ impl fmt::Display for Reason {
                 limit,
             } => write!(
                 f,
-                "{place}: struck at {speed:.1} m/s, and one restitution stands for impacts up to {limit} m/s"
+                "{place}: struck at {speed:.1} m/s, and one restitution stands for impacts up to {limit} m/s: give that of such impacts, --set \"contact.….restitution=…\""
             ),
             Self::LoadDrives { work } => write!(
                 f,
-                "loads put {work:.3e} J in: a load resists with the sign against the motion"
+                "loads put {work:.3e} J in, for a load resists with the sign against the motion: the other sign, --set \"sprockets.….load=…\""
             ),
             Self::SamplesRare {
                 samples,
@@ -385,18 +451,23 @@ impl fmt::Display for Reason {
                 needed,
             } => write!(
                 f,
-                "{samples:.1} samples a tooth passing, one in {}: spectra show the mesh at another frequency, take one in {} or less",
+                "{samples:.1} samples a tooth passing, one in {}: spectra show the mesh at another frequency: --every \"{}\"",
                 duration(*every),
                 duration(*needed)
             ),
             Self::MotionsFight(fight) => fight.fmt(f),
             Self::NotExamined { window, until } => write!(
                 f,
-                "not examined beyond {} of {}",
+                "the error was estimated on the first {} of {}, which stand for the rest",
                 duration(*window),
                 duration(*until)
             ),
-            Self::NotEstimated { why } => write!(f, "the error is not estimated: {why}"),
+            Self::NotEstimated { why } => {
+                write!(
+                    f,
+                    "the error is not estimated, {why}: the same without --no-error, to its end"
+                )
+            }
         }
     }
 }

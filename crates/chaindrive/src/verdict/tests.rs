@@ -1,6 +1,9 @@
 //! Where the ledger begins to speak against a run.
 
 use super::*;
+use chaindrive_mechanics::Fight;
+
+use crate::precision::Gap;
 use crate::record::Known;
 
 /// A drive that takes in 100 J and loses 2 J.
@@ -130,13 +133,13 @@ fn reached(mean: f64, half_width: f64) -> (&'static str, Steadiness, f64) {
 
 #[test]
 fn means_of_a_steady_state_are_not_spoken_against() {
-    assert_eq!(steadiness(&[reached(1004.0, 5.0)], None), []);
-    assert_eq!(steadiness(&[], None), []);
+    assert_eq!(steadiness(&[reached(1004.0, 5.0)], None, 1.0), []);
+    assert_eq!(steadiness(&[], None, 1.0), []);
 }
 
 #[test]
 fn a_start_that_counts_is_told() {
-    let reasons = steadiness(&[reached(1003.0, 5.0), reached(1020.0, 5.0)], None);
+    let reasons = steadiness(&[reached(1003.0, 5.0), reached(1020.0, 5.0)], None, 1.0);
     let [Reason::StartCounts { until, shift, .. }] = reasons[..] else {
         panic!("{reasons:?}");
     };
@@ -147,7 +150,7 @@ fn a_start_that_counts_is_told() {
 fn what_is_not_steady_is_told_alone() {
     let mut drifting = reached(1020.0, 80.0);
     drifting.1.is_steady = false;
-    let reasons = steadiness(&[reached(1020.0, 80.0), drifting], None);
+    let reasons = steadiness(&[reached(1020.0, 80.0), drifting], None, 1.0);
     assert!(
         matches!(reasons[..], [Reason::NotSteady { .. }]),
         "{reasons:?}"
@@ -156,11 +159,161 @@ fn what_is_not_steady_is_told_alone() {
 
 #[test]
 fn intervals_that_are_wide_or_missing_are_told() {
-    let reasons = steadiness(&[reached(1000.0, 51.0)], None);
+    let reasons = steadiness(&[reached(1000.0, 51.0)], None, 1.0);
     assert!(
         matches!(reasons[..], [Reason::MeansUncertain { .. }]),
         "{reasons:?}"
     );
-    let reasons = steadiness(&[reached(1000.0, f64::NAN)], Some(0.3));
+    let reasons = steadiness(&[reached(1000.0, f64::NAN)], Some(0.3), 1.0);
     assert_eq!(reasons, [Reason::StatisticsUnknown { until: 0.3 }]);
+}
+
+/// One of each reason.
+fn specimens() -> Vec<Reason> {
+    let span = || "a-b".to_owned();
+    let none = String::new;
+    let pressed = |share| Reason::LinksPressed {
+        chain: none(),
+        force: 100.0,
+        share,
+    };
+    vec![
+        Reason::NotFinite { samples: 3 },
+        Reason::EnergyMissing { of_moved: 0.2 },
+        Reason::LossesWrong { of_losses: 0.7 },
+        Reason::LossesUncertain { of_losses: 0.2 },
+        Reason::EfficiencyAboveOne { efficiency: 1.01 },
+        Reason::TooShort { steps: 3 },
+        Reason::SpanRarelyHeld {
+            span: span(),
+            share: 0.7,
+        },
+        Reason::SpanNotHeld {
+            span: span(),
+            share: 0.1,
+        },
+        Reason::NotSteady { span: span() },
+        Reason::StartCounts {
+            span: span(),
+            until: 0.1,
+            shift: 0.02,
+        },
+        Reason::NotRunIn { time: 3.0 },
+        Reason::MeansUncertain {
+            span: span(),
+            width: 0.1,
+            until: 4.0,
+        },
+        Reason::MeansInexact { error: 0.1 },
+        Reason::StatisticsUnknown { until: 2.0 },
+        Reason::AccuracyMissed {
+            accuracy: 0.01,
+            error: 0.02,
+            was_chosen: true,
+        },
+        Reason::AccuracyMissed {
+            accuracy: 0.01,
+            error: 0.02,
+            was_chosen: false,
+        },
+        Reason::AboveBreakingLoad {
+            chain: none(),
+            tension: 1e4,
+            breaking: 9e3,
+        },
+        Reason::AboveRating {
+            sprocket: span(),
+            speed: 100.0,
+            power: 2e3,
+            rated: 1e3,
+        },
+        Reason::DeepContact {
+            place: span(),
+            depth: 1e-4,
+            reach: 5e-5,
+        },
+        Reason::FastImpact {
+            place: span(),
+            speed: 4.0,
+            limit: 3.0,
+        },
+        Reason::LoadDrives { work: 12.0 },
+        Reason::SamplesRare {
+            samples: 1.0,
+            every: 1e-2,
+            needed: 5e-3,
+        },
+        Reason::MotionsFight(Fight {
+            sprockets: ["a", "b"].map(str::to_owned),
+            teeth: 3.0,
+        }),
+        Reason::NotEstimated {
+            why: "switched off".to_owned(),
+        },
+        pressed(0.1),
+        pressed(0.001),
+        Reason::SpansNotExamined {
+            gap: Gap {
+                span: span(),
+                from: 0.1,
+                until: 0.2,
+            },
+        },
+        Reason::HorizonWithinRun {
+            spans: None,
+            links: None,
+        },
+        Reason::NotExamined {
+            window: 0.01,
+            until: 1.0,
+        },
+    ]
+}
+
+/// Every reason has its rule and says what it makes of a result; what its reader can act on ends with what to type.
+#[test]
+fn every_reason_has_a_rule_and_ends_with_what_to_type() {
+    let rules = Verdict::rules();
+    let mut without: Vec<_> = rules.iter().map(|rule| rule.name).collect();
+    for reason in specimens() {
+        let rule = rules.iter().find(|rule| rule.name == reason.name());
+        let rule = rule.unwrap_or_else(|| panic!("no rule for {reason:?}"));
+        without.retain(|name| *name != rule.name);
+        let words = reason.to_string();
+        if reason.trust() == Trust::Trusted {
+            assert!(!words.contains(": --"), "{words}");
+            continue;
+        }
+        assert_eq!(rule.trust, reason.trust(), "{reason:?}");
+        let remedy = words.rsplit_once(": ").map_or("", |(_, remedy)| remedy);
+        let is_told = ["--", "chaindrive design", "give one of them a load"];
+        assert!(is_told.iter().any(|it| remedy.contains(it)), "{words}");
+    }
+    assert!(without.is_empty(), "{without:?}");
+}
+
+/// The rules as the documentation has them; `UPDATE_DOCS=1` writes them.
+#[test]
+fn the_documentation_has_the_rules() {
+    let rows = Verdict::rules().into_iter().map(|rule| {
+        let word = match rule.trust {
+            Trust::Trusted => "note",
+            other => other.name(),
+        };
+        let Rule {
+            name, when, source, ..
+        } = rule;
+        format!("| `{name}` | {word} | {when} | {source} |\n")
+    });
+    let rows: String = rows.collect();
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/verdict.md");
+    let page = std::fs::read_to_string(path).unwrap();
+    let head = "| reason | verdict | when | threshold from |\n|---|---|---|---|\n";
+    let (before, rest) = page.split_once(head).unwrap();
+    let (found, after) = rest.split_once("\n\n").unwrap();
+    if std::env::var_os("UPDATE_DOCS").is_some() {
+        std::fs::write(path, format!("{before}{head}{rows}\n{after}")).unwrap();
+        return;
+    }
+    assert_eq!(format!("{found}\n"), rows, "UPDATE_DOCS=1 writes it anew");
 }

@@ -153,7 +153,7 @@ fn samples_too_rare_for_the_mesh_are_a_caution_where_they_are_kept() {
     let rare = with(8e-3, true);
     tells_apart("samples-rare", &rare, &with(4e-3, true));
     tells_apart("samples-rare", &rare, &with(8e-3, false));
-    assert!(rare.note().contains("take one in 5.3 ms"), "{rare}");
+    assert!(rare.note().contains("--every \"5.3 ms\""), "{rare}");
 }
 
 /// 19 teeth at 330 rpm against 300: a tooth and a half in 0.16 s.

@@ -42,3 +42,7 @@ pub(crate) fn verdict(scene: &Scene, run: &Run) -> Verdict {
 pub(crate) fn names(verdict: &Verdict) -> Vec<&'static str> {
     verdict.reasons.iter().map(Reason::name).collect()
 }
+
+pub(crate) fn notes(verdict: &Verdict) -> Vec<&'static str> {
+    verdict.notes.iter().map(Reason::name).collect()
+}

@@ -6,6 +6,7 @@ use chaindrive_geometry::mesh_frequency;
 use chaindrive_mechanics::{ChainSize, Observation, PlacedChain, Strength};
 use serde::{Deserialize, Serialize};
 
+use super::Summary;
 use crate::Simulation;
 
 /// Sums over the samples, by chain and by sprocket.
@@ -21,9 +22,13 @@ struct OfChain {
     name: String,
     strength: Strength,
     links: Range<usize>,
+    spans: Range<usize>,
     sprockets: Vec<usize>,
-    /// Greatest tension of a link \[N\].
+    /// Greatest and least tension of a link \[N\].
     greatest: f64,
+    least: f64,
+    /// Links that were pressed, over all samples.
+    pressed: f64,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -44,6 +49,11 @@ pub struct Load {
     pub strength: Strength,
     /// Greatest tension of a link \[N\].
     pub tension: f64,
+    /// Least tension of a link \[N\].
+    pub least: f64,
+    /// Share of links and samples in which a link was pressed by more than [`Summary::PRESSED`](super::Summary::PRESSED) of the greatest span tension
+    /// at that time \[–\]; 0 without spans.
+    pub pressed: f64,
     /// Mean power that it has carried to or from a sprocket \[W\].
     pub power: f64,
     /// The smallest sprocket that takes a share in it: name, teeth, mean speed \[rad/s\].
@@ -67,16 +77,21 @@ impl Carried {
     pub(super) fn new(simulation: &Simulation) -> Self {
         let drive = &simulation.assembled().drive;
         let sizes = simulation.system().chain_sizes();
-        let mut first = 0;
+        let (mut first, mut first_span) = (0, 0);
         let of_chain = |(placed, (name, size)): (&PlacedChain, (String, ChainSize))| {
             let links = first..first + size.links;
             first = links.end;
+            let spans = first_span..first_span + size.spans;
+            first_span = spans.end;
             OfChain {
                 name,
                 strength: placed.chain.strength,
                 links,
+                spans,
                 sprockets: placed.sprockets.clone(),
                 greatest: f64::NEG_INFINITY,
+                least: f64::INFINITY,
+                pressed: 0.0,
             }
         };
         let sprockets = drive.sprockets.iter().map(|sprocket| OfSprocket {
@@ -94,8 +109,17 @@ impl Carried {
 
     pub(super) fn push(&mut self, sample: &Observation) {
         for chain in &mut self.chains {
-            let links = sample.link_tension[chain.links.clone()].iter();
-            chain.greatest = links.fold(chain.greatest, |most, tension| most.max(*tension));
+            let links = &sample.link_tension[chain.links.clone()];
+            let spans = sample.span_tension.get(chain.spans.clone());
+            let tight = spans.into_iter().flatten().copied().fold(0.0, f64::max);
+            let limit = -Summary::PRESSED * tight;
+            for &tension in links {
+                chain.greatest = chain.greatest.max(tension);
+                chain.least = chain.least.min(tension);
+                if tight > 0.0 && tension < limit {
+                    chain.pressed += 1.0;
+                }
+            }
         }
         let motions = sample.sprocket_speed.iter().zip(&sample.sprocket_torque);
         for (sprocket, (speed, torque)) in self.sprockets.iter_mut().zip(motions) {
@@ -118,6 +142,8 @@ impl Carried {
             chain: chain.name.clone(),
             strength: chain.strength,
             tension: chain.greatest,
+            least: chain.least,
+            pressed: chain.pressed / (self.samples * chain.links.len() as f64),
             power: power / self.samples,
             smallest: smallest.map(|it| (it.name.clone(), it.teeth, it.speed / self.samples)),
         }

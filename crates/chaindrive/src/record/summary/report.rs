@@ -201,7 +201,16 @@ fn energy(f: &mut fmt::Formatter<'_>, summary: &Summary) -> fmt::Result {
             losses if losses > 0.0 => format!(", {:.1e} of the losses", share(losses)),
             _ => String::new(),
         };
-        format!("{of_losses}, {:.1e} of the {moved:.4e} moved", share(moved))
+        let ledger = summary.ledger();
+        // What moves freely is judged by its motion: a ring that spins in balance moves no energy.
+        if ledger.exchanged > 0.0 {
+            format!("{of_losses}, {:.1e} of the {moved:.4e} moved", share(moved))
+        } else {
+            format!(
+                "{of_losses}, {:.1e} of the kinetic energy",
+                share(ledger.kinetic)
+            )
+        }
     } else {
         String::new()
     };
@@ -224,6 +233,11 @@ fn energy(f: &mut fmt::Formatter<'_>, summary: &Summary) -> fmt::Result {
             f,
             "efficiency               none: nobody takes energy out; {:.1} % of the supplied is lost, {kept:.1} % stays in motion, height and springs",
             100.0 - kept
+        )?;
+    } else if supplied > 0.0 {
+        writeln!(
+            f,
+            "efficiency               none: energy goes to and fro, and what goes one way is too little to be judged by"
         )?;
     }
     for load in summary.carried() {
