@@ -218,7 +218,8 @@ def test_a_caution_is_heard_by_whoever_asks() -> None:
         warnings.simplefilter("default", cd.CautiousResultWarning)
         run()
         assert [str(warning.message) for warning in told] == [
-            "be careful with this run: the error is not estimated: switched off"
+            "be careful with this run: the error is not estimated, switched off: "
+            "the same without --no-error, to its end"
         ]
         warnings.simplefilter("error", cd.VerdictWarning)
         with pytest.raises(cd.CautiousResultWarning):

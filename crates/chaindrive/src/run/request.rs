@@ -41,7 +41,7 @@ impl Request {
     /// Merges settings into a scene; see [`Settings`] for what goes before what.
     ///
     /// Where neither names method, step, tolerance, onset depth or accuracy, they are chosen for
-    /// [`ACCURACY`](crate::precision::ACCURACY).
+    /// [usual one](Quantity::usual_accuracy).
     ///
     /// # Errors
     /// [`RequestError`]: a setting out of range, a channel that does not exist.

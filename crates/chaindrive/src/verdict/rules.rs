@@ -26,6 +26,7 @@ const COUNTED: &str = "nothing to choose";
 
 impl Verdict {
     /// When each [`Reason`](super::Reason) speaks, the worst first.
+    #[expect(clippy::too_many_lines, reason = "a list: every reason with its rule")]
     pub fn rules() -> Vec<Rule> {
         let row = |name, trust, when: String, source| Rule {
             name,

@@ -47,7 +47,7 @@ pub(crate) struct Run {
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) onset_depth: Option<Length>,
     /// Relative error of the tension, or of the losses, that method, step and onset depth are chosen for, 0 to 1; it takes the
-    /// place of what is said about them. Absent: 0.01, unless one of them or a tolerance is given.
+    /// place of what is said about them. Absent: 0.01 of tensions, 0.05 of losses and impacts, unless one of them or a tolerance is given.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
     pub(crate) accuracy: Option<Ratio>,
@@ -181,14 +181,14 @@ pub struct RunDefaults {
 
 impl RunDefaults {
     /// The accuracy \[–\] that method and step are chosen for: what is asked for, or
-    /// [`ACCURACY`](crate::precision::ACCURACY) where method, step, tolerance and onset depth are all left open.
+    /// [usual](Quantity::usual_accuracy) where method, step, tolerance and onset depth are all left open.
     pub fn chosen_accuracy(&self) -> Option<f64> {
         let open = self.method.is_none()
             && self.step.is_none()
             && self.tolerance.is_none()
             && self.onset_depth.is_none();
         self.accuracy
-            .or_else(|| open.then_some(crate::precision::ACCURACY))
+            .or_else(|| open.then_some(self.accuracy_of.usual_accuracy()))
     }
 }
 
