@@ -40,6 +40,17 @@ pub enum Promise {
     Nothing,
 }
 
+impl Promise {
+    /// What an accuracy was asked of.
+    pub(crate) fn quantity(self) -> Quantity {
+        match self {
+            Self::Waveform | Self::Statistics | Self::Nothing => Quantity::Tension,
+            Self::Losses => Quantity::Losses,
+            Self::Impacts => Quantity::Impacts,
+        }
+    }
+}
+
 /// A candidate that was tried.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Trial {

@@ -276,6 +276,7 @@ pub(crate) fn resume<S: Sink>(
         simulation,
         provenance,
         short_runs,
+        estimate: None,
         summary: checkpoint.summary.clone(),
     };
     complete(&request, begun, sink, onlooker)
@@ -293,6 +294,7 @@ fn complete<S: Sink>(
         mut simulation,
         mut provenance,
         mut short_runs,
+        estimate,
         mut summary,
     } = begun;
     let watch = || onlooker.stop();
@@ -348,7 +350,10 @@ fn complete<S: Sink>(
         Stop::Failed(_) => None,
         _ if !request.estimate => Some(Judgement::SwitchedOff),
         Stop::Interrupted => Some(Judgement::Interrupted),
-        Stop::End => Some(Judgement::with(&mut short_runs, &simulation, &run, &watch)),
+        Stop::End => Some(match estimate {
+            Some(made) => Judgement::Made(Box::new(made)),
+            None => Judgement::with(&mut short_runs, &simulation, &run, &watch),
+        }),
     };
     let ending = stop.ending();
     let judged = judgement.as_ref();

@@ -7,7 +7,7 @@ use super::execute::{Onlooker, RunError};
 use super::patience::patiently;
 use super::run_in::{self, Beginning};
 use super::{Request, RunIn};
-use crate::precision::{ShortRuns, choose_with};
+use crate::precision::{Choice, Estimate, ShortRuns, choose_with, estimate};
 use crate::record::{Provenance, Summary};
 use crate::{Simulation, SimulationError};
 
@@ -18,6 +18,8 @@ pub(super) struct Begun {
     pub(super) provenance: Provenance,
     /// With which the choice was made, for the estimate.
     pub(super) short_runs: ShortRuns,
+    /// The estimate, where it was made before.
+    pub(super) estimate: Option<Estimate>,
     pub(super) summary: Summary,
 }
 
@@ -83,6 +85,41 @@ pub(super) fn short_runs(
     }
 }
 
+/// Holds what was chosen on the start against the state that the drive was run in to, which is another; where that does not keep the accuracy, chooses
+/// again there, for as much less as it errs by more. Returns the estimate of a run that keeps it.
+fn verified(
+    provenance: &mut Provenance,
+    start: &Assembled,
+    onlooker: &dyn Onlooker,
+) -> Result<Option<Estimate>, SimulationError> {
+    let Some(choice) = provenance.choice.as_ref().filter(|it| it.kept) else {
+        return Ok(None);
+    };
+    let watch = &|| onlooker.stop();
+    let made = match estimate(start, &provenance.run, watch) {
+        Ok(made) => made,
+        Err(SimulationError::Interrupted) => return Err(SimulationError::Interrupted),
+        // The judgement of the run will say why.
+        Err(_) => return Ok(None),
+    };
+    let (found, accuracy) = (made.of(choice.promise), choice.accuracy);
+    if found <= accuracy {
+        return Ok(Some(made));
+    }
+    let less = accuracy * accuracy / found;
+    let wanted = (less, choice.promise.quantity());
+    let mut none_known = ShortRuns::default();
+    let again = choose_with(&mut none_known, start, &provenance.run, wanted, watch)?;
+    provenance.run = again.run.clone();
+    provenance.choice = Some(Choice {
+        accuracy,
+        kept: again.error <= accuracy,
+        evaluations: again.evaluations + choice.evaluations,
+        ..again
+    });
+    Ok(None)
+}
+
 /// Runs the drive in, and starts the clock.
 pub(super) fn set_off<E: std::error::Error>(
     request: &Request,
@@ -112,6 +149,20 @@ pub(super) fn set_off<E: std::error::Error>(
     }
     let has_moved = ran_in.as_ref().is_some_and(|it| it.time > 0.0);
     provenance.ran_in = ran_in;
+    let mut estimate = None;
+    let mut short_runs = match known {
+        _ if !request.estimate => ShortRuns::default(),
+        _ if has_moved => {
+            estimate = verified(&mut provenance, &start, onlooker).map_err(failed)?;
+            ShortRuns::default()
+        }
+        Some(known) => known,
+        None => short_runs(request, &provenance, &start, onlooker).map_err(failed)?,
+    };
+    let verified = provenance.run.step;
+    // Another step than that of the run-in.
+    let is_of = |it: &Simulation| verified.is_none_or(|step| step >= it.method().step());
+    going_on = going_on.filter(is_of);
     // The run-in may have pressed contacts until they bound the step that was chosen before it.
     let longest = |method: Method| method.longest_step(method.time_scale(&start.system));
     going_on = going_on.filter(|it| it.method().step() <= longest(it.method()));
@@ -122,12 +173,7 @@ pub(super) fn set_off<E: std::error::Error>(
         let longest = longest(run.method(&start.system));
         run.step = run.step.map(|step| step.min(longest));
     }
-    // Nobody asks for an estimate, or the run begins elsewhere than the choice.
-    let mut short_runs = match known {
-        _ if !request.estimate || has_moved => ShortRuns::default(),
-        Some(known) => known,
-        None => short_runs(request, &provenance, &start, onlooker).map_err(failed)?,
-    };
+    estimate = estimate.filter(|_| provenance.run.step == verified);
     short_runs.keep_for(&provenance.run);
     let simulation = match going_on {
         Some(simulation) => simulation,
@@ -139,6 +185,7 @@ pub(super) fn set_off<E: std::error::Error>(
         simulation,
         provenance,
         short_runs,
+        estimate,
     })
 }
 

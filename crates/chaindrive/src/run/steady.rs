@@ -5,7 +5,7 @@
 //! there on
 //!
 //! ```text
-//! n − d ≥ d,  20 teeth,  three periods,  8 blocks,  three times c/k of every tensioner
+//! n − d ≥ d,  20 teeth,  three periods,  8 blocks,  three times c/k of every tensioner,  the record
 //! |Δ| ≤ max(chance, ½ %)               mean and standard deviation of the tension of every span
 //! |T_∞ − T|, |∂T/∂s (s_∞ − s)| ≤ ½ %,   s_∞ − s = (C − B) r/(1 − r),   r = (C − B)/(B − A)
 //! ```
@@ -31,6 +31,8 @@ const BLOCK: f64 = 2.5;
 const LOOKS: f64 = 16.0;
 const TEETH: f64 = 20.0;
 const PERIODS: f64 = 3.0;
+/// Share of the longest run-in up to which all of the record is examined.
+const RECORD: f64 = 0.25;
 /// Blocks that have to be steady at least.
 const FEWEST: usize = 8;
 /// Beginnings that are kept at most, and a few more.
@@ -109,9 +111,13 @@ pub(super) fn settle(
     let looks = counted(LOOKS * block / tooth);
     let pushes = start.drive.tensioners.iter().map(|it| it.push.relaxation());
     let slowest = pushes.fold(0.0, f64::max);
-    let least = (TEETH * tooth).max(PERIODS * period.max(slowest));
-    let least = counted(least / block).max(FEWEST);
     let longest = f64::from(MOST_CIRCUITS) * circuit;
+    // What becomes the record has to be steady throughout.
+    let record = run.until.min(RECORD * longest);
+    let least = (TEETH * tooth)
+        .max(PERIODS * period.max(slowest))
+        .max(record);
+    let least = counted(least / block).max(FEWEST);
     let mut course = Course::default();
     let mut taken = Taken::new(start, run)?;
     loop {
