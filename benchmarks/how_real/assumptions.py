@@ -147,7 +147,7 @@ def cases() -> tuple[Case, ...]:
         ),
         Case(
             "timing_drive",
-            0.15,
+            0.8,
             0.1,
             (
                 Assumption("friction of pins", friction(), "0.05 to 0.15", PINS),

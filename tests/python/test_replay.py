@@ -214,6 +214,7 @@ def test_command_makes_the_same_page_of_a_store(tmp_path):
     run = cd.simulate(
         cd.scenes.timing_drive(),
         until=1e-3,
+        run_in=0,
         every=2e-5,
         step=3e-7,
         record=CHANNELS,

@@ -132,7 +132,11 @@ fn the_command_and_rust_do_the_same() {
     for (name, case) in CASES {
         hold("spinning_ring", name, case);
     }
-    hold("bicycle", "events", &[("events", "--events", "joints")]);
+    let joints = [
+        ("events", "--events", "joints"),
+        ("run_in", "--run-in", "0 s"),
+    ];
+    hold("bicycle", "events", &joints);
     hold("marine_two_sprockets", "default", &[]);
 }
 
