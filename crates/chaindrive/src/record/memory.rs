@@ -2,7 +2,7 @@
 
 use super::{EventTable, Provenance, Recording};
 use crate::run::{End, Sink};
-use crate::{Channel, Simulation, SimulationError};
+use crate::{Channel, Run, Simulation, SimulationError};
 
 /// Keeps samples and contacts in memory.
 #[derive(Clone, Debug, Default)]
@@ -25,6 +25,15 @@ impl Sink for Memory {
         self.recording = Recording::of_run(channels, simulation.system(), &provenance.run)?;
         self.events = EventTable::new(simulation.system());
         Ok(())
+    }
+
+    fn has_room(
+        &self,
+        simulation: &Simulation,
+        channels: &[Channel],
+        run: &Run,
+    ) -> Result<(), SimulationError> {
+        Recording::of_run(channels, simulation.system(), run).map(drop)
     }
 
     fn push(&mut self, simulation: &Simulation) -> Result<(), SimulationError> {

@@ -43,6 +43,8 @@ pub struct Checkpoint {
     estimate: bool,
     every: Option<f64>,
     choice: Option<Choice>,
+    /// Whether that was held against the state at the end of the run-in.
+    pub(super) is_verified: bool,
     /// Wall time of the run so far, and that of its stepping \[s\].
     spent: [f64; 2],
     pub(super) summary: Summary,
@@ -117,6 +119,7 @@ impl Checkpoint {
             estimate: request.estimate,
             every: request.checkpoint_every,
             choice: provenance.choice.clone(),
+            is_verified: provenance.ran_in.is_some(),
             spent: [
                 provenance.wall_time().as_secs_f64(),
                 simulation.stepping_time(),

@@ -30,6 +30,20 @@ pub trait Sink {
         provenance: &Provenance,
     ) -> Result<(), Self::Error>;
 
+    /// Refuses what it could not keep, before anything moves.
+    ///
+    /// # Errors
+    /// There is no room for so many samples.
+    fn has_room(
+        &self,
+        simulation: &Simulation,
+        channels: &[Channel],
+        run: &Run,
+    ) -> Result<(), Self::Error> {
+        let _ = (simulation, channels, run);
+        Ok(())
+    }
+
     /// Whether it keeps the samples, so that somebody will look at more than the summary of them.
     fn keeps_samples(&self) -> bool {
         true
@@ -200,20 +214,23 @@ pub fn execute<S: Sink>(
     onlooker: &dyn Onlooker,
 ) -> Result<Report, RunError<S::Error>> {
     let chosen = choose(request, onlooker)?;
-    let waiting =
-        if request.checkpoint_every.is_some() && chosen.provenance.run.run_in != RunIn::None {
+    let mut waiting = None;
+    if chosen.provenance.run.run_in != RunIn::None {
+        let simulation = chosen.simulation().map_err(not_begun)?;
+        let channels = channels(request, &simulation).map_err(RunError::Start)?;
+        sink.has_room(&simulation, &channels, &chosen.provenance.run)
+            .map_err(RunError::Sink)?;
+        if request.checkpoint_every.is_some() {
             // Whoever is stopped or killed in the run-in goes on from here.
-            let simulation = chosen.simulation().map_err(not_begun)?;
             let mut provenance = chosen.provenance.clone();
             announce(request, &mut provenance, &simulation, sink)?;
             let summary = Summary::new(&simulation);
             let checkpoint = Checkpoint::of_beginning(request, &provenance, &simulation);
             sink.keep(&simulation, &checkpoint)
                 .map_err(RunError::Sink)?;
-            Some((simulation, provenance, summary))
-        } else {
-            None
-        };
+            waiting = Some((simulation, provenance, summary));
+        }
+    }
     let begun = match (set_off(request, chosen, onlooker), waiting) {
         (Err(error), Some((simulation, provenance, summary))) => {
             let ending = match &error {
@@ -251,6 +268,7 @@ pub(crate) fn resume<S: Sink>(
             start,
             provenance,
             short_runs: None,
+            is_verified: checkpoint.is_verified,
         };
         let begun = set_off(&request, chosen, onlooker)?;
         return complete(&request, begun, sink, onlooker);
@@ -391,13 +409,18 @@ fn announce<S: Sink>(
         .scene
         .resolved_for(&provenance.run, simulation.method());
     provenance.resolved_scene = Some(full.map_err(RunError::Scene)?.text().to_owned());
-    let channels = if request.record.is_empty() {
-        Channel::defaults(&simulation.assembled().drive)
-    } else {
-        Channel::chosen(&request.record, simulation.system()).map_err(RunError::Start)?
-    };
+    let channels = channels(request, simulation).map_err(RunError::Start)?;
     sink.begin(simulation, &channels, provenance)
         .map_err(RunError::Sink)
+}
+
+/// The channels that are asked for, or those that the drive has by default.
+fn channels(request: &Request, simulation: &Simulation) -> Result<Vec<Channel>, SimulationError> {
+    if request.record.is_empty() {
+        Ok(Channel::defaults(&simulation.assembled().drive))
+    } else {
+        Channel::chosen(&request.record, simulation.system())
+    }
 }
 
 /// Tells the sink how the run ended; returns what the result says about itself.

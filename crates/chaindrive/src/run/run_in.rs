@@ -188,6 +188,13 @@ pub(super) struct Beginning {
     pub(super) simulation: Option<Simulation>,
 }
 
+impl Beginning {
+    /// Whether it begins elsewhere than the drive was assembled.
+    pub(super) fn has_moved(&self) -> bool {
+        self.ran_in.as_ref().is_some_and(|it| it.time > 0.0)
+    }
+}
+
 /// Runs an assembled drive in, if the run says so.
 pub(super) fn begin(
     start: Assembled,

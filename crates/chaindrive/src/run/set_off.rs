@@ -38,6 +38,8 @@ pub(super) struct Chosen {
     pub(super) provenance: Provenance,
     /// With which the choice was made; none of a choice that was made before.
     pub(super) short_runs: Option<ShortRuns>,
+    /// Whether the choice has been held against the state at the end of the run-in.
+    pub(super) is_verified: bool,
 }
 
 impl Chosen {
@@ -69,6 +71,7 @@ pub(super) fn choose<E: std::error::Error>(
         start,
         provenance,
         short_runs: Some(short_runs),
+        is_verified: false,
     })
 }
 
@@ -132,8 +135,20 @@ pub(super) fn set_off<E: std::error::Error>(
         start,
         mut provenance,
         short_runs: known,
+        is_verified,
     } = chosen;
-    let beginning = run_in::begin(start, &provenance.run, onlooker).map_err(failed)?;
+    let (wanted, chosen_step) = (provenance.run.run_in.clone(), provenance.run.step);
+    let mut beginning = run_in::begin(start.clone(), &provenance.run, onlooker).map_err(failed)?;
+    let mut estimate = None;
+    if request.estimate && !is_verified && beginning.has_moved() {
+        estimate = verified(&mut provenance, &beginning.start, onlooker).map_err(failed)?;
+        if estimate.is_none() && provenance.run.step != chosen_step {
+            // Run in anew, so that the scene of the result gives the same run.
+            provenance.run.run_in = wanted;
+            beginning = run_in::begin(start, &provenance.run, onlooker).map_err(failed)?;
+        }
+    }
+    let has_moved = beginning.has_moved();
     let Beginning {
         start,
         ran_in,
@@ -147,22 +162,13 @@ pub(super) fn set_off<E: std::error::Error>(
             RunIn::Auto
         };
     }
-    let has_moved = ran_in.as_ref().is_some_and(|it| it.time > 0.0);
     provenance.ran_in = ran_in;
-    let mut estimate = None;
     let mut short_runs = match known {
-        _ if !request.estimate => ShortRuns::default(),
-        _ if has_moved => {
-            estimate = verified(&mut provenance, &start, onlooker).map_err(failed)?;
-            ShortRuns::default()
-        }
+        _ if !request.estimate || has_moved => ShortRuns::default(),
         Some(known) => known,
         None => short_runs(request, &provenance, &start, onlooker).map_err(failed)?,
     };
     let verified = provenance.run.step;
-    // Another step than that of the run-in.
-    let is_of = |it: &Simulation| verified.is_none_or(|step| step >= it.method().step());
-    going_on = going_on.filter(is_of);
     // The run-in may have pressed contacts until they bound the step that was chosen before it.
     let longest = |method: Method| method.longest_step(method.time_scale(&start.system));
     going_on = going_on.filter(|it| it.method().step() <= longest(it.method()));
