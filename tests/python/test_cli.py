@@ -14,7 +14,7 @@ COMMAND = Path(sysconfig.get_path("scripts")) / "chaindrive"
 
 
 # Examples that draw the pictures of pages: a run-up of a minute, every diagram there is.
-LONG = ["gallery", "run_up"]
+LONG = ["gallery", "run_up", "sweep_marine"]
 # A picture of a browser, taken where one is at hand.
 WITH_A_BROWSER = ["replay_picture"]
 SHORT = [

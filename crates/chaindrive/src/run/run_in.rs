@@ -278,6 +278,8 @@ pub(crate) fn longest(start: &Assembled, run: &Run) -> Result<f64, SimulationErr
         RunIn::Usual if start.why_it_does_not_repeat().is_some() => Ok(0.0),
         RunIn::Time(time) => Ok(*time),
         RunIn::Turns { turns, sprocket } => turns_last(start, *turns, sprocket.as_deref()),
+        // How long a run-up lasts nobody knows before.
+        RunIn::Auto if steady::stands(start) => Ok(f64::NAN),
         RunIn::Auto | RunIn::Usual => Ok(f64::from(MOST_CIRCUITS) * steady::circuit(start)?),
     }
 }

@@ -17,7 +17,7 @@
 
 use std::collections::VecDeque;
 
-use chaindrive_mechanics::{Assembled, Observation};
+use chaindrive_mechanics::{Assembled, EventKinds, Observation};
 
 use super::execute::Onlooker;
 use super::run_in::MOST_CIRCUITS;
@@ -37,6 +37,9 @@ const RECORD: f64 = 0.25;
 const FEWEST: usize = 8;
 /// Beginnings that are kept at most, and a few more.
 const MOST_STARTS: usize = 32;
+/// Steps of the first stretch of a run-up, and of all of it at most, *assumed*; and looks a stretch.
+const RUN_UP: [f64; 2] = [512.0, 2e6];
+const RUN_UP_LOOKS: u32 = 64;
 /// Share of the scale that may drift, or be left to creep. *Assumed*: half of what a verdict speaks against.
 const DRIFT: f64 = 0.005;
 /// Beginnings in the first quarter of the blocks so far are tried no more.
@@ -86,7 +89,7 @@ impl Sums {
     }
 }
 
-/// Moves a drive, assembled at t = 0, until it is steady.
+/// Moves a drive until it is steady; one that stands, for torques to turn, first runs up.
 ///
 /// What was simulated becomes the record: it begins at the first state from the steady one on from which the drive has not been moved for longer than the
 /// record is to last.
@@ -95,6 +98,10 @@ pub(super) fn settle(
     run: &Run,
     onlooker: &dyn Onlooker,
 ) -> Result<Settled, SimulationError> {
+    if stands(start) {
+        let moving = run_up(start, run, onlooker)?;
+        return settle(&moving, run, onlooker);
+    }
     let circuit = circuit(start)?;
     if let Some(what) = start.function_of_time() {
         return Err(refused(&format!(
@@ -121,7 +128,7 @@ pub(super) fn settle(
     let mut course = Course::default();
     let mut taken = Taken::new(start, run)?;
     loop {
-        let begun = course.count as f64 * block;
+        let begun = start.time + course.count as f64 * block;
         let (mut spans, mut states) = (Vec::new(), Vec::new());
         for look in 1..=looks {
             let time = begun + look as f64 / looks as f64 * block;
@@ -131,7 +138,7 @@ pub(super) fn settle(
             };
             note(&mut spans, seen.span_tension.iter().copied());
             note(&mut states, creeping(seen));
-            onlooker.see_run_in((time / longest).min(1.0));
+            onlooker.see_run_in(((time - start.time) / longest).min(1.0));
             if onlooker.stop() {
                 return Err(SimulationError::Interrupted);
             }
@@ -150,10 +157,63 @@ pub(super) fn settle(
     }
 }
 
+/// Whether chains run around sprockets that stand, for torques to turn.
+pub(super) fn stands(start: &Assembled) -> bool {
+    start.slowest_circuit().is_infinite() && start.slowest_tooth() > 0.0
+}
+
+/// Moves a drive from rest until torques and what resists them have brought it to its speed: in times that double, until the mean speeds of all sprockets
+/// over the last half are those of the quarter before, to the share that may drift.
+fn run_up(
+    start: &Assembled,
+    run: &Run,
+    onlooker: &dyn Onlooker,
+) -> Result<Assembled, SimulationError> {
+    let plain = Run {
+        run_in: RunIn::None,
+        events: EventKinds::default(),
+        ..run.clone()
+    };
+    let mut moving = Simulation::from_assembled(start.clone(), &plain)?;
+    let mut stretch = RUN_UP[0] * moving.method().step();
+    let longest = RUN_UP[1] * moving.method().step();
+    let mut before = Vec::new();
+    while moving.time() < longest {
+        let begun = moving.time();
+        let mut speeds = Vec::new();
+        for look in 1..=RUN_UP_LOOKS {
+            let time = begun + f64::from(look) / f64::from(RUN_UP_LOOKS) * stretch;
+            note(
+                &mut speeds,
+                moving.look(time)?.sprocket_speed.iter().copied(),
+            );
+            onlooker.see_run_in(time / longest);
+            if onlooker.stop() {
+                return Err(SimulationError::Interrupted);
+            }
+        }
+        let speeds: Vec<f64> = speeds.iter().map(Sums::mean).collect();
+        let is_same = |(now, before): (&f64, &f64)| (now - before).abs() <= DRIFT * now.abs();
+        let come = moving.as_start();
+        let has_turned = come.slowest_circuit() <= stretch;
+        if has_turned && !before.is_empty() && speeds.iter().zip(&before).all(is_same) {
+            return Ok(come);
+        }
+        before = speeds;
+        // As long as all before.
+        stretch = moving.time();
+    }
+    Err(refused(
+        "no torque brings this drive to a steady speed: give a time",
+    ))
+}
+
 /// What has been simulated, as far as it may become the record.
 struct Taken<'a> {
     simulation: Simulation,
     run: &'a Run,
+    /// Time of the first sample \[s\].
+    from: f64,
     /// By block: the drive at its beginning, and the number of the sample there. Of many some are enough, and each takes room.
     starts: Vec<Option<(Assembled, usize)>>,
     /// The last samples, and how many were taken before them.
@@ -169,11 +229,13 @@ impl<'a> Taken<'a> {
             run_in: RunIn::None,
             ..run.clone()
         };
+        let from = start.time;
         let mut simulation = Simulation::from_assembled(start.clone(), &plain)?;
         let mut taken = Self {
-            samples: VecDeque::from([simulation.take_sample(0.0, false)?.0]),
+            samples: VecDeque::from([simulation.take_sample(from, false)?.0]),
             run,
-            starts: vec![Some((start.clone(), 0))],
+            from,
+            starts: vec![Some((start.clone().recorded_from(from), 0))],
             before: 0,
             most: 0,
             simulation,
@@ -196,7 +258,7 @@ impl<'a> Taken<'a> {
 
     /// Time of the next sample \[s\].
     fn next(&self) -> f64 {
-        (self.before + self.samples.len()) as f64 * self.run.every
+        self.from + (self.before + self.samples.len()) as f64 * self.run.every
     }
 
     fn take(&mut self) -> Result<(), SimulationError> {

@@ -275,3 +275,39 @@ fn a_run_in_waits_for_a_plunger_that_creeps() {
     let names: Vec<_> = report.verdict.reasons.iter().map(Reason::name).collect();
     assert_eq!(names, ["not-estimated"], "{}", report.verdict);
 }
+
+/// From rest, where 20 kN m on the crank run into 300 N m s ω of the camshaft: ω = 20 kN m/1.5² /300 N m s · 1.5 at the camshaft, less what joints take.
+#[test]
+fn a_drive_from_rest_runs_up_before_it_is_run_in() {
+    let pushed = r#"[{ kind = "constant", torque = "20 kN m" }]"#;
+    let resists = r#"[{ kind = "resistance", linear = "300 N m s" }]"#;
+    let changes = [
+        ("sprockets.crank.load", pushed),
+        ("sprockets.camshaft.load", resists),
+        ("settle", "false"),
+    ];
+    let free = preset("marine_two_sprockets", &changes);
+    let free = free.without("sprockets.crank.motion").unwrap();
+    let free = free
+        .replace("sprockets.crank.inertia", "500 kg m^2")
+        .unwrap();
+    let settings = [
+        ("until", "0.5 s"),
+        ("method", "verlet"),
+        ("run_in", "auto"),
+        ("record", "sprocket_speed"),
+    ];
+    let (report, memory) = ran(&free, &settings);
+    assert_eq!(report.attributes["run_in_steady"], 1, "{}", report.verdict);
+    let speeds = channel(&memory, Channel::SprocketSpeed);
+    let mean = |of: usize| speeds[of..].iter().step_by(2).sum::<f64>() / (speeds.len() / 2) as f64;
+    // M_camshaft = M_crank/1.5 = 300 ω: 44.4 rad/s, of which pins take some hundredths.
+    let expected = 20e3 / 1.5 / 300.0;
+    let found = mean(1);
+    assert!(
+        (0.9 * expected..expected).contains(&found),
+        "{found} of {expected} rad/s"
+    );
+    let drift = speeds[speeds.len() - 1] / speeds[1] - 1.0;
+    assert!(drift.abs() < 0.02, "{drift}");
+}
