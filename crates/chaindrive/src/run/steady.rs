@@ -6,8 +6,8 @@
 //!
 //! ```text
 //! n − d ≥ d,  20 teeth,  three periods,  8 blocks,  three times c/k of every tensioner,  the record
-//! |Δ| ≤ max(chance, ½ %)               mean and standard deviation of the tension of every span
-//! |T_∞ − T|, |∂T/∂s (s_∞ − s)| ≤ ½ %,   s_∞ − s = (C − B) r/(1 − r),   r = (C − B)/(B − A)
+//! |Δ| ≤ max(chance, ½ %)               mean of the tension of every span; its standard deviation σ: 2 % of σ
+//! |T_∞ − T|, |∂T/∂s (s_∞ − s)| ≤ ½ %,   s_∞ − s = (C − B) r/(1 − r),   r = (C − B)/(B − A);   |σ_∞ − σ| ≤ 2 % of σ
 //! ```
 //!
 //! Δ is the change from one half of the blocks to the other along their straight line, and chance what the scatter about that line makes of
@@ -42,6 +42,9 @@ const RUN_UP: [f64; 2] = [512.0, 2e6];
 const RUN_UP_LOOKS: u32 = 64;
 /// Share of the scale that may drift, or be left to creep. *Assumed*: half of what a verdict speaks against.
 const DRIFT: f64 = 0.005;
+/// Share of a standard deviation that may drift, and of the scale from which on it counts. *Assumed*.
+const SWINGS: f64 = 0.02;
+const LEAST: f64 = 2e-4;
 /// Beginnings in the first quarter of the blocks so far are tried no more.
 const EARLIEST: usize = 4;
 /// Room \[bytes\] for samples that may become the record; a record that needs more begins later.
@@ -382,26 +385,26 @@ impl Course {
 
     /// Whether nothing that counts changes from a block on.
     fn is_steady_from(&self, first: usize) -> bool {
-        let mean = |series: &[f64]| series.iter().sum::<f64>() / series.len() as f64;
-        let means: Vec<f64> = self
-            .means
-            .iter()
-            .map(|it| mean(&it[first..]).abs())
-            .collect();
+        let average = |series: &[f64]| series.iter().sum::<f64>() / series.len() as f64;
+        let means = self.means.iter().map(|it| average(&it[first..]).abs());
+        let means: Vec<f64> = means.collect();
         let tight = means.iter().copied().fold(0.0, f64::max);
         let spans = self.means.iter().zip(&self.deviations).zip(means);
         spans.into_iter().all(|((tension, deviation), mean)| {
-            let allowed = DRIFT * mean.max(0.1 * tight);
-            let holds = |series: &Series| {
-                let (drift, doubt) = drift(&series[first..]);
+            let scale = mean.max(0.1 * tight);
+            let allowed = DRIFT * scale;
+            // A swing dies out unseen beside a mean that is many times as large.
+            let swing = (SWINGS * average(&deviation[first..])).clamp(LEAST * scale, allowed);
+            let holds = |series: &Series, allowed: f64| {
+                let series = &series[first..];
+                let (drift, doubt) = drift(series);
                 // A span that no roller held in some block has no drift to speak of.
-                drift.abs() <= doubt.max(allowed) || drift.is_nan()
+                drift.is_nan()
+                    || (drift.abs() <= doubt.max(allowed) && left(series).abs() <= allowed)
             };
             let crept = |state: &Series| (slope(state, tension) * left(&state[first..])).abs();
-            holds(tension)
-                && holds(deviation)
-                && (left(&tension[first..]).abs() <= allowed
-                    || tension[first..].iter().any(|it| it.is_nan()))
+            holds(tension, allowed)
+                && holds(deviation, swing)
                 && self.states.iter().all(|state| {
                     let crept = crept(state);
                     crept <= allowed || crept.is_nan()
