@@ -319,7 +319,7 @@ fn accuracy(choice: &Choice, estimate: Option<&Estimate>, summary: &Summary) -> 
         Promise::Nothing => return None,
         _ if !choice.kept => choice.error,
         Promise::Losses => of_losses,
-        promise => estimate?.of(promise),
+        promise => estimate?.of(promise)?,
     };
     (found > choice.accuracy).then_some(Reason::AccuracyMissed {
         accuracy: choice.accuracy,
@@ -329,7 +329,7 @@ fn accuracy(choice: &Choice, estimate: Option<&Estimate>, summary: &Summary) -> 
 }
 
 fn inexact(estimate: &Estimate) -> Option<Reason> {
-    let error = estimate.of(Promise::Statistics);
+    let error = estimate.statistics();
     (error > WIDE).then_some(Reason::MeansInexact { error })
 }
 

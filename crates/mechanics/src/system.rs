@@ -173,18 +173,13 @@ impl System {
             .sum()
     }
 
-    /// Says when the memory is of \[s\].
-    pub(crate) fn set_clock(&mut self, t: f64) {
+    /// Lays the contact windows and takes the state as the first accepted one.
+    pub(crate) fn start(&mut self, t: f64, q: &mut [f64], v: &mut [f64], z: &[f64]) {
+        let mut record = self.new_record();
         for member in &mut self.chains {
             member.contacts.set_clock(t);
             member.chain.set_clock(t);
         }
-    }
-
-    /// Lays the contact windows and takes the state as the first accepted one.
-    pub(crate) fn start(&mut self, t: f64, q: &mut [f64], v: &mut [f64], z: &[f64]) {
-        let mut record = self.new_record();
-        self.set_clock(t);
         for (member, record) in self.chains.iter_mut().zip(&mut record.chains) {
             member.renew_windows(&self.bodies, Moment { t, q, v, z }, record);
         }

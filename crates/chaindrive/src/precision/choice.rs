@@ -41,7 +41,7 @@ pub enum Promise {
 }
 
 impl Promise {
-    /// What an accuracy was asked of.
+    /// Quantity of the accuracy behind the promise.
     pub(crate) fn quantity(self) -> Quantity {
         match self {
             Self::Waveform | Self::Statistics | Self::Nothing => Quantity::Tension,

@@ -192,18 +192,23 @@ pub(crate) fn estimate_with(
 }
 
 impl Estimate {
-    /// Error \[–\] of what a choice promises, as far as it is more than chance; 0 for what is not estimated.
-    pub fn of(&self, promise: Promise) -> f64 {
-        let beyond = |it: &Comparison| (it.difference - it.spread).max(0.0);
+    /// Error \[–\] of the promise of a choice, beyond chance; none for losses, which are not estimated.
+    pub fn of(&self, promise: Promise) -> Option<f64> {
         match promise {
-            Promise::Waveform => self.tight_tension,
-            Promise::Statistics => beyond(&self.mean).max(beyond(&self.rms)),
+            Promise::Waveform => Some(self.tight_tension),
+            Promise::Statistics => Some(self.statistics()),
             Promise::Impacts => {
                 let errors = self.impacts.iter().map(ImpactErrors::largest);
-                errors.fold(0.0, f64::max)
+                errors.reduce(f64::max)
             }
-            Promise::Losses | Promise::Nothing => 0.0,
+            Promise::Losses | Promise::Nothing => None,
         }
+    }
+
+    /// Error \[–\] of means and root mean squares of the tensions, beyond chance.
+    pub fn statistics(&self) -> f64 {
+        let beyond = |it: &Comparison| (it.difference - it.spread).max(0.0);
+        beyond(&self.mean).max(beyond(&self.rms))
     }
 }
 

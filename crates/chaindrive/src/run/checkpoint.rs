@@ -43,7 +43,7 @@ pub struct Checkpoint {
     estimate: bool,
     every: Option<f64>,
     choice: Option<Choice>,
-    /// Whether that was held against the state at the end of the run-in.
+    /// Verification of the choice at the end of the run-in: done or not.
     pub(super) is_verified: bool,
     /// Wall time of the run so far, and that of its stepping \[s\].
     spent: [f64; 2],
@@ -221,9 +221,9 @@ impl Checkpoint {
         self.start.as_ref().map(|start| start.ran_in.clone())
     }
 
-    /// Whether the record begins elsewhere than the drive was assembled.
+    /// A run-in before the record, longer than nothing.
     pub(super) fn has_moved(&self) -> bool {
-        self.ran_in().is_some_and(|it| it.time > 0.0)
+        self.start.as_ref().is_some_and(|it| it.ran_in.has_moved())
     }
 
     /// The drive where the record begins. It is assembled as far before as it was, and not moved again.

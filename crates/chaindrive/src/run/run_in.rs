@@ -35,8 +35,8 @@ pub enum RunIn {
     },
     /// Until the tension of every span is steady, at most [`MOST_CIRCUITS`] circuits of the slowest chain.
     Auto,
-    /// What a scene means that says nothing: [`Auto`](Self::Auto) where [the motion repeats](Assembled::why_it_does_not_repeat), and nothing elsewhere
-    /// or where somebody moves the drive from outside.
+    /// Default of scenes without a run-in: [`Auto`](Self::Auto) for a [motion that repeats](Assembled::why_it_does_not_repeat), nothing for others and for
+    /// a [`Simulation`] moved from outside.
     Usual,
 }
 
@@ -51,13 +51,18 @@ pub struct RanIn {
     pub time: f64,
     /// Whether the tensions were found steady by then; nobody looked where the time was given.
     pub is_steady: Option<bool>,
-    /// Whether nobody asked for it.
+    /// Run-in by default, not by request.
     pub by_default: bool,
-    /// Why it was left out, where nobody asked for one or against it.
+    /// Reason for no run-in by default.
     pub left_out: Option<String>,
 }
 
 impl RanIn {
+    /// A run-in longer than nothing: the record begins behind the assembly.
+    pub(super) fn has_moved(&self) -> bool {
+        self.time > 0.0
+    }
+
     fn lasted(time: f64, is_steady: Option<bool>) -> Self {
         Self {
             time,
@@ -189,9 +194,9 @@ pub(super) struct Beginning {
 }
 
 impl Beginning {
-    /// Whether it begins elsewhere than the drive was assembled.
+    /// A run-in longer than nothing.
     pub(super) fn has_moved(&self) -> bool {
-        self.ran_in.as_ref().is_some_and(|it| it.time > 0.0)
+        self.ran_in.as_ref().is_some_and(RanIn::has_moved)
     }
 }
 

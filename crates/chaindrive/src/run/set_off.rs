@@ -38,7 +38,7 @@ pub(super) struct Chosen {
     pub(super) provenance: Provenance,
     /// With which the choice was made; none of a choice that was made before.
     pub(super) short_runs: Option<ShortRuns>,
-    /// Whether the choice has been held against the state at the end of the run-in.
+    /// Verification of the choice at the end of the run-in: done or not.
     pub(super) is_verified: bool,
 }
 
@@ -105,10 +105,11 @@ fn verified(
         // The judgement of the run will say why.
         Err(_) => return Ok(None),
     };
-    let (found, accuracy) = (made.of(choice.promise), choice.accuracy);
-    if found <= accuracy {
+    let accuracy = choice.accuracy;
+    // Losses are not estimated: the ledger of the whole run judges them.
+    let Some(found) = made.of(choice.promise).filter(|it| *it > accuracy) else {
         return Ok(Some(made));
-    }
+    };
     let less = accuracy * accuracy / found;
     let wanted = (less, choice.promise.quantity());
     let mut none_known = ShortRuns::default();

@@ -307,7 +307,8 @@ fn a_choice_is_held_against_the_estimate_of_the_run() {
         .unwrap()
         .estimate()
         .unwrap()
-        .of(choice.promise);
+        .of(choice.promise)
+        .unwrap();
     assert!(error > 1e-5, "{error}");
     assert!(!names(&of(1.01 * error)).contains(&"accuracy-missed"));
     assert!(names(&of(0.99 * error)).contains(&"accuracy-missed"));

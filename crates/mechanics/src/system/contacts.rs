@@ -6,7 +6,7 @@ use super::Bodies;
 use super::bodies::Anchor;
 use crate::chains::{Loads, Pose, Way};
 use crate::contact::{Arrivals, Impacts};
-use crate::contact::{Contacts, Frame, Places, PlateContact, Touch};
+use crate::contact::{Contacts, Frame, Places, PlateContact};
 use crate::drive::Surface;
 
 /// Contacts with sprockets, then with guides.
@@ -143,19 +143,15 @@ impl BodyContacts {
         speed
     }
 
-    /// Says when the memory of the contacts is of; what rests until some time does so for as long as before.
+    /// Says when the memory of the contacts is of.
     pub(crate) fn set_clock(&mut self, t: f64) {
-        let set = |accepted: &mut f64, memory: &mut Touch| {
-            let later = t - std::mem::replace(accepted, t);
-            memory.wake.iter_mut().for_each(|wake| *wake += later);
-        };
         for on in &mut self.teeth {
-            set(&mut on.contacts.accepted, &mut on.contacts.memory);
+            on.contacts.accepted = t;
         }
         for on in &mut self.rails {
             match &mut on.contact {
-                RailContact::Circles(contacts) => set(&mut contacts.accepted, &mut contacts.memory),
-                RailContact::Plates(plates) => set(&mut plates.accepted, &mut plates.memory),
+                RailContact::Circles(contacts) => contacts.accepted = t,
+                RailContact::Plates(plates) => plates.accepted = t,
             }
         }
     }
