@@ -23,11 +23,11 @@ pub use event::{EventColumn, EventTable};
 pub use in_store::InStore;
 pub use memory::Memory;
 pub use recorded::{LoggedContact, Recorded, RecordedChannel};
-pub(crate) use summary::drift;
 pub use summary::{
     ContactStatistics, ForceStatistics, ImpactStatistics, Known, Ledger, Load, SpanStatistics,
     Steadiness, Summary,
 };
+pub(crate) use summary::{DRIFT, drift};
 pub use zarr::{
     Existing, Finished, Object, Objects, ReadError, ResumeError, Stopped, SweepStore, Worker,
     ZarrWriter,

@@ -69,6 +69,13 @@ impl InstructionSet {
         Self::built().filter(|&set| Registers::of(set).is_some())
     }
 
+    /// Those of them that are narrower than the one in use, the widest first.
+    pub fn narrower() -> impl Iterator<Item = Self> {
+        let own = Registers::in_use().set();
+        let sets = Self::ALL.into_iter().rev();
+        sets.filter(move |&set| set < own && Registers::of(set).is_some())
+    }
+
     /// The set that this process uses: the widest, or the one that [`VARIABLE`](Self::VARIABLE) names.
     ///
     /// # Errors

@@ -18,7 +18,7 @@ use carried::Carried;
 pub use carried::Load;
 pub use impacts::ImpactStatistics;
 use report::Report;
-pub(crate) use steadiness::drift;
+pub(crate) use steadiness::{DRIFT, drift};
 pub use steadiness::{Known, Steadiness};
 
 /// Collects statistics sample by sample, in bounded memory.

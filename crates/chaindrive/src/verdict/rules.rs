@@ -6,6 +6,7 @@ use super::{
 };
 use crate::precision::LEAST_LOSSES;
 use crate::precision::wording::percent;
+use crate::record::DRIFT;
 use crate::{MOST_CIRCUITS, Trust};
 
 /// When a reason speaks.
@@ -86,7 +87,7 @@ impl Verdict {
         caution("span-not-held", "no roller holds a span in some samples".into(), COUNTED),
         caution(
             "not-steady",
-            "mean or standard deviation of a span drifts by more than chance and 1 % of its scale, for all of the record".into(),
+            format!("mean or standard deviation of a span drifts by more than chance and {} of its scale, for all of the record", p(DRIFT)),
             ASSUMED,
         ),
         caution(

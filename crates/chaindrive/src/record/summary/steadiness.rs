@@ -27,7 +27,7 @@ use super::blocks::{Block, Blocks, LEAST, sum};
 /// Times the 95 % interval of a drift that is taken for chance: 1 of 300 steady runs drifts by more.
 const BY_CHANCE: f64 = 1.5;
 /// Share of the scale that may drift between both halves, whatever its error. *Assumed*: what nobody reads off a tension.
-const DRIFT: f64 = 0.01;
+pub(crate) const DRIFT: f64 = 0.01;
 /// Least half widths of mean, standard deviation and quantiles, as shares of the scale. *Assumed*, by coverage: see the tests, and
 /// `docs/precision.md`. Drives that are locked to their forcing keep such differences of their start, and free vibrations of a chain that die out over
 /// hundreds of teeth move extremes more than means.
