@@ -39,6 +39,7 @@ mod validation_dynamics_inertia;
 mod validation_dynamics_kinematics;
 mod validation_dynamics_resonance;
 mod validation_dynamics_spans;
+mod validation_dynamics_wrapping;
 mod validation_efficiency;
 mod validation_joints;
 mod validation_linkage_ideal;
