@@ -376,5 +376,6 @@ fn no_run_is_chosen_whose_losses_nobody_would_trust() {
     assert_ne!(report.verdict.trust, Trust::Distrusted, "{choice}");
     let energy = report.simulation.observation().energy;
     let open = report.simulation.energy_residual().abs() / energy.dissipated();
-    assert!((0.05..0.4).contains(&open), "{open}");
+    // Not so much less that a far smaller step was taken than is needed.
+    assert!((0.01..0.4).contains(&open), "{open}");
 }
