@@ -65,6 +65,7 @@ if TYPE_CHECKING:
     from chaindrive.replaying import Replay as Replay
     from chaindrive.replaying import replay as replay
     from chaindrive.results import open_result as open_result
+    from chaindrive.results import take_over as take_over
     from chaindrive.simulation import resume as resume
     from chaindrive.simulation import simulate as simulate
     from chaindrive.sweeping import sweep as sweep
@@ -109,7 +110,7 @@ _DEFINED_IN = {
     "precision": ("work_precision",),
     "profile": ("Profile",),
     "replaying": ("Replay", "replay"),
-    "results": ("open_result",),
+    "results": ("open_result", "take_over"),
     "simulation": ("resume", "simulate"),
     "sweeping": ("sweep",),
 }

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from typing import NamedTuple
+from unicodedata import category
 
 __all__ = [
     "AssemblyError",
@@ -40,6 +41,19 @@ class Problem(NamedTuple):
     """The values that are allowed, or something to try."""
 
 
+def _plain(text: str) -> str:
+    """Spell what would command a terminal; a scene or a file of unknown origin may hold it."""
+    if text.isprintable():
+        return text
+    # Cc: controls; Cf: those that turn the order of reading.
+    return "".join(
+        it.encode("unicode_escape").decode()
+        if it not in "\n\t" and category(it) in ("Cc", "Cf")
+        else it
+        for it in text
+    )
+
+
 class ChaindriveError(Exception):
     """Anything this package refuses or fails to do.
 
@@ -55,7 +69,7 @@ class ChaindriveError(Exception):
     hint: str | None
 
     def __init__(self, message: str, path: str | None = None, hint: str | None = None) -> None:
-        super().__init__(message)
+        super().__init__(_plain(message))
         self.path = path
         self.hint = hint
 

@@ -10,6 +10,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from chaindrive import _core
+from chaindrive.errors import ParameterError
 
 __all__ = ["centre_distance", "links_for", "polygon_action", "seating_speed"]
 
@@ -63,6 +64,8 @@ def polygon_action(
         Numbers out of range, wheels that overlap, or no whole link between them.
     """
     if driver_angle is None:
+        if teeth1 < 3:
+            raise ParameterError(f"teeth1 = {teeth1}, must be at least 3", "teeth1", "3 or more")
         driver_angle = np.linspace(0.0, 2.0 * np.pi / teeth1, 361)
     angle = np.ascontiguousarray(driver_angle, dtype=np.float64).ravel()
     columns, constants = _core.polygon_action([teeth1, teeth2], pitch, centre_distance, angle)

@@ -16,7 +16,7 @@ from chaindrive.objects import Objects, Place, place_of
 if TYPE_CHECKING:
     from obstore.store import ObjectStore
 
-__all__ = ["open_result"]
+__all__ = ["open_result", "take_over"]
 
 
 def open_result(path: str | PathLike[str] | ObjectStore) -> xr.Dataset:
@@ -40,7 +40,9 @@ def open_result(path: str | PathLike[str] | ObjectStore) -> xr.Dataset:
     Raises
     ------
     ValueError
-        This is not a result of chaindrive.
+        This is not a result of chaindrive, or it is damaged: it does not hold what it declares, is
+        packed in another way, or leads elsewhere. Results of others carry out no code. Arrays are
+        read when they are asked for: a damaged chunk raises then, whatever Zarr raises.
     FileNotFoundError
         Nothing is there.
     WriteError
@@ -89,14 +91,42 @@ def _open(name: Place) -> xr.Dataset:
     store: Any = name
     if isinstance(name, Objects):
         store = extra("zarr.storage", "stores").ObjectStore(name.store, read_only=True)
+    zarr = extra("zarr", "stores on disk")
     try:
-        stored: xr.Dataset = xr.open_zarr(store, chunks=None)
+        if isinstance(name, str):
+            _core.inspect(name)
+        # Arrays of older formats may be packed by codecs that carry out code.
+        attributes = zarr.open_group(store, mode="r", zarr_format=3).attrs
+        if attributes.get("format") != "chaindrive" or "status" not in attributes:
+            raise ValueError(
+                f"{name}: this is not a result of chaindrive; xarray.open_zarr reads others"
+            )
+        stored: xr.Dataset = xr.open_zarr(store, chunks=None, zarr_format=3, consolidated=True)
     except FileNotFoundError as error:
         raise FileNotFoundError(
             f"{name}: there is no result here; check the path, a result's name ends in .zarr"
         ) from error
-    if stored.attrs.get("format") != "chaindrive" or "status" not in stored.attrs:
-        raise ValueError(
-            f"{name}: this is not a result of chaindrive; xarray.open_zarr reads others"
-        )
+    except (ValueError, OSError):
+        raise
+    except Exception as error:
+        # Whatever Zarr and xarray make of a store that contradicts itself.
+        raise ValueError(f"{name}: this result is damaged: {error!r}") from error
     return stored
+
+
+def take_over(path: str | PathLike[str]) -> None:
+    """Remove the folder of a writer, `.NAME.writing`, that another user left beside a result.
+
+    Results can then be written there again. Only the folder beside the result is removed.
+
+    Parameters
+    ----------
+    path
+        The result.
+
+    Raises
+    ------
+    WriteError
+        A process that lives writes there.
+    """
+    _core.take_over(path)

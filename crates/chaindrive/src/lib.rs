@@ -24,6 +24,7 @@ pub mod design;
 pub mod draw;
 mod error;
 mod identity;
+mod plain;
 pub mod precision;
 pub mod record;
 mod run;
@@ -44,6 +45,7 @@ pub use chaindrive_mechanics::{
 pub use describe::Description;
 pub use error::SimulationError;
 pub use identity::{Build, Origin};
+pub use plain::plain;
 pub use precision::{Choice, Estimate, Judgement};
 pub use record::{Axis, Channel, EventTable, ImpactStatistics, Memory, Recording, Summary};
 pub use run::{

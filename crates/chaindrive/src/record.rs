@@ -17,7 +17,7 @@ use crate::{Run, SimulationError};
 
 pub use attributes::{Ending, Provenance, attributes, figures};
 pub use channel::{Axis, Channel};
-pub use claim::{Claim, is_being_written};
+pub use claim::{Claim, is_being_written, take_over};
 pub use error::WriteError;
 pub use event::{EventColumn, EventTable};
 pub use in_store::InStore;
@@ -30,7 +30,7 @@ pub use summary::{
 pub(crate) use summary::{DRIFT, drift};
 pub use zarr::{
     Existing, Finished, Object, Objects, ReadError, ResumeError, Stopped, SweepStore, Worker,
-    ZarrWriter,
+    ZarrWriter, inspect,
 };
 
 /// One channel of a recording.
@@ -115,18 +115,15 @@ impl Recording {
         run: &Run,
     ) -> Result<Self, SimulationError> {
         let recording = Self::new(channels, system);
-        let values: usize = recording.columns.iter().map(|column| column.width).sum();
-        let samples = (run.until / run.every).floor() + 1.0;
-        // Time and values, eight bytes each.
-        let bytes = 8.0 * samples * (1 + values) as f64;
+        let size = Size::of_run(&recording, run);
         // An allocator would promise more than there is, and the system would then kill the program.
-        if bytes <= free_memory() {
+        if size.bytes <= free_memory() {
             Ok(recording)
         } else {
             Err(SimulationError::TooLarge {
-                gigabytes: bytes * 1e-9,
-                samples,
-                values,
+                gigabytes: size.bytes * 1e-9,
+                samples: size.samples,
+                values: size.values,
             })
         }
     }
@@ -183,6 +180,28 @@ pub fn labels(axis: Axis, system: &System) -> Option<Vec<String>> {
 
 /// Memory that this program can still have \[bytes\], limits of its control group included; without bounds where the
 /// system does not say.
+/// How much a recording of a run takes.
+struct Size {
+    samples: f64,
+    /// Entries of a sample beside its time.
+    values: usize,
+    bytes: f64,
+}
+
+impl Size {
+    fn of_run(recording: &Recording, run: &Run) -> Self {
+        let values: usize = recording.columns.iter().map(|column| column.width).sum();
+        let samples = (run.until / run.every).floor() + 1.0;
+        // Time and values, eight bytes each.
+        let bytes = 8.0 * samples * (1 + values) as f64;
+        Self {
+            samples,
+            values,
+            bytes,
+        }
+    }
+}
+
 fn free_memory() -> f64 {
     let mut system = sysinfo::System::new();
     system.refresh_memory();

@@ -16,12 +16,14 @@ mod csv;
 mod failure;
 mod progress;
 mod request;
-mod stdout;
 mod suggested;
+mod terminal;
 
 use std::ffi::OsString;
 
 use clap::{CommandFactory, Parser, Subcommand};
+
+use terminal::say;
 
 use commands::{
     bench, check, describe, design, draw, lists, replay, resume, run as run_command, scenes, shell,
@@ -138,6 +140,6 @@ where
 }
 
 fn told(failure: &failure::Failure) -> u8 {
-    eprintln!("{failure}");
+    say(failure);
     failure.exit_code()
 }

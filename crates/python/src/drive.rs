@@ -223,7 +223,15 @@ impl Drive {
                 _ => None,
             }
         });
-        let surface = surface.ok_or_else(|| PyKeyError::new_err(body.to_owned()))?;
+        let surface = surface.ok_or_else(|| {
+            let sprockets = self.drive.sprockets.iter().map(|it| it.name.as_str());
+            let guides = self.drive.guides.iter().map(|it| it.name.as_str());
+            let names: Vec<&str> = sprockets.chain(guides).collect();
+            PyKeyError::new_err(format!(
+                "`{body}` has no contact law; those of {}, and of `joints` and `rollers` where pins and rollers have play",
+                names.join(", ")
+            ))
+        })?;
         Ok(Law(surface.law))
     }
 

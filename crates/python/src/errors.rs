@@ -1,6 +1,6 @@
 //! Errors of the library as exceptions of `chaindrive.errors`.
 
-use chaindrive::record::{ResumeError, WriteError};
+use chaindrive::record::{ReadError, ResumeError, WriteError};
 use chaindrive::scene::SceneError;
 use chaindrive::sweep::SweepError;
 use chaindrive::{RequestError, RunError, SealError, SimulationError, SnapshotError};
@@ -9,6 +9,7 @@ use chaindrive_geometry::GeometryError;
 use chaindrive_integrate::IntegrationError;
 use chaindrive_mechanics::AssemblyError;
 use pyo3::PyErr;
+use pyo3::exceptions::{PyFileNotFoundError, PyValueError};
 
 /// The exception classes; their rust names would clash with those of the errors.
 mod python {
@@ -236,6 +237,17 @@ impl IntoException for SweepError {
     }
 }
 
+impl IntoException for ReadError {
+    fn exception(self) -> PyErr {
+        let message = self.to_string();
+        match self {
+            Self::Missing { .. } => PyFileNotFoundError::new_err(message),
+            Self::Claim(error) => error.exception(),
+            _ => PyValueError::new_err(message),
+        }
+    }
+}
+
 impl IntoException for WriteError {
     fn exception(self) -> PyErr {
         let message = self.to_string();
@@ -252,6 +264,11 @@ impl IntoException for WriteError {
                 message,
                 path,
                 "stop that process or wait for its end, or give another name",
+            )),
+            Self::Strange { path, .. } => python::WriteError::new_err((
+                message,
+                path,
+                "`chaindrive.take_over(path)`, or give another name",
             )),
             Self::Dangling { path, .. } => python::WriteError::new_err((
                 message,

@@ -58,7 +58,9 @@ mod core {
     #[pymodule_export]
     use crate::replay::{replay, replay_selection};
     #[pymodule_export]
-    use crate::run::{adaptive_methods, channels, is_being_written, methods, resume, simulate};
+    use crate::run::{
+        adaptive_methods, channels, inspect, is_being_written, methods, resume, simulate, take_over,
+    };
 
     #[pymodule_export]
     use crate::sweep::{Sweep, SweepStore, SweepWorker};

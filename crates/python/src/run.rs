@@ -361,6 +361,18 @@ pub(crate) fn is_being_written(path: PathBuf) -> PyResult<bool> {
     record::is_being_written(path).or_raise()
 }
 
+/// Removes the folder of a writer that another user left beside a result.
+#[pyfunction]
+pub(crate) fn take_over(path: PathBuf) -> PyResult<()> {
+    record::take_over(path).or_raise()
+}
+
+/// Refuses a store that is not as this program writes results; what is no result at all is a `ValueError` of the caller's.
+#[pyfunction]
+pub(crate) fn inspect(path: PathBuf) -> PyResult<()> {
+    record::inspect(&path).or_raise()
+}
+
 /// Names of the methods of time stepping.
 #[pyfunction]
 pub(crate) fn methods() -> Vec<&'static str> {

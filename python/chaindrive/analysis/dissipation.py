@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from numbers import Real
 
 import numpy as np
 import xarray as xr
@@ -56,6 +57,9 @@ def losses(run: xr.Dataset, *, start: float | None = None, end: float | None = N
     'joints'
     """
     recorded(run, "energy_losses")
+    for name, time in (("start", start), ("end", end)):
+        if not (time is None or isinstance(time, Real)):
+            raise ParameterError(f"{name} = {time!r}, must be a time in s", name, "a number")
     part = run.sel(time=slice(start, end))
     if part.sizes["time"] < 2:
         held = f"{float(run['time'][0]):.6g} to {float(run['time'][-1]):.6g} s"

@@ -63,17 +63,33 @@ def read_dxf(
     FileNotFoundError
         Nothing is there.
     """
+    place = fspath(path)
     ezdxf = extra("ezdxf", _WHAT)
     try:
-        drawing = ezdxf.readfile(fspath(path))
-    except ezdxf.DXFStructureError as error:
-        raise ParameterError(f"{fspath(path)}: {error}", "path", "a drawing in DXF") from error
+        return _curves_of(ezdxf.readfile(place), layers, unit, tolerance, gap, place)
+    except (ParameterError, FileNotFoundError):
+        raise
     except OSError as error:
-        if isinstance(error, FileNotFoundError) or error.errno is not None:
+        # Of the system, or of ezdxf.
+        if error.errno is not None:
             raise
-        raise ParameterError(f"{fspath(path)}: {error}", "path", "a drawing in DXF") from error
+        raise ParameterError(f"{place}: {error}", "path", "a drawing in DXF") from error
+    except Exception as error:
+        # Whatever a damaged drawing makes of its reader.
+        message = f"{place}: this drawing is damaged: {error!r}"
+        raise ParameterError(message, "path", "a drawing in DXF") from error
+
+
+def _curves_of(
+    drawing: Any,
+    layers: str | Iterable[str] | None,
+    unit: str | None,
+    tolerance: float,
+    gap: float,
+    path: str,
+) -> list[Curve]:
     metre = _metre(drawing.units, unit)
-    entities = _entities(drawing, layers, fspath(path))
+    entities = _entities(drawing, layers, path)
     found: list[Curve] = []
     for layer in dict.fromkeys(entity.dxf.layer for entity in entities):
         pieces = [
@@ -83,6 +99,10 @@ def read_dxf(
             for piece in _pieces(entity, tolerance / metre)
         ]
         found += [curve.moved(scaled=metre) for curve in _chained(pieces, gap / metre)]
+    for curve in found:
+        if not (np.isfinite(curve.points).all() and np.isfinite(curve.bulges).all()):
+            message = f"{path}: a curve of layer {curve.layer} is not finite"
+            raise ParameterError(message, "path", "a drawing in DXF")
     return found
 
 

@@ -8,6 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from chaindrive.drive import Drive
+from chaindrive.errors import ParameterError
 from chaindrive.exchange.curve import Curve, curve_of
 from chaindrive.profile import Profile
 
@@ -31,6 +32,8 @@ def outlines(what: Outlined, *, settled: bool = True) -> list[Curve]:
     ------
     AssemblyError
         The drive does not close or settle.
+    ParameterError
+        This is nothing that has outlines.
 
     Examples
     --------
@@ -47,7 +50,11 @@ def outlines(what: Outlined, *, settled: bool = True) -> list[Curve]:
         return [curve_of(what, what.name)]
     if isinstance(what, Curve):
         return [what]
-    return [curve for each in what for curve in outlines(each)]
+    if isinstance(what, Iterable) and not isinstance(what, str):
+        return [curve for each in what for curve in outlines(each)]
+    raise ParameterError(
+        f"{what!r} has no outlines", "what", "give a drive, a profile, a curve, or several curves"
+    )
 
 
 def _of_drive(drive: Drive, *, settled: bool) -> list[Curve]:

@@ -104,7 +104,7 @@ def face(curve: Curve, *, material: str = "right") -> dict[str, Any]:
     Raises
     ------
     ParameterError
-        The curve is closed.
+        The curve is closed, or empty.
 
     Examples
     --------
@@ -119,6 +119,8 @@ def face(curve: Curve, *, material: str = "right") -> dict[str, Any]:
     if curve.closed:
         message = "the curve is closed, and the face of a guide is open"
         raise ParameterError(message, "curve", "cut the face out: curve.stretch(start, end)")
+    if len(curve.points) < 2:
+        raise ParameterError("the curve is empty", "curve", "a face has two points at least")
     whole = _split(curve)
     corners, radii = [whole.points[0]], []
     rows = zip(whole.starts, whole.ends, whole.bulges, whole.radii, strict=True)

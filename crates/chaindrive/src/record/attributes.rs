@@ -30,6 +30,8 @@ pub struct Provenance {
     pub scene_name: String,
     /// Settings of the run.
     pub run: Run,
+    /// Simulated time between two checkpoints \[s\], where they are asked for.
+    pub checkpoint_every: Option<f64>,
     /// How it was run in, if it was.
     pub ran_in: Option<RanIn>,
     /// How method and step were chosen, if they were.
@@ -49,6 +51,7 @@ impl Provenance {
             resolved_scene: None,
             scene_name: scene.name().to_owned(),
             run: run.clone(),
+            checkpoint_every: None,
             ran_in: None,
             choice: None,
             began: Instant::now(),
@@ -126,6 +129,10 @@ pub fn attributes(
         }
     }
     story.number("every", provenance.run.every);
+    // Of a run that is over, checkpoints make no other one.
+    if let (Some(every), Ending::None) = (provenance.checkpoint_every, ending) {
+        story.number("checkpoint_every", every);
+    }
     story.number("time_reached", simulation.time());
     story.count("samples", samples);
     method(&mut story, simulation.method());

@@ -58,6 +58,10 @@ impl Claim {
                 path: path.to_owned(),
                 holder,
             },
+            Refusal::Strange => WriteError::Strange {
+                path: path.to_owned(),
+                beside: beside.clone(),
+            },
         })?;
         let claim = Self {
             asked: path.to_owned(),
@@ -140,15 +144,17 @@ impl Claim {
     /// Removes what a dead process left, and puts back the result that it had moved out of the way.
     fn clear_up(&self) -> io::Result<()> {
         let old = self.beside.join("old");
-        if old.exists() && !self.place.exists() {
+        let is_result = fs::symlink_metadata(&old).is_ok_and(|about| about.is_dir());
+        if is_result && !self.place.exists() {
             fs::rename(&old, &self.place)?;
         }
         for name in ["old", "new", "reserve"] {
             let left = self.beside.join(name);
-            let removed = if left.is_dir() {
-                fs::remove_dir_all(&left)
-            } else {
-                fs::remove_file(&left)
+            // A link is removed, never what it leads to.
+            let removed = match fs::symlink_metadata(&left) {
+                Ok(about) if about.is_dir() => fs::remove_dir_all(&left),
+                Ok(_) => fs::remove_file(&left),
+                Err(error) => Err(error),
             };
             match removed {
                 Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
@@ -172,6 +178,33 @@ impl Drop for Claim {
     }
 }
 
+/// Removes what lies in the place for the folder of a writer, whoever made it, so that a result can be written there.
+///
+/// # Errors
+/// [`WriteError::Busy`] while a process that lives writes there; [`WriteError::Io`].
+pub fn take_over(path: impl AsRef<Path>) -> Result<(), WriteError> {
+    let path = path.as_ref();
+    let io = |source| WriteError::Io {
+        path: path.to_owned(),
+        source,
+    };
+    let beside = beside(&followed(path)?).map_err(io)?;
+    let removed = match fs::symlink_metadata(&beside) {
+        Ok(about) if about.is_dir() => {
+            if is_locked(&beside).map_err(io)? {
+                let holder = "another process".to_owned();
+                let path = path.to_owned();
+                return Err(WriteError::Busy { path, holder });
+            }
+            fs::remove_dir_all(&beside)
+        }
+        Ok(_) => fs::remove_file(&beside),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(error),
+    };
+    removed.map_err(io)
+}
+
 /// Whether a process that lives is writing a result here.
 ///
 /// A result that says `running`, and that nobody writes, was left by a process that was killed.
@@ -185,14 +218,25 @@ pub fn is_being_written(path: impl AsRef<Path>) -> Result<bool, WriteError> {
         source,
     };
     let place = followed(path)?;
-    let lock = match File::open(beside(&place).map_err(io)?.join("lock")) {
+    is_locked(&beside(&place).map_err(io)?).map_err(io)
+}
+
+fn is_locked(beside: &Path) -> io::Result<bool> {
+    let name = beside.join("lock");
+    // What is no file is no lock: a link may lead anywhere, and a pipe has no end.
+    match fs::symlink_metadata(&name) {
+        Ok(about) if about.is_file() => {}
+        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+        _ => return Ok(false),
+    }
+    let lock = match File::open(name) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(false),
-        opened => opened.map_err(io)?,
+        opened => opened?,
     };
     match lock.try_lock_shared() {
         Ok(()) => Ok(false),
         Err(TryLockError::WouldBlock) => Ok(true),
-        Err(TryLockError::Error(error)) => Err(io(error)),
+        Err(TryLockError::Error(error)) => Err(error),
     }
 }
 
@@ -234,6 +278,8 @@ fn beside(place: &Path) -> io::Result<PathBuf> {
 enum Refusal {
     /// Somebody has it.
     Held(String),
+    /// It was made by somebody else, or is no folder.
+    Strange,
     Io(io::Error),
 }
 
@@ -251,12 +297,8 @@ fn lock(beside: &Path) -> Result<File, Refusal> {
             Err(error) if error.kind() != io::ErrorKind::AlreadyExists => return Err(error.into()),
             _ => {}
         }
-        let opened = OpenOptions::new()
-            .read(true)
-            .write(true)
-            .create(true)
-            .truncate(false)
-            .open(&path);
+        is_own(beside)?;
+        let opened = own_file().open(&path);
         let mut file = match opened {
             // The last writer removed the folder in between.
             Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
@@ -285,6 +327,41 @@ fn lock(beside: &Path) -> Result<File, Refusal> {
     Err(Refusal::Held(
         holder.unwrap_or_else(|| "another process".into()),
     ))
+}
+
+/// Opens a lock, wherever no link leads from its name.
+fn own_file() -> OpenOptions {
+    let mut options = OpenOptions::new();
+    options.read(true).write(true).create(true).truncate(false);
+    #[cfg(any(target_os = "linux", target_vendor = "apple"))]
+    {
+        use std::os::unix::fs::OpenOptionsExt;
+
+        use rustix::fs::OFlags;
+        let flags = OFlags::NOFOLLOW | OFlags::NONBLOCK;
+        options.custom_flags(flags.bits().cast_signed());
+    }
+    options
+}
+
+/// Refuses a folder for the writer that is none, that another user made, or whose lock leads elsewhere.
+fn is_own(beside: &Path) -> Result<(), Refusal> {
+    let about = match fs::symlink_metadata(beside) {
+        // The last writer removed it in between.
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+        about => about?,
+    };
+    #[cfg(any(target_os = "linux", target_vendor = "apple"))]
+    let is_mine =
+        std::os::unix::fs::MetadataExt::uid(&about) == rustix::process::geteuid().as_raw();
+    #[cfg(not(any(target_os = "linux", target_vendor = "apple")))]
+    let is_mine = true;
+    let lock = fs::symlink_metadata(beside.join("lock"));
+    if about.is_dir() && is_mine && lock.map_or(true, |lock| lock.is_file()) {
+        Ok(())
+    } else {
+        Err(Refusal::Strange)
+    }
 }
 
 /// Exchanges two names in one move; tells whether the system can.

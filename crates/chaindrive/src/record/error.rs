@@ -23,6 +23,20 @@ pub enum WriteError {
     #[error("{}: {holder} is writing a result here; stop it or wait for its end, or choose another name", .path.display())]
     Busy { path: PathBuf, holder: String },
 
+    /// The folder of a writer beside the target is of another user, or no folder.
+    #[error("{}: {} was made by another user, or is no folder with a lock; remove it, or take it over: `--take-over`, in Python `chaindrive.take_over(path)`", .path.display(), .beside.display())]
+    Strange { path: PathBuf, beside: PathBuf },
+
+    /// The disk is too small.
+    #[error("{}: the recording takes {gigabytes:.1} GB, more than {free:.1} GB of disk can hold: {samples} samples of {values} values; record fewer channels (`record`) or fewer samples (`every`), or write elsewhere", .path.display())]
+    NoRoom {
+        path: PathBuf,
+        gigabytes: f64,
+        free: f64,
+        samples: f64,
+        values: usize,
+    },
+
     /// The target is a symbolic link to what does not exist.
     #[error("{}: this is a symbolic link to {}, which does not exist; remove the link, or choose another name", .path.display(), .target.display())]
     Dangling { path: PathBuf, target: PathBuf },

@@ -32,6 +32,7 @@ mod error;
 mod events;
 mod files;
 mod folder;
+mod inspect;
 mod reader;
 mod stopped;
 mod store;
@@ -46,7 +47,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Map, Value};
 
 pub use bucket::{Object, Objects};
-pub use reader::ReadError;
+pub use reader::{ReadError, inspect};
 pub use variants::{Finished, SweepStore, Worker};
 
 use super::Channel;
@@ -103,6 +104,8 @@ pub struct ZarrWriter {
     samples: u64,
     /// Whether the checkpoint in the store is of the last sample.
     kept: bool,
+    /// Whether the store is in its place: an earlier result stays there until this one has something.
+    is_public: bool,
     committed: Instant,
     store: Store,
 }
@@ -117,7 +120,8 @@ impl fmt::Debug for ZarrWriter {
 }
 
 impl ZarrWriter {
-    /// Makes the store for a run that is about to begin; it can be opened from here on.
+    /// Makes the store for a run that is about to begin. It can be opened from here on; where it replaces an earlier result, as soon as it has samples or a
+    /// checkpoint, and the earlier one stays until then.
     ///
     /// # Errors
     /// [`WriteError`] when the target is taken, or cannot be written.
@@ -146,11 +150,12 @@ impl ZarrWriter {
             told: None,
             samples: 0,
             kept: false,
+            is_public: false,
             committed: Instant::now(),
             store,
         };
         writer.commit(simulation, &Ending::None)?;
-        writer.store.publish()?;
+        writer.publish()?;
         Ok(writer)
     }
 
@@ -176,6 +181,7 @@ impl ZarrWriter {
             told: None,
             samples,
             kept: false,
+            is_public: true,
             committed: Instant::now(),
             store,
         };
@@ -209,10 +215,10 @@ impl ZarrWriter {
         let bytes = checkpoint.to_bytes();
         self.or_give_up(|writer| {
             let kept = writer.store.put(CHECKPOINT, &bytes);
-            kept.map_err(|fault| writer.store.fault(fault))
-        })?;
-        self.kept = true;
-        Ok(())
+            kept.map_err(|fault| writer.store.fault(fault))?;
+            writer.kept = true;
+            writer.publish()
+        })
     }
 
     /// Takes the last sample of the simulation, and commits if the last commit was a while ago.
@@ -236,7 +242,20 @@ impl ZarrWriter {
     /// # Errors
     /// As [`push`](Self::push).
     pub fn flush(&mut self, simulation: &Simulation) -> Result<(), WriteError> {
-        self.or_give_up(|writer| writer.commit(simulation, &Ending::None))
+        self.or_give_up(|writer| {
+            writer.commit(simulation, &Ending::None)?;
+            writer.publish()
+        })
+    }
+
+    /// Puts the store in its place once it has something: samples, or what the run goes on from.
+    fn publish(&mut self) -> Result<(), WriteError> {
+        let has_something = self.samples > 0 || self.kept || !self.store.place().exists();
+        if !self.is_public && has_something {
+            self.store.publish()?;
+            self.is_public = true;
+        }
+        Ok(())
     }
 
     /// Takes in what is said about the error of the run; it is stored with the next commit.
@@ -264,6 +283,7 @@ impl ZarrWriter {
         self.or_give_up(|writer| {
             pushed.map_err(|fault| writer.store.fault(fault))?;
             writer.commit(simulation, ending)?;
+            writer.publish()?;
             // What has failed would fail again.
             if writer.kept && !matches!(ending, Ending::Failed(_)) {
                 return Ok(());

@@ -257,6 +257,7 @@ pub(crate) fn resume<S: Sink>(
 ) -> Result<Report, RunError<S::Error>> {
     let request = checkpoint.request().map_err(RunError::Scene)?;
     let mut provenance = Provenance::of(&request.scene, &request.run);
+    provenance.checkpoint_every = request.checkpoint_every;
     let [wall, stepping] = checkpoint.spent();
     provenance.earlier = wall;
     provenance.choice = checkpoint.choice().cloned();

@@ -56,6 +56,7 @@ pub(super) fn choose<E: std::error::Error>(
 ) -> Result<Chosen, RunError<E>> {
     let watch = &|| onlooker.stop();
     let mut provenance = Provenance::of(&request.scene, &request.run);
+    provenance.checkpoint_every = request.checkpoint_every;
     let drive = request.scene.drive().map_err(RunError::Scene)?;
     let start = assemble(&drive, watch).map_err(not_begun)?;
     let mut short_runs = ShortRuns::default();

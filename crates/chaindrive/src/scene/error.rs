@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::plain;
+
 /// One thing to mend in a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
@@ -18,15 +20,15 @@ pub struct Problem {
 impl Problem {
     pub(crate) fn new(path: &str, line: Option<usize>, message: impl Into<String>) -> Self {
         Self {
-            path: path.to_owned(),
+            path: plain(path).into_owned(),
             line,
-            message: message.into(),
+            message: plain(&message.into()).into_owned(),
             hint: None,
         }
     }
 
     pub(crate) fn hint(mut self, hint: impl Into<String>) -> Self {
-        self.hint = Some(hint.into());
+        self.hint = Some(plain(&hint.into()).into_owned());
         self
     }
 }
@@ -110,7 +112,7 @@ impl SceneError {
     pub(crate) fn new(source_name: &str, mut problems: Vec<Problem>) -> Self {
         problems.sort_by_key(|problem| problem.line);
         Self {
-            source_name: source_name.to_owned(),
+            source_name: plain(source_name).into_owned(),
             problems,
             omitted: 0,
         }

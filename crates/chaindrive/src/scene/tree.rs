@@ -6,6 +6,7 @@ use toml_edit::{Item, TableLike, Value as Toml};
 use super::error::Problem;
 use super::limits;
 use super::validate::shorten;
+use crate::plain::commands;
 
 /// A value and the line it stands on.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,6 +52,45 @@ impl Value {
 }
 
 impl Node {
+    /// Texts and keys with characters that command a terminal: scenes come from anywhere, and messages, results and drawings show their texts.
+    pub(crate) fn commands(&self) -> Vec<Problem> {
+        let mut found = Vec::new();
+        self.find_commands("", &mut found);
+        found
+    }
+
+    fn find_commands(&self, path: &str, found: &mut Vec<Problem>) {
+        let speaks = |text: &str| text.contains(commands);
+        let problem = |path: &str, line: Option<usize>, what: &str, text: &str| {
+            let message = format!(
+                "{what} \"{}\" has characters that command a terminal",
+                shorten(text)
+            );
+            Problem::new(path, line, message).hint("leave them out")
+        };
+        match &self.value {
+            Value::Text(text) if speaks(text) => {
+                found.push(problem(path, self.line, "the text", text));
+            }
+            Value::List(items) => {
+                for (index, item) in items.iter().enumerate() {
+                    item.find_commands(&format!("{path}[{index}]"), found);
+                }
+            }
+            Value::Table(entries) => {
+                for entry in entries {
+                    if speaks(&entry.key) {
+                        found.push(problem(path, entry.line, "the key", &entry.key));
+                    }
+                    let dot = if path.is_empty() { "" } else { "." };
+                    let within = format!("{path}{dot}{}", entry.key);
+                    entry.node.find_commands(&within, found);
+                }
+            }
+            _ => {}
+        }
+    }
+
     /// Parses TOML, or JSON when the text begins with `{`.
     pub(crate) fn parse(text: &str) -> Result<Self, Problem> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);

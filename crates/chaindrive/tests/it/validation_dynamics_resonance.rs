@@ -330,7 +330,10 @@ impl Spring<'_> {
             [run]
             until = {until}
             every = {every}
+            # At the default step link plates under the rod gain energy, as in V05.
+            step = {step}
             "#,
+            step = 0.05 * (3e-5 / self.stiffness).sqrt(),
             rod = spreading_rod(1.0, distance, [radius; 2], pitch),
             stiffness = self.stiffness,
             roller = 0.6 * pitch,

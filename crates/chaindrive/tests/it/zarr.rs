@@ -310,8 +310,16 @@ fn only_results_are_replaced() {
     ));
     // What a killed run may leave behind does not stand in the way.
     fs::write(path.join("zarr.json#1"), "{").unwrap();
-    create(Existing::Replace).unwrap();
+    // What is to be replaced stays until there is something in its place.
+    let writer = create(Existing::Replace).unwrap();
+    assert!(path.join("zarr.json#1").exists());
+    drop(writer);
+    assert!(path.join("zarr.json#1").exists());
+    let mut writer = create(Existing::Replace).unwrap();
+    writer.push(&simulation).unwrap();
+    writer.flush(&simulation).unwrap();
     assert!(!path.join("zarr.json#1").exists());
+    drop(writer);
 
     fs::write(path.join("thesis.tex"), "three years").unwrap();
     let refused = create(Existing::Replace).unwrap_err();

@@ -12,7 +12,7 @@ use clap::Args;
 
 use crate::failure::Failure;
 use crate::request::{RunArguments, SceneArguments};
-use crate::stdout::print;
+use crate::terminal::print;
 
 /// Measures work and precision of methods and steps on a scene; prints a table, saves it and a diagram.
 #[derive(Debug, Args)]

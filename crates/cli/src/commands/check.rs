@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::failure::Failure;
 use crate::request::load;
-use crate::stdout::print;
+use crate::terminal::{print, say};
 
 /// Reads scenes, assembles their drives, and reports everything that is wrong.
 #[derive(Debug, Args)]
@@ -23,7 +23,7 @@ pub(crate) fn check(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
             Ok(what) => print(format_args!("{name}: {what}"))?,
             Err(Failure::Interrupted) => return Err(Failure::Interrupted),
             Err(failure) => {
-                eprintln!("{failure}");
+                say(failure);
                 wrong += 1;
             }
         }
@@ -43,11 +43,11 @@ fn sound(name: &str, interrupted: &dyn Fn() -> bool) -> Result<String, Failure> 
     let assembled = assemble(&drive, interrupted);
     let assembled = Failure::or_interrupted(assembled, scene.name())?;
     for warning in &assembled.warnings {
-        eprintln!("warning: {name}: {warning}");
+        say(format_args!("warning: {name}: {warning}"));
     }
     let run = Run::suggested(&scene.run_defaults());
     for fight in drive.fights(0.0, run.until) {
-        eprintln!("warning: {name}: {fight}");
+        say(format_args!("warning: {name}: {fight}"));
     }
     let links = assembled.system.links();
     let chain = match drive.chains.len() {

@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::failure::Failure;
 use crate::request::{RunArguments, SceneArguments};
-use crate::stdout::print;
+use crate::terminal::{print, say};
 
 /// Describes what a run would simulate: route, statics, model, time scales, cost.
 #[derive(Debug, Args)]
@@ -35,7 +35,7 @@ pub(crate) fn describe(
     } = arguments.run.apply(&arguments.scene.load(interrupted)?)?;
     let drive = scene.drive()?;
     for note in arguments.scene.notes(&scene) {
-        eprintln!("{note}");
+        say(note);
     }
     // What a run would do, it would do by the method that it would choose.
     let choice = accuracy.map(|accuracy| {

@@ -6,7 +6,7 @@ use clap::{ArgGroup, Args};
 
 use crate::failure::Failure;
 use crate::request::load;
-use crate::stdout::print;
+use crate::terminal::print;
 
 /// Lays out the chains of a scene, or a chain on two sprockets: links, spans, points of tangency, wraps, seats, clashes.
 ///

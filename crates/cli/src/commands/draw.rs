@@ -12,7 +12,7 @@ use chaindrive::scene::read_time;
 
 use crate::failure::Failure;
 use crate::request::SceneArguments;
-use crate::stdout::print;
+use crate::terminal::{print, say};
 
 /// Draws a drive as SVG: teeth, rollers, plates, guides and tensioners in millimetres, at the start or at an instant of a result.
 ///
@@ -61,7 +61,7 @@ pub(crate) fn draw(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Res
     };
     let picture = svg(&figure, &pose, &title);
     if let Some(problem) = &figure.problem {
-        eprintln!("{}: {problem}", scene.name());
+        say(format_args!("{}: {problem}", scene.name()));
     }
     match &arguments.output {
         None => print(picture.trim_end()),

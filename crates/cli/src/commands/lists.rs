@@ -6,7 +6,7 @@ use chaindrive::{Build, Channel, InstructionSet, Origin, Scene};
 use clap::Args;
 
 use crate::failure::Failure;
-use crate::stdout::print;
+use crate::terminal::print;
 
 /// Lists the embedded scenes, or prints one of them as TOML.
 #[derive(Debug, Args)]

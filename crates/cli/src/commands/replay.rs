@@ -9,6 +9,7 @@ use chaindrive_replay::{FilmError, MOST_FRAMES, Selection, film, page};
 use clap::Args;
 
 use crate::failure::Failure;
+use crate::terminal::say;
 
 const PAGES: &str = "\
 The page:
@@ -102,7 +103,7 @@ pub(crate) fn replay(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> R
             1 => format!("{frames} frames, every sample"),
             stride => format!("{frames} frames, one in {stride} of {samples} samples"),
         };
-        eprintln!("{name}: {taken}, {size:.2} MB");
+        say(format_args!("{name}: {taken}, {size:.2} MB"));
     }
     Ok(())
 }

@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use chaindrive::Given;
-use chaindrive::record::Stopped;
+use chaindrive::record::{Stopped, take_over};
 use clap::Args;
 
 use super::run::{Telling, Terminal, concluded, not_run};
 use crate::failure::Failure;
+use crate::terminal::say;
 
 const CHECKPOINTS: &str = "\
 What there is to go on from:
@@ -28,18 +29,27 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "TIME")]
     until: Option<String>,
 
+    /// Takes over where another user, or a process that died, left the folder of a writer
+    #[arg(long)]
+    take_over: bool,
+
     #[command(flatten)]
     telling: Telling,
 }
 
 pub(crate) fn resume(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
     let until = arguments.until.clone().map(|until| Given::written(&until));
+    if arguments.take_over {
+        take_over(&arguments.result)?;
+    }
     let stopped = Stopped::open(&arguments.result, until.as_ref())?;
     let checkpoint = stopped.checkpoint();
     if !arguments.telling.quiet {
         let (time, until) = (checkpoint.time(), checkpoint.until());
         let samples = checkpoint.samples();
-        eprintln!("going on from t = {time:.6} s of {until} s, behind {samples} samples");
+        say(format_args!(
+            "going on from t = {time:.6} s of {until} s, behind {samples} samples"
+        ));
     }
     let scene = checkpoint.scene_name().to_owned();
     let terminal = Terminal::new(arguments.telling.quiet, interrupted);

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::path::PathBuf;
 
 use chaindrive::describe::spans_at_rest;
-use chaindrive::record::{Existing, figures};
+use chaindrive::record::{Existing, figures, take_over};
 use chaindrive::{Given, Onlooker, Report, RunError, Simulation, Stop, execute};
 use clap::Args;
 
@@ -12,7 +12,7 @@ use super::output::Target;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::request::{RunArguments, SceneArguments};
-use crate::stdout::print;
+use crate::terminal::{print, say};
 
 /// Simulates a scene and ends with a summary.
 #[derive(Debug, Args)]
@@ -30,6 +30,10 @@ pub(crate) struct Arguments {
     /// Replaces an earlier result of the same name
     #[arg(long)]
     overwrite: bool,
+
+    /// Takes over where another user, or a process that died, left the folder of a writer
+    #[arg(long)]
+    take_over: bool,
 
     /// Simulated time between two checkpoints in a Zarr result, such as "10 ms": killed at any moment, the run goes on
     /// from the last one by `chaindrive resume`. The samples are the same as without, to the last bit
@@ -63,7 +67,7 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
     let scene = request.scene.name().to_owned();
     if !arguments.telling.quiet {
         for note in arguments.scene.notes(&request.scene) {
-            eprintln!("{note}");
+            say(note);
         }
     }
     if let Some(every) = &arguments.checkpoint_every {
@@ -80,6 +84,9 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
     } else {
         Existing::Keep
     };
+    if let Some(path) = arguments.output.as_ref().filter(|_| arguments.take_over) {
+        take_over(path)?;
+    }
     let mut result = target.output(existing);
     let terminal = Terminal::new(arguments.telling.quiet, interrupted);
     let report = execute(&request, &mut result, &terminal);
@@ -110,11 +117,11 @@ pub(super) fn concluded(report: Report, scene: &str, telling: Telling) -> Result
     let Telling { quiet, strict } = telling;
     if !quiet {
         for clash in &report.simulation.assembled().warnings {
-            eprintln!("warning: {scene}: {clash}");
+            say(format_args!("warning: {scene}: {clash}"));
         }
     }
     if let Some(warning) = report.verdict.warning() {
-        eprintln!("{scene}: {warning}");
+        say(format_args!("{scene}: {warning}"));
     }
     if !quiet && report.summary.samples > 0 {
         print(told(&report))?;

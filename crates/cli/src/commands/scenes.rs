@@ -5,7 +5,7 @@ use clap::Args;
 
 use crate::failure::Failure;
 use crate::request::{SceneArguments, load};
-use crate::stdout::print;
+use crate::terminal::print;
 
 /// Prints a scene in full: every default with its value, and where it comes from.
 ///

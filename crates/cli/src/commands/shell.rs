@@ -8,7 +8,7 @@ use clap_complete::{Shell, generate};
 use clap_mangen::generate_to;
 
 use crate::failure::Failure;
-use crate::stdout::print;
+use crate::terminal::print;
 
 /// Prints a script by which a shell completes commands and options.
 ///

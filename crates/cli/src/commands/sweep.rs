@@ -8,7 +8,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use chaindrive::Request;
-use chaindrive::record::{Ending, Existing, SweepStore, WriteError};
+use chaindrive::record::{Ending, Existing, SweepStore, WriteError, take_over};
 use chaindrive::sweep::{Go, Sweep, Tally};
 use clap::Args;
 
@@ -16,7 +16,7 @@ use super::output::Target;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::request::{RunArguments, SceneArguments};
-use crate::stdout::print;
+use crate::terminal::{print, say};
 use output::Output;
 
 const VALUES: &str = "\
@@ -79,6 +79,10 @@ pub(crate) struct Arguments {
     #[arg(long)]
     overwrite: bool,
 
+    /// Takes over where another user, or a process that died, left the folder of a writer
+    #[arg(long)]
+    take_over: bool,
+
     /// Prints errors only, and a line if variants are not to be trusted
     #[arg(short, long)]
     quiet: bool,
@@ -99,6 +103,9 @@ pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
     } else {
         Existing::Keep
     };
+    if let Some(path) = arguments.output.as_ref().filter(|_| arguments.take_over) {
+        take_over(path)?;
+    }
     match target {
         Target::Zarr(path) => in_store(arguments, &path, &sweep, interrupted),
         Target::Csv(path) => in_memory(arguments, Some(&path), &sweep, existing, interrupted),
@@ -192,10 +199,10 @@ fn conclude(
         print(report)?;
     }
     if let Some(warning) = tally.warning(sweep) {
-        eprintln!("{warning}");
+        say(warning);
     }
     for failure in tally.failures(sweep) {
-        eprintln!("{failure}");
+        say(failure);
     }
     match tally.failed {
         _ if tally.open > 0 => Err(Failure::Interrupted),

@@ -335,7 +335,7 @@ fn on_a_full_disk_it_keeps_what_was_written() {
         "run",
         "spinning_ring",
         "--until",
-        "1e4",
+        "300",
         "--every",
         "10 us",
         "--no-error",

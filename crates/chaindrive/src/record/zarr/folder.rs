@@ -15,6 +15,10 @@ use zarrs::storage::{Bytes, StorageError, StoreKey};
 
 use super::error::Fault;
 use super::files::{Change, Files};
+use super::inspect::read_file;
+
+/// Largest file of a store \[bytes\]: chunks, documents and checkpoints stay far below.
+const LARGEST: u64 = 1 << 30;
 
 /// Begins the end of the name of a file on its way, the number of its process; readers of the store know no such key.
 pub(super) const STAGED: char = '#';
@@ -186,7 +190,7 @@ impl State {
 
 impl Files for Folder {
     fn read(&self, key: &StoreKey) -> Result<Option<Bytes>, StorageError> {
-        Ok(if_there(fs::read(self.path(key)))?.map(Bytes::from))
+        Ok(read_file(&self.path(key), LARGEST)?.map(Bytes::from))
     }
 
     fn size(&self, key: &StoreKey) -> Result<Option<u64>, StorageError> {

@@ -32,6 +32,10 @@ pub enum ReadError {
     #[error("{}: this is the result of a sweep; give that of a run", .path.display())]
     Sweep { path: PathBuf },
 
+    /// It is not as this program writes it, and nobody should read it.
+    #[error("{}: {why}; chaindrive writes no such result, and does not read it", .path.display())]
+    Suspect { path: PathBuf, why: String },
+
     /// The arrays that it names cannot be read.
     #[error("{}: {source}", .path.display())]
     Store {
@@ -42,6 +46,27 @@ pub enum ReadError {
     /// It cannot be told whether somebody writes it.
     #[error(transparent)]
     Claim(#[from] WriteError),
+}
+
+/// Looks at a store of unknown origin before its arrays are read, by whatever reader: it leads nowhere else, is of Zarr format 3, is packed by codecs
+/// that this program uses, and holds what it declares and no more.
+///
+/// # Errors
+/// [`ReadError`]: nothing is there, it is no result, or it is not as this program writes results.
+pub fn inspect(path: &Path) -> Result<(), ReadError> {
+    if !path.exists() {
+        return Err(ReadError::Missing { path: path.into() });
+    }
+    let group = target::group(path, path);
+    let group = group.map_err(|_| ReadError::Foreign { path: path.into() })?;
+    looked_at(path, &group)
+}
+
+fn looked_at(path: &Path, group: &Value) -> Result<(), ReadError> {
+    super::inspect::inspect(path, group).map_err(|why| ReadError::Suspect {
+        path: path.into(),
+        why,
+    })
 }
 
 impl Recorded {
@@ -71,6 +96,7 @@ impl Recorded {
         if group["attributes"].get("samples").is_none() {
             return Err(ReadError::Sweep { path: path.into() });
         }
+        looked_at(path, &group)?;
         let stored = Stored::new(path, &group).and_then(|it| it.read(wanted, most));
         let mut recorded = stored.map_err(|source| ReadError::Store {
             path: path.into(),

@@ -106,6 +106,9 @@ impl Stopped {
                 (Some("failed"), Some(reason)) => {
                     format!("the run failed, and was left without one: {reason}")
                 }
+                _ if store.attributes().contains_key("checkpoint_every") => {
+                    "the run was killed before the first one; begin anew".to_owned()
+                }
                 _ => "the run was killed, and was not asked to keep checkpoints; begin anew"
                     .to_owned(),
             };

@@ -14,6 +14,7 @@ use super::bucket::{Bucket, Objects};
 use super::error::Fault;
 use super::files::Ground;
 use super::folder::Folder;
+use super::inspect::inspect;
 use super::{Ending, Existing, target};
 use crate::record::claim::Claim;
 use crate::record::error::WriteError;
@@ -32,6 +33,8 @@ pub(in crate::record) struct Store {
     last: Document,
     /// Whether the last word was said: how it ended, or that it was given up.
     ended: bool,
+    /// Why it had failed before it went on.
+    earlier: Option<String>,
 }
 
 /// Means of stores on a disk: a claim that the system lets go of when the process ends, and a folder that takes its place whole.
@@ -80,6 +83,7 @@ impl Store {
             disk: Some(Disk { claim, folder }),
             last: Document::default(),
             ended: false,
+            earlier: None,
         })
     }
 
@@ -101,6 +105,7 @@ impl Store {
             disk: None,
             last: Document::default(),
             ended: false,
+            earlier: None,
         })
     }
 
@@ -128,6 +133,10 @@ impl Store {
         };
         let claim = Claim::take(path)?;
         let group = target::group(path, claim.place())?;
+        inspect(claim.place(), &group).map_err(|found| WriteError::Foreign {
+            path: path.to_owned(),
+            found,
+        })?;
         let folder = Arc::new(open(claim.place()).map_err(io)?);
         let disk = Disk {
             claim,
@@ -164,6 +173,7 @@ impl Store {
             },
             // Nothing new has been said that could be broken off.
             ended: true,
+            earlier: group["attributes"]["failure"].as_str().map(str::to_owned),
         }
     }
 
@@ -346,6 +356,13 @@ impl Store {
         }
         attributes.insert("status".into(), failed.status().into());
         attributes.insert("complete".into(), 0.into());
+        // A second failure is mostly what the first one left.
+        let reason = match &self.earlier {
+            Some(earlier) if earlier != reason => {
+                format!("{earlier}; and when it went on: {reason}")
+            }
+            _ => reason.to_owned(),
+        };
         attributes.insert("failure".into(), reason.into());
         if let Some(disk) = &self.disk {
             disk.claim.spend_reserve();

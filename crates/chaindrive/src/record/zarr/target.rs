@@ -10,6 +10,7 @@ use serde_json::Value;
 
 use super::bucket::{Bucket, IDENTITY, Objects};
 use super::folder::STAGED;
+use super::inspect::read_group;
 use super::{Existing, variants};
 use crate::record::attributes::FORMAT;
 use crate::record::error::WriteError;
@@ -145,7 +146,7 @@ fn check_names(
 
 /// The group document of an earlier result; an error if the folder is anything else.
 pub(super) fn group(asked: &Path, place: &Path) -> Result<Value, WriteError> {
-    document(asked, fs::read(place.join(GROUP)).ok().as_deref())
+    document(asked, read_group(place).ok().flatten().as_deref())
 }
 
 /// The same of what is in that file.

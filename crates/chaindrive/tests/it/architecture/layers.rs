@@ -54,7 +54,7 @@ const CRATES: [Storeys; 4] = [
     Storeys {
         folder: "chaindrive",
         layers: &[
-            &["identity"],
+            &["identity", "plain"],
             &["catalogue", "design", "draw", "seal", "stepping"],
             &["error", "scene"],
             &["run"],
@@ -114,7 +114,7 @@ const CRATES: [Storeys; 4] = [
         folder: "cli",
         layers: &[
             &["failure", "suggested"],
-            &["csv", "progress", "request", "stdout"],
+            &["csv", "progress", "request", "terminal"],
             &["commands"],
         ],
         exceptions: &[],

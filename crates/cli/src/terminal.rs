@@ -1,0 +1,25 @@
+//! The one place that writes texts to a terminal: nothing in them commands it, wherever they come from.
+
+use std::fmt::Display;
+use std::io::{self, ErrorKind, Write};
+
+use chaindrive::plain;
+
+use crate::failure::Failure;
+
+/// Writes a text to stdout and ends the line; a reader that has seen enough is not an error.
+pub(crate) fn print(text: impl Display) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match writeln!(out, "{}", plain(&text.to_string())).and_then(|()| out.flush()) {
+        Err(source) if source.kind() != ErrorKind::BrokenPipe => Err(Failure::File {
+            path: "stdout".into(),
+            source,
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Writes a text to stderr and ends the line.
+pub(crate) fn say(text: impl Display) {
+    eprintln!("{}", plain(&text.to_string()));
+}

@@ -1,0 +1,273 @@
+"""Files of unknown origin: they carry out nothing, lead nowhere else, and end."""
+
+import json
+import os
+import pickle
+import random
+import shutil
+import subprocess
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import chaindrive as cd
+from chaindrive.errors import ChaindriveError
+
+RUN = {"until": 4e-3, "every": 1e-4, "error": False}
+
+
+def ring(place: Path, **settings: object) -> Path:
+    """A small result."""
+    cd.simulate(cd.scenes.spinning_ring(), output=place, **{**RUN, **settings})
+    return place
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Path:
+    return ring(tmp_path / "ring.zarr")
+
+
+class Evil:
+    """Says so when it is unpickled."""
+
+    def __init__(self, flag: Path) -> None:
+        self.flag = flag
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return Path.touch, (self.flag,)
+
+
+def test_a_result_carries_out_no_code(tmp_path: Path) -> None:
+    """A store of Zarr 2 may be packed by `pickle`, and readers unpack `time` at once."""
+    root, flag = tmp_path / "evil.zarr", tmp_path / "flag"
+    attributes = {"format": "chaindrive", "status": "complete", "samples": 3}
+    array = {
+        "zarr_format": 2, "shape": [3], "chunks": [3], "dtype": "|O", "order": "C",
+        "compressor": {"id": "pickle"}, "fill_value": "", "filters": [{"id": "vlen-utf8"}],
+    }  # fmt: skip
+    (root / "time").mkdir(parents=True)
+    for name, text in {
+        ".zgroup": {"zarr_format": 2},
+        ".zattrs": attributes,
+        "time/.zarray": array,
+        "time/.zattrs": {"_ARRAY_DIMENSIONS": ["time"]},
+    }.items():
+        (root / name).write_text(json.dumps(text))
+    (root / "time" / "0").write_bytes(pickle.dumps(Evil(flag)))
+    with pytest.raises(ValueError, match="no"):
+        cd.open_result(root)
+    # With a document of format 3 beside it as well.
+    group = {"zarr_format": 3, "node_type": "group", "attributes": attributes}
+    (root / "zarr.json").write_text(json.dumps(group))
+    with pytest.raises(ValueError, match=r"damaged|no"):
+        cd.open_result(root).load()
+    assert not flag.exists()
+
+
+def edited(store: Path, change: Callable[[dict], None]) -> None:
+    group = json.loads((store / "zarr.json").read_text())
+    change(group["consolidated_metadata"]["metadata"])
+    (store / "zarr.json").write_text(json.dumps(group))
+
+
+def is_refused(store: Path, why: str) -> None:
+    with pytest.raises(ValueError, match=why):
+        cd.open_result(store)
+    command = subprocess.run(
+        ["chaindrive", "replay", store, "-o", store.parent / "replay.html"],
+        capture_output=True, text=True, timeout=20, check=False,
+    )  # fmt: skip
+    assert command.returncode == 2, command
+    assert not (store.parent / "replay.html").exists()
+
+
+def test_links_devices_and_pipes_are_refused(store: Path) -> None:
+    chunk = store / "time" / "c" / "0"
+    chunk.unlink()
+    chunk.symlink_to("/dev/zero")
+    is_refused(store, "`time/c/0` is a link, a device or a pipe")
+    chunk.unlink()
+    os.mkfifo(chunk)
+    is_refused(store, "`time/c/0` is a link, a device or a pipe")
+    (store / "zarr.json").unlink()
+    (store / "zarr.json").symlink_to("/dev/zero")
+    is_refused(store, "not a result")
+
+
+def test_what_is_declared_is_there(store: Path) -> None:
+    def longer(arrays: dict) -> None:
+        arrays["time"]["shape"] = [10**15]
+
+    edited(store, longer)
+    is_refused(store, "`time` holds less than it declares")
+
+
+def test_no_chunk_is_larger_than_it_should_be(store: Path) -> None:
+    def larger(arrays: dict) -> None:
+        arrays["time"]["chunk_grid"]["configuration"]["chunk_shape"] = [10**12]
+
+    kept = (store / "zarr.json").read_text()
+    edited(store, larger)
+    is_refused(store, "a chunk holds more than 256 MiB")
+    (store / "zarr.json").write_text(kept)
+    chunk = store / "time" / "c" / "0"
+    packed = chunk.read_bytes()
+    # Two bytes of the header are the size of what is packed, less 256 (RFC 8878).
+    assert packed[4] >> 6 == 1
+    chunk.write_bytes(packed[:5] + b"\xff\xff" + packed[7:])
+    is_refused(store, "a chunk holds more than it should")
+    chunk.write_bytes(os.urandom(1 << 20))
+    is_refused(store, "a chunk holds more than it should")
+
+
+def test_unknown_codecs_and_types_are_refused(store: Path) -> None:
+    def packed(arrays: dict) -> None:
+        arrays["time"]["codecs"].append({"name": "numcodecs.pickle"})
+
+    kept = (store / "zarr.json").read_text()
+    edited(store, packed)
+    is_refused(store, "packed by a codec")
+    (store / "zarr.json").write_text(kept)
+    edited(store, lambda arrays: arrays["time"].update(data_type="object"))
+    is_refused(store, "type is none")
+
+
+def chaindrive(*arguments: object) -> subprocess.CompletedProcess[str]:
+    command = ["chaindrive", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+
+
+@pytest.mark.parametrize("verb", ["run", "resume"])
+def test_a_lock_leads_nowhere_else(tmp_path: Path, store: Path, verb: str) -> None:
+    victim, beside = tmp_path / "victim.txt", tmp_path / ".ring.zarr.writing"
+    victim.write_text("precious")
+    beside.mkdir()
+    (beside / "lock").symlink_to(victim)
+    arguments = {
+        "run": ["run", "spinning_ring", "--until", "2ms", "--no-error", "--overwrite", "-o", store],
+        "resume": ["resume", store, "--until", "8ms"],
+    }[verb]
+    refused = chaindrive(*arguments, "-q")
+    assert refused.returncode == 3
+    assert "--take-over" in refused.stderr
+    assert victim.read_text() == "precious"
+    taken = chaindrive(*arguments, "-q", "--take-over")
+    # That run was not asked to keep checkpoints.
+    assert taken.returncode == (0 if verb == "run" else 2), taken
+    assert victim.read_text() == "precious"
+    assert not beside.exists()
+
+
+@pytest.mark.skipif(
+    not hasattr(os, "geteuid") or os.geteuid() != 0, reason="others' files need root"
+)
+def test_the_folder_of_another_user_is_not_ours(tmp_path: Path) -> None:
+    beside = tmp_path / ".new.zarr.writing"
+    beside.mkdir()
+    os.chown(beside, 12345, 12345)
+    with pytest.raises(cd.WriteError, match="another user"):
+        ring(tmp_path / "new.zarr")
+    cd.take_over(tmp_path / "new.zarr")
+    ring(tmp_path / "new.zarr")
+
+
+def test_texts_command_no_terminal(tmp_path: Path) -> None:
+    scene = tmp_path / "evil.json"
+    evil = "\x1b]0;evil\x07"
+    scene.write_text(json.dumps({"title": evil, evil: 1, "chain": "16B-1"}))
+    told = chaindrive("check", scene)
+    assert told.returncode == 2
+    assert "\x1b" not in told.stderr
+    assert "command a terminal" in told.stderr
+    with pytest.raises(cd.SceneError) as refused:
+        cd.load(scene)
+    assert "\x1b" not in str(refused.value)
+    # A name of a file, which nothing refuses.
+    told = chaindrive("check", tmp_path / f"{evil}.toml")
+    assert "\x1b" not in told.stderr
+    assert "no such file" in told.stderr
+
+
+def test_a_recording_that_no_disk_holds_is_not_begun(tmp_path: Path) -> None:
+    with pytest.raises(cd.WriteError, match="of disk"):
+        ring(tmp_path / "large.zarr", until=1e3, every=1e-6, record="all")
+    assert not list(tmp_path.iterdir())
+
+
+def test_drawings_that_are_damaged_are_said_to_be(tmp_path: Path) -> None:
+    place = tmp_path / "drawing.dxf"
+    with pytest.raises(cd.ParameterError, match="no outlines"):
+        cd.exchange.write_dxf(cd.scenes.hanging_chain(), "x.dxf")  # type: ignore[arg-type]
+    with pytest.raises(cd.ParameterError, match="empty"):
+        cd.exchange.face(cd.exchange.Curve(np.zeros((0, 2)), np.zeros(0), False))
+    cd.exchange.write_dxf(place, cd.scenes.industrial_16b().profile("driver"))
+    damage(place, random.Random(1), 40, cd.exchange.read_dxf)
+
+
+def damage(place: Path, lot: random.Random, times: int, opened: Callable[[Path], object]) -> None:
+    """Damages a file or folder, and opens it: in time, and with documented exceptions."""
+    whole = place.with_name("whole")
+    (shutil.copytree if place.is_dir() else shutil.copy)(place, whole)
+    for _ in range(times):
+        if place.is_dir():
+            shutil.rmtree(place)
+            shutil.copytree(whole, place)
+        else:
+            shutil.copy(whole, place)
+        files = (
+            [place] if place.is_file() else sorted(it for it in place.rglob("*") if it.is_file())
+        )
+        file = lot.choice(files)
+        held = bytearray(file.read_bytes())
+        match lot.randrange(4):
+            case 0:
+                del held[lot.randrange(len(held) + 1) :]
+            case 1:
+                for _ in range(lot.randint(1, 8)):
+                    held[lot.randrange(len(held))] = lot.randrange(256)
+            case 2:
+                at = lot.randrange(len(held) + 1)
+                held[at:at] = bytes(lot.randrange(32, 127) for _ in range(lot.randint(1, 20)))
+            case 3:
+                digits = [at for at, it in enumerate(held) if chr(it).isdigit()] or [0]
+                at = lot.choice(digits)
+                held[at : at + 1] = b"9" * lot.randint(1, 12)
+        file.write_bytes(held)
+        begun = time.monotonic()
+        with suppress(ChaindriveError, ValueError, FileNotFoundError):
+            opened(place)
+        assert time.monotonic() - begun < 5.0, held[:200]
+    # Nothing was written outside.
+    assert sorted(it.name for it in place.parent.iterdir()) == sorted([place.name, "whole"])
+
+
+def test_results_that_are_damaged_are_said_to_be(tmp_path: Path) -> None:
+    damage(ring(tmp_path / "ring.zarr"), random.Random(2), 60, cd.open_result)
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore")
+def test_thousands_of_damaged_files(tmp_path: Path) -> None:
+    """5 000 stores, 2 000 drawings, 2 000 results with a checkpoint, 500 scenes."""
+    (tmp_path / "a").mkdir()
+    damage(ring(tmp_path / "a" / "ring.zarr"), random.Random(3), 5000, cd.open_result)
+    (tmp_path / "b").mkdir()
+    drawing = tmp_path / "b" / "drawing.dxf"
+    cd.exchange.write_dxf(drawing, cd.scenes.industrial_16b().profile("driver"))
+    damage(drawing, random.Random(4), 2000, cd.exchange.read_dxf)
+    (tmp_path / "c").mkdir()
+    kept = ring(tmp_path / "c" / "ring.zarr", checkpoint_every=1e-3)
+    damage(kept, random.Random(5), 2000, lambda place: cd.resume(place, until=4.2e-3))
+    lot = random.Random(6)
+    controls = [chr(it) for it in range(32) if chr(it) not in "\n\t"] + ["\x7f", "\u202e"]
+    for _ in range(500):
+        scene = cd.scenes.spinning_ring().to_dict()
+        text = "".join(lot.choice([*controls, "a"]) for _ in range(9)) + lot.choice(controls)
+        scene[lot.choice(["title", text])] = text
+        with pytest.raises(cd.SceneError) as refused:
+            cd.Drive.from_dict(scene)
+        assert not any(it in str(refused.value) for it in controls)
