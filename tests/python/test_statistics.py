@@ -25,7 +25,12 @@ def test_the_phase_of_the_start_makes_no_other_drive() -> None:
         means = []
         for drive in drives:
             run = cd.simulate(
-                drive, until="60 ms", every="50 us", record="span_tension", error=False
+                drive,
+                run_in="0.1 s",
+                until="60 ms",
+                every="50 us",
+                record="span_tension",
+                error=False,
             )
             means.append(run["span_tension"].mean("time").values)
         tight, slack = np.array(means).T

@@ -374,10 +374,12 @@ def test_arrays_of_many_variants_are_cut_at_the_same_places(tmp_path):
 def test_tensioners_have_the_units_of_their_carriers():
     names = ["tensioner_position", "tensioner_force"]
     vary = {"route.pretension": ["10 kN"]}
-    slider = cd.sweep(cd.scenes.marine_engine(), vary, until=1e-4, every=1e-4, record=names)
+    slider = cd.sweep(
+        cd.scenes.marine_engine(), vary, until=1e-4, every=1e-4, run_in=0, record=names
+    )
     assert [slider[name].attrs["units"] for name in names] == ["m", "N"]
     vary = {"gravity": [[0.0, -9.81]]}
-    arm = cd.sweep(cd.scenes.timing_drive(), vary, until=1e-5, every=1e-5, record=names)
+    arm = cd.sweep(cd.scenes.timing_drive(), vary, until=1e-5, every=1e-5, run_in=0, record=names)
     assert [arm[name].attrs["units"] for name in names] == ["rad", "N"]
 
 

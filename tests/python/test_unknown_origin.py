@@ -6,6 +6,7 @@ import pickle
 import random
 import shutil
 import subprocess
+import sys
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -17,6 +18,7 @@ import pytest
 import chaindrive as cd
 from chaindrive.errors import ChaindriveError
 
+COMMAND = [sys.executable, "-m", "chaindrive"]
 RUN = {"until": 4e-3, "every": 1e-4, "error": False}
 
 
@@ -78,7 +80,7 @@ def is_refused(store: Path, why: str) -> None:
     with pytest.raises(ValueError, match=why):
         cd.open_result(store)
     command = subprocess.run(
-        ["chaindrive", "replay", store, "-o", store.parent / "replay.html"],
+        [*COMMAND, "replay", store, "-o", store.parent / "replay.html"],
         capture_output=True, text=True, timeout=20, check=False,
     )  # fmt: skip
     assert command.returncode == 2, command
@@ -137,7 +139,7 @@ def test_unknown_codecs_and_types_are_refused(store: Path) -> None:
 
 
 def chaindrive(*arguments: object) -> subprocess.CompletedProcess[str]:
-    command = ["chaindrive", *map(str, arguments)]
+    command = [*COMMAND, *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
 
 
@@ -271,3 +273,10 @@ def test_thousands_of_damaged_files(tmp_path: Path) -> None:
         with pytest.raises(cd.SceneError) as refused:
             cd.Drive.from_dict(scene)
         assert not any(it in str(refused.value) for it in controls)
+
+
+def test_a_tiny_restitution_is_refused() -> None:
+    """A contact that returns nothing is stiffer than any step: runs did not come back from it."""
+    drive = cd.scenes.industrial_16b().replace({"contact.teeth.restitution": 8e-13})
+    with pytest.raises(cd.SceneError, match=r"\[1e-6, 1\]"):
+        cd.simulate(drive, until=1e-6)

@@ -20,6 +20,7 @@ use crate::{SimulationError, Stepping};
 pub use checkpoint::Checkpoint;
 pub(crate) use execute::resume;
 pub use execute::{End, Onlooker, Report, RunError, Sink, Stop, execute};
+pub(crate) use patience::LOOK;
 pub use patience::patiently;
 pub use request::{Request, RequestError};
 pub(crate) use run_in::longest;

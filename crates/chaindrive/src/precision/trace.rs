@@ -10,6 +10,7 @@ use super::Watch;
 use super::accuracy::LEAST_LOSSES;
 use super::window::Window;
 use super::wording::duration;
+use crate::run::LOOK;
 use crate::{Run, Simulation, SimulationError};
 
 /// The samples of a short run.
@@ -141,7 +142,16 @@ impl Trace {
     ) -> Result<(), SimulationError> {
         simulation.go_on_until(window.until);
         let more = window.samples().saturating_sub(self.len());
-        while let Some(sample) = simulation.next_sample()? {
+        loop {
+            // A sample may be many steps away.
+            while !simulation.advance(LOOK)? {
+                if watch() {
+                    return Err(SimulationError::Interrupted);
+                }
+            }
+            let Some(sample) = simulation.next_sample()? else {
+                break;
+            };
             self.push(sample, more);
             self.impacts.extend_from_slice(simulation.impacts());
             if watch() {

@@ -135,7 +135,8 @@ pub(super) fn settle(
         .max(record);
     let least = counted(least / block).max(FEWEST);
     let mut course = Course::default();
-    let mut taken = Taken::new(start, run)?;
+    let stop = || onlooker.stop();
+    let mut taken = Taken::new(start, run, &stop)?;
     loop {
         let begun = start.time + course.count as f64 * block;
         let (mut spans, mut states) = (Vec::new(), Vec::new());
@@ -143,12 +144,13 @@ pub(super) fn settle(
             let time = begun + look as f64 / looks as f64 * block;
             let seen = match taken.look(time) {
                 Ok(seen) => seen,
+                Err(SimulationError::Interrupted) => return Err(SimulationError::Interrupted),
                 Err(failure) => return taken.failed(failure),
             };
             note(&mut spans, seen.span_tension.iter().copied());
             note(&mut states, creeping(seen));
             onlooker.see_run_in(((time - start.time) / longest).min(1.0));
-            if onlooker.stop() {
+            if stop() {
                 return Err(SimulationError::Interrupted);
             }
         }
@@ -187,6 +189,7 @@ fn run_up(
     let mut moving = Simulation::from_assembled(start.clone(), &plain)?;
     let mut stretch = RUN_UP[0] * moving.method().step();
     let longest = RUN_UP[1] * moving.method().step();
+    let stop = || onlooker.stop();
     let mut before = Vec::new();
     while moving.time() < longest {
         let begun = moving.time();
@@ -195,10 +198,10 @@ fn run_up(
             let time = begun + f64::from(look) / f64::from(RUN_UP_LOOKS) * stretch;
             note(
                 &mut speeds,
-                moving.look(time)?.sprocket_speed.iter().copied(),
+                moving.look(time, &stop)?.sprocket_speed.iter().copied(),
             );
             onlooker.see_run_in(time / longest);
-            if onlooker.stop() {
+            if stop() {
                 return Err(SimulationError::Interrupted);
             }
         }
@@ -222,6 +225,7 @@ fn run_up(
 struct Taken<'a> {
     simulation: Simulation,
     run: &'a Run,
+    stop: &'a dyn Fn() -> bool,
     /// Time of the first sample \[s\].
     from: f64,
     /// By block: the drive at its beginning, and the number of the sample there. Of many some are enough, and each takes room.
@@ -234,7 +238,11 @@ struct Taken<'a> {
 }
 
 impl<'a> Taken<'a> {
-    fn new(start: &Assembled, run: &'a Run) -> Result<Self, SimulationError> {
+    fn new(
+        start: &Assembled,
+        run: &'a Run,
+        stop: &'a dyn Fn() -> bool,
+    ) -> Result<Self, SimulationError> {
         let plain = Run {
             run_in: RunIn::None,
             ..run.clone()
@@ -242,8 +250,9 @@ impl<'a> Taken<'a> {
         let from = start.time;
         let mut simulation = Simulation::from_assembled(start.clone(), &plain)?;
         let mut taken = Self {
-            samples: VecDeque::from([simulation.take_sample(from, false)?.0]),
+            samples: VecDeque::from([simulation.take_sample(from, false, stop)?.0]),
             run,
+            stop,
             from,
             starts: vec![Some((start.clone().recorded_from(from), 0))],
             before: 0,
@@ -263,7 +272,7 @@ impl<'a> Taken<'a> {
         while self.next() < time {
             self.take()?;
         }
-        self.simulation.look(time)
+        self.simulation.look(time, self.stop)
     }
 
     /// Time of the next sample \[s\].
@@ -275,7 +284,7 @@ impl<'a> Taken<'a> {
         let number = self.before + self.samples.len();
         let time = self.next();
         let due = self.starts.last().is_some_and(Option::is_none);
-        let (sample, start) = self.simulation.take_sample(time, due)?;
+        let (sample, start) = self.simulation.take_sample(time, due, self.stop)?;
         if let (Some(start), Some(last)) = (start, self.starts.last_mut()) {
             *last = Some((start.recorded_from(time), number));
         }

@@ -3,7 +3,8 @@
 use chaindrive_mechanics::{Assembled, ContactEvent, EventKinds, Impact, Observation};
 
 use super::live::Changes;
-use super::{Arc, Duration, Simulation};
+use super::{Arc, Simulation};
+use crate::run::LOOK;
 use crate::{Run, SimulationError};
 
 /// All that a sample says, on the clock of the drive.
@@ -45,13 +46,14 @@ impl Simulation {
         &mut self,
         time: f64,
         with_start: bool,
+        stop: &dyn Fn() -> bool,
     ) -> Result<(Sample, Option<Assembled>), SimulationError> {
         let changes = if with_start {
             Changes::AtTheEnd
         } else {
             Changes::None
         };
-        while !self.step_towards(time, Duration::MAX, changes)? {}
+        self.go_to(time, changes, stop)?;
         let before = self.before.take();
         let start = before.map(|it| {
             let mut system = it.system;
@@ -87,10 +89,29 @@ impl Simulation {
     }
 
     /// Goes on to a time \[s\] and reads everything off the drive there, for one who does not go back.
-    pub(crate) fn look(&mut self, time: f64) -> Result<&Observation, SimulationError> {
-        while !self.step_towards(time, Duration::MAX, Changes::None)? {}
+    pub(crate) fn look(
+        &mut self,
+        time: f64,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<&Observation, SimulationError> {
+        self.go_to(time, Changes::None, stop)?;
         self.observe(time);
         Ok(&self.observation)
+    }
+
+    /// Steps to a time \[s\], however many steps that takes, unless somebody wants to stop.
+    fn go_to(
+        &mut self,
+        time: f64,
+        changes: Changes,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<(), SimulationError> {
+        while !self.step_towards(time, LOOK, changes)? {
+            if stop() {
+                return Err(SimulationError::Interrupted);
+            }
+        }
+        Ok(())
     }
 
     /// Whether samples are there that nobody has asked for yet.

@@ -22,7 +22,7 @@ use crate::restitution::factor_for;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Exact {
-    /// Coefficient of restitution e \[–\], in (0, 1\]; the factor is infinite at 0.
+    /// Coefficient of restitution e \[–\], in \[1e-6, 1\]; the factor is infinite at 0.
     pub restitution: f64,
 }
 
@@ -38,7 +38,7 @@ impl Exact {
     /// Names the parameter.
     pub fn check(self) -> Result<(), ParameterError> {
         require(
-            self.restitution > 0.0 && self.restitution <= 1.0,
+            (super::LEAST..=1.0).contains(&self.restitution),
             "restitution",
             self.restitution,
             super::POSITIVE,

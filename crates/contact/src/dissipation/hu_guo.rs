@@ -20,7 +20,7 @@ use crate::error::require;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HuGuo {
-    /// Coefficient of restitution e \[–\] asked for, in (0, 1\]; the factor is infinite at 0.
+    /// Coefficient of restitution e \[–\] asked for, in \[1e-6, 1\]; the factor is infinite at 0.
     pub restitution: f64,
 }
 
@@ -39,7 +39,7 @@ impl HuGuo {
     /// Names the parameter.
     pub fn check(self) -> Result<(), ParameterError> {
         require(
-            self.restitution > 0.0 && self.restitution <= 1.0,
+            (super::LEAST..=1.0).contains(&self.restitution),
             "restitution",
             self.restitution,
             super::POSITIVE,

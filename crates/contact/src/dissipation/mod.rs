@@ -56,9 +56,11 @@ use crate::error::no_parameters;
 /// stands for.
 pub const FASTEST_IMPACT: f64 = 3.0;
 
-/// Allowed restitutions where the factor is infinite at zero.
+/// Least restitution where the factor is infinite at zero. *Assumed*: a millionth of a speed is no rebound that anybody sees, and a contact with the
+/// factor of less is stiffer than any step can follow.
+const LEAST: f64 = 1e-6;
 const POSITIVE: &str =
-    "in (0, 1]: at 0 the factor is infinite, take 0.02 for an almost plastic impact";
+    "in [1e-6, 1]: at 0 the factor is infinite, take 0.02 for an almost plastic impact";
 
 /// A dissipation, chosen at run time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
