@@ -277,6 +277,5 @@ def test_thousands_of_damaged_files(tmp_path: Path) -> None:
 
 def test_a_tiny_restitution_is_refused() -> None:
     """A contact that returns nothing is stiffer than any step: runs did not come back from it."""
-    drive = cd.scenes.industrial_16b().replace({"contact.teeth.restitution": 8e-13})
     with pytest.raises(cd.SceneError, match=r"\[1e-6, 1\]"):
-        cd.simulate(drive, until=1e-6)
+        cd.scenes.industrial_16b().replace({"contact.teeth.restitution": 8e-13})
