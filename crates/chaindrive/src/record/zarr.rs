@@ -231,7 +231,8 @@ impl ZarrWriter {
         self.or_give_up(|writer| pushed.map_err(|fault| writer.store.fault(fault)))?;
         self.samples += 1;
         self.kept = false;
-        if self.committed.elapsed() >= COMMIT_EVERY {
+        // The first sample is something to put in the place of an earlier result.
+        if !self.is_public || self.committed.elapsed() >= COMMIT_EVERY {
             self.flush(simulation)?;
         }
         Ok(())

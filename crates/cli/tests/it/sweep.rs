@@ -39,6 +39,8 @@ fn speeds_and_pretensions_of_the_marine_engine() {
         "route.pretension=10 kN,20 kN",
         "--until",
         "1 ms",
+        "--run-in",
+        "0",
         "--record",
         "span_tension",
         "-j",
