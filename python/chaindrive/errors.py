@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from typing import NamedTuple
-from unicodedata import category
+
+from chaindrive import _core
 
 __all__ = [
     "AssemblyError",
@@ -41,19 +42,6 @@ class Problem(NamedTuple):
     """The values that are allowed, or something to try."""
 
 
-def _plain(text: str) -> str:
-    """Spell what would command a terminal; a scene or a file of unknown origin may hold it."""
-    if text.isprintable():
-        return text
-    # Cc: controls; Cf: those that turn the order of reading.
-    return "".join(
-        it.encode("unicode_escape").decode()
-        if it not in "\n\t" and category(it) in ("Cc", "Cf")
-        else it
-        for it in text
-    )
-
-
 class ChaindriveError(Exception):
     """Anything this package refuses or fails to do.
 
@@ -69,7 +57,8 @@ class ChaindriveError(Exception):
     hint: str | None
 
     def __init__(self, message: str, path: str | None = None, hint: str | None = None) -> None:
-        super().__init__(_plain(message))
+        # Scenes and files of unknown origin speak in messages.
+        super().__init__(_core.plain(message))
         self.path = path
         self.hint = hint
 

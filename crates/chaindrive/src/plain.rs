@@ -9,12 +9,12 @@ use std::fmt::Write as _;
 /// assert_eq!(chaindrive::plain("chain \u{1b}[2J"), "chain \\u{1b}[2J");
 /// ```
 pub fn plain(text: &str) -> Cow<'_, str> {
-    if !text.contains(commands) {
+    if !text.contains(is_command) {
         return Cow::Borrowed(text);
     }
     let mut told = String::with_capacity(text.len() + 16);
     for character in text.chars() {
-        if commands(character) {
+        if is_command(character) {
             let _ = write!(told, "{}", character.escape_unicode());
         } else {
             told.push(character);
@@ -23,8 +23,8 @@ pub fn plain(text: &str) -> Cow<'_, str> {
     Cow::Owned(told)
 }
 
-/// Whether a character does something else than to be read.
-pub(crate) fn commands(character: char) -> bool {
+/// A control character, or one that turns the order of reading.
+pub(crate) fn is_command(character: char) -> bool {
     let turns = matches!(character, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     turns || character.is_control() && !matches!(character, '\n' | '\t')
 }

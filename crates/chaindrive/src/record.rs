@@ -180,7 +180,7 @@ pub fn labels(axis: Axis, system: &System) -> Option<Vec<String>> {
 
 /// Memory that this program can still have \[bytes\], limits of its control group included; without bounds where the
 /// system does not say.
-/// How much a recording of a run takes.
+/// Size of the recording of a run.
 struct Size {
     samples: f64,
     /// Entries of a sample beside its time.

@@ -425,6 +425,7 @@ impl<S: Simd> AddAssign for Lane<S> {
 )]
 mod tests {
     use chaindrive_integrate::{InstructionSet, Registers};
+    use chaindrive_validation::run_again;
     use pulp::Scalar128b;
 
     use super::*;
@@ -511,19 +512,22 @@ mod tests {
     /// All tests of this program hold on the next narrower set of registers.
     #[test]
     fn kernels_hold_on_narrower_registers() {
-        again(InstructionSet::narrower().take(1));
+        let sets = InstructionSet::narrower().take(1);
+        run_again(
+            "narrower_registers",
+            InstructionSet::VARIABLE,
+            sets.map(InstructionSet::name),
+        );
     }
 
     #[test]
     #[ignore = "takes as long again; `make validation` runs it"]
     fn kernels_hold_on_all_narrower_registers() {
-        again(InstructionSet::narrower());
-    }
-
-    fn again(sets: impl Iterator<Item = InstructionSet>) {
-        for set in sets {
-            let but = "narrower_registers";
-            chaindrive_validation::run_again(but, InstructionSet::VARIABLE, set.name());
-        }
+        let sets = InstructionSet::narrower();
+        run_again(
+            "narrower_registers",
+            InstructionSet::VARIABLE,
+            sets.map(InstructionSet::name),
+        );
     }
 }

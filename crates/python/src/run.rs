@@ -1,5 +1,6 @@
 //! Runs: without the interpreter's lock, stopped by Ctrl-C, results handed over without a copy.
 
+use std::borrow::Cow;
 use std::cell::{Cell, RefCell};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -361,13 +362,19 @@ pub(crate) fn is_being_written(path: PathBuf) -> PyResult<bool> {
     record::is_being_written(path).or_raise()
 }
 
+/// A text with its control characters spelled.
+#[pyfunction]
+pub(crate) fn plain(text: &str) -> Cow<'_, str> {
+    chaindrive::plain(text)
+}
+
 /// Removes the folder of a writer that another user left beside a result.
 #[pyfunction]
 pub(crate) fn take_over(path: PathBuf) -> PyResult<()> {
     record::take_over(path).or_raise()
 }
 
-/// Refuses a store that is not as this program writes results; what is no result at all is a `ValueError` of the caller's.
+/// Refuses stores of another form than this program writes.
 #[pyfunction]
 pub(crate) fn inspect(path: PathBuf) -> PyResult<()> {
     record::inspect(&path).or_raise()

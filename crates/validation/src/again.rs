@@ -3,11 +3,17 @@
 use std::env;
 use std::process::Command;
 
-/// Runs all other tests of this program again, with a variable of the environment.
+/// Runs all other tests of this program again, with each value of a variable of the environment.
 ///
 /// # Panics
 /// If one of them fails, or none is run.
-pub fn run_again(but: &str, variable: &str, value: &str) {
+pub fn run_again<'a>(but: &str, variable: &str, values: impl IntoIterator<Item = &'a str>) {
+    for value in values {
+        run_once(but, variable, value);
+    }
+}
+
+fn run_once(but: &str, variable: &str, value: &str) {
     let program = env::current_exe().expect("a test is a program");
     let again = Command::new(program)
         .env(variable, value)

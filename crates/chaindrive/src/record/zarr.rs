@@ -104,7 +104,7 @@ pub struct ZarrWriter {
     samples: u64,
     /// Whether the checkpoint in the store is of the last sample.
     kept: bool,
-    /// Whether the store is in its place: an earlier result stays there until this one has something.
+    /// Store in its place. An earlier result stays there until the first sample or checkpoint.
     is_public: bool,
     committed: Instant,
     store: Store,

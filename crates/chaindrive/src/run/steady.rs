@@ -169,7 +169,7 @@ pub(super) fn settle(
     }
 }
 
-/// Whether chains run around sprockets that stand, for torques to turn.
+/// A drive at rest with closed chains, for torques to turn.
 pub(super) fn stands(start: &Assembled) -> bool {
     start.slowest_circuit().is_infinite() && start.slowest_tooth() > 0.0
 }

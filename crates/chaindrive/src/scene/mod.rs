@@ -131,9 +131,9 @@ impl Scene {
 
     fn from_tree(tree: Node, text: &str, name: &str) -> Result<Self, SceneError> {
         validate::known_version(&tree).map_err(|problem| SceneError::new(name, vec![problem]))?;
-        let commands = tree.commands();
-        if !commands.is_empty() {
-            return Err(SceneError::new(name, commands));
+        let refused = tree.control_characters();
+        if !refused.is_empty() {
+            return Err(SceneError::new(name, refused));
         }
         let mut normalised = tree.clone();
         normalised.expand_chain();

@@ -6,7 +6,7 @@ use toml_edit::{Item, TableLike, Value as Toml};
 use super::error::Problem;
 use super::limits;
 use super::validate::shorten;
-use crate::plain::commands;
+use crate::plain::is_command;
 
 /// A value and the line it stands on.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,20 +52,17 @@ impl Value {
 }
 
 impl Node {
-    /// Texts and keys with characters that command a terminal: scenes come from anywhere, and messages, results and drawings show their texts.
-    pub(crate) fn commands(&self) -> Vec<Problem> {
+    /// Texts and keys with control characters. Scenes come from anywhere, and messages, results and drawings show their texts.
+    pub(crate) fn control_characters(&self) -> Vec<Problem> {
         let mut found = Vec::new();
-        self.find_commands("", &mut found);
+        self.find_control_characters("", &mut found);
         found
     }
 
-    fn find_commands(&self, path: &str, found: &mut Vec<Problem>) {
-        let speaks = |text: &str| text.contains(commands);
+    fn find_control_characters(&self, path: &str, found: &mut Vec<Problem>) {
+        let speaks = |text: &str| text.contains(is_command);
         let problem = |path: &str, line: Option<usize>, what: &str, text: &str| {
-            let message = format!(
-                "{what} \"{}\" has characters that command a terminal",
-                shorten(text)
-            );
+            let message = format!("{what} \"{}\" has control characters", shorten(text));
             Problem::new(path, line, message).hint("leave them out")
         };
         match &self.value {
@@ -74,7 +71,7 @@ impl Node {
             }
             Value::List(items) => {
                 for (index, item) in items.iter().enumerate() {
-                    item.find_commands(&format!("{path}[{index}]"), found);
+                    item.find_control_characters(&format!("{path}[{index}]"), found);
                 }
             }
             Value::Table(entries) => {
@@ -84,7 +81,7 @@ impl Node {
                     }
                     let dot = if path.is_empty() { "" } else { "." };
                     let within = format!("{path}{dot}{}", entry.key);
-                    entry.node.find_commands(&within, found);
+                    entry.node.find_control_characters(&within, found);
                 }
             }
             _ => {}

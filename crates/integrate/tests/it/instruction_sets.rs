@@ -6,17 +6,21 @@ use chaindrive_validation::run_again;
 /// All tests of this program hold on the next narrower set of registers.
 #[test]
 fn all_of_it_holds_on_narrower_registers() {
-    again(InstructionSet::narrower().take(1));
+    let sets = InstructionSet::narrower().take(1);
+    run_again(
+        "narrower_registers",
+        InstructionSet::VARIABLE,
+        sets.map(InstructionSet::name),
+    );
 }
 
 #[test]
 #[ignore = "takes as long again; `make validation` runs it"]
 fn all_of_it_holds_on_all_narrower_registers() {
-    again(InstructionSet::narrower());
-}
-
-fn again(sets: impl Iterator<Item = InstructionSet>) {
-    for set in sets {
-        run_again("narrower_registers", InstructionSet::VARIABLE, set.name());
-    }
+    let sets = InstructionSet::narrower();
+    run_again(
+        "narrower_registers",
+        InstructionSet::VARIABLE,
+        sets.map(InstructionSet::name),
+    );
 }

@@ -1,8 +1,7 @@
-//! Whether a store of unknown origin may be read.
+//! Inspection of stores of unknown origin.
 //!
-//! A store that somebody else made is opened by readers that trust what it declares. So it is looked at before: it holds
-//! files and folders only, which lead nowhere else and end; its arrays are of the types and codecs that this program writes, none of which
-//! carries out code; and no chunk unpacks to more than it should.
+//! Readers trust the declarations of a store. So a store is inspected before it is read. It holds plain files and folders only. Its arrays have
+//! the types and codecs of this program, and none of these carries out code. No chunk unpacks to more than its declared size.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -108,7 +107,7 @@ struct Array<'a> {
     /// Bytes of a chunk that is unpacked, at most.
     most: u64,
     is_compressed: bool,
-    /// Whether readers take all of it in when they open the store.
+    /// A coordinate: readers load it whole when they open the store.
     is_coordinate: bool,
 }
 
