@@ -4,6 +4,7 @@
 //! measured, by a few hundred steps. Front ends print a [`Description`] as text or as JSON.
 
 mod cost;
+mod free_train;
 mod links;
 mod polygon;
 mod route;
@@ -19,6 +20,7 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 pub use cost::Cost;
+pub use free_train::FreeTrainFacts;
 pub use links::{ContactFacts, LinkFacts};
 pub use polygon::PolygonPair;
 pub use route::{SpanAtRest, StopFacts, spans_at_rest};
@@ -37,6 +39,8 @@ pub struct Description {
     pub spans: Vec<SpanAtRest>,
     /// Shafts with a name of their own.
     pub shafts: Vec<ShaftFacts>,
+    /// Shafts that torques turn, and no motion.
+    pub free_trains: Vec<FreeTrainFacts>,
     /// The static states on the way to the start.
     pub statics: Vec<StaticStage>,
     /// Moving parts and contacts.
@@ -207,6 +211,7 @@ impl Description {
                 })
                 .collect(),
             shafts: shafts(drive, &start),
+            free_trains: free_train::of(&assembled),
             stops: route::stops(drive, &assembled, &start),
             statics: static_stages(drive, &assembled),
             model: model(drive, &assembled),
@@ -218,17 +223,39 @@ impl Description {
             },
             polygon: polygon::pairs(drive, &start),
             cost: cost::measure(&assembled, run)?,
-            warnings: warnings(drive, &assembled, run),
+            warnings: warnings(&assembled, run.until),
             spans,
         })
     }
 }
 
-/// Objections to a drive before it runs.
-fn warnings(drive: &Drive, assembled: &Assembled, run: &Run) -> Vec<String> {
+/// Objections to an assembled drive before it runs until a time \[s\]: bodies in each other's way, motions that fight, chains that are pulled
+/// beyond their breaking load at rest.
+pub fn warnings(assembled: &Assembled, until: f64) -> Vec<String> {
     let clashes = assembled.warnings.iter().map(Clash::to_string);
-    let fights = drive.fights(0.0, run.until);
-    clashes.chain(fights.iter().map(Fight::to_string)).collect()
+    let fights = assembled.drive.fights(0.0, until);
+    let fights = fights.iter().map(Fight::to_string);
+    clashes.chain(fights).chain(overloads(assembled)).collect()
+}
+
+/// Chains that are pulled beyond their breaking load at rest.
+fn overloads(assembled: &Assembled) -> Vec<String> {
+    let Some(statics) = assembled.statics.last() else {
+        return Vec::new();
+    };
+    let mut tensions = statics.tensions.iter();
+    let chains = assembled.drive.chains.iter().filter_map(|placed| {
+        let own = tensions.by_ref().take(placed.chain.links());
+        let pull = own.copied().fold(0.0, f64::max);
+        let breaking = placed.chain.strength.breaking_load?;
+        let named = placed.name.as_ref();
+        let chain = named.map_or_else(|| "the chain".to_owned(), |name| format!("chain `{name}`"));
+        (pull > breaking).then(|| {
+            let [pull, breaking] = [pull, breaking].map(|force| force * 1e-3);
+            format!("at rest, {chain} is pulled with {pull:.1} kN, and breaks at {breaking:.1} kN: lower the load, or take a stronger chain")
+        })
+    });
+    chains.collect()
 }
 
 impl Description {
@@ -342,7 +369,7 @@ fn rated_power(drive: &Drive, placed: &PlacedChain, start: &Observation) -> Opti
             < 2;
         let idle = match &drive.shafts[shaft].rotation {
             Rotation::Prescribed(_) => false,
-            Rotation::Free { drive, load } => drive.is_empty() && load.is_empty(),
+            Rotation::Free { drive, load, .. } => drive.is_empty() && load.is_empty(),
         };
         !idle || !alone || joined.any(|ends| ends.contains(&shaft))
     };

@@ -2,8 +2,10 @@
 
 mod apart;
 mod beginning;
+mod free_trains;
 mod hard;
 mod lay;
+mod overload;
 mod overrun;
 mod part_way;
 mod relax;
@@ -27,6 +29,7 @@ use crate::{AssemblyError, Clash, Drive, Motion, System};
 use crate::{MemoryError, SystemMemory};
 use settle::Tightening;
 
+pub use free_trains::FreeTrain;
 pub use part_way::Gap;
 pub use relax::Statics;
 pub(crate) use relax::{Curvature, curvature};
@@ -109,6 +112,15 @@ impl Assembled {
         let layouts: Vec<&Layout> = self.parts.chains.iter().map(|it| &it.layout).collect();
         let mean = |motion: &Motion| motion.mean_rate(self.drive.begin);
         setting_off::speeds(&self.system, &layouts, mean)
+    }
+
+    /// Trains that no motion turns, as they are where the simulation begins.
+    pub fn free_trains(&self) -> Vec<FreeTrain> {
+        let layouts: Vec<&Layout> = self.parts.chains.iter().map(|it| &it.layout).collect();
+        let begin = self.system.begin;
+        let speeds = setting_off::speeds(&self.system, &layouts, |it| it.at(begin).rate);
+        // The drive was assembled, so speeds agree.
+        free_trains::free_trains(&self.system, &self.parts, &self.q, &speeds).unwrap_or_default()
     }
 
     /// Time \[s\] that the slowest chain around sprockets takes for one circuit at its mean speed; infinite where there is none, or it
@@ -216,15 +228,25 @@ impl Drive {
     fn assemble_as_is(&self) -> Result<Assembled, AssemblyError> {
         let (laid, fittings) = lay::lay(self)?;
         let (mut system, mut q) = System::build(&laid)?;
+        let layouts: Vec<&Layout> = self.chains.iter().map(|placed| &placed.layout).collect();
+        let begin = system.begin;
+        let mut speeds = setting_off::speeds(&system, &layouts, |motion| motion.at(begin).rate);
+        let trains = free_trains::free_trains(&system, &laid.parts, &q, &speeds)?;
+        let torques = free_trains::balance(&mut system, &trains, &q);
         let mut statics = Vec::new();
         if self.settle {
             statics = relax::settle(&mut system, &mut q)
-                .map_err(|error| laid_through_a_guide(&laid).unwrap_or(error))?;
+                .map_err(|error| laid_through_a_guide(&laid).unwrap_or(error))
+                .map_err(|error| overload::named(error, &system, &laid.parts))?;
         }
-        let mut v = vec![0.0; q.len()];
-        let layouts: Vec<&Layout> = self.chains.iter().map(|placed| &placed.layout).collect();
-        setting_off::set_off(&system, &layouts, &q, &mut v);
+        for train in trains.iter().filter(|it| it.speed != 0.0) {
+            for (shaft, ratio) in &train.shafts {
+                speeds[*shaft] = Some(ratio * train.speed);
+            }
+        }
+        let mut v = setting_off::set_off(&system, &layouts, &speeds, &q);
         self.put_in_place(&mut system, &laid.parts, &statics, [&mut q, &mut v])?;
+        free_trains::release(&mut system, torques);
         let z = system.settled_states(&q);
         system.start(self.begin, &mut q, &mut v, &z);
         Ok(Assembled {

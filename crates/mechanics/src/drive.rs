@@ -81,11 +81,16 @@ impl Shaft {
         }
     }
 
+    /// Whether torques drive or load it.
+    pub fn is_turned(&self) -> bool {
+        self.torques().next().is_some()
+    }
+
     /// All torques on it.
     pub(crate) fn torques(&self) -> impl Iterator<Item = &Torque> {
         let [drive, load]: [&[Torque]; 2] = match &self.rotation {
             Rotation::Prescribed(_) => [&[], &[]],
-            Rotation::Free { drive, load } => [drive, load],
+            Rotation::Free { drive, load, .. } => [drive, load],
         };
         drive.iter().chain(load)
     }
@@ -94,7 +99,7 @@ impl Shaft {
     pub(crate) fn torques_mut(&mut self) -> impl Iterator<Item = &mut Torque> {
         let [drive, load]: [&mut [Torque]; 2] = match &mut self.rotation {
             Rotation::Prescribed(_) => [&mut [], &mut []],
-            Rotation::Free { drive, load } => [drive, load],
+            Rotation::Free { drive, load, .. } => [drive, load],
         };
         drive.iter_mut().chain(load)
     }
@@ -111,7 +116,21 @@ pub enum Rotation {
         drive: Vec<Torque>,
         /// Torques that load the shaft.
         load: Vec<Torque>,
+        /// Its speed where the simulation begins.
+        start: StartSpeed,
     },
+}
+
+/// Speed of a free shaft where the simulation begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum StartSpeed {
+    /// That of what chains, gears and couplings join it with; rest where nothing there turns.
+    #[default]
+    Joined,
+    /// A speed \[rad/s\], counter-clockwise positive.
+    Given(f64),
+    /// The speed at which the torques on all that it is joined with add up to nothing: that of a motor under its load.
+    WorkingPoint,
 }
 
 /// Support of the centre of a sprocket.
@@ -266,6 +285,11 @@ pub struct Fit {
     pub tighten: Tighten,
     /// Where the chain carries the pretension.
     pub at: PretensionAt,
+    /// Sag of the slack span \[m\], made by the body that is moved; none: no more slack than the closing leaves.
+    pub sag: Option<f64>,
+    /// The span that takes what the chain is longer than its way, by the stop that it leaves. None: the last one, unless a guide lies along it;
+    /// then the longest without a guide.
+    pub slack: Option<usize>,
 }
 
 /// Where in the passing of a tooth a chain carries its pretension.
@@ -285,7 +309,7 @@ pub enum PretensionAt {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Adjust {
     /// Nothing: the centres are as they are. A small misfit becomes strain of all links; an
-    /// excess of length becomes sag of the span that runs to the first stop.
+    /// excess of length becomes sag of the slack span.
     Nothing,
     /// A sprocket, along a direction.
     Sprocket {
@@ -387,6 +411,20 @@ pub struct Parts {
     pub settle: bool,
     /// Gravity \[m/s²\], (x, y).
     pub gravity: Vector,
+}
+
+impl Parts {
+    /// Place of a shaft in the scene: under its own name, or that of its only sprocket.
+    pub fn shaft_name(&self, index: usize) -> String {
+        if let Some(name) = &self.shafts[index].name {
+            return format!("shafts.{name}");
+        }
+        let on_it = self.sprockets.iter().find(|s| s.shaft == index);
+        on_it.map_or_else(
+            || format!("shafts[{index}]"),
+            |sprocket| format!("sprockets.{}", sprocket.name),
+        )
+    }
 }
 
 /// A drive that can be assembled: the parts, checked.

@@ -161,13 +161,48 @@ pub enum AssemblyError {
 
     /// Newton's iteration for the static state ended without converging.
     #[error(
-        "static equilibrium not found while applying {stage}: residual {residual:.1e} of the chain tension after {iterations} iterations; see that every tensioner pushes onto the chain (torques are positive counter-clockwise), raise the pretension, or start with `settle = false`"
+        "static equilibrium not found while applying {stage}: residual {residual:.1e} of the chain tension after {iterations} iterations; {}raise the pretension, or start with `settle = false`",
+        if *.tensioned { "see that every tensioner pushes onto the chain (torques are positive counter-clockwise), " } else { "" }
     )]
     NoEquilibrium {
         stage: &'static str,
         residual: f64,
         iterations: usize,
+        /// Whether the drive has tensioners.
+        tensioned: bool,
     },
+
+    /// A load that breaks the chain before it is in equilibrium.
+    #[error(
+        "the torque of {torque:.0} N m on `{sprocket}` asks for a pull of {:.1} kN, and the chain breaks at {:.1} kN; lower the torque, or take a stronger chain",
+        .pull * 1e-3,
+        .breaking * 1e-3
+    )]
+    Overloaded {
+        sprocket: String,
+        torque: f64,
+        pull: f64,
+        breaking: f64,
+    },
+
+    /// A speed at the start other than that of what the shaft is joined with.
+    #[error(
+        "{shaft}.speed: it turns at {:.2} rpm with what it is joined with, not at {:.2} rpm; leave `speed` out",
+        rpm(*.turns),
+        rpm(*.asked)
+    )]
+    StartSpeed {
+        shaft: String,
+        asked: f64,
+        turns: f64,
+    },
+
+    /// Torques that never balance.
+    #[error(
+        "the torques on {} balance at no speed; give a load against the motor, or a speed such as `speed = \"100 rpm\"`",
+        .shafts.join(", ")
+    )]
+    NoWorkingPoint { shafts: Vec<String> },
 
     /// A linearisation was asked for away from equilibrium.
     #[error(
@@ -219,6 +254,11 @@ impl AssemblyError {
             other => other,
         }
     }
+}
+
+/// Turns a minute of an angular speed \[rad/s\].
+fn rpm(speed: f64) -> f64 {
+    speed * 30.0 / std::f64::consts::PI
 }
 
 fn listed(clashes: &[Clash]) -> String {

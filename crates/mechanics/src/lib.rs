@@ -51,7 +51,7 @@ mod torque;
 mod trains;
 
 pub use articulation::Articulation;
-pub use assembly::{Assembled, Fitting, Gap, RollerLayout, Statics};
+pub use assembly::{Assembled, Fitting, FreeTrain, Gap, RollerLayout, Statics};
 pub use chain::{Chain, End, Ends};
 pub use chains::ChainModel;
 pub use chains::links::model::{Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel};
@@ -59,7 +59,8 @@ pub use chains::particles::points::PointJoints;
 pub use contact::{Impact, Impacts};
 pub use drive::{
     Adjust, Coupling, Drive, Fit, Flank, GearPair, Guide, GuideSupport, Layout, Parts, PlacedChain,
-    PretensionAt, Rotation, Shaft, SpanStart, Sprocket, Stop, Support, Surface, Tighten, Touches,
+    PretensionAt, Rotation, Shaft, SpanStart, Sprocket, StartSpeed, Stop, Support, Surface,
+    Tighten, Touches,
 };
 pub use energy::{Energy, Flow, Place, Store};
 pub use error::{AssemblyError, Clash, DriveError, MemoryError};

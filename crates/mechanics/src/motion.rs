@@ -373,6 +373,21 @@ impl Table {
         (1.0 - share) * self.values[i - 1] + share * self.values[i]
     }
 
+    /// Its times, or other arguments.
+    pub(crate) fn arguments(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// Mean of the straight lines between its ends.
+    pub(crate) fn polyline_mean(&self) -> f64 {
+        let pieces = self.times.windows(2).zip(self.values.windows(2));
+        // Σ ½ (x₀ + x₁) w / Σ w
+        let area: f64 = pieces
+            .map(|(times, values)| 0.5 * (values[0] + values[1]) * (times[1] - times[0]))
+            .sum();
+        area / (self.times[self.times.len() - 1] - self.times[0])
+    }
+
     /// The first of its times after t.
     pub(crate) fn next_knot(&self, t: f64) -> Option<f64> {
         let next = self.times.partition_point(|&knot| knot <= t);

@@ -155,6 +155,11 @@ impl System {
         chains.any(|member| member.chain.bearing_laws()[1].is_some())
     }
 
+    /// Whether something pushes a body onto a chain.
+    pub(crate) fn is_tensioned(&self) -> bool {
+        !self.bodies.slides.is_empty()
+    }
+
     /// Degrees of freedom that move: those of held rollers do not count.
     pub fn free_dofs(&self) -> usize {
         self.sum(Chain::free_coordinates) + (self.dofs - self.bodies.first)

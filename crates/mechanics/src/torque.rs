@@ -105,6 +105,41 @@ impl Torque {
         }
     }
 
+    /// Torque \[N m\] in the mean over all angles, at time `t` \[s\] and a speed \[rad/s\].
+    pub(crate) fn mean(&self, t: f64, speed: f64) -> f64 {
+        match self {
+            Self::Orders { .. } => 0.0,
+            Self::Table {
+                over: Argument::Angle { .. },
+                curve,
+            } => curve.polyline_mean(),
+            _ => self.at(t, 0.0, speed),
+        }
+    }
+
+    /// A torque that is another one at another angle.
+    pub(crate) fn turns_with_an_angle(&self) -> bool {
+        matches!(
+            self,
+            Self::Orders { .. }
+                | Self::Table {
+                    over: Argument::Angle { .. },
+                    ..
+                }
+        )
+    }
+
+    /// Speeds \[rad/s\] at which a table over the speed has its points.
+    pub(crate) fn speeds(&self) -> &[f64] {
+        match self {
+            Self::Table {
+                over: Argument::Speed,
+                curve,
+            } => curve.arguments(),
+            _ => &[],
+        }
+    }
+
     /// Puts another index in the place of that of the shaft it follows.
     pub(crate) fn refer(&mut self, place: impl FnOnce(usize) -> usize) {
         match self {

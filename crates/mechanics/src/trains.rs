@@ -74,6 +74,7 @@ mod tests {
         let free = Rotation::Free {
             drive: Vec::new(),
             load: Vec::new(),
+            start: crate::StartSpeed::Joined,
         };
         let mut parts = Parts {
             chains: Vec::new(),

@@ -15,6 +15,9 @@ impl fmt::Display for Description {
             self.route(chain, f)?;
         }
         self.shafts(f)?;
+        for train in &self.free_trains {
+            row(f, "turned by torques", &train.to_string())?;
+        }
         self.statics(f)?;
         self.model.fmt(f)?;
         self.time_scales(f)?;

@@ -363,7 +363,11 @@ impl<'s> Validator<'s> {
             Value::Integer(_) | Value::Float(_) => number(node).unwrap_or(f64::NAN),
             Value::Text(text) => {
                 let words = schema.get("x-words");
-                let word = words.and_then(|words| words.get(text)?.as_f64());
+                let word = words.and_then(|words| words.get(text));
+                if word.is_some_and(Json::is_string) {
+                    return;
+                }
+                let word = word.and_then(Json::as_f64);
                 let exponent = exponent.filter(|_| dimension.name == CONTACT_STIFFNESS);
                 let read = || dimension.read(&shorten(text), exponent);
                 match word.map_or_else(read, Ok) {

@@ -18,6 +18,7 @@ mod links;
 mod live;
 mod loads;
 mod mistakes;
+mod motors;
 mod object_store;
 mod one_force;
 mod precision;

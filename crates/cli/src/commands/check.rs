@@ -1,6 +1,6 @@
 //! `chaindrive check`: are these scenes sound?
 
-use chaindrive::describe::counted;
+use chaindrive::describe::{counted, warnings};
 use chaindrive::{Run, assemble};
 use clap::Args;
 
@@ -42,12 +42,9 @@ fn sound(name: &str, interrupted: &dyn Fn() -> bool) -> Result<String, Failure> 
     let drive = scene.drive()?;
     let assembled = assemble(&drive, interrupted);
     let assembled = Failure::or_interrupted(assembled, scene.name())?;
-    for warning in &assembled.warnings {
-        say(format_args!("warning: {name}: {warning}"));
-    }
     let run = Run::suggested(&scene.run_defaults());
-    for fight in drive.fights(0.0, run.until) {
-        say(format_args!("warning: {name}: {fight}"));
+    for warning in warnings(&assembled, run.until) {
+        say(format_args!("warning: {name}: {warning}"));
     }
     let links = assembled.system.links();
     let chain = match drive.chains.len() {

@@ -87,6 +87,7 @@ impl Drive {
             stage: "pretension on ideal joints",
             residual: 1.0,
             iterations: MOST,
+            tensioned: !parts.tensioners.is_empty(),
         })
     }
 }

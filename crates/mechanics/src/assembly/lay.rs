@@ -1,6 +1,6 @@
 //! Where the rollers lie before anything pulls at them.
 
-use chaindrive_geometry::{Closing, close_by_motion, close_by_strain};
+use chaindrive_geometry::{close_by_motion, close_by_strain};
 
 use super::wheels::{shifted, wheels};
 use super::{Fitting, slack};
@@ -80,11 +80,15 @@ fn around(
         chain.links() as f64 / chain.stiffness.iter().map(|k| 1.0 / k).sum::<f64>();
     // ε₀ = T₀ / (k p)
     let tightening = fit.pretension / (mean_stiffness * pitch);
-    let by_travel = fit.tighten == Tighten::Travel;
+    let by_travel = fit.tighten == Tighten::Travel || fit.sag.is_some();
 
     let over_a_tooth = fit.at == PretensionAt::MeanPhase && fit.pretension > 0.0;
 
     let at_rest = wheels(parts, chain, stops)?;
+    let slack_span = match fit.slack {
+        Some(span) => span,
+        None => slack::span(parts, index, stops, &at_rest)?,
+    };
     let travel_at = |phase: f64| {
         let within = match &fit.adjust {
             Adjust::Sprocket { within, .. } | Adjust::Tensioner { within, .. } => *within,
@@ -97,9 +101,18 @@ fn around(
                 .and_then(|moved| wheels(&moved, chain, stops))
                 .unwrap_or_default()
         };
-        let strain = if by_travel { tightening } else { 0.0 };
         let range = (-within, within);
-        let (travel, ..) = close_by_motion(pitch, strain, links, phase, &mut moving, range)?;
+        let Some(sag) = fit.sag else {
+            let strain = if by_travel { tightening } else { 0.0 };
+            let (travel, ..) = close_by_motion(pitch, strain, links, phase, &mut moving, range)?;
+            return Ok(travel);
+        };
+        // The chord of the bow changes with the travel, and little.
+        let mut travel = 0.0;
+        for _ in 0..3 {
+            let strain = slack::strain(&moving(travel), slack_span, sag)?;
+            (travel, ..) = close_by_motion(pitch, strain, links, phase, &mut moving, range)?;
+        }
         Ok(travel)
     };
     let travel = if over_a_tooth {
@@ -115,12 +128,7 @@ fn around(
     let (strain, closing) = close_by_strain(&wheels, pitch, links, phase)?;
     let slack = strain < SLACK && fit.pretension <= 0.0;
     let (positions, closing) = if slack {
-        let closing = Closing::march(&wheels, pitch, phase)?;
-        let down = parts.gravity;
-        (
-            slack::sagging(&wheels, &closing, pitch, links, down)?,
-            closing,
-        )
+        slack::sagging(&wheels, slack_span, (pitch, links), phase, parts.gravity)?
     } else {
         let places = closing.positions(&wheels, pitch * (1.0 + strain))?;
         (

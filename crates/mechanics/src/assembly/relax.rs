@@ -71,7 +71,7 @@ pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Static
         if found.residual >= ACCEPTED {
             found = newton.descend(q, at);
         }
-        *q = Newton::accept(found, "pretension", &mut statics)?;
+        *q = newton.accept(found, "pretension", &mut statics)?;
     }
     let stages: [(&'static str, bool); 2] = [
         ("gravity", system.bodies.gravity != Vector::zeros()),
@@ -98,7 +98,7 @@ pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Static
                 step *= 1.8;
                 q.clone_from(&found.q);
                 if share >= 1.0 {
-                    Newton::accept(found, stage, &mut statics)?;
+                    newton.accept(found, stage, &mut statics)?;
                 }
             } else {
                 step *= 0.35;
@@ -108,7 +108,8 @@ pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Static
                         "gravity" => load.gravity = 1.0,
                         _ => load.torque = 1.0,
                     }
-                    *q = Newton::accept(newton.descend(q, load), stage, &mut statics)?;
+                    let found = newton.descend(q, load);
+                    *q = newton.accept(found, stage, &mut statics)?;
                     share = 1.0;
                 }
             }
@@ -254,6 +255,7 @@ impl Factored {
 
 impl Newton<'_> {
     fn accept(
+        &self,
         found: Found,
         stage: &'static str,
         statics: &mut Vec<Statics>,
@@ -263,6 +265,7 @@ impl Newton<'_> {
                 stage,
                 residual: found.residual,
                 iterations: found.iterations,
+                tensioned: self.system.is_tensioned(),
             });
         }
         statics.push(Statics {

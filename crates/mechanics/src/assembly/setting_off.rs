@@ -9,10 +9,15 @@ use crate::drive::{Layout, SpanStart, Stop};
 use crate::system::{Member, Shaft, TurnedBy};
 use crate::{Motion, System};
 
-/// Gives chains the velocities that their layouts ask for, and along routes the sprockets too.
-pub(super) fn set_off(system: &System, layouts: &[&Layout], q: &[f64], v: &mut [f64]) {
-    let speeds = speeds(system, layouts, |motion| motion.at(system.begin).rate);
-    for (shaft, speed) in system.bodies.shafts.iter().zip(&speeds) {
+/// Velocities at the start: those that the layouts of the chains ask for, and along routes those of the sprockets at the speeds of the shafts.
+pub(super) fn set_off(
+    system: &System,
+    layouts: &[&Layout],
+    speeds: &[Option<f64>],
+    q: &[f64],
+) -> Vec<f64> {
+    let mut v = vec![0.0; q.len()];
+    for (shaft, speed) in system.bodies.shafts.iter().zip(speeds) {
         if let (Some(dof), Some(speed)) = (shaft.led(), speed) {
             v[dof] = *speed;
         }
@@ -20,12 +25,13 @@ pub(super) fn set_off(system: &System, layouts: &[&Layout], q: &[f64], v: &mut [
     for (member, layout) in system.chains.iter().zip(layouts) {
         let places = roller_places(member, q);
         let velocities = match layout {
-            Layout::Route { start, .. } => along_route(system, (member, *start), &places, q, v),
+            Layout::Route { start, .. } => along_route(system, (member, *start), &places, q, &v),
             Layout::Points { velocities, .. } => velocities.clone(),
         };
         let own = &mut v[member.entries.clone()];
         member.chain.set_off(&places, &velocities, own);
     }
+    v
 }
 
 /// Angular speeds of the shafts \[rad/s\], where something prescribes them: their own motion, that of a shaft they are joined with,
@@ -47,11 +53,14 @@ pub(super) fn speeds(
         TurnedBy::Coordinate(_) => None,
     };
     let mut speeds: Vec<Option<f64>> = system.bodies.shafts.iter().map(given).collect();
-    let mut waiting: Vec<usize> = (0..layouts.len()).collect();
-    while share_shafts(system, &mut speeds)
-        | share_chains(system, layouts, &mut waiting, &mut speeds)
-    {}
+    spread(system, layouts, &mut speeds);
     speeds
+}
+
+/// Passes the speeds that are known on to all shafts that gears, couplings and chains join with theirs.
+pub(super) fn spread(system: &System, layouts: &[&Layout], speeds: &mut [Option<f64>]) {
+    let mut waiting: Vec<usize> = (0..layouts.len()).collect();
+    while share_shafts(system, speeds) | share_chains(system, layouts, &mut waiting, speeds) {}
 }
 
 /// Passes speeds on through gears and couplings; whether there was one to pass.

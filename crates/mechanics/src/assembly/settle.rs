@@ -59,13 +59,15 @@ pub(super) fn settle(
         tighten(system, q, *tightening)?;
     }
     let typical = tightenings.iter().fold(0.0_f64, |m, t| m.max(t.pretension));
-    accept(
-        relax(&mut system.at_rest(), q, typical),
-        "gravity and load on the joints",
-    )
+    let balance = relax(&mut system.at_rest(), q, typical);
+    accept(system, balance, "gravity and load on the joints")
 }
 
-fn accept(balance: Balance, stage: &'static str) -> Result<Balance, AssemblyError> {
+fn accept(
+    system: &System,
+    balance: Balance,
+    stage: &'static str,
+) -> Result<Balance, AssemblyError> {
     if balance.residual < ACCEPTED {
         return Ok(balance);
     }
@@ -73,6 +75,7 @@ fn accept(balance: Balance, stage: &'static str) -> Result<Balance, AssemblyErro
         stage,
         residual: balance.residual,
         iterations: balance.iterations,
+        tensioned: system.is_tensioned(),
     })
 }
 
@@ -99,7 +102,7 @@ fn tighten(
     let (mut stretch, mut stride) = (0.0, -pretension / stiffness);
     for _ in 0..60 {
         let balance = relax(&mut bare, q, pretension);
-        accept(balance, "pretension on the joints")?;
+        accept(system, balance, "pretension on the joints")?;
         let missing = pretension - mean_tension(&bare, chain, q);
         if at == PretensionAt::MeanPhase || missing.abs() < 1e-3 * pretension {
             return Ok(());
@@ -128,6 +131,7 @@ fn tighten(
         stage: "pretension on the joints",
         residual: 1.0,
         iterations: 60,
+        tensioned: system.is_tensioned(),
     })
 }
 

@@ -1,18 +1,96 @@
-//! A chain with length to spare: the last span of the route hangs in a bow.
+//! A chain with length to spare: one span of the route hangs in a bow.
 
-use chaindrive_geometry::{Closing, Point, Vector, Wheel};
+use chaindrive_geometry::{Closing, Point, Route, Span, Vector, Wheel};
 
 use crate::AssemblyError;
+use crate::drive::{GuideSupport, Parts, Stop};
 
-/// Roller positions with all slack in the span that runs to the first stop.
+/// The span that takes the slack where nobody says so, by the stop that it leaves: the last one, unless a guide lies along it; then the longest along
+/// which none lies.
+pub(super) fn span(
+    parts: &Parts,
+    chain: usize,
+    stops: &[Stop],
+    wheels: &[Wheel],
+) -> Result<usize, AssemblyError> {
+    let spans = Route::taut(wheels)?.spans;
+    let last = spans.len() - 1;
+    let placed = &parts.chains[chain];
+    let on_route = |rail: &usize| stops.contains(&Stop::Guide(*rail));
+    let carried = |span: &Span| {
+        let mut rails = placed.guides.iter().filter(|rail| !on_route(rail));
+        rails.any(|rail| {
+            let guide = &parts.guides[*rail];
+            let shift = match guide.support {
+                GuideSupport::Tensioner(_) => parts.reference(&guide.support) - Point::origin(),
+                _ => Vector::zeros(),
+            };
+            let pieces = guide.face.pieces().iter();
+            let mut places = pieces.flat_map(|piece| [0.0, 0.5, 1.0].map(|at| piece.point(at)));
+            places.any(|place| distance(span, place + shift) < placed.chain.pitch)
+        })
+    };
+    if !carried(&spans[last]) {
+        return Ok(last);
+    }
+    let free = (0..last).filter(|index| !carried(&spans[*index]));
+    let longest = free.max_by(|a, b| spans[*a].length.total_cmp(&spans[*b].length));
+    Ok(longest.unwrap_or(last))
+}
+
+/// Distance of a point from a span \[m\].
+fn distance(span: &Span, place: Point) -> f64 {
+    let chord = span.arrives - span.leaves;
+    let share = (place - span.leaves).dot(&chord) / chord.norm_squared();
+    (span.leaves + chord * share.clamp(0.0, 1.0) - place).norm()
+}
+
+/// Strain of all free spans \[–\], negative, that leaves one of them so much longer than its chord that it sags by `sag` \[m\].
+///
+/// ```text
+/// e = L (θ/sin θ − 1),   tan(θ/2) = 2 f/L      f: sag, L: chord
+/// ```
+///
+/// The bow is an arc of a circle here. A catenary of the same length sags less, by a share of some (f/L)².
+pub(super) fn strain(wheels: &[Wheel], span: usize, sag: f64) -> Result<f64, AssemblyError> {
+    let spans = Route::taut(wheels)?.spans;
+    let chord = spans[span].length;
+    let theta = 2.0 * (2.0 * sag / chord).atan();
+    let excess = chord * (theta / theta.sin() - 1.0);
+    Ok(-excess / spans.iter().map(|it| it.length).sum::<f64>())
+}
+
+/// Roller positions with all slack in one span, and where the chain is seated. The phase is that of the sprocket behind the slack span.
 ///
 /// The bow is a regular polygon of unstretched links; settling turns it into the
 /// catenary.
 pub(super) fn sagging(
     wheels: &[Wheel],
-    closing: &Closing,
-    pitch: f64,
-    links: u32,
+    span: usize,
+    (pitch, links): (f64, u32),
+    phase: f64,
+    down: Vector,
+) -> Result<(Vec<Point>, Closing), AssemblyError> {
+    // Laid from the stop behind the slack span on, so that this is the last one.
+    let first = (span + 1) % wheels.len();
+    let mut ordered = wheels.to_vec();
+    ordered.rotate_left(first);
+    let mut closing = Closing::march(&ordered, pitch, phase)?;
+    let mut positions = bow_last(&ordered, &mut closing, (pitch, links), down)?;
+    let before = (wheels.len() - first) % wheels.len();
+    let passed = closing.seats.iter().zip(&closing.spans).take(before);
+    let passed: u32 = passed.map(|(seat, span)| seat.pitches + span).sum();
+    positions.rotate_left(passed as usize);
+    closing.seats.rotate_right(first);
+    closing.spans.rotate_right(first);
+    Ok((positions, closing))
+}
+
+/// Roller positions with all slack in the last span.
+fn bow_last(
+    wheels: &[Wheel],
+    closing: &mut Closing,
+    (pitch, links): (f64, u32),
     down: Vector,
 ) -> Result<Vec<Point>, AssemblyError> {
     let last_links = closing.spans.last().copied().unwrap_or(0);
@@ -26,10 +104,13 @@ pub(super) fn sagging(
     if f64::from(count) * pitch < distance || count < 2 {
         return Err(AssemblyError::Layout {
             problem: format!(
-                "the last span of the route is {:.1} mm long but only {count} links are left for it",
+                "the slack span of the route is {:.1} mm long but only {count} links are left for it",
                 distance * 1e3
             ),
         });
+    }
+    if let Some(last) = closing.spans.last_mut() {
+        *last = count;
     }
     let turn = turn_per_link(count, distance / pitch);
     // The bow hangs down, or outward (to the right of a counter-clockwise route) without gravity.

@@ -1,7 +1,9 @@
 //! Checks of shafts, couplings and gears.
 
 use super::{conflict, reference};
-use crate::drive::{Adjust, Coupling, GearPair, Layout, Parts, Rotation, Shaft, Support};
+use crate::drive::{
+    Adjust, Coupling, GearPair, Layout, Parts, Rotation, Shaft, StartSpeed, Support,
+};
 use crate::groups::Sets;
 use crate::trains::trains;
 use crate::{DriveError, Torque};
@@ -29,7 +31,7 @@ fn references(parts: &Parts) -> Vec<DriveError> {
     let mut found = Vec::new();
     for (index, turned) in parts.shafts.iter().enumerate() {
         let followed = turned.torques().filter_map(Torque::follows);
-        found.extend(followed.filter_map(|other| shaft(place(index, parts), other)));
+        found.extend(followed.filter_map(|other| shaft(parts.shaft_name(index), other)));
     }
     for sprocket in &parts.sprockets {
         found.extend(shaft(
@@ -48,20 +50,8 @@ fn references(parts: &Parts) -> Vec<DriveError> {
     found
 }
 
-/// Where a shaft stands in the scene: under its own name, or that of its only sprocket.
-fn place(index: usize, parts: &Parts) -> String {
-    if let Some(name) = &parts.shafts[index].name {
-        return format!("shafts.{name}");
-    }
-    let on_it = parts.sprockets.iter().find(|s| s.shaft == index);
-    on_it.map_or_else(
-        || format!("shafts[{index}]"),
-        |sprocket| format!("sprockets.{}", sprocket.name),
-    )
-}
-
 fn shaft_problems(index: usize, shaft: &Shaft, parts: &Parts) -> Vec<DriveError> {
-    let place = place(index, parts);
+    let place = parts.shaft_name(index);
     let mut found = Vec::new();
     let ok = shaft.inertia >= 0.0 && shaft.inertia.is_finite();
     let path = format!("{place}.inertia");
@@ -70,7 +60,13 @@ fn shaft_problems(index: usize, shaft: &Shaft, parts: &Parts) -> Vec<DriveError>
         Rotation::Prescribed(motion) => {
             found.extend(motion.check(&format!("{place}.motion")).err());
         }
-        Rotation::Free { drive, load } => {
+        Rotation::Free { drive, load, start } => {
+            if let StartSpeed::Given(speed) = start {
+                let path = format!("{place}.speed");
+                found.extend(
+                    DriveError::require(speed.is_finite(), &path, *speed, "finite [rad/s]").err(),
+                );
+            }
             for (name, torques) in [("drive", drive), ("load", load)] {
                 for (i, torque) in torques.iter().enumerate() {
                     found.extend(torque.check(&format!("{place}.{name}[{i}]")).err());
@@ -173,8 +169,8 @@ fn gear_problems(parts: &Parts) -> Vec<DriveError> {
         if let (Some(first), Some(second)) = (given[from], given[to]) {
             let problem = format!(
                 "joins two shafts whose motions are both given, {} and {}; leave one motion out",
-                self::place(first, parts),
-                self::place(second, parts)
+                parts.shaft_name(first),
+                parts.shaft_name(second)
             );
             found.push(conflict(&place, problem));
         }
@@ -200,7 +196,7 @@ fn inertia_problems(parts: &Parts) -> Vec<DriveError> {
         let inertia = inertias[index];
         let heavy = inertia > 0.0;
         if free && leads && !heavy {
-            let path = format!("{}.inertia", place(index, parts));
+            let path = format!("{}.inertia", parts.shaft_name(index));
             let allowed = "positive [kg m²] on whatever turns freely";
             found.extend(DriveError::require(false, &path, inertia, allowed).err());
         }

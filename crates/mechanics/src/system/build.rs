@@ -272,7 +272,7 @@ fn shafts(laid: &Laid, trains: &[InTrain], places: &Places) -> Vec<Shaft> {
     let shafts = shafts.map(|(index, (shaft, &train))| {
         let (drive, load) = match &shaft.rotation {
             Rotation::Prescribed(_) => (Vec::new(), Vec::new()),
-            Rotation::Free { drive, load } => (drive.clone(), load.clone()),
+            Rotation::Free { drive, load, .. } => (drive.clone(), load.clone()),
         };
         Shaft {
             name: shaft.name.clone(),

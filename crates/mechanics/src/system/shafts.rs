@@ -89,9 +89,14 @@ pub(crate) struct Shaft {
 }
 
 impl Shaft {
+    /// All torques on it.
+    pub(crate) fn torques(&self) -> impl Iterator<Item = &Torque> {
+        self.drive.iter().chain(&self.load)
+    }
+
     /// Linear resistance of all torques \[N m s\].
     pub(crate) fn drag(&self) -> f64 {
-        self.drive.iter().chain(&self.load).map(Torque::drag).sum()
+        self.torques().map(Torque::drag).sum()
     }
 
     /// The coordinate of a train, for the shaft that leads it.

@@ -11,8 +11,8 @@ use chaindrive_mechanics::inside::{chain, teeth};
 use chaindrive_mechanics::{
     Adjust, Assembled, Chain, ChainModel, Clearance, Drive, End, Ends, Fit, Flank, Flow,
     FreeRoller, Joint, Layout, LinkBody, Motion, Observation, Parts, PlacedChain, PretensionAt,
-    Record, RigidLinks, RollerModel, Rotation, Shaft, SpanStart, Sprocket, Stop, Strength, Support,
-    Surface, System, Tighten, Torque,
+    Record, RigidLinks, RollerModel, Rotation, Shaft, SpanStart, Sprocket, StartSpeed, Stop,
+    Strength, Support, Surface, System, Tighten, Torque,
 };
 use nalgebra::DVector;
 
@@ -60,6 +60,7 @@ fn bicycle(model: ChainModel) -> Parts {
     let driven = Rotation::Free {
         drive: Vec::new(),
         load: vec![Torque::Constant { torque: 5.0 }],
+        start: StartSpeed::Joined,
     };
     let driver = Rotation::Prescribed(Motion::Constant { rate: -9.42 });
     Parts {
@@ -84,6 +85,8 @@ fn bicycle(model: ChainModel) -> Parts {
                 phase: 0.5,
                 start: SpanStart::Polygon,
                 fit: Fit {
+                    sag: None,
+                    slack: None,
                     adjust: Adjust::Nothing,
                     pretension: 60.0,
                     tighten: Tighten::RestLength,

@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State};
 use chaindrive_mechanics::{
-    Argument, Assembled, Drive, Flow, Observation, Order, Rotation, System, Table, Torque,
+    Argument, Assembled, Drive, Flow, Observation, Order, Rotation, StartSpeed, System, Table,
+    Torque,
 };
 
 use crate::several_chains::{EVEN, assembled, chain, driven, pair, parts};
@@ -42,6 +43,7 @@ fn following(of: Option<usize>) -> Rotation {
                 curve: Table::new(angles, torques).expect("the angles increase"),
             },
         ],
+        start: StartSpeed::Joined,
     }
 }
 

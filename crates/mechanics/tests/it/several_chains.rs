@@ -7,8 +7,8 @@ use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Weights};
 use chaindrive_mechanics::{
     Adjust, Assembled, Chain, ChainModel, Clearance, Coupling, Drive, Ends, Fit, GearPair, Joint,
     Layout, LinkBody, Motion, Observation, Parts, PlacedChain, PretensionAt, RigidLinks,
-    RollerModel, Rotation, Shaft, SpanStart, Sprocket, Stop, Strength, Support, Surface, System,
-    Tighten, Torque,
+    RollerModel, Rotation, Shaft, SpanStart, Sprocket, StartSpeed, Stop, Strength, Support,
+    Surface, System, Tighten, Torque,
 };
 
 const PITCH: f64 = 0.0127;
@@ -70,6 +70,8 @@ pub(crate) fn chain(links: usize, stops: [usize; 2]) -> PlacedChain {
             phase: 0.5,
             start: SpanStart::Polygon,
             fit: Fit {
+                sag: None,
+                slack: None,
                 adjust: Adjust::Nothing,
                 pretension: 60.0,
                 tighten: Tighten::RestLength,
@@ -85,6 +87,7 @@ fn free(load: f64) -> Rotation {
     Rotation::Free {
         drive: Vec::new(),
         load: vec![Torque::Constant { torque: load }],
+        start: StartSpeed::Joined,
     }
 }
 

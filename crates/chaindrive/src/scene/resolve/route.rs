@@ -46,15 +46,29 @@ pub(super) fn layout(
         let hint = "say in `route.adjust` what moves, or take `rest-length`";
         findings.refuse_with("route.tighten", "nothing is there to travel", hint);
     }
+    if route.sag.is_some() {
+        if adjust == Adjust::Nothing {
+            let hint = "say in `route.adjust` which sprocket or tensioner makes it";
+            findings.refuse_with("route.sag", "nothing is moved to make it", hint);
+        }
+        if route.pretension.0 > 0.0 {
+            let hint = "keep one of them: a chain that sags has no pretension";
+            findings.refuse_with("route.sag", "`route.pretension` is given too", hint);
+        }
+    }
     let phase = route.phase.map(|phase| phase.0);
+    let stops = stops?;
+    let slack = slack_span(route, &stops, names, findings)?;
     Some(Layout::Route {
-        stops: stops?,
+        stops,
         start: findings.or_chosen(route.start, "route.start", &defaults::SPAN_START),
         phase: findings.or_default(phase, "route.phase", &defaults::PHASE),
         fit: Fit {
             adjust,
             pretension: route.pretension.0,
             tighten,
+            sag: route.sag.map(|sag| sag.0),
+            slack,
             at: findings.or_chosen(
                 route.pretension_at,
                 "route.pretension_at",
@@ -62,6 +76,34 @@ pub(super) fn layout(
             ),
         },
     })
+}
+
+/// The stop that the slack span leaves, where one is named; nothing where the name is wrong.
+fn slack_span(
+    route: &Route,
+    stops: &[Stop],
+    names: &Names<'_>,
+    findings: &mut Findings<'_>,
+) -> Option<Option<usize>> {
+    let Some(wanted) = &route.slack_span else {
+        return Some(None);
+    };
+    let name = |stop: &Stop| match stop {
+        Stop::Sprocket(index) => names.sprockets[*index],
+        Stop::Guide(index) => names.guides[*index],
+    };
+    let next = stops.iter().cycle().skip(1);
+    let spans = stops.iter().zip(next);
+    let spans: Vec<String> = spans
+        .map(|(from, to)| format!("{}-{}", name(from), name(to)))
+        .collect();
+    let found = spans.iter().position(|span| span == wanted);
+    if found.is_none() {
+        let known: Vec<&str> = spans.iter().map(String::as_str).collect();
+        let message = format!("no span is named `{wanted}`");
+        findings.refuse_with("route.slack_span", message, one_of(wanted, &known));
+    }
+    found.map(Some)
 }
 
 fn stops(

@@ -1,6 +1,6 @@
 //! Shafts, and what joins them.
 
-use chaindrive_mechanics::{Coupling, GearPair, Rotation, Shaft};
+use chaindrive_mechanics::{Coupling, GearPair, Rotation, Shaft, StartSpeed};
 
 use super::{Findings, Names, motion};
 use crate::scene::quantity::{Angle, AngularSpeed};
@@ -49,12 +49,12 @@ pub(super) fn resolve(
                 "give the moment of inertia of what turns with the sprocket, or its `motion`";
             findings.refuse_with(&format!("{path}.inertia"), "missing", hint);
         }
-        let turned = (&text.motion, &text.drive, &text.load);
+        let turned = (&text.motion, &text.drive, &text.load, text.speed);
         shafts.push(rotation(turned, &path, (scene, &ends), findings).map(Shaft::of_one));
     }
     for (i, text) in scene.shafts.iter().enumerate() {
         let path = format!("shafts[{i}]");
-        let turned = (&text.motion, &text.drive, &text.load);
+        let turned = (&text.motion, &text.drive, &text.load, text.speed);
         let rotation = rotation(turned, &path, (scene, &ends), findings);
         shafts.push(rotation.map(|rotation| Shaft {
             name: Some(text.name.clone()),
@@ -128,6 +128,7 @@ fn refuse_own_turning(
         ("motion", text.motion.is_some()),
         ("drive", !text.drive.is_empty()),
         ("load", !text.load.is_empty()),
+        ("speed", text.speed.is_some()),
     ] {
         if given {
             let message = format!("`{}` turns with shaft `{shaft}`", text.name);
@@ -141,11 +142,12 @@ type Turned<'t> = (
     &'t Option<schema::Motion<Angle, AngularSpeed>>,
     &'t Vec<schema::Torque>,
     &'t Vec<schema::Torque>,
+    Option<schema::StartSpeed>,
 );
 
 /// Drive of a shaft: a motion, or torques that drive and load it.
 fn rotation(
-    (given, drive, load): Turned<'_>,
+    (given, drive, load, speed): Turned<'_>,
     path: &str,
     (scene, ends): (&SceneText, &Ends<'_>),
     findings: &mut Findings<'_>,
@@ -158,6 +160,10 @@ fn rotation(
                 findings.refuse_with(&format!("{path}.{key}"), "`motion` is given too", hint);
             }
         }
+        if speed.is_some() {
+            let hint = "leave `speed` out: the motion says how fast it turns";
+            findings.refuse_with(&format!("{path}.speed"), "`motion` is given too", hint);
+        }
         let motion = motion::turn(given, &format!("{path}.motion"), scene, findings);
         return motion.map(Rotation::Prescribed);
     }
@@ -166,6 +172,11 @@ fn rotation(
     Some(Rotation::Free {
         drive: drive?,
         load: load?,
+        start: match speed {
+            None => StartSpeed::Joined,
+            Some(schema::StartSpeed::Given(speed)) => StartSpeed::Given(speed.0),
+            Some(schema::StartSpeed::Word(_)) => StartSpeed::WorkingPoint,
+        },
     })
 }
 

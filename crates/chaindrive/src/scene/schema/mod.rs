@@ -21,7 +21,7 @@ pub(crate) use contact::{Contact, Contacts, Cylinders, Dissipation, Elastic, Fla
 pub(crate) use friction::Friction;
 pub(crate) use guide::{Face, Guide, GuideSupport, TravelSide};
 pub(crate) use links::{ChainModel, Joint, Link, Roller, Rollers};
-pub(crate) use motion::{Motion, OrderTerm, Torque};
+pub(crate) use motion::{Motion, OrderTerm, StartSpeed, Torque};
 pub(crate) use route::{Adjust, Route};
 pub(crate) use run::Run;
 pub use run::RunDefaults;

@@ -1,6 +1,8 @@
 //! Prescribed motions and shaft torques.
 
-use schemars::JsonSchema;
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
 use crate::scene::quantity::{
@@ -94,6 +96,43 @@ pub(crate) struct OrderTerm<Amplitude> {
     /// Phase where the simulation began, before the run-in [rad]; absent: 0.
     #[serde(default)]
     pub(crate) phase: Angle,
+}
+
+/// Speed of a free shaft where the simulation begins.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(untagged)]
+pub(crate) enum StartSpeed {
+    /// A speed.
+    Given(AngularSpeed),
+    /// A word in its place.
+    Word(WorkingPoint),
+}
+
+/// The word for the speed at which torques balance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum WorkingPoint {
+    WorkingPoint,
+}
+
+impl JsonSchema for StartSpeed {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "StartSpeed".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "type": ["number", "string"],
+            "x-dimension": "an angular speed",
+            "x-unit": "rad/s",
+            "x-words": {"working-point": "working-point"},
+            "examples": ["1450 rpm", "working-point"],
+        })
+    }
 }
 
 /// Turns after which a table of torques repeats: 1, or 2 for engines of four strokes.

@@ -28,6 +28,15 @@ pub(crate) struct Route {
     /// How the pretension is made; absent: by shorter links.
     #[serde(default)]
     pub(crate) tighten: Tighten,
+    /// Sag of the slack span in its middle [m] before the load stretches the chain, made by what `adjust` moves, instead of a pretension;
+    /// absent: none is asked for.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) sag: Option<Length>,
+    /// Name of the span, "from-to", that hangs where the chain is longer than its way; absent: the one that runs to the first stop,
+    /// or the longest without a guide where a guide lies along that.
+    #[serde(default)]
+    pub(crate) slack_span: Option<String>,
     /// How the spans set off; absent: quiet.
     #[serde(default)]
     pub(crate) start: Option<SpanStart>,

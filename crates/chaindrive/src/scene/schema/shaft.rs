@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Motion, Torque};
+use super::{Motion, StartSpeed, Torque};
 use crate::scene::quantity::{Angle, AngularDamping, AngularSpeed, AngularStiffness, Inertia};
 
 /// A body that turns about one axis: it carries sprockets of any chains, rigidly, or none, such as a wheel behind a coupling.
@@ -18,13 +18,17 @@ pub(crate) struct Shaft {
     #[serde(default)]
     #[schemars(extend("maxItems" = 1000))]
     pub(crate) sprockets: Vec<String>,
-    /// Rotation given in time. Excludes `drive` and `load`.
+    /// Rotation given in time. Excludes `drive`, `load` and `speed`.
     #[serde(default)]
     pub(crate) motion: Option<Motion<Angle, AngularSpeed>>,
     /// Moment of inertia [kg m²] beside those of its sprockets; absent: none.
     #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) inertia: Option<Inertia>,
+    /// Speed of a shaft without `motion` where the simulation begins, before the run-in [rad/s]: a number, or "working-point", at which
+    /// all torques on what it is joined with balance. Absent: the speed of what it is joined with, or rest.
+    #[serde(default)]
+    pub(crate) speed: Option<StartSpeed>,
     /// Torques that drive the shaft.
     #[serde(default)]
     pub(crate) drive: Vec<Torque>,

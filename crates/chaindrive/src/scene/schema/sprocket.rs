@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Contact, Flank, Motion, Torque};
+use super::{Contact, Flank, Motion, StartSpeed, Torque};
 use crate::scene::quantity::{
     Angle, AngularSpeed, Damping, Inertia, Length, Mass, Speed, Stiffness,
 };
@@ -32,7 +32,7 @@ pub(crate) struct Sprocket {
     /// Tooth form; absent: ISO 606 half-way between the extreme forms.
     #[serde(default)]
     pub(crate) tooth: Option<Tooth>,
-    /// Rotation given in time. Excludes `drive` and `load`.
+    /// Rotation given in time. Excludes `drive`, `load` and `speed`.
     #[serde(default)]
     pub(crate) motion: Option<Motion<Angle, AngularSpeed>>,
     /// Moment of inertia about the centre, shaft included [kg m²]; needed without `motion`. Of one that sits on one of the
@@ -40,6 +40,10 @@ pub(crate) struct Sprocket {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) inertia: Option<Inertia>,
+    /// Speed of a shaft without `motion` where the simulation begins, before the run-in [rad/s]: a number, or "working-point", at which
+    /// all torques on what it is joined with balance. Absent: the speed of what it is joined with, or rest.
+    #[serde(default)]
+    pub(crate) speed: Option<StartSpeed>,
     /// Torques that drive the shaft.
     #[serde(default)]
     pub(crate) drive: Vec<Torque>,

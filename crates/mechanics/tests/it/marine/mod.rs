@@ -4,7 +4,7 @@ use chaindrive_contact::{Friction, Law};
 use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
 use chaindrive_mechanics::{
     Adjust, Chain, Ends, Fit, Layout, Motion, Parts, PlacedChain, PretensionAt, Rotation, Shaft,
-    SpanStart, Sprocket, Stop, Strength, Support, Surface, Tighten, Torque,
+    SpanStart, Sprocket, StartSpeed, Stop, Strength, Support, Surface, Tighten, Torque,
 };
 
 /// Pitch, link mass and stiffness as published; the rest is a reconstruction that closes exactly.
@@ -36,6 +36,7 @@ pub(crate) fn parts(law: Law) -> Parts {
             Rotation::Free {
                 drive: Vec::new(),
                 load,
+                start: StartSpeed::Joined,
             }
         })
     });
@@ -79,6 +80,8 @@ pub(crate) fn parts(law: Law) -> Parts {
                 phase: 0.5,
                 start: SpanStart::Polygon,
                 fit: Fit {
+                    sag: None,
+                    slack: None,
                     adjust: Adjust::Nothing,
                     pretension: 15e3,
                     tighten: Tighten::RestLength,

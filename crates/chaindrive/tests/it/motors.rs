@@ -1,0 +1,242 @@
+//! Drives that torques turn, chains that sag on purpose, and what is said of those that cannot be.
+
+use std::f64::consts::{PI, TAU};
+
+use chaindrive::describe::spans_at_rest;
+use chaindrive::scene::Scene;
+use chaindrive::{Run, Simulation};
+use chaindrive_geometry::Point;
+use chaindrive_mechanics::Assembled;
+
+/// Teeth and inertia \[kg m²\] of motor and conveyor.
+const TEETH: [f64; 2] = [17.0, 38.0];
+const INERTIA: [f64; 2] = [0.02, 1.5];
+const PITCH: f64 = 12.7e-3;
+
+/// A motor by its torque over speed, and a conveyor with a constant load.
+fn conveyor(motor: &str, load: &str) -> String {
+    format!(
+        r#"
+[chain]
+type = "08B-1"
+[[sprockets]]
+name = "motor"
+teeth = 17
+centre = [0, 0]
+inertia = 0.02
+{motor}
+[[sprockets]]
+name = "conveyor"
+teeth = 38
+centre = ["600 mm", 0]
+inertia = 1.5
+{load}
+[route]
+pretension = "150 N"
+adjust = {{ kind = "sprocket", name = "motor", direction = [-1, 0], within = "10 mm" }}
+"#
+    )
+}
+
+const TABLE: &str = r#"drive = [{ kind = "speed-table", speeds = ["0 rpm", "135 rpm", "142.5 rpm", "150 rpm", "165 rpm"], torques = [110, 120, 60, 0, -120] }]"#;
+const LOAD: &str = r#"load = [{ kind = "constant", torque = -60 }]"#;
+
+fn assembled(text: &str) -> Result<Assembled, String> {
+    let scene = Scene::from_text(text, "test.toml").map_err(|error| error.to_string())?;
+    let drive = scene.drive().map_err(|error| error.to_string())?;
+    drive.assemble().map_err(|error| error.to_string())
+}
+
+fn tensions(assembled: &Assembled) -> Vec<f64> {
+    let spans = spans_at_rest(&assembled.drive, assembled);
+    spans.into_iter().map(|span| span.tension).collect()
+}
+
+fn refused(text: &str) -> String {
+    match assembled(text) {
+        Ok(_) => panic!("it stands"),
+        Err(error) => error,
+    }
+}
+
+/// From rest the motor speeds up all that it turns; the chain carries what the conveyor takes of it.
+///
+/// ```text
+/// α = (M₁ + i M₂)/(J₁ + i² J₂),   i = z₁/z₂,   (T − t) R₁ = M₁ − J₁ α
+/// ```
+#[test]
+fn a_motor_speeds_up_from_rest_and_its_chain_carries_that() {
+    let assembled = assembled(&conveyor(TABLE, LOAD)).unwrap();
+    let [z1, z2] = TEETH;
+    let ratio = z1 / z2;
+    let net = 110.0 - ratio * 60.0;
+    let inertia = INERTIA[0] + ratio * ratio * INERTIA[1];
+    let trains = assembled.free_trains();
+    let [train] = trains.as_slice() else {
+        panic!("{trains:?}")
+    };
+    assert!((train.torque - net).abs() < 1e-9 * net, "{train:?}");
+    assert!((train.acceleration() - net / inertia).abs() < 1e-9 * net / inertia);
+    let radius = 0.5 * PITCH / (PI / z1).sin();
+    let pull = (110.0 - INERTIA[0] * net / inertia) / radius;
+    let spans = tensions(&assembled);
+    // The weight of the spans and the polygons make some tenths of a per cent of it.
+    let found = spans[1] - spans[0];
+    assert!((found / pull - 1.0).abs() < 0.01, "{found} N for {pull} N");
+}
+
+/// 60 (150 − n)/7.5 N m of the motor are 60 z₁/z₂ N m: n = 150 − 7.5 z₁/z₂ r/min.
+#[test]
+fn a_drive_starts_where_its_torques_balance() {
+    let motor = format!("speed = \"working-point\"\n{TABLE}");
+    let assembled = assembled(&conveyor(&motor, LOAD)).unwrap();
+    let expected = (150.0 - 7.5 * TEETH[0] / TEETH[1]) * TAU / 60.0;
+    let speeds = assembled.mean_speeds();
+    assert!((speeds[0] / expected - 1.0).abs() < 1e-9, "{speeds:?}");
+    assert!((speeds[1] / speeds[0] - TEETH[0] / TEETH[1]).abs() < 1e-9);
+    // The chain carries the load, and nothing speeds up.
+    let radius = 0.5 * PITCH / (PI / TEETH[1]).sin();
+    let spans = tensions(&assembled);
+    assert!(((spans[1] - spans[0]) * radius / 60.0 - 1.0).abs() < 0.01);
+    assert!(assembled.free_trains()[0].torque.abs() < 1e-9);
+}
+
+#[test]
+fn a_speed_at_the_start_is_that_of_all_that_is_joined() {
+    let load = format!("speed = \"60 rpm\"\n{LOAD}");
+    let speeds = assembled(&conveyor(TABLE, &load)).unwrap().mean_speeds();
+    assert!((speeds[0] * TEETH[0] / (TEETH[1] * TAU) - 1.0).abs() < 1e-9);
+    let motor = format!("speed = \"60 rpm\"\n{TABLE}");
+    let error = refused(&conveyor(&motor, &load));
+    assert!(
+        error.contains("sprockets.conveyor.speed: it turns at 26.84 rpm"),
+        "{error}"
+    );
+    let driven = r#"motion = { kind = "constant", speed = "60 rpm" }"#;
+    let error = refused(&conveyor(driven, &load));
+    assert!(error.contains("it turns at 26.84 rpm"), "{error}");
+    let both = format!("speed = 1\n{driven}");
+    let error = refused(&conveyor(&both, LOAD));
+    assert!(error.contains("`motion` is given too"), "{error}");
+    let word = "speed = \"working point\"\ndrive = [{ kind = \"constant\", torque = 50 }]";
+    let error = refused(&conveyor(word, LOAD));
+    assert!(error.contains("does not begin with a number"), "{error}");
+    let endless = "speed = \"working-point\"\ndrive = [{ kind = \"constant\", torque = 50 }]";
+    let error = refused(&conveyor(endless, LOAD));
+    assert!(error.contains("balance at no speed"), "{error}");
+}
+
+#[test]
+fn a_chain_that_a_load_would_break_is_named() {
+    let driven = r#"motion = { kind = "constant", speed = "60 rpm" }"#;
+    let load = r#"load = [{ kind = "constant", torque = "-4 kN m" }]"#;
+    let error = refused(&conveyor(driven, load));
+    assert!(
+        error.contains("4000 N m on `conveyor`") && error.contains("breaks at 18.0"),
+        "{error}"
+    );
+    assert!(!error.contains("tensioner"), "{error}");
+}
+
+/// A rail lies under the carrying run; what the chain is too long hangs in the return run.
+#[test]
+fn a_chain_hangs_where_no_rail_carries_it() {
+    for short in [0.0, 2.0, 8.0] {
+        let centre = 0.5 * (160.0 - 20.0) * 25.4 - short;
+        let text = format!(
+            r#"
+[chain]
+type = "16B-1"
+links = 160
+[[sprockets]]
+name = "head"
+teeth = 20
+centre = [0, 0]
+motion = {{ kind = "constant", speed = "40 rpm" }}
+[[sprockets]]
+name = "tail"
+teeth = 20
+centre = ["{centre} mm", 0]
+inertia = 0.5
+[[guides]]
+name = "rail"
+face = {{ kind = "bar", start = ["{} mm", "71.5 mm"], end = ["300 mm", "71.5 mm"], end_radius = "2 m", end_angle = "3 deg", material = "left" }}
+"#,
+            centre - 300.0
+        );
+        let assembled = assembled(&text).unwrap_or_else(|error| panic!("{short}: {error}"));
+        let links: u32 = assembled
+            .fittings
+            .iter()
+            .flatten()
+            .map(|it| it.spans.iter().sum::<u32>() + it.seated.iter().sum::<u32>())
+            .sum();
+        assert_eq!(links, 160, "{short}");
+    }
+}
+
+/// The slack run hangs as deep as asked, whichever it is, and the sprocket goes where that takes it.
+#[test]
+fn a_chain_sags_as_deep_as_asked() {
+    for (span, torque, sag) in [
+        ("driven-driver", 4.0, 20e-3),
+        ("driver-driven", -4.0, 12e-3),
+    ] {
+        let text = format!(
+            r#"
+[chain]
+type = "08B-1"
+links = 124
+[[sprockets]]
+name = "driver"
+teeth = 19
+centre = [0, 0]
+motion = {{ kind = "constant", speed = "60 rpm" }}
+[[sprockets]]
+name = "driven"
+teeth = 19
+centre = ["660 mm", 0]
+inertia = 0.05
+load = [{{ kind = "constant", torque = {torque} }}]
+[route]
+sag = {sag}
+slack_span = "{span}"
+adjust = {{ kind = "sprocket", name = "driven", direction = [1, 0], within = "20 mm" }}
+"#
+        );
+        let assembled = assembled(&text).unwrap();
+        let at = usize::from(span == "driven-driver");
+        let spans = tensions(&assembled);
+        assert!(spans[1 - at] > 3.0 * spans[at], "{spans:?}");
+        // Both runs leave and arrive at the pitch radius above or below the line of centres.
+        let radius = 0.5 * PITCH / (PI / 19.0).sin();
+        let chord = if at == 1 { radius } else { -radius };
+        let middle = 0.5 * assembled.fittings[0].as_ref().unwrap().wheels[1].centre.x;
+        let run = Run::default();
+        let mut simulation = Simulation::from_assembled(assembled.clone(), &run).unwrap();
+        let seen = simulation.next_sample().unwrap().unwrap();
+        let places = seen.roller_x.iter().zip(&seen.roller_y);
+        let rollers: Vec<Point> = places.map(|(x, y)| Point::new(*x, *y)).collect();
+        let near = rollers.iter().filter(|it| (it.y - chord).abs() < 2.0 * sag);
+        let lowest = near.min_by(|a, b| (a.x - middle).abs().total_cmp(&(b.x - middle).abs()));
+        let found = chord - lowest.unwrap().y;
+        // The ends of the bow lie on polygons, and what the load stretches hangs there too.
+        assert!(
+            (found / sag - 1.0).abs() < 0.05,
+            "{span}: {found} for {sag}"
+        );
+    }
+    let short = conveyor(TABLE, LOAD).replace(
+        "pretension = \"150 N\"",
+        "sag = 0.01\nslack_span = \"motor-conveyer\"",
+    );
+    let error = refused(&short);
+    assert!(
+        error.contains("did you mean `motor-conveyor`") || error.contains("motor-conveyor"),
+        "{error}"
+    );
+    let nothing = conveyor(TABLE, LOAD)
+        .replace("pretension = \"150 N\"", "sag = 0.01")
+        .replace("adjust =", "#");
+    assert!(refused(&nothing).contains("nothing is moved to make it"));
+}
