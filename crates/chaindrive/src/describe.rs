@@ -13,8 +13,8 @@ mod text;
 use chaindrive_geometry::mesh_frequency;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 use chaindrive_mechanics::{
-    Adjust, Assembled, Carrier, ChainModel, Clash, Drive, Fight, Fitting, Flow, GuideSupport,
-    Layout, Observation, PlacedChain, Rotation, Statics,
+    Adjust, Assembled, Capacity, Carrier, ChainModel, Clash, Drive, Fight, Fitting, Flow,
+    GuideSupport, Layout, Observation, PlacedChain, Rotation, Statics, Unrated,
 };
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -25,7 +25,7 @@ pub use links::{ContactFacts, LinkFacts};
 pub use polygon::PolygonPair;
 pub use route::{SpanAtRest, StopFacts, spans_at_rest};
 
-use crate::{Run, SimulationError};
+use crate::{Run, SimulationError, rating};
 
 /// A drive and a run, described.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -76,7 +76,7 @@ pub struct ChainFacts {
     pub longitudinal_wave_speed: f64,
     /// Speed of transverse waves at the least and the greatest static tension of a span \[m/s\].
     pub transverse_wave_speeds: Option<[f64; 2]>,
-    /// Power that it is rated for; absent where no rating is known, or nothing turns.
+    /// Power that it is rated for, or why there is none; absent where nothing turns, or the chain has no type.
     pub rated_power: Option<RatedPower>,
     /// How the chain was fitted; absent when it does not run around sprockets.
     pub closing: Option<Closing>,
@@ -119,8 +119,16 @@ pub struct RatedPower {
     pub teeth: u32,
     /// Its speed at the start \[rad/s\].
     pub speed: f64,
-    /// The power \[W\], see [`Rating::power`](chaindrive_mechanics::Rating::power).
-    pub power: f64,
+    /// Its strands.
+    pub strands: u32,
+    /// By how much the power that is carried counts more \[–\].
+    pub service_factor: f64,
+    /// The power \[W\], see [`rated_power`](crate::rating::rated_power); absent where no rating is known.
+    pub power: Option<f64>,
+    /// What limits it; absent where no rating is known.
+    pub limited_by: Option<&'static str>,
+    /// Why there is no rating; absent where there is one.
+    pub unrated: Option<String>,
 }
 
 /// A number of things: `1 guide`, `2 guides`.
@@ -357,7 +365,10 @@ fn closing(drive: &Drive, placed: &PlacedChain, fitting: &Fitting) -> Closing {
 
 /// The rating at the smallest sprocket that takes part; idlers do not.
 fn rated_power(drive: &Drive, placed: &PlacedChain, start: &Observation) -> Option<RatedPower> {
-    let rating = placed.chain.strength.rating?;
+    let strength = &placed.chain.strength;
+    if let Capacity::Unknown(Unrated::NoType) = strength.capacity {
+        return None;
+    }
     let takes_part = |shaft: usize| {
         let joined = drive.couplings.iter().map(|it| it.shafts);
         let mut joined = joined.chain(drive.gears.iter().map(|it| it.shafts));
@@ -378,12 +389,20 @@ fn rated_power(drive: &Drive, placed: &PlacedChain, start: &Observation) -> Opti
     let smallest = own.min_by_key(|&index| drive.sprockets[index].gap.teeth)?;
     let sprocket = &drive.sprockets[smallest];
     let (teeth, speed) = (sprocket.gap.teeth, start.sprocket_speed[smallest]);
-    let power = rating.power(teeth, speed);
-    (power > 0.0).then(|| RatedPower {
+    let (limits, unrated) = match rating::power_limits(strength, teeth, speed) {
+        Ok(limits) => (limits, None),
+        Err(why) => (Vec::new(), Some(why.to_string())),
+    };
+    let least = rating::least(&limits);
+    (speed.abs() > 0.0).then(|| RatedPower {
         sprocket: sprocket.name.clone(),
         teeth,
         speed,
-        power,
+        strands: strength.strands,
+        service_factor: strength.service_factor,
+        power: least.map(|(_, power)| power),
+        limited_by: least.map(|(by, _)| by.name()),
+        unrated,
     })
 }
 

@@ -26,6 +26,7 @@ mod error;
 mod identity;
 mod plain;
 pub mod precision;
+pub mod rating;
 pub mod record;
 mod run;
 pub mod scene;
@@ -47,6 +48,7 @@ pub use error::SimulationError;
 pub use identity::{Build, Origin};
 pub use plain::plain;
 pub use precision::{Choice, Estimate, Judgement};
+pub use rating::Rating;
 pub use record::{Axis, Channel, EventTable, ImpactStatistics, Memory, Recording, Summary};
 pub use run::{
     Checkpoint, End, Given, MOST_CIRCUITS, Onlooker, RanIn, Report, Request, RequestError, Run,

@@ -25,7 +25,7 @@ pub use memory::Memory;
 pub use recorded::{LoggedContact, Recorded, RecordedChannel};
 pub use summary::{
     ContactStatistics, ForceStatistics, ImpactStatistics, Known, Ledger, Load, SpanStatistics,
-    Steadiness, Summary,
+    SprocketDuty, Steadiness, Summary,
 };
 pub(crate) use summary::{DRIFT, drift};
 pub use zarr::{

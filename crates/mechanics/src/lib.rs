@@ -73,7 +73,7 @@ pub use order::Order;
 pub use pose::{
     Body, BodyKind, Figure, FigureChain, Instant, MissingChannel, Placement, PlateShape, Pose,
 };
-pub use strength::{Rating, Strength};
+pub use strength::{Capacity, PowerLimits, Strength, Unrated};
 pub use struck::Struck;
 pub use system::{Input, Record, System, SystemMemory};
 pub use tensioner::{Carrier, Push, PushForce, Tensioner, carriers, pushes};

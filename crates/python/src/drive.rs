@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use chaindrive::catalogue::{CatalogueChain, Number};
 use chaindrive::describe::{spans_at_rest, static_stages};
 use chaindrive::scene::{self, Scene};
-use chaindrive::{Channel, Description, Mode, Run};
+use chaindrive::{Channel, Description, Mode, Run, rating};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
@@ -235,8 +235,8 @@ impl Drive {
         Ok(Law(surface.law))
     }
 
-    /// Power \[W\] that a chain is rated for; none where no rating is known.
-    fn rated_power(&self, chain: Option<&str>, teeth: u32, speed: f64) -> PyResult<Option<f64>> {
+    /// Power \[W\] that a chain is rated for.
+    fn rated_power(&self, chain: Option<&str>, teeth: u32, speed: f64) -> PyResult<f64> {
         let mut chains = self.drive.chains.iter();
         let placed = match chain {
             None if self.drive.chains.len() == 1 => chains.next(),
@@ -247,8 +247,9 @@ impl Drive {
             Some(name) => chains.find(|placed| placed.name.as_deref() == Some(name)),
         };
         let placed = placed.ok_or_else(|| PyKeyError::new_err(chain.map(str::to_owned)))?;
-        let rating = placed.chain.strength.rating;
-        Ok(rating.map(|rating| rating.power(teeth, speed)))
+        let rated = rating::rated_power(&placed.chain.strength, teeth, speed);
+        let allowed = "a type of the A series with its own pitch, such as 16A-1, or chain.rated_power of the maker";
+        rated.map_err(|why| parameter(why.to_string(), "chain.type", allowed))
     }
 
     /// The whole profile of a sprocket or guide, settled or as it was laid.

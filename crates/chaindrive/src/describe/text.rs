@@ -335,13 +335,21 @@ impl fmt::Display for Closing {
 
 impl fmt::Display for RatedPower {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let strands = match self.strands {
+            1 => "a single strand".to_owned(),
+            several => counted(several as usize, "strand"),
+        };
+        match (self.power, self.limited_by) {
+            (Some(power), Some(by)) => write!(f, "{:.3} kW, limited by {by},", power * 1e-3)?,
+            _ => write!(f, "{},", self.unrated.as_deref().unwrap_or("none"))?,
+        }
         write!(
             f,
-            "{:.3} kW at the {} teeth and {:.1} rpm of {}, a single strand under smooth load",
-            self.power * 1e-3,
+            " at the {} teeth and {:.1} rpm of {}, {strands}, service factor {}",
             self.teeth,
             self.speed.abs() * 60.0 / TAU,
-            self.sprocket
+            self.sprocket,
+            self.service_factor
         )
     }
 }

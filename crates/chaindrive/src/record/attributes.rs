@@ -4,6 +4,7 @@
 //! knows neither truth values nor tables.
 
 use chaindrive_integrate::Method;
+use chaindrive_mechanics::Unrated;
 use std::time::{Duration, Instant};
 
 use serde_json::{Map, Value};
@@ -11,6 +12,7 @@ use serde_json::{Map, Value};
 use super::Summary;
 use crate::RanIn;
 use crate::precision::{Attribute, Choice, Judgement};
+use crate::rating::Rating;
 use crate::sweep::Outcome;
 use crate::{Build, Origin, Reason, Run, Scene, Simulation, Stepping, Verdict};
 
@@ -159,18 +161,9 @@ pub fn attributes(
             story.number("efficiency", efficiency);
             story.number("efficiency_error", uncertain);
         }
-        let loads = summary.carried();
-        for load in &loads {
-            // Of several chains each says its own.
-            let named = |what: &str| match loads.len() {
-                1 => what.to_owned(),
-                _ => format!("{what}_{}", load.chain),
-            };
-            if let Some(rated) = load.rated() {
-                story.number(&named("power_carried"), load.power);
-                story.number(&named("power_rated"), rated);
-            }
-        }
+        let ratings = summary.ratings();
+        let one = ratings.len() == 1;
+        ratings.iter().for_each(|it| rating(&mut story, it, one));
         story.number("energy_residual_largest", summary.residual);
         story.number("contact_force_largest", summary.forces().max);
         for it in summary.impacts().iter().filter(|it| it.count > 0) {
@@ -237,6 +230,49 @@ pub fn figures(
 }
 
 /// Cost of the run.
+/// What a chain is made for; of several chains each says its own.
+fn rating(story: &mut Story, of: &Rating, is_only: bool) {
+    let named = |what: &str| match is_only {
+        true => what.to_owned(),
+        false => format!("{what}_{}", of.chain),
+    };
+    if of.sprocket.is_some() {
+        if let (Ok(limits), Some((by, power))) = (&of.limits, of.governing()) {
+            story.number(&named("power_carried"), of.carried);
+            story.number(&named("power_rated"), power);
+            story.text(&named("power_limited_by"), by.name());
+            for limit in limits {
+                if let Some(power) = limit.power {
+                    story.number(&named(&format!("power_limit_{}", limit.by.name())), power);
+                }
+            }
+            story.number(&named("strand_factor"), of.strand_factor);
+            story.number(&named("service_factor"), of.service_factor);
+        }
+        if let Err(why @ Unrated::SourceMissing { .. }) = of.limits {
+            story.number(&named("power_carried"), of.carried);
+            story.text(&named("power_unrated"), &why.to_string());
+        }
+        if let Some(class) = of.lubrication {
+            story.text(&named("lubrication"), class.name());
+        }
+    }
+    let numbers = [
+        ("static_safety", of.static_safety),
+        ("dynamic_safety", of.dynamic_safety),
+        ("bearing_pressure", of.bearing_pressure),
+    ];
+    for (name, number) in numbers {
+        if let Some(number) = number {
+            story.number(&named(name), number);
+        }
+    }
+    for load in &of.shaft_loads {
+        story.number(&format!("shaft_load_{}", load.sprocket), load.force);
+        story.number(&format!("shaft_load_angle_{}", load.sprocket), load.angle);
+    }
+}
+
 fn speed(story: &mut Story, simulation: &Simulation, wall_time: Duration) {
     let wall = simulation.stepping_time();
     let steps = simulation.statistics().steps.max(1) as f64;

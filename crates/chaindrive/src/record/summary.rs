@@ -13,9 +13,10 @@ use serde::{Deserialize, Serialize};
 
 use super::event::{EventTable, kind};
 use crate::Simulation;
+use crate::rating::Rating;
 use blocks::Blocks;
 use carried::Carried;
-pub use carried::Load;
+pub use carried::{Load, SprocketDuty};
 pub use impacts::ImpactStatistics;
 use report::Report;
 pub(crate) use steadiness::{DRIFT, drift};
@@ -429,7 +430,12 @@ impl Summary {
 
     /// Duty of each chain.
     pub fn carried(&self) -> Vec<Load> {
-        self.carried.loads()
+        self.carried.loads(&self.spans)
+    }
+
+    /// What each chain is made for, beside what the run has asked of it.
+    pub fn ratings(&self) -> Vec<Rating> {
+        self.carried().iter().map(Rating::of).collect()
     }
 
     /// Greatest frequency at which rollers seat on a sprocket, in the mean over the run \[Hz\].

@@ -157,6 +157,10 @@ defaults! {
     DAMPING_RATIO = always(0.03), "1", Assumed("measured values are not published, 0.01 to 0.05 are in use"), ["Chain.damping_ratio"];
     /// Height of the link plates.
     PLATE_HEIGHT = always(1.4), "roller diameters", Source("1.31 to 1.47 in the catalogues"), ["Chain.plate_height"];
+    /// Strands of a chain that is rated.
+    STRANDS = always(1.0), "1", Assumed("the catalogue has single strands"), ["Chain.strands"];
+    /// Service factor of a chain that is rated.
+    SERVICE_FACTOR = always(1.0), "1", Assumed("none: a smooth load, for which power is rated"), ["Chain.service_factor"];
     /// Roller diameter of a strand that touches nothing.
     ROLLER_DIAMETER = always(0.6), "pitches", Assumed("it touches nothing"), ["Chain.roller_diameter"];
     /// Laying stiffness of rigid links with ideal joints.

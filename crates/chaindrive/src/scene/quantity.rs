@@ -98,6 +98,8 @@ quantities! {
     Inertia, "a moment of inertia", "kg m^2", "251 kg m^2", [2.0, 1.0, 0.0, 0.0], true;
     /// A torque \[N m\].
     Torque, "a torque", "N m", "5 kN m", [2.0, 1.0, -2.0, 0.0], false;
+    /// A power \[W\].
+    Power, "a power", "W", "15 kW", [2.0, 1.0, -3.0, 0.0], false;
     /// A rotational stiffness \[N m/rad\].
     AngularStiffness, "a rotational stiffness", "N m/rad", "40 N m/rad", [2.0, 1.0, -2.0, -1.0], false;
     /// A rotational damping \[N m s/rad\].

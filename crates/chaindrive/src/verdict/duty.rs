@@ -1,11 +1,11 @@
 //! Whether a drive could do what the run asks of it, and whether the run asks for what was meant.
 
 use chaindrive_contact::dissipation::FASTEST_IMPACT;
-use chaindrive_mechanics::Struck;
+use chaindrive_mechanics::{Struck, Unrated};
 
 use super::Reason;
 use crate::record::{Ledger, Load};
-use crate::{Simulation, Summary};
+use crate::{Rating, Simulation, Summary};
 
 /// Samples a tooth passing below which the mesh is seen at another frequency than its own: H. Nyquist, *Trans. AIEE* **47**, 1928,
 /// 617–644.
@@ -21,7 +21,9 @@ pub(super) fn found(summary: &Summary, simulation: &Simulation) -> Vec<Reason> {
     let mut reasons = Vec::new();
     let loads = summary.carried();
     reasons.extend(loads.iter().filter_map(broken));
-    reasons.extend(loads.iter().filter_map(overloaded));
+    let ratings = summary.ratings();
+    reasons.extend(ratings.iter().filter_map(overloaded));
+    reasons.extend(ratings.iter().filter_map(unrated));
     reasons.extend(loads.iter().filter_map(pressed));
     let struck = simulation.system().struck();
     reasons.extend(deepest(&struck));
@@ -48,14 +50,27 @@ fn broken(load: &Load) -> Option<Reason> {
     })
 }
 
-fn overloaded(load: &Load) -> Option<Reason> {
-    let (sprocket, _, speed) = load.smallest.as_ref()?;
-    let rated = load.rated()?;
-    (load.power > rated).then(|| Reason::AboveRating {
-        sprocket: sprocket.clone(),
-        speed: speed.abs(),
-        power: load.power,
+fn overloaded(rating: &Rating) -> Option<Reason> {
+    let sprocket = rating.sprocket.as_ref()?;
+    let (limited_by, rated) = rating.governing()?;
+    (rating.utilisation()? > 1.0).then(|| Reason::AboveRating {
+        sprocket: sprocket.name.clone(),
+        speed: sprocket.speed.abs(),
+        power: rating.carried,
+        service_factor: rating.service_factor,
         rated,
+        limited_by,
+    })
+}
+
+/// A chain that carries power, and whose type nobody rates.
+fn unrated(rating: &Rating) -> Option<Reason> {
+    let turns = rating.sprocket.as_ref()?.speed.abs() > 0.0;
+    let nobody = matches!(rating.limits, Err(Unrated::SourceMissing { .. }));
+    (turns && nobody).then(|| Reason::NotRated {
+        chain: rating.chain.clone(),
+        power: rating.carried,
+        twin: rating.twin,
     })
 }
 

@@ -8,6 +8,7 @@ use chaindrive_mechanics::Fight;
 use super::{LONG_PRESSED, PRESSED, Trust};
 use crate::precision::wording::{duration, percent};
 use crate::precision::{ChannelHorizon, Gap};
+use crate::rating::LimitedBy;
 
 /// A reason that speaks against a result.
 #[derive(Clone, Debug, PartialEq)]
@@ -141,8 +142,21 @@ pub enum Reason {
         speed: f64,
         /// Mean power \[W\].
         power: f64,
+        /// By how much it counts more \[–\].
+        service_factor: f64,
         /// Power that the chain is rated for at this speed \[W\].
         rated: f64,
+        /// What limits it.
+        limited_by: LimitedBy,
+    },
+    /// A chain carries power, and there is no rating of its type.
+    NotRated {
+        /// Name of the chain; empty where there is one only.
+        chain: String,
+        /// Mean power \[W\].
+        power: f64,
+        /// What the chain of ASME B29.1 with its pitch is rated for there \[W\].
+        twin: Option<f64>,
     },
     /// A contact is deeper than its law reaches.
     DeepContact {
@@ -223,6 +237,7 @@ impl Reason {
             Self::LinksPressed { .. }
             | Self::SpansNotExamined { .. }
             | Self::HorizonWithinRun { .. }
+            | Self::NotRated { .. }
             | Self::NotExamined { .. } => Trust::Trusted,
         }
     }
@@ -250,6 +265,7 @@ impl Reason {
             Self::HorizonWithinRun { .. } => "horizon-within-run",
             Self::AboveBreakingLoad { .. } => "above-breaking-load",
             Self::AboveRating { .. } => "above-rating",
+            Self::NotRated { .. } => "not-rated",
             Self::DeepContact { .. } => "deep-contact",
             Self::FastImpact { .. } => "fast-impact",
             Self::LoadDrives { .. } => "load-drives",
@@ -415,14 +431,45 @@ impl fmt::Display for Reason {
                 sprocket,
                 speed,
                 power,
+                service_factor,
                 rated,
-            } => write!(
-                f,
-                "the chain carries {:.1} kW at {:.0} rpm of {sprocket}, and is rated for {:.1} kW there, for 15 000 hours: a stronger chain, see chaindrive design",
-                power * 1e-3,
-                speed * 60.0 / TAU,
-                rated * 1e-3
-            ),
+                limited_by,
+            } => {
+                let (carried, turns) = (power * 1e-3, speed * 60.0 / TAU);
+                write!(
+                    f,
+                    "the chain carries {carried:.1} kW at {turns:.0} rpm of {sprocket}"
+                )?;
+                if (service_factor - 1.0).abs() > f64::EPSILON {
+                    let counted = service_factor * carried;
+                    write!(
+                        f,
+                        ", {counted:.1} kW with the service factor {service_factor}"
+                    )?;
+                }
+                let life = match limited_by {
+                    LimitedBy::Maker => "by its maker",
+                    _ => "for 15 000 hours",
+                };
+                let rated = rated * 1e-3;
+                write!(
+                    f,
+                    ", and is rated for {rated:.1} kW there, {life}: a stronger chain, see chaindrive design"
+                )
+            }
+            Self::NotRated { chain, power, twin } => {
+                let power = power * 1e-3;
+                write!(f, "the power{}, {power:.1} kW, is not judged: ", of(chain))?;
+                write!(f, "no rating of this type, source missing")?;
+                if let Some(twin) = twin {
+                    let twin = twin * 1e-3;
+                    write!(
+                        f,
+                        " (ASME B29.1 rates its chain of this pitch for {twin:.1} kW there)"
+                    )?;
+                }
+                write!(f, "; give that of the maker as chain.rated_power")
+            }
             Self::DeepContact {
                 place,
                 depth,

@@ -125,8 +125,8 @@ impl Verdict {
         ),
         caution(
             "above-rating",
-            "mean power above the rating of the chain at its smallest sprocket".into(),
-            "ASME B29.1, 15 000 hours",
+            "mean power times service factor above the rating of the chain at its smallest sprocket".into(),
+            "ASME B29.1, 15 000 hours; or what the scene says of the maker",
         ),
         caution("deep-contact", "a contact is deeper than its law reaches".into(), "the source of the law"),
         caution(
@@ -167,6 +167,11 @@ impl Verdict {
             "horizon-within-run",
             "waveforms differ from the exact ones by 1 % before the run ends, as those of all chaotic motions do".into(),
             ASSUMED,
+        ),
+        note(
+            "not-rated",
+            "a chain of the catalogue carries power, and no formula with a source rates its type".into(),
+            COUNTED,
         ),
         note(
             "not-examined",

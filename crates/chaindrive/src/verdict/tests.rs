@@ -4,6 +4,7 @@ use super::*;
 use chaindrive_mechanics::Fight;
 
 use crate::precision::Gap;
+use crate::rating::LimitedBy;
 use crate::record::Known;
 
 /// A drive that takes in 100 J and loses 2 J.
@@ -225,7 +226,14 @@ fn specimens() -> Vec<Reason> {
             sprocket: span(),
             speed: 100.0,
             power: 2e3,
+            service_factor: 1.4,
             rated: 1e3,
+            limited_by: LimitedBy::Plates,
+        },
+        Reason::NotRated {
+            chain: none(),
+            power: 15e3,
+            twin: Some(12.2e3),
         },
         Reason::DeepContact {
             place: span(),

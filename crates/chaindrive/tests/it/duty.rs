@@ -2,6 +2,7 @@
 //! does not; and the counts behind them.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
+use chaindrive::rating::rated_power;
 use chaindrive::{
     Channel, Description, EventKinds, Given, Memory, Request, Run, Scene, Settings, Trust, Verdict,
     execute,
@@ -66,8 +67,10 @@ fn a_link_that_bears_more_than_breaks_the_chain_is_distrusted() {
     let known = preset("marine_two_sprockets", &[("chain.type", "56B-1")]);
     let strength = known.drive().unwrap().chains[0].chain.strength;
     assert_eq!(strength.breaking_load, Some(850e3));
-    // Of chains of the B series there is no formula for the power.
-    assert_eq!(strength.rating, None);
+    // Of chains of the B series no formula for the power could be read.
+    let missing = "no rating: source missing";
+    let rated = rated_power(&strength, 19, 31.4);
+    assert_eq!(rated.unwrap_err().to_string(), missing);
 }
 
 /// A 16A on 19 teeth at 300 rpm is rated for 12.2 kW: 388 N m.

@@ -6,7 +6,7 @@ use chaindrive_geometry::mesh_frequency;
 use chaindrive_mechanics::{ChainSize, Observation, PlacedChain, Strength};
 use serde::{Deserialize, Serialize};
 
-use super::Summary;
+use super::{SpanStatistics, Summary};
 use crate::Simulation;
 
 /// Sums over the samples, by chain and by sprocket.
@@ -21,6 +21,7 @@ pub(super) struct Carried {
 struct OfChain {
     name: String,
     strength: Strength,
+    pitch: f64,
     links: Range<usize>,
     spans: Range<usize>,
     sprockets: Vec<usize>,
@@ -38,6 +39,8 @@ struct OfSprocket {
     /// Σ ω \[rad/s\] and Σ M ω \[W\].
     speed: f64,
     power: f64,
+    /// Σ F, x and y \[N\].
+    force: [f64; 2],
 }
 
 /// Duty of one chain, beside its strength.
@@ -56,17 +59,35 @@ pub struct Load {
     pub pressed: f64,
     /// Mean power that it has carried to or from a sprocket \[W\].
     pub power: f64,
-    /// The smallest sprocket that takes a share in it: name, teeth, mean speed \[rad/s\].
-    pub smallest: Option<(String, u32, f64)>,
+    /// Nominal pitch \[m\].
+    pub pitch: f64,
+    /// Greatest mean tension of a span \[N\]; none without spans that rollers hold.
+    pub steady: Option<f64>,
+    /// Every sprocket that it passes.
+    pub sprockets: Vec<SprocketDuty>,
+}
+
+/// Duty of a sprocket: means over the run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SprocketDuty {
+    /// Its name.
+    pub name: String,
+    /// Its teeth.
+    pub teeth: u32,
+    /// Speed \[rad/s\].
+    pub speed: f64,
+    /// Power of the chain on it \[W\]; negative where it drives the chain.
+    pub power: f64,
+    /// Force of the chain on it, x and y \[N\].
+    pub force: [f64; 2],
 }
 
 impl Load {
-    /// Power \[W\] that the chain is rated for at the teeth and the mean speed of its smallest sprocket, see
-    /// [`Rating::power`](chaindrive_mechanics::Rating::power); none where no rating is known, or nothing has turned.
-    pub fn rated(&self) -> Option<f64> {
-        let (_, teeth, speed) = self.smallest.as_ref()?;
-        let rated = self.strength.rating?.power(*teeth, *speed);
-        (rated > 0.0).then_some(rated)
+    /// The smallest sprocket that takes part in the power of the chain; idlers do not.
+    pub fn smallest(&self) -> Option<&SprocketDuty> {
+        let takes_part = |it: &&SprocketDuty| it.power.abs() > TAKES_PART * self.power;
+        let own = self.sprockets.iter().filter(takes_part);
+        own.min_by_key(|it| it.teeth)
     }
 }
 
@@ -86,6 +107,7 @@ impl Carried {
             OfChain {
                 name,
                 strength: placed.chain.strength,
+                pitch: placed.chain.pitch,
                 links,
                 spans,
                 sprockets: placed.sprockets.clone(),
@@ -99,6 +121,7 @@ impl Carried {
             teeth: sprocket.gap.teeth,
             speed: 0.0,
             power: 0.0,
+            force: [0.0; 2],
         });
         Self {
             chains: drive.chains.iter().zip(sizes).map(of_chain).collect(),
@@ -126,26 +149,48 @@ impl Carried {
             sprocket.speed += speed;
             sprocket.power += speed * torque;
         }
+        let forces = sample.sprocket_force_x.iter().zip(&sample.sprocket_force_y);
+        for (sprocket, (x, y)) in self.sprockets.iter_mut().zip(forces) {
+            sprocket.force[0] += x;
+            sprocket.force[1] += y;
+        }
         self.samples += 1.0;
     }
 
-    pub(super) fn loads(&self) -> Vec<Load> {
-        self.chains.iter().map(|chain| self.load(chain)).collect()
+    /// Duty of each chain; `spans` are those of all chains.
+    pub(super) fn loads(&self, spans: &[SpanStatistics]) -> Vec<Load> {
+        let chains = self.chains.iter();
+        chains.map(|chain| self.load(chain, spans)).collect()
     }
 
-    fn load(&self, chain: &OfChain) -> Load {
-        let own = || chain.sprockets.iter().map(|index| &self.sprockets[*index]);
-        let power = own().map(|it| it.power.abs()).fold(0.0, f64::max);
-        let takes_part = own().filter(|it| it.power.abs() > TAKES_PART * power);
-        let smallest = takes_part.min_by_key(|it| it.teeth);
+    fn load(&self, chain: &OfChain, spans: &[SpanStatistics]) -> Load {
+        let sprockets: Vec<SprocketDuty> = chain
+            .sprockets
+            .iter()
+            .map(|index| &self.sprockets[*index])
+            .map(|it| SprocketDuty {
+                name: it.name.clone(),
+                teeth: it.teeth,
+                speed: it.speed / self.samples,
+                power: it.power / self.samples,
+                force: it.force.map(|sum| sum / self.samples),
+            })
+            .collect();
+        let spans = spans.get(chain.spans.clone()).into_iter().flatten();
+        let means = spans.map(SpanStatistics::mean).filter(|it| it.is_finite());
         Load {
             chain: chain.name.clone(),
             strength: chain.strength,
             tension: chain.greatest,
             least: chain.least,
             pressed: chain.pressed / (self.samples * chain.links.len() as f64),
-            power: power / self.samples,
-            smallest: smallest.map(|it| (it.name.clone(), it.teeth, it.speed / self.samples)),
+            power: sprockets
+                .iter()
+                .map(|it| it.power.abs())
+                .fold(0.0, f64::max),
+            pitch: chain.pitch,
+            steady: means.reduce(f64::max),
+            sprockets,
         }
     }
 

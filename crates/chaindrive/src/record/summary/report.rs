@@ -240,16 +240,18 @@ fn energy(f: &mut fmt::Formatter<'_>, summary: &Summary) -> fmt::Result {
             "efficiency               none: energy goes to and fro, and what goes one way is too little to be judged by"
         )?;
     }
-    for load in summary.carried() {
-        let (Some(rated), Some((sprocket, teeth, _))) = (load.rated(), &load.smallest) else {
+    for rating in summary.ratings() {
+        let (Some(rated), Some(sprocket)) = (rating.power(), &rating.sprocket) else {
             continue;
         };
         writeln!(
             f,
-            "power                    {:.3} kW carried, {:.3} kW rated at the {teeth} teeth of {sprocket}: {:.1} %",
-            load.power * 1e-3,
+            "power                    {:.3} kW carried, {:.3} kW rated at the {} teeth of {}: {:.1} %",
+            rating.carried * 1e-3,
             rated * 1e-3,
-            100.0 * load.power / rated
+            sprocket.teeth,
+            sprocket.name,
+            100.0 * rating.utilisation().unwrap_or(f64::NAN)
         )?;
     }
     Ok(())

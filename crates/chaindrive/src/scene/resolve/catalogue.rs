@@ -1,6 +1,6 @@
 //! Chains of the catalogue: what a scene leaves out is taken from there.
 
-use chaindrive_mechanics::Rating;
+use chaindrive_mechanics::{Capacity, PowerLimits, Unrated};
 use serde::Serialize;
 
 use super::Findings;
@@ -26,23 +26,51 @@ pub(super) fn roller_length(chain: &CatalogueChain) -> Option<f64> {
     chain.number(Number::InnerWidth)
 }
 
-/// The power that a chain is rated for, where there is a formula for it and the pitch of the scene is its own.
-pub(super) fn rating(chain: &CatalogueChain, pitch: f64) -> Option<Rating> {
-    let own = chain.number(Number::Pitch)?;
-    let is_own = (pitch - own).abs() <= SAME_PITCH * own;
+/// What limits the power of a chain of the catalogue that has a pitch in the scene.
+pub(super) fn capacity(chain: &CatalogueChain, pitch: f64) -> Capacity {
+    let own = chain.number(Number::Pitch);
+    if !own.is_some_and(|own| (pitch - own).abs() <= SAME_PITCH * own) {
+        return Capacity::Unknown(Unrated::OtherPitch);
+    }
+    match american(chain, pitch) {
+        Some(limits) => Capacity::American(limits),
+        None => {
+            let twin = catalogue().iter().find_map(|it| {
+                let same = it.kind == chain.kind && it.number(Number::Pitch) == own;
+                american(it, pitch).filter(|limits| same && limits.plates > LIGHT)
+            });
+            Capacity::Unknown(Unrated::SourceMissing { twin })
+        }
+    }
+}
+
+/// Factor of the plates of number 41, which are lighter than those of the other chains.
+const LIGHT: f64 = 0.0022;
+
+/// The formula of the American Chain Association with the factors of a chain of ASME B29.1.
+fn american(chain: &CatalogueChain, pitch: f64) -> Option<PowerLimits> {
     let [plates, rollers] = match chain.ansi.as_str() {
         "25" | "35" => [0.004, 29.0],
-        "41" => [0.0022, 3.4],
+        "41" => [LIGHT, 3.4],
         "40" | "50" | "60" | "80" | "100" | "120" | "140" | "160" | "180" | "200" | "240" => {
             [0.004, 17.0]
         }
         _ => return None,
     };
-    is_own.then_some(Rating {
+    Some(PowerLimits {
         pitch,
         plates,
         rollers,
     })
+}
+
+/// Area on which a pin bears on its bush \[m²\]: d b, of the joints as written or those of the catalogue.
+pub(super) fn bearing_area(text: &schema::Chain, of_type: Option<&CatalogueChain>) -> Option<f64> {
+    let joint = text.joint.as_ref();
+    let diameter = joint.and_then(|joint| joint.pin_diameter.map(|it| it.0));
+    let length = joint.and_then(|joint| joint.length.map(|it| it.0));
+    let diameter = diameter.or_else(|| of_type?.number(Number::PinDiameter))?;
+    Some(diameter * length.or_else(|| of_type?.joint_length())?)
 }
 
 /// Difference of pitches, relative, up to which they are the same.

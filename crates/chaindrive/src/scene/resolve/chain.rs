@@ -1,6 +1,6 @@
 //! The chain: completed from the catalogue, then lengths, masses, stiffness and damping, link by link.
 
-use chaindrive_mechanics::{Chain, ChainModel, End, Ends, Strength};
+use chaindrive_mechanics::{Capacity, Chain, ChainModel, End, Ends, Strength, Unrated};
 
 use super::articulation::{self, Joints};
 use super::chains::Described;
@@ -8,6 +8,7 @@ use super::law::Pair;
 use super::scatter::Normal;
 use super::stack::Behind;
 use super::{Findings, catalogue, count, links, motion};
+use crate::catalogue::CatalogueChain;
 use crate::scene::defaults;
 use crate::scene::schema::{self, SceneText};
 
@@ -133,10 +134,7 @@ pub(super) fn resolve(
         drag: text.drag.map_or(0.0, |drag| drag.0),
         ends: ends?,
         model,
-        strength: Strength {
-            breaking_load: text.breaking_load.map(|load| load.0),
-            rating: of_type.and_then(|chain| catalogue::rating(chain, pitch)),
-        },
+        strength: strength(text, of_type, pitch, findings),
     };
     Some(Resolved {
         chain,
@@ -144,6 +142,38 @@ pub(super) fn resolve(
         behind_teeth,
         uncounted,
     })
+}
+
+/// What the chain is made for. Strands and service factor count where it can be rated, and are assumed there only.
+fn strength(
+    text: &schema::Chain,
+    of_type: Option<&CatalogueChain>,
+    pitch: f64,
+    findings: &mut Findings<'_>,
+) -> Strength {
+    let given = text.rated_power.map(|power| Capacity::Given(power.0));
+    let of_type_or_none = of_type.map(|chain| catalogue::capacity(chain, pitch));
+    let capacity = given.or(of_type_or_none).unwrap_or_default();
+    let is_rated = !matches!(capacity, Capacity::Unknown(Unrated::NoType));
+    let default = Strength::default();
+    let service_factor = match text.service_factor {
+        None if is_rated => {
+            findings.or_default(None, "chain.service_factor", &defaults::SERVICE_FACTOR)
+        }
+        given => given.map_or(default.service_factor, |factor| factor.0),
+    };
+    let strands = text.strands.unwrap_or(default.strands);
+    if text.strands.is_none() && is_rated {
+        let remark = defaults::STRANDS.basis.remark();
+        findings.assume("chain.strands", strands, remark);
+    }
+    Strength {
+        breaking_load: text.breaking_load.map(|load| load.0),
+        bearing_area: catalogue::bearing_area(text, of_type),
+        strands,
+        service_factor,
+        capacity,
+    }
 }
 
 /// Parts between the joints, by the model that a text names.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{ChainModel, Joint, Link, Motion, Roller, Rollers, Route};
 use crate::scene::quantity::{
-    AngularSpeed, Damping, Drag, Force, Length, Mass, Ratio, Speed, Stiffness,
+    AngularSpeed, Damping, Drag, Force, Length, Mass, Power, Ratio, Speed, Stiffness,
 };
 
 /// The chain. Written as a text, `chain = "16B-1"`, it is a chain of the catalogue in which
@@ -63,6 +63,21 @@ pub(crate) struct Chain {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) breaking_load: Option<Force>,
+    /// Strands side by side, for the rating only: the factor of its power is 1, 1.7, 2.5, 3.3, 3.9 or 4.6. The motion is that of one chain:
+    /// mass, stiffness and breaking load are those written, and from the catalogue those of a single strand. Absent: 1.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 1, "maximum" = 6))]
+    pub(crate) strands: Option<u32>,
+    /// Service factor [–], for the rating only: the power that is carried counts so many times. ISO 10823 has 1 for smooth running, 1.4 for
+    /// moderate and 1.8 for heavy shocks of the driven machine, more with those of an engine; absent: 1, none.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) service_factor: Option<Ratio>,
+    /// Power that its maker rates the chain for [W], for the rating only: all strands together, at the speed of this drive and the teeth of its
+    /// smallest sprocket; absent: by formula, where one could be read for the type.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) rated_power: Option<Power>,
     /// Unstressed length of the inner links, every second one [m]; absent: the pitch.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
