@@ -327,10 +327,11 @@ class Drive:
             P = min(P₁, P₂) · 745.7 W                  p in inches, n in rpm
 
         For a single strand of 100 pitches under smooth load, for 15 000 hours, oiled as its speed
-        asks. Known for the single strands of ASME B29.1 in the catalogue, numbers 25 to 240, with
+        asks. Known for the chains of ASME B29.1 in the catalogue, numbers 25 to 240, with
         their own pitch. K is 17, 29 for numbers 25 and 35, and 3.4 for number 41, with 0.0022 for
-        0.004. Galling and factors for shocks are not in it. A run says ``power_carried`` and
-        ``power_rated`` in its attributes, see `chaindrive.analysis.utilisation`.
+        0.004. ``chain.strands`` of the scene multiplies it by 1, 1.7, 2.5, 3.3, 3.9 or 4.6.
+        ``chain.rated_power`` takes its place, whatever the teeth and the speed. Galling and the
+        service factor are not in it. A run tells more: `chaindrive.analysis.rating`.
 
         Parameters
         ----------
@@ -344,8 +345,9 @@ class Drive:
         Raises
         ------
         ParameterError
-            No rating is known for the chain, the number of teeth is not positive or the speed not
-            finite, or there are several chains and none is named.
+            No rating is known for the chain, as there is no source for those of the B series; the
+            number of teeth is not positive or the speed not finite; or there are several chains
+            and none is named.
         KeyError
             No chain has this name.
 
@@ -366,15 +368,7 @@ class Drive:
             raise ParameterError(f"teeth = {teeth}, must be positive", "teeth", "at least 1")
         if not math.isfinite(speed):
             raise ParameterError(f"speed = {speed}, must be finite", "speed", "finite [rad/s]")
-        rated = self._inner.rated_power(chain, teeth, speed)
-        if rated is None:
-            raise ParameterError(
-                "no rating is known for the chain: there is a formula for the single strands of "
-                "ASME B29.1 in the catalogue, such as 16A-1",
-                "chain.type",
-                "one of the A series, with its own pitch",
-            )
-        return rated
+        return self._inner.rated_power(chain, teeth, speed)
 
     def profile(self, name: str, *, settled: bool = True) -> Profile:
         """Return the whole profile of a sprocket or guide in its place.

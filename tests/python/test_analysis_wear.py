@@ -387,13 +387,35 @@ def test_utilisation_knows_the_rating_of_american_chains(industrial):
     assert float(power["limit"]) == pytest.approx(rated, rel=1e-3)
     assert float(power["load"]) == pytest.approx(15e3, rel=0.05)
     assert str(power["unit"].item()) == "W"
+    made_for = run.drive.rating()
+    assert float(made_for["utilisation"]) == pytest.approx(float(power["utilisation"]))
+    assert float(made_for["power_limit"].sel(limit="plates")) == float(made_for["power_rated"])
+    assert made_for["power_limit"].sel(limit="galling").isnull()
+    assert (made_for.attrs["power_limited_by"], made_for.attrs["lubrication"]) == ("plates", "bath")
     facts = american.describe()["chain"]["rated_power"]
     assert facts["power"] == pytest.approx(rated, rel=1e-9)
     assert facts["sprocket"] == "driver"
 
 
+def test_the_rating_of_a_b_series_is_that_of_its_maker(industrial):
+    """The formula of ISO 10823 could not be read: nothing is rated unless the scene says so."""
+    silent = industrial.drive.rating()
+    assert silent["power_rated"].isnull()
+    assert silent.attrs["power_unrated"] == "no rating: source missing"
+    given = {"chain.rated_power": "20 kW", "chain.service_factor": 1.4, "chain.strands": 2}
+    drive = cd.scenes.industrial_16b().replace(given)
+    assert drive.rated_power(19, 31.4) == pytest.approx(20e3)
+    run = run_of(drive, until=0.05, run_in=0.05, every=1e-4)
+    made_for = run.drive.rating()
+    assert float(made_for["utilisation"]) == pytest.approx(1.4 * 15 / 20, rel=0.05)
+    assert made_for.attrs["power_limited_by"] == "maker"
+    towards = made_for["shaft_load_angle"].sel(sprocket=["driver", "driven"])
+    assert np.allclose(np.abs(np.diff(towards)), 180.0, atol=5.0)
+    assert "above-rating" in run.attrs["reasons"]
+
+
 def test_ratings_that_nobody_knows_are_refused():
-    with pytest.raises(cd.ParameterError, match="no rating is known"):
+    with pytest.raises(cd.ParameterError, match="no rating: source missing"):
         cd.scenes.industrial_16b().rated_power(19, 31.4)
     american = cd.scenes.industrial_16b().replace({"chain.type": "16A-1"})
     with pytest.raises(cd.ParameterError, match="teeth = 0"):

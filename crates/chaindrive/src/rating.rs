@@ -4,13 +4,13 @@
 //! (see [`PowerLimits`](chaindrive_mechanics::PowerLimits)), or where the scene gives what the maker says; else a [`Rating`] tells why not.
 //! ISO 10823 and DIN 8195, which rate chains of the B series, could not be read, nor the limit by galling of any chain.
 
+mod load;
 mod lubrication;
 mod strands;
 
 use chaindrive_mechanics::{Capacity, Strength, Unrated};
 
-use crate::record::Load;
-
+pub use load::{Load, SprocketDuty};
 pub use lubrication::Lubrication;
 pub use strands::strand_factor;
 
@@ -217,7 +217,7 @@ impl Rating {
 }
 
 impl ShaftLoad {
-    fn of(duty: &crate::record::SprocketDuty) -> Self {
+    fn of(duty: &SprocketDuty) -> Self {
         let [x, y] = duty.force;
         Self {
             sprocket: duty.name.clone(),

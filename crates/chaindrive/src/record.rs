@@ -24,8 +24,8 @@ pub use in_store::InStore;
 pub use memory::Memory;
 pub use recorded::{LoggedContact, Recorded, RecordedChannel};
 pub use summary::{
-    ContactStatistics, ForceStatistics, ImpactStatistics, Known, Ledger, Load, SpanStatistics,
-    SprocketDuty, Steadiness, Summary,
+    ContactStatistics, ForceStatistics, ImpactStatistics, Known, Ledger, SpanStatistics,
+    Steadiness, Summary,
 };
 pub(crate) use summary::{DRIFT, drift};
 pub use zarr::{

@@ -11,6 +11,7 @@ mathematics: the extra ``analysis``.
 """
 
 from chaindrive.analysis.around import tension_around_loop
+from chaindrive.analysis.capacity import rating
 from chaindrive.analysis.dissipation import losses
 from chaindrive.analysis.duty import utilisation
 from chaindrive.analysis.elongation import wear, worn
@@ -45,6 +46,7 @@ __all__ = [
     "order_spectrum",
     "peaks",
     "rainflow",
+    "rating",
     "run_up",
     "running_modes",
     "span_envelope",

@@ -14,6 +14,7 @@ import xarray as xr
 from chaindrive import plot, replaying
 from chaindrive.analysis import (
     around,
+    capacity,
     dissipation,
     duty,
     elongation,
@@ -123,6 +124,10 @@ class DriveAccessor:
     def rainflow(self, **options: Any) -> xr.Dataset:
         """See `chaindrive.analysis.rainflow`."""
         return fatigue.rainflow(self._run, **options)
+
+    def rating(self, **options: Any) -> xr.Dataset:
+        """See `chaindrive.analysis.rating`."""
+        return capacity.rating(self._run, **options)
 
     def utilisation(self, **options: Any) -> xr.Dataset:
         """See `chaindrive.analysis.utilisation`."""

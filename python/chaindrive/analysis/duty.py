@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from chaindrive.analysis.capacity import rating
 from chaindrive.analysis.joints import joint_work
 from chaindrive.analysis.parts import one_chain, sprockets
 from chaindrive.analysis.seating import swing_speed
@@ -26,6 +27,7 @@ SEATING_SPEED = 4.0
 """Speed p ω at which rollers are seated that rollers and bushes bear for long [m/s]: assumed."""
 
 _RENOLD = "Renold, Transmission Chain Designer Guide: 8 : 1 keeps below the endurance limit"
+_MAKER = "the maker, as the scene has it"
 _RATING = "American Chain Association, 1982: 15 000 h under smooth load"
 
 
@@ -58,12 +60,13 @@ def utilisation(
     endurance largest mean tension of a span     F_u / 8 (Renold)
     pressure  mean bearing pressure of joints    30 MPa, assumed
     seating   largest p ω of a sprocket          4 m/s, assumed
-    power     mean power that the chain carries  rating at the smallest sprocket
+    power     mean power times service factor    rating at the smallest sprocket
     ========= ================================== ================================
 
     F_u is the breaking load of the scene. The rating is that of `chaindrive.Drive.rated_power`, by
-    the formula of the American Chain Association; the check is there where the chain has one, and
-    the run is a whole one. What is assumed is a place to put limits of your own.
+    the formula of the American Chain Association or by what the scene says of the maker; the check
+    is there where the chain has one, and the run is a whole one. `rating` tells more of it. What is
+    assumed is a place to put limits of your own.
 
     Parameters
     ----------
@@ -155,12 +158,11 @@ def utilisation(
             )
         )
     # The run itself has summed up the power at every sprocket, with the rating of the smallest.
-    carried, rated = (
-        run.attrs.get(f"{name}_{which.name}" if which.name else name)
-        for name in ("power_carried", "power_rated")
-    )
-    if carried is not None and rated is not None:
-        checks.append(_Check("power", float(carried), float(rated), "W", _RATING))
+    made_for = rating(run, chain=chain)
+    if made_for["power_rated"].notnull():
+        duty = float(made_for["service_factor"] * made_for["power_carried"])
+        source = _MAKER if made_for.attrs["power_limited_by"] == "maker" else _RATING
+        checks.append(_Check("power", duty, float(made_for["power_rated"]), "W", source))
     names, loads, limits, units, sources = zip(*checks, strict=True)
     load, limit = np.asarray(loads), np.asarray(limits)
     return xr.Dataset(

@@ -5,7 +5,6 @@ use std::f64::consts::TAU;
 use chaindrive_mechanics::PowerLimits;
 
 use super::*;
-use crate::record::SprocketDuty;
 
 const RPM: f64 = TAU / 60.0;
 

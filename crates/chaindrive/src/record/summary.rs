@@ -13,10 +13,9 @@ use serde::{Deserialize, Serialize};
 
 use super::event::{EventTable, kind};
 use crate::Simulation;
-use crate::rating::Rating;
+use crate::rating::{Load, Rating};
 use blocks::Blocks;
 use carried::Carried;
-pub use carried::{Load, SprocketDuty};
 pub use impacts::ImpactStatistics;
 use report::Report;
 pub(crate) use steadiness::{DRIFT, drift};

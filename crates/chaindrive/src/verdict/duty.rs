@@ -4,8 +4,9 @@ use chaindrive_contact::dissipation::FASTEST_IMPACT;
 use chaindrive_mechanics::{Struck, Unrated};
 
 use super::Reason;
-use crate::record::{Ledger, Load};
-use crate::{Rating, Simulation, Summary};
+use crate::rating::{Load, Rating};
+use crate::record::Ledger;
+use crate::{Simulation, Summary};
 
 /// Samples a tooth passing below which the mesh is seen at another frequency than its own: H. Nyquist, *Trans. AIEE* **47**, 1928,
 /// 617–644.

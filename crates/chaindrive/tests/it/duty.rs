@@ -4,12 +4,12 @@
 
 use chaindrive::rating::rated_power;
 use chaindrive::{
-    Channel, Description, EventKinds, Given, Memory, Request, Run, Scene, Settings, Trust, Verdict,
-    execute,
+    Channel, Description, EventKinds, Given, Judgement, Memory, Request, Run, Scene, Settings,
+    Simulation, Summary, Trust, Verdict, execute,
 };
 use chaindrive_mechanics::{Energy, Struck};
 
-use crate::judged::{finished, names, preset, run, verdict};
+use crate::judged::{finished, names, notes, preset, run, verdict};
 
 /// A chain of the catalogue around two sprockets of 19 teeth, the second of which is given this.
 fn two_sprockets(second: &str) -> Scene {
@@ -84,6 +84,91 @@ fn more_power_than_a_chain_is_rated_for_is_a_caution() {
     );
     assert!(over.note().contains("rated for 12.2 kW"), "{over}");
     assert_ne!(over.trust, Trust::Distrusted, "{over}");
+}
+
+/// Two strands bear 1.7 times, and a service factor counts with what is carried: 600 N m are 18.8 kW, over 12.2 and under 20.7 kW.
+#[test]
+fn strands_and_service_factor_serve_the_rating_only() {
+    let run = run(0.05, 100.0);
+    let changed = |torque: &str, path: &str, value: &str| {
+        finished(&loaded(torque).replace(path, value).unwrap(), &run)
+    };
+    let judged = |of: &(Simulation, Summary)| {
+        let unknown = Judgement::SwitchedOff;
+        Verdict::of(&of.1, &of.0, None, None, Some(&unknown))
+    };
+    let one = changed("-600 N m", "chain.strands", "1");
+    let two = changed("-600 N m", "chain.strands", "2");
+    tells_apart("above-rating", &judged(&one), &judged(&two));
+    let rough = changed("-300 N m", "chain.service_factor", "1.5");
+    let smooth = changed("-300 N m", "chain.service_factor", "1");
+    tells_apart("above-rating", &judged(&rough), &judged(&smooth));
+    let words = judged(&rough).note();
+    assert!(words.contains("with the service factor 1.5"), "{words}");
+    for (changed, plain) in [(&two, &one), (&rough, &smooth)] {
+        let residual = |of: &(Simulation, Summary)| of.1.residual.to_bits();
+        assert_eq!(residual(changed), residual(plain), "the motion is another");
+    }
+    for wrong in ["0", "7"] {
+        assert!(loaded("-300 N m").replace("chain.strands", wrong).is_err());
+    }
+}
+
+/// A chain of the B series is rated by what its maker says; else a note tells that nobody judges it, and what its twin bears.
+#[test]
+fn a_chain_that_nobody_rates_does_not_carry_in_silence() {
+    let run = run(0.05, 100.0);
+    let silent = verdict(&preset("industrial_16b", &[]), &run);
+    assert!(notes(&silent).contains(&"not-rated"), "{silent}");
+    assert!(
+        silent.note().contains("of this pitch for 12.2 kW"),
+        "{silent}"
+    );
+    assert!(!names(&silent).contains(&"above-rating"), "{silent}");
+    let by_maker = |power| {
+        verdict(
+            &preset("industrial_16b", &[("chain.rated_power", power)]),
+            &run,
+        )
+    };
+    let (weak, strong) = (by_maker("\"13 kW\""), by_maker("\"18 kW\""));
+    tells_apart("above-rating", &weak, &strong);
+    assert!(weak.note().contains("by its maker"), "{weak}");
+    assert!(!notes(&strong).contains(&"not-rated"), "{strong}");
+}
+
+/// Both shafts bear the tensions of both spans, drawn towards each other: the mean forces are equal and opposite, and along the centres.
+#[test]
+fn shafts_bear_the_chain_towards_each_other() {
+    let (_, summary) = finished(&loaded("-300 N m"), &run(0.05, 100.0));
+    let ratings = summary.ratings();
+    let [rating] = ratings.as_slice() else {
+        panic!("{ratings:?}");
+    };
+    let [driver, driven] = rating.shaft_loads.as_slice() else {
+        panic!("{rating:?}");
+    };
+    let tensions: f64 = summary.spans.iter().map(|span| span.mean()).sum();
+    for load in [driver, driven] {
+        assert!(
+            (load.force / tensions - 1.0).abs() < 0.05,
+            "{load:?} {tensions}"
+        );
+    }
+    assert!(driver.angle.to_degrees().abs() < 3.0, "{driver:?}");
+    assert!(driven.angle.to_degrees().abs() > 177.0, "{driven:?}");
+    let utilised = rating.utilisation().unwrap();
+    assert!((utilised / (300.0 * 10.0 * std::f64::consts::PI / 12.16e3) - 1.0).abs() < 0.05);
+    let greatest = summary
+        .spans
+        .iter()
+        .map(|span| span.mean())
+        .fold(0.0, f64::max);
+    // F_u of a 16A is 56.7 kN; d b = 7.92 mm (15.75 + 2 · 3.25) mm.
+    assert!((rating.dynamic_safety.unwrap() * greatest / 56.7e3 - 1.0).abs() < 1e-9);
+    let pressure = greatest / (7.92e-3 * 22.25e-3);
+    assert!((rating.bearing_pressure.unwrap() / pressure - 1.0).abs() < 1e-9);
+    assert!(rating.static_safety.unwrap() <= rating.dynamic_safety.unwrap());
 }
 
 /// A pin that falls through its play at a weight, by the law that ends at half of it.

@@ -55,7 +55,7 @@ const CRATES: [Storeys; 4] = [
         folder: "chaindrive",
         layers: &[
             &["identity", "plain"],
-            &["catalogue", "design", "draw", "seal", "stepping"],
+            &["catalogue", "design", "draw", "rating", "seal", "stepping"],
             &["error", "scene"],
             &["run"],
             &["simulate"],
