@@ -339,18 +339,21 @@ impl fmt::Display for RatedPower {
             1 => "a single strand".to_owned(),
             several => counted(several as usize, "strand"),
         };
-        match (self.power, self.limited_by) {
-            (Some(power), Some(by)) => write!(f, "{:.3} kW, limited by {by},", power * 1e-3)?,
-            _ => write!(f, "{},", self.unrated.as_deref().unwrap_or("none"))?,
-        }
+        let Some(power) = self.power else {
+            return f.write_str(self.unrated.as_deref().unwrap_or("none"));
+        };
         write!(
             f,
-            " at the {} teeth and {:.1} rpm of {}, {strands}, service factor {}",
+            "{:.3} kW at the {} teeth and {:.1} rpm of {}, ",
+            power * 1e-3,
             self.teeth,
             self.speed.abs() * 60.0 / TAU,
-            self.sprocket,
-            self.service_factor
-        )
+            self.sprocket
+        )?;
+        if let Some(by) = self.limited_by {
+            write!(f, "limited by {by}, ")?;
+        }
+        write!(f, "{strands}, service factor {}", self.service_factor)
     }
 }
 

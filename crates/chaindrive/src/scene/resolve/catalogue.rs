@@ -35,11 +35,16 @@ pub(super) fn capacity(chain: &CatalogueChain, pitch: f64) -> Capacity {
     match american(chain, pitch) {
         Some(limits) => Capacity::American(limits),
         None => {
-            let twin = catalogue().iter().find_map(|it| {
-                let same = it.kind == chain.kind && it.number(Number::Pitch) == own;
-                american(it, pitch).filter(|limits| same && limits.plates > LIGHT)
+            // Narrow chains, as those of bicycles, have the pitch of an American one but are no kin of it.
+            let twin = chain.name.ends_with("B-1").then(|| {
+                catalogue().iter().find_map(|it| {
+                    let same = it.kind == chain.kind && it.number(Number::Pitch) == own;
+                    american(it, pitch).filter(|limits| same && limits.plates > LIGHT)
+                })
             });
-            Capacity::Unknown(Unrated::SourceMissing { twin })
+            Capacity::Unknown(Unrated::SourceMissing {
+                twin: twin.flatten(),
+            })
         }
     }
 }
