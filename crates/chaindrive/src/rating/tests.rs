@@ -58,7 +58,8 @@ fn load(strength: Strength) -> Load {
 #[test]
 fn strands_carry_less_than_their_number() {
     let factors = [1, 2, 3, 4, 5, 6].map(strand_factor);
-    assert_eq!(factors, [1.0, 1.7, 2.5, 3.3, 3.9, 4.6]);
+    let published = [1.0_f64, 1.7, 2.5, 3.3, 3.9, 4.6];
+    assert_eq!(factors.map(f64::to_bits), published.map(f64::to_bits));
     let single = rated_power(&american(1), 19, 300.0 * RPM).unwrap_or_default();
     for strands in 1..=6 {
         let several = rated_power(&american(strands), 19, 300.0 * RPM).unwrap_or_default();

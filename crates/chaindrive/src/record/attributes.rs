@@ -232,9 +232,12 @@ pub fn figures(
 /// Cost of the run.
 /// What a chain is made for; of several chains each says its own.
 fn rating(story: &mut Story, of: &Rating, is_only: bool) {
-    let named = |what: &str| match is_only {
-        true => what.to_owned(),
-        false => format!("{what}_{}", of.chain),
+    let named = |what: &str| {
+        if is_only {
+            what.to_owned()
+        } else {
+            format!("{what}_{}", of.chain)
+        }
     };
     if of.sprocket.is_some() {
         if let (Ok(limits), Some((by, power))) = (&of.limits, of.governing()) {

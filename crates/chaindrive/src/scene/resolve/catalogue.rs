@@ -32,21 +32,17 @@ pub(super) fn capacity(chain: &CatalogueChain, pitch: f64) -> Capacity {
     if !own.is_some_and(|own| (pitch - own).abs() <= SAME_PITCH * own) {
         return Capacity::Unknown(Unrated::OtherPitch);
     }
-    match american(chain, pitch) {
-        Some(limits) => Capacity::American(limits),
-        None => {
-            // Narrow chains, as those of bicycles, have the pitch of an American one but are no kin of it.
-            let twin = chain.name.ends_with("B-1").then(|| {
-                catalogue().iter().find_map(|it| {
-                    let same = it.kind == chain.kind && it.number(Number::Pitch) == own;
-                    american(it, pitch).filter(|limits| same && limits.plates > LIGHT)
-                })
-            });
-            Capacity::Unknown(Unrated::SourceMissing {
-                twin: twin.flatten(),
-            })
-        }
+    if let Some(limits) = american(chain, pitch) {
+        return Capacity::American(limits);
     }
+    // Narrow chains, as those of bicycles, have the pitch of an American one but are no kin of it.
+    let is_kin = |it: &CatalogueChain| {
+        chain.name.ends_with("B-1") && it.kind == chain.kind && it.number(Number::Pitch) == own
+    };
+    let kin = catalogue().iter().filter(|it| is_kin(it));
+    let mut limits = kin.filter_map(|it| american(it, pitch));
+    let twin = limits.find(|limits| limits.plates > LIGHT);
+    Capacity::Unknown(Unrated::SourceMissing { twin })
 }
 
 /// Factor of the plates of number 41, which are lighter than those of the other chains.
