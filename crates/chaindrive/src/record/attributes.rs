@@ -163,7 +163,9 @@ pub fn attributes(
         }
         let ratings = summary.ratings();
         let one = ratings.len() == 1;
-        ratings.iter().for_each(|it| rating(&mut story, it, one));
+        for it in &ratings {
+            rating(&mut story, it, one);
+        }
         story.number("energy_residual_largest", summary.residual);
         story.number("contact_force_largest", summary.forces().max);
         for it in summary.impacts().iter().filter(|it| it.count > 0) {
