@@ -170,6 +170,7 @@ fn intervals_that_are_wide_or_missing_are_told() {
 }
 
 /// One of each reason.
+#[expect(clippy::too_many_lines, reason = "a list: one of every reason")]
 fn specimens() -> Vec<Reason> {
     let span = || "a-b".to_owned();
     let none = String::new;
