@@ -29,7 +29,6 @@ mod table;
 mod trace;
 mod variant;
 mod window;
-pub(crate) mod wording;
 mod work;
 
 pub(crate) use accuracy::LEAST_LOSSES;

@@ -15,7 +15,7 @@ use chaindrive_mechanics::{ChainSize, Energy, Flow, Observation, Place, Store, S
 
 use crate::{Run, SimulationError};
 
-pub use attributes::{Ending, Provenance, attributes, figures};
+pub use attributes::{Ending, Provenance, attributes};
 pub use channel::{Axis, Channel};
 pub use claim::{Claim, is_being_written, take_over};
 pub use error::WriteError;
@@ -24,8 +24,8 @@ pub use in_store::InStore;
 pub use memory::Memory;
 pub use recorded::{LoggedContact, Recorded, RecordedChannel};
 pub use summary::{
-    ContactStatistics, ForceStatistics, ImpactStatistics, Known, Ledger, SpanStatistics,
-    Steadiness, Summary,
+    Bearing, Bodies, ContactStatistics, Course, ForceStatistics, ImpactStatistics, Known, Ledger,
+    SpanStatistics, SprocketCourse, Steadiness, Summary,
 };
 pub(crate) use summary::{DRIFT, drift};
 pub use zarr::{

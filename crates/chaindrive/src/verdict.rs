@@ -176,6 +176,31 @@ impl Verdict {
         all.map(Reason::to_string).collect::<Vec<_>>().join("; ")
     }
 
+    /// The verdict in at most three sentences, each with what to type where that helps.
+    pub fn sentences(&self) -> Vec<String> {
+        let first = match self.trust {
+            Trust::Trusted => "The statistics can be used.",
+            Trust::Caution => "Use the result with care.",
+            Trust::Distrusted => "Do not use the result.",
+        };
+        let told = if self.reasons.is_empty() {
+            &self.notes
+        } else {
+            &self.reasons
+        };
+        let mut sentences = vec![first.to_owned()];
+        match told.as_slice() {
+            [] => {}
+            [one] => sentences.push(sentence(one)),
+            [one, other] => sentences.extend([sentence(one), sentence(other)]),
+            [one, rest @ ..] => sentences.extend([
+                sentence(one),
+                format!("{} more remarks: --numerics.", rest.len()),
+            ]),
+        }
+        sentences
+    }
+
     /// The reasons in a line, where they are cautions and nothing worse.
     pub fn caution(&self) -> Option<String> {
         let words: Vec<String> = self.reasons.iter().map(Reason::to_string).collect();
@@ -203,6 +228,14 @@ impl fmt::Display for Verdict {
         }
         Ok(())
     }
+}
+
+/// A reason as a sentence.
+fn sentence(reason: &Reason) -> String {
+    let text = reason.to_string();
+    let mut letters = text.chars();
+    let first = letters.next().into_iter().flat_map(char::to_uppercase);
+    first.chain(letters).chain(['.']).collect()
 }
 
 fn not_finite(summary: &Summary) -> Option<Reason> {

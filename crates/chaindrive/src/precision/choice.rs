@@ -16,7 +16,7 @@ use super::impacts::ImpactErrors;
 use super::short_runs::{Beginning, ShortRuns};
 use super::trace::{Gap, Strands, Trace};
 use super::window::Window;
-use super::wording::{duration, percent};
+use crate::figure::{duration, percent};
 use crate::{Run, SimulationError, Stepping};
 
 /// Accuracy that a run has unless told otherwise \[–\].

@@ -7,7 +7,7 @@ use super::compare::Comparison;
 use super::estimate::Estimate;
 use super::horizon::{Divergence, Horizon};
 use super::trace::Strands;
-use super::wording::{duration, percent};
+use crate::figure::{duration, percent};
 
 impl Estimate {
     /// Everything, as attributes of a result: names, and texts or numbers.

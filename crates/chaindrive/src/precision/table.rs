@@ -4,8 +4,8 @@ use std::fmt;
 use std::io::Write;
 
 use super::Errors;
-use super::wording::percent;
 use super::work::{Row, Table};
+use crate::figure::percent;
 
 /// A column of the table.
 #[derive(Clone, Copy, Debug, PartialEq)]

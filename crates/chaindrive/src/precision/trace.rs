@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::Watch;
 use super::accuracy::LEAST_LOSSES;
 use super::window::Window;
-use super::wording::duration;
+use crate::figure::duration;
 use crate::run::LOOK;
 use crate::{Run, Simulation, SimulationError};
 

@@ -11,6 +11,7 @@ use serde_json::{Map, Value};
 
 use super::Summary;
 use crate::RanIn;
+use crate::page::{Page, numerics};
 use crate::precision::{Attribute, Choice, Judgement};
 use crate::rating::Rating;
 use crate::sweep::Outcome;
@@ -28,6 +29,8 @@ pub struct Provenance {
     pub scene: String,
     /// The scene in full, with the settings as they were in the end; none before the run begins.
     pub resolved_scene: Option<String>,
+    /// Inputs that were assumed, see [`Scene::assumed`].
+    pub assumed: Vec<String>,
     /// File or preset it was read from.
     pub scene_name: String,
     /// Settings of the run.
@@ -51,6 +54,7 @@ impl Provenance {
             title: scene.title().to_owned(),
             scene: scene.text().to_owned(),
             resolved_scene: None,
+            assumed: Vec::new(),
             scene_name: scene.name().to_owned(),
             run: run.clone(),
             checkpoint_every: None,
@@ -107,7 +111,7 @@ impl Ending {
 /// Everything that a result says about itself; what sums it up only where there is a summary, at the end.
 ///
 /// Wall times are the only attributes that two runs of one request do not share: `stepping_time`, `real_time_factor`,
-/// `ns_per_link_step`, `wall_time`, and the last line of the account in `summary`.
+/// `ns_per_link_step`, `wall_time`, and the line `speed` in `numerics`.
 pub fn attributes(
     provenance: &Provenance,
     simulation: &Simulation,
@@ -187,14 +191,13 @@ pub fn attributes(
             choice,
             judgement,
         );
-        let figures = figures(
-            summary,
-            simulation,
-            provenance.ran_in.as_ref(),
-            choice,
-            judgement,
-        );
-        story.text("summary", &format!("{verdict}\n{figures}"));
+        let ran_in = provenance.ran_in.as_ref();
+        let page = Page::of(&verdict, summary, simulation, ran_in, &provenance.assumed);
+        story.text("summary", &page.to_string());
+        // Texts and lists of texts always become JSON.
+        story.text("page", &serde_json::to_string(&page).unwrap_or_default());
+        let numerics = numerics(&verdict, summary, simulation, choice, judgement);
+        story.text("numerics", &numerics);
         let missed = |it: &Reason| matches!(it, Reason::AccuracyMissed { .. });
         is_missed = verdict.reasons.iter().any(missed);
         verdict.attributes()
@@ -208,27 +211,6 @@ pub fn attributes(
         }
     }
     story.0
-}
-
-/// The figures that follow the verdict at the end of a run, as text.
-pub fn figures(
-    summary: &Summary,
-    simulation: &Simulation,
-    ran_in: Option<&RanIn>,
-    choice: Option<&Choice>,
-    judgement: Option<&Judgement>,
-) -> String {
-    let mut text = summary.report(simulation).to_string();
-    if let Some(ran_in) = ran_in {
-        text = format!("{ran_in}\n{text}");
-    }
-    if let Some(choice) = choice {
-        text = format!("{text}\n{choice}");
-    }
-    match judgement {
-        None | Some(Judgement::SwitchedOff) => text,
-        Some(judgement) => format!("{text}\n{judgement}"),
-    }
 }
 
 /// Cost of the run.

@@ -1,10 +1,10 @@
 //! The short account that ends every run.
 
 mod blocks;
+mod bodies;
 mod carried;
 mod counted;
 mod impacts;
-mod report;
 mod steadiness;
 
 use chaindrive_mechanics::{ContactEvent, Energy, Flow, Impact, Observation, Place};
@@ -15,9 +15,9 @@ use super::event::{EventTable, kind};
 use crate::Simulation;
 use crate::rating::{Load, Rating};
 use blocks::Blocks;
+pub use bodies::{Bearing, Bodies, Course, SprocketCourse};
 use carried::Carried;
 pub use impacts::ImpactStatistics;
-use report::Report;
 pub(crate) use steadiness::{DRIFT, drift};
 pub use steadiness::{Known, Steadiness};
 
@@ -47,6 +47,9 @@ pub struct Summary {
     /// Whether somebody keeps the samples, so that more than the summary is made of them.
     pub kept: bool,
     carried: Carried,
+    bodies: Bodies,
+    /// Time of the last sample \[s\].
+    ended: f64,
 }
 
 /// Tension of one span over the run.
@@ -261,6 +264,8 @@ impl Summary {
             samples: 0,
             kept: false,
             carried: Carried::new(simulation),
+            bodies: Bodies::new(&simulation.assembled().drive),
+            ended: f64::NAN,
         }
     }
 
@@ -293,6 +298,8 @@ impl Summary {
         }
         self.last = sample.energy;
         self.carried.push(sample);
+        self.bodies.push(sample);
+        self.ended = sample.time;
         self.samples += 1;
     }
 
@@ -427,9 +434,19 @@ impl Summary {
         lost.filter(|(_, lost)| *lost != 0.0).collect()
     }
 
+    /// Time from the first to the last sample \[s\]; NaN without one.
+    pub fn duration(&self) -> f64 {
+        self.ended - self.began.unwrap_or(f64::NAN)
+    }
+
+    /// What the chains touch.
+    pub fn bodies(&self) -> &Bodies {
+        &self.bodies
+    }
+
     /// Duty of each chain.
     pub fn carried(&self) -> Vec<Load> {
-        self.carried.loads(&self.spans)
+        self.carried.loads(&self.spans, &self.bodies.sprockets)
     }
 
     /// What each chain is made for, beside what the run has asked of it.
@@ -439,15 +456,7 @@ impl Summary {
 
     /// Greatest frequency at which rollers seat on a sprocket, in the mean over the run \[Hz\].
     pub fn mesh_frequency(&self) -> f64 {
-        self.carried.mesh_frequency()
-    }
-
-    /// The account with the counts and speed of the run.
-    pub fn report<'a>(&'a self, simulation: &'a Simulation) -> Report<'a> {
-        Report {
-            summary: self,
-            simulation,
-        }
+        self.bodies.mesh_frequency()
     }
 }
 

@@ -409,6 +409,7 @@ fn announce<S: Sink>(
     let full = request
         .scene
         .resolved_for(&provenance.run, simulation.method());
+    provenance.assumed = request.scene.assumed().map_err(RunError::Scene)?;
     provenance.resolved_scene = Some(full.map_err(RunError::Scene)?.text().to_owned());
     let channels = channels(request, simulation).map_err(RunError::Start)?;
     sink.begin(simulation, &channels, provenance)

@@ -11,7 +11,7 @@ use super::execute::Onlooker;
 use super::patience::LOOK;
 use super::set_off::assemble;
 use super::{Run, steady};
-use crate::precision::wording::duration;
+use crate::figure::duration;
 use crate::scene::read_time;
 use crate::{Simulation, SimulationError};
 
@@ -75,18 +75,18 @@ impl RanIn {
 
 impl fmt::Display for RanIn {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let how = match self.is_steady {
-            None => "as it was asked for; whether it was enough, the means say",
-            Some(true) => "until the tension of every span was steady",
-            Some(false) => "the longest that is tried, and not every span was steady",
-        };
         if let Some(why) = &self.left_out {
-            return write!(f, "run-in                   none: {why}");
+            return write!(f, "The record begins at the start: {why}.");
         }
         let time = duration(self.time);
-        write!(f, "run-in                   {time} before t = 0, {how}")?;
+        write!(f, "The drive was run in for {time} before t = 0")?;
+        match self.is_steady {
+            None => write!(f, ", as asked.")?,
+            Some(true) => write!(f, ", until the tension of every span was steady.")?,
+            Some(false) => write!(f, ", the longest that is tried; not every span was steady.")?,
+        }
         if self.by_default {
-            write!(f, "; --run-in 0 leaves it out")?;
+            write!(f, " --run-in 0 leaves it out.")?;
         }
         Ok(())
     }

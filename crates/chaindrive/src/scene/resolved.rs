@@ -51,6 +51,14 @@ impl Scene {
         Self::from_toml(&resolved.text(), &self.name)
     }
 
+    /// Inputs that nobody measured or gave, as `path = value`: those whose source is the word "assumed", settings of the run left aside.
+    ///
+    /// # Errors
+    /// As [`Scene::drive`].
+    pub fn assumed(&self) -> Result<Vec<String>, SceneError> {
+        Ok(Resolved::of(self)?.assumed())
+    }
+
     /// As [`resolved`](Self::resolved), with the settings of a run as they were in the end: what reproduces a result.
     ///
     /// # Errors
@@ -116,6 +124,31 @@ impl Resolved {
         self.remarks.insert("run".into(), "as it was run".into());
         self.values.insert("run".into(), settings.into());
         self.units = units(&Json::Object(self.values.clone()));
+    }
+
+    fn assumed(&self) -> Vec<String> {
+        let is_assumed = |(path, remark): &(&String, &String)| {
+            !path.starts_with("run.") && remark.contains("assumed")
+        };
+        let assumed = self.remarks.iter().filter(is_assumed);
+        let mut paths: Vec<&String> = assumed.map(|(path, _)| path).collect();
+        paths.sort();
+        let told = |path: &String| {
+            let mut place = self.values.get(&steps(path).next()?)?;
+            for step in steps(path).skip(1) {
+                place = match place {
+                    Json::Array(items) => items.get(step.parse::<usize>().ok()?)?,
+                    place => place.get(&step)?,
+                };
+            }
+            if place.is_object() {
+                return Some(path.clone());
+            }
+            let unit = self.units.get(path).filter(|unit| **unit != "1");
+            let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
+            Some(format!("{path} = {}{unit}", leaf(place)))
+        };
+        paths.into_iter().filter_map(told).collect()
     }
 
     /// The scene as TOML.

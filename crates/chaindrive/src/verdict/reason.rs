@@ -6,7 +6,8 @@ use std::fmt;
 use chaindrive_mechanics::Fight;
 
 use super::{LONG_PRESSED, PRESSED, Trust};
-use crate::precision::wording::{duration, percent};
+use crate::figure::Quantity;
+use crate::figure::{duration, percent};
 use crate::precision::{ChannelHorizon, Gap};
 use crate::rating::LimitedBy;
 
@@ -279,7 +280,7 @@ impl Reason {
 
 /// Advice about energy that is missing.
 const SHARPER: &str =
-    "--accuracy-of losses, a smaller --step, or --method generalized-alpha for rigid links";
+    "take --accuracy-of losses, a smaller --step, or for rigid links --method generalized-alpha";
 
 /// In words, the chain of a name, where there are several.
 fn of(chain: &str) -> String {
@@ -299,7 +300,7 @@ impl fmt::Display for Reason {
             Self::NotFinite { samples } => {
                 write!(
                     f,
-                    "{samples} samples hold tensions or forces that are not numbers: a smaller --step"
+                    "{samples} samples hold tensions or forces that are not numbers: take a smaller --step"
                 )
             }
             Self::EnergyMissing { of_moved } => write!(
@@ -325,38 +326,38 @@ impl fmt::Display for Reason {
             Self::TooShort { steps } => {
                 write!(
                     f,
-                    "{steps} steps are too few to judge the energy by: a later --until"
+                    "{steps} steps are too few to judge the energy by: take a later --until"
                 )
             }
             Self::SpanRarelyHeld { span, share } | Self::SpanNotHeld { span, share } => write!(
                 f,
-                "span {span} has no tension in {} of the samples, no roller holds it there, and its statistics are of the rest: more pretension, --set \"route.pretension=…\", or a lower speed",
+                "span {span} has no tension in {} of the samples, because no roller holds it: raise --set \"route.pretension=…\", or lower the speed",
                 percent(*share)
             ),
             Self::NotSteady { span } => write!(
                 f,
-                "the tension of span {span} has not become steady: its mean is that of a transient: --run-in auto, or a later --until"
+                "the tension of span {span} is not steady yet: take --run-in auto, or a later --until"
             ),
             Self::StartCounts { span, until, shift } => write!(
                 f,
-                "the mean tension of span {span} is off by {} because the start counts: --run-in \"{}\"",
+                "the start moves the mean tension of span {span} by {}: take --run-in \"{}\"",
                 percent(*shift),
                 duration(*until)
             ),
             Self::NotRunIn { time } => write!(
                 f,
-                "the motion was not steady after a run-in of {}, the longest that ends by itself; it swings slowly, or never settles: give --run-in a time",
+                "the motion was not steady after a run-in of {}, the longest that ends by itself: give --run-in a time",
                 duration(*time)
             ),
             Self::MeansUncertain { span, width, until } => write!(
                 f,
-                "the mean tension of span {span} is known to {} only: --until \"{}\"",
+                "the mean tension of span {span} is known to {} only: take --until \"{}\"",
                 percent(*width),
                 duration(*until)
             ),
             Self::MeansInexact { error } => write!(
                 f,
-                "the step moves means or swings of tensions by {}: --accuracy \"1 %\", or half the --step",
+                "the step moves means or swings of tensions by {}: take --accuracy \"1 %\", or half the --step",
                 percent(*error)
             ),
             Self::LinksPressed {
@@ -370,14 +371,14 @@ impl fmt::Display for Reason {
                 percent(*share),
                 percent(PRESSED),
                 if *share > LONG_PRESSED {
-                    ": more pretension, --set \"route.pretension=…\""
+                    ": raise --set \"route.pretension=…\""
                 } else {
                     ""
                 }
             ),
             Self::StatisticsUnknown { until } => write!(
                 f,
-                "the record has fewer than three periods of the slowest forcing, so statistics have no intervals: --until \"{}\"",
+                "the record has fewer than three periods of the slowest forcing, so statistics have no intervals: take --until \"{}\"",
                 duration(*until)
             ),
             Self::SpansNotExamined { gap } => write!(
@@ -397,7 +398,7 @@ impl fmt::Display for Reason {
                 )?;
                 if *was_chosen {
                     let needed = accuracy * accuracy / error;
-                    write!(f, ": --accuracy \"{}\"", percent(needed))
+                    write!(f, ": take --accuracy \"{}\"", percent(needed))
                 } else {
                     write!(f, ", the best of all steps tried: give a shorter --step")
                 }
@@ -410,7 +411,7 @@ impl fmt::Display for Reason {
                 let ends: Vec<String> = spans.into_iter().chain(links).collect();
                 write!(
                     f,
-                    "follow waveforms of {}, and use statistics beyond",
+                    "waveforms are right of {}: use statistics beyond",
                     ends.join(", of ")
                 )
             }
@@ -421,7 +422,7 @@ impl fmt::Display for Reason {
             } => {
                 write!(
                     f,
-                    "a link{} bears {:.1} kN, and the chain breaks at {:.1} kN, though nothing yields in the model: a stronger chain, --set \"chain.type=…\"",
+                    "a link{} bears {:.1} kN, and the chain breaks at {:.1} kN, though nothing yields in the model: take a stronger chain, --set \"chain.type=…\"",
                     of(chain),
                     tension * 1e-3,
                     breaking * 1e-3
@@ -454,7 +455,7 @@ impl fmt::Display for Reason {
                 let rated = rated * 1e-3;
                 write!(
                     f,
-                    ", and is rated for {rated:.1} kW there, {life}: a stronger chain, see chaindrive design"
+                    ", and is rated for {rated:.1} kW there, {life}: take a stronger chain, see chaindrive design"
                 )
             }
             Self::NotRated { chain, power, twin } => {
@@ -476,7 +477,7 @@ impl fmt::Display for Reason {
                 reach,
             } => write!(
                 f,
-                "{place}: indented by {:.1} µm, and the law reaches to {:.1} µm, beyond which its forces are no prediction: another law, --set \"contact.….law=…\"",
+                "{place}: indented by {:.1} µm, and the law reaches to {:.1} µm, beyond which its forces are no prediction: take another law, --set \"contact.….law=…\"",
                 depth * 1e6,
                 reach * 1e6
             ),
@@ -490,7 +491,8 @@ impl fmt::Display for Reason {
             ),
             Self::LoadDrives { work } => write!(
                 f,
-                "loads put {work:.3e} J in, for a load resists with the sign against the motion: the other sign, --set \"sprockets.….load=…\""
+                "loads put {} in, and a load should take energy out: turn its sign, or name a motor under `drive`",
+                Quantity::Energy.told(*work)
             ),
             Self::SamplesRare {
                 samples,
@@ -498,21 +500,21 @@ impl fmt::Display for Reason {
                 needed,
             } => write!(
                 f,
-                "{samples:.1} samples a tooth passing, one in {}: spectra show the mesh at another frequency: --every \"{}\"",
+                "{samples:.1} samples a tooth passing, one in {}: spectra show the mesh at another frequency: take --every \"{}\"",
                 duration(*every),
                 duration(*needed)
             ),
             Self::MotionsFight(fight) => fight.fmt(f),
             Self::NotExamined { window, until } => write!(
                 f,
-                "the error was estimated on the first {} of {}, which stand for the rest",
+                "the error was estimated on the first {} of {}, and stands for the rest",
                 duration(*window),
                 duration(*until)
             ),
             Self::NotEstimated { why } => {
                 write!(
                     f,
-                    "the error is not estimated, {why}: the same without --no-error, to its end"
+                    "the error is not estimated, {why}: run it without --no-error, to its end"
                 )
             }
         }

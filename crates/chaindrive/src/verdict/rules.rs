@@ -4,8 +4,8 @@ use super::{
     LEAST_SHIFT, LEAST_STEPS, LONG_PRESSED, MOST_EFFICIENCY, OPEN_LEDGER, OPEN_MOTION, PRESSED,
     UNCERTAIN_LOSSES, UNHELD, Verdict, WIDE, WRONG_LOSSES, duty,
 };
+use crate::figure::percent;
 use crate::precision::LEAST_LOSSES;
-use crate::precision::wording::percent;
 use crate::record::DRIFT;
 use crate::{MOST_CIRCUITS, Trust};
 

@@ -3,8 +3,7 @@
 use std::cell::RefCell;
 use std::path::PathBuf;
 
-use chaindrive::describe::spans_at_rest;
-use chaindrive::record::{Existing, figures, take_over};
+use chaindrive::record::{Existing, take_over};
 use chaindrive::{Given, Onlooker, Report, RunError, Simulation, Stop, execute};
 use clap::Args;
 
@@ -55,6 +54,10 @@ pub(super) struct Telling {
     /// Prints errors only, and a line if the result is not to be trusted
     #[arg(short, long)]
     pub(super) quiet: bool,
+
+    /// Adds steps, contacts, energy and errors of the run to its page
+    #[arg(long)]
+    pub(super) numerics: bool,
 
     /// Exits with 4 if the verdict is `distrusted`; the result is kept all the same
     #[arg(long)]
@@ -114,7 +117,11 @@ pub(super) fn not_run<E: std::error::Error + Into<Failure>>(
 
 /// Says what came of a run.
 pub(super) fn concluded(report: Report, scene: &str, telling: Telling) -> Result<(), Failure> {
-    let Telling { quiet, strict } = telling;
+    let Telling {
+        quiet,
+        numerics,
+        strict,
+    } = telling;
     if !quiet {
         for clash in &report.simulation.assembled().warnings {
             say(format_args!("warning: {scene}: {clash}"));
@@ -124,7 +131,7 @@ pub(super) fn concluded(report: Report, scene: &str, telling: Telling) -> Result
         say(format_args!("{scene}: {warning}"));
     }
     if !quiet && report.summary.samples > 0 {
-        print(told(&report))?;
+        print(told(&report, numerics))?;
     }
     match report.stop {
         Stop::End if strict && report.verdict.is_distrusted() => Err(Failure::Distrusted {
@@ -168,35 +175,12 @@ impl Onlooker for Terminal<'_> {
     }
 }
 
-/// The account that ends the run.
-fn told(report: &Report) -> String {
-    let (choice, judgement) = (report.choice.as_ref(), report.judgement.as_ref());
-    let (summary, simulation) = (&report.summary, &report.simulation);
-    let figures = figures(
-        summary,
-        simulation,
-        report.ran_in.as_ref(),
-        choice,
-        judgement,
-    );
-    format!("{}\n{}{figures}", report.verdict, at_rest(report))
-}
-
-/// The span tensions before the start, as the first figures of the summary.
-fn at_rest(report: &Report) -> String {
-    let assembled = report.simulation.assembled();
-    if assembled.statics.is_empty() {
-        return String::new();
-    }
-    let spans = spans_at_rest(&report.drive, assembled);
-    let line = |(name, tension): (String, f64)| format!("  {name:22} {tension:>9.1}\n");
-    let lines = spans
-        .into_iter()
-        .map(|span| line((span.name, span.tension)));
-    let lines: String = lines.collect();
-    if lines.is_empty() {
-        lines
-    } else {
-        format!("span tension at rest [N]\n{lines}")
+/// The page that ends the run, and its numerics where they are asked for.
+fn told(report: &Report, numerics: bool) -> String {
+    let text = |name: &str| report.attributes.get(name).and_then(|it| it.as_str());
+    let page = text("summary").unwrap_or_default();
+    match text("numerics").filter(|_| numerics) {
+        Some(numerics) => format!("{page}\n\nnumerics\n{numerics}"),
+        None => page.to_owned(),
     }
 }

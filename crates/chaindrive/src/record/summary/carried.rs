@@ -2,19 +2,17 @@
 
 use std::ops::Range;
 
-use chaindrive_geometry::mesh_frequency;
 use chaindrive_mechanics::{ChainSize, Observation, PlacedChain, Strength};
 use serde::{Deserialize, Serialize};
 
-use super::{SpanStatistics, Summary};
+use super::{SpanStatistics, SprocketCourse, Summary};
 use crate::Simulation;
 use crate::rating::{Load, SprocketDuty};
 
-/// Sums over the samples, by chain and by sprocket.
+/// Sums over the samples, by chain.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Carried {
     chains: Vec<OfChain>,
-    sprockets: Vec<OfSprocket>,
     samples: f64,
 }
 
@@ -31,17 +29,6 @@ struct OfChain {
     least: f64,
     /// Links that were pressed, over all samples.
     pressed: f64,
-}
-
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct OfSprocket {
-    name: String,
-    teeth: u32,
-    /// Σ ω \[rad/s\] and Σ M ω \[W\].
-    speed: f64,
-    power: f64,
-    /// Σ F, x and y \[N\].
-    force: [f64; 2],
 }
 
 impl Carried {
@@ -66,16 +53,8 @@ impl Carried {
                 pressed: 0.0,
             }
         };
-        let sprockets = drive.sprockets.iter().map(|sprocket| OfSprocket {
-            name: sprocket.name.clone(),
-            teeth: sprocket.gap.teeth,
-            speed: 0.0,
-            power: 0.0,
-            force: [0.0; 2],
-        });
         Self {
             chains: drive.chains.iter().zip(sizes).map(of_chain).collect(),
-            sprockets: sprockets.collect(),
             samples: 0.0,
         }
     }
@@ -94,37 +73,31 @@ impl Carried {
                 }
             }
         }
-        let motions = sample.sprocket_speed.iter().zip(&sample.sprocket_torque);
-        for (sprocket, (speed, torque)) in self.sprockets.iter_mut().zip(motions) {
-            sprocket.speed += speed;
-            sprocket.power += speed * torque;
-        }
-        let forces = sample.sprocket_force_x.iter().zip(&sample.sprocket_force_y);
-        for (sprocket, (x, y)) in self.sprockets.iter_mut().zip(forces) {
-            sprocket.force[0] += x;
-            sprocket.force[1] += y;
-        }
         self.samples += 1.0;
     }
 
-    /// Duty of each chain; `spans` are those of all chains.
-    pub(super) fn loads(&self, spans: &[SpanStatistics]) -> Vec<Load> {
+    /// Duty of each chain; `spans` and `sprockets` are those of all chains.
+    pub(super) fn loads(
+        &self,
+        spans: &[SpanStatistics],
+        sprockets: &[SprocketCourse],
+    ) -> Vec<Load> {
         let chains = self.chains.iter();
-        chains.map(|chain| self.load(chain, spans)).collect()
+        chains
+            .map(|chain| self.load(chain, spans, sprockets))
+            .collect()
     }
 
-    fn load(&self, chain: &OfChain, spans: &[SpanStatistics]) -> Load {
+    fn load(
+        &self,
+        chain: &OfChain,
+        spans: &[SpanStatistics],
+        sprockets: &[SprocketCourse],
+    ) -> Load {
         let sprockets: Vec<SprocketDuty> = chain
             .sprockets
             .iter()
-            .map(|index| &self.sprockets[*index])
-            .map(|it| SprocketDuty {
-                name: it.name.clone(),
-                teeth: it.teeth,
-                speed: it.speed / self.samples,
-                power: it.power / self.samples,
-                force: it.force.map(|sum| sum / self.samples),
-            })
+            .map(|index| sprockets[*index].duty())
             .collect();
         let spans = spans.get(chain.spans.clone()).into_iter().flatten();
         let means = spans.map(SpanStatistics::mean).filter(|it| it.is_finite());
@@ -142,11 +115,5 @@ impl Carried {
             steady: means.reduce(f64::max),
             sprockets,
         }
-    }
-
-    pub(super) fn mesh_frequency(&self) -> f64 {
-        let sprockets = self.sprockets.iter();
-        let frequencies = sprockets.map(|it| mesh_frequency(it.teeth, it.speed / self.samples));
-        frequencies.fold(0.0, |most, frequency| most.max(frequency.abs()))
     }
 }

@@ -1,0 +1,116 @@
+//! The page of a run: what a chain engineer asks of it, in the order of a design review and the units of the trade.
+//!
+//! ```text
+//! verdict · what the drive does · tensions · bearings and guides · impacts · tensioners · irregularity · losses · utilisation · inputs
+//! ```
+//!
+//! A [`Page`] is sections of sentences and tables, as text, or as JSON for whoever sets them otherwise. Steps, contacts and errors are
+//! [numerics](numerics), on a page of their own.
+
+mod numerics;
+mod sections;
+
+use std::fmt;
+
+use serde::Serialize;
+
+pub use numerics::numerics;
+
+use crate::record::Summary;
+use crate::{RanIn, Simulation, Verdict};
+
+/// The page of a run.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Page {
+    /// Its sections, in order.
+    pub sections: Vec<Section>,
+}
+
+/// A part of a page.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Section {
+    /// Its heading.
+    pub title: String,
+    /// Headings of the columns of its table, units in brackets; the first is that of the names. Empty without a table.
+    pub columns: Vec<String>,
+    /// Rows of its table.
+    pub rows: Vec<Vec<String>>,
+    /// Sentences, behind the table.
+    pub sentences: Vec<String>,
+}
+
+impl Section {
+    fn new(title: &str, columns: impl IntoIterator<Item = String>) -> Self {
+        Self {
+            title: title.to_owned(),
+            columns: columns.into_iter().collect(),
+            ..Self::default()
+        }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.rows.is_empty() && self.sentences.is_empty()
+    }
+}
+
+impl Page {
+    /// The page of a run: its verdict, its samples, how it was run in, and the inputs that were assumed.
+    pub fn of(
+        verdict: &Verdict,
+        summary: &Summary,
+        simulation: &Simulation,
+        ran_in: Option<&RanIn>,
+        assumed: &[String],
+    ) -> Self {
+        let run = sections::Told {
+            verdict,
+            summary,
+            simulation,
+            ran_in,
+            assumed,
+        };
+        let mut sections = run.sections();
+        sections.retain(|section| !section.is_empty());
+        Self { sections }
+    }
+}
+
+impl fmt::Display for Page {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, section) in self.sections.iter().enumerate() {
+            if index > 0 {
+                write!(f, "\n\n")?;
+            }
+            section.fmt(f)?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Section {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.title)?;
+        let lines = || std::iter::once(&self.columns).chain(&self.rows);
+        let width = |column: usize| {
+            let cells = lines().filter_map(|line| line.get(column));
+            cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+        };
+        let widths: Vec<usize> = (0..self.columns.len()).map(width).collect();
+        for line in lines().filter(|_| !self.rows.is_empty()) {
+            write!(f, "\n  ")?;
+            let mut text = String::new();
+            for (column, (cell, width)) in line.iter().zip(&widths).enumerate() {
+                // Names stand left, figures right.
+                text += &match column {
+                    0 => format!("{cell:width$}"),
+                    _ => format!("  {cell:>width$}"),
+                };
+            }
+            write!(f, "{}", text.trim_end())?;
+        }
+        for sentence in &self.sentences {
+            write!(f, "\n  {sentence}")?;
+        }
+        Ok(())
+    }
+}

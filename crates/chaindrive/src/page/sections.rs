@@ -1,0 +1,454 @@
+//! The sections of the page.
+
+use super::Section;
+use crate::figure::{Quantity, Scale, duration, figure, percent};
+use crate::rating::{Load, Rating};
+use crate::record::{Bearing, SprocketCourse, Summary};
+use crate::{RanIn, Simulation, Verdict};
+
+/// Share of the greatest power of its chain below which a sprocket idles. *Assumed*: bearings and teeth of an idler take less.
+const IDLES: f64 = 0.02;
+/// Inputs that are named before the rest is counted.
+const NAMED: usize = 6;
+
+/// A run as the page tells it.
+pub(super) struct Told<'a> {
+    pub(super) verdict: &'a Verdict,
+    pub(super) summary: &'a Summary,
+    pub(super) simulation: &'a Simulation,
+    pub(super) ran_in: Option<&'a RanIn>,
+    pub(super) assumed: &'a [String],
+}
+
+impl Told<'_> {
+    pub(super) fn sections(&self) -> Vec<Section> {
+        vec![
+            self.verdict(),
+            self.drive(),
+            self.spans(),
+            self.links(),
+            self.bearings(),
+            self.impacts(),
+            self.tensioners(),
+            self.irregularity(),
+            self.losses(),
+            self.utilisation(),
+            self.inputs(),
+        ]
+    }
+
+    fn verdict(&self) -> Section {
+        let title = format!("verdict: {}", self.verdict.trust.name());
+        let mut section = Section::new(&title, []);
+        section.sentences = self.verdict.sentences();
+        section.sentences.extend(self.ran_in.map(RanIn::to_string));
+        section
+    }
+
+    /// Power, torque, speed and ratio of every sprocket; which sides are tight.
+    fn drive(&self) -> Section {
+        let sprockets = &self.summary.bodies().sprockets;
+        let turning = Quantity::Turning.scale(sprockets.iter().map(|it| it.speed.mean()));
+        let torques = Quantity::Torque.scale(sprockets.iter().map(|it| it.torque.mean()));
+        let powers = Quantity::Power.scale(sprockets.iter().map(|it| it.power.mean()));
+        let columns = [
+            "sprocket".to_owned(),
+            "role".to_owned(),
+            "teeth".to_owned(),
+            turning.heading("speed"),
+            torques.heading("torque"),
+            powers.heading("power"),
+            "ratio".to_owned(),
+        ];
+        let mut section = Section::new("what the drive does", columns);
+        for it in sprockets {
+            let leader = &sprockets[it.leader()];
+            let ratio = it.speed.mean() / leader.speed.mean();
+            section.rows.push(vec![
+                it.name.clone(),
+                self.role(it).to_owned(),
+                it.teeth.to_string(),
+                turning.cell(it.speed.mean()),
+                torques.cell(it.torque.mean().abs()),
+                powers.cell(it.power.mean().abs()),
+                figure(ratio),
+            ]);
+        }
+        for (chain, spans) in self.chains() {
+            let mean = |index: &usize| self.summary.spans[*index].mean();
+            let held = spans.filter(|index| mean(index).is_finite());
+            let mut held: Vec<usize> = held.collect();
+            held.sort_by(|a, b| mean(b).total_cmp(&mean(a)));
+            let (Some(tight), Some(slack)) = (held.first(), held.last()) else {
+                continue;
+            };
+            if tight == slack {
+                continue;
+            }
+            let [tight, slack] = [tight, slack].map(|index| {
+                let tension = Quantity::Force.told(mean(index));
+                format!("{}, {tension}", self.summary.spans[*index].name)
+            });
+            let of = if chain.is_empty() {
+                chain
+            } else {
+                format!(" of {chain}")
+            };
+            let sentence = format!("Tight side{of}: {tight}. Slack side: {slack}.");
+            section.sentences.push(sentence);
+        }
+        section
+    }
+
+    /// What a sprocket does for its chain.
+    fn role(&self, sprocket: &SprocketCourse) -> &'static str {
+        let sprockets = self.summary.bodies().sprockets.iter();
+        let own = sprockets.filter(|it| it.chain == sprocket.chain);
+        let greatest = own.map(|it| it.power.mean().abs()).fold(0.0, f64::max);
+        let power = sprocket.power.mean();
+        if power.abs() <= IDLES * greatest {
+            "idles"
+        } else if power < 0.0 {
+            "drives"
+        } else {
+            "is driven"
+        }
+    }
+
+    /// Names of the chains, empty where there is one, and the indices of their spans.
+    fn chains(&self) -> Vec<(String, std::ops::Range<usize>)> {
+        let mut first = 0;
+        let sizes = self.simulation.system().chain_sizes();
+        let alone = sizes.len() == 1;
+        let chain = |(name, size): (String, chaindrive_mechanics::ChainSize)| {
+            let spans = first..first + size.spans;
+            first = spans.end;
+            (if alone { String::new() } else { name }, spans)
+        };
+        sizes.into_iter().map(chain).collect()
+    }
+
+    /// Tensions of the spans, with intervals.
+    fn spans(&self) -> Section {
+        let spans = &self.summary.spans;
+        let scale = Quantity::Force.scale(spans.iter().flat_map(|it| [it.least, it.greatest]));
+        let heading = format!("span tension [{}]", scale.unit);
+        let columns = [
+            "mean", "± 95 %", "std", "± 95 %", "p1", "± 95 %", "p99", "± 95 %",
+        ];
+        let columns = columns
+            .into_iter()
+            .chain(["least", "greatest"])
+            .map(str::to_owned);
+        let mut section = Section::new("span tensions", std::iter::once(heading).chain(columns));
+        let samples = self.summary.samples;
+        for (span, known) in spans.iter().zip(self.summary.steadiness()) {
+            let Some(known) = known else {
+                let sentence = format!("No roller holds span {} in any sample.", span.name);
+                section.sentences.push(sentence);
+                continue;
+            };
+            let mut row = vec![span.name.clone()];
+            for it in [known.mean, known.deviation, known.p1, known.p99] {
+                row.extend([scale.cell(it.value), half_width(&scale, it.half_width)]);
+            }
+            row.extend([span.least, span.greatest].map(|it| scale.cell(it)));
+            section.rows.push(row);
+            if span.missing > 0 {
+                let (name, missing) = (&span.name, span.missing);
+                section.sentences.push(format!(
+                    "No roller holds span {name} in {missing} of {samples} samples."
+                ));
+            }
+        }
+        if let Some(until) = self.summary.known_from() {
+            let period = duration(self.summary.slowest_forcing());
+            let until = duration(until);
+            section.sentences.push(format!(
+                "Intervals are unknown below three periods of {period}, the slowest forcing. Take --until \"{until}\"."
+            ));
+        }
+        section
+    }
+
+    /// Links against what breaks them.
+    fn links(&self) -> Section {
+        let mut section = Section::new("links", []);
+        for load in self
+            .summary
+            .carried()
+            .iter()
+            .filter(|it| it.tension.is_finite())
+        {
+            section.sentences.push(strength(load));
+        }
+        section
+    }
+
+    fn bearings(&self) -> Section {
+        let bodies = self.summary.bodies();
+        let sprockets = bodies.sprockets.iter().map(|it| (&it.name, &it.force));
+        let guides = bodies.guides.iter().map(|(name, force)| (name, force));
+        let all: Vec<(String, &Bearing)> = sprockets
+            .map(|(name, force)| (name.clone(), force))
+            .chain(guides.map(|(name, force)| (format!("guide {name}"), force)))
+            .collect();
+        let scale = Quantity::Force.scale(all.iter().map(|(_, it)| it.magnitude.greatest));
+        let columns = [
+            "on".to_owned(),
+            scale.heading("mean"),
+            "direction [deg]".to_owned(),
+            scale.heading("greatest"),
+        ];
+        let mut section = Section::new("bearing and guide forces", columns);
+        for (name, force) in all {
+            let [mean, direction] = force.mean();
+            section.rows.push(vec![
+                name,
+                scale.cell(mean),
+                format!("{:.1}", direction.to_degrees()),
+                scale.cell(force.magnitude.greatest),
+            ]);
+        }
+        section
+    }
+
+    fn impacts(&self) -> Section {
+        let struck = self.summary.impacts().iter().filter(|it| it.count > 0);
+        let struck: Vec<_> = struck.collect();
+        let scale = Quantity::Force.scale(struck.iter().map(|it| it.greatest));
+        let impulses = Quantity::Impulse.scale(struck.iter().map(|it| it.impulse(0.5)));
+        let columns = [
+            "on".to_owned(),
+            "number".to_owned(),
+            scale.heading("half below"),
+            scale.heading("99 of 100 below"),
+            scale.heading("greatest"),
+            impulses.heading("impulse"),
+            "closing [m/s]".to_owned(),
+        ];
+        let mut section = Section::new("impacts of rollers that seat", columns);
+        for it in struck {
+            section.rows.push(vec![
+                it.sprocket.clone(),
+                it.count.to_string(),
+                scale.cell(it.force(0.5)),
+                scale.cell(it.force(0.99)),
+                scale.cell(it.greatest),
+                impulses.cell(it.impulse(0.5)),
+                format!("{:.3}", it.speed(0.5)),
+            ]);
+        }
+        section
+    }
+
+    fn tensioners(&self) -> Section {
+        let columns = ["tensioner", "unit", "mean", "least", "greatest", "travel"];
+        let mut section = Section::new("tensioners", columns.map(str::to_owned));
+        for (name, unit, [travel, _]) in &self.summary.bodies().tensioners {
+            let quantity = if unit == "rad" {
+                Quantity::Angle
+            } else {
+                Quantity::Length
+            };
+            let scale = quantity.scale([travel.least, travel.greatest]);
+            let values = [travel.mean(), travel.least, travel.greatest, travel.range()];
+            let mut row = vec![name.clone(), scale.unit.to_owned()];
+            row.extend(values.map(|it| figure(it / scale.per)));
+            section.rows.push(row);
+        }
+        section
+    }
+
+    /// Swing of the speeds, and transmission error.
+    fn irregularity(&self) -> Section {
+        let columns = [
+            "sprocket".to_owned(),
+            "speed, greatest less least [%]".to_owned(),
+            "transmission error, peak to peak [deg]".to_owned(),
+        ];
+        let mut section = Section::new("speed irregularity and transmission error", columns);
+        for (index, it) in self.summary.bodies().sprockets.iter().enumerate() {
+            let mean = it.speed.mean();
+            // δ = (ω_max − ω_min)/ω̄
+            let irregularity = it.speed.range() / mean.abs();
+            if !irregularity.is_finite() {
+                continue;
+            }
+            let lag = if it.leader() == index {
+                "–".to_owned()
+            } else {
+                figure(it.lag.range().to_degrees())
+            };
+            section
+                .rows
+                .push(vec![it.name.clone(), figure(100.0 * irregularity), lag]);
+        }
+        section
+    }
+
+    fn losses(&self) -> Section {
+        let lost = self.summary.losses();
+        let time = self.summary.duration();
+        let columns = ["place", "power [W]", "share [%]"].map(str::to_owned);
+        let mut section = Section::new("losses", columns);
+        let all = self.summary.energy_dissipated();
+        if !lost.is_empty() && time > 0.0 {
+            let names = lost.iter().map(|(place, lost)| (place.name(), *lost));
+            for (place, lost) in names.chain(std::iter::once(("all", all))) {
+                let share = format!("{:.1}", 100.0 * lost / all);
+                section
+                    .rows
+                    .push(vec![place.to_owned(), figure(lost / time), share]);
+            }
+        }
+        section.sentences.push(self.efficiency());
+        section
+    }
+
+    /// The efficiency, or the reason why there is none.
+    fn efficiency(&self) -> String {
+        let ledger = self.summary.ledger();
+        if let Some([efficiency, uncertain]) = ledger.efficiency() {
+            return format!(
+                "Efficiency: {:.3} % ± {:.3} % by the energy unaccounted for.",
+                100.0 * efficiency,
+                100.0 * uncertain
+            );
+        }
+        let why = if ledger.supplied <= 0.0 {
+            "nobody puts energy in"
+        } else if ledger.idles() {
+            "nobody takes energy out"
+        } else {
+            "energy goes to and fro, and too little goes one way"
+        };
+        format!("Efficiency: none, {why}.")
+    }
+
+    /// What the chains carry, against what they are rated for.
+    fn utilisation(&self) -> Section {
+        let mut section = Section::new("utilisation", []);
+        for rating in self.summary.ratings() {
+            section.sentences.extend(rated(&rating));
+        }
+        section
+    }
+
+    fn inputs(&self) -> Section {
+        let mut section = Section::new("inputs that were assumed", []);
+        let assumed = self.assumed;
+        if assumed.is_empty() {
+            return section;
+        }
+        let named = assumed.iter().take(NAMED).cloned().collect::<Vec<_>>();
+        let rest = match assumed.len().saturating_sub(NAMED) {
+            0 => String::new(),
+            rest => format!(", and {rest} more"),
+        };
+        section.sentences = vec![
+            format!("Nobody measured {}{rest}.", named.join(", ")),
+            "`chaindrive resolve` lists all inputs with their sources.".to_owned(),
+        ];
+        section
+    }
+}
+
+/// A half width, where it is known.
+fn half_width(scale: &Scale, value: f64) -> String {
+    if value.is_nan() {
+        "unknown".to_owned()
+    } else {
+        scale.cell(value)
+    }
+}
+
+/// The hardest pulled link of a chain, against what breaks it.
+fn strength(load: &Load) -> String {
+    let of = if load.chain.is_empty() {
+        String::new()
+    } else {
+        format!(" of {}", load.chain)
+    };
+    let pull = Quantity::Force.told(load.tension);
+    let breaks = match load.strength.breaking_load {
+        Some(breaking) => format!(
+            "the chain breaks at {}, {} times as much",
+            Quantity::Force.told(breaking),
+            figure(breaking / load.tension)
+        ),
+        None => "no breaking load is known: give chain.breaking_load".to_owned(),
+    };
+    let pressed = if load.pressed > 0.0 {
+        format!(
+            " Links are pressed by up to {}, in {} of links and time.",
+            Quantity::Force.told(-load.least),
+            percent(load.pressed)
+        )
+    } else {
+        String::new()
+    };
+    format!("The hardest pulled link{of} bears {pull}; {breaks}.{pressed}")
+}
+
+/// Power of a chain against its rating, or why there is none, and the lubrication that its speed asks for.
+fn rated(rating: &Rating) -> Vec<String> {
+    let Some(sprocket) = &rating.sprocket else {
+        return Vec::new();
+    };
+    let of = if rating.chain.is_empty() {
+        String::new()
+    } else {
+        format!(" {}", rating.chain)
+    };
+    let carried = Quantity::Power.told(rating.carried);
+    let power = match (&rating.limits, rating.governing()) {
+        (Ok(limits), Some((by, power))) => {
+            let others = limits.iter().filter(|it| it.by != by);
+            let others: Vec<String> = others
+                .map(|it| match it.power {
+                    Some(power) => format!("{} {}", it.by.name(), Quantity::Power.told(power)),
+                    None => format!("{} not rated, source missing", it.by.name()),
+                })
+                .collect();
+            let others = if others.is_empty() {
+                String::new()
+            } else {
+                format!("; {}", others.join(", "))
+            };
+            let service = if (rating.service_factor - 1.0).abs() > f64::EPSILON {
+                format!(" with the service factor {}", figure(rating.service_factor))
+            } else {
+                String::new()
+            };
+            format!(
+                "Chain{of} carries {carried}, {:.0} %{service} of the {} that it is rated for by {} at the {} teeth of {}{others}.",
+                100.0 * rating.utilisation().unwrap_or(f64::NAN),
+                Quantity::Power.told(power),
+                by.name(),
+                sprocket.teeth,
+                sprocket.name
+            )
+        }
+        (Err(why), _) => {
+            let twin = rating.twin.map_or_else(String::new, |twin| {
+                format!(
+                    " The chain of ASME B29.1 with its pitch is rated for {}.",
+                    Quantity::Power.told(twin)
+                )
+            });
+            format!("Chain{of} carries {carried}: {why}.{twin}")
+        }
+        (Ok(_), None) => return Vec::new(),
+    };
+    let pressure = rating.bearing_pressure.map(|pressure| {
+        format!(
+            "Pins press their bushes with {} under the mean pull of the tight side.",
+            Quantity::Pressure.told(pressure)
+        )
+    });
+    let oil = rating
+        .lubrication
+        .map(|it| format!("Lubrication: {}.", it.name()));
+    std::iter::once(power).chain(pressure).chain(oil).collect()
+}
