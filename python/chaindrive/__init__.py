@@ -13,12 +13,9 @@ units throughout; scene files may carry units of their own. Counter-clockwise an
 penetrations are positive.
 """
 
-import sys
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
-
-from chaindrive._core import __build__ as __build__
-from chaindrive._core import __version__ as __version__
+# Type checkers take this name for true. To import it from `typing` would take most of the time
+# that this package takes.
+TYPE_CHECKING = False
 
 if TYPE_CHECKING:
     from chaindrive import analysis as analysis
@@ -29,6 +26,8 @@ if TYPE_CHECKING:
     from chaindrive import plot as plot
     from chaindrive import scenes as scenes
     from chaindrive import settings as settings
+    from chaindrive._core import __build__ as __build__
+    from chaindrive._core import __version__ as __version__
     from chaindrive.analysis.elongation import worn as worn
     from chaindrive.analysis.ramps import run_up as run_up
     from chaindrive.chain_catalogue import catalogue as catalogue
@@ -71,7 +70,8 @@ if TYPE_CHECKING:
     from chaindrive.sweeping import sweep as sweep
 
 # What is imported when it is first asked for: xarray alone takes longer than all of a short
-# command. No name is that of a module that defines something else, which the import would hide.
+# command, and the command hears Ctrl-C before it imports the core. No name is that of a module
+# that defines something else, which the import would hide.
 _MODULES = (
     "analysis",
     "design",
@@ -83,6 +83,7 @@ _MODULES = (
     "settings",
 )
 _DEFINED_IN = {
+    "_core": ("__build__", "__version__"),
     "analysis.elongation": ("worn",),
     "analysis.ramps": ("run_up",),
     "chain_catalogue": ("catalogue",),
@@ -116,13 +117,16 @@ _DEFINED_IN = {
 }
 _HOME = {name: module for module, names in _DEFINED_IN.items() for name in names}
 
-__all__ = sorted(["__build__", "__version__", *_MODULES, *_HOME])
+__all__ = sorted([*_MODULES, *_HOME])
 
 
 # Type checkers know the names above, and would take any name for one of these.
 if not TYPE_CHECKING:
 
-    def __getattr__(name: str) -> Any:
+    def __getattr__(name: str) -> object:
+        import sys
+        from importlib import import_module
+
         if name in _MODULES:
             return import_module(f"chaindrive.{name}")
         if name in _HOME:

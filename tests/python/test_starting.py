@@ -26,8 +26,10 @@ def imported(code: str) -> set[str]:
     return {name for name in found if "." not in name or name.startswith("chaindrive.")}
 
 
-def test_the_package_imports_nothing_that_takes_long() -> None:
-    assert not imported("import chaindrive") & (SLOW | {"numpy"})
+def test_the_package_imports_nothing() -> None:
+    found = imported("import chaindrive")
+    assert {name for name in found if name.startswith("chaindrive")} == {"chaindrive"}
+    assert not found & (SLOW | {"numpy", "typing"})
 
 
 def test_drives_are_made_and_read_without_xarray() -> None:
@@ -53,6 +55,30 @@ def test_the_command_imports_the_core_only(argument: str) -> None:
     assert not imported(code) & (SLOW | {"numpy"})
 
 
+# Sends Ctrl-C at the n-th import behind the first line of the command.
+INTERRUPTED_AT = """
+import signal, sys
+left = int(sys.argv.pop(1))
+def count(event, arguments):
+    global left
+    if event == "import" and "chaindrive.__main__" in sys.modules:
+        left -= 1
+        if left == 0:
+            signal.raise_signal(signal.SIGINT)
+sys.addaudithook(count)
+from chaindrive.__main__ import main
+sys.exit(main())
+"""
+
+
+# The first two are the imports above which the command begins to hear.
+@pytest.mark.parametrize("number", range(3, 9))
+def test_interrupted_while_it_is_imported_the_command_says_so(number: int) -> None:
+    command = [sys.executable, "-c", INTERRUPTED_AT, str(number), "run", "marine_engine", "-q"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (130, "interrupted\n")
+
+
 def test_type_checkers_and_programs_see_the_same_names() -> None:
     """What is imported for type checkers comes from where it is imported on demand."""
     tree = ast.parse(Path(cd.__file__).read_text(encoding="utf-8"))
@@ -63,8 +89,6 @@ def test_type_checkers_and_programs_see_the_same_names() -> None:
         for alias in node.names:
             told[alias.asname] = (node.module, alias.name)
     for name in cd.__all__:
-        if name in ("__build__", "__version__"):
-            continue
         module, original = told.pop(name)
         where = "chaindrive" if name in MODULES else f"chaindrive.{cd._HOME[name]}"
         assert (module, original) == (where, name)
