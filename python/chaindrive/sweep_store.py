@@ -67,12 +67,18 @@ def into_store(
     stop: Any = None
     lost: list[Exception] = []
     try:
-        if executor is None:
-            with heard():
-                stop = store.run(jobs, tell)
-        else:
-            to_workers = place if isinstance(place, Objects) else os.fspath(store.place())
-            stop, lost = _spread(store, to_workers, len(core), executor, tell)
+        with heard():
+            stop = store.start(tell)
+        if not store.is_public():
+            stop.add_note(f"{place} holds the earlier result: of this sweep nothing was stored")
+            raise stop
+        if stop is None:
+            if executor is None:
+                with heard():
+                    stop = store.run(jobs, tell)
+            else:
+                to_workers = place if isinstance(place, Objects) else os.fspath(store.place())
+                stop, lost = _spread(store, to_workers, len(core), executor, tell)
         told = store.finish()
     finally:
         _claims.discard(descriptor or -1)

@@ -524,3 +524,28 @@ def test_ten_thousand_variants_keep_two_cores_busy_in_little_memory(tmp_path):
     assert np.median(costs) < 0.02
     # Four kilobytes a variant [MB]: copies of the values that are varied, and larger tasks.
     assert all_of_them["memory"] - some["memory"] < 9_000 * 4e-3
+
+
+def test_overwriting_keeps_the_earlier_store_until_there_is_something(tmp_path):
+    """The second variant would take hours, and is of the first task."""
+    path = tmp_path / "ring.zarr"
+    settings = {"every": 1e-3, "jobs": 1, "output": path}
+    cd.sweep(ring(), {"run.until": [1e-3, 2e-3]}, **settings)
+    before = (path / "zarr.json").read_bytes()
+    until = [1e-3, *(1e4 + np.arange(15))]
+    begun = []
+
+    def stop(_):
+        begun.append((path / "zarr.json").read_bytes() == before)
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt) as caught:
+        cd.sweep(ring(), {"run.until": until}, **settings, overwrite=True, progress=stop)
+    assert begun == [True]
+    assert "holds the earlier result" in caught.value.__notes__[0]
+    assert (path / "zarr.json").read_bytes() == before
+    assert [it.name for it in tmp_path.iterdir()] == ["ring.zarr"]
+    with cd.open_result(path) as kept:
+        assert kept.attrs["status"] == "complete"
+    cd.sweep(ring(), {"run.until": [1e-3]}, **settings, overwrite=True)
+    assert cd.open_result(path).sizes["until"] == 1

@@ -68,6 +68,16 @@ pub enum SweepError {
     #[error("`{path}` has no values; give at least one")]
     Empty { path: String },
 
+    /// Values that go together in no variant.
+    #[error(
+        "no variant is a drive, of {tried} that were tried; mend this, or vary something else. The first ({variant}): {source}"
+    )]
+    NoDrive {
+        tried: usize,
+        variant: String,
+        source: SceneError,
+    },
+
     /// Columns of a table that do not go together.
     #[error(
         "`{path}` has {rows} values, `{first}` has {others}; a table has a value of each in every row"

@@ -9,6 +9,9 @@ use super::{CHOSEN, Dimension, MOST, Setting, Sweep, SweepError, dimension};
 use crate::scene::{Datum, Scene, SceneError};
 use crate::{Channel, Origin, Run};
 
+/// Variants that are made before a sweep begins, until one of them is a drive. *Assumed*: some milliseconds each.
+const TRIED: usize = 24;
+
 /// How the values of several paths become variants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -45,7 +48,7 @@ impl Sweep {
     /// # Errors
     /// Every value is put into the scene, the first ones of the other paths beside it; what is not of a
     /// scene is refused here, before hours have gone by. Values that do not go together are the failure
-    /// of their variants.
+    /// of their variants, and refused as [`SweepError::NoDrive`] where that is true of all variants that are tried.
     pub fn new(
         scene: &Scene,
         vary: &[(String, Vec<Setting>)],
@@ -139,14 +142,38 @@ impl Sweep {
             dimensions.push(dimension);
         }
         dimension::name_all(&mut dimensions);
-        Ok(Self {
+        let sweep = Self {
             scene: scene.clone(),
             arrangement,
             dimensions,
             record: record.to_vec(),
             len,
             most_samples,
-        })
+        };
+        sweep.check_some()?;
+        Ok(sweep)
+    }
+
+    /// Refuses values that go together in no variant that is tried: these are spread over the sweep, and one that is a drive
+    /// is enough.
+    fn check_some(&self) -> Result<(), SweepError> {
+        let count = self.len.min(TRIED);
+        let mut first = None;
+        for number in 0..count {
+            let index = number * (self.len - 1) / (count - 1).max(1);
+            match self.variant(index).and_then(|scene| scene.drive()) {
+                Ok(_) => return Ok(()),
+                Err(error) => _ = first.get_or_insert(error),
+            }
+        }
+        match first {
+            Some(source) => Err(SweepError::NoDrive {
+                tried: count,
+                variant: self.label(0),
+                source,
+            }),
+            None => Ok(()),
+        }
     }
 
     /// Everything that others need to compute the same variants.

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use chaindrive::Request;
 use chaindrive::record::{Ending, Existing, SweepStore, WriteError, take_over};
-use chaindrive::sweep::{Go, Sweep, Tally};
+use chaindrive::sweep::{Go, Outcome, Sweep, Tally};
 use clap::Args;
 
 use super::output::Target;
@@ -140,7 +140,10 @@ fn in_memory(
     if let Some(error) = refused {
         return Err(error);
     }
-    output.write(sweep, &outcomes, &Ending::of(&outcomes))?;
+    // With nothing to put in its place, an earlier table stays.
+    if outcomes.iter().any(|outcome| *outcome != Outcome::Open) {
+        output.write(sweep, &outcomes, &Ending::of(&outcomes))?;
+    }
     let report = sweep.report(&outcomes).to_string();
     conclude(arguments, sweep, &Tally::of(&outcomes), report)
 }

@@ -342,3 +342,78 @@ fn interrupted_it_keeps_what_is_finished() {
         }
     }
 }
+
+/// The first variant in the place of the earlier result would take days.
+#[cfg(unix)]
+#[test]
+fn interrupted_before_it_has_anything_it_leaves_the_earlier_result() {
+    let long: Vec<String> = (1..16).map(|it| format!("{it}e4 s")).collect();
+    // A store is laid out once the first variant has been timed; two of these make a task.
+    let stored = ["1 ms"]
+        .into_iter()
+        .chain(long.iter().map(String::as_str))
+        .collect::<Vec<_>>();
+    for (out, values) in [
+        ("ring.zarr", format!("run.until={}", stored.join(","))),
+        ("ring.csv", format!("run.until={}", long.join(","))),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let common = ["spinning_ring", "--every", "1 ms", "-j", "1", "-o", out];
+        let earlier = ["--vary", "run.until=1 ms,2 ms", "-q"];
+        let (code, _, err) = sweep(folder.path(), &[&common[..], &earlier].concat());
+        assert_eq!(code, 0, "{err}");
+        let path = folder.path().join(out);
+        let last = |path: &Path| {
+            fs::read(if path.is_dir() {
+                path.join("zarr.json")
+            } else {
+                path.to_owned()
+            })
+            .unwrap()
+        };
+        let kept = last(&path);
+
+        let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
+        command.current_dir(folder.path()).arg("sweep").args(common);
+        command.args(["--vary", &values, "--overwrite", "-q"]);
+        let child = command.stderr(Stdio::piped()).spawn().unwrap();
+        let begun = folder.path().join(format!(".{out}.writing/lock"));
+        let begin = Instant::now();
+        while !begun.exists() {
+            assert!(
+                begin.elapsed() < Duration::from_mins(1),
+                "it does not begin"
+            );
+            sleep(Duration::from_millis(5));
+        }
+        // Long enough to lay out the new store.
+        sleep(Duration::from_millis(200));
+        assert_eq!(last(&path), kept, "{out}");
+        let sent = Command::new("kill")
+            .args(["-INT", &child.id().to_string()])
+            .status();
+        assert!(sent.unwrap().success());
+        assert_eq!(child.wait_with_output().unwrap().status.code(), Some(130));
+        assert_eq!(last(&path), kept, "{out}");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+}
+
+#[test]
+fn values_that_no_variant_can_have_are_refused_before_it_begins() {
+    let folder = tempfile::tempdir().unwrap();
+    let damping = [
+        "spinning_ring",
+        "--vary",
+        "chain.damping=10 N s/m,20 N s/m,30 N s/m",
+    ];
+    let both = ["--vary", "chain.damping_ratio=0.01,0.02", "-o", "ring.csv"];
+    let (code, out, err) = sweep(folder.path(), &[&damping[..], &both].concat());
+    assert_eq!((code, out.as_str()), (2, ""), "{err}");
+    assert!(
+        err.contains("no variant is a drive, of 6 that were tried"),
+        "{err}"
+    );
+    assert!(err.contains("keep one of them"), "{err}");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}

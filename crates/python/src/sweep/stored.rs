@@ -8,7 +8,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Instant;
 
-use chaindrive::record::{self, Existing, Finished, Objects, Worker};
+use chaindrive::record::{self, Existing, Finished, Objects, Worker, WriteError};
 use chaindrive::sweep::Go;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -131,6 +131,20 @@ impl SweepStore {
         py.detach(|| self.with(|store| store.count(task).or_raise()))
     }
 
+    /// Puts the store in its place, if need be once it has something; what Python raised meanwhile is the answer.
+    fn start<'py>(
+        &self,
+        py: Python<'py>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.watched(py, progress, |store, watch| store.start(watch).map(drop))
+    }
+
+    /// Whether the store is in its place.
+    fn is_public(&self, py: Python<'_>) -> PyResult<bool> {
+        py.detach(|| self.with(|store| Ok(store.is_public())))
+    }
+
     /// Carries out all open tasks on threads; what Python raised meanwhile is the answer.
     fn run<'py>(
         &self,
@@ -138,28 +152,7 @@ impl SweepStore {
         jobs: Option<usize>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let mut raised = None;
-        py.detach(|| {
-            self.with(|store| {
-                let all = store.sweep().len();
-                let mut looked = Instant::now();
-                let watch = |stored: usize| {
-                    if stored < all && looked.elapsed() < PATIENCE {
-                        return Go::On;
-                    }
-                    looked = Instant::now();
-                    match look(progress.as_ref(), stored as f64 / all as f64) {
-                        Ok(()) => Go::On,
-                        Err(error) => {
-                            raised = Some(error);
-                            Go::NoFurther
-                        }
-                    }
-                };
-                store.run(jobs, watch).or_raise()
-            })
-        })?;
-        Ok(raised.map(|error| error.into_value(py).into_bound(py).into_any()))
+        self.watched(py, progress, |store, watch| store.run(jobs, watch))
     }
 
     /// Says in the store how the sweep ended, and here what came of it.
@@ -196,6 +189,38 @@ impl Drop for SweepStore {
 impl SweepStore {
     fn inner(&self) -> MutexGuard<'_, Option<record::SweepStore>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Carries out tasks while Python is told how far they are; what it raised meanwhile is the answer.
+    fn watched<'py>(
+        &self,
+        py: Python<'py>,
+        progress: Option<Py<PyAny>>,
+        act: impl FnOnce(&mut record::SweepStore, &mut dyn FnMut(usize) -> Go) -> Result<(), WriteError>
+        + Send,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let mut raised = None;
+        py.detach(|| {
+            self.with(|store| {
+                let all = store.sweep().len();
+                let mut looked = Instant::now();
+                let mut watch = |stored: usize| {
+                    if stored < all && looked.elapsed() < PATIENCE {
+                        return Go::On;
+                    }
+                    looked = Instant::now();
+                    match look(progress.as_ref(), stored as f64 / all as f64) {
+                        Ok(()) => Go::On,
+                        Err(error) => {
+                            raised = Some(error);
+                            Go::NoFurther
+                        }
+                    }
+                };
+                act(store, &mut watch).or_raise()
+            })
+        })?;
+        Ok(raised.map(|error| error.into_value(py).into_bound(py).into_any()))
     }
 
     fn with<T>(&self, act: impl FnOnce(&mut record::SweepStore) -> PyResult<T>) -> PyResult<T> {

@@ -41,6 +41,8 @@ pub struct SweepStore {
     finished: Finished,
     tasks: usize,
     last_told: Instant,
+    /// Whether the store is in its place. An earlier result stays there until a task is stored.
+    is_public: bool,
 }
 
 impl std::fmt::Debug for SweepStore {
@@ -53,7 +55,8 @@ impl std::fmt::Debug for SweepStore {
 }
 
 impl SweepStore {
-    /// Begins a sweep, with tasks of the size that a sample suggests.
+    /// Begins a sweep, with tasks of the size that a sample suggests. Where it replaces an earlier result, that one stays until a
+    /// task is stored, see [`start`](Self::start).
     ///
     /// # Errors
     /// [`WriteError`] when the place is taken or cannot be written.
@@ -66,7 +69,7 @@ impl SweepStore {
         Self::begin_on(Store::begin(path.as_ref(), existing)?, sweep, sample)
     }
 
-    /// Begins a sweep in an object store.
+    /// Begins a sweep in an object store, where an earlier result is removed at once.
     ///
     /// # Errors
     /// [`WriteError`] when the place is taken or cannot be written.
@@ -97,8 +100,6 @@ impl SweepStore {
         let open = Finished::default();
         let attributes = attributes(sweep, &layout, open, &Ending::None);
         store.tell(attributes, arrays.clone(), &Ending::None)?;
-        store.publish()?;
-        store.share()?;
         let worker = Worker::on(store.storage().clone(), store.path())?;
         let mut begun = Self {
             store,
@@ -109,6 +110,7 @@ impl SweepStore {
             arrays,
             finished: open,
             last_told: Instant::now(),
+            is_public: false,
         };
         // A variant that is a task on its own need not be computed again.
         if begun.told.block() == 1 && sample.first != Outcome::Open {
@@ -116,7 +118,20 @@ impl SweepStore {
             let first = begun.worker.carry_out(0, &AtomicBool::new(false))?;
             begun.count(first.unwrap_or_default())?;
         }
+        begun.publish()?;
         Ok(begun)
+    }
+
+    /// Puts the store in its place once it has something, or nothing is there. Nobody may write in it meanwhile.
+    fn publish(&mut self) -> Result<(), WriteError> {
+        let has_something = self.stored() > 0 || !self.store.place().exists();
+        if !self.is_public && has_something {
+            self.store.publish()?;
+            self.store.share()?;
+            self.worker = Worker::on(self.store.storage().clone(), self.store.path())?;
+            self.is_public = true;
+        }
+        Ok(())
     }
 
     /// Goes on with a sweep that was stopped or killed, where it is this one.
@@ -167,6 +182,7 @@ impl SweepStore {
             arrays,
             finished: Finished::default(),
             last_told: Instant::now(),
+            is_public: true,
         };
         left.finished = counts(&left.read(|_, _| {})?);
         left.tell(&Ending::None)?;
@@ -176,6 +192,11 @@ impl SweepStore {
     /// The sweep.
     pub fn sweep(&self) -> &Sweep {
         &self.sweep
+    }
+
+    /// Whether the store is in its place, where workers find it.
+    pub fn is_public(&self) -> bool {
+        self.is_public
     }
 
     /// Where the store is, symbolic links followed: the path for workers.
@@ -221,6 +242,22 @@ impl SweepStore {
         Ok(())
     }
 
+    /// Puts the store in its place. Where that replaces an earlier result, the first task is carried out before.
+    ///
+    /// `watch` is called as by [`run`](Self::run); its last answer is returned.
+    ///
+    /// # Errors
+    /// [`WriteError`] when the store or the system refuses.
+    pub fn start(&mut self, watch: impl FnMut(usize) -> Go) -> Result<Go, WriteError> {
+        if self.is_public {
+            return Ok(Go::On);
+        }
+        let first: Vec<usize> = self.open_tasks()?.into_iter().take(1).collect();
+        let go = self.carry_out(&first, 1, watch)?;
+        self.publish()?;
+        Ok(go)
+    }
+
     /// Carries out all open tasks on threads of this process, as many as there are cores if absent.
     ///
     /// `watch` is called with the number of variants stored whenever a task has ended, and every 50 ms.
@@ -232,16 +269,29 @@ impl SweepStore {
         jobs: Option<usize>,
         mut watch: impl FnMut(usize) -> Go,
     ) -> Result<(), WriteError> {
+        if self.start(&mut watch)? == Go::NoFurther {
+            return Ok(());
+        }
         let open = self.open_tasks()?;
         let cores = || available_parallelism().map_or(1, usize::from);
         let jobs = jobs.unwrap_or_else(cores).clamp(1, open.len().max(1));
+        self.carry_out(&open, jobs, watch).map(drop)
+    }
+
+    /// Carries out tasks on threads of this process; [`Go::NoFurther`] where the watch stopped it.
+    fn carry_out(
+        &mut self,
+        open: &[usize],
+        jobs: usize,
+        mut watch: impl FnMut(usize) -> Go,
+    ) -> Result<Go, WriteError> {
         let worker = Worker::on(self.store.storage().clone(), self.store.path())?;
         let stop = AtomicBool::new(false);
         let next = AtomicUsize::new(0);
         let (sender, receiver) = channel();
         thread::scope(|scope| {
             for _ in 0..jobs {
-                let (sender, open) = (sender.clone(), &open);
+                let sender = sender.clone();
                 let (worker, stop, next) = (&worker, &stop, &next);
                 let work = move || {
                     while !stop.load(Ordering::Relaxed) {
@@ -280,7 +330,9 @@ impl SweepStore {
                     stop.store(true, Ordering::Relaxed);
                 }
             }
-            refused.map_or(Ok(()), Err)
+            let stopped = stop.load(Ordering::Relaxed);
+            let go = if stopped { Go::NoFurther } else { Go::On };
+            refused.map_or(Ok(go), Err)
         })
     }
 
