@@ -124,7 +124,8 @@ class Simulation:
         chains = self._inner.chains(channel)
         if chains is not None:
             coordinates[chains[0]] = (dims[0], chains[1])
-        attributes = {"units": about.unit, "long_name": about.description}
+        attribute, unit = self._inner.unit(channel)
+        attributes = {attribute: unit, "long_name": about.description}
         return xr.DataArray(values, coords=coordinates, dims=dims, name=channel, attrs=attributes)
 
     def set_torque(self, shaft: str, torque: float, *, at: float | None = None) -> None:

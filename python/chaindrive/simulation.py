@@ -313,10 +313,8 @@ def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:
     known = channels()
     variables = {}
     for name, values in result["columns"].items():
-        about: dict[str, Any] = {
-            "units": result["units"][name],
-            "long_name": known[name].description,
-        }
+        attribute, unit = result["units"][name]
+        about: dict[str, Any] = {attribute: unit, "long_name": known[name].description}
         if name in result["waveform_horizons"]:
             at, found_on = result["waveform_horizons"][name]
             about |= {"waveform_horizon": at, "waveform_horizon_of": found_on}

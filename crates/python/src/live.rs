@@ -116,6 +116,12 @@ impl Simulation {
         Ok(chaindrive::record::labels(axis, self.0.system()))
     }
 
+    /// The attribute that tells the unit of a channel, and the unit.
+    fn unit(&self, name: &str) -> PyResult<(&'static str, String)> {
+        let channel = Channel::from_name(name).or_raise()?;
+        Ok(channel.unit_attribute(self.0.system()))
+    }
+
     /// The chain of every entry of a channel, by name, and the coordinate that tells it; none of one chain.
     fn chains(&self, name: &str) -> PyResult<Option<(&'static str, Vec<String>)>> {
         let channels = Channel::chosen(&[name], self.0.system()).or_raise()?;

@@ -141,7 +141,7 @@ fn told<'py>(py: Python<'py>, report: &Report, memory: Memory) -> PyResult<Bound
     answer.set_item("chains", chains(py, &recorded, &report.simulation)?)?;
     let units = PyDict::new(py);
     for &channel in &recorded {
-        let unit = channel.unit_in(report.simulation.system());
+        let unit = channel.unit_attribute(report.simulation.system());
         units.set_item(channel.name(), unit)?;
     }
     answer.set_item("units", units)?;

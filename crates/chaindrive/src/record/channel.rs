@@ -93,7 +93,7 @@ macro_rules! channels {
                 match self { $(Self::$variant => $name),* }
             }
 
-            /// SI unit; where it depends on the system, those there are. See [`Self::units`].
+            /// SI unit; of tensioners, that of sliders. See [`Self::units`].
             pub fn unit(self) -> &'static str {
                 match self { $(Self::$variant => $unit),* }
             }
@@ -147,8 +147,8 @@ channels! {
     CouplingTorque, "coupling_torque", "N m", Coupling, "torque of the coupling on its first shaft";
     GuideForceX, "guide_force_x", "N", Guide, "resultant of the chain on the guide, x";
     GuideForceY, "guide_force_y", "N", Guide, "resultant of the chain on the guide, y";
-    TensionerPosition, "tensioner_position", "m or rad", Tensioner, "travel of a slider in m, or angle of an arm in rad";
-    TensionerForce, "tensioner_force", "N or N m", Tensioner, "push of the tensioner in N, or torque of a bare arm in N m";
+    TensionerPosition, "tensioner_position", "m", Tensioner, "travel of a slider in m, or angle of an arm in rad";
+    TensionerForce, "tensioner_force", "N", Tensioner, "push of the tensioner in N, or torque of a bare arm in N m";
     OilPressure, "oil_pressure", "Pa", OilColumn, "pressure of compressible oil in a tensioner above that of the air";
     EnergyKinetic, "energy_kinetic", "J", None, "kinetic energy";
     EnergyStored, "energy_stored", "J", None, "potential energy of springs, contacts and weight";
@@ -230,6 +230,18 @@ impl Channel {
                 vec![self.unit(); entries]
             }
         }
+    }
+
+    /// The attribute that tells the unit of all entries in a system; where they differ, all of them in the order of the labels.
+    pub fn unit_attribute(self, system: &System) -> (&'static str, String) {
+        let unit = self.unit_in(system);
+        // Readers take `units` for one unit.
+        let name = if unit.contains(',') {
+            "entry_units"
+        } else {
+            "units"
+        };
+        (name, unit)
     }
 
     /// The unit of all entries in a system; where they differ, all of them in the order of the labels.

@@ -9,7 +9,7 @@ use std::borrow::Cow;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
-use super::unit::{self, Powers, UnitProblem};
+use super::unit::{self, Powers, Unit, UnitProblem};
 
 /// A kind of quantity.
 #[derive(Debug)]
@@ -145,6 +145,12 @@ pub fn read_time(text: &str) -> Result<f64, String> {
 /// # Errors
 /// The mistake in the text.
 pub fn read_length(text: &str) -> Result<f64, String> {
+    let bare = text.trim();
+    if bare.parse::<f64>().is_ok() {
+        return Err(format!(
+            "`{bare}` has no unit; write \"{bare} mm\", or \"{bare} m\""
+        ));
+    }
     let read = in_unit("m").read(text, None);
     read.map_err(|complaint| format!("{}; {}", complaint.message, complaint.hint))
 }
@@ -161,15 +167,15 @@ impl Dimension {
         DIMENSIONS.iter().find(|dimension| dimension.name == name)
     }
 
-    /// A unit of this dimension whose symbols were written without a space between them.
-    fn apart(&self, text: &str, symbol: &str, exponent: Option<f64>) -> Option<String> {
-        let mut ways = unit::apart(text, symbol).into_iter();
-        ways.find(|way| self.is_unit(way, exponent))
-    }
-
-    /// A unit of this dimension whose powers were written without `^`.
-    fn marked(&self, text: &str, exponent: Option<f64>) -> Option<String> {
-        Some(unit::with_powers(text)).filter(|way| self.is_unit(way, exponent))
+    /// Units of this dimension that a text may mean whose symbols stand side by side, or whose powers have no `^`: `N m` for `Nm`,
+    /// `kg m^2` for `kgm2`.
+    fn meant(&self, text: &str, problem: &UnitProblem, exponent: Option<f64>) -> Vec<String> {
+        let ways = match problem {
+            UnitProblem::Unknown(symbol) => unit::apart(text, symbol),
+            UnitProblem::Grammar(_) => vec![unit::with_powers(text)],
+        };
+        let fitting = ways.into_iter().filter(|way| self.is_unit(way, exponent));
+        fitting.collect()
     }
 
     fn is_unit(&self, text: &str, exponent: Option<f64>) -> bool {
@@ -181,12 +187,16 @@ impl Dimension {
         let text = text.trim();
         let complain = |message: String, hint: String| Complaint { message, hint };
         let such_as = || format!("write {} such as \"{}\"", self.name, self.example);
-        let Some((number, rest)) = split_number(text) else {
+        let Some((number, rest)) = split_fraction(text).or_else(|| {
+            let (number, rest) = split_number(text)?;
+            Some((number.into(), rest))
+        }) else {
             return Err(complain(
                 format!("`{text}` does not begin with a number"),
                 such_as(),
             ));
         };
+        let number = number.as_ref();
         if rest.starts_with(',') {
             return Err(complain(
                 format!("`{text}` has a comma"),
@@ -202,21 +212,25 @@ impl Dimension {
             }
             unit::parse("").expect("no unit at all is a pure number")
         } else {
-            unit::parse(rest).map_err(|problem| match problem {
-                UnitProblem::Unknown(symbol) => complain(
-                    format!("unknown unit `{symbol}` in `{text}`"),
-                    match self.apart(rest, &symbol, exponent) {
-                        Some(apart) => format!("units stand apart: write `{number} {apart}`"),
-                        None => format!("{}; the units are {}", such_as(), unit::known()),
-                    },
-                ),
-                UnitProblem::Grammar(reason) => complain(
-                    format!("`{}` is not a unit: {reason}", rest.trim()),
-                    match self.marked(rest, exponent) {
-                        Some(marked) => format!("write `{number} {marked}`"),
-                        None => such_as(),
-                    },
-                ),
+            unit::parse(rest).or_else(|problem| {
+                let ways = self.meant(rest, &problem, exponent);
+                let mut units = ways.iter().flat_map(|way| unit::parse(way));
+                let size = |unit: Unit| unit.factor * 10_f64.powi(unit.decade);
+                match (units.next(), problem) {
+                    (Some(first), _) if units.all(|other| size(other) == size(first)) => Ok(first),
+                    (Some(_), _) => Err(complain(
+                        format!("`{text}` can be read in several ways"),
+                        format!("write {}", spelt(number, &ways)),
+                    )),
+                    (None, UnitProblem::Unknown(symbol)) => Err(complain(
+                        format!("unknown unit `{symbol}` in `{text}`"),
+                        format!("{}; the units are {}", such_as(), unit::known()),
+                    )),
+                    (None, UnitProblem::Grammar(reason)) => Err(complain(
+                        format!("`{}` is not a unit: {reason}", rest.trim()),
+                        such_as(),
+                    )),
+                }
             })?
         };
         if !self.fits(unit.powers, exponent) {
@@ -309,6 +323,46 @@ fn split_number(text: &str) -> Option<(&str, &str)> {
     Some((number, rest))
 }
 
+/// The fraction at the beginning of a text, such as `1/2` or `1 1/4`, as a decimal number, and what follows it.
+fn split_fraction(text: &str) -> Option<(Cow<'static, str>, &str)> {
+    let (sign, unsigned) = match text.strip_prefix('-') {
+        Some(rest) => (-1.0, rest),
+        None => (1.0, text),
+    };
+    let whole = |text: &'_ str| {
+        let end = text.find(|c: char| !c.is_ascii_digit());
+        let end = end.unwrap_or(text.len());
+        text[..end]
+            .parse::<u32>()
+            .ok()
+            .map(|number| (f64::from(number), end))
+    };
+    let (mut first, mut at) = whole(unsigned)?;
+    let mut before = 0.0;
+    let behind = unsigned[at..].trim_start();
+    if let Some((second, end)) = whole(behind)
+        && behind.len() < unsigned.len() - at
+    {
+        at = unsigned.len() - behind.len() + end;
+        (before, first) = (first, second);
+    }
+    let below = unsigned[at..].strip_prefix('/')?;
+    let (below, end) = whole(below)?;
+    let rest = &unsigned[at + 1 + end..];
+    // `1/2.5` and `1/2e3` are none; `1 1/m` has a letter below, and ended above.
+    if below == 0.0 || rest.starts_with(['.', ',', '/']) {
+        return None;
+    }
+    let number = sign * (before + first / below);
+    Some((format!("{number:?}").into(), rest))
+}
+
+/// A number in several units, for a message.
+fn spelt(number: &str, units: &[String]) -> String {
+    let ways = units.iter().map(|unit| format!("`{number} {unit}`"));
+    ways.collect::<Vec<_>>().join(" or ")
+}
+
 /// The number with its decimal point moved, rounded once.
 fn shift_decimal(number: &str, decade: i32) -> f64 {
     let (mantissa, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
@@ -343,6 +397,47 @@ mod tests {
     }
 
     #[test]
+    fn units_may_stand_together() {
+        for (name, text, value) in [
+            ("a torque", "60 Nm", 60.0),
+            ("a torque", "2 kNm", 2e3),
+            ("a torque", "5 Nmm", 5e-3),
+            ("a rotational stiffness", "40 Nm/rad", 40.0),
+            ("a rotational damping", "2 Nms", 2.0),
+            ("a damping", "3 Ns/m", 3.0),
+            ("a moment of inertia", "3 kgm^2", 3.0),
+            ("a moment of inertia", "0.4 kgm²", 0.4),
+            ("a moment of inertia", "0.4 kgm2", 0.4),
+            ("a moment of inertia", "0.4 kg m2", 0.4),
+            ("an acceleration", "9.81 m/s2", 9.81),
+        ] {
+            assert_eq!(read(name, text), Ok(value), "{text}");
+        }
+    }
+
+    #[test]
+    fn fractions_are_numbers() {
+        for (name, text, value) in [
+            ("a length", "1/2 in", 0.0127),
+            ("a length", "3/8in", 0.009_525),
+            ("a length", "1 1/4 in", 0.031_75),
+            ("a length", "-1 1/2 in", -0.038_1),
+            ("a pure number", "1/3", 1.0 / 3.0),
+            ("a pure number", "1/2 %", 0.005),
+            // A unit below one is none.
+            ("an inverse length", "5 1/m", 5.0),
+            ("an inverse length", "1e5 1/m", 1e5),
+            ("an inverse length", "2/m", 2.0),
+        ] {
+            let found = read(name, text).unwrap();
+            assert!(
+                (found - value).abs() <= 1e-15 * value.abs(),
+                "{text}: {found}"
+            );
+        }
+    }
+
+    #[test]
     fn angles_and_turns() {
         let speed = read("an angular speed", "1500 rpm").unwrap();
         assert!((speed - 157.079_632_679_489_66).abs() < 1e-12);
@@ -368,32 +463,20 @@ mod tests {
                 "unknown unit `furlong`",
                 "the units are m g s",
             ),
-            ("a torque", "60 Nm", "unknown unit `Nm`", "write `60 N m`"),
-            ("a torque", "2 kNm", "unknown unit `kNm`", "write `2 kN m`"),
             (
-                "a moment of inertia",
-                "3 kgm^2",
-                "unknown unit `kgm`",
-                "write `3 kg m^2`",
+                "a length",
+                "60 Nm",
+                "unknown unit `Nm`",
+                "the units are m g s",
             ),
             (
-                "a moment of inertia",
-                "0.4 kgm2",
-                "unknown unit `kgm`",
-                "write `0.4 kg m^2`",
+                "a quadratic rotational damping",
+                "2 Nmms^2",
+                "can be read in several ways",
+                "write `2 N m ms^2` or `2 N mm s^2`",
             ),
-            (
-                "a moment of inertia",
-                "0.4 kg m2",
-                "write powers as `^2`",
-                "write `0.4 kg m^2`",
-            ),
-            (
-                "a rotational damping",
-                "2 Nms",
-                "unknown unit `Nms`",
-                "write `2 N m s`",
-            ),
+            ("a length", "1/0 in", "is not a unit", "88.9 mm"),
+            ("a length", "1/2.5 in", "is not a unit", "88.9 mm"),
             ("a length", "12", "has no unit", "the bare number 12 [m]"),
             ("a length", "12,7 mm", "has a comma", "point"),
             ("a length", "mm", "does not begin with a number", "88.9 mm"),

@@ -221,6 +221,37 @@ fn units_of_tensioners_are_those_of_their_carriers() {
     )
     .unwrap();
     assert_eq!(units(&bare), ["rad", "N m"]);
+    // Where nothing is measured, the unit is one all the same.
+    let none = Scene::preset("spinning_ring").unwrap();
+    assert_eq!(units(&none), ["m", "N"]);
+    for channel in Channel::ALL {
+        let unit = channel.unit();
+        assert!(!unit.contains(" or ") && !unit.contains(','), "{unit}");
+    }
+}
+
+/// Readers such as pint take `units` for one unit.
+#[test]
+fn units_that_differ_are_told_entry_by_entry() {
+    let arms = Scene::preset("two_stage_timing").unwrap();
+    let slider = "{ kind = 'slider', direction = [1, 0], mass = '0.2 kg' }";
+    let mixed = arms
+        .replace("tensioners.upper arm.carrier", slider)
+        .unwrap();
+    let adjust = "{ kind = 'slider', name = 'upper arm' }";
+    let mixed = mixed
+        .replace("chains.secondary.route.adjust", adjust)
+        .unwrap();
+    let mixed = mixed.replace("settle", "false").unwrap();
+    let told = |scene: &Scene| {
+        let system = scene.drive().unwrap().assemble().unwrap().system;
+        Channel::TensionerPosition.unit_attribute(&system)
+    };
+    assert_eq!(
+        told(&arms.replace("settle", "false").unwrap()),
+        ("units", "rad".into())
+    );
+    assert_eq!(told(&mixed), ("entry_units", "rad, m".into()));
 }
 
 /// Lengths and values as one document tells them, while another thread commits without a pause.

@@ -44,7 +44,10 @@ impl Content {
             {
                 fixed.push((name, store_labels(storage, name, axis, &labels)?));
             }
-            let mut about = about(&channel.unit_in(system), channel.description());
+            let mut about = Map::new();
+            let (units, unit) = channel.unit_attribute(system);
+            about.insert(units.into(), unit.into());
+            about.insert("long_name".into(), channel.description().into());
             if let (Some(along), Some(name), Some(chains)) = (
                 axis.name(),
                 axis.chain_coordinate(),
