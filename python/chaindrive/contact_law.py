@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from difflib import get_close_matches
 from typing import Any, NamedTuple, cast
 
 from numpy.typing import ArrayLike
@@ -21,7 +22,36 @@ _ARRANGEMENTS = {
     "side_by_side": ("radius", "other"),
     "on_curve": ("radius", "curvature", "depth_cap"),
 }
+_CHOICES = ", ".join(" and ".join(words) for words in _ARRANGEMENTS.values())
 _GEOMETRY = ("hole", "pin", "radius", "other", "curvature", "depth_cap", "length", "modulus")
+
+
+# Parameters of every law and dissipation: the names that the core has.
+_LAWS: dict[LawKind, tuple[str, ...]] = {
+    "linear": ("stiffness",),
+    "power": ("stiffness", "exponent"),
+    "hertz": (),
+    "johnson": ("length_scale", "modulus_length"),
+    "conformal": ("clearance", "modulus_length"),
+    "radzimovsky": ("length_scale", "modulus_length"),
+    "esdu-78035": ("length_scale", "modulus_length"),
+    "dubowsky-freudenstein": ("length_scale", "modulus_length"),
+    "cylindrical": ("stiffness", "exponent"),
+}
+_NOT_OF_CYLINDERS = ("linear", "power")
+_DISSIPATIONS: dict[DissipationKind, tuple[str, ...]] = {
+    "none": (),
+    "viscous": ("damping",),
+    "exact": ("restitution",),
+    "hunt-crossley": ("restitution",),
+    "lankarani-nikravesh": ("restitution",),
+    "lee-wang": ("restitution",),
+    "herbert-mcwhannell": ("restitution",),
+    "gonthier": ("restitution",),
+    "zhiying-qishao": ("restitution",),
+    "flores": ("restitution",),
+    "hu-guo": ("restitution",),
+}
 
 
 class Response(NamedTuple):
@@ -147,19 +177,20 @@ def law(
     Parameters
     ----------
     kind
-        With the parameters of the law: ``"power"`` with ``stiffness`` [N/mⁿ] and ``exponent`` [–];
-        ``"johnson"``, ``"radzimovsky"``, ``"esdu-78035"`` and ``"dubowsky-freudenstein"`` with
-        ``length_scale`` [m] and ``modulus_length`` [N/m]; ``"conformal"`` with ``clearance`` [m]
-        and ``modulus_length``; ``"cylindrical"`` with ``stiffness`` and ``exponent``.
+        With the parameters of the law: ``"linear"`` with ``stiffness`` [N/m]; ``"power"`` with
+        ``stiffness`` [N/mⁿ] and ``exponent`` [–]; ``"johnson"``, ``"radzimovsky"``,
+        ``"esdu-78035"`` and ``"dubowsky-freudenstein"`` with ``length_scale`` [m] and
+        ``modulus_length`` [N/m]; ``"conformal"`` with ``clearance`` [m] and ``modulus_length``;
+        ``"cylindrical"`` with ``stiffness`` and ``exponent``.
 
-        Or with the geometry of two parallel cylinders, for all of these but ``"power"`` and for
-        ``"hertz"``: ``length`` [m] of the contact and composite ``modulus`` [Pa], together with
-        ``hole`` and ``pin``, the radii [m] of one in the other; ``radius`` and ``other``, the
-        radii of two side by side; or ``radius``, ``curvature`` [1/m] of the counterpart, negative
-        in a hollow and zero on a flat, and ``depth_cap`` [m], the greatest depth it is reckoned
-        with. ``"conformal"`` is Johnson's law where the counterpart is not hollow;
-        ``"cylindrical"`` is Johnson's law towards a flat: in hollows with more than 10 mm between
-        the radii, and outside with more than 300 mm; `Law.parameters` tells.
+        Or with the geometry of two parallel cylinders, for ``"hertz"`` and all of these but
+        ``"linear"`` and ``"power"``: ``length`` [m] of the contact and composite ``modulus`` [Pa],
+        together with ``hole`` and ``pin``, the radii [m] of one in the other; ``radius`` and
+        ``other``, the radii of two side by side; or ``radius``, ``curvature`` [1/m] of the
+        counterpart, negative in a hollow and zero on a flat, and ``depth_cap`` [m], the greatest
+        depth it is reckoned with. ``"conformal"`` is Johnson's law where the counterpart is not
+        hollow; ``"cylindrical"`` is Johnson's law towards a flat: in hollows with more than 10 mm
+        between the radii, and outside with more than 300 mm; `Law.parameters` tells.
     restitution
         Coefficient of restitution [–], which an impact has exactly unless ``dissipation`` names
         another factor than ``"exact"``: ``"lankarani-nikravesh"``, ``"hunt-crossley"``,
@@ -200,7 +231,8 @@ def law(
     """
     described = json_of(_dissipation(restitution, damping, dissipation), "dissipation")
     kind = named(kind)
-    if any(name in parameters for name in _GEOMETRY):
+    _known(kind, _LAWS, "law", "kind")
+    if any(name in parameters for name in _GEOMETRY) and kind not in _NOT_OF_CYLINDERS:
         finite = json.loads(json_of(parameters, "law"))
         arrangement, measures, length, modulus = _cylinders(finite)
         return Law._of(
@@ -208,15 +240,44 @@ def law(
                 kind, arrangement, measures, length, modulus, described, float(onset_floor)
             )
         )
+    _complete(kind, parameters, _LAWS[kind])
+    elastic = {"kind": kind, **parameters}
+    if kind == "linear":
+        elastic = {"kind": "power", "exponent": 1.0, **parameters}
     text = json_of(
         {
-            "elastic": {"kind": kind, **parameters},
+            "elastic": elastic,
             "dissipation": json.loads(described),
             "onset_floor": onset_floor,
         },
         "law",
     )
     return Law._of(_core.Law.from_json(text))
+
+
+def _known(name: Any, known: Mapping[Any, object], what: str, path: str) -> None:
+    """Refuse a name that is not one of some."""
+    if isinstance(name, str) and name in known:
+        return
+    near = get_close_matches(str(name), known, 1)
+    hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(known)}"
+    raise ParameterError(f"no {what} is called {name!r}; {hint}", path, hint)
+
+
+def _complete(kind: str, given: Iterable[str], needed: tuple[str, ...]) -> None:
+    """Refuse parameters that a law does not have, or has too few of."""
+    takes = f"give {' and '.join(needed)}" if needed else "it has no parameters"
+    if kind in _LAWS and kind not in _NOT_OF_CYLINDERS:
+        cylinders = f"give length, modulus and one of: {_CHOICES}"
+        takes = f"{takes}, or for two cylinders {cylinders}" if needed else cylinders
+    given = set(given)
+    for name in sorted(given - set(needed)):
+        raise ParameterError(f"{kind!r} has no parameter {name!r}; {takes}", name, takes)
+    for name in needed:
+        if name not in given:
+            raise ParameterError(f"{kind!r} lacks {name!r}; {takes}", name, takes)
+    if kind == "hertz":
+        raise ParameterError(f"{kind!r} lacks the two cylinders; {takes}", "cylinders", takes)
 
 
 def named(kind: Any) -> Any:
@@ -249,11 +310,15 @@ def _dissipation(
             f"{' and '.join(names)} are given, must be one of them", names[1], "keep one of them"
         )
     if isinstance(dissipation, Mapping):
-        return {**dissipation, "kind": named(dissipation.get("kind"))}
-    if dissipation is None:
+        given = {str(name): value for name, value in dissipation.items() if name != "kind"}
+        dissipation = dissipation.get("kind")
+    elif dissipation is None:
         short = {"restitution": "exact", "damping": "viscous"}
         dissipation = short[names[0]] if names else "none"
-    return {"kind": named(dissipation), **given}
+    kind = named(dissipation)
+    _known(kind, _DISSIPATIONS, "dissipation", "dissipation")
+    _complete(kind, given, _DISSIPATIONS[kind])
+    return {"kind": kind, **given}
 
 
 def _cylinders(parameters: Mapping[str, float]) -> tuple[str, list[float], float, float]:
@@ -261,11 +326,10 @@ def _cylinders(parameters: Mapping[str, float]) -> tuple[str, list[float], float
     given = set(parameters) - {"length", "modulus"}
     matching = [name for name, words in _ARRANGEMENTS.items() if given == set(words)]
     if not matching or not {"length", "modulus"} <= set(parameters):
-        choices = ", ".join(" and ".join(words) for words in _ARRANGEMENTS.values())
         raise ParameterError(
             f"{', '.join(parameters)} do not describe two cylinders",
             "cylinders",
-            f"give length, modulus and one of: {choices}",
+            f"give length, modulus and one of: {_CHOICES}",
         )
     measures = [parameters[word] for word in _ARRANGEMENTS[matching[0]]]
     return matching[0], measures, parameters["length"], parameters["modulus"]

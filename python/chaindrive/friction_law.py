@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from chaindrive import _core
 from chaindrive.arrays import Values, flatten, shaped
 from chaindrive.contact_law import json_of, named
-from chaindrive.settings import FrictionKind
+from chaindrive.settings import FrictionKind, Quantity
 
 __all__ = ["Friction", "Rub", "friction"]
 
@@ -85,24 +85,25 @@ class Friction:
         return f"<chaindrive.Friction {self.parameters}>"
 
 
-def friction(kind: FrictionKind, **parameters: float) -> Friction:
-    """Make a friction law by its name.
+def friction(kind: FrictionKind, **parameters: Quantity) -> Friction:
+    """Make a friction law by its name, as scenes have it: with their names, units and defaults.
 
     Parameters
     ----------
     kind
         ``"none"``;
-        ``"coulomb"`` with ``coefficient`` [–] and ``slip_speed`` [m/s];
+        ``"coulomb"`` with ``coefficient`` [–], and if wanted ``slip_speed`` [m/s];
         ``"ambrosio"`` with ``coefficient``, ``lower_speed`` and ``upper_speed``;
-        ``"threlfall"`` with ``coefficient`` and ``slip_speed``;
-        ``"bengisu-akay"`` with ``static_coefficient``, ``coefficient``, ``slip_speed`` and
-        ``decay`` [s/m];
-        ``"brown-mcphee"`` with ``static_coefficient``, ``coefficient``, ``slip_speed``, and if
-        wanted ``viscosity`` [N s/m] and ``transition_force`` [N];
-        ``"lugre"`` with ``static_coefficient``, ``coefficient``, ``slip_speed``, ``stiffness``
-        [1/m], ``damping`` [s/m] and ``viscosity`` [s/m], per normal force.
+        ``"threlfall"`` with ``coefficient``, and if wanted ``slip_speed``;
+        ``"bengisu-akay"`` with ``static_coefficient``, ``coefficient``, ``decay`` [s/m], and if
+        wanted ``slip_speed``;
+        ``"brown-mcphee"`` with ``static_coefficient``, ``coefficient``, and if wanted
+        ``slip_speed``, ``viscosity`` [N s/m] and ``transition_force`` [N];
+        ``"lugre"`` with ``static_coefficient``, ``coefficient``, ``stiffness`` [1/m], and if
+        wanted ``slip_speed``, ``damping`` [s/m] and ``viscosity`` [s/m], per normal force;
+        ``"spring-slider"`` with ``coefficient`` and ``stiffness`` [N/m].
     **parameters
-        Those of the law.
+        Those of the law, as numbers in SI units or texts with a unit.
 
     Returns
     -------

@@ -103,6 +103,7 @@ Recorded: TypeAlias = ChannelName | Literal["all"]
 """A channel, or all that the chain has."""
 
 LawKind: TypeAlias = Literal[
+    "linear",
     "power",
     "hertz",
     "johnson",
@@ -137,6 +138,7 @@ FrictionKind: TypeAlias = Literal[
     "bengisu-akay",
     "brown-mcphee",
     "lugre",
+    "spring-slider",
 ]
 """Friction laws, see `friction`."""
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import chaindrive as cd
+from chaindrive import contact_law
 
 
 @pytest.fixture
@@ -198,15 +199,62 @@ def test_the_law_of_a_body():
 
 
 @pytest.mark.parametrize(
-    ("arguments", "message"),
+    ("kind", "parameters", "path", "message"),
     [
-        (("power",), "stiffness"),
-        (("rubber",), "rubber"),
+        ("power", {}, "stiffness", r"lacks 'stiffness'; give stiffness and exponent$"),
+        ("linaer", {"stiffness": 1e8}, "kind", "no law is called 'linaer'; did you mean 'linear'"),
+        ("rubber", {}, "kind", "there are linear, power, hertz"),
+        ("linear", {"stiffness": 1e8, "hardness": 1.0}, "hardness", "give stiffness$"),
+        ("hertz", {"stiffness": 1e9}, "stiffness", "length, modulus and one of: hole and pin"),
+        ("hertz", {}, "cylinders", "length, modulus and one of: hole and pin"),
+        ("power", PIN, "hole", "no parameter 'hole'; give stiffness and exponent$"),
+        ("linear", {"stiffness": 1e8, "dissipation": "floris"}, "dissipation", "mean 'flores'"),
+        ("linear", {"stiffness": 1e8, "dissipation": "flores"}, "restitution", "lacks"),
     ],
 )
-def test_what_is_missing_or_unknown(arguments, message):
-    with pytest.raises(cd.ParameterError, match=message):
-        cd.law(*arguments)
+def test_what_is_missing_or_unknown(kind, parameters, path, message):
+    with pytest.raises(cd.ParameterError, match=message) as caught:
+        cd.law(kind, **parameters)
+    assert caught.value.path == path
+    assert "variant" not in str(caught.value)
+
+
+@pytest.mark.parametrize("kind", sorted(contact_law._LAWS))
+def test_names_of_parameters_are_those_of_the_core(kind):
+    parameters = {"exponent": 1.5}
+    names = contact_law._LAWS[kind]
+    given = {name: parameters.get(name, 1e-3) for name in names} or PIN
+    assert cd.law(kind, **given).force(1e-6) > 0.0
+
+
+def test_a_linear_law_is_a_power_of_one():
+    linear = cd.law("linear", stiffness=1e8, restitution=0.8)
+    assert (
+        linear.parameters == cd.law("power", stiffness=1e8, exponent=1, restitution=0.8).parameters
+    )
+
+
+def test_frictions_are_those_of_scenes():
+    """With their defaults, units and messages."""
+    short = cd.friction("coulomb", coefficient=0.1)
+    assert short.parameters == cd.friction("coulomb", coefficient=0.1, slip_speed=0.05).parameters
+    assert (
+        short.parameters == cd.friction("coulomb", coefficient=0.1, slip_speed="5 cm/s").parameters
+    )
+    drive = cd.scenes.marine_engine().replace({"contact.teeth.friction": {"coefficient": 0.1}})
+    resolved = cd.Drive.from_toml(drive.resolved()).to_dict()
+    assert resolved["contact"]["teeth"]["friction"]["slip_speed"] == 0.05
+    assert cd.friction("spring-slider", coefficient=0.1, stiffness="50 MN/m").force(1.0, 1.0) < 0.0
+    for kind, parameters, path, message in [
+        ("coulom", {"coefficient": 0.1}, "kind", "did you mean `coulomb`"),
+        ("coulomb", {}, "coefficient", "missing; give coefficient of friction|missing; give the"),
+        ("coulomb", {"coeficient": 0.1}, "coeficient", "did you mean `coefficient`"),
+        ("coulomb", {"coefficient": -0.1}, "coefficient", "-0.1"),
+        ("spring-slider", {"coefficient": 0.1}, "stiffness", "give it, such as"),
+    ]:
+        with pytest.raises(cd.ParameterError, match=message) as caught:
+            cd.friction(kind, **parameters)
+        assert caught.value.path == path
 
 
 def test_parameters_out_of_range():

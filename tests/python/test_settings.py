@@ -8,7 +8,7 @@ from typing import Any, get_args
 import pytest
 
 import chaindrive as cd
-from chaindrive import _core, data_sheet, settings
+from chaindrive import _core, contact_law, data_sheet, settings
 
 
 def alternatives(name: str) -> list[Any]:
@@ -43,12 +43,14 @@ def test_words_are_those_of_scenes(told: object, definition: str) -> None:
 
 def test_laws_are_those_of_scenes_and_are_taken() -> None:
     # A linear law is a power law of exponent one; a spring-slider needs a chain to wind up.
-    assert set(get_args(settings.LawKind)) == set(kinds("Elastic")) - {"linear"}
-    assert set(get_args(settings.FrictionKind)) == set(kinds("Friction")) - {"spring-slider"}
+    assert set(get_args(settings.LawKind)) == set(kinds("Elastic"))
+    assert set(get_args(settings.FrictionKind)) == set(kinds("Friction"))
     # A viscous damping is given by its coefficient, in scenes too.
     assert set(get_args(settings.DissipationKind)) == {*words("Dissipation"), "viscous"}
+    assert set(get_args(settings.LawKind)) == set(contact_law._LAWS)
+    assert set(get_args(settings.DissipationKind)) == set(contact_law._DISSIPATIONS)
     geometry = {"hole": 1.85e-3, "pin": 1.8e-3, "length": 4.5e-3, "modulus": 113.7e9}
-    for kind in set(get_args(settings.LawKind)) - {"power"}:
+    for kind in set(get_args(settings.LawKind)) - {"linear", "power"}:
         assert cd.law(kind, **geometry).force(1e-6) > 0.0
     for kind in set(get_args(settings.DissipationKind)) - {"none", "viscous"}:
         cd.law("power", stiffness=1e9, exponent=1.5, dissipation=kind, restitution=0.8)

@@ -52,6 +52,14 @@ impl IntoException for SceneError {
     }
 }
 
+/// Mistakes in an argument that is read as scenes are.
+pub(crate) fn in_an_argument(error: SceneError) -> PyErr {
+    let told: Vec<String> = error.problems.iter().map(ToString::to_string).collect();
+    let first = error.problems.into_iter().next();
+    let (path, hint) = first.map_or_else(Default::default, |it| (it.path, it.hint));
+    python::ParameterError::new_err((told.join("\n"), path, hint))
+}
+
 impl IntoException for std::convert::Infallible {
     fn exception(self) -> PyErr {
         match self {}

@@ -4,8 +4,8 @@ use chaindrive_contact::Rub;
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 
-use crate::errors::{OrRaise, parameter};
-use crate::law::{Answer, Values, refused};
+use crate::errors::{in_an_argument, parameter};
+use crate::law::{Answer, Values};
 
 /// A friction law.
 #[pyclass(frozen, module = "chaindrive._core")]
@@ -14,13 +14,12 @@ pub(crate) struct Friction(chaindrive_contact::Friction);
 
 #[pymethods]
 impl Friction {
-    /// A law from its parameters as JSON.
+    /// A law as scenes have it, as JSON.
     #[staticmethod]
     fn from_json(text: &str) -> PyResult<Self> {
-        let law: chaindrive_contact::Friction = serde_json::from_str(text)
-            .map_err(|error| refused(&error, "friction", "a friction law"))?;
-        law.check().or_raise()?;
-        Ok(Self(law))
+        chaindrive::scene::read_friction(text)
+            .map(Self)
+            .map_err(in_an_argument)
     }
 
     /// The parameters as JSON.

@@ -46,7 +46,7 @@
 //! assert_eq!(longer.drive()?.chains[0].chain.links(), 80);
 //!
 //! let error = Scene::from_text("[chain]\npitch = '12 rpm'", "bad.toml").unwrap_err();
-//! assert!(error.to_string().starts_with("bad.toml:1: chain.links: missing"));
+//! assert!(error.to_string().starts_with("bad.toml:2: chain.pitch: `12 rpm` is an angular speed"));
 //! # Ok::<(), chaindrive::scene::SceneError>(())
 //! ```
 
@@ -68,6 +68,7 @@ mod tree;
 mod unit;
 mod validate;
 
+use chaindrive_contact::Friction;
 use chaindrive_mechanics::Drive;
 use serde::Deserialize;
 
@@ -78,8 +79,47 @@ pub use presets::presets;
 pub use schema::{RunDefaults, schema};
 
 pub use quantity::{read_length, read_time};
-use schema::SceneText;
+pub use resolve::chain_named;
+use schema::{Contact, SceneText};
 use tree::Node;
+
+/// Reads a friction law as scenes have them, `{"kind": "coulomb", "coefficient": 0.1}`, with their units and defaults.
+///
+/// # Errors
+/// Everything that is wrong with the text; paths begin at the law.
+///
+/// # Example
+///
+/// ```
+/// use chaindrive::scene::read_friction;
+///
+/// let law = read_friction(r#"{"kind": "coulomb", "coefficient": 0.1, "slip_speed": "50 mm/s"}"#)?;
+/// assert_eq!(law, read_friction(r#"{"kind": "coulomb", "coefficient": 0.1}"#)?);
+/// let error = read_friction(r#"{"kind": "coulomb", "coeficient": 0.1}"#).unwrap_err();
+/// assert_eq!(error.problems[0].hint.as_deref(), Some("did you mean `coefficient`?"));
+/// # Ok::<(), chaindrive::scene::SceneError>(())
+/// ```
+pub fn read_friction(text: &str) -> Result<Friction, SceneError> {
+    let refuse = |problems: Vec<Problem>| {
+        let below = |mut problem: Problem| {
+            let path = problem.path.trim_start_matches('.');
+            let path = path.strip_prefix("friction").unwrap_or(path);
+            problem.path = path.trim_start_matches('.').to_owned();
+            problem
+        };
+        SceneError::new("friction", problems.into_iter().map(below).collect())
+    };
+    // A friction stands in a contact.
+    let text = format!("{{\"friction\": {text}}}");
+    let mut tree = Node::parse_json(&text).map_err(|problem| refuse(vec![problem]))?;
+    let problems = validate::validate_part(&mut tree, schema::raw(), "Contact");
+    if !problems.is_empty() {
+        return Err(refuse(problems.of("friction").problems));
+    }
+    let contact = Contact::deserialize(tree.to_json());
+    let contact = contact.map_err(|error| refuse(vec![unreadable(&error)]))?;
+    resolve::friction(&contact, &tree).map_err(|problems| refuse(problems.of("friction").problems))
+}
 
 /// A drive as described: well-formed, with every key of the right type and dimension.
 ///
@@ -137,8 +177,10 @@ impl Scene {
         }
         let mut normalised = tree.clone();
         normalised.expand_chain();
-        let problems = validate::validate(&mut normalised, schema::raw());
+        let mut problems = validate::validate(&mut normalised, schema::raw());
         if !problems.is_empty() {
+            // Alone they are told with what else does not go together.
+            resolve::refuse_unknown_chains(&normalised, &mut problems);
             return Err(problems.of(name));
         }
         let content = SceneText::deserialize(normalised.to_json())

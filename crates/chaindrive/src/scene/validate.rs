@@ -23,6 +23,13 @@ pub(crate) fn validate(tree: &mut Node, schema: &Json) -> Problems {
     validator.problems
 }
 
+/// The same of a part on its own, by the name that its type has in the schema.
+pub(crate) fn validate_part(tree: &mut Node, schema: &Json, name: &str) -> Problems {
+    let mut validator = Validator::new(schema);
+    validator.visit(tree, &schema["$defs"][name], "", None);
+    validator.problems
+}
+
 /// SI units of the quantities of a valid tree, by path; the tree is normalised.
 pub(crate) fn units(tree: &mut Node, schema: &Json) -> HashMap<String, &'static str> {
     let mut validator = Validator::new(schema);

@@ -5,20 +5,35 @@ use serde::Serialize;
 
 use super::Findings;
 use crate::catalogue::{CatalogueChain, Number, Status, catalogue};
+use crate::scene::error::Problem;
 use crate::scene::quantity::{Force, Inertia, Length, Mass, Stiffness};
 use crate::scene::schema::{self, ChainModel, Rollers};
-use crate::scene::suggest::one_of;
+use crate::scene::suggest::{nearest, one_of};
 
-/// The chain of a name.
-pub(super) fn named(name: &str, findings: &mut Findings<'_>) -> Option<&'static CatalogueChain> {
-    let found = CatalogueChain::named(name);
-    if found.is_none() {
-        let names = catalogue().iter().map(|chain| chain.name.as_str());
-        let known: Vec<&str> = names.collect();
+/// The chain of the catalogue of a name.
+///
+/// # Errors
+/// The name, with the nearest one that there is.
+pub fn chain_named(name: &str) -> Result<&'static CatalogueChain, Problem> {
+    CatalogueChain::named(name).ok_or_else(|| {
         let message = format!("no chain of the catalogue is named `{name}`");
-        findings.refuse_with("chain.type", message, one_of(name, &known));
-    }
-    found
+        Problem::new("", None, message).hint(one_of(name, &names()))
+    })
+}
+
+/// The chain of a name. For a name that none has another one stands in, so that all other mistakes are found as well.
+pub(super) fn named(name: &str, findings: &mut Findings<'_>) -> &'static CatalogueChain {
+    chain_named(name).unwrap_or_else(|problem| {
+        let hint = problem.hint.unwrap_or_default();
+        findings.refuse_with("chain.type", problem.message, hint);
+        let near = nearest(name, &names()).and_then(CatalogueChain::named);
+        near.unwrap_or(&catalogue()[0])
+    })
+}
+
+fn names() -> Vec<&'static str> {
+    let names = catalogue().iter().map(|chain| chain.name.as_str());
+    names.collect()
 }
 
 /// Length of the rollers \[m\]: they fill the space between the inner plates.

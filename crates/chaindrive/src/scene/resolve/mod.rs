@@ -28,25 +28,19 @@ use chaindrive_mechanics::{Drive, DriveError, Parts, PlacedChain};
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 
+pub use catalogue::chain_named;
 use on_span::Passing;
 
 use super::defaults::{self, Choice, Default};
 use super::error::{Problem, Problems};
 use super::quantity::{Length, Ratio};
-use super::schema::{SceneText, Version};
+use super::schema::{Contact, SceneText, Version};
 use super::suggest::one_of;
-use super::tree::Node;
+use super::tree::{Node, Value};
 
 /// Builds the drive of a scene, or collects everything that prevents it.
 pub(crate) fn drive(scene: &SceneText, tree: &Node) -> Result<(Drive, Vec<Assumption>), Problems> {
-    let mut findings = Findings {
-        tree,
-        version: scene.defaults.unwrap_or_default(),
-        chain: None,
-        problems: Problems::default(),
-        assumptions: Vec::new(),
-        assumed: HashMap::new(),
-    };
+    let mut findings = Findings::new(tree, scene.defaults.unwrap_or_default());
     let names = Names::new(scene, &mut findings);
     let parts = parts(scene, &names, &mut findings);
     let Some((parts, uncounted)) = parts.filter(|_| findings.problems.is_empty()) else {
@@ -67,6 +61,46 @@ pub(crate) fn drive(scene: &SceneText, tree: &Node) -> Result<(Drive, Vec<Assump
         }
     }
     Err(findings.problems)
+}
+
+/// Refuses the chains of a tree whose type the catalogue does not have, beside what is wrong with its words.
+pub(crate) fn refuse_unknown_chains(tree: &Node, problems: &mut Problems) {
+    let mut look = |chain: &Node, path: String| {
+        if let Some(Node {
+            value: Value::Text(name),
+            line,
+            ..
+        }) = chain.get("type")
+            && let Err(problem) = chain_named(name)
+        {
+            let line = *line;
+            problems.push(Problem {
+                path,
+                line,
+                ..problem
+            });
+        }
+    };
+    if let Some(chain) = tree.get("chain") {
+        look(chain, "chain.type".to_owned());
+    }
+    if let Some(Value::List(chains)) = tree.get("chains").map(|it| &it.value) {
+        for (index, chain) in chains.iter().enumerate() {
+            look(chain, format!("chains[{index}].type"));
+        }
+    }
+}
+
+/// The friction of a contact that stands in no scene, at `friction` of a tree.
+pub(crate) fn friction(
+    contact: &Contact,
+    tree: &Node,
+) -> Result<chaindrive_contact::Friction, Problems> {
+    let mut findings = Findings::new(tree, Version::default());
+    let law = contact
+        .friction
+        .and_then(|text| contact::friction(text, "", None, &mut findings));
+    law.ok_or(findings.problems)
 }
 
 /// Why the number of links of a chain is a guess.
@@ -222,6 +256,19 @@ struct Findings<'t> {
     assumptions: Vec<Assumption>,
     /// The assumption at a place; none where chains differ in it.
     assumed: HashMap<String, Option<Json>>,
+}
+
+impl<'t> Findings<'t> {
+    fn new(tree: &'t Node, version: Version) -> Self {
+        Self {
+            tree,
+            version,
+            chain: None,
+            problems: Problems::default(),
+            assumptions: Vec::new(),
+            assumed: HashMap::new(),
+        }
+    }
 }
 
 impl Findings<'_> {
