@@ -125,8 +125,14 @@ pub enum GeometryError {
     },
 
     /// The chain crosses itself, or misses a wheel.
-    #[error("{}", turns_wrongly(&number, *.turns, *.wheel, *.wrap))]
-    RouteTurns { turns: f64, wheel: usize, wrap: f64 },
+    #[error("{}", turns_wrongly(&number, *.turns, *.wheel, *.wrap, *.around))]
+    RouteTurns {
+        turns: f64,
+        wheel: usize,
+        wrap: f64,
+        /// Sense in which the centres follow one another \[–\]: +1 counter-clockwise, −1 clockwise, 0 on a line.
+        around: f64,
+    },
 
     /// An idler cannot be wrapped as far as asked for.
     #[error(
@@ -203,7 +209,12 @@ impl GeometryError {
                 distance,
                 least,
             } => no_tangent(name, [*from, *to], *distance, *least),
-            Self::RouteTurns { turns, wheel, wrap } => turns_wrongly(name, *turns, *wheel, *wrap),
+            Self::RouteTurns {
+                turns,
+                wheel,
+                wrap,
+                around,
+            } => turns_wrongly(name, *turns, *wheel, *wrap, *around),
             Self::NoSeat { from, to } => no_seat(name, [*from, *to]),
             Self::DoesNotClose { .. } => does_not_close(name, self),
             other => other.to_string(),
@@ -260,10 +271,19 @@ fn no_tangent(name: Name<'_>, [from, to]: [usize; 2], distance: f64, least: f64)
     )
 }
 
-fn turns_wrongly(name: Name<'_>, turns: f64, wheel: usize, wrap: f64) -> String {
+fn turns_wrongly(name: Name<'_>, turns: f64, wheel: usize, wrap: f64, around: f64) -> String {
     let wheel = name(wheel);
+    // −0 would be told as such.
+    let turns = turns.round() + 0.0;
+    let sides = if around > 0.0 {
+        "; the stops follow one another counter-clockwise: those inside the chain lie on its `left`, all others on its `right`"
+    } else if around < 0.0 {
+        "; the stops follow one another clockwise: those inside the chain lie on its `right`, all others on its `left`"
+    } else {
+        ""
+    };
     format!(
-        "the taut chain turns {turns:.0} times on its way round, must be once (+1 or -1): at {wheel} it would wrap {wrap:.1} degrees; check the order of the stops, and on which side of the chain {wheel} lies"
+        "the taut chain turns {turns:.0} times on its way round, must be once (+1 or -1): at {wheel} it would wrap {wrap:.1} degrees; check the order of the stops, and on which side of the chain {wheel} lies{sides}"
     )
 }
 

@@ -213,6 +213,7 @@ impl Route {
                 turns,
                 wheel: missed,
                 wrap: wraps[missed].to_degrees(),
+                around: sense_around(wheels),
             });
         }
         Ok(Self {
@@ -285,6 +286,24 @@ impl Route {
 }
 
 /// Angle brought into [0, 2π); rounding just below a full turn counts as none.
+/// Sense in which the centres of wheels follow one another: that of the area which they enclose, 0 where it is next to nothing.
+fn sense_around(wheels: &[Wheel]) -> f64 {
+    let behind = wheels.iter().cycle().skip(1);
+    let (mut twice, mut squares) = (0.0, 0.0);
+    // 2 A = Σ rᵢ × rᵢ₊₁, from the first centre
+    let first = wheels[0].centre;
+    for (wheel, next) in wheels.iter().zip(behind) {
+        let (a, b) = (wheel.centre - first, next.centre - first);
+        twice += a.perp(&b);
+        squares += (b - a).norm_squared();
+    }
+    if twice.abs() > 1e-9 * squares {
+        twice.signum()
+    } else {
+        0.0
+    }
+}
+
 fn full_turn(angle: f64) -> f64 {
     let turned = angle.rem_euclid(TAU);
     if TAU - turned < 1e-12 { 0.0 } else { turned }

@@ -211,3 +211,102 @@ fn messages_name_sprockets_and_are_english() {
     let error = Scene::read("nowhere/at_all.toml").unwrap_err().to_string();
     assert!(error.contains("`chaindrive scenes` lists"), "{error}");
 }
+
+/// Two sprockets and a chain by its words.
+fn around_two(chain: &str) -> String {
+    format!(
+        "{chain}\n[[sprockets]]\nname = 'a'\nteeth = 19\ncentre = [0, 0]\nmotion = 'held'\n\
+         [[sprockets]]\nname = 'b'\nteeth = 57\ninertia = 1\ncentre = [1.029929958, 0]\n"
+    )
+}
+
+#[test]
+fn an_unknown_chain_is_told_with_all_other_mistakes() {
+    let unknown = "no chain of the catalogue is named `16C-1`; did you mean `16B-1`?";
+    // Beside words that are none.
+    let misspelt = around_two("chain = '16C-1'").replace("teeth = 57", "teath = 57");
+    told(&misspelt, &[unknown, "sprockets[1].teath: unknown key"]);
+    // Beside parts that do not go together.
+    let mut scene = around_two("chain = '16C-1'");
+    scene += "[route]\nstops = ['a', 'c']\n";
+    told(&scene, &[unknown, "no sprocket or guide is named `c`"]);
+    // Alone it is the only one, whatever the other chain would bring about.
+    let error = Scene::from_text(&around_two("chain = '16C-1'"), "test")
+        .unwrap()
+        .drive()
+        .unwrap_err();
+    assert_eq!(error.problems.len(), 1, "{error}");
+    assert_eq!(error.problems[0].path, "chain.type");
+}
+
+#[test]
+fn links_of_any_chain_are_counted_along_the_route() {
+    let chain = "[chain]\npitch = '1 in'\nroller_diameter = '5/8 in'\nmass = '68 g'\nstiffness = '161 MN/m'";
+    let scene = Scene::from_text(&around_two(chain), "test").unwrap();
+    assert_eq!(scene.drive().unwrap().chains[0].chain.links(), 120);
+    // Strands have no route that could tell.
+    told(
+        &format!(
+            "{chain}\nends = ['fixed', 'free']\nstart = {{ kind = 'line', from = [0, 0], to = [1, 0] }}"
+        ),
+        &["chain.links: missing; give the number of links"],
+    );
+}
+
+#[test]
+fn routes_that_turn_wrongly_are_told_which_sides_would_do() {
+    let scene = |order: &str, side: &str| {
+        let sprocket = |name: &str, x: f64, y: f64| {
+            format!(
+                "[[sprockets]]\nname = '{name}'\nteeth = 19\ncentre = [{x}, {y}]\ninertia = 1\n"
+            )
+        };
+        format!(
+            "chain = '16B-1'\n{}{}{}[route]\nstops = [{order}]\n",
+            sprocket("a", 0.0, 0.0),
+            sprocket("b", 1.0, 0.0) + side,
+            sprocket("c", 0.0, 1.0)
+        )
+    };
+    told(
+        &scene("'a', 'b', 'c'", "side = 'right'\n"),
+        &[
+            "follow one another counter-clockwise: those inside the chain lie on its `left`, all others on its `right`",
+        ],
+    );
+    told(
+        &scene("'a', 'c', 'b'", ""),
+        &[
+            "follow one another clockwise: those inside the chain lie on its `right`, all others on its `left`",
+        ],
+    );
+}
+
+#[test]
+fn a_rigid_pendulum_is_asked_for_what_it_has() {
+    let scene = "[chain]\npitch = '200 mm'\nlinks = 1\nmodel = 'ideal-joints'\n\
+        inner = { mass = '1 kg', inertia = '1e-3 kgm^2' }\nouter = { mass = '1 kg', inertia = '1e-3 kgm^2' }\n\
+        ends = ['fixed', 'free']\nstart = { kind = 'line', from = [0, 0], to = [0.2, 0] }\n";
+    let scene = Scene::from_text(scene, "test").unwrap();
+    let drive = scene.drive().unwrap();
+    let resolved = scene.resolved().unwrap();
+    assert!(
+        resolved.text().contains("rollers = \"none\""),
+        "{}",
+        resolved.text()
+    );
+    drive.assemble().unwrap();
+}
+
+#[test]
+fn an_open_bow_without_links_is_told_what_it_can_reach() {
+    let mut scene = around_two("chain = '16B-1'");
+    scene += "[[guides]]\nname = 'shoe'\nface = { kind = 'on-span', from = '20 %', to = '80 %', radius = '1.5 m' }\n\
+        [route]\nstops = ['a', 'shoe', 'b']\n";
+    told(
+        &scene,
+        &[
+            "face.bow: missing; give it, or the number of links from which it follows: by its bow the route takes 120.0",
+        ],
+    );
+}

@@ -128,7 +128,7 @@ fn a_value_is_left_out_and_the_rest_of_the_text_stays() {
     assert_eq!(ring.run_defaults().accuracy, None);
     assert_eq!(ring.run_defaults().step, Some(1e-6));
     for (path, words) in [
-        ("chain.links", "chain.links: missing"),
+        ("chain.pitch", "chain.pitch: missing"),
         ("sprockets[0]", "nothing can be left out here"),
     ] {
         let error = scene.without(path).unwrap_err().to_string();

@@ -51,7 +51,6 @@ const CASES: &[Mistake] = &[
     ("[route]", "[rout]", "rout", 33, "did you mean `route`?"),
     ("restitution = 0.8", "xyzzy = 0.8", "contact.teeth.xyzzy", 12, "known are law, series, restitution, damping"),
     ("pitch = \"25.4 mm\"\n", "", "chain.pitch", 3, "missing; give the nominal pitch"),
-    ("links = 78\n", "", "chain.links", 3, "missing; give the number of links"),
     ("mass = \"68.8 g\"\n", "", "chain.mass", 3, "missing"),
     ("stiffness = \"161 MN/m\"\n", "", "chain.stiffness", 3, "or `stiffnesses` as a list"),
     ("roller_diameter = \"15.88 mm\"\n", "", "chain.roller_diameter", 3, "missing; give the roller diameter"),

@@ -54,7 +54,7 @@ pub(super) fn resolve(
     // The roller diameter matters where there is a sprocket or guide.
     let touched = !(described.sprockets.is_empty() && described.guides.is_empty());
     let of_type = match &written.of_type {
-        Some(name) => Some(catalogue::named(name, findings)?),
+        Some(name) => Some(catalogue::named(name, findings)),
         None => None,
     };
     if written.model == schema::ChainModel::Particles {

@@ -1,4 +1,4 @@
-//! The number of links: as given, or from the route for a chain of the catalogue.
+//! The number of links: as given, or from the route.
 
 use chaindrive_geometry::{Closing, Route, Search, Wheel, close_nearest};
 
@@ -40,7 +40,8 @@ pub(super) fn links(
             uncounted: None,
         });
     }
-    if text.of_type.is_none() || text.ends.is_some() || text.start.is_some() {
+    let nowhere = text.of_type.is_none() && described.sprockets.is_empty();
+    if nowhere || text.ends.is_some() || text.start.is_some() {
         findings.refuse_with("chain.links", "missing", "give the number of links");
         return None;
     }

@@ -110,7 +110,12 @@ fn on_span(
     let bow = match bow {
         Some(bow) => bow.0,
         None if chain.uncounted.is_some() => {
-            let hint = "give it, or the number of links from which it follows";
+            let phase = defaults::PHASE.value(findings.version);
+            let range = passing.pitches_by_bow(guide, phase).map(|[least, most]| {
+                format!(": by its bow the route takes {least:.2} to {most:.2} links")
+            });
+            let range = range.unwrap_or_default();
+            let hint = format!("give it, or the number of links from which it follows{range}");
             findings.refuse_with(&place, "missing", hint);
             return None;
         }

@@ -222,6 +222,11 @@ fn link(text: Option<schema::Link>, name: &str, needs: &mut Needs<'_, '_>) -> Op
     })
 }
 
+/// Whether there is nothing that a roller could touch.
+fn touches_nothing(scene: &SceneText) -> bool {
+    scene.sprockets.is_empty() && scene.guides.is_empty()
+}
+
 fn rollers(
     scene: &SceneText,
     text: &schema::Chain,
@@ -233,8 +238,13 @@ fn rollers(
     let mass = roller.mass.map(|mass| mass.0);
     let model = text.rollers.unwrap_or_else(|| {
         let findings = &mut *needs.findings;
-        findings.assume("chain.rollers", "lumped", "assumed: the usual choice");
-        Rollers::Lumped
+        if touches_nothing(scene) && text.roller.is_none() {
+            findings.assume("chain.rollers", "none", "the chain touches nothing");
+            Rollers::None
+        } else {
+            findings.assume("chain.rollers", "lumped", "assumed: the usual choice");
+            Rollers::Lumped
+        }
     });
     match model {
         Rollers::Lumped => {
@@ -458,7 +468,11 @@ fn laying_stiffness(
         findings.assume("chain.stiffness", stiffness, remark);
         return Some(stiffness);
     }
-    let teeth = match (&scene.contact.teeth.law, pair.length) {
+    // Where there are no teeth, those of a roller as long as it is thick will do.
+    let length = pair
+        .length
+        .or(touches_nothing(scene).then_some(2.0 * pair.radius));
+    let teeth = match (&scene.contact.teeth.law, length) {
         (Some(law), _) => elastic(law, pair, "contact.teeth.law", findings)?,
         (None, Some(length)) => {
             let steel = steel(findings.version);

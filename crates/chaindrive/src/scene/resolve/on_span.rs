@@ -3,7 +3,8 @@
 use std::f64::consts::TAU;
 
 use chaindrive_geometry::{
-    CurvedGuide, GeometryError, Plan, Search, Side, Span, Station, Vector, Wheel, close_nearest,
+    Closing, CurvedGuide, GeometryError, Plan, Search, Side, Span, Station, Vector, Wheel,
+    close_nearest,
 };
 use chaindrive_mechanics::Touches;
 
@@ -145,6 +146,27 @@ impl<'s> Passing<'s> {
         };
         Span::between(&before, &after).map_err(|error| {
             error.with_names(&|wheel| ["the sprocket before", "the sprocket behind"][wheel].into())
+        })
+    }
+
+    /// The least and the greatest number of pitches that the route takes with some bow of a guide; none where it cannot be laid.
+    pub(super) fn pitches_by_bow(&self, guide: &Guide, phase: f64) -> Option<[f64; 2]> {
+        let stop = self.stops.iter().position(|stop| *stop == guide.name)?;
+        let [pitch, ..] = self.size;
+        let [_, step, within] = SEARCH.map(|pitches| pitches * pitch);
+        let bows = (0..).map(|k| f64::from(k) * step);
+        let bows = bows.take_while(|bow| *bow <= within);
+        let taken = bows.filter_map(|bow| {
+            let stations =
+                (0..self.stops.len()).map(|i| self.station(i, (i == stop).then_some(bow)));
+            let stops = stations.collect::<Result<_, _>>().ok()?;
+            let wheels = Plan { stops }.lay().ok()?;
+            let closing = Closing::march(&wheels, pitch, phase).ok()?;
+            Some(closing.excess(0) / pitch)
+        });
+        taken.fold(None, |range, pitches| {
+            let [least, most] = range.unwrap_or([pitches; 2]);
+            Some([pitches.min(least), pitches.max(most)])
         })
     }
 

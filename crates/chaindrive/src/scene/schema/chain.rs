@@ -12,7 +12,7 @@ use crate::scene::quantity::{
 /// nothing is changed.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(extend("x-required-unless" = {"type": ["pitch", "links"]}))]
+#[schemars(extend("x-required-unless" = {"type": ["pitch"]}))]
 pub(crate) struct Chain {
     /// Name in the catalogue, such as "16B-1"; whatever is absent below comes from there.
     #[serde(default, rename = "type")]
@@ -25,7 +25,7 @@ pub(crate) struct Chain {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) pitch: Option<Length>,
-    /// Number of links; absent, with a `type`: the even number nearest to the taut route.
+    /// Number of links; absent, around sprockets: the even number nearest to the taut route.
     #[serde(default)]
     #[schemars(extend("minimum" = 1, "maximum" = 100_000))]
     pub(crate) links: Option<u32>,
