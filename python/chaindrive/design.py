@@ -87,7 +87,8 @@ class Guide(NamedTuple):
     crest: float = 0.5
     """Share of the span at which the crest lies: the point of contact of a shoe."""
     height: float = 0.0
-    """Diameter of the rollers, or height of the plates, that slide on it [m]."""
+    """Diameter of the rollers, or height of the plates, that slide on it [m]; 0: that of the
+    ``chain`` of the catalogue, where one is named."""
     touches: Literal["rollers", "eyes", "plates"] = "rollers"
     """Which part of the chain slides on it."""
     side: Side = "right"
@@ -223,9 +224,10 @@ class Layout(NamedTuple):
 
 def layout(
     stops: Sequence[Sprocket | Idler | Guide],
-    pitch: float,
+    pitch: float | None = None,
     links: int | None = None,
     *,
+    chain: str | None = None,
     phase: float = 0.5,
 ) -> Layout:
     """Lay a closed chain around stops that stay where they are.
@@ -235,9 +237,11 @@ def layout(
     stops
         Sprockets, idlers and guides in the order in which the chain passes them.
     pitch
-        Pitch of the chain [m].
+        Pitch of the chain [m]; that of ``chain`` when absent.
     links
         Number of links, to be told by how much it misses.
+    chain
+        Name of a chain of the catalogue, ``"16B-1"``, which has pitch, rollers and plates.
     phase
         Where the first sprocket stands within a tooth, 0 to 1; 0.5 is symmetric.
 
@@ -249,16 +253,24 @@ def layout(
     Raises
     ------
     ParameterError
-        No chain can be laid along these stops.
+        No chain can be laid along these stops, none has this name, or the pitch is missing.
+
+    Examples
+    --------
+    >>> import chaindrive as cd
+    >>> stops = [cd.design.Sprocket("driver", 19, (0, 0)), cd.design.Sprocket("driven", 57, (1, 0))]
+    >>> cd.design.layout(stops, chain="16B-1").counts.even_above
+    118
     """
-    return _layout(json.loads(_core.layout_around(list(stops), pitch, links, phase, None)))
+    return _layout(json.loads(_core.layout_around(list(stops), pitch, chain, links, phase, None)))
 
 
 def close(
     stops: Sequence[Sprocket | Idler | Guide],
-    pitch: float,
-    links: int,
+    pitch: float | None = None,
+    links: int | None = None,
     *,
+    chain: str | None = None,
     move: str | None = None,
     along: tuple[float, float] | None = None,
     phase: float = 0.5,
@@ -269,10 +281,10 @@ def close(
 
     Parameters
     ----------
-    stops, pitch, phase
+    stops, pitch, chain, phase
         As in `layout`.
     links
-        Number of links.
+        Number of links; it has to be given.
     move
         Name of the stop that moves: a sprocket along a direction, of a guide the bow, of an idler
         the wrap; the sprocket behind the first stop that has the greatest effect when absent.
@@ -287,14 +299,16 @@ def close(
     Raises
     ------
     ParameterError
-        No such stop, or the links close nowhere within 20 pitches.
+        No such stop or chain, no number of links, or they close nowhere within 20 pitches.
     """
+    if links is None:
+        raise ParameterError("links are missing; give their number", "links", "a whole number")
     names = [stop.name for stop in stops]
     if move is not None and move not in names:
         message = f"move = {move!r}: no stop has this name; there are {', '.join(names)}"
         raise ParameterError(message, "move", "must be the name of a stop")
     moved = (None if move is None else names.index(move), along)
-    return _layout(json.loads(_core.layout_around(list(stops), pitch, links, phase, moved)))
+    return _layout(json.loads(_core.layout_around(list(stops), pitch, chain, links, phase, moved)))
 
 
 def of(drive: Drive) -> tuple[Layout, ...]:

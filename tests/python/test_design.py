@@ -228,3 +228,22 @@ def test_straight_rails_keep_clear_by_as_much_as_is_said():
         assert rail.distance(place) == pytest.approx(roller + 5e-3, abs=1e-9)
     with pytest.raises(cd.SceneError, match="between: no sprocket is named `cam`"):
         marine.replace({"guides.crank-to-camshaft.face": {**face, "between": ["crank", "cam"]}})
+
+
+def test_chains_are_known_by_their_names():
+    stops = [cd.design.Sprocket("driver", 19, (0, 0)), cd.design.Sprocket("driven", 57, (1, 0))]
+    assert cd.design.layout(stops, chain="16B-1") == cd.design.layout(stops, 25.4e-3)
+    assert cd.design.close(stops, links=118, chain="16b") == cd.design.close(stops, 25.4e-3, 118)
+    # Rollers are half their diameter from the face that they touch.
+    rail = cd.design.Guide("rail", radius=2.0, bow=5e-3)
+    told = cd.design.layout([stops[0], rail, stops[1]], chain="16B-1")
+    said = cd.design.layout([stops[0], rail._replace(height=15.88e-3), stops[1]], 25.4e-3)
+    assert told.stops == said.stops
+    for settings, path in [({"chain": "16C"}, "chain"), ({}, "pitch")]:
+        with pytest.raises(cd.ParameterError) as caught:
+            cd.design.layout(stops, **settings)
+        assert caught.value.path == path
+    with pytest.raises(cd.ParameterError, match="no chain of the catalogue is named `16C`"):
+        cd.design.layout(stops, chain="16C")
+    with pytest.raises(cd.ParameterError, match="give their number"):
+        cd.design.close(stops, chain="16B-1")

@@ -1,6 +1,8 @@
 //! Layouts of chains: of drives, and of stops that a program names.
 
+use chaindrive::catalogue::Number;
 use chaindrive::design::{self, Movement};
+use chaindrive::scene::chain_named;
 use chaindrive_geometry::{CurvedGuide, Plan, Point, Side, Station, Vector, Wheel};
 use chaindrive_mechanics::Touches;
 use pyo3::prelude::*;
@@ -45,7 +47,9 @@ impl Stop {
         }
     }
 
-    fn station(&self, pitch: f64) -> PyResult<Station> {
+    /// `size` is the chain's: pitch, roller diameter and plate height \[m\].
+    fn station(&self, size: [f64; 3]) -> PyResult<Station> {
+        let [pitch, roller, plate] = size;
         Ok(match self {
             Self::Sprocket {
                 teeth,
@@ -83,7 +87,10 @@ impl Stop {
                 crest: *crest,
                 bow: *bow,
                 radius: *radius,
-                ride: touching(touches)?.ride(*radius, [pitch, *height, *height]),
+                ride: {
+                    let own = |of_chain| if *height > 0.0 { *height } else { of_chain };
+                    touching(touches)?.ride(*radius, [pitch, own(roller), own(plate)])
+                },
                 side: side(lies)?,
             }),
         })
@@ -136,17 +143,34 @@ pub(crate) fn layouts_of(
     Ok((json(serde_json::to_string(&layouts.or_raise()?))?, told))
 }
 
-/// The layout of a chain around stops, as JSON; with a stop moved until so many links close, where one is named.
+/// The layout of a chain around stops, as JSON; with a stop moved until so many links close, where one is named. What is not
+/// given of the chain is that of one of the catalogue.
 #[pyfunction]
 pub(crate) fn layout_around(
     stops: Vec<Stop>,
-    pitch: f64,
+    pitch: Option<f64>,
+    chain: Option<&str>,
     links: Option<u32>,
     phase: f64,
     moved: Option<(Option<usize>, Option<[f64; 2]>)>,
 ) -> PyResult<String> {
     let names: Vec<String> = stops.iter().map(|stop| stop.name().to_owned()).collect();
-    let stops = stops.iter().map(|stop| stop.station(pitch));
+    let chain = chain.map(chain_named).transpose().map_err(|problem| {
+        let known = "a chain of the catalogue, see chaindrive.catalogue()";
+        parameter(problem.to_string(), "chain", known)
+    })?;
+    let of_chain = |number| chain.and_then(|chain| chain.number(number));
+    let pitch = pitch.or(of_chain(Number::Pitch)).ok_or_else(|| {
+        let needed = "a pitch [m], or a chain of the catalogue";
+        parameter(
+            format!("the pitch is missing; give {needed}"),
+            "pitch",
+            needed,
+        )
+    })?;
+    let [roller, plate] = [Number::RollerDiameter, Number::PlateHeight].map(of_chain);
+    let size = [pitch, roller.unwrap_or(0.0), plate.unwrap_or(0.0)];
+    let stops = stops.iter().map(|stop| stop.station(size));
     let plan = Plan {
         stops: stops.collect::<PyResult<_>>()?,
     };

@@ -1,7 +1,8 @@
 //! `chaindrive design`: how many links, and where does everything touch?
 
+use chaindrive::catalogue::Number;
 use chaindrive::design::{ChainLayout, clashes, of, of_two_sprockets};
-use chaindrive::scene::read_length;
+use chaindrive::scene::{chain_named, read_length};
 use clap::{ArgGroup, Args};
 
 use crate::failure::Failure;
@@ -28,12 +29,16 @@ pub(crate) struct Arguments {
         value_name = "TEETH,TEETH",
         value_delimiter = ',',
         num_args = 1,
-        requires = "pitch"
+        requires = "of"
     )]
     sprockets: Vec<u32>,
 
+    /// Chain of the catalogue, such as 16B-1, which has the pitch
+    #[arg(long, value_name = "NAME", requires = "sprockets", group = "of")]
+    chain: Option<String>,
+
     /// Pitch of the chain, such as "12.7 mm"
-    #[arg(long, value_name = "LENGTH", requires = "sprockets")]
+    #[arg(long, value_name = "LENGTH", requires = "sprockets", group = "of")]
     pitch: Option<String>,
 
     /// Distance of the centres of the two sprockets, such as "400 mm"
@@ -87,7 +92,14 @@ fn of_two(arguments: &Arguments) -> Result<ChainLayout, Failure> {
         });
         read.transpose()
     };
-    let pitch = length("pitch", &arguments.pitch)?.unwrap_or_default();
+    let chain = arguments.chain.as_deref().map(|name| {
+        chain_named(name).map_err(|problem| Failure::Argument(format!("--chain: {problem}")))
+    });
+    let of_chain = chain
+        .transpose()?
+        .and_then(|chain| chain.number(Number::Pitch));
+    let given = length("pitch", &arguments.pitch)?;
+    let pitch = given.or(of_chain).unwrap_or_default();
     let [first, second] = arguments.sprockets[..] else {
         let count = arguments.sprockets.len();
         return Err(Failure::Argument(format!(
