@@ -487,25 +487,17 @@ def diff(
 
 
 def _drive(of: Drive | xr.Dataset | str | PathLike[str]) -> _core.Drive:
-    if isinstance(of, Drive):
-        return of._inner
-    # Not by its class: xarray takes half a second to import.
-    attributes = getattr(of, "attrs", None)
-    if attributes is not None:
-        text = attributes.get("resolved_scene", attributes.get("scene"))
-        if text is None:
-            raise SceneError("the dataset carries no scene: it is no result of `simulate`")
-        return _core.Drive.from_text(text, attributes.get("scene_name", "result"))
-    return _core.Drive.read(fspath(cast("str | PathLike[str]", of)))
+    return of._inner if isinstance(of, Drive) else load(of)._inner
 
 
-def load(path: str | PathLike[str]) -> Drive:
+def load(source: str | PathLike[str] | xr.Dataset) -> Drive:
     """Read a scene file, TOML or JSON, or the scene of a result.
 
     Parameters
     ----------
-    path
-        The file, or the Zarr folder of a result.
+    source
+        The file; or a result, in memory or as a Zarr folder: its drive with every default written
+        out, so that it computes the same.
 
     Returns
     -------
@@ -514,9 +506,25 @@ def load(path: str | PathLike[str]) -> Drive:
     Raises
     ------
     SceneError
-        The file cannot be read, or with everything that is wrong in it.
+        The file cannot be read, or with everything that is wrong in it; a dataset without a scene.
+
+    Examples
+    --------
+    >>> import chaindrive as cd
+    >>> run = cd.simulate(cd.scenes.spinning_ring(), until=1e-3)
+    >>> cd.load(run).links
+    20
     """
-    return Drive._of(_core.Drive.read(fspath(path)))
+    # Not by its class: xarray takes half a second to import.
+    attributes = getattr(source, "attrs", None)
+    if attributes is None:
+        return Drive._of(_core.Drive.read(fspath(cast("str | PathLike[str]", source))))
+    text = attributes.get("resolved_scene", attributes.get("scene"))
+    if text is None:
+        raise SceneError(
+            "the dataset carries no scene; give what `simulate`, `sweep` or `open_result` returned"
+        )
+    return _from_text(text, attributes.get("scene_name", "result"))
 
 
 def schema() -> dict[str, Any]:

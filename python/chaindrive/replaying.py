@@ -7,7 +7,7 @@ import json
 from collections.abc import Sequence
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 import xarray as xr
@@ -49,6 +49,26 @@ class Replay:
 
     def __repr__(self) -> str:
         return f"<chaindrive.Replay, {len(self.html) / 1e6:.2f} MB of HTML>"
+
+
+@overload
+def replay(
+    run: xr.Dataset,
+    path: None = None,
+    *,
+    plot: Sequence[str] | None = None,
+    frames: int | None = None,
+) -> Replay: ...
+
+
+@overload
+def replay(
+    run: xr.Dataset,
+    path: str | PathLike[str],
+    *,
+    plot: Sequence[str] | None = None,
+    frames: int | None = None,
+) -> Replay | Path: ...
 
 
 def replay(

@@ -84,3 +84,12 @@ def test_a_recording_beyond_all_memory_is_refused() -> None:
     drive = cd.scenes.industrial_16b()
     with pytest.raises(cd.ParameterError, match=r"GB, more than the memory holds"):
         cd.simulate(drive, until=900.0, every=1e-6, method="verlet", record="all")
+
+
+def test_a_run_in_memory_gives_its_drive_back():
+    drive = cd.scenes.spinning_ring().replace({"chain.links": 24})
+    run = cd.simulate(drive, until=1e-3, record="span_tension")
+    again = cd.load(run)
+    assert again.links == 24
+    assert again.name == drive.name
+    assert not [it for it in cd.diff(drive, again) if not it.path.startswith("run.")]

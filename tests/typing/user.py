@@ -23,6 +23,11 @@ settings: cd.settings.RunSettings = {"until": 0.1, "events": ["teeth", "joints"]
 cd.simulate(drive, **settings)
 steel = cd.law("power", stiffness=6e11, exponent=1.5, dissipation="hunt-crossley", restitution=0.8)
 assert_type(steel, cd.Law)
+run = cd.simulate(drive)
+assert_type(cd.replay(run), cd.Replay)
+cd.replay(run, plot=["span_tension"]).save("run.html")
+assert_type(cd.load(run), cd.Drive)
+cd.friction("coulomb", coefficient=0.1, slip_speed="5 cm/s")
 
 cd.simulate(drive, method="euler")  # type: ignore[arg-type]
 cd.simulate(drive, record="span_tensions")  # type: ignore[arg-type]

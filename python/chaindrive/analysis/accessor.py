@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import xarray as xr
 
@@ -136,6 +136,12 @@ class DriveAccessor:
     def frame(self, time: float, **options: Any) -> Axes:
         """See `chaindrive.plot.frame`."""
         return plot.frame(self._run, time, **options)
+
+    @overload
+    def replay(self, path: None = None, **options: Any) -> Replay: ...
+
+    @overload
+    def replay(self, path: str | PathLike[str], **options: Any) -> Replay | Path: ...
 
     def replay(self, path: str | PathLike[str] | None = None, **options: Any) -> Replay | Path:
         """See `chaindrive.replay`."""
