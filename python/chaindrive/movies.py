@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Callable
 from os import PathLike, fspath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chaindrive.extras import extra
+from chaindrive.progress import told
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -42,6 +44,7 @@ def movie(
     frames: int = PICTURES,
     rate: float = RATE,
     size: tuple[int, int] = SIZE,
+    progress: bool | Callable[[float], object] = False,
 ) -> Path:
     """Write a movie of a recorded run, in place of what was there.
 
@@ -57,6 +60,9 @@ def movie(
         Pictures a second.
     size
         Width and height [pixels].
+    progress
+        True for a bar with time left, which takes the extra ``progress``, or a function that is
+        called with the share done, 0 to 1.
 
     Returns
     -------
@@ -82,9 +88,11 @@ def movie(
         raise ValueError(f"{place}: the name must end in .mp4 or .gif")
     samples = np.unique(np.linspace(0, run.sizes["time"] - 1, frames).round().astype(int))
     stage = _Stage(run, samples, size)
-    with imageio.get_writer(place, **how) as writer:
+    with told(progress, "movie") as tell, imageio.get_writer(place, **how) as writer:
         for number in range(len(samples)):
             writer.append_data(stage.picture(number))
+            if tell is not None:
+                tell((number + 1) / len(samples))
     return place
 
 
@@ -234,6 +242,12 @@ def _floats(values: xr.DataArray) -> _Floats:
     return np.ascontiguousarray(values.to_numpy(), dtype=np.float64)
 
 
+def _line(share: float) -> None:
+    """Show in a terminal how far a movie is, and clear the line at its end."""
+    text = f"{share:4.0%} of the movie" if share < 1.0 else "\x1b[K"
+    print(f"\r{text}", end="", file=sys.stderr, flush=True)
+
+
 def command(arguments: list[str]) -> int:
     """Make the movie that a command line asks for, and return the exit code."""
     from chaindrive.results import open_result
@@ -252,8 +266,10 @@ def command(arguments: list[str]) -> int:
     if output.exists() and not given.overwrite:
         print(f"{output}: there is already something here; pass --overwrite", file=sys.stderr)
         return 3
+    quiet = given.quiet or not sys.stderr.isatty()
     try:
-        movie(open_result(given.result), output, frames=given.frames)
+        run = open_result(given.result)
+        movie(run, output, frames=given.frames, progress=False if quiet else _line)
     except (KeyError, ValueError, FileNotFoundError, ModuleNotFoundError) as error:
         message = error.args[0] if isinstance(error, KeyError) else error
         print(f"{given.result}: {message}", file=sys.stderr)

@@ -254,6 +254,13 @@ def test_result_that_ended_early_is_replayed_and_says_how(tmp_path):
         assert json.loads(block(page, "index"))["about"]["status"] == status
 
 
+def test_movies_tell_how_far_they_are(run, tmp_path):
+    pytest.importorskip("imageio.v3")
+    shares = []
+    cd.movies.movie(run, tmp_path / "drive.gif", frames=3, size=(160, 90), progress=shares.append)
+    assert shares == pytest.approx([1 / 3, 2 / 3, 1.0])
+
+
 def test_movies_are_made_of_the_same_frames(run, tmp_path):
     imageio = pytest.importorskip("imageio.v3")
     pytest.importorskip("imageio_ffmpeg")

@@ -1,5 +1,6 @@
 //! How far a run or a sweep is, on a terminal; in a pipe, nothing.
 
+use std::cell::RefCell;
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
@@ -19,6 +20,21 @@ pub(crate) struct Progress {
     shown: Instant,
     /// Share done and time simulated when it began: not zero where a run goes on.
     from: Option<[f64; 2]>,
+    /// Share done, and the wall time when it was reached \[s\].
+    reached: [f64; 2],
+}
+
+/// Does something whose end nobody knows, and shows for how long: `work` takes what it asks now and then whether to stop.
+pub(crate) fn waiting<T>(
+    what: &str,
+    interrupted: &dyn Fn() -> bool,
+    work: impl FnOnce(&dyn Fn() -> bool) -> T,
+) -> T {
+    let progress = RefCell::new(Progress::new(false));
+    work(&|| {
+        progress.borrow_mut().wait(what);
+        interrupted()
+    })
 }
 
 impl Progress {
@@ -36,7 +52,13 @@ impl Progress {
             began: now,
             shown: now,
             from: None,
+            reached: [0.0; 2],
         }
+    }
+
+    /// Shows for how long something goes on.
+    fn wait(&mut self, what: &str) {
+        self.tell(0.0, |elapsed, _| format!("{what}, {}", clock(elapsed)));
     }
 
     /// Shows how far the run is.
@@ -78,7 +100,13 @@ impl Progress {
         self.shown = Instant::now();
         let elapsed = self.began.elapsed().as_secs_f64();
         let before = self.from.map_or(0.0, |[share, _]| share);
-        let left = elapsed * (1.0 - done) / (done - before).max(f64::MIN_POSITIVE);
+        if self.reached[0].to_bits() != done.to_bits() {
+            self.reached = [done, elapsed];
+        }
+        let [_, at] = self.reached;
+        // Between two variants of a sweep nothing is done, and the time goes on.
+        let left = at * (1.0 - done) / (done - before).max(f64::MIN_POSITIVE) - (elapsed - at);
+        let left = left.max(0.0);
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -120,7 +148,50 @@ fn clock(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::clock;
+    use super::*;
+
+    /// A bar that nobody sees.
+    fn hidden(ago: u64) -> Progress {
+        let ago = Duration::from_secs(ago);
+        Progress {
+            bar: Some(ProgressBar::hidden()),
+            began: Instant::now() - ago,
+            shown: Instant::now() - ago,
+            from: None,
+            reached: [0.0; 2],
+        }
+    }
+
+    fn message(progress: &Progress) -> String {
+        progress
+            .bar
+            .as_ref()
+            .map(ProgressBar::message)
+            .unwrap_or_default()
+    }
+
+    #[test]
+    fn the_time_left_of_a_sweep_counts_down_between_two_variants() {
+        let mut progress = hidden(10);
+        progress.count(1, 3);
+        assert_eq!(message(&progress), "1 of 3 variants, 20 s left");
+        for (later, left) in [(6, 14), (8, 6), (9, 0)] {
+            progress.began -= Duration::from_secs(later);
+            progress.shown -= Duration::from_secs(later);
+            progress.count(1, 3);
+            assert_eq!(
+                message(&progress),
+                format!("1 of 3 variants, {left} s left")
+            );
+        }
+    }
+
+    #[test]
+    fn what_has_no_end_tells_for_how_long_it_goes_on() {
+        let mut progress = hidden(75);
+        progress.wait("assembling");
+        assert_eq!(message(&progress), "assembling, 1 min 15 s");
+    }
 
     #[test]
     fn clocks() {

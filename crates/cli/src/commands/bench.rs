@@ -11,6 +11,7 @@ use chaindrive::{Request, Scene, Stepping, assemble};
 use clap::Args;
 
 use crate::failure::Failure;
+use crate::progress::waiting;
 use crate::request::{RunArguments, SceneArguments};
 use crate::terminal::print;
 
@@ -60,7 +61,8 @@ pub(crate) struct Arguments {
 pub(crate) fn bench(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
     let settings = RunArguments::until(arguments.until.as_deref());
     let Request { scene, run, .. } = settings.apply(&arguments.scene.load(interrupted)?)?;
-    let start = assemble(&scene.drive()?, interrupted);
+    let drive = scene.drive()?;
+    let start = waiting("assembling", interrupted, |stop| assemble(&drive, stop));
     let start = Failure::or_interrupted(start, scene.name())?;
     let study = Study {
         variants: variants(arguments, &scene)?,
@@ -70,7 +72,9 @@ pub(crate) fn bench(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
     };
     let files = ["csv", "svg"].map(|extension| named(&arguments.output, extension));
     free(&files, arguments.overwrite)?;
-    let table = work_precision(&start, &run, &study, interrupted);
+    let table = waiting("comparing methods", interrupted, |stop| {
+        work_precision(&start, &run, &study, stop)
+    });
     let table = Failure::or_interrupted(table, scene.name())?;
     print(&table)?;
     save(&table, &files, &scene_title(scene.name(), scene.title()))

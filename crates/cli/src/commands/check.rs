@@ -5,6 +5,7 @@ use chaindrive::{Run, assemble};
 use clap::Args;
 
 use crate::failure::Failure;
+use crate::progress::waiting;
 use crate::request::load;
 use crate::terminal::{print, say};
 
@@ -40,7 +41,8 @@ pub(crate) fn check(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
 fn sound(name: &str, interrupted: &dyn Fn() -> bool) -> Result<String, Failure> {
     let scene = load(name, interrupted)?;
     let drive = scene.drive()?;
-    let assembled = assemble(&drive, interrupted);
+    let what = format!("{name}: assembling");
+    let assembled = waiting(&what, interrupted, |stop| assemble(&drive, stop));
     let assembled = Failure::or_interrupted(assembled, scene.name())?;
     let run = Run::suggested(&scene.run_defaults());
     for warning in warnings(&assembled, run.until) {
