@@ -27,6 +27,10 @@ _UNITS = {
 }
 
 
+# No wheel has more, and more fit no number of the core.
+_MOST_TEETH = 1_000_000
+
+
 def polygon_action(
     teeth1: int,
     teeth2: int,
@@ -63,12 +67,11 @@ def polygon_action(
     ParameterError
         Numbers out of range, wheels that overlap, or no whole link between them.
     """
+    teeth = _counted(teeth1, teeth2)
     if driver_angle is None:
-        if teeth1 < 3:
-            raise ParameterError(f"teeth1 = {teeth1}, must be at least 3", "teeth1", "3 or more")
         driver_angle = np.linspace(0.0, 2.0 * np.pi / teeth1, 361)
     angle = np.ascontiguousarray(driver_angle, dtype=np.float64).ravel()
-    columns, constants = _core.polygon_action([teeth1, teeth2], pitch, centre_distance, angle)
+    columns, constants = _core.polygon_action(teeth, pitch, centre_distance, angle)
     return xr.Dataset(
         {
             name: ("driver_angle", columns[name], {"units": units, "long_name": long_name})
@@ -114,7 +117,7 @@ def seating_speed(
         As `polygon_action`.
     """
     at_rest = np.zeros(0)
-    _, constants = _core.polygon_action([teeth1, teeth2], pitch, centre_distance, at_rest)
+    _, constants = _core.polygon_action(_counted(teeth1, teeth2), pitch, centre_distance, at_rest)
     return constants["relative_seating_speed"] * pitch * abs(speed)
 
 
@@ -139,7 +142,7 @@ def links_for(teeth1: int, teeth2: int, pitch: float, centre_distance: float) ->
     >>> round(kinematics.links_for(19, 57, 25.4e-3, 1.0), 3)
     117.671
     """
-    return _core.links_for([teeth1, teeth2], pitch, centre_distance)
+    return _core.links_for(_counted(teeth1, teeth2), pitch, centre_distance)
 
 
 def centre_distance(teeth1: int, teeth2: int, pitch: float, links: float) -> float:
@@ -159,7 +162,16 @@ def centre_distance(teeth1: int, teeth2: int, pitch: float, links: float) -> flo
     ParameterError
         Numbers out of range, or fewer links than wheels that touch need.
     """
-    return _core.centre_distance_for([teeth1, teeth2], pitch, links)
+    return _core.centre_distance_for(_counted(teeth1, teeth2), pitch, links)
+
+
+def _counted(teeth1: int, teeth2: int) -> list[int]:
+    """Return the teeth of two wheels; numbers that no wheel has are a `ParameterError`."""
+    for name, teeth in (("teeth1", teeth1), ("teeth2", teeth2)):
+        if not 3 <= teeth <= _MOST_TEETH:
+            allowed = f"3 to {_MOST_TEETH}"
+            raise ParameterError(f"{name} = {teeth}, must be {allowed}", name, allowed)
+    return [teeth1, teeth2]
 
 
 def __dir__() -> list[str]:

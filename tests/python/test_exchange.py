@@ -326,3 +326,14 @@ def test_parquet_knows_units_and_where_it_is_from(run: xr.Dataset, tmp_path: Pat
 def test_other_files_are_refused(run: xr.Dataset, tmp_path: Path) -> None:
     with pytest.raises(cd.ParameterError, match=r"must end in \.nc, \.csv or \.parquet"):
         cd.save(run, tmp_path / "run.xlsx")
+
+
+@pytest.mark.parametrize("number", [np.nan, np.inf, 1e300])
+def test_curves_of_no_finite_size_are_refused(number):
+    for points, bulges in [([[0, 0], [1, 0]], [number]), ([[0, 0], [number, 0]], [0.1])]:
+        curve = cd.exchange.Curve(np.array(points, float), np.array(bulges), closed=False)
+        with pytest.raises(cd.ParameterError, match="not finite"):
+            cd.exchange.face(curve)
+        closed = curve._replace(bulges=np.append(curve.bulges, 1.0), closed=True)
+        with pytest.raises(cd.ParameterError, match="not finite"):
+            cd.exchange.tooth(closed, 19)

@@ -61,3 +61,10 @@ def test_wheels_that_overlap():
         cd.kinematics.links_for(19, 19, -PITCH, 1.0)
     with pytest.raises(cd.ParameterError, match="too few"):
         cd.kinematics.centre_distance(19, 57, PITCH, 10)
+
+
+@pytest.mark.parametrize("teeth", [0, -3, 10**12])
+def test_numbers_that_no_wheel_has_are_refused(teeth):
+    for call in (cd.kinematics.polygon_action, cd.kinematics.links_for):
+        with pytest.raises(cd.ParameterError, match=f"teeth2 = {teeth}, must be 3 to"):
+            call(19, teeth, 12.7e-3, 0.4)

@@ -226,9 +226,11 @@ impl Drive {
         let surface = surface.ok_or_else(|| {
             let sprockets = self.drive.sprockets.iter().map(|it| it.name.as_str());
             let guides = self.drive.guides.iter().map(|it| it.name.as_str());
-            let names: Vec<&str> = sprockets.chain(guides).collect();
+            let mut names: Vec<&str> = sprockets.chain(guides).collect();
+            let contacts = "`joints` or `rollers`, where pins or rollers have play";
+            names.push(contacts);
             PyKeyError::new_err(format!(
-                "`{body}` has no contact law; those of {}, and of `joints` and `rollers` where pins and rollers have play",
+                "`{body}` has no contact law; give {}",
                 names.join(", ")
             ))
         })?;

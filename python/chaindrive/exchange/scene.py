@@ -64,6 +64,7 @@ def tooth(
     if not outline.closed:
         message = f"the outline of {len(outline.bulges)} pieces is open"
         raise ParameterError(message, "outline", "join its ends, or allow a larger gap in read_dxf")
+    _sound(outline)
     if teeth < 3:
         raise ParameterError(f"teeth = {teeth}, must be at least 3", "teeth", "at least 3")
     curve = outline if outline.area > 0.0 else outline.reversed()
@@ -119,8 +120,7 @@ def face(curve: Curve, *, material: str = "right") -> dict[str, Any]:
     if curve.closed:
         message = "the curve is closed, and the face of a guide is open"
         raise ParameterError(message, "curve", "cut the face out: curve.stretch(start, end)")
-    if len(curve.points) < 2:
-        raise ParameterError("the curve is empty", "curve", "a face has two points at least")
+    _sound(curve)
     whole = _split(curve)
     corners, radii = [whole.points[0]], []
     rows = zip(whole.starts, whole.ends, whole.bulges, whole.radii, strict=True)
@@ -140,6 +140,17 @@ def face(curve: Curve, *, material: str = "right") -> dict[str, Any]:
         "radii": radii[:-1],
         "material": material,
     }
+
+
+def _sound(curve: Curve) -> None:
+    """Refuse a curve of which nothing can be made."""
+    if len(curve.points) < 2:
+        raise ParameterError("the curve is empty", "curve", "two points at least")
+    with np.errstate(invalid="ignore", over="ignore"):
+        numbers = [*curve.points.flat, *curve.bulges, curve.length]
+    if not np.isfinite(numbers).all():
+        message = "the curve has a place, a bulge or a length that is not finite"
+        raise ParameterError(message, "curve", "finite numbers, places in m")
 
 
 def _pieces(curve: Curve) -> list[dict[str, Any]]:
