@@ -256,8 +256,10 @@ def test_result_that_ended_early_is_replayed_and_says_how(tmp_path):
 
 def test_movies_tell_how_far_they_are(run, tmp_path):
     pytest.importorskip("imageio.v3")
+    from chaindrive.movies import movie
+
     shares = []
-    cd.movies.movie(run, tmp_path / "drive.gif", frames=3, size=(160, 90), progress=shares.append)
+    movie(run, tmp_path / "drive.gif", frames=3, size=(160, 90), progress=shares.append)
     assert shares == pytest.approx([1 / 3, 2 / 3, 1.0])
 
 

@@ -238,7 +238,7 @@ fn units_that_differ_are_told_entry_by_entry() {
     let mixed = arms
         .replace("tensioners.upper arm.carrier", slider)
         .unwrap();
-    let adjust = "{ kind = 'slider', name = 'upper arm' }";
+    let adjust = "{ kind = 'slider', name = 'upper arm', within = '5 mm' }";
     let mixed = mixed
         .replace("chains.secondary.route.adjust", adjust)
         .unwrap();
