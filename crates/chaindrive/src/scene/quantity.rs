@@ -216,8 +216,9 @@ impl Dimension {
                 let ways = self.meant(rest, &problem, exponent);
                 let mut units = ways.iter().flat_map(|way| unit::parse(way));
                 let size = |unit: Unit| unit.factor * 10_f64.powi(unit.decade);
+                let same = |one: Unit, other: Unit| (size(one) / size(other) - 1.0).abs() < 1e-9;
                 match (units.next(), problem) {
-                    (Some(first), _) if units.all(|other| size(other) == size(first)) => Ok(first),
+                    (Some(first), _) if units.all(|other| same(other, first)) => Ok(first),
                     (Some(_), _) => Err(complain(
                         format!("`{text}` can be read in several ways"),
                         format!("write {}", spelt(number, &ways)),

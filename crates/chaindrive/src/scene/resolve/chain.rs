@@ -53,10 +53,8 @@ pub(super) fn resolve(
     let written = described.text;
     // The roller diameter matters where there is a sprocket or guide.
     let touched = !(described.sprockets.is_empty() && described.guides.is_empty());
-    let of_type = match &written.of_type {
-        Some(name) => Some(catalogue::named(name, findings)),
-        None => None,
-    };
+    let of_type = written.of_type.as_ref();
+    let of_type = of_type.map(|name| catalogue::named(name, findings));
     if written.model == schema::ChainModel::Particles {
         links::refuse_on_particles(written, findings);
     }
