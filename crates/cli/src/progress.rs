@@ -152,11 +152,12 @@ mod tests {
 
     /// A bar that nobody sees.
     fn hidden(ago: u64) -> Progress {
-        let ago = Duration::from_secs(ago);
+        let mut then = Instant::now();
+        then -= Duration::from_secs(ago);
         Progress {
             bar: Some(ProgressBar::hidden()),
-            began: Instant::now() - ago,
-            shown: Instant::now() - ago,
+            began: then,
+            shown: then,
             from: None,
             reached: [0.0; 2],
         }
