@@ -38,7 +38,7 @@ function palette() {
 const PREFIXES = { '-9': 'n', '-6': 'µ', '-3': 'm', 0: '', 3: 'k', 6: 'M', 9: 'G' };
 
 /** A number with a minus that is one. */
-const withMinus = (text) => String(text).replace('-', '−');
+const withMinus = (text) => String(text).replaceAll('-', '−');
 
 /** A value with its unit; units that take no prefix are written out. */
 function quantity(value, unit, digits = 3) {
@@ -49,6 +49,9 @@ function quantity(value, unit, digits = 3) {
   const exponent = Math.max(-9, Math.min(9, 3 * Math.floor(Math.log10(Math.abs(value) * 1.0005) / 3)));
   return `${withMinus(+(value / 10 ** exponent).toPrecision(digits))} ${PREFIXES[exponent]}${unit}`;
 }
+
+/** Units that engineers read instead of those of SI, and how many of them one is. */
+const TRADE = { rad: ['°', 180 / Math.PI], 'rad/s': ['rpm', 30 / Math.PI], m: ['mm', 1e3] };
 
 /** The largest of 1, 2, 5 times a power of ten that is no larger. */
 function roundDown(value) {

@@ -130,6 +130,7 @@ class Player {
     this.pause();
     this.seek(next.frame);
     this.view.marked = next.roller;
+    this.view.bringIn(next.roller, next.frame);
     this.contact = next;
     this.dirty = true;
   }

@@ -12,7 +12,10 @@ class Plots {
     const channels = new Map();
     film.curves.forEach((curve) => {
       const known = channels.get(curve.channel) || { ...curve, curves: [] };
-      known.curves.push({ label: curve.label, values: film.arrays[curve.stream].column(curve.column) });
+      const [unit, factor] = TRADE[curve.unit] ?? [curve.unit, 1];
+      const values = film.arrays[curve.stream].column(curve.column).map((value) => factor * value);
+      known.unit = unit;
+      known.curves.push({ label: curve.label, values });
       channels.set(curve.channel, known);
     });
     this.plots = [...channels.values()].map((channel) => this.panel(place, channel, seek));
@@ -119,38 +122,40 @@ class Plots {
     if (high - low < 1e-12 * Math.max(Math.abs(high), Math.abs(low), 1e-12)) [low, high] = [low - 0.5, high + 0.5];
     const margin = 0.04 * (high - low);
     [low, high] = [low - (low === 0 ? 0 : margin), high + margin];
-    Object.assign(plot, { left: 50, right: width - 12, top: 8, bottom: height - 20 });
-
     const ticks = ticksBetween(low, high, Math.max(2, Math.floor(height / 40)));
     const size = Math.max(Math.abs(low), Math.abs(high));
     const exponent = plot.unit === '1' || plot.unit === '' ? 0 : 3 * Math.floor(Math.log10(size) / 3);
     const prefixed = /^[A-Z][a-z]?( m)?$/.test(plot.unit) && exponent in PREFIXES;
     const power = prefixed || exponent < -3 || exponent > 3 ? exponent : 0;
     const factor = 10 ** power;
-    const unit = prefixed ? PREFIXES[exponent] + plot.unit : power ? `10^${power} ${plot.unit}` : plot.unit;
+    const unit = prefixed ? PREFIXES[exponent] + plot.unit : power ? `10${superscript(power)} ${plot.unit}` : plot.unit;
     plot.unitPlace.textContent = plot.unit === '1' || plot.unit === '' ? '' : ` [${unit}]`;
+    c.font = '10.5px system-ui, "DejaVu Sans", sans-serif';
+    const texts = ticks.map((tick) => withMinus(+(tick / factor).toPrecision(6)));
+    // The widest number has room, sign included.
+    const widest = Math.max(0, ...texts.map((text) => c.measureText(text).width));
+    Object.assign(plot, { left: Math.max(50, widest + 10), right: width - 12, top: 8, bottom: height - 20 });
     const y = (value) => plot.bottom - ((value - low) / (high - low)) * (plot.bottom - plot.top);
     const [start, end] = this.window;
     const x = (time) => plot.left + ((time - start) / (end - start || 1)) * (plot.right - plot.left);
-    c.font = '10.5px system-ui, "DejaVu Sans", sans-serif';
     c.fillStyle = this.colours.faint;
     c.strokeStyle = this.colours.line;
     c.lineWidth = 1;
     c.textAlign = 'right';
     c.textBaseline = 'middle';
-    for (const tick of ticks) {
+    ticks.forEach((tick, i) => {
       const at = Math.round(y(tick)) + 0.5;
       c.beginPath();
       c.moveTo(plot.left, at);
       c.lineTo(plot.right, at);
       c.stroke();
-      c.fillText(withMinus(+(tick / factor).toPrecision(6)), plot.left - 6, at);
-    }
+      c.fillText(texts[i], plot.left - 6, at);
+    });
     c.textBaseline = 'top';
     c.textAlign = 'center';
     const inMilliseconds = end - start < 0.5;
     for (const tick of ticksBetween(start, end, Math.max(2, Math.floor(width / 90)))) {
-      const text = String(+(tick * (inMilliseconds ? 1e3 : 1)).toPrecision(7));
+      const text = withMinus(+(tick * (inMilliseconds ? 1e3 : 1)).toPrecision(7));
       const half = 0.5 * c.measureText(text).width;
       c.fillText(text, Math.min(x(tick), plot.right - 14 - half), plot.bottom + 5);
     }
@@ -250,6 +255,11 @@ function ticksBetween(low, high, count) {
   const ticks = [];
   for (let i = Math.ceil(low / step); i * step <= high + 1e-9 * step; i++) ticks.push(i * step);
   return ticks.length > 1 ? ticks : ticksBetween(low, high, 1.5 * count);
+}
+
+/** A whole number as an exponent is written. */
+function superscript(number) {
+  return String(number).replace(/./g, (it) => (it === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[it]));
 }
 
 /** The last frame that is not later than a moment. */

@@ -24,8 +24,9 @@ function describe(film) {
 
   byId('account').hidden = !about.summary;
   byId('story').querySelector('pre').textContent = about.summary;
-  const { distance, channel } = film.quanta;
-  const exact = `exact to ±${quantity(0.5 * distance, 'm')} and ±${+(50 * channel).toPrecision(3)} % of the largest value`;
+  const { distance, channel, curve } = film.quanta;
+  const percent = (share) => `±${+(50 * share).toPrecision(3)} %`;
+  const exact = `exact to ±${quantity(0.5 * distance, 'm')}, ${percent(channel)} of the largest value, curves to ${percent(curve)} of their range`;
   byId('quantum').textContent = exact;
   const names = KEYS.map(([key]) => key);
   byId('help').querySelector('table').append(...KEYS.map(([, text], i) => {
@@ -34,7 +35,7 @@ function describe(film) {
     return row;
   }));
   byId('help').querySelector('.note').textContent =
-    `Every picture is a recorded sample; nothing is drawn between two of them. Values are ${exact} of their kind. `
+    `Every picture is a recorded sample; nothing is drawn between two of them. Values are ${exact}. `
     + (arrays.event_start ? 'Contacts are those that the run has logged.'
       : 'Contacts were not logged: a contact begins at the first sample with a force on the teeth.');
 }

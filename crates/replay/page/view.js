@@ -130,6 +130,14 @@ class View {
     this.window.whole = false;
   }
 
+  /** Moves the window to a roller that it does not show. */
+  bringIn(roller, frame) {
+    const [x, y] = this.roller(roller, frame);
+    const [u, v] = this.toScreen(x, y);
+    const isIn = (at, size) => at > 2 * REACH && at < size - 2 * REACH;
+    if (!isIn(u, this.width) || !isIn(v, this.height)) Object.assign(this.window, { x, y, whole: false });
+  }
+
   toScreen(x, y) {
     const { x: cx, y: cy, scale } = this.window;
     return [0.5 * this.width + (x - cx) * scale, 0.5 * this.height - (y - cy) * scale];

@@ -5,7 +5,7 @@ use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
 
 use crate::film::{About, Chain, Film};
-use crate::stream::{LEVELS, Stream, Streams};
+use crate::stream::{LEVELS, LEVELS_OF_CURVES, Stream, Streams};
 
 const PAGE: &str = include_str!("../page/page.html");
 const STYLE: &str = include_str!("../page/style.css");
@@ -44,8 +44,10 @@ struct Index<'a> {
 struct Quanta {
     /// Of places \[m\].
     distance: f64,
-    /// Of a channel, as a share of its largest magnitude.
+    /// Of a channel in colours or arrows, as a share of its largest magnitude.
     channel: f64,
+    /// Of a curve, as a share of its range.
+    curve: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -93,6 +95,7 @@ pub fn page(film: &Film) -> String {
         quanta: Quanta {
             distance: distance(film),
             channel: 1.0 / LEVELS,
+            curve: 1.0 / LEVELS_OF_CURVES,
         },
         streams: &streams.index,
     };
@@ -198,7 +201,7 @@ fn packed(film: &Film) -> Streams {
             .iter()
             .all(|known| !known.is_called(&index.stream))
         {
-            streams.push_channel(&index.stream, &curve.values, 1);
+            streams.push_curve(&index.stream, &curve.values);
         }
     }
     let column = |of: fn(&crate::Contact) -> f64| film.contacts.iter().map(of).collect::<Vec<_>>();

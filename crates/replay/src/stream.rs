@@ -13,8 +13,11 @@ use flate2::Compression;
 use flate2::write::DeflateEncoder;
 use serde::Serialize;
 
-/// Quanta between zero and the largest magnitude of a channel.
+/// Quanta between zero and the largest magnitude of a channel that colours or arrows show.
 pub(crate) const LEVELS: f64 = 400.0;
+
+/// Quanta between the least and the largest value of a curve, whose scale is stretched to its range.
+pub(crate) const LEVELS_OF_CURVES: f64 = 2000.0;
 
 /// What to undo, and where the bytes are.
 #[derive(Clone, Debug, Serialize)]
@@ -83,6 +86,22 @@ impl Streams {
         let finite = values.iter().filter(|value| value.is_finite());
         let largest = finite.fold(0.0_f64, |most, value| most.max(value.abs()));
         self.push(name, values, columns, largest / LEVELS);
+    }
+
+    /// Packs the values of one curve.
+    pub(crate) fn push_curve(&mut self, name: &str, values: &[f64]) {
+        let finite = || values.iter().copied().filter(|value| value.is_finite());
+        let least = finite().fold(f64::INFINITY, f64::min);
+        let most = finite().fold(f64::NEG_INFINITY, f64::max);
+        let range = if least < most { most - least } else { 0.0 };
+        // What varies by rounding alone is as good as constant, and keeps its digits.
+        let floor = 1e-9 * least.abs().max(most.abs());
+        let quantum = if floor.is_finite() {
+            (range / LEVELS_OF_CURVES).max(floor)
+        } else {
+            0.0
+        };
+        self.push(name, values, 1, quantum);
     }
 }
 

@@ -80,6 +80,24 @@ fn values_come_back_within_half_a_quantum() {
     }
 }
 
+/// An arm that moves by a ten-thousandth of its angle moves smoothly in its plot; what stands keeps its digits.
+#[test]
+fn curves_are_as_fine_as_their_range() {
+    let angles: Vec<f64> = (0..500)
+        .map(|at| 1.2 + 1e-4 * (0.02 * f64::from(at)).sin())
+        .collect();
+    for (values, allowed) in [(angles, 0.51e-7), (vec![5.3; 9], 1e-8), (vec![0.0; 9], 0.0)] {
+        let mut streams = Streams::default();
+        streams.push_curve("curve", &values);
+        let back = unpacked(&streams, &streams.index[0]);
+        let worst = values
+            .iter()
+            .zip(&back)
+            .map(|(value, found)| (value - found).abs());
+        assert!(worst.fold(0.0, f64::max) <= allowed, "{back:?}");
+    }
+}
+
 /// Eight metres by tenths of a millimetre are more than sixteen bits hold.
 #[test]
 fn long_ways_do_not_wrap() {
