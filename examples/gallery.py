@@ -38,23 +38,24 @@ def signals() -> Iterator[tuple[str, object]]:
     record = ["span_tension", "link_tension", "roller_x", "roller_y", "sprocket_speed"]
     run = cd.run_up(drive, "40 rpm", "100 rpm", until=8, every="1 ms", record=record, error=False)
     yield "tension", cd.plot.tension(run)
-    yield "spectrum", cd.plot.spectrum(run.drive.spectrum("span_tension", segments=4), up_to=250)
+    yield "spectrum", cd.plot.spectrum(run, segments=4, up_to=250)
     motion = run.drive.span_motion("crank-camshaft", places=0.37)
+    yield "order_map", cd.plot.order_map(run, motion, turns=1.0, up_to=150)
     orders = run.drive.order_map(motion, "crank", turns=1.0)
-    yield "order_map", cd.plot.order_map(orders, up_to=150)
     yield "order_slice", cd.plot.order_slice(cd.analysis.order_slice(orders, 60))
-    diagram = run.drive.campbell(motion, "crank", window_time=0.5, up_to=120)
-    yield "campbell", cd.plot.campbell(diagram)
+    yield "campbell", cd.plot.campbell(run, motion, window_time=0.5, up_to=120)
     modes = cd.analysis.running_modes(drive, speeds=np.linspace(0, 15, 7), up_to=40)
     yield "running_modes", cd.plot.running_modes(modes)
     places = run.drive.span_motion("camshaft-crank", places=[0.25, 0.5])
     yield "span_motion", cd.plot.span_motion(places.sel(time=slice(6, 7)))
-    yield "span_envelope", cd.plot.span_envelope(run.drive.span_envelope("camshaft-crank"))
+    yield "span_envelope", cd.plot.span_envelope(run, "camshaft-crank")
     steady = cd.simulate(drive, run_in="2 turns", until=0.5, every="0.2 ms", error=False)
     yield "frame", cd.plot.frame(steady, 0.25)
-    error = steady.drive.transmission_error("crank", "camshaft")
-    yield "transmission_error", cd.plot.transmission_error(error)
-    yield "speed_ripple", cd.plot.speed_ripple(steady.drive.speed_ripple())
+    yield "transmission_error", cd.plot.transmission_error(steady)
+    yield "speed_ripple", cd.plot.speed_ripple(steady)
+    pretensions = {"route.pretension": [5e3, 10e3, 15e3, 20e3]}
+    table = cd.sweep(drive, pretensions, run_in=0, until=0.2, every="1 ms")
+    yield "response", cd.plot.response(table)
 
 
 def contacts() -> Iterator[tuple[str, object]]:
@@ -66,14 +67,15 @@ def contacts() -> Iterator[tuple[str, object]]:
     run = cd.simulate(
         drive, run_in=0.2, until=0.1, every=1e-4, record=record, events="teeth", error=False
     )
-    yield "tension_around_loop", cd.plot.tension_around_loop(run.drive.tension_around_loop())
-    yield "tooth_load", cd.plot.tooth_load(run.drive.tooth_load("driver"))
-    yield "impacts", cd.plot.impacts(run.drive.impacts())
-    yield "losses", cd.plot.losses(run.drive.losses())
-    yield "joint_work", cd.plot.joint_work(run.drive.joint_work())
-    yield "elongation", cd.plot.elongation(run.drive.wear())
-    yield "rainflow", cd.plot.rainflow(run.drive.rainflow())
-    yield "utilisation", cd.plot.utilisation(run.drive.utilisation())
+    yield "overview", cd.plot.overview(run).axes[0]
+    yield "tension_around_loop", cd.plot.tension_around_loop(run)
+    yield "tooth_load", cd.plot.tooth_load(run)
+    yield "impacts", cd.plot.impacts(run)
+    yield "losses", cd.plot.losses(run)
+    yield "joint_work", cd.plot.joint_work(run)
+    yield "elongation", cd.plot.elongation(run)
+    yield "rainflow", cd.plot.rainflow(run)
+    yield "utilisation", cd.plot.utilisation(run)
     table = cd.work_precision(cd.scenes.spinning_ring(), until=0.01)
     yield "work_precision", cd.plot.work_precision(table)
 

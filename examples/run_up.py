@@ -39,6 +39,7 @@ def main() -> None:
     modes = run.drive.running_modes(speeds=speeds, up_to=60)
     critical = cd.analysis.critical_speeds(modes, MESH)
 
+    plt.rcParams.update(cd.plot.STYLE)
     figure, axes = plt.subplots(2, 2, figsize=(12, 8), layout="constrained")
     for ax, span in zip(axes.flat, SPANS, strict=False):
         motion = run.drive.span_motion(span, places=0.37)
@@ -47,10 +48,8 @@ def main() -> None:
         cd.plot.order_slice(cut, ax=ax, label=f"{span}, order {MESH}")
         here = (critical["part"] == span) & (critical["share"] > 0.6)
         for speed in critical["speed"][here].to_numpy():
-            ax.axvline(speed * 30 / np.pi, color="#b5651d", linewidth=0.8)
-        ax.plot([], [], color="#b5651d", linewidth=0.8, label="meets a running mode")
-        ax.set_ylabel("amplitude of the excursion [m]")
-        ax.legend(fontsize="small")
+            ax.axvline(speed * 30 / np.pi, color="C1", linewidth=0.8)
+        ax.set_title(f"{span}; lines where a running mode is met")
     motion = run.drive.span_motion("tensioner-idler", places=0.37)
     diagram = run.drive.campbell(motion, "crank", window_time=2.0, modes=False, up_to=60)
     mine = modes.isel(mode=np.flatnonzero(modes["share"].sel(part="tensioner-idler")[0] > 0.6))

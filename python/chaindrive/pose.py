@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chaindrive.drive import Drive, _from_text
-from chaindrive.errors import AssemblyError
+from chaindrive.errors import AssemblyError, ParameterError
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -45,13 +45,15 @@ def recorded_at(figure: _core.Figure, run: xr.Dataset, time: float) -> dict[str,
 
     Raises
     ------
-    KeyError
+    ParameterError
         A channel that places something was not recorded.
     """
     absent = [name for name in figure.needs if name not in run]
     if absent:
         names = ", ".join(repr(name) for name in absent)
-        raise KeyError(f"{absent[0]} was not recorded: simulate(…, record=[…, {names}])")
+        raise ParameterError(
+            f"{', '.join(absent)} not in the run: simulate(…, record=[…, {names}])", absent[0]
+        )
     now = run.sel(time=time, method="nearest")
     given = {name: _row(now[name]) for name in figure.placing if name in now}
     return {"time": float(now["time"]), "channels": given}

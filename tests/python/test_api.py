@@ -217,8 +217,6 @@ def test_plots_draw(tmp_path):
     for number in plt.get_fignums():
         plt.figure(number).savefig(tmp_path / f"{number}.png")
     plt.close("all")
-    with pytest.raises(KeyError, match="roller_x"):
-        cd.plot.frame(run.drop_vars("roller_x"), 0.0)
 
 
 def test_layout_puts_rollers_into_gaps():

@@ -375,7 +375,9 @@ def test_a_frame_says_which_channel_is_missing():
     run = cd.simulate(
         drive, until=1e-4, every=1e-4, run_in=0, record=["roller_x", "roller_y"], error=False
     )
-    with pytest.raises(KeyError, match=r"sprocket_angle.*'sprocket_angle', 'tensioner_position'"):
+    with pytest.raises(
+        cd.ParameterError, match=r"sprocket_angle.*'sprocket_angle', 'tensioner_position'"
+    ):
         cd.plot.svg(run, 0.0)
 
 

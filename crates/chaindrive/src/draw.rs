@@ -18,19 +18,21 @@ use path::{id, millimetres, outline, placed, polygon};
 use view::View;
 
 /// Looks of all parts, for drawings alone: pages that hold one have other pictures too. Lines keep their width whatever the size.
+///
+/// The colours are those of `python/chaindrive/plot/scheme.py` (a test compares), to be seen on light and dark paper alike.
 const STYLE: &str = "\
-.chaindrive path,.chaindrive circle,.chaindrive line{vector-effect:non-scaling-stroke;stroke:#3c4650;stroke-width:.7;fill:none;stroke-linejoin:round;stroke-linecap:round}
-.chaindrive .sprocket{fill:#b9c2cb}
-.chaindrive .face{stroke:#b5651d;stroke-width:1.4}
-.chaindrive .backing{fill:#b5651d;fill-opacity:.4;stroke:none}
-.chaindrive .arm,.chaindrive .slider{stroke:#6b7a4b;stroke-width:4;stroke-opacity:.7}
-.chaindrive .plunger{stroke:#6b7a4b;stroke-width:2}
-.chaindrive .pivot{fill:#fff;stroke:#6b7a4b}
-.chaindrive .roller{fill:#fff}
-.chaindrive .plate{fill:#4a7ba6;fill-opacity:.45;stroke-width:.4}
-.chaindrive .mark{stroke:#c8102e;stroke-width:2}
-.chaindrive text{font-family:sans-serif;fill:#6b7684}
-.chaindrive .told{fill:#c8102e}";
+.chaindrive path,.chaindrive circle,.chaindrive line{vector-effect:non-scaling-stroke;stroke:#6b7784;stroke-width:.7;fill:none;stroke-linejoin:round;stroke-linecap:round}
+.chaindrive .sprocket{fill:#8d99a6;fill-opacity:.2}
+.chaindrive .face{stroke:#b9702c;stroke-width:1.4}
+.chaindrive .backing{fill:#b9702c;fill-opacity:.4;stroke:none}
+.chaindrive .arm,.chaindrive .slider{stroke:#7d8a52;stroke-width:4;stroke-opacity:.7}
+.chaindrive .plunger{stroke:#7d8a52;stroke-width:2}
+.chaindrive .pivot{fill:#7d8a52;stroke:#7d8a52}
+.chaindrive .roller{fill:#8d99a6;fill-opacity:.2}
+.chaindrive .plate{fill:#2f7ec2;fill-opacity:.45;stroke-width:.4}
+.chaindrive .mark{stroke:#d6324a;stroke-width:2}
+.chaindrive text{font-family:sans-serif;fill:#767e87}
+.chaindrive .told{fill:#d6324a}";
 
 /// A pose as the text of an SVG file.
 pub fn svg(figure: &Figure, pose: &Pose, title: &str) -> String {

@@ -224,7 +224,9 @@ def campbell(
     size = round((window_time or samples.size / rate / 40.0) * rate)
     if not 8 <= size <= samples.size:
         raise ParameterError(
-            f"window_time = {size / rate:.3g} s, must fit into the run", "window_time"
+            f"a window of {size / rate:.3g} s holds {size} of {samples.size} samples, must hold 8 "
+            "or more; record more often, or give window_time",
+            "window_time",
         )
     starts = _starts(samples.size, size, overlap)
     line, amplitude = _amplitudes(samples, starts, size, rate, "hann")

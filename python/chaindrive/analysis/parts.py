@@ -142,6 +142,8 @@ class SprocketParts:
     """Whether it stands there during the run."""
     restitution: float
     """Restitution of rollers on its teeth [–], as asked for in the scene."""
+    scene: Mapping[str, Any]
+    """Its table in the resolved scene, in SI units."""
 
     @property
     def pitch_radius(self) -> float:
@@ -230,6 +232,7 @@ def sprockets(run: xr.Dataset) -> dict[str, SprocketParts]:
                 centre=(float(table["centre"][0]), float(table["centre"][1])),
                 stands=fixed and not moved and "path" not in table,
                 restitution=_restitution(scene, table),
+                scene=table,
             )
     return found
 

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from chaindrive.analysis.parts import ChainParts, SprocketParts, sprockets
-from chaindrive.analysis.signal import recorded
+from chaindrive.analysis.signal import recorded, require
 from chaindrive.errors import ParameterError
 
 __all__ = ["PERCENTILES", "impacts", "swing_speed"]
@@ -65,6 +65,7 @@ def impacts(run: xr.Dataset, *, mass: float | None = None) -> xr.Dataset:
     if "event_kind" not in run:
         raise ParameterError("no contacts were logged: simulate(…, events='teeth')", "events")
     recorded(run, "sprocket_angle")
+    require(run, "sprocket")
     known = sprockets(run)
     rows = [_of(run, wheel, _striking(wheel.chain, mass)) for wheel in known.values()]
     seconds = float(run["time"][-1] - run["time"][0])

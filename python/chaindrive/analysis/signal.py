@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from chaindrive.drive import Drive, _from_text
 from chaindrive.errors import ParameterError
 
-__all__ = ["drive_of", "label", "recorded", "sample_rate", "signal", "turning"]
+__all__ = ["drive_of", "label", "recorded", "require", "sample_rate", "signal", "turning"]
 
 
 def __dir__() -> list[str]:
@@ -29,6 +29,15 @@ def recorded(run: xr.Dataset, *channels: str) -> None:
         raise ParameterError(
             f"{', '.join(missing)} not in the run: simulate(…, record=[…, {asked}])", missing[0]
         )
+
+
+def require(run: xr.Dataset, part: str) -> None:
+    """Raise where the drive of a run has no such parts: ``"span"``, ``"sprocket"``.
+
+    That is another matter than a channel that was not recorded.
+    """
+    if run.sizes.get(part, 1) == 0:
+        raise ParameterError(f"this drive has no {part}s", part)
 
 
 def drive_of(run: xr.Dataset) -> Drive:

@@ -171,6 +171,9 @@ def stations(source: Drive | xr.Dataset) -> Stations:
         free = [int(span["pitches"]) for span in spans]
         names = [str(span["name"]) for span in spans]
         return _kept(source, tuple(seated), tuple(free), tuple(names))
+    # Attributes of a run with one closed chain.
+    if "pitches_seated" not in source.attrs:
+        raise ParameterError("spans are looked at of drives with one closed chain", "run")
     seated = [int(it) for it in np.atleast_1d(source.attrs["pitches_seated"])]
     free = [int(it) for it in np.atleast_1d(source.attrs["pitches_in_spans"])]
     names = [str(it) for it in drive_of(source).statics()["span"].to_numpy()]

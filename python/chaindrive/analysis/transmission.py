@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from chaindrive import kinematics
-from chaindrive.analysis.signal import drive_of, recorded, signal
+from chaindrive.analysis.signal import drive_of, recorded, require, signal
 from chaindrive.errors import ParameterError
 from chaindrive.pose import at_start
 
@@ -109,6 +109,7 @@ def speed_ripple(run: xr.Dataset, *, after: float = 0.0) -> xr.Dataset:
         over the mean speed [–], (sprocket,).
     """
     recorded(run, "sprocket_speed")
+    require(run, "sprocket")
     run = run.isel(time=slice(int(np.searchsorted(run["time"], after)), None))
     speed = run["sprocket_speed"]
     mean = speed.mean("time")

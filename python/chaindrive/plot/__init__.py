@@ -1,13 +1,18 @@
-"""Plots: a drive, its chain at an instant, and what a run or its analysis shows.
+"""Plots: a drive, its chain at an instant, and what a run, its analysis or a sweep shows.
 
-Needs the extra ``plot`` (matplotlib). Every function draws into the axes it is given, or into
-new ones, and returns them; nothing is shown or saved.
+Needs the extra ``plot`` (matplotlib). Plots of an analysis take the run as well and make the
+analysis themselves: ``plot.losses(run)``. Every function draws into the axes it is given, or into
+new ones, and returns them; nothing is shown or saved, and a new figure is left behind only when it
+was drawn. Paper is transparent, and colours are seen on white and on black: `STYLE` has them for
+figures of one's own.
 """
 
 from __future__ import annotations
 
 from chaindrive.plot.curves import tension, work_precision
 from chaindrive.plot.drive import frame, layout, svg
+from chaindrive.plot.panels import overview
+from chaindrive.plot.scheme import STYLE
 from chaindrive.plot.spectra import (
     campbell,
     order_map,
@@ -19,6 +24,7 @@ from chaindrive.plot.spectra import (
     speed_ripple,
     transmission_error,
 )
+from chaindrive.plot.variants import response
 from chaindrive.plot.wear import (
     elongation,
     impacts,
@@ -31,6 +37,7 @@ from chaindrive.plot.wear import (
 )
 
 __all__ = [
+    "STYLE",
     "campbell",
     "elongation",
     "frame",
@@ -40,7 +47,9 @@ __all__ = [
     "losses",
     "order_map",
     "order_slice",
+    "overview",
     "rainflow",
+    "response",
     "running_modes",
     "span_envelope",
     "span_motion",

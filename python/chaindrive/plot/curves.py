@@ -6,17 +6,25 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from chaindrive.plot.axes import given_or_new
+from chaindrive.analysis.signal import require
+from chaindrive.errors import ParameterError
+from chaindrive.plot.axes import drawing, legend_below
+from chaindrive.plot.scheme import LIMIT
+from chaindrive.plot.units import in_trade, written
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-_GREY = "#8d99a6"
+__all__ = ["tension", "work_precision"]
+
+
+def __dir__() -> list[str]:
+    return list(__all__)
 
 
 def tension(run: xr.Dataset, *, ax: Axes | None = None) -> Axes:
-    """Draw span tensions over time, or link tensions where spans were not recorded.
+    """Draw span tensions over time, or link tensions where there are no spans.
 
     Parameters
     ----------
@@ -31,22 +39,34 @@ def tension(run: xr.Dataset, *, ax: Axes | None = None) -> Axes:
 
     Raises
     ------
-    KeyError
-        Neither was recorded.
+    ParameterError
+        Neither was recorded, or the drive has neither spans nor links.
     """
-    name = next((name for name in ("span_tension", "link_tension") if name in run), None)
-    if name is None:
-        raise KeyError("neither span_tension nor link_tension was recorded")
-    ax = given_or_new(ax)
+    known = [name for name in ("span_tension", "link_tension") if name in run]
+    if not known:
+        raise ParameterError(
+            "neither span_tension nor link_tension is in the run: "
+            "simulate(…, record=[…, 'span_tension'])",
+            "span_tension",
+        )
+    # Open strands and rings have links, and no spans.
+    name = next((name for name in known if run[name].size), known[0])
     values = run[name]
     dim = str(values.dims[1])
-    for label in values[dim].to_numpy():
-        ax.plot(values["time"], values.sel({dim: label}), label=str(label), linewidth=0.8)
-    ax.set_xlabel("time [s]")
-    ax.set_ylabel(f"{dim} tension [N]")
-    if values.sizes[dim] <= 12:
-        ax.legend(fontsize="small")
-    ax.margins(x=0)
+    require(run, dim)
+    with drawing(ax) as ax:
+        factor, unit = in_trade("N", values)
+        crowded = values.sizes[dim] > 12
+        for label in values[dim].to_numpy():
+            line = factor * values.sel({dim: label})
+            (curve,) = ax.plot(values["time"], line, label=str(label), linewidth=0.8)
+            if crowded:
+                curve.set(linewidth=0.4, alpha=0.5)
+        ax.set_xlabel("time [s]")
+        ax.set_ylabel(written(f"{dim} tension", unit))
+        if not crowded:
+            legend_below(ax)
+        ax.margins(x=0)
     return ax
 
 
@@ -66,27 +86,29 @@ def work_precision(table: xr.Dataset, *, ax: Axes | None = None, cost: str = "wa
     -------
     matplotlib.axes.Axes
     """
-    ax = given_or_new(ax)
-    error = table["error_tight_span_tension"]
-    methods = table["method"].values.astype(str)
-    depths = table["onset_depth"].values
-    names = [
-        name if np.isnan(depth) else f"{name}, onset {depth:.0e} m"
-        for name, depth in zip(methods, depths, strict=True)
-    ]
-    for name in dict.fromkeys(names):
-        rows = np.array([other == name for other in names]) & np.isfinite(error.values)
-        if rows.any():
-            order = np.argsort(table[cost].values[rows])
-            ax.plot(table[cost].values[rows][order], error.values[rows][order], "o-", label=name)
-    agreement = table.attrs.get("agreement_tight_tension", 0.0)
-    if agreement > 0.0:
-        ax.axhline(agreement, color=_GREY, linestyle=":", label="reference and check apart")
-    unit = table[cost].attrs["units"]
-    ax.set_xlabel(table[cost].attrs["long_name"] + ("" if unit == "1" else f" [{unit}]"))
-    ax.set_ylabel("error of the tight span, rms [–]")
-    ax.set_xscale("log")
-    ax.set_yscale("log")
-    ax.set_title(table.attrs.get("title", ""))
-    ax.legend()
+    with drawing(ax) as ax:
+        error = table["error_tight_span_tension"]
+        methods = table["method"].values.astype(str)
+        depths = table["onset_depth"].values
+        names = [
+            name if np.isnan(depth) else f"{name}, onset {depth:.0e} m"
+            for name, depth in zip(methods, depths, strict=True)
+        ]
+        for name in dict.fromkeys(names):
+            rows = np.array([other == name for other in names]) & np.isfinite(error.values)
+            if rows.any():
+                order = np.argsort(table[cost].values[rows])
+                ax.plot(
+                    table[cost].values[rows][order], error.values[rows][order], "o-", label=name
+                )
+        agreement = table.attrs.get("agreement_tight_tension", 0.0)
+        if agreement > 0.0:
+            ax.axhline(agreement, color=LIMIT, linestyle=":", label="reference and check apart")
+        unit = table[cost].attrs["units"]
+        ax.set_xlabel(table[cost].attrs["long_name"] + ("" if unit == "1" else f" [{unit}]"))
+        ax.set_ylabel("error of the tight span, rms [–]")
+        ax.set_xscale("log")
+        ax.set_yscale("log")
+        ax.set_title(table.attrs.get("title", ""))
+        legend_below(ax)
     return ax

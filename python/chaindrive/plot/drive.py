@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chaindrive.drive import Drive
-from chaindrive.plot.axes import given_or_new
+from chaindrive.plot.axes import colour_bar, drawing
+from chaindrive.plot.scheme import CARRIER, GUIDE, MARK, OUTLINE, PLATES, STEEL
+from chaindrive.plot.units import in_trade, written
 from chaindrive.pose import Pose, figure_of, recorded_at
 
 if TYPE_CHECKING:
@@ -20,16 +22,20 @@ if TYPE_CHECKING:
 
 _Floats = NDArray[np.float64]
 
-_STEEL = "#b9c2cb"
-_OUTLINE = "#3c4650"
-_PLATES = "#4a7ba6"
-_GUIDE = "#b5651d"
-_CARRIER = "#6b7a4b"
-_MARK = "#c8102e"
-
 # Chords of drawn outlines stand off by less than a hundredth of what can be seen in a drive of a
 # metre on a thousand pixels.
 _TOLERANCE = 1e-5
+# Drives are drawn in millimetres.
+_MM = 1e3
+# Height of names, and their mean width in it [points].
+_LETTER = 8.0
+_WIDTH = 0.6
+
+__all__ = ["frame", "layout", "svg"]
+
+
+def __dir__() -> list[str]:
+    return list(__all__)
 
 
 def layout(
@@ -64,23 +70,15 @@ def layout(
     marked; parts in each other's way are marked with the depth of their overlap.
     """
     figure = drive._inner.figure(settled, 0.0)
-    ax = given_or_new(ax)
-    _Picture(ax, figure, Pose(**figure.start())).draw(names=names)
-    ax.set_title(drive.title)
-    if figure.problem is not None:
-        told = textwrap.fill(figure.problem, 90)
-        ax.text(
-            0.5,
-            1.0,
-            told,
-            transform=ax.transAxes,
-            color=_MARK,
-            fontsize=8,
-            ha="center",
-            va="bottom",
-        )
-        ax.set_title(drive.title, pad=14.0 + 11.0 * told.count("\n"))
-    return _finish(ax)
+    with drawing(ax) as ax:
+        _Picture(ax, figure, Pose(**figure.start())).draw(names=names)
+        ax.set_title(textwrap.fill(drive.title, 60))
+        if figure.problem is not None:
+            told = textwrap.fill(figure.problem, 90)
+            look: dict[str, Any] = {"color": MARK, "fontsize": 8, "ha": "center", "va": "bottom"}
+            ax.text(0.5, 1.0, told, transform=ax.transAxes, **look)
+            ax.set_title(textwrap.fill(drive.title, 60), pad=14.0 + 11.0 * told.count("\n"))
+    return ax
 
 
 def frame(
@@ -107,17 +105,17 @@ def frame(
 
     Raises
     ------
-    KeyError
+    ParameterError
         A channel that places something was not recorded.
     """
     figure = figure_of(run, drive)
     sample = recorded_at(figure, run, time)
     now = run.sel(time=time, method="nearest")
-    ax = given_or_new(ax)
     tensions = now["link_tension"].to_numpy() if "link_tension" in now else None
-    _Picture(ax, figure, Pose(**figure.pose(**sample)), tensions).draw(names=False)
-    ax.set_title(f"t = {sample['time']:.4g} s")
-    return _finish(ax)
+    with drawing(ax) as ax:
+        _Picture(ax, figure, Pose(**figure.pose(**sample)), tensions).draw(names=False)
+        ax.set_title(f"t = {sample['time']:.4g} s")
+    return ax
 
 
 def svg(run: xr.Dataset, time: float, *, drive: Drive | None = None) -> str:
@@ -138,7 +136,7 @@ def svg(run: xr.Dataset, time: float, *, drive: Drive | None = None) -> str:
 
     Raises
     ------
-    KeyError
+    ParameterError
         A channel that places something was not recorded.
     """
     figure = figure_of(run, drive)
@@ -161,14 +159,20 @@ class _Picture:
         self.figure = figure
         self.bodies = figure.bodies(_TOLERANCE)
         self.chains = figure.chains
-        self.pose = pose
+        self.placements = [it * (_MM, _MM, 1.0) for it in pose.placements]
+        self.rollers = [_MM * it for it in pose.rollers]
+        self.plates = [_MM * it for it in pose.plates]
         self.tensions = tensions
 
     def draw(self, *, names: bool) -> None:
-        for body, placement in zip(self.bodies, self.pose.placements, strict=True):
+        for body, placement in zip(self.bodies, self.placements, strict=True):
             self._body(body, placement)
         self._chains()
         self._marks()
+        self.ax.set_aspect("equal")
+        self.ax.set_xlabel("x [mm]")
+        self.ax.set_ylabel("y [mm]")
+        self.ax.autoscale_view()
         if names:
             self._names()
 
@@ -178,49 +182,49 @@ class _Picture:
         outlines = [_placed(outline, placement) for outline in body["outlines"]]
         x, y, _ = placement
         if body["kind"] == "sprocket":
-            face: dict[str, Any] = {"facecolor": _STEEL, "edgecolor": _OUTLINE, "linewidth": 0.6}
-            self.ax.add_patch(Polygon(outlines[0], zorder=2, **face))
+            self.ax.add_patch(Polygon(outlines[0], zorder=2, **_steel(0.6)))
             # The spoke shows how far the sprocket has turned.
             spoke = _placed(np.array([[0.0, 0.0], [0.0, 0.4 * body["pitch_radius"]]]), placement)
-            self.ax.plot(*spoke.T, color=_OUTLINE, linewidth=0.8, zorder=2.1)
-            self.ax.plot(x, y, "o", color=_OUTLINE, markersize=2.5, zorder=2.1)
+            self.ax.plot(*spoke.T, color=OUTLINE, linewidth=0.8, zorder=2.1)
+            self.ax.plot(x, y, "o", color=OUTLINE, markersize=2.5, zorder=2.1)
         elif body["kind"] == "guide":
             backing = _placed(body["backing"], placement)
-            face = {"facecolor": _GUIDE, "edgecolor": "none", "alpha": 0.45}
+            face: dict[str, Any] = {"facecolor": GUIDE, "edgecolor": "none", "alpha": 0.45}
             self.ax.add_patch(Polygon(backing, zorder=1.5, **face))
-            self.ax.plot(*outlines[0].T, color=_GUIDE, linewidth=1.0, zorder=3)
+            self.ax.plot(*outlines[0].T, color=GUIDE, linewidth=1.0, zorder=3)
         else:
             wide = 1.5 if body["kind"] == "plunger" else 3.0
-            look: dict[str, Any] = {"color": _CARRIER, "linewidth": wide, "solid_capstyle": "round"}
+            look: dict[str, Any] = {"color": CARRIER, "linewidth": wide, "solid_capstyle": "round"}
             for outline in outlines:
                 self.ax.plot(*outline.T, zorder=1.4, alpha=0.7, **look)
             if body["kind"] == "arm":
-                self.ax.plot(x, y, "o", mfc="white", mec=_CARRIER, markersize=5, zorder=3.1)
+                self.ax.plot(x, y, "o", color=CARRIER, markersize=5, zorder=3.1)
 
     def _chains(self) -> None:
         from matplotlib.collections import PatchCollection, PolyCollection
         from matplotlib.patches import Circle
 
         shapes: list[_Floats] = []
-        for chain, ends in zip(self.chains, self.pose.plates, strict=True):
+        for chain, ends in zip(self.chains, self.plates, strict=True):
             shapes.extend(_plates(chain["plate"], ends))
-        look: dict[str, Any] = {"edgecolors": _OUTLINE, "linewidths": 0.4, "zorder": 4}
+        look: dict[str, Any] = {"edgecolors": OUTLINE, "linewidths": 0.4, "zorder": 4}
         if self.tensions is not None and len(self.tensions) == len(shapes):
-            plates = PolyCollection(shapes, array=self.tensions, cmap="viridis", **look)
-            self.ax.figure.colorbar(plates, ax=self.ax, label="link tension [N]", shrink=0.8)
+            factor, unit = in_trade("N", self.tensions)
+            plates = PolyCollection(shapes, array=factor * self.tensions, cmap="viridis", **look)
+            colour_bar(self.ax, plates, written("link tension", unit))
         else:
-            plates = PolyCollection(shapes, facecolors=_PLATES, **look)
+            plates = PolyCollection(shapes, facecolors=PLATES, **look)
         # Teeth behind the plates are what one looks for.
         plates.set_alpha(0.5)
         self.ax.add_collection(plates)
-        for chain, places in zip(self.chains, self.pose.rollers, strict=True):
-            radius = 0.5 * chain["roller_diameter"]
+        for chain, places in zip(self.chains, self.rollers, strict=True):
+            radius = _MM * 0.5 * chain["roller_diameter"]
             circles = PatchCollection([Circle((x, y), radius) for x, y in places], zorder=3.5)
-            circles.set(facecolor="white", edgecolor=_OUTLINE, linewidth=0.5)
+            circles.set(**_steel(0.5))
             self.ax.add_collection(circles)
             # Rollers lie between the plates; their rims are seen all the same.
             rims = PatchCollection([Circle((x, y), radius) for x, y in places], zorder=5)
-            rims.set(facecolor="none", edgecolor=_OUTLINE, linewidth=0.4, alpha=0.8)
+            rims.set(facecolor="none", edgecolor=OUTLINE, linewidth=0.4, alpha=0.8)
             self.ax.add_collection(rims)
 
     def _marks(self) -> None:
@@ -230,66 +234,96 @@ class _Picture:
         for x, y, told in clashes + gaps:
             look: dict[str, Any] = {
                 "mfc": "none",
-                "mec": _MARK,
+                "mec": MARK,
                 "mew": 1.5,
                 "markersize": 16,
                 "zorder": 7,
             }
-            self.ax.plot(x, y, "o", **look)
+            self.ax.plot(_MM * x, _MM * y, "o", **look)
             self.ax.annotate(
                 told,
-                (x, y),
+                (_MM * x, _MM * y),
                 xytext=(0, 11),
                 textcoords="offset points",
                 ha="center",
                 fontsize=8,
-                color=_MARK,
+                color=MARK,
                 zorder=7,
             )
 
     def _names(self) -> None:
-        named: list[_Floats] = []
-        places = np.concatenate([*self.pose.rollers, self.pose.placements[:, :2]])
-        middle = places[:, 0].mean()
-        for body, placement in zip(self.bodies, self.pose.placements, strict=True):
-            centre = placement[:2]
-            if body["kind"] == "sprocket":
-                # Names of sprockets on one axis stand above each other.
-                above = sum(bool(np.hypot(*(centre - other)) < 1e-6) for other in named)
-                named.append(centre)
-                self.ax.annotate(
-                    body["name"],
-                    (centre[0], centre[1]),
-                    xytext=(0, 6 + 9 * above),
-                    textcoords="offset points",
-                    ha="center",
-                    fontsize=8,
-                    zorder=6,
-                )
+        """Write the names of sprockets and guides; one that would lie on another stands above."""
+        places = [*self.rollers, *(it[None, :2] for it in self.placements)]
+        middle = np.concatenate(places)[:, 0].mean()
+        written: list[tuple[float, float, float]] = []
+        scale = _points_per_unit(self.ax)
+        for body, placement in zip(self.bodies, self.placements, strict=True):
+            x, y, _ = placement
+            wide = _WIDTH * _LETTER * len(body["name"])
+            right: bool | None = None
+            if body["kind"] == "sprocket" and wide > 1.3 * scale * _MM * body["pitch_radius"]:
+                # Beside the sprocket and its chain, away from the middle of the drive.
+                right = x > middle
+                plates = max((0.5 * it["plate_height"] for it in self.chains), default=0.0)
+                x += (1 if right else -1) * _MM * (body["pitch_radius"] + plates)
             elif body["kind"] == "guide":
                 # Halfway along the face, on the side away from the loop.
                 face = _placed(body["outlines"][0], placement)
                 length = np.insert(np.cumsum(np.hypot(*np.diff(face, axis=0).T)), 0, 0.0)
                 x, y = (float(np.interp(0.5 * length[-1], length, axis)) for axis in face.T)
                 right = x > middle
-                self.ax.annotate(
-                    body["name"],
-                    (x, y),
-                    xytext=(10 if right else -10, 0),
-                    textcoords="offset points",
-                    color=_GUIDE,
-                    fontsize=7,
-                    ha="left" if right else "right",
-                    va="center",
-                    zorder=6,
-                )
+            elif body["kind"] != "sprocket":
+                continue
+            aside, above = {None: (0.0, 6.0), True: (10.0, 0.0), False: (-10.0, 0.0)}[right]
+            left = scale * x + aside - {None: 0.5, True: 0.0, False: 1.0}[right] * wide
+            base = scale * y + above
+            line = 1.3 * _LETTER
+            while other := next(
+                (
+                    it
+                    for it in written
+                    if it[0] < left + wide and left < it[1] and abs(it[2] - base) < 0.99 * line
+                ),
+                None,
+            ):
+                base = other[2] + line
+            written.append((left, left + wide, base))
+            low, high = self.ax.get_xlim()
+            self.ax.set_xlim(min(low, left / scale), max(high, (left + wide) / scale))
+            self.ax.annotate(
+                body["name"],
+                (x, y),
+                xytext=(aside, base - scale * y),
+                textcoords="offset points",
+                fontsize=_LETTER,
+                ha={None: "center", True: "left", False: "right"}[right],
+                va="baseline" if right is None else "center",
+                color=GUIDE if body["kind"] == "guide" else None,
+                zorder=6,
+            )
+
+
+def _steel(linewidth: float) -> dict[str, Any]:
+    """Return the looks of what is of steel: its face lets the paper through."""
+    from matplotlib.colors import to_rgba
+
+    return {"facecolor": to_rgba(STEEL, 0.2), "edgecolor": OUTLINE, "linewidth": linewidth}
+
+
+def _points_per_unit(ax: Axes) -> float:
+    """Return how many points a unit of the data takes, about, once the axes are drawn."""
+    (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
+    box = ax.get_window_extent()
+    pixels = min(box.width / (right - left), box.height / (high - low))
+    figure = ax.get_figure()
+    return float(pixels * 72.0 / (figure.dpi if figure is not None else 72.0))
 
 
 def _placed(points: _Floats, placement: _Floats) -> _Floats:
-    """Put points of a body (points, 2) where its placement (3,) has them."""
+    """Put points of a body (points, 2) [m] where its placement (3,) [mm, rad] has them [mm]."""
     x, y, angle = placement
     turned = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-    placed: _Floats = points @ turned + (x, y)
+    placed: _Floats = _MM * points @ turned + (x, y)
     return placed
 
 
@@ -302,11 +336,3 @@ def _plates(halves: tuple[_Floats, _Floats], ends: _Floats) -> list[_Floats]:
         second = _placed(halves[1], np.array([x1, y1, angle]))
         shapes.append(np.concatenate([first, second]))
     return shapes
-
-
-def _finish(ax: Axes) -> Axes:
-    ax.set_aspect("equal")
-    ax.set_xlabel("x [m]")
-    ax.set_ylabel("y [m]")
-    ax.autoscale_view()
-    return ax

@@ -1,4 +1,4 @@
-"""Plots of signals and modes: spectra, orders, Campbell diagrams, transmission, spans."""
+"""Signals and modes of a run: spectra, orders, Campbell diagrams, transmission, spans."""
 
 from __future__ import annotations
 
@@ -7,8 +7,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from chaindrive import analysis
 from chaindrive.errors import ParameterError
-from chaindrive.plot.axes import given_or_new
+from chaindrive.plot.axes import colour_bar, drawing, legend_below
+from chaindrive.plot.scheme import CURVES, LIMIT, STEEL
+from chaindrive.plot.source import (
+    analysed,
+    driven_of,
+    driver_of,
+    is_run,
+    mesh_order_of,
+    span_of,
+    tightest_span,
+)
+from chaindrive.plot.units import in_trade, written
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,71 +46,117 @@ def __dir__() -> list[str]:
     return list(__all__)
 
 
-def spectrum(spread: xr.DataArray, *, ax: Axes | None = None, up_to: float | None = None) -> Axes:
+def spectrum(
+    source: xr.Dataset | xr.DataArray,
+    channel: str | xr.DataArray | None = None,
+    *,
+    ax: Axes | None = None,
+    up_to: float | None = None,
+    **options: Any,
+) -> Axes:
     """Draw a spectrum, its amplitude logarithmic; one line a label where there are several.
 
     Parameters
     ----------
-    spread
-        What `chaindrive.analysis.spectrum` or `order_spectrum` returned.
+    source
+        A run, or what `chaindrive.analysis.spectrum` or `order_spectrum` returned.
+    channel
+        Of a run, the channel or a signal over time; ``"span_tension"`` when absent.
     ax
         Where to draw; new axes when absent.
     up_to
         Highest frequency [Hz] or order; all when absent.
+    **options
+        Of a run, passed on to `chaindrive.analysis.spectrum`.
 
     Returns
     -------
     matplotlib.axes.Axes
+
+    Raises
+    ------
+    ParameterError
+        The channel was not recorded, or has no labels in this drive; or the analysis refuses it.
     """
-    ax = given_or_new(ax)
-    axis = str(spread.dims[-1])
-    # The mean has been taken off: the line at zero says nothing.
-    shown = spread.sel({axis: slice(float(spread[axis][1]), up_to)})
-    others = [str(dim) for dim in spread.dims[:-1]]
-    rows = shown.stack(row=others) if others else shown.expand_dims("row")
-    for row in rows.transpose("row", axis):
-        name = ", ".join(str(row[dim].item()) for dim in others)
-        ax.semilogy(shown[axis], row, linewidth=0.8, label=name)
-    if others and rows.sizes["row"] <= 12:
-        # Above the lines: peaks may stand anywhere.
-        ax.legend(fontsize="small", loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3)
-    ax.set_xlabel(_label(shown[axis]))
-    ax.set_ylabel(_label(spread))
-    ax.margins(x=0)
+    holds = "order" if not is_run(source) and "order" in source.coords else "frequency"
+    chosen = {"channel": channel, **options}
+    spread = analysed(source, analysis.spectrum, holds, chosen, {"channel": _span_tension})
+    with drawing(ax) as ax:
+        axis = str(spread.dims[-1])
+        # The mean has been taken off: the line at zero says nothing.
+        shown = spread.sel({axis: slice(float(spread[axis][1]), up_to)})
+        others = [str(dim) for dim in spread.dims[:-1]]
+        rows = shown.stack(row=others) if others else shown.expand_dims("row")
+        factor, unit = in_trade(spread.attrs.get("units", "1"), shown)
+        for row in rows.transpose("row", axis):
+            name = ", ".join(str(row[dim].item()) for dim in others)
+            ax.semilogy(shown[axis], factor * row, linewidth=0.8, label=name)
+        if others and rows.sizes["row"] <= 12:
+            legend_below(ax)
+        about = shown[axis].attrs
+        ax.set_xlabel(written(about.get("long_name", axis), about.get("units", "1")))
+        ax.set_ylabel(written(spread.attrs.get("long_name", str(spread.name)), unit))
+        ax.margins(x=0)
     return ax
 
 
-def order_map(found: xr.DataArray, *, ax: Axes | None = None, up_to: float | None = None) -> Axes:
+def order_map(
+    source: xr.Dataset | xr.DataArray,
+    channel: str | xr.DataArray | None = None,
+    shaft: str | None = None,
+    *,
+    ax: Axes | None = None,
+    up_to: float | None = None,
+    **options: Any,
+) -> Axes:
     """Draw an order map: order against speed, amplitude as colour in decibels.
 
     Parameters
     ----------
-    found
-        What `chaindrive.analysis.order_map` returned.
+    source
+        A run in which the speed changes, or what `chaindrive.analysis.order_map` returned.
+    channel
+        Of a run, the channel or a signal over time; the tension of the tightest span when absent.
+    shaft
+        Of a run, the sprocket or shaft whose turns count; the driver when absent.
     ax
         Where to draw; new axes when absent.
     up_to
         Highest order; all when absent.
+    **options
+        Of a run, passed on to that function.
 
     Returns
     -------
     matplotlib.axes.Axes
+
+    Raises
+    ------
+    ParameterError
+        The speed does not change; a channel was not recorded; or the analysis refuses the run.
     """
-    ax = given_or_new(ax)
+    chosen = {"channel": channel, "shaft": shaft, **options}
+    found = analysed(source, analysis.order_map, "turn", chosen, _TIGHTEST)
     shown = found.sel(order=slice(None, up_to))
-    _map(ax, _RPM * shown["speed"].to_numpy(), shown["order"].to_numpy(), shown)
-    ax.set_xlabel(f"speed of {found.attrs['shaft']} [rpm]")
-    ax.set_ylabel(f"order of {found.attrs['shaft']} [–]")
+    with drawing(ax) as ax:
+        _map(ax, _RPM * shown["speed"].to_numpy(), shown["order"].to_numpy(), shown)
+        ax.set_xlabel(f"speed of {found.attrs['shaft']} [rpm]")
+        ax.set_ylabel(f"order of {found.attrs['shaft']} [–]")
     return ax
 
 
-def order_slice(cut: xr.Dataset, *, ax: Axes | None = None, **look: Any) -> Axes:
+def order_slice(
+    source: xr.Dataset, order: float | None = None, *, ax: Axes | None = None, **look: Any
+) -> Axes:
     """Draw the amplitude of one order against speed.
 
     Parameters
     ----------
-    cut
-        What `chaindrive.analysis.order_slice` returned.
+    source
+        A run in which the speed changes, of which the tension of the tightest span is drawn by
+        orders of the driver; or what `chaindrive.analysis.order_slice` returned.
+    order
+        Of a run, the order; that of the driver's teeth when absent.
     ax
         Where to draw; new axes when absent.
     **look
@@ -107,215 +165,329 @@ def order_slice(cut: xr.Dataset, *, ax: Axes | None = None, **look: Any) -> Axes
     Returns
     -------
     matplotlib.axes.Axes
+
+    Raises
+    ------
+    ParameterError
+        The speed does not change; a channel was not recorded; or the analysis refuses the run.
     """
-    ax = given_or_new(ax)
-    about = cut["amplitude"].attrs
-    style: dict[str, Any] = {"label": f"order {about['order']:g}", "linewidth": 1.2} | look
-    ax.plot(_RPM * cut["speed"], cut["amplitude"], **style)
-    ax.set_xlabel(f"speed of {about['shaft']} [rpm]")
-    ax.set_ylabel(_label(cut["amplitude"]))
-    ax.set_ylim(bottom=0.0)
-    ax.margins(x=0)
-    ax.legend(fontsize="small")
+
+    def order_slice(run: xr.Dataset, order: float) -> xr.Dataset:
+        found = analysis.order_map(run, tightest_span(run), driver_of(run))
+        _changing(found["speed"].to_numpy())
+        return analysis.order_slice(found, order)
+
+    usual = {"order": lambda run: mesh_order_of(run, driver_of(run))}
+    cut = analysed(source, order_slice, "amplitude", {"order": order}, usual)
+    with drawing(ax) as ax:
+        about = cut["amplitude"].attrs
+        style: dict[str, Any] = {"label": f"order {about['order']:g}"} | look
+        factor, unit = in_trade(about.get("units", "1"), cut["amplitude"])
+        ax.plot(_RPM * cut["speed"], factor * cut["amplitude"], **style)
+        ax.set_xlabel(f"speed of {about['shaft']} [rpm]")
+        ax.set_ylabel(written(about.get("long_name", "amplitude"), unit))
+        ax.set_ylim(bottom=0.0)
+        ax.margins(x=0)
+        legend_below(ax)
     return ax
 
 
-def campbell(found: xr.Dataset, *, ax: Axes | None = None) -> Axes:
+def campbell(
+    source: xr.Dataset,
+    channel: str | xr.DataArray | None = None,
+    shaft: str | None = None,
+    *,
+    ax: Axes | None = None,
+    **options: Any,
+) -> Axes:
     """Draw a Campbell diagram: frequency against speed, with orders and running modes.
 
     Parameters
     ----------
-    found
-        What `chaindrive.analysis.campbell` returned.
+    source
+        A run in which the speed changes, or what `chaindrive.analysis.campbell` returned.
+    channel
+        Of a run, the channel or a signal over time; the tension of the tightest span when absent.
+    shaft
+        Of a run, the sprocket or shaft whose speed is the abscissa; the driver when absent.
     ax
         Where to draw; new axes when absent.
+    **options
+        Of a run, passed on to that function.
 
     Returns
     -------
     matplotlib.axes.Axes
+
+    Raises
+    ------
+    ParameterError
+        The speed does not change; a channel was not recorded; or the analysis refuses the run.
     """
-    ax = given_or_new(ax)
-    speed = _RPM * found["speed"].to_numpy()
-    frequency = found["frequency"].to_numpy()
-    _map(ax, speed, frequency, found["amplitude"])
-    for order in found["order"].to_numpy():
-        line = found["order_frequency"].sel(order=order).to_numpy()
-        ax.plot(speed, line, color="white", linewidth=0.8, linestyle="--")
-        last = int(np.flatnonzero(line <= frequency[-1])[np.argmax(speed[line <= frequency[-1]])])
-        ax.annotate(
-            f"{order:g}",
-            (speed[last], line[last]),
-            xytext=(-2, -9 if line[last] > 0.5 * frequency[-1] else 3),
-            textcoords="offset points",
-            ha="right",
-            va="top" if line[last] > 0.5 * frequency[-1] else "bottom",
-            color="white",
-            fontsize=8,
-        )
-    if "mode_frequency" in found:
-        at = _RPM * found["mode_speed"].to_numpy()
-        lines = found["mode_frequency"].transpose("mode_speed", "mode").to_numpy()
-        ax.plot(at, lines, color="#ff8c42", linewidth=0.8, alpha=0.8)
-        ax.plot([], [], color="#ff8c42", linewidth=0.7, label="running modes")
-        ax.plot([], [], color="grey", linewidth=0.8, linestyle="--", label="orders")
-        ax.legend(fontsize="small", loc="upper left")
-    ax.set_xlim(float(speed.min()), float(speed.max()))
-    ax.set_ylim(0.0, float(frequency[-1]))
-    ax.set_xlabel(f"speed of {found.attrs['shaft']} [rpm]")
-    ax.set_ylabel("frequency [Hz]")
+    chosen = {"channel": channel, "shaft": shaft, **options}
+    found = analysed(source, analysis.campbell, "order_frequency", chosen, _TIGHTEST)
+    with drawing(ax) as ax:
+        speed = _RPM * found["speed"].to_numpy()
+        frequency = found["frequency"].to_numpy()
+        _map(ax, speed, frequency, found["amplitude"])
+        for order in found["order"].to_numpy():
+            line = found["order_frequency"].sel(order=order).to_numpy()
+            ax.plot(speed, line, color="white", linewidth=0.8, linestyle="--")
+            within = line <= frequency[-1]
+            last = int(np.flatnonzero(within)[np.argmax(speed[within])])
+            high = line[last] > 0.5 * frequency[-1]
+            ax.annotate(
+                f"{order:g}",
+                (speed[last], line[last]),
+                xytext=(-2, -9 if high else 3),
+                textcoords="offset points",
+                ha="right",
+                va="top" if high else "bottom",
+                color="white",
+                fontsize=8,
+            )
+        ax.plot([], [], color=LIMIT, linewidth=0.8, linestyle="--", label="orders, white")
+        if "mode_frequency" in found:
+            at = _RPM * found["mode_speed"].to_numpy()
+            lines = found["mode_frequency"].transpose("mode_speed", "mode").to_numpy()
+            ax.plot(at, lines, color=CURVES[1], linewidth=0.8)
+            ax.plot([], [], color=CURVES[1], linewidth=0.8, label="running modes")
+        ax.set_xlim(float(speed.min()), float(speed.max()))
+        ax.set_ylim(0.0, float(frequency[-1]))
+        ax.set_xlabel(f"speed of {found.attrs['shaft']} [rpm]")
+        ax.set_ylabel("frequency [Hz]")
+        legend_below(ax)
     return ax
 
 
-def running_modes(modes: xr.Dataset, *, ax: Axes | None = None) -> Axes:
+def running_modes(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
     """Draw the frequencies of the running drive against speed, coloured by where they live.
 
     Parameters
     ----------
-    modes
-        What `chaindrive.analysis.running_modes` returned, of several speeds.
+    source
+        A run, or what `chaindrive.analysis.running_modes` returned, best of several speeds.
     ax
         Where to draw; new axes when absent.
+    **options
+        Of a run, passed on to that function.
 
     Returns
     -------
     matplotlib.axes.Axes
+
+    Raises
+    ------
+    ParameterError
+        The analysis refuses the run: the message names the channel to record, or what is absent.
     """
-    ax = given_or_new(ax)
-    parts = modes["part"].to_numpy()
-    main = modes["share"].fillna(0.0).argmax("part").to_numpy()
-    speed = _RPM * np.broadcast_to(modes["speed"].to_numpy()[:, None], main.shape)
-    frequency = modes["frequency"].transpose("speed", "mode").to_numpy()
-    ax.plot(speed, frequency, color="#c4cad0", linewidth=0.6, zorder=1)
-    for i, part in enumerate(parts):
-        here = (main == i) & np.isfinite(frequency)
-        if here.any():
-            ax.plot(speed[here], frequency[here], "o", markersize=4, label=str(part))
-    ax.set_xlabel(f"speed of {modes.attrs['shaft']} [rpm]")
-    ax.set_ylabel("frequency [Hz]")
-    ax.set_ylim(bottom=0.0)
-    ax.legend(
-        fontsize="small", title="most energy in", loc="center left", bbox_to_anchor=(1.0, 0.5)
-    )
+    modes = analysed(source, analysis.running_modes, "growth", options, {"shaft": driver_of})
+    with drawing(ax) as ax:
+        parts = modes["part"].to_numpy()
+        main = modes["share"].fillna(0.0).argmax("part").to_numpy()
+        speed = _RPM * np.broadcast_to(modes["speed"].to_numpy()[:, None], main.shape)
+        frequency = modes["frequency"].transpose("speed", "mode").to_numpy()
+        ax.plot(speed, frequency, color=STEEL, linewidth=0.6, alpha=0.5, zorder=1)
+        for i, part in enumerate(parts):
+            here = (main == i) & np.isfinite(frequency)
+            if here.any():
+                ax.plot(speed[here], frequency[here], "o", markersize=4, label=str(part))
+        ax.set_xlabel(f"speed of {modes.attrs['shaft']} [rpm]")
+        ax.set_ylabel("frequency [Hz]")
+        ax.set_ylim(bottom=0.0)
+        legend_below(ax, "most energy in")
     return ax
 
 
-def transmission_error(found: xr.Dataset, *, ax: Axes | None = None) -> Axes:
+def transmission_error(
+    source: xr.Dataset,
+    driver: str | None = None,
+    driven: str | None = None,
+    *,
+    ax: Axes | None = None,
+    **options: Any,
+) -> Axes:
     """Draw a transmission error over time, and the range of the kinematic one.
 
     Parameters
     ----------
-    found
-        What `chaindrive.analysis.transmission_error` returned.
+    source
+        A run, or what `chaindrive.analysis.transmission_error` returned.
+    driver, driven
+        Of a run, sprockets of one chain; the first whose motion is given and the first under a
+        load when absent.
     ax
         Where to draw; new axes when absent.
+    **options
+        Of a run, passed on to that function.
 
     Returns
     -------
     matplotlib.axes.Axes
+
+    Raises
+    ------
+    ParameterError
+        The analysis refuses the run: the message names the channel to record, or what is absent.
     """
-    ax = given_or_new(ax)
-    about = found.attrs
-    ax.plot(found["time"], 1e3 * found["error"], linewidth=0.8, label="dynamic")
-    if np.isfinite(about["kinematic_range"]):
-        half = 0.5e3 * about["kinematic_range"]
-        ax.axhspan(-half, half, color="#b5651d", alpha=0.4, label="range of the polygon action")
-    ax.legend(fontsize="small", loc="upper right")
-    ax.set_xlabel("time [s]")
-    ax.set_ylabel("transmission error [mrad]")
-    ax.set_title(f"{about['driver']} to {about['driven']}")
-    ax.margins(x=0)
+    chosen = {"driver": driver, "driven": driven, **options}
+    usual = {"driver": driver_of, "driven": lambda run: driven_of(run, driver)}
+    found = analysed(source, analysis.transmission_error, "error", chosen, usual)
+    with drawing(ax) as ax:
+        about = found.attrs
+        ax.plot(found["time"], np.degrees(found["error"]), linewidth=0.8, label="dynamic")
+        if np.isfinite(about["kinematic_range"]):
+            half = 0.5 * np.degrees(about["kinematic_range"])
+            look: dict[str, Any] = {"color": CURVES[1], "alpha": 0.4}
+            ax.axhspan(-half, half, label="range of the polygon action", **look)
+        ax.set_xlabel("time [s]")
+        ax.set_ylabel("transmission error [°]")
+        ax.set_title(f"{about['driver']} to {about['driven']}")
+        ax.margins(x=0)
+        legend_below(ax)
     return ax
 
 
-def speed_ripple(found: xr.Dataset, *, ax: Axes | None = None) -> Axes:
+def speed_ripple(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
     """Draw the irregularity and the ripple of every sprocket's speed.
 
     Parameters
     ----------
-    found
-        What `chaindrive.analysis.speed_ripple` returned.
+    source
+        A run, or what `chaindrive.analysis.speed_ripple` returned.
     ax
         Where to draw; new axes when absent.
+    **options
+        Of a run, passed on to that function.
 
     Returns
     -------
     matplotlib.axes.Axes
+
+    Raises
+    ------
+    ParameterError
+        No sprocket turns; or the speeds were not recorded.
     """
-    ax = given_or_new(ax)
-    names = found["sprocket"].to_numpy().astype(str)
-    at = np.arange(names.size)
-    ax.bar(at - 0.2, 100 * found["irregularity"], 0.4, label="peak to peak")
-    ax.bar(at + 0.2, 100 * found["rms_ripple"], 0.4, label="rms")
-    ax.set_xticks(at, names)
-    ax.set_ylabel("ripple over mean speed [%]")
-    ax.legend(fontsize="small")
+    found = analysed(source, analysis.speed_ripple, "irregularity", options)
+    # What stands in the mean has no ripple over its mean speed.
+    turning = found.isel(sprocket=np.flatnonzero(np.isfinite(found["irregularity"])))
+    if turning.sizes["sprocket"] == 0:
+        raise ParameterError("no sprocket turns during the run: there is no ripple", "sprocket")
+    with drawing(ax) as ax:
+        names = turning["sprocket"].to_numpy().astype(str)
+        at = np.arange(names.size)
+        ax.bar(at - 0.2, 100 * turning["irregularity"], 0.4, label="peak to peak")
+        ax.bar(at + 0.2, 100 * turning["rms_ripple"], 0.4, label="rms")
+        ax.set_xticks(at, names)
+        ax.set_ylabel("ripple over mean speed [%]")
+        legend_below(ax)
     return ax
 
 
-def span_motion(motion: xr.DataArray, *, ax: Axes | None = None) -> Axes:
+def span_motion(
+    source: xr.Dataset | xr.DataArray,
+    span: str | None = None,
+    *,
+    ax: Axes | None = None,
+    **options: Any,
+) -> Axes:
     """Draw the excursion of a span at fixed points over time.
 
     Parameters
     ----------
-    motion
-        What `chaindrive.analysis.span_motion` returned.
+    source
+        A run, or what `chaindrive.analysis.span_motion` returned.
+    span
+        Of a run, the span; the longest when absent.
     ax
         Where to draw; new axes when absent.
+    **options
+        Of a run, passed on to that function.
 
     Returns
     -------
     matplotlib.axes.Axes
+
+    Raises
+    ------
+    ParameterError
+        The analysis refuses the run: the message names the channel to record, or what is absent.
     """
-    ax = given_or_new(ax)
-    rows = motion if "place" in motion.dims else motion.expand_dims("place")
-    for row in rows.transpose("place", "time"):
-        ax.plot(row["time"], 1e3 * row, linewidth=0.8, label=f"at {float(row['place']):.3g}")
-    ax.set_xlabel("time [s]")
-    ax.set_ylabel(f"excursion of {motion['span'].item()} [mm]")
-    ax.legend(fontsize="small", title="share of length", loc="upper right")
-    ax.margins(x=0)
+    chosen = {"span": span, **options}
+    motion = analysed(source, analysis.span_motion, "place", chosen, {"span": span_of})
+    with drawing(ax) as ax:
+        rows = motion if "place" in motion.dims else motion.expand_dims("place")
+        for row in rows.transpose("place", "time"):
+            place = f"at {float(row['place']):.3g} of its length"
+            ax.plot(row["time"], 1e3 * row, linewidth=0.8, label=place)
+        ax.set_xlabel("time [s]")
+        ax.set_ylabel(f"excursion of {motion['span'].item()} [mm]")
+        ax.margins(x=0)
+        legend_below(ax)
     return ax
 
 
-def span_envelope(envelope: xr.Dataset, *, ax: Axes | None = None) -> Axes:
+def span_envelope(
+    source: xr.Dataset, span: str | None = None, *, ax: Axes | None = None, **options: Any
+) -> Axes:
     """Draw how far a span swings along its length.
 
     Parameters
     ----------
-    envelope
-        What `chaindrive.analysis.span_envelope` returned.
+    source
+        A run, or what `chaindrive.analysis.span_envelope` returned.
+    span
+        Of a run, the span; the longest when absent.
     ax
         Where to draw; new axes when absent.
+    **options
+        Of a run, passed on to that function.
 
     Returns
     -------
     matplotlib.axes.Axes
+
+    Raises
+    ------
+    ParameterError
+        The analysis refuses the run: the message names the channel to record, or what is absent.
     """
-    ax = given_or_new(ax)
-    x = envelope["distance"]
-    ax.fill_between(
-        x,
-        1e3 * envelope["least"],
-        1e3 * envelope["greatest"],
-        alpha=0.25,
-        label="least to greatest",
-    )
-    mean = 1e3 * envelope["mean"]
-    rms = 1e3 * envelope["rms"]
-    ax.fill_between(x, mean - rms, mean + rms, alpha=0.5, label="mean ± rms")
-    ax.plot(x, mean, color="#1f4e79", label="mean")
-    ax.axhline(0.0, color="grey", linewidth=0.6)
-    ax.set_xlabel(f"{envelope['distance'].attrs['long_name']} [m]")
-    ax.set_ylabel("excursion [mm]")
-    ax.legend(fontsize="small")
-    ax.margins(x=0)
+    chosen = {"span": span, **options}
+    envelope = analysed(source, analysis.span_envelope, "distance", chosen, {"span": span_of})
+    with drawing(ax) as ax:
+        x = 1e3 * envelope["distance"]
+        ends = (1e3 * envelope["least"], 1e3 * envelope["greatest"])
+        mean, rms = 1e3 * envelope["mean"], 1e3 * envelope["rms"]
+        ax.fill_between(x, *ends, color=CURVES[0], alpha=0.25, label="least to greatest")
+        ax.fill_between(x, mean - rms, mean + rms, color=CURVES[0], alpha=0.5, label="mean ± rms")
+        ax.plot(x, mean, color=CURVES[0], label="mean")
+        ax.axhline(0.0, color=LIMIT, linewidth=0.6)
+        ax.set_xlabel(f"{envelope['distance'].attrs['long_name']} [mm]")
+        ax.set_ylabel("excursion [mm]")
+        ax.margins(x=0)
+        legend_below(ax)
     return ax
+
+
+def _span_tension(run: xr.Dataset) -> str:
+    tightest_span(run)
+    return "span_tension"
+
+
+# The signal and the shaft of orders, where nobody names them.
+_TIGHTEST = {"channel": tightest_span, "shaft": driver_of}
+
+
+def _changing(speed: Any) -> None:
+    """Raise where the speed is one."""
+    if np.ptp(speed) < 1e-3 * np.abs(speed).max():
+        raise ParameterError("the speed does not change in this run: draw its spectrum", "source")
 
 
 def _map(ax: Axes, x: Any, y: Any, amplitude: xr.DataArray) -> None:
     """Draw amplitudes (x, y) in decibels of the largest, in the order of x."""
-    if np.ptp(x) < 1e-3 * np.abs(x).max():
-        raise ParameterError("the speed does not change in this run: draw its spectrum", "found")
+    _changing(x)
     values = amplitude.to_numpy().T
     # At the ends of a ramp windows follow each other at one speed.
     order = np.argsort(x)
@@ -327,11 +499,6 @@ def _map(ax: Axes, x: Any, y: Any, amplitude: xr.DataArray) -> None:
     mesh = ax.pcolormesh(
         x, y, decibels, vmin=_FLOOR_DB, vmax=0.0, shading="nearest", rasterized=True
     )
-    unit = amplitude.attrs["units"]
-    ax.set_title(amplitude.attrs["long_name"], fontsize="medium")
-    ax.figure.colorbar(mesh, ax=ax, label=f"amplitude [dB re {largest:.3g} {unit}]")
-
-
-def _label(values: xr.DataArray) -> str:
-    unit = values.attrs.get("units", "1")
-    return f"{values.attrs.get('long_name', values.name)} [{'–' if unit == '1' else unit}]"
+    factor, unit = in_trade(amplitude.attrs["units"], largest)
+    ax.set_title(amplitude.attrs["long_name"])
+    colour_bar(ax, mesh, f"amplitude [dB re {factor * largest:.3g} {unit}]")

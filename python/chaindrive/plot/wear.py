@@ -1,340 +1,424 @@
-"""Contacts, joints, wear and fatigue: pictures of what `chaindrive.analysis` returns."""
+"""Contacts, joints, wear and fatigue of a run."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from chaindrive.plot.axes import given_or_new
+from chaindrive import analysis
+from chaindrive.errors import ParameterError
+from chaindrive.plot.axes import colour_bar, drawing, legend_below
+from chaindrive.plot.scheme import CURVES, LIMIT, MARK, STEEL
+from chaindrive.plot.source import analysed, chain_of, driver_of
+from chaindrive.plot.units import in_trade, rounded, written
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-_GREY = "#8d99a6"
-_BLUE = "#1f4e79"
-_ORANGE = "#b5651d"
+__all__ = [
+    "elongation",
+    "impacts",
+    "joint_work",
+    "losses",
+    "rainflow",
+    "tension_around_loop",
+    "tooth_load",
+    "utilisation",
+]
+
+_BLUE, _ORANGE = CURVES[:2]
 
 
-def tension_around_loop(loop: xr.Dataset, *, ax: Axes | None = None) -> Axes:
+def __dir__() -> list[str]:
+    return list(__all__)
+
+
+def tension_around_loop(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
     """Draw the tension of links around the loop, with the sprockets shaded.
 
     Parameters
     ----------
-    loop
-        From `analysis.tension_around_loop`.
+    source
+        A run, or what `chaindrive.analysis.tension_around_loop` returned.
     ax
         Where to draw; new axes when absent.
+    **options
+        Of a run, passed on to that function; the first chain is drawn unless ``chain`` names one.
 
     Returns
     -------
     matplotlib.axes.Axes
+
+    Raises
+    ------
+    ParameterError
+        The analysis refuses the run: the message names the channel to record, or what is absent.
     """
-    ax = given_or_new(ax)
-    station = loop["station"]
-    ax.fill_between(
-        station,
-        loop["tension_min"],
-        loop["tension_max"],
-        color=_BLUE,
-        alpha=0.25,
-        linewidth=0,
-        label="least to largest",
-    )
-    ax.plot(station, loop["tension_mean"], color=_BLUE, label="mean")
-    links = int(loop.attrs["links"])
-    for name in loop["sprocket"].to_numpy():
-        begin, end = (float(loop[f"sprocket_{it}"].sel(sprocket=name)) for it in ("begin", "end"))
-        # A wrap that passes the beginning of the loop is drawn at both ends.
-        for shift in (0, links) if end > links else (0,):
-            ax.axvspan(begin - shift, min(end - shift, links), color=_GREY, alpha=0.25, linewidth=0)
-        middle = (begin + end) / 2 % links
-        ax.annotate(
-            str(name),
-            (middle, 1.0),
-            xycoords=("data", "axes fraction"),
-            xytext=(0, 3),
-            textcoords="offset points",
-            ha="center",
-            fontsize="small",
-        )
-    ax.set_xlim(0, links)
-    ax.set_xlabel("place on the loop [pitches]")
-    ax.set_ylabel("link tension [N]")
-    return _with_legend(ax)
+    usual = {"chain": chain_of}
+    loop = analysed(source, analysis.tension_around_loop, "tension_mean", options, usual)
+    with drawing(ax) as ax:
+        station = loop["station"]
+        factor, unit = in_trade("N", loop["tension_max"])
+        ends = (factor * loop["tension_min"], factor * loop["tension_max"])
+        look: dict[str, Any] = {"alpha": 0.25, "linewidth": 0}
+        ax.fill_between(station, *ends, color=_BLUE, label="least to largest", **look)
+        ax.plot(station, factor * loop["tension_mean"], color=_BLUE, label="mean")
+        links = int(loop.attrs["links"])
+        row = 0
+        previous = -np.inf
+        for name in loop["sprocket"].to_numpy():
+            begin, end = (
+                float(loop[f"sprocket_{it}"].sel(sprocket=name)) for it in ("begin", "end")
+            )
+            # A wrap that passes the beginning of the loop is drawn at both ends.
+            for shift in (0, links) if end > links else (0,):
+                ax.axvspan(begin - shift, min(end - shift, links), color=STEEL, **look)
+            middle = (begin + end) / 2 % links
+            # Names of sprockets near each other stand in two rows.
+            row = 1 - row if abs(middle - previous) < 0.2 * links else 0
+            previous = middle
+            ax.annotate(
+                str(name),
+                (middle, 1.0),
+                xycoords=("data", "axes fraction"),
+                xytext=(0, 3 + 11 * row),
+                textcoords="offset points",
+                ha="center",
+                fontsize="small",
+            )
+        ax.set_xlim(0, links)
+        ax.set_xlabel("place on the loop [pitches]")
+        ax.set_ylabel(written("link tension", unit))
+        legend_below(ax)
+    return ax
 
 
-def tooth_load(load: xr.Dataset, *, ax: Axes | None = None) -> Axes:
+def tooth_load(
+    source: xr.Dataset, sprocket: str | None = None, *, ax: Axes | None = None, **options: Any
+) -> Axes:
     """Draw the load of a roller from seating to release, beside Binder's decay.
 
     Parameters
     ----------
-    load
-        From `analysis.tooth_load`.
+    source
+        A run, or what `chaindrive.analysis.tooth_load` returned.
+    sprocket
+        Of a run, the sprocket; the driver when absent.
     ax
         Where to draw; new axes when absent.
+    **options
+        Of a run, passed on to that function.
 
     Returns
     -------
     matplotlib.axes.Axes
+
+    Raises
+    ------
+    ParameterError
+        The analysis refuses the run: the message names the channel to record, or what is absent.
     """
-    ax = given_or_new(ax)
-    angle = np.degrees(load["angle"])
-    ax.fill_between(
-        angle,
-        load["force_min"],
-        load["force_max"],
-        color=_GREY,
-        alpha=0.3,
-        linewidth=0,
-        label="least to largest",
-    )
-    mean, scatter = load["force_mean"], load["force_std"]
-    ax.fill_between(
-        angle,
-        mean - scatter,
-        mean + scatter,
-        color=_BLUE,
-        alpha=0.3,
-        linewidth=0,
-        label="mean ± scatter",
-    )
-    ax.plot(angle, mean, color=_BLUE, label="mean")
-    if "force_reference" in load:
-        ax.plot(angle, load["force_reference"], "--", color=_ORANGE, label="Binder's decay")
-    # One stroke at seating may be ten times what the teeth carry.
-    peak = float(load["force_max"].max())
-    body = float(load["force_max"].quantile(0.9))
-    reference = float(load["force_reference"].max()) if "force_reference" in load else 0.0
-    top = 1.3 * max(body, reference)
-    if peak > 1.5 * top:
-        ax.set_ylim(top=top)
-        ax.set_title(f"largest {_rounded(peak, 'N')}, above the picture", fontsize="small")
-    ax.set_ylim(bottom=0)
-    ax.set_xlabel(f"angle of {load.attrs['sprocket']} since seating [°]")
-    ax.set_ylabel("tooth load [N]")
-    ax.set_xlim(0, float(angle.max()))
-    return _with_legend(ax)
+    chosen = {"sprocket": sprocket, **options}
+    usual = {"sprocket": driver_of}
+    load = analysed(source, analysis.tooth_load, "force_mean", chosen, usual)
+    with drawing(ax) as ax:
+        angle = np.degrees(load["angle"])
+        # One stroke at seating may be ten times what the teeth carry.
+        peak = float(load["force_max"].max())
+        body = float(load["force_max"].quantile(0.9))
+        reference = load.get("force_reference")
+        top = 1.3 * max(body, 0.0 if reference is None else float(reference.max()))
+        factor, unit = in_trade("N", top)
+        ends = (factor * load["force_min"], factor * load["force_max"])
+        ax.fill_between(angle, *ends, color=STEEL, alpha=0.3, linewidth=0, label="least to largest")
+        mean, scatter = factor * load["force_mean"], factor * load["force_std"]
+        ax.fill_between(
+            angle,
+            mean - scatter,
+            mean + scatter,
+            color=_BLUE,
+            alpha=0.3,
+            linewidth=0,
+            label="mean ± scatter",
+        )
+        ax.plot(angle, mean, color=_BLUE, label="mean")
+        if reference is not None:
+            ax.plot(angle, factor * reference, "--", color=_ORANGE, label="Binder's decay")
+        if peak > 1.5 * top > 0.0:
+            ax.set_ylim(top=factor * top)
+            ax.set_title(f"largest {rounded(peak, 'N')}, above the picture", fontsize="small")
+        ax.set_ylim(bottom=0)
+        ax.set_xlabel(f"angle of {load.attrs['sprocket']} since seating [°]")
+        ax.set_ylabel(written("tooth load", unit))
+        ax.set_xlim(0, float(angle.max()))
+        legend_below(ax)
+    return ax
 
 
-def impacts(found: xr.Dataset, *, ax: Axes | None = None) -> Axes:
+def impacts(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
     """Draw how fast rollers are seated: the share of engagements below a speed, by sprocket.
 
     Parameters
     ----------
-    found
-        From `analysis.impacts`.
+    source
+        A run with ``events="teeth"``, or what `chaindrive.analysis.impacts` returned.
     ax
         Where to draw; new axes when absent.
+    **options
+        Of a run, passed on to that function.
 
     Returns
     -------
     matplotlib.axes.Axes
+
+    Raises
+    ------
+    ParameterError
+        The analysis refuses the run: the message names what to record, or what is absent.
     """
-    ax = given_or_new(ax)
-    of = found["sprocket_of"].to_numpy()
-    for name in found["sprocket"].to_numpy():
-        speeds = np.sort(found["speed"].to_numpy()[of == name])
-        if speeds.size == 0:
-            continue
-        share = (np.arange(speeds.size) + 1) / speeds.size
-        (line,) = ax.step(speeds, 100 * share, where="post", label=str(name))
-        ideal = float(found["speed_theoretical"].sel(sprocket=name))
-        ax.axvline(ideal, color=line.get_color(), linestyle=":", label=f"p ω, {name}")
-    ax.set_xlim(left=0)
-    ax.set_ylim(0, 101)
-    ax.set_xlabel("closing speed at seating [m/s]")
-    ax.set_ylabel("engagements below [%]")
-    return _with_legend(ax)
+    found = analysed(source, analysis.impacts, "speed_theoretical", options)
+    with drawing(ax) as ax:
+        of = found["sprocket_of"].to_numpy()
+        for name in found["sprocket"].to_numpy():
+            speeds = np.sort(found["speed"].to_numpy()[of == name])
+            if speeds.size == 0:
+                continue
+            share = (np.arange(speeds.size) + 1) / speeds.size
+            (line,) = ax.step(speeds, 100 * share, where="post", label=str(name))
+            ideal = float(found["speed_theoretical"].sel(sprocket=name))
+            ax.axvline(ideal, color=line.get_color(), linestyle=":")
+        ax.plot([], [], ":", color=LIMIT, label="p ω of each")
+        ax.set_xlim(left=0)
+        ax.set_ylim(0, 101)
+        ax.set_xlabel("closing speed at seating [m/s]")
+        ax.set_ylabel("engagements below [%]")
+        legend_below(ax)
+    return ax
 
 
-def losses(found: xr.Dataset, *, ax: Axes | None = None) -> Axes:
+def losses(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
     """Draw the mean power that is lost at every place.
 
     Parameters
     ----------
-    found
-        From `analysis.losses`.
+    source
+        A run, or what `chaindrive.analysis.losses` returned.
     ax
         Where to draw; new axes when absent.
+    **options
+        Of a run, passed on to that function.
 
     Returns
     -------
     matplotlib.axes.Axes
+
+    Raises
+    ------
+    ParameterError
+        Nothing was lost; or the analysis refuses the run: the message names the channel to record.
     """
-    ax = given_or_new(ax)
+    found = analysed(source, analysis.losses, "power_over_time", options)
     lost = found["power"].where(found["energy"] != 0.0, drop=True)
-    bars = ax.barh(lost["place"].to_numpy().astype(str), lost, color=_BLUE)
-    share = 100 * found["share"].sel(place=lost["place"])
-    ax.bar_label(bars, [f"{float(it):.1f} %" for it in share], padding=3, fontsize="small")
-    ax.invert_yaxis()
-    ax.margins(x=0.15)
-    ax.set_xlabel("power lost [W]")
-    efficiency = float(found["efficiency"])
-    if np.isfinite(efficiency):
-        ax.set_title(f"efficiency {100 * efficiency:.2f} %", fontsize="medium")
+    if lost.size == 0:
+        message = "nothing is lost in this run: contacts and joints neither rub nor damp"
+        raise ParameterError(message, "energy_losses", "give friction or damping in the scene")
+    with drawing(ax) as ax:
+        factor, unit = in_trade("W", lost)
+        bars = ax.barh(lost["place"].to_numpy().astype(str), factor * lost, color=_BLUE)
+        share = 100 * found["share"].sel(place=lost["place"])
+        ax.bar_label(bars, [f"{float(it):.1f} %" for it in share], padding=3, fontsize="small")
+        ax.invert_yaxis()
+        ax.margins(x=0.15)
+        ax.set_xlabel(written("power lost", unit))
+        efficiency = float(found["efficiency"])
+        if np.isfinite(efficiency):
+            ax.set_title(f"efficiency {100 * efficiency:.2f} %")
     return ax
 
 
-def joint_work(work: xr.Dataset, *, ax: Axes | None = None) -> Axes:
+def joint_work(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
     """Draw bearing pressure and p·v of the joints.
 
     Parameters
     ----------
-    work
-        From `analysis.joint_work`.
+    source
+        A run, or what `chaindrive.analysis.joint_work` returned.
     ax
         Where to draw; new axes when absent.
+    **options
+        Of a run, passed on to that function; the first chain is drawn unless ``chain`` names one.
 
     Returns
     -------
     matplotlib.axes.Axes
         Those of the pressure; p·v stands on the right.
+
+    Raises
+    ------
+    ParameterError
+        The analysis refuses the run: the message names the channel to record, or what is absent.
     """
-    ax = given_or_new(ax)
-    joint = work["joint"]
-    ax.plot(joint, work["pressure"] / 1e6, ".", color=_BLUE, label="mean pressure")
-    ax.plot(joint, work["pressure_largest"] / 1e6, "_", color=_BLUE, label="largest pressure")
-    ax.set_ylim(bottom=0)
-    ax.set_xlabel("joint")
-    ax.set_ylabel("bearing pressure [MPa]", color=_BLUE)
-    right = ax.twinx()
-    right.plot(joint, work["pressure_velocity"] / 1e6, ".", color=_ORANGE)
-    right.set_ylim(bottom=0)
-    right.set_ylabel("p·v [MPa m/s]", color=_ORANGE)
-    # The points on the right are named on the left too, for one legend.
-    ax.plot([], [], ".", color=_ORANGE, label="p·v")
-    ax.set_title(f"during {work.attrs['circuits']:.2g} circuits of the chain", fontsize="small")
-    return _with_legend(ax)
+    usual = {"chain": chain_of}
+    work = analysed(source, analysis.joint_work, "pressure_velocity", options, usual)
+    with drawing(ax) as ax:
+        joint = work["joint"]
+        ax.plot(joint, work["pressure"] / 1e6, ".", color=_BLUE, label="mean pressure")
+        ax.plot(joint, work["pressure_largest"] / 1e6, "_", color=_BLUE, label="largest pressure")
+        ax.set_ylim(bottom=0)
+        ax.set_xlabel("joint")
+        ax.set_ylabel("bearing pressure [MPa]", color=_BLUE)
+        right = ax.twinx()
+        right.spines["right"].set_visible(True)
+        right.plot(joint, work["pressure_velocity"] / 1e6, ".", color=_ORANGE)
+        right.set_ylim(bottom=0)
+        right.set_ylabel("p·v [MPa m/s]", color=_ORANGE)
+        # The points on the right are named on the left too, for one legend.
+        ax.plot([], [], ".", color=_ORANGE, label="p·v")
+        ax.set_title(_during(work))
+        legend_below(ax)
+    return ax
 
 
-def elongation(found: xr.Dataset, *, ax: Axes | None = None) -> Axes:
+def elongation(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
     """Draw the elongation of a worn chain over hours.
 
     Parameters
     ----------
-    found
-        From `analysis.wear`.
+    source
+        A run, or what `chaindrive.analysis.wear` returned.
     ax
         Where to draw; new axes when absent.
+    **options
+        Of a run, passed on to that function; the first chain is drawn unless ``chain`` names one.
 
     Returns
     -------
     matplotlib.axes.Axes
+
+    Raises
+    ------
+    ParameterError
+        The analysis refuses the run: the message names the channel to record, or what is absent.
     """
-    ax = given_or_new(ax)
-    ax.plot(found["hours"], 100 * found["elongation"], color=_BLUE)
-    last = float(found["hours"].max())
-    for limit, hours in zip(found["limit"].to_numpy(), found["hours_to"].to_numpy(), strict=True):
-        if hours <= last * (1 + 1e-9):
-            ax.plot([hours, hours, 0], [0, 100 * limit, 100 * limit], ":", color=_GREY)
-            ax.annotate(
-                f"{100 * limit:.3g} % after {hours:,.0f} h",
-                (hours, 100 * limit),
-                xytext=(-6, 3),
-                textcoords="offset points",
-                ha="right",
-                fontsize="small",
-            )
-    k = found.attrs["coefficient"] * 1e9
-    source = str(found.attrs["coefficient_source"]).partition(":")[0]
-    ax.set_title(f"k = {k:.2g} mm³/(N m), {source}", fontsize="small")
-    ax.set_xlim(0, last)
-    ax.set_ylim(bottom=0)
-    ax.set_xlabel("running time [h]")
-    ax.set_ylabel("elongation [%]")
+    found = analysed(source, analysis.wear, "elongation", options, {"chain": chain_of})
+    with drawing(ax) as ax:
+        ax.plot(found["hours"], 100 * found["elongation"], color=_BLUE)
+        last = float(found["hours"].max())
+        limits = zip(found["limit"].to_numpy(), found["hours_to"].to_numpy(), strict=True)
+        for limit, hours in limits:
+            if hours <= last * (1 + 1e-9):
+                ax.plot([hours, hours, 0], [0, 100 * limit, 100 * limit], ":", color=LIMIT)
+                ax.annotate(
+                    f"{100 * limit:.3g} % after {hours:,.0f} h",
+                    (hours, 100 * limit),
+                    xytext=(-6, 3),
+                    textcoords="offset points",
+                    ha="right",
+                    fontsize="small",
+                )
+        k = found.attrs["coefficient"] * 1e9
+        source_of_k = str(found.attrs["coefficient_source"]).partition(":")[0]
+        ax.set_title(f"k = {k:.2g} mm³/(N m), {source_of_k}", fontsize="small")
+        ax.set_xlim(0, last)
+        ax.set_ylim(bottom=0)
+        ax.set_xlabel("running time [h]")
+        ax.set_ylabel("elongation [%]")
     return ax
 
 
-def rainflow(found: xr.Dataset, *, ax: Axes | None = None) -> Axes:
+def rainflow(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
     """Draw the load cycles of a link: their number by range and mean.
 
     Parameters
     ----------
-    found
-        From `analysis.rainflow`.
+    source
+        A run, or what `chaindrive.analysis.rainflow` returned.
     ax
         Where to draw; new axes when absent.
+    **options
+        Of a run, passed on to that function; the first chain is drawn unless ``chain`` names one.
 
     Returns
     -------
     matplotlib.axes.Axes
+
+    Raises
+    ------
+    ParameterError
+        The analysis refuses the run: the message names the channel to record.
     """
     from matplotlib.colors import LogNorm
 
-    ax = given_or_new(ax)
-    cycles = found["cycles"].transpose("tension_mean", "tension_range")
-    filled = np.ma.masked_less_equal(cycles.to_numpy(), 0.0)
-    norm = LogNorm(float(filled.min()), float(filled.max())) if filled.count() else None
-    mesh = ax.pcolormesh(
-        found["tension_range"] / 1e3,
-        found["tension_mean"] / 1e3,
-        filled,
-        norm=norm,
-        cmap="viridis",
-        shading="nearest",
-    )
-    figure = ax.get_figure()
-    if figure is not None:
-        figure.colorbar(mesh, ax=ax, label="cycles of a link in the run")
-    ax.set_xlim(left=0)
-    ax.set_xlabel("tension range [kN]")
-    ax.set_ylabel("mean tension [kN]")
-    ax.set_title(f"during {found.attrs['circuits']:.2g} circuits of the chain", fontsize="small")
+    found = analysed(source, analysis.rainflow, "cycles", options, {"chain": chain_of})
+    with drawing(ax) as ax:
+        cycles = found["cycles"].transpose("tension_mean", "tension_range")
+        filled = np.ma.masked_less_equal(cycles.to_numpy(), 0.0)
+        norm = LogNorm(float(filled.min()), float(filled.max())) if filled.count() else None
+        factor, unit = in_trade("N", found["tension_mean"])
+        mesh = ax.pcolormesh(
+            factor * found["tension_range"],
+            factor * found["tension_mean"],
+            filled,
+            norm=norm,
+            cmap="viridis",
+            shading="nearest",
+        )
+        colour_bar(ax, mesh, "cycles of a link in the run")
+        ax.set_xlim(left=0)
+        ax.set_xlabel(written("tension range", unit))
+        ax.set_ylabel(written("mean tension", unit))
+        ax.set_title(_during(found))
     return ax
 
 
-def utilisation(found: xr.Dataset, *, ax: Axes | None = None) -> Axes:
+def utilisation(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
     """Draw loads over limits; beyond the line at 100 % is too much.
 
     Parameters
     ----------
-    found
-        From `analysis.utilisation`.
+    source
+        A run, or what `chaindrive.analysis.utilisation` returned.
     ax
         Where to draw; new axes when absent.
+    **options
+        Of a run, passed on to that function; the first chain is drawn unless ``chain`` names one.
 
     Returns
     -------
     matplotlib.axes.Axes
+
+    Raises
+    ------
+    ParameterError
+        The analysis refuses the run: the message names the channel to record, or what is absent.
     """
-    ax = given_or_new(ax)
-    used = 100 * found["utilisation"].to_numpy()
-    colours = [_ORANGE if it > 100 else _BLUE for it in used]
-    bars = ax.barh(found["check"].to_numpy().astype(str), used, color=colours)
-    texts = [
-        f"{_rounded(float(load), str(unit))} of {_rounded(float(limit), str(unit))}"
-        for load, limit, unit in zip(
-            found["load"].to_numpy(),
-            found["limit"].to_numpy(),
-            found["unit"].to_numpy(),
-            strict=True,
-        )
-    ]
-    ax.bar_label(bars, texts, padding=3, fontsize="small")
-    ax.axvline(100, color=_GREY, linestyle="--")
-    ax.set_xlim(0, 1.6 * max(100.0, float(used.max())))
-    ax.invert_yaxis()
-    ax.set_xlabel("utilisation [%]")
+    usual = {"chain": chain_of}
+    found = analysed(source, analysis.utilisation, "utilisation", options, usual)
+    with drawing(ax) as ax:
+        used = 100 * found["utilisation"].to_numpy()
+        colours = [MARK if it > 100 else _BLUE for it in used]
+        names = [
+            f"{check}\n{rounded(float(load), str(unit))} of {rounded(float(limit), str(unit))}"
+            for check, load, limit, unit in zip(
+                found["check"].to_numpy(),
+                found["load"].to_numpy(),
+                found["limit"].to_numpy(),
+                found["unit"].to_numpy(),
+                strict=True,
+            )
+        ]
+        bars = ax.barh(names, used, color=colours)
+        ax.bar_label(bars, [f"{it:.0f} %" for it in used], padding=3, fontsize="small")
+        ax.axvline(100, color=LIMIT, linestyle="--")
+        ax.set_xlim(0, 1.15 * max(100.0, float(np.nanmax(used))))
+        ax.invert_yaxis()
+        ax.set_xlabel("utilisation [%]")
     return ax
 
 
-def _with_legend(ax: Axes) -> Axes:
-    """Return the axes with a legend below them, where it covers nothing."""
-    handles, names = ax.get_legend_handles_labels()
-    ax.legend(
-        handles,
-        names,
-        loc="upper center",
-        bbox_to_anchor=(0.5, -0.15),
-        ncols=min(len(names), 4),
-        fontsize="small",
-        frameon=False,
-    )
-    return ax
-
-
-def _rounded(value: float, unit: str) -> str:
-    scale, prefix = {"N": (1e3, "k"), "W": (1e3, "k"), "Pa": (1e6, "M")}.get(unit, (1.0, ""))
-    return f"{value / scale:.3g} {prefix}{unit}"
+def _during(found: xr.Dataset) -> str:
+    """Title that tells which chain, and how much of its way was seen."""
+    chain = str(found.attrs.get("chain", ""))
+    return f"{chain}, {found.attrs['circuits']:.2g} circuits".removeprefix(", ")

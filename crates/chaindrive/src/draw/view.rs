@@ -22,6 +22,8 @@ pub(super) struct View {
     high: Point,
     /// Height of letters \[m\].
     pub(super) letter: f64,
+    /// Middle of the drive \[m\].
+    middle: f64,
 }
 
 impl View {
@@ -61,15 +63,11 @@ impl View {
         let size = high - low;
         let margin = 0.03 * size.x.max(size.y);
         let letter = 0.018 * size.x.max(size.y);
+        let middle = 0.5 * (low.x + high.x);
         for (body, placement) in figure.bodies.iter().zip(&pose.placements) {
-            if matches!(body.kind, BodyKind::Guide { .. }) {
-                let (at, anchor) = name_of_guide(body, placement, letter);
-                let width = LETTER_WIDTH * letter * body.name.chars().count() as f64;
-                match anchor {
-                    "start" => high.x = high.x.max(at.x + width),
-                    "end" => low.x = low.x.min(at.x - width),
-                    _ => {}
-                }
+            if let Some((at, anchor)) = name_of(figure, body, placement, letter, middle) {
+                let name = Written::new(at, anchor, body, letter);
+                (low.x, high.x) = (low.x.min(name.left), high.x.max(name.right));
             }
         }
         let margin = Vector::new(margin, margin);
@@ -77,6 +75,7 @@ impl View {
             low: low - margin,
             high: high + margin,
             letter,
+            middle,
         }
     }
 
@@ -145,28 +144,84 @@ impl View {
         );
     }
 
-    /// Names of sprockets above their centres, of guides at the middle of their faces.
+    /// Names of sprockets above their centres, of guides at the middle of their faces; a name that would lie on an earlier one
+    /// stands above it.
     pub(super) fn names(&self, out: &mut String, figure: &Figure, pose: &Pose) {
-        let mut named: Vec<Point> = Vec::new();
+        let mut written: Vec<Written> = Vec::new();
         for (body, placement) in figure.bodies.iter().zip(&pose.placements) {
             let id = id(&["name", body.kind.name(), &body.name]);
-            let at = match body.kind {
-                BodyKind::Sprocket { .. } => {
-                    let centre = Point::new(placement.x, placement.y);
-                    // Names of sprockets on one axis stand above each other.
-                    let above = named.iter().filter(|other| (*other - centre).norm() < 1e-6);
-                    let rows = 0.6 + 1.2 * above.count() as f64;
-                    named.push(centre);
-                    (
-                        Point::new(centre.x, centre.y + rows * self.letter),
-                        "middle",
-                    )
-                }
-                BodyKind::Guide { .. } => name_of_guide(body, placement, self.letter),
-                BodyKind::Arm | BodyKind::Slider | BodyKind::Plunger => continue,
+            let Some((at, anchor)) = name_of(figure, body, placement, self.letter, self.middle)
+            else {
+                continue;
             };
-            self.anchored(out, [&id, "name"], at, &body.name);
+            let mut name = Written::new(at, anchor, body, self.letter);
+            let height = 1.2 * self.letter;
+            while let Some(other) = written.iter().find(|it| it.meets(&name, height)) {
+                name.base = other.base + height;
+            }
+            let at = Point::new(at.x, name.base);
+            written.push(name);
+            self.anchored(out, [&id, "name"], (at, anchor), &body.name);
         }
+    }
+}
+
+/// The room that a name takes \[m\].
+struct Written {
+    left: f64,
+    right: f64,
+    base: f64,
+}
+
+impl Written {
+    fn new(at: Point, anchor: &str, body: &Body, letter: f64) -> Self {
+        let width = LETTER_WIDTH * letter * body.name.chars().count() as f64;
+        let left = match anchor {
+            "start" => at.x,
+            "end" => at.x - width,
+            _ => at.x - 0.5 * width,
+        };
+        Self {
+            left,
+            right: left + width,
+            base: at.y,
+        }
+    }
+
+    /// Whether two names of a height lie on each other, to within rounding.
+    fn meets(&self, other: &Self, height: f64) -> bool {
+        let apart = (self.base - other.base).abs();
+        self.left < other.right && other.left < self.right && apart < 0.999 * height
+    }
+}
+
+/// Where the name of a body stands, and by which end, if it has one: of a sprocket at its centre, or beside it and its chain where
+/// it has no room, away from the middle of the drive.
+fn name_of(
+    figure: &Figure,
+    body: &Body,
+    placement: &Placement,
+    letter: f64,
+    middle: f64,
+) -> Option<(Point, &'static str)> {
+    match body.kind {
+        BodyKind::Sprocket { pitch_radius, .. } => {
+            let width = LETTER_WIDTH * letter * body.name.chars().count() as f64;
+            if width < 1.3 * pitch_radius {
+                let above = Point::new(placement.x, placement.y + 0.6 * letter);
+                return Some((above, "middle"));
+            }
+            let plates = figure.chains.iter().map(|chain| 0.5 * chain.plate_height);
+            let aside = pitch_radius + plates.fold(0.0, f64::max) + letter;
+            let y = placement.y - 0.4 * letter;
+            Some(if placement.x > middle {
+                (Point::new(placement.x + aside, y), "start")
+            } else {
+                (Point::new(placement.x - aside, y), "end")
+            })
+        }
+        BodyKind::Guide { .. } => Some(name_of_guide(body, placement, letter)),
+        BodyKind::Arm | BodyKind::Slider | BodyKind::Plunger => None,
     }
 }
 

@@ -16,17 +16,17 @@ const MARGINS: [f64; 4] = [90.0, 60.0, 20.0, 50.0];
 const ROW: f64 = 20.0;
 
 const STYLE: &str = "\
-text{font-family:sans-serif;font-size:13px;fill:#3c4650}\
+text{font-family:sans-serif;font-size:13px;fill:#767e87}\
 .title{font-size:18px}\
-.frame{fill:none;stroke:#3c4650}\
-.grid{stroke:#d5dae0}\
+.frame{fill:none;stroke:#767e87}\
+.grid{stroke:#8d99a6;stroke-opacity:.35}\
 .line{fill:none;stroke-width:2}\
-.apart{stroke:#6b7684;stroke-dasharray:6 4}\
-.legend{fill:#fff;fill-opacity:.85;stroke:#b9c2cb}";
+.apart{stroke:#767e87;stroke-dasharray:6 4}\
+.legend{fill:none;stroke:#8d99a6;stroke-opacity:.35}";
 
-/// One colour a method, told apart by eyes of all kinds: M. Okabe and K. Ito, *Color universal design*, 2008.
+/// One colour a method, those of curves in `python/chaindrive/plot/scheme.py` (a test compares).
 const COLOURS: [&str; 7] = [
-    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
+    "#2f7ec2", "#d0661c", "#2f9148", "#a45fc0", "#14899c", "#cf4a7c", "#7d8c1f",
 ];
 
 /// Draws the error of the tight span over wall time as SVG.
@@ -47,7 +47,7 @@ fn svg(table: &Table, title: &str) -> String {
 
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\">\n\
-         <title>{title}</title>\n<style>{STYLE}</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n\
+         <title>{title}</title>\n<style>{STYLE}</style>\n\
          <text class=\"title\" x=\"{:.0}\" y=\"30\" text-anchor=\"middle\">{title}</text>\n",
         width / 2.0,
         title = escaped(title),
