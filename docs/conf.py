@@ -40,6 +40,8 @@ nb_execution_timeout = 300
 nb_execution_in_temp = True
 # The gallery is drawn by an example; pages are run elsewhere, and inherit this.
 os.environ["CHAINDRIVE_EXAMPLES"] = str(HERE.parent / "examples")
+# Pictures have the colours of the scheme, seen on light and dark pages alike.
+os.environ["MATPLOTLIBRC"] = str(HERE / "matplotlibrc")
 nb_merge_streams = True
 
 # In docstrings, single backticks stand about names.

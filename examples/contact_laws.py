@@ -201,23 +201,24 @@ def draw(path: Path) -> None:
     mpl.use("Agg")
     from matplotlib import pyplot as plt
 
-    figure, axes = plt.subplots(2, 3, figsize=(14, 8), layout="constrained")
+    plt.rcParams.update(cd.plot.STYLE)
+    figure, axes = plt.subplots(3, 2, figsize=(9.5, 12.5), layout="constrained")
     depth = np.geomspace(1e-8, 1e-4, 300)
     cases = [(inside, 5e-5, "pin in hole, ΔR = 0.05 mm"), (outside, 22.475e-3, "roller on flank")]
-    for ax, (make, radii, title) in zip(axes[:, 0], cases, strict=True):
+    for ax, (make, radii, title) in zip(axes[0], cases, strict=True):
         shown = depth[depth < 0.9 * 4.0 * radii / np.e**2]
         for kind, name in LAWS.items():
             ax.semilogx(1e6 * shown, 100.0 * error(make, kind, radii, shown), label=name)
         ax.set(title=title, xlabel="δ [µm]", ylabel="force against Johnson's [%]", ylim=(-90, 50))
-        ax.axhline(0.0, color="black", linewidth=0.6)
-    axes[0, 0].legend(fontsize="small")
+        ax.axhline(0.0, color="C7", linewidth=0.6)
+    below(axes[0, 0])
 
     maps = [
         (inside, np.geomspace(0.005, 10.0, 121), "cylindrical against Johnson, inside [%]"),
         (outside, np.geomspace(4.0, 300.0, 121), "cylindrical against Johnson, outside [%]"),
     ]
     grid = np.geomspace(1e-7, 1e-4, 121)
-    for ax, (make, radii, title) in zip(axes[:, 1], maps, strict=True):
+    for ax, (make, radii, title) in zip(axes[1], maps, strict=True):
         rows = []
         for radius in radii:
             row = 100.0 * error(make, "cylindrical", 1e-3 * radius, grid)
@@ -233,7 +234,7 @@ def draw(path: Path) -> None:
         ax.set(title=title, xlabel="δ [µm]", ylabel="ΔR [mm]", xscale="log", yscale="log")
         figure.colorbar(shade, ax=ax)
 
-    ax = axes[0, 2]
+    ax = axes[2, 0]
     loads, depths = conformal_solution()
     keep = depths < 0.9
     for kind, clearance in [
@@ -248,24 +249,29 @@ def draw(path: Path) -> None:
         used = keep & (depths < 0.9 * 4.0 / np.e**2) if kind == "johnson" else keep
         name = kind if kind != "cylindrical" else f"cylindrical, ΔR = {1e3 * clearance:g} mm"
         ax.plot(depths[used], 100.0 * (ratio[used] - 1.0), label=name)
-    ax.axhline(0.0, color="black", linewidth=0.6)
+    ax.axhline(0.0, color="C7", linewidth=0.6)
     ax.set(
         title="a wide contact, against plane strain",
         xlabel="δ/ΔR",
         ylabel="error of the force [%]",
         ylim=(-40, 40),
     )
-    ax.legend(fontsize="small")
+    below(ax)
 
-    ax = axes[1, 2]
+    ax = axes[2, 1]
     asked = np.linspace(0.02, 1.0, 50)
     for kind in DISSIPATIONS:
         laws = [inside("johnson", 5e-5, dissipation=kind, restitution=e) for e in asked]
-        style = {"color": "black", "linestyle": "--"} if kind == "exact" else {}
+        style = {"color": "C7", "linestyle": "--"} if kind == "exact" else {}
         ax.plot(asked, [law.restitution for law in laws], label=kind, **style)
     ax.set(title="restitution of a free impact", xlabel="asked for", ylabel="delivered")
-    ax.legend(fontsize="x-small", ncols=2)
-    figure.savefig(path, dpi=72)
+    below(ax)
+    figure.savefig(path, dpi=84)
+
+
+def below(ax) -> None:
+    """Put the legend where it covers no curve."""
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2)
 
 
 def main() -> None:

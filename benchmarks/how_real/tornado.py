@@ -11,6 +11,7 @@ from scipy import stats
 
 import chaindrive as cd
 from assumptions import Assumption, Case
+from chaindrive.plot.scheme import CURVES, LIMIT, STYLE
 
 #: What is read off a drive, and how it is called in the tables.
 RESPONSES = ("mean", "scatter", "contact", "losses")
@@ -111,33 +112,28 @@ def draw(results: list[tuple[Case, np.ndarray, list[Effect]]], path: Path) -> No
     """Draw a tornado a preset and response: bars from one end of the range to the other."""
     from matplotlib import pyplot as plt
 
-    figure, axes = plt.subplots(
-        len(results),
-        len(RESPONSES),
-        figsize=(13, 2.6 * len(results)),
-        layout="constrained",
-        squeeze=False,
-    )
-    for row, (case, _, found) in zip(axes, results, strict=True):
-        for number, (ax, response) in enumerate(zip(row, RESPONSES, strict=True)):
+    # Two beside each other: names are read at the width of a page.
+    columns = 2
+    rows = len(results) * len(RESPONSES) // columns
+    with plt.rc_context(dict(STYLE)):
+        figure, axes = plt.subplots(
+            rows, columns, figsize=(9.5, 2.8 * rows), layout="constrained", squeeze=False
+        )
+        panels = [(case, found, number) for case, _, found in results for number in range(4)]
+        for ax, (case, found, number) in zip(axes.flat, panels, strict=True):
             ranked = sorted(found, key=lambda effect: np.abs(effect.change[:, number]).max())
             places = np.arange(len(ranked))
-            for end, colour in ((0, "tab:blue"), (1, "tab:orange")):
+            for end, label in enumerate(["lower end of the range", "upper end"]):
                 change = [100 * effect.change[end, number] for effect in ranked]
                 width = [100 * effect.half_width[end, number] for effect in ranked]
-                ax.barh(
-                    places,
-                    change,
-                    xerr=width,
-                    color=colour,
-                    alpha=0.8,
-                    height=0.6,
-                    error_kw={"lw": 0.8},
-                )
-            ax.set_yticks(places, [effect.assumption.name for effect in ranked], fontsize=7)
-            ax.axvline(0.0, color="black", lw=0.8)
-            ax.tick_params(axis="x", labelsize=7)
-            ax.set_title(f"{case.preset}: {NAMES[response]}", fontsize=8)
-            ax.set_xlabel("change [%]", fontsize=7)
-    figure.savefig(path, dpi=80)
-    plt.close(figure)
+                look = {"color": CURVES[end], "alpha": 0.8, "height": 0.6, "label": label}
+                error = {"lw": 0.8, "ecolor": LIMIT}
+                ax.barh(places, change, xerr=width, error_kw=error, **look)
+            ax.set_yticks(places, [effect.assumption.name for effect in ranked])
+            ax.axvline(0.0, color=LIMIT, lw=0.8)
+            ax.set_title(f"{case.preset}: {NAMES[RESPONSES[number]]}")
+            ax.set_xlabel("change [%]")
+        handles = axes.flat[0].get_legend_handles_labels()
+        figure.legend(*handles, loc="outside upper center", ncols=2)
+        figure.savefig(path, dpi=84)
+        plt.close(figure)

@@ -13,7 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chaindrive.extras import extra
+from chaindrive.plot.scheme import CARRIER, GUIDE, OUTLINE, PLATES, STEEL
+from chaindrive.plot.units import in_trade, written
 from chaindrive.progress import told
+from chaindrive.results import held
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,11 +32,11 @@ SIZE = (1280, 720)
 
 _Floats = NDArray[np.float64]
 
-_STEEL, _STEEL_LINE = "#e3e7eb", "#7a8794"
-_GUIDE, _ARM, _INK = "#a8642a", "#b78a5c", "#1c2733"
-_PLATES = "#8d99a6"
+# Movies have paper of their own.
+_PAPER, _INK = "#fcfcfa", "#1c2733"
 _DPI = 100
 # Channels by which bodies follow, where they were recorded.
+_DRAWN = ("roller_x", "roller_y", "link_tension")
 _PLACING = ("sprocket_angle", "sprocket_x", "sprocket_y", "tensioner_position")
 
 
@@ -72,6 +75,8 @@ def movie(
     ------
     KeyError
         The channels that the motion takes were not recorded.
+    ValueError
+        The name ends in something else, or the store of the run is damaged.
     ModuleNotFoundError
         The extra ``movie`` is not installed.
     """
@@ -111,7 +116,8 @@ class _Stage:
         missing = [name for name in figure.needs if name not in run]
         if missing:
             raise KeyError(f"the movie takes {', '.join(missing)}: simulate(…, record=[…])")
-        thinned = run.isel(time=samples)
+        wanted = [name for name in (*_DRAWN, *_PLACING) if name in run]
+        thinned = held(run[wanted].isel(time=samples), drive.name)
         self.times = _floats(thinned["time"])
         given = {name: _floats(thinned[name]) for name in _PLACING if name in thinned}
         self.placements = figure.placements(self.times, given)
@@ -120,9 +126,14 @@ class _Stage:
         )
         known = "link_tension" in thinned
         self.tensions = _floats(thinned["link_tension"]) if known else None
+        if self.tensions is not None:
+            factor, self.unit = in_trade("N", self.tensions)
+            self.tensions = factor * self.tensions
         # The backend is not typed.
         self.canvas: Any = FigureCanvasAgg(
-            Figure((size[0] / _DPI, size[1] / _DPI), dpi=_DPI, layout="constrained")
+            Figure(
+                (size[0] / _DPI, size[1] / _DPI), dpi=_DPI, layout="constrained", facecolor=_PAPER
+            )
         )
         self.axes = self.canvas.figure.add_subplot()
         self.axes.set_axis_off()
@@ -135,6 +146,7 @@ class _Stage:
         self.clock = self.axes.text(0.01, 0.01, "", transform=self.axes.transAxes, color=_INK)
 
     def _draw_bodies(self, bodies: list[dict[str, Any]]) -> None:
+        from matplotlib.colors import to_rgba
         from matplotlib.patches import PathPatch
         from matplotlib.path import Path as Outline
 
@@ -142,14 +154,15 @@ class _Stage:
         low, high = self.rollers.min(axis=(0, 1)), self.rollers.max(axis=(0, 1))
         for index, body in enumerate(bodies):
             sprocket = body["kind"] == "sprocket"
-            face = {"facecolor": _STEEL, "edgecolor": _STEEL_LINE, "linewidth": 0.7, "zorder": 2}
+            face: dict[str, Any] = {"facecolor": to_rgba(STEEL, 0.35), "edgecolor": OUTLINE}
+            face |= {"linewidth": 0.7, "zorder": 2}
             line = {"facecolor": "none", "zorder": 1.5}
             if len(body["backing"]):
-                backing = {"facecolor": _GUIDE, "edgecolor": "none", "alpha": 0.3, "zorder": 1.4}
+                backing = {"facecolor": GUIDE, "edgecolor": "none", "alpha": 0.3, "zorder": 1.4}
                 patch = PathPatch(Outline(body["backing"]), **backing)
                 self.axes.add_patch(patch)
                 self.parts.append((index, patch))
-            colour, width = (_GUIDE, 1.8) if body["kind"] == "guide" else (_ARM, 2.5)
+            colour, width = (GUIDE, 1.8) if body["kind"] == "guide" else (CARRIER, 2.5)
             for outline in body["outlines"]:
                 look = face if sprocket else {**line, "edgecolor": colour, "linewidth": width}
                 patch = PathPatch(Outline(outline, closed=False), **look)
@@ -158,7 +171,7 @@ class _Stage:
                 reach = np.hypot(*outline.T).max() if sprocket else 0.0
                 if sprocket:
                     spoke = np.array([[0.0, 0.0], [0.4 * reach, 0.0]])
-                    mark = PathPatch(Outline(spoke), edgecolor=_STEEL_LINE, zorder=2.1)
+                    mark = PathPatch(Outline(spoke), edgecolor=OUTLINE, zorder=2.1)
                     self.axes.add_patch(mark)
                     self.parts.append((index, mark))
                 for placement in self.placements[[0, len(self.times) // 2, -1], index]:
@@ -179,12 +192,12 @@ class _Stage:
         ends = list(self.rollers[0][self.links])
         self.plates: Any = LineCollection(ends, capstyle="round", zorder=3)
         if self.tensions is None:
-            self.plates.set_color(_PLATES)
+            self.plates.set_color(PLATES)
         else:
             self.plates.set(cmap="viridis", alpha=0.85)
             self.plates.set_clim(*np.quantile(self.tensions, [0.001, 0.999]))
             bar = self.canvas.figure.colorbar(self.plates, ax=self.axes, shrink=0.7, panchor=False)
-            bar.set_label("link tension [N]")
+            bar.set_label(written("link tension", self.unit))
         self.axes.add_collection(self.plates)
         # Laid out once: that takes longer than to draw what moves.
         self.canvas.draw()
@@ -204,7 +217,7 @@ class _Stage:
             units="xy",
             offsets=self.rollers[0],
             offset_transform=self.axes.transData,
-            facecolors="white",
+            facecolors=_PAPER,
             edgecolors=_INK,
             linewidths=0.5,
             zorder=4,

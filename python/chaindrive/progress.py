@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from importlib import import_module
 from typing import Any
 
 from chaindrive.extras import extra
@@ -43,12 +44,17 @@ class _Bar:
 
     def __init__(self, what: str) -> None:
         self._what = self._phase = what
-        auto = extra("tqdm.auto", "progress bars")
-        # A pipe shows no bar. A notebook is none, though it is no terminal either: without
-        # ipywidgets the bar is a text there.
-        shown = sys.stderr.isatty() or "ipykernel" in sys.modules
-        self._bar: Any = auto.tqdm(
-            total=1.0, desc=what, bar_format=_FORMAT, miniters=0, disable=not shown
+        # A pipe shows no bar. A notebook is none, though it is no terminal either.
+        notebook = "ipykernel" in sys.modules
+        shown = notebook or sys.stderr.isatty()
+        self._bar: Any = extra("tqdm", "progress bars").tqdm(
+            total=1.0,
+            desc=what,
+            bar_format=_FORMAT,
+            miniters=0,
+            disable=not shown,
+            file=_Output() if notebook else None,
+            ncols=80 if notebook else None,
         )
 
     def __call__(self, share: float) -> None:
@@ -69,3 +75,30 @@ class _Bar:
 
     def close(self) -> None:
         self._bar.close()
+
+
+class _Output:
+    """One output of a notebook's cell, whose text is replaced.
+
+    What is written to the standard error of a notebook is kept line by line, and the bar of
+    ``tqdm.auto`` takes ipywidgets.
+    """
+
+    encoding = "utf-8"
+
+    def __init__(self) -> None:
+        self._shown: Any = None
+
+    def write(self, text: str) -> None:
+        line = text.strip()
+        if not line:
+            return
+        as_text = {"text/plain": line}
+        if self._shown is None:
+            display = import_module("IPython.display").display
+            self._shown = display(as_text, raw=True, display_id=True)
+        else:
+            self._shown.update(as_text, raw=True)
+
+    def flush(self) -> None:
+        """Do nothing: what is written is shown."""

@@ -13,6 +13,7 @@ import numpy as np
 import xarray as xr
 
 from chaindrive import _core
+from chaindrive.results import held
 
 __all__ = ["Replay", "replay"]
 
@@ -110,7 +111,7 @@ def replay(
     KeyError
         The channels that the motion takes were not recorded; the message names them.
     ValueError
-        The path ends in something else, or the run holds no samples.
+        The path ends in something else, the run holds no samples, or its store is damaged.
 
     Examples
     --------
@@ -143,14 +144,16 @@ def _page(run: xr.Dataset, plot: list[str] | None, frames: int) -> str:
     samples = run.sizes["time"]
     recorded = [str(name) for name in run.data_vars if run[name].dims[:1] == ("time",)]
     wanted, stride = _core.replay_selection(recorded, plot, samples, frames)
-    thinned = run[wanted].isel(time=slice(None, None, stride))
+    events = [str(name) for name in run.data_vars if str(name).startswith("event_")]
+    name = str(run.attrs.get("scene_name", "run"))
+    run = held(run[[*wanted, *events]].isel(time=slice(None, None, stride)), name)
     return _core.replay(
         json.dumps(run.attrs, default=_plain),
         samples,
         stride,
-        _floats(thinned["time"]),
+        _floats(run["time"]),
         recorded,
-        [_channel(thinned[name]) for name in wanted],
+        [_channel(run[name]) for name in wanted],
         _contacts(run),
         plot,
     )

@@ -16,7 +16,7 @@ from chaindrive.objects import Objects, Place, place_of
 if TYPE_CHECKING:
     from obstore.store import ObjectStore
 
-__all__ = ["open_result", "take_over"]
+__all__ = ["held", "open_result", "take_over"]
 
 
 def open_result(path: str | PathLike[str] | ObjectStore) -> xr.Dataset:
@@ -79,6 +79,30 @@ def open_result(path: str | PathLike[str] | ObjectStore) -> xr.Dataset:
         ending = f"{status}: {reason}" if reason else status
         warnings.warn(f"{name}: {ending}; it holds {held} {kind}", ResultWarning, stacklevel=2)
     return stored
+
+
+def held(stored: xr.Dataset, of: str) -> xr.Dataset:
+    """Return a dataset with its arrays read, which may be damaged in their store.
+
+    Parameters
+    ----------
+    stored
+        What is wanted of a run, read from a store or not.
+    of
+        What the run is called in the message.
+
+    Raises
+    ------
+    ValueError
+        An array cannot be unpacked.
+    """
+    try:
+        return stored.load()
+    except (ValueError, MemoryError):
+        raise
+    except Exception as error:
+        # Whatever Zarr and its codecs make of a damaged chunk.
+        raise ValueError(f"{of}: this result is damaged: {error!r}") from error
 
 
 def _is_left(stored: xr.Dataset, name: str) -> bool:

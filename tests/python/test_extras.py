@@ -67,11 +67,32 @@ def test_a_pipe_shows_no_bar() -> None:
     assert (done.stdout, done.stderr) == ("", "")
 
 
-def test_a_notebook_without_widgets_shows_the_bar_as_text() -> None:
-    code = f"import sys; sys.modules['ipykernel'] = object()\n{RUN}"
+NOTEBOOK = """
+import sys, types
+class Output:
+    def __init__(self): self.texts = []
+    def update(self, data, raw): self.texts.append(data["text/plain"])
+shown = []
+def display(data, raw, display_id):
+    shown.append(Output())
+    shown[-1].update(data, raw)
+    return shown[-1]
+sys.modules["ipykernel"] = object()
+sys.modules["IPython"] = types.ModuleType("IPython")
+sys.modules["IPython.display"] = types.SimpleNamespace(display=display)
+"""
+
+
+def test_a_notebook_has_one_output_a_bar_whose_text_is_replaced() -> None:
+    """Without ipywidgets, and without a line in the standard error for every state."""
+    code = f"{NOTEBOOK}{RUN}print(len(shown), *(it.texts[-1] for it in shown), sep='\\n')"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert "100 %" in done.stderr
-    assert "left" in done.stderr
+    assert done.stderr == ""
+    count, run, sweep = done.stdout.splitlines()
+    assert count == "2"
+    assert run.startswith("run: 100 %")
+    assert sweep.startswith("sweep: 100 %")
+    assert sweep.endswith("left")
 
 
 @pytest.mark.skipif(os.name == "nt", reason="terminals of Windows cannot be looked at")

@@ -69,6 +69,11 @@ def run_of(preset: str) -> xr.Dataset:
     )
 
 
+@pytest.fixture(autouse=True)
+def _no_figure_of_other_tests() -> None:
+    plt.close("all")
+
+
 def figures() -> int:
     number = len(plt.get_fignums())
     plt.close("all")

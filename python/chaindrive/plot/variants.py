@@ -67,7 +67,7 @@ def response(
     >>> result = cd.sweep(ring, vary, until=2e-3, every=1e-3)
     >>> ax = cd.plot.response(result, "energy_residual_max")
     >>> ax.get_xlabel()
-    'speed [m/s]'
+    'speed [rpm]'
     """
     values, distrusted = _chosen(sweep, quantity, at)
     varied = [str(dim) for dim in values.dims]
