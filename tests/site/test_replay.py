@@ -143,6 +143,18 @@ def test_next_contact_is_the_next_one_logged(page, run):
     assert "touches" in page.inner_text("#followed")
 
 
+def test_a_contact_comes_into_a_closer_view(page):
+    for _ in range(8):
+        page.click("#closer")
+    for _ in range(4):
+        page.keyboard.press("n")
+        text = page.inner_text("#followed")
+        roller = int(text.split("Roller ")[1].split()[0])
+        x, y = page.evaluate("(roller) => replay.seen(roller)", roller)
+        assert 0 < x < 1, text
+        assert 0 < y < 1, text
+
+
 def test_followed_roller_is_told(page, run):
     page.evaluate("replay.seek(1234)")
     page.select_option("#follow", "17")

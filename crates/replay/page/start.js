@@ -90,6 +90,11 @@ function api(film, player) {
     get frame() { return player.frame; },
     get playing() { return player.playing; },
     get scale() { return player.view.window.scale; },
+    /** Where a roller is on the picture, as shares of its width and height. */
+    seen(roller) {
+      const [x, y] = player.view.toScreen(...player.view.roller(roller));
+      return [x / player.view.width, y / player.view.height];
+    },
     get timings() { return player.timings; },
     time: (frame) => film.arrays.time.at(frame, 0),
     /** A recorded value: of a roller, link or body by number, of a curve by its label. */

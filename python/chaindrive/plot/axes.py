@@ -40,7 +40,7 @@ def legend_below(ax: Axes, title: str | None = None) -> None:
     handles, names = ax.get_legend_handles_labels()
     if not names:
         return
-    # As many beside each other as a line of some sixty letters holds.
+    # As many beside each other as a line of some seventy letters holds.
     widest = max(len(str(name)) for name in names) + 6
     ax.legend(
         handles,
@@ -48,7 +48,7 @@ def legend_below(ax: Axes, title: str | None = None) -> None:
         title=title,
         loc="upper center",
         bbox_to_anchor=(0.5, -0.16),
-        ncols=max(1, min(len(names), 66 // widest)),
+        ncols=max(1, min(len(names), 72 // widest)),
     )
 
 

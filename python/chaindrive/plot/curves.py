@@ -91,7 +91,7 @@ def work_precision(table: xr.Dataset, *, ax: Axes | None = None, cost: str = "wa
         methods = table["method"].values.astype(str)
         depths = table["onset_depth"].values
         names = [
-            name if np.isnan(depth) else f"{name}, onset {depth:.0e} m"
+            name if np.isnan(depth) else f"{name}, onset {1e6 * depth:g} µm"
             for name, depth in zip(methods, depths, strict=True)
         ]
         for name in dict.fromkeys(names):

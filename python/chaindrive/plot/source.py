@@ -14,7 +14,7 @@ import xarray as xr
 
 from chaindrive.analysis.orders import mesh_orders
 from chaindrive.analysis.parts import chains, sprockets
-from chaindrive.analysis.signal import recorded, require
+from chaindrive.analysis.signal import recorded, require, turning
 from chaindrive.analysis.spans import span_lines
 from chaindrive.errors import ParameterError
 
@@ -27,6 +27,7 @@ __all__ = [
     "mesh_order_of",
     "span_of",
     "tightest_span",
+    "turns_of",
 ]
 
 Analysis = TypeVar("Analysis", xr.Dataset, xr.DataArray)
@@ -130,6 +131,12 @@ def tightest_span(run: xr.Dataset) -> xr.DataArray:
     tension = run["span_tension"]
     found: xr.DataArray = tension.isel(span=int(np.argmax(tension.mean("time").to_numpy())))
     return found
+
+
+def turns_of(run: xr.Dataset, shaft: str) -> float:
+    """Return the length of a window of an order map [turns]: a tenth of the run, of 1 to 8."""
+    angle, _ = turning(run, shaft)
+    return float(np.clip(np.floor(0.1 * angle[-1] / (2.0 * np.pi)), 1.0, 8.0))
 
 
 def mesh_order_of(run: xr.Dataset, shaft: str) -> float:

@@ -19,6 +19,7 @@ from chaindrive.plot.source import (
     mesh_order_of,
     span_of,
     tightest_span,
+    turns_of,
 )
 from chaindrive.plot.units import in_trade, written
 
@@ -122,7 +123,7 @@ def order_map(
     ax
         Where to draw; new axes when absent.
     up_to
-        Highest order; all when absent.
+        Highest order; when absent two and a half times the mesh order for a run, else all.
     **options
         Of a run, passed on to that function.
 
@@ -136,7 +137,10 @@ def order_map(
         The speed does not change; a channel was not recorded; or the analysis refuses the run.
     """
     chosen = {"channel": channel, "shaft": shaft, **options}
-    found = analysed(source, analysis.order_map, "turn", chosen, _TIGHTEST)
+    usual = {**_TIGHTEST, "turns": lambda run: turns_of(run, shaft or driver_of(run))}
+    found = analysed(source, analysis.order_map, "turn", chosen, usual)
+    if up_to is None and isinstance(source, xr.Dataset):
+        up_to = 2.5 * mesh_order_of(source, found.attrs["shaft"])
     shown = found.sel(order=slice(None, up_to))
     with drawing(ax) as ax:
         _map(ax, _RPM * shown["speed"].to_numpy(), shown["order"].to_numpy(), shown)
@@ -173,7 +177,9 @@ def order_slice(
     """
 
     def order_slice(run: xr.Dataset, order: float) -> xr.Dataset:
-        found = analysis.order_map(run, tightest_span(run), driver_of(run))
+        shaft = driver_of(run)
+        turns = turns_of(run, shaft)
+        found = analysis.order_map(run, tightest_span(run), shaft, turns=turns)
         _changing(found["speed"].to_numpy())
         return analysis.order_slice(found, order)
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["in_trade", "rounded", "written"]
+__all__ = ["in_trade", "rounded", "scientific", "written"]
 
 # Unit of the trade by SI unit, and how many of it one is.
 _TRADE = {
@@ -39,6 +39,13 @@ def in_trade(unit: str, values: Any) -> tuple[float, str]:
 def written(name: str, unit: str) -> str:
     """Return the label of an axis: its quantity and unit."""
     return f"{name} [{'–' if unit in ('1', '') else unit}]"
+
+
+def scientific(value: float) -> str:
+    """Return two digits and a power of ten: ``3·10⁻⁷``."""
+    digits, exponent = f"{value:.1e}".split("e")
+    raised = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+    return f"{float(digits):g}·10{raised}"
 
 
 def rounded(value: float, unit: str) -> str:

@@ -11,7 +11,7 @@ from chaindrive.errors import ParameterError
 from chaindrive.plot.axes import colour_bar, drawing, legend_below
 from chaindrive.plot.scheme import CURVES, LIMIT, MARK, STEEL
 from chaindrive.plot.source import analysed, chain_of, driver_of
-from chaindrive.plot.units import in_trade, rounded, written
+from chaindrive.plot.units import in_trade, rounded, scientific, written
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -318,11 +318,11 @@ def elongation(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) ->
                     ha="right",
                     fontsize="small",
                 )
-        k = found.attrs["coefficient"] * 1e9
+        k = scientific(found.attrs["coefficient"] * 1e9)
         source_of_k = str(found.attrs["coefficient_source"]).partition(":")[0]
-        ax.set_title(f"k = {k:.2g} mm³/(N m), {source_of_k}", fontsize="small")
+        ax.set_title(f"k = {k} mm³/(N m), {source_of_k}")
         ax.set_xlim(0, last)
-        ax.set_ylim(bottom=0)
+        ax.set_ylim(0, 108 * float(found["elongation"].max()))
         ax.set_xlabel("running time [h]")
         ax.set_ylabel("elongation [%]")
     return ax
