@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from chaindrive.extras import extra
 from chaindrive.plot.scheme import CARRIER, GUIDE, OUTLINE, PLATES, STEEL
 from chaindrive.plot.units import in_trade, written
+from chaindrive.pose import drive_of
 from chaindrive.progress import told
 from chaindrive.results import held
 
@@ -109,9 +110,7 @@ class _Stage:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
 
-        from chaindrive.drive import _from_text
-
-        drive = _from_text(run.attrs["scene"], run.attrs.get("scene_name", "scene"))
+        drive = drive_of(run)
         figure = drive._inner.figure(True, float(run.attrs.get("run_in", 0.0)))
         missing = [name for name in figure.needs if name not in run]
         if missing:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from chaindrive import _core
 
-__all__ = ["Pose", "at_start", "figure_of", "recorded_at"]
+__all__ = ["Pose", "at_start", "drive_of", "figure_of", "recorded_at"]
 
 _Floats = NDArray[np.float64]
 
@@ -34,9 +34,23 @@ class Pose:
     plates: list[_Floats]
 
 
+def drive_of(run: xr.Dataset) -> Drive:
+    """Return the drive that a run was made of.
+
+    Raises
+    ------
+    ParameterError
+        This is not a run.
+    """
+    if "scene" not in run.attrs:
+        message = "the dataset has no attribute scene: it is not a run of chaindrive"
+        raise ParameterError(message, "scene", "the dataset of chaindrive.simulate")
+    return _from_text(run.attrs["scene"], run.attrs.get("scene_name", "scene"))
+
+
 def figure_of(run: xr.Dataset, drive: Drive | None = None) -> _core.Figure:
     """Return the figure of the drive that was run, assembled as it was for the run."""
-    drive = drive or _from_text(run.attrs["scene"], run.attrs.get("scene_name", "scene"))
+    drive = drive or drive_of(run)
     return drive._inner.figure(True, float(run.attrs.get("run_in", 0.0)))
 
 

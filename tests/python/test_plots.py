@@ -137,6 +137,9 @@ def test_what_is_neither_run_nor_analysis_is_refused() -> None:
         cd.plot.losses(lost, start=1e-3)
     with pytest.raises(cd.ParameterError, match=r"neither a run .* nor what .*impacts returns"):
         cd.plot.impacts(lost)
+    for draw in (cd.plot.overview, lambda it: cd.plot.frame(it, 0.0)):
+        with pytest.raises(cd.ParameterError, match="not a run of chaindrive"):
+            draw(lost)
     assert figures() == 0
     # Given axes belong to whoever gave them.
     _, ax = plt.subplots()

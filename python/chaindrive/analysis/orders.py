@@ -10,10 +10,10 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from chaindrive.analysis.running import running_modes
-from chaindrive.analysis.signal import drive_of, label, sample_rate, signal, turning
+from chaindrive.analysis.signal import label, sample_rate, signal, turning
 from chaindrive.errors import ParameterError
 from chaindrive.extras import extra
-from chaindrive.pose import at_start
+from chaindrive.pose import at_start, drive_of
 
 __all__ = ["campbell", "mesh_orders", "order_map", "order_slice", "order_spectrum"]
 

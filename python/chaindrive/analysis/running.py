@@ -10,10 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from chaindrive.analysis.ramps import prescribed
 from chaindrive.analysis.running_chain import RunningChain, RunningState, samples_near
-from chaindrive.analysis.signal import drive_of, recorded, signal, turning
+from chaindrive.analysis.signal import recorded, signal, turning
 from chaindrive.analysis.spans import span_lines
 from chaindrive.drive import Drive
 from chaindrive.errors import ParameterError
+from chaindrive.pose import drive_of
 
 __all__ = ["critical_speeds", "moving_string", "running_modes", "span_frequencies"]
 

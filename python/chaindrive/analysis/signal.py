@@ -8,10 +8,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from chaindrive.drive import Drive, _from_text
 from chaindrive.errors import ParameterError
 
-__all__ = ["drive_of", "label", "recorded", "require", "sample_rate", "signal", "turning"]
+__all__ = ["label", "recorded", "require", "sample_rate", "signal", "turning"]
 
 
 def __dir__() -> list[str]:
@@ -38,11 +37,6 @@ def require(run: xr.Dataset, part: str) -> None:
     """
     if run.sizes.get(part, 1) == 0:
         raise ParameterError(f"this drive has no {part}s", part)
-
-
-def drive_of(run: xr.Dataset) -> Drive:
-    """Return the drive that a run was made of."""
-    return _from_text(run.attrs["scene"], run.attrs.get("scene_name", "scene"))
 
 
 def signal(run: xr.Dataset, channel: str | xr.DataArray, at: dict[str, Any]) -> xr.DataArray:

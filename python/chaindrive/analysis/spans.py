@@ -10,10 +10,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from chaindrive.analysis.signal import drive_of, recorded
+from chaindrive.analysis.signal import recorded
 from chaindrive.drive import Drive
 from chaindrive.errors import ParameterError
-from chaindrive.pose import at_start
+from chaindrive.pose import at_start, drive_of
 
 __all__ = ["Stations", "span_envelope", "span_lines", "span_motion", "stations"]
 

@@ -6,9 +6,9 @@ import numpy as np
 import xarray as xr
 
 from chaindrive import kinematics
-from chaindrive.analysis.signal import drive_of, recorded, require, signal
+from chaindrive.analysis.signal import recorded, require, signal
 from chaindrive.errors import ParameterError
-from chaindrive.pose import at_start
+from chaindrive.pose import at_start, drive_of
 
 __all__ = ["speed_ripple", "transmission_error"]
 

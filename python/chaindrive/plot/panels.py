@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import xarray as xr
 
 from chaindrive.analysis import order_spectrum
-from chaindrive.analysis.signal import drive_of
 from chaindrive.errors import ChaindriveError
 from chaindrive.extras import extra
 from chaindrive.plot.curves import tension
@@ -18,6 +17,7 @@ from chaindrive.plot.scheme import STYLE
 from chaindrive.plot.source import driver_of, mesh_order_of, tightest_span
 from chaindrive.plot.spectra import spectrum
 from chaindrive.plot.wear import impacts, losses, tension_around_loop
+from chaindrive.pose import drive_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -49,7 +49,7 @@ def overview(run: xr.Dataset) -> Figure:
 
     Raises
     ------
-    KeyError
+    ParameterError
         This is not a run: it has no scene.
     """
     drive = drive_of(run)
