@@ -9,7 +9,7 @@ PIP := $(BIN)/python -m pip install --quiet --no-compile
 # What the wheel is made of.
 SOURCES := Cargo.toml Cargo.lock pyproject.toml \
 	$(shell find crates -type f \( -path '*/src/*' -o -path '*/scenes/*' -o -path '*/page/*' -o -name Cargo.toml -o -name build.rs \)) \
-	$(shell find python -type f \( -name '*.py' -o -name '*.pyi' -o -name py.typed \))
+	$(shell find python -type f \( -name '*.py' -o -name '*.pyi' -o -name '*.css' -o -name py.typed \))
 
 # Every test that judges a validation case appends to it.
 VERDICTS := $(abspath target/verdicts.jsonl)

@@ -59,10 +59,12 @@ if TYPE_CHECKING:
     from chaindrive.friction_law import friction as friction
     from chaindrive.live import Simulation as Simulation
     from chaindrive.live import Snapshot as Snapshot
+    from chaindrive.page import Page as Page
     from chaindrive.precision import work_precision as work_precision
     from chaindrive.profile import Profile as Profile
     from chaindrive.replaying import Replay as Replay
     from chaindrive.replaying import replay as replay
+    from chaindrive.reporting import report as report
     from chaindrive.results import open_result as open_result
     from chaindrive.results import take_over as take_over
     from chaindrive.simulation import resume as resume
@@ -110,7 +112,9 @@ _DEFINED_IN = {
     "live": ("Simulation", "Snapshot"),
     "precision": ("work_precision",),
     "profile": ("Profile",),
+    "page": ("Page",),
     "replaying": ("Replay", "replay"),
+    "reporting": ("report",),
     "results": ("open_result", "take_over"),
     "simulation": ("resume", "simulate"),
     "sweeping": ("sweep",),

@@ -43,6 +43,10 @@ def main() -> int:
             from chaindrive.movies import command
 
             return command(arguments)
+        if arguments[:1] == ["report"]:
+            from chaindrive import reporting
+
+            return reporting.command(arguments)
         return _core._cli(["chaindrive", *arguments])
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)

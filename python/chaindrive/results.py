@@ -12,6 +12,7 @@ from chaindrive import _core
 from chaindrive.errors import ResultWarning
 from chaindrive.extras import extra
 from chaindrive.objects import Objects, Place, place_of
+from chaindrive.page import show_verdicts
 
 if TYPE_CHECKING:
     from obstore.store import ObjectStore
@@ -63,6 +64,7 @@ def open_result(path: str | PathLike[str] | ObjectStore) -> xr.Dataset:
     'complete'
     """
     extra("zarr", "stores on disk")
+    show_verdicts()
     name = place_of(path)
     # A writer says how it ended before it gives its claim back: looked at again, a result that
     # nobody writes has ended, or its writer was killed.

@@ -23,6 +23,7 @@ from chaindrive.errors import (
     VerdictWarning,
 )
 from chaindrive.extras import extra
+from chaindrive.page import show_verdicts
 from chaindrive.progress import told
 from chaindrive.settings import ContactPlace, MethodName, Quantity, Recorded, Target
 from chaindrive.signals import heard
@@ -330,6 +331,7 @@ def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:
     for name, (dim, chains) in result["chains"].items():
         coordinates[name] = (dim, np.asarray(chains, dtype=np.str_))
     coordinates["time"] = ("time", result["time"], {"units": "s", "long_name": "time"})
+    show_verdicts()
     return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 
 

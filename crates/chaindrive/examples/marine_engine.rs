@@ -1,9 +1,10 @@
-//! A preset for one second, with its summary:
+//! A preset for one second, with its page:
 //! `cargo run --release --example marine_engine [PRESET]`.
 
 use std::io::Write;
 
-use chaindrive::{Run, Scene, Simulation, Summary};
+use chaindrive::page::Page;
+use chaindrive::{Run, Scene, Simulation, Summary, Verdict};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let name = std::env::args().nth(1);
@@ -14,6 +15,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     while let Some(sample) = simulation.next_sample()? {
         summary.push(sample);
     }
-    writeln!(std::io::stdout(), "{}", summary.report(&simulation))?;
+    let verdict = Verdict::of(&summary, &simulation, None, None, None);
+    let page = Page::of(&verdict, &summary, &simulation, None, &scene.assumed()?);
+    writeln!(std::io::stdout(), "{page}")?;
     Ok(())
 }

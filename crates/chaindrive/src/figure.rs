@@ -16,13 +16,18 @@ const DIGITS: i32 = 4;
 /// assert_eq!(figure(0.0), "0");
 /// ```
 pub fn figure(value: f64) -> String {
+    with_digits(value, DIGITS)
+}
+
+/// The same with another number of digits, such as those that a table of dimensions has.
+pub fn with_digits(value: f64, digits: i32) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
     if !value.is_finite() {
         return "–".to_owned();
     }
-    let text = format!("{value:.*}", decimals(value));
+    let text = format!("{value:.*}", decimals(value, digits));
     if text.contains('.') {
         let text = text.trim_end_matches('0');
         return text.trim_end_matches('.').to_owned();
@@ -30,14 +35,14 @@ pub fn figure(value: f64) -> String {
     text
 }
 
-/// Digits behind the point that leave a value its four.
-fn decimals(value: f64) -> usize {
+/// Digits behind the point that leave a value so many.
+fn decimals(value: f64, digits: i32) -> usize {
     let before = value.abs().log10().floor();
     #[expect(
         clippy::cast_possible_truncation,
         reason = "a power of ten of a number"
     )]
-    let wanted = DIGITS - 1 - before as i32;
+    let wanted = digits - 1 - before as i32;
     // Beyond twelve nothing is left but zeros.
     usize::try_from(wanted.clamp(0, 12)).unwrap_or(0)
 }
@@ -58,7 +63,7 @@ type Units = &'static [(&'static str, f64)];
 
 /// A quantity of the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
+pub enum Measure {
     /// A force.
     Force,
     /// A torque.
@@ -83,11 +88,11 @@ pub enum Quantity {
     Energy,
     /// A pressure.
     Pressure,
-    /// A share.
-    Share,
+    /// A time.
+    Time,
 }
 
-impl Quantity {
+impl Measure {
     fn units(self) -> Units {
         match self {
             Self::Force => &[("MN", 1e6), ("kN", 1e3), ("N", 1.0)],
@@ -101,21 +106,48 @@ impl Quantity {
             Self::Impulse => &[("N s", 1.0), ("mN s", 1e-3)],
             Self::Speed => &[("m/s", 1.0)],
             Self::Energy => &[("MJ", 1e6), ("kJ", 1e3), ("J", 1.0), ("mJ", 1e-3)],
-            Self::Pressure => &[("GPa", 1e9), ("MPa", 1e6)],
-            Self::Share => &[("%", 1e-2)],
+            Self::Pressure => &[("GPa", 1e9), ("MPa", 1e6), ("kPa", 1e3), ("Pa", 1.0)],
+            Self::Time => &[("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)],
         }
     }
 
-    /// The unit for some values in SI: one in which the greatest has at least two digits before the point, or else the least unit.
+    /// The quantity of an SI unit of scenes; none where the trade writes the unit as it is.
+    pub fn of_unit(unit: &str) -> Option<Self> {
+        Some(match unit {
+            "N" => Self::Force,
+            "N m" => Self::Torque,
+            "W" => Self::Power,
+            "N/m" => Self::Stiffness,
+            "rad/s" => Self::Turning,
+            "m" => Self::Length,
+            "rad" => Self::Angle,
+            "Pa" => Self::Pressure,
+            _ => return None,
+        })
+    }
+
+    /// The value from which on a unit is taken: forces and the like stay in N and W to ten thousand.
+    fn least_in_a_unit(self) -> f64 {
+        match self {
+            Self::Force | Self::Torque | Self::Power => 10.0,
+            _ => 1.0,
+        }
+    }
+
+    /// The unit for some values in SI: the largest in which the greatest has digits before the point as the trade has them, or else the least unit.
     pub fn scale(self, values: impl IntoIterator<Item = f64>) -> Scale {
         let finite = values.into_iter().map(f64::abs).filter(|it| it.is_finite());
         let greatest = finite.fold(0.0, f64::max);
         let units = self.units();
-        let fits = units.iter().find(|(_, per)| greatest >= 9.9995 * per);
+        let least = self.least_in_a_unit();
+        let fits = units
+            .iter()
+            .find(|(_, per)| greatest >= 0.99995 * least * per);
         let (unit, per) = *fits.unwrap_or(&units[units.len() - 1]);
         let decimals = match greatest / per {
             0.0 => 0,
-            shown => decimals(shown).min(6),
+            // One more, for what is less than the greatest.
+            shown => decimals(shown, DIGITS + 1).min(6),
         };
         Scale {
             unit,
@@ -126,8 +158,13 @@ impl Quantity {
 
     /// A value in SI with its unit: `12.4 kN`.
     pub fn told(self, value: f64) -> String {
+        self.told_with(value, DIGITS)
+    }
+
+    /// The same with another number of digits.
+    pub fn told_with(self, value: f64, digits: i32) -> String {
         let scale = self.scale([value]);
-        format!("{} {}", figure(value / scale.per), scale.unit)
+        format!("{} {}", with_digits(value / scale.per, digits), scale.unit)
     }
 }
 
@@ -149,6 +186,18 @@ impl Scale {
         } else {
             text
         }
+    }
+
+    /// A value in SI, in this unit, with three digits of its own: a half width, or what is far less than the rest of its column.
+    pub fn small(&self, value: f64) -> String {
+        let value = value / self.per;
+        if !value.is_finite() {
+            return "–".to_owned();
+        }
+        if value == 0.0 {
+            return "0".to_owned();
+        }
+        format!("{value:.*}", decimals(value, 3))
     }
 
     /// A heading with the unit: `mean [kN]`.
@@ -194,16 +243,16 @@ mod tests {
 
     #[test]
     fn units_suit_the_values() {
-        assert_eq!(Quantity::Force.told(254.6), "254.6 N");
-        assert_eq!(Quantity::Force.told(9_100.0), "9100 N");
-        assert_eq!(Quantity::Force.told(38_663.0), "38.66 kN");
-        assert_eq!(Quantity::Power.told(0.2), "0.2 W");
-        assert_eq!(Quantity::Stiffness.told(4.37e9), "4370 MN/m");
-        assert_eq!(Quantity::Turning.told(157.08), "1500 rpm");
-        let scale = Quantity::Force.scale([5.8262, 38_663.1, f64::NAN]);
+        assert_eq!(Measure::Force.told(254.6), "254.6 N");
+        assert_eq!(Measure::Force.told(9_100.0), "9100 N");
+        assert_eq!(Measure::Force.told(38_663.0), "38.66 kN");
+        assert_eq!(Measure::Power.told(0.2), "0.2 W");
+        assert_eq!(Measure::Stiffness.told(4.37e9), "4.37 GN/m");
+        assert_eq!(Measure::Turning.told(157.08), "1500 rpm");
+        let scale = Measure::Force.scale([5.8262, 38_663.1, f64::NAN]);
         assert_eq!(scale.heading("least"), "least [kN]");
-        assert_eq!(scale.cell(5826.2), "5.83");
-        assert_eq!(scale.cell(-0.001), "0.00");
+        assert_eq!(scale.cell(5826.2), "5.826");
+        assert_eq!(scale.cell(-0.001), "0.000");
         assert_eq!(scale.cell(f64::NAN), "–");
     }
 

@@ -8,6 +8,7 @@ pub(crate) mod draw;
 pub(crate) mod lists;
 pub(crate) mod output;
 pub(crate) mod replay;
+pub(crate) mod report;
 pub(crate) mod resume;
 pub(crate) mod run;
 pub(crate) mod scenes;

@@ -20,7 +20,7 @@ pub(crate) enum Failure {
     Argument(String),
 
     /// Several scenes were looked at, and some are wrong; the messages are out.
-    #[error("{wrong} of {scenes} scenes are wrong")]
+    #[error("{}", wrong_scenes(*.wrong, *.scenes))]
     Scenes { wrong: usize, scenes: usize },
 
     /// The run could not begin.
@@ -87,6 +87,14 @@ impl From<ResumeError> for Failure {
             ResumeError::Store(error) => Self::Write(error),
             other => Self::Resume(other),
         }
+    }
+}
+
+fn wrong_scenes(wrong: usize, scenes: usize) -> String {
+    match (wrong, scenes) {
+        (_, 1) => "the scene is wrong".to_owned(),
+        (1, _) => format!("1 of {scenes} scenes is wrong"),
+        _ => format!("{wrong} of {scenes} scenes are wrong"),
     }
 }
 

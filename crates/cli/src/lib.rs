@@ -26,8 +26,8 @@ use clap::{CommandFactory, Parser, Subcommand};
 use terminal::say;
 
 use commands::{
-    bench, check, describe, design, draw, lists, replay, resume, run as run_command, scenes, shell,
-    sweep,
+    bench, check, describe, design, draw, lists, replay, report, resume, run as run_command,
+    scenes, shell, sweep,
 };
 
 /// Exit code of a run that was stopped by Ctrl-C.
@@ -67,6 +67,7 @@ enum Verb {
     Run(run_command::Arguments),
     Resume(resume::Arguments),
     Replay(replay::Arguments),
+    Report(report::Arguments),
     Sweep(sweep::Arguments),
     Bench(bench::Arguments),
     Check(check::Arguments),
@@ -118,6 +119,7 @@ where
         Verb::Run(arguments) => run_command::run(arguments, interrupted),
         Verb::Resume(arguments) => resume::resume(arguments, interrupted),
         Verb::Replay(arguments) => replay::replay(arguments, interrupted),
+        Verb::Report(arguments) => report::report(arguments),
         Verb::Sweep(arguments) => sweep::sweep(arguments, interrupted),
         Verb::Bench(arguments) => bench::bench(arguments, interrupted),
         Verb::Check(arguments) => check::check(arguments, interrupted),

@@ -28,6 +28,7 @@ from chaindrive.analysis import (
     spectra,
     transmission,
 )
+from chaindrive.page import Page, page_of
 from chaindrive.replaying import Replay
 
 if TYPE_CHECKING:
@@ -54,6 +55,20 @@ class DriveAccessor:
 
     def __init__(self, run: xr.Dataset) -> None:
         self._run = run
+
+    def summary(self) -> Page:
+        """Return the page of the run, as text and as tables of a notebook.
+
+        Verdict, what the drive does, tensions, bearings and guides, impacts, tensioners,
+        irregularity, losses, utilisation, assumed inputs; ``numerics`` holds steps and errors.
+        """
+        return page_of(self._run)
+
+    def report(self, path: str | PathLike[str] | None = None) -> str:
+        """See `chaindrive.report`."""
+        from chaindrive.reporting import report
+
+        return report(self._run, path)
 
     def spectrum(self, channel: str | xr.DataArray, **options: Any) -> xr.DataArray:
         """See `chaindrive.analysis.spectrum`."""

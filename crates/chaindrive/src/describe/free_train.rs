@@ -6,6 +6,8 @@ use std::fmt;
 use chaindrive_mechanics::{Assembled, FreeTrain};
 use serde::Serialize;
 
+use crate::figure::{Measure, figure};
+
 /// Shafts that chains, gears and couplings join and no motion turns, at the start.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FreeTrainFacts {
@@ -57,8 +59,9 @@ impl fmt::Display for FreeTrainFacts {
         }
         write!(
             f,
-            ", torques of {:.4} N m on {first} speed it up by {:.4} rad/s²; ",
-            self.torque, self.acceleration
+            ", torques of {} on {first} speed it up by {} rad/s²; ",
+            Measure::Torque.told(self.torque),
+            figure(self.acceleration)
         )?;
         match self.working_point {
             Some(speed) => write!(

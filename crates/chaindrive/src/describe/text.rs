@@ -3,6 +3,8 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
+use crate::figure::{Measure, figure};
+
 use super::{
     ChainFacts, Closing, ContactFacts, Description, LinkFacts, Model, RatedPower, SpanAtRest,
     counted,
@@ -47,9 +49,9 @@ impl fmt::Display for ChainFacts {
             &format!("{:.4} kg/m", chain.mass_per_length),
         )?;
         let stiffness = format!(
-            "{:.4e} N/m a link, {:.4e} N a unit of strain{}",
-            chain.link_stiffness,
-            chain.axial_stiffness,
+            "{} a link, {} a unit of strain{}",
+            Measure::Stiffness.told(chain.link_stiffness),
+            Measure::Force.told(chain.axial_stiffness),
             if chain.bodies.rollers.is_some() {
                 ", while it is laid"
             } else {
@@ -116,7 +118,7 @@ impl Description {
         }
         writeln!(
             f,
-            "shafts                inertia [kg m²]   speed [rad/s]   sprockets; joined by"
+            "shafts                inertia [kg m²]     speed [rpm]   sprockets; joined by"
         )?;
         for shaft in &self.shafts {
             let sprockets = match shaft.sprockets.as_slice() {
@@ -129,8 +131,10 @@ impl Description {
             };
             writeln!(
                 f,
-                "  {:18} {:>16.4e}   {:>13.4}   {sprockets}{joins}",
-                shaft.name, shaft.inertia, shaft.speed
+                "  {:18} {:>16}   {:>13.2}   {sprockets}{joins}",
+                shaft.name,
+                figure(shaft.inertia),
+                shaft.speed * 60.0 / TAU
             )?;
         }
         Ok(())
@@ -147,7 +151,7 @@ impl Description {
         } else {
             "statics                  "
         };
-        writeln!(f, "{of}iterations   residual   span tensions [N]")?;
+        writeln!(f, "{of}iterations   span tensions [N]")?;
         for stage in &self.statics {
             let tensions = stage
                 .span_tensions
@@ -156,8 +160,8 @@ impl Description {
             let tensions = tensions.collect::<Vec<_>>().join("  ");
             writeln!(
                 f,
-                "  {:22} {:>10}   {:>8.1e}   {tensions}",
-                stage.stage, stage.iterations, stage.residual
+                "  {:22} {:>10}   {tensions}",
+                stage.stage, stage.iterations
             )?;
         }
         Ok(())
@@ -170,8 +174,9 @@ impl Description {
             f,
             "stiffest mode",
             &format!(
-                "1/ω = {:.3e} s, {:.3e} s without its damping",
-                scales.stiffest, scales.undamped
+                "1/ω = {}, {} without its damping",
+                Measure::Time.told(scales.stiffest),
+                Measure::Time.told(scales.undamped)
             ),
         )?;
         row(f, "chain speed", &format!("{:.3} m/s", scales.chain_speed))?;
@@ -195,11 +200,11 @@ impl Description {
                 format!(", {speed:.4} m/s along the normal of the tooth")
             });
             let text = format!(
-                "ratio {:.5} {:+.4} to {:+.4} %, error {:.3e} rad peak to peak, seating at {:.4} m/s{closing}, {:.2} Hz",
+                "ratio {:.5} {:+.4} to {:+.4} %, error {}° peak to peak, seating at {:.4} m/s{closing}, {:.2} Hz",
                 pair.mean_ratio,
                 ratio(pair.least_ratio),
                 ratio(pair.greatest_ratio),
-                pair.transmission_error,
+                figure(pair.transmission_error.to_degrees()),
                 pair.seating_velocity,
                 pair.mesh_frequency
             );
@@ -215,7 +220,11 @@ impl Description {
         row(
             f,
             "method",
-            &format!("{}, step {mean}{:.3e} s", cost.method, cost.step),
+            &format!(
+                "{}, step {mean}{}",
+                cost.method,
+                Measure::Time.told(cost.step)
+            ),
         )?;
         if let Some(accuracy) = cost.unless_chosen_for {
             let text = format!(
@@ -322,7 +331,7 @@ impl fmt::Display for LinkFacts {
 
 impl fmt::Display for Closing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "strain {:.3e} as laid, ", self.strain)?;
+        write!(f, "strain {} % as laid, ", figure(100.0 * self.strain))?;
         match (&self.adjusted, self.unit) {
             (None, _) => write!(f, "nothing adjusted"),
             (Some(name), "rad") => {

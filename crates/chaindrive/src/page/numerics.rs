@@ -4,7 +4,7 @@ use std::fmt::{self, Write as _};
 
 use chaindrive_mechanics::Struck;
 
-use crate::figure::{Quantity, duration, figure, percent};
+use crate::figure::{Measure, duration, figure, percent};
 use crate::precision::{Choice, Judgement};
 use crate::record::{EventTable, Summary};
 use crate::{Simulation, Verdict};
@@ -78,7 +78,7 @@ fn told(
 /// Energy supplied and lost, and what of it is unaccounted for.
 fn energy(f: &mut String, summary: &Summary) -> fmt::Result {
     let ledger = summary.ledger();
-    let told = |energy: f64| Quantity::Energy.told(energy);
+    let told = |energy: f64| Measure::Energy.told(energy);
     let share = |of: f64| percent((summary.residual / of).abs());
     write!(
         f,

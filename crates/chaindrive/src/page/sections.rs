@@ -1,7 +1,7 @@
 //! The sections of the page.
 
 use super::Section;
-use crate::figure::{Quantity, Scale, duration, figure, percent};
+use crate::figure::{Measure, Scale, duration, figure, percent};
 use crate::rating::{Load, Rating};
 use crate::record::{Bearing, SprocketCourse, Summary};
 use crate::{RanIn, Simulation, Verdict};
@@ -24,6 +24,7 @@ impl Told<'_> {
     pub(super) fn sections(&self) -> Vec<Section> {
         vec![
             self.verdict(),
+            self.record(),
             self.drive(),
             self.spans(),
             self.links(),
@@ -41,6 +42,20 @@ impl Told<'_> {
         let title = format!("verdict: {}", self.verdict.trust.name());
         let mut section = Section::new(&title, []);
         section.sentences = self.verdict.sentences();
+        section
+    }
+
+    /// How long was recorded, behind which run-in.
+    fn record(&self) -> Section {
+        let mut section = Section::new("record", []);
+        let time = self.summary.duration();
+        if time > 0.0 {
+            let samples = self.summary.samples;
+            let time = Measure::Time.told(time);
+            section
+                .sentences
+                .push(format!("{time}, {samples} samples."));
+        }
         section.sentences.extend(self.ran_in.map(RanIn::to_string));
         section
     }
@@ -48,9 +63,9 @@ impl Told<'_> {
     /// Power, torque, speed and ratio of every sprocket; which sides are tight.
     fn drive(&self) -> Section {
         let sprockets = &self.summary.bodies().sprockets;
-        let turning = Quantity::Turning.scale(sprockets.iter().map(|it| it.speed.mean()));
-        let torques = Quantity::Torque.scale(sprockets.iter().map(|it| it.torque.mean()));
-        let powers = Quantity::Power.scale(sprockets.iter().map(|it| it.power.mean()));
+        let turning = Measure::Turning.scale(sprockets.iter().map(|it| it.speed.mean()));
+        let torques = Measure::Torque.scale(sprockets.iter().map(|it| it.torque.mean()));
+        let powers = Measure::Power.scale(sprockets.iter().map(|it| it.power.mean()));
         let columns = [
             "sprocket".to_owned(),
             "role".to_owned(),
@@ -86,7 +101,7 @@ impl Told<'_> {
                 continue;
             }
             let [tight, slack] = [tight, slack].map(|index| {
-                let tension = Quantity::Force.told(mean(index));
+                let tension = Measure::Force.told(mean(index));
                 format!("{}, {tension}", self.summary.spans[*index].name)
             });
             let of = if chain.is_empty() {
@@ -131,7 +146,7 @@ impl Told<'_> {
     /// Tensions of the spans, with intervals.
     fn spans(&self) -> Section {
         let spans = &self.summary.spans;
-        let scale = Quantity::Force.scale(spans.iter().flat_map(|it| [it.least, it.greatest]));
+        let scale = Measure::Force.scale(spans.iter().flat_map(|it| [it.least, it.greatest]));
         let heading = format!("span tension [{}]", scale.unit);
         let columns = [
             "mean", "± 95 %", "std", "± 95 %", "p1", "± 95 %", "p99", "± 95 %",
@@ -193,7 +208,7 @@ impl Told<'_> {
             .map(|(name, force)| (name.clone(), force))
             .chain(guides.map(|(name, force)| (format!("guide {name}"), force)))
             .collect();
-        let scale = Quantity::Force.scale(all.iter().map(|(_, it)| it.magnitude.greatest));
+        let scale = Measure::Force.scale(all.iter().map(|(_, it)| it.magnitude.greatest));
         let columns = [
             "on".to_owned(),
             scale.heading("mean"),
@@ -216,8 +231,8 @@ impl Told<'_> {
     fn impacts(&self) -> Section {
         let struck = self.summary.impacts().iter().filter(|it| it.count > 0);
         let struck: Vec<_> = struck.collect();
-        let scale = Quantity::Force.scale(struck.iter().map(|it| it.greatest));
-        let impulses = Quantity::Impulse.scale(struck.iter().map(|it| it.impulse(0.5)));
+        let scale = Measure::Force.scale(struck.iter().map(|it| it.greatest));
+        let impulses = Measure::Impulse.scale(struck.iter().map(|it| it.impulse(0.5)));
         let columns = [
             "on".to_owned(),
             "number".to_owned(),
@@ -247,9 +262,9 @@ impl Told<'_> {
         let mut section = Section::new("tensioners", columns.map(str::to_owned));
         for (name, unit, [travel, _]) in &self.summary.bodies().tensioners {
             let quantity = if unit == "rad" {
-                Quantity::Angle
+                Measure::Angle
             } else {
-                Quantity::Length
+                Measure::Length
             };
             let scale = quantity.scale([travel.least, travel.greatest]);
             let values = [travel.mean(), travel.least, travel.greatest, travel.range()];
@@ -341,7 +356,11 @@ impl Told<'_> {
         if assumed.is_empty() {
             return section;
         }
-        let named = assumed.iter().take(NAMED).cloned().collect::<Vec<_>>();
+        // Contacts and joints decide more of a result than what the rest leaves open.
+        let (first, other): (Vec<_>, Vec<_>) =
+            assumed.iter().partition(|it| it.starts_with("contact"));
+        let named: Vec<&str> = first.iter().chain(&other).map(|it| it.as_str()).collect();
+        let named = &named[..named.len().min(NAMED)];
         let rest = match assumed.len().saturating_sub(NAMED) {
             0 => String::new(),
             rest => format!(", and {rest} more"),
@@ -359,7 +378,7 @@ fn half_width(scale: &Scale, value: f64) -> String {
     if value.is_nan() {
         "unknown".to_owned()
     } else {
-        scale.cell(value)
+        scale.small(value)
     }
 }
 
@@ -370,11 +389,11 @@ fn strength(load: &Load) -> String {
     } else {
         format!(" of {}", load.chain)
     };
-    let pull = Quantity::Force.told(load.tension);
+    let pull = Measure::Force.told(load.tension);
     let breaks = match load.strength.breaking_load {
         Some(breaking) => format!(
             "the chain breaks at {}, {} times as much",
-            Quantity::Force.told(breaking),
+            Measure::Force.told(breaking),
             figure(breaking / load.tension)
         ),
         None => "no breaking load is known: give chain.breaking_load".to_owned(),
@@ -382,7 +401,7 @@ fn strength(load: &Load) -> String {
     let pressed = if load.pressed > 0.0 {
         format!(
             " Links are pressed by up to {}, in {} of links and time.",
-            Quantity::Force.told(-load.least),
+            Measure::Force.told(-load.least),
             percent(load.pressed)
         )
     } else {
@@ -401,13 +420,13 @@ fn rated(rating: &Rating) -> Vec<String> {
     } else {
         format!(" {}", rating.chain)
     };
-    let carried = Quantity::Power.told(rating.carried);
+    let carried = Measure::Power.told(rating.carried);
     let power = match (&rating.limits, rating.governing()) {
         (Ok(limits), Some((by, power))) => {
             let others = limits.iter().filter(|it| it.by != by);
             let others: Vec<String> = others
                 .map(|it| match it.power {
-                    Some(power) => format!("{} {}", it.by.name(), Quantity::Power.told(power)),
+                    Some(power) => format!("{} {}", it.by.name(), Measure::Power.told(power)),
                     None => format!("{} not rated, source missing", it.by.name()),
                 })
                 .collect();
@@ -424,7 +443,7 @@ fn rated(rating: &Rating) -> Vec<String> {
             format!(
                 "Chain{of} carries {carried}, {:.0} %{service} of the {} that it is rated for by {} at the {} teeth of {}{others}.",
                 100.0 * rating.utilisation().unwrap_or(f64::NAN),
-                Quantity::Power.told(power),
+                Measure::Power.told(power),
                 by.name(),
                 sprocket.teeth,
                 sprocket.name
@@ -434,17 +453,19 @@ fn rated(rating: &Rating) -> Vec<String> {
             let twin = rating.twin.map_or_else(String::new, |twin| {
                 format!(
                     " The chain of ASME B29.1 with its pitch is rated for {}.",
-                    Quantity::Power.told(twin)
+                    Measure::Power.told(twin)
                 )
             });
-            format!("Chain{of} carries {carried}: {why}.{twin}")
+            let why = why.to_string();
+            let why = why[..1].to_uppercase() + &why[1..];
+            format!("Chain{of} carries {carried}. {why}.{twin}")
         }
         (Ok(_), None) => return Vec::new(),
     };
     let pressure = rating.bearing_pressure.map(|pressure| {
         format!(
             "Pins press their bushes with {} under the mean pull of the tight side.",
-            Quantity::Pressure.told(pressure)
+            Measure::Pressure.told(pressure)
         )
     });
     let oil = rating

@@ -16,7 +16,7 @@ use super::impacts::ImpactErrors;
 use super::short_runs::{Beginning, ShortRuns};
 use super::trace::{Gap, Strands, Trace};
 use super::window::Window;
-use crate::figure::{duration, percent};
+use crate::figure::{Measure, duration, percent};
 use crate::{Run, SimulationError, Stepping};
 
 /// Accuracy that a run has unless told otherwise \[–\].
@@ -502,12 +502,14 @@ impl Choice {
         let error = percent(self.error);
         if self.kept {
             format!(
-                "{name}, step {step:.2e} s{depth}: the cheapest that keeps {what} within {asked} over {window}; found {error}, {} tried",
+                "{name}, step {}{depth}: the cheapest that keeps {what} within {asked} over {window}; found {error}, {} tried",
+                Measure::Time.told(step),
                 self.trials.len()
             )
         } else {
             format!(
-                "{name}, step {step:.2e} s{depth}: the best of {} tried; {what} errs by {error} over {window}, {asked} is not reached",
+                "{name}, step {}{depth}: the best of {} tried; {what} errs by {error} over {window}, {asked} is not reached",
+                Measure::Time.told(step),
                 self.trials.len()
             )
         }

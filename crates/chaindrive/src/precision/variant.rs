@@ -1,5 +1,6 @@
 //! The methods and steps of a work-precision study, and the references it is measured with.
 
+use crate::figure::Measure;
 use chaindrive_integrate::SecondOrderSystem;
 use chaindrive_mechanics::Assembled;
 
@@ -35,7 +36,7 @@ impl Variant {
         if let Some(tolerance) = self.tolerance {
             text = format!("{text}, tolerance {tolerance:.0e}");
         } else if let Some(step) = self.step {
-            text = format!("{text}, step {step:.2e} s");
+            text = format!("{text}, step {}", Measure::Time.told(step));
         }
         if let Some(depth) = self.onset_depth {
             text = format!("{text}, onset depth {depth:.0e} m");

@@ -11,7 +11,7 @@ use super::execute::Onlooker;
 use super::patience::LOOK;
 use super::set_off::assemble;
 use super::{Run, steady};
-use crate::figure::duration;
+use crate::figure::Measure;
 use crate::scene::read_time;
 use crate::{Simulation, SimulationError};
 
@@ -78,7 +78,7 @@ impl fmt::Display for RanIn {
         if let Some(why) = &self.left_out {
             return write!(f, "The record begins at the start: {why}.");
         }
-        let time = duration(self.time);
+        let time = Measure::Time.told(self.time);
         write!(f, "The drive was run in for {time} before t = 0")?;
         match self.is_steady {
             None => write!(f, ", as asked.")?,

@@ -12,6 +12,7 @@ use super::schema::SceneText;
 use super::tree::{Node, is_json, steps};
 use super::validate::below;
 use super::{Scene, SceneError, schema, unreadable, validate};
+use crate::figure::{Measure, figure};
 use crate::run::{Run, STEPPING_KEYS};
 use chaindrive_integrate::Method;
 
@@ -145,8 +146,15 @@ impl Resolved {
                 return Some(path.clone());
             }
             let unit = self.units.get(path).filter(|unit| **unit != "1");
-            let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
-            Some(format!("{path} = {}{unit}", leaf(place)))
+            let value = match (place.as_f64(), unit) {
+                (Some(value), Some(unit)) => match Measure::of_unit(unit) {
+                    Some(quantity) => quantity.told(value),
+                    None => format!("{} {unit}", figure(value)),
+                },
+                (Some(value), None) => figure(value),
+                (None, _) => leaf(place),
+            };
+            Some(format!("{path} = {value}"))
         };
         paths.into_iter().filter_map(told).collect()
     }

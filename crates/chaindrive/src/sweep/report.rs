@@ -3,6 +3,7 @@
 use std::fmt::{self, Write};
 
 use super::{Account, Dimension, Outcome, Quantity, Statistic, Sweep, Tally};
+use crate::figure::figure;
 
 /// Variants of which each has its line; of more, only the extremes are told.
 const LINES: usize = 40;
@@ -160,7 +161,7 @@ pub(super) fn short(number: f64) -> String {
     }
     let magnitude = number.abs().log10().floor();
     if !(-3.0..9.0).contains(&magnitude) {
-        return format!("{number:.3e}");
+        return figure(number);
     }
     #[expect(
         clippy::cast_possible_truncation,

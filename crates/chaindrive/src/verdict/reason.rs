@@ -6,7 +6,7 @@ use std::fmt;
 use chaindrive_mechanics::Fight;
 
 use super::{LONG_PRESSED, PRESSED, Trust};
-use crate::figure::Quantity;
+use crate::figure::Measure;
 use crate::figure::{duration, percent};
 use crate::precision::{ChannelHorizon, Gap};
 use crate::rating::LimitedBy;
@@ -405,14 +405,14 @@ impl fmt::Display for Reason {
             }
             Self::HorizonWithinRun { spans, links } => {
                 let of =
-                    |horizon: &ChannelHorizon, name| format!("{name} to {}", duration(horizon.at));
+                    |horizon: &ChannelHorizon, name| format!("{} for {name}", duration(horizon.at));
                 let spans = spans.as_ref().map(|horizon| of(horizon, "span tensions"));
                 let links = links.as_ref().map(|horizon| of(horizon, "link tensions"));
                 let ends: Vec<String> = spans.into_iter().chain(links).collect();
                 write!(
                     f,
-                    "waveforms are right of {}: use statistics beyond",
-                    ends.join(", of ")
+                    "waveforms are right to {}: use statistics beyond",
+                    ends.join(", to ")
                 )
             }
             Self::AboveBreakingLoad {
@@ -459,17 +459,18 @@ impl fmt::Display for Reason {
                 )
             }
             Self::NotRated { chain, power, twin } => {
-                let power = power * 1e-3;
-                write!(f, "the power{}, {power:.1} kW, is not judged: ", of(chain))?;
-                write!(f, "no rating of this type, source missing")?;
+                let told = |power: f64| Measure::Power.told(power);
+                let power = told(*power);
+                write!(
+                    f,
+                    "the power{}, {power}, is not judged, for no source rates this type",
+                    of(chain)
+                )?;
                 if let Some(twin) = twin {
-                    let twin = twin * 1e-3;
-                    write!(
-                        f,
-                        " (ASME B29.1 rates its chain of this pitch for {twin:.1} kW there)"
-                    )?;
+                    let twin = told(*twin);
+                    write!(f, " (ASME B29.1 rates its chain of this pitch for {twin})")?;
                 }
-                write!(f, "; give that of the maker as chain.rated_power")
+                write!(f, ": give what the maker says as chain.rated_power")
             }
             Self::DeepContact {
                 place,
@@ -492,7 +493,7 @@ impl fmt::Display for Reason {
             Self::LoadDrives { work } => write!(
                 f,
                 "loads put {} in, and a load should take energy out: turn its sign, or name a motor under `drive`",
-                Quantity::Energy.told(*work)
+                Measure::Energy.told(*work)
             ),
             Self::SamplesRare {
                 samples,

@@ -10,7 +10,7 @@ use chaindrive::{
 };
 use chaindrive_mechanics::{Energy, Struck};
 
-use crate::judged::{finished, names, notes, preset, run, verdict};
+use crate::judged::{finished, names, notes, page, preset, run, verdict};
 
 /// A chain of the catalogue around two sprockets of 19 teeth, the second of which is given this.
 fn two_sprockets(second: &str) -> Scene {
@@ -325,7 +325,7 @@ fn impacts_are_counted_as_they_are_logged() {
     // v = √(2 g · 2 c)
     assert!((impacts.fastest - 62.6e-3).abs() < 0.1e-3, "{impacts:?}");
     assert_eq!((impacts.gentle, *floor), (0, 1e-3));
-    let report = summary.report(&simulation).to_string();
+    let report = page(&summary, &simulation);
     assert!(report.contains("0 % below 0.001 m/s"), "{report}");
 
     let gentle = preset("pin_in_bush", &[("contact.joints.onset_floor", "0.06 m/s")]);
@@ -367,7 +367,7 @@ fn losses_by_place_add_up() {
     Channel::EnergyLosses.read(sample, &start, &mut by_place);
     Channel::EnergyDissipated.read(sample, &start, &mut whole);
     assert!((by_place.iter().sum::<f64>() - whole[0]).abs() < 1e-12 * whole[0]);
-    let report = summary.report(&simulation).to_string();
+    let report = page(&summary, &simulation);
     assert!(
         report.contains("share") && report.contains("\n  guides "),
         "{report}"

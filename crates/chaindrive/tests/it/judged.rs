@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
+use chaindrive::page::{Page, numerics};
 use chaindrive::{Judgement, Reason, Run, Scene, Simulation, Summary, Verdict};
 
 /// A preset with changes, each `path = value`.
@@ -45,4 +46,12 @@ pub(crate) fn names(verdict: &Verdict) -> Vec<&'static str> {
 
 pub(crate) fn notes(verdict: &Verdict) -> Vec<&'static str> {
     verdict.notes.iter().map(Reason::name).collect()
+}
+
+/// The page of a run, and its numerics.
+pub(crate) fn page(summary: &Summary, simulation: &Simulation) -> String {
+    let verdict = Verdict::of(summary, simulation, None, None, None);
+    let page = Page::of(&verdict, summary, simulation, None, &[]);
+    let numerics = numerics(&verdict, summary, simulation, None, None);
+    format!("{page}\n{numerics}")
 }

@@ -8,7 +8,7 @@ use chaindrive::{
     Trust, Verdict, execute,
 };
 
-use crate::judged::{finished, names, notes, preset, run, verdict};
+use crate::judged::{finished, names, notes, page, preset, run, verdict};
 
 /// The verdict on the estimate of a run alone: it is not carried out.
 fn examined(scene: &Scene, run: &Run) -> Verdict {
@@ -155,8 +155,8 @@ fn a_run_of_a_step_is_too_short_to_judge() {
 fn a_span_without_a_tension_is_named() {
     let flying = marine("-10000 rpm");
     let (simulation, summary) = finished(&flying, &run(0.02, 100.0));
-    let report = summary.report(&simulation).to_string();
-    assert!(report.contains("no roller holds it in"), "{report}");
+    let report = page(&summary, &simulation);
+    assert!(report.contains("No roller holds span"), "{report}");
     let found = Verdict::of(&summary, &simulation, None, None, None);
     assert!(names(&found).contains(&"span-rarely-held"), "{found}");
     assert!(found.is_distrusted());

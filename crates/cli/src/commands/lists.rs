@@ -1,6 +1,7 @@
 //! `chaindrive scenes`, `schema`, `channels`, `catalogue` and `--version`: what there is.
 
 use chaindrive::catalogue::{CatalogueChain, Number, catalogue as chains};
+use chaindrive::figure::{Measure, with_digits};
 use chaindrive::scene::{presets, schema as scene_schema};
 use chaindrive::{Build, Channel, InstructionSet, Origin, Scene};
 use clap::Args;
@@ -113,7 +114,7 @@ pub(crate) fn catalogue(arguments: &Catalogue) -> Result<(), Failure> {
     ))?;
     for chain in chains() {
         let cells = SHOWN.map(|(number, _, per)| match chain.number(number) {
-            Some(value) => format!("{:>10}", short(value * per)),
+            Some(value) => format!("{:>10}", with_digits(value * per, DIGITS)),
             None => format!("{:>10}", "–"),
         });
         print(format_args!(
@@ -127,10 +128,15 @@ pub(crate) fn catalogue(arguments: &Catalogue) -> Result<(), Failure> {
     print("`chaindrive catalogue NAME` tells all, and where it is from")
 }
 
-/// Five digits, as the table has at most.
-fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
-    rounded.to_string()
+/// Digits of the table, at most.
+const DIGITS: i32 = 5;
+
+/// A number of the catalogue in the unit of the trade.
+fn told(number: Number, value: f64) -> String {
+    match Measure::of_unit(number.unit()) {
+        Some(quantity) => quantity.told_with(value, DIGITS),
+        None => format!("{} {}", with_digits(value, DIGITS), number.unit()),
+    }
 }
 
 fn entry(chain: &CatalogueChain) -> Result<(), Failure> {
@@ -138,11 +144,10 @@ fn entry(chain: &CatalogueChain) -> Result<(), Failure> {
     for number in Number::ALL {
         let value = chain
             .number(number)
-            .map_or_else(|| "–".to_owned(), |value| format!("{value:.5e}"));
+            .map_or_else(|| "–".to_owned(), |value| told(number, value));
         print(format_args!(
-            "  {:16} {value:>12} {:7} {} [{}]",
+            "  {:16} {value:>19}  {} [{}]",
             number.name(),
-            number.unit(),
             number.description(),
             chain.status(number.status())
         ))?;

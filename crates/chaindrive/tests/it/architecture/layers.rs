@@ -54,7 +54,7 @@ const CRATES: [Storeys; 4] = [
     Storeys {
         folder: "chaindrive",
         layers: &[
-            &["identity", "plain"],
+            &["figure", "identity", "plain"],
             &["catalogue", "design", "draw", "rating", "seal", "stepping"],
             &["error", "scene"],
             &["run"],
@@ -62,6 +62,7 @@ const CRATES: [Storeys; 4] = [
             &["record"],
             &["precision"],
             &["verdict"],
+            &["page"],
             &["describe", "sweep"],
         ],
         exceptions: &[
@@ -103,6 +104,7 @@ const CRATES: [Storeys; 4] = [
                 "verdict",
                 "see precision: and what the verdict is",
             ),
+            ("record", "page", "see precision: and the page of a run"),
             (
                 "record",
                 "sweep",

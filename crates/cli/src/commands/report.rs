@@ -1,0 +1,46 @@
+//! `chaindrive report`: the report of a run, which the Python package makes.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::failure::Failure;
+
+/// Makes the report of a scene or a result, one HTML file that prints well, by the command of the Python package.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// Scene file, name of an embedded scene, or result (.zarr)
+    #[arg(value_name = "SCENE|PRESET|RESULT")]
+    source: String,
+
+    /// The report (.html)
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<PathBuf>,
+
+    /// Replaces an earlier report
+    #[arg(long)]
+    overwrite: bool,
+
+    /// Prints errors only
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+pub(crate) fn report(arguments: &Arguments) -> Result<(), Failure> {
+    let mut command = format!("chaindrive report {}", arguments.source);
+    if let Some(output) = &arguments.output {
+        command += &format!(" -o {}", output.display());
+    }
+    for (given, option) in [
+        (arguments.overwrite, " --overwrite"),
+        (arguments.quiet, " -q"),
+    ] {
+        if given {
+            command += option;
+        }
+    }
+    Err(Failure::Argument(format!(
+        "{}: the Python package draws reports; install chaindrive[plot,analysis] there, and give it the same command: {command}",
+        arguments.source
+    )))
+}

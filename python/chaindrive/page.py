@@ -1,0 +1,121 @@
+"""The page of a run: what a chain engineer asks of it, as text, in a notebook, in a report."""
+
+from __future__ import annotations
+
+import html
+import json
+import sys
+from typing import Any
+
+import xarray as xr
+
+__all__ = ["Page", "page_of"]
+
+
+def __dir__() -> list[str]:
+    return list(__all__)
+
+
+class Page:
+    """The page of a run, in the order of a design review and the units of the trade.
+
+    Verdict, what the drive does, tensions, bearings and guides, impacts, tensioners,
+    irregularity, losses, utilisation, inputs that were assumed. `print` shows it as text, a
+    notebook as tables.
+    """
+
+    def __init__(self, text: str, sections: list[dict[str, Any]], numerics: str) -> None:
+        self.text = text
+        """The page as text."""
+        self.sections = sections
+        """Its sections: ``title``, ``columns``, ``rows`` and ``sentences``, all of them text."""
+        self.numerics = numerics
+        """Steps, contacts, energy and errors of the run, as text."""
+
+    def __str__(self) -> str:
+        return self.text
+
+    def __repr__(self) -> str:
+        return self.text
+
+    def _repr_html_(self) -> str:
+        return "\n".join(section(it) for it in self.sections)
+
+
+def page_of(run: xr.Dataset) -> Page:
+    """Return the page of a run.
+
+    Parameters
+    ----------
+    run
+        A run that ended, in memory or opened from a store.
+
+    Raises
+    ------
+    ValueError
+        The dataset is no run of chaindrive, or has no page: it did not end, or is older.
+
+    Examples
+    --------
+    >>> import chaindrive as cd
+    >>> run = cd.simulate(cd.scenes.spinning_ring(), until=2e-3, error=False)
+    >>> str(run.drive.summary()).splitlines()[0]
+    'verdict: caution'
+    """
+    attributes = run.attrs
+    missing = [name for name in ("summary", "page", "numerics") if name not in attributes]
+    if missing:
+        raise ValueError(
+            "this dataset has no page of a run: "
+            "the run has not ended, or a version before 0.3 made it; simulate it again"
+        )
+    sections = json.loads(str(attributes["page"]))["sections"]
+    return Page(str(attributes["summary"]), sections, str(attributes["numerics"]))
+
+
+def section(told: dict[str, Any], level: int = 4) -> str:
+    """Return a section as HTML, its heading of a level."""
+    parts = [f"<h{level}>{html.escape(_heading(told['title']))}</h{level}>"]
+    if told["rows"]:
+        parts.append(table(told["columns"], told["rows"]))
+    parts += [f"<p>{html.escape(sentence)}</p>" for sentence in told["sentences"]]
+    return "\n".join(parts)
+
+
+def table(columns: list[str], rows: list[list[str]], figures: int | None = None) -> str:
+    """Return a table as HTML: names on the left, figures on the right.
+
+    ``figures`` is the number of columns at the end that are figures; all but the first if absent.
+    """
+    names = 1 if figures is None else len(columns) - figures
+    head = "".join(f"<th>{html.escape(name)}</th>" for name in columns)
+    body = "\n".join(
+        "<tr>"
+        + "".join(
+            f'<td style="text-align: {"right" if place >= names else "left"}">{html.escape(cell)}</td>'
+            for place, cell in enumerate(row)
+        )
+        + "</tr>"
+        for row in rows
+    )
+    return f"<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table>"
+
+
+def _heading(title: str) -> str:
+    return title[:1].upper() + title[1:]
+
+
+def show_verdicts() -> None:
+    """Let a notebook show the verdict of a run above its dataset; nothing elsewhere."""
+    shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)()
+    if shell is None or shell.display_formatter is None:
+        return
+    formatter = shell.display_formatter.formatters["text/html"]
+    formatter.for_type(xr.Dataset, _with_verdict)
+
+
+def _with_verdict(dataset: xr.Dataset) -> str:
+    shown = str(dataset._repr_html_())
+    if "page" not in dataset.attrs or "verdict" not in dataset.attrs:
+        return shown
+    return section(page_of(dataset).sections[0]) + "\n" + shown

@@ -1,0 +1,242 @@
+"""A run as one file to hand on: pages to print, and a replay to watch in a browser."""
+
+from __future__ import annotations
+
+import argparse
+import html
+import io
+import re
+import sys
+from base64 import b64encode
+from collections.abc import Callable, Iterator
+from importlib.resources import files
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import xarray as xr
+
+from chaindrive.drive import Drive, load
+from chaindrive.errors import ChaindriveError
+from chaindrive.extras import extra
+from chaindrive.page import page_of, section, table
+from chaindrive.pose import drive_of
+from chaindrive.replaying import replay
+from chaindrive.simulation import simulate
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["report"]
+
+#: Frames of the replay in a report: half of its size, and enough for two turns of a sprocket.
+_FRAMES = 400
+#: Width and height of a diagram [inches], and its dots per inch: sharp on paper, some 40 kB.
+_SIZE = (7.2, 3.6)
+_DOTS = 110
+
+
+def __dir__() -> list[str]:
+    return list(__all__)
+
+
+def report(
+    source: Drive | xr.Dataset | str | PathLike[str], path: str | PathLike[str] | None = None
+) -> str:
+    """Make the report of a run: one HTML file that needs nothing else, and prints well.
+
+    Layout, page of the run, diagrams, inputs with their sources, replay, scene, build. What the
+    run did not record, or the drive has not, is said in its place.
+
+    Parameters
+    ----------
+    source
+        A run; or a drive, or the file of a scene, which is simulated for it with its own settings
+        and all channels; or the store of a result.
+    path
+        Where to write, in place of what was there; absent: nowhere.
+
+    Returns
+    -------
+    str
+        The text of the file.
+
+    Raises
+    ------
+    ChaindriveError
+        The drive cannot be read or simulated.
+    ValueError
+        The run has not ended, or an older version made it.
+    """
+    run = _run(source)
+    text = _document(run)
+    if path is not None:
+        Path(path).write_text(text, encoding="utf-8")
+    return text
+
+
+def _run(source: Drive | xr.Dataset | str | PathLike[str]) -> xr.Dataset:
+    if isinstance(source, xr.Dataset):
+        return source
+    if not isinstance(source, Drive):
+        place = Path(source)
+        if place.suffix == ".zarr":
+            from chaindrive.results import open_result
+
+            return open_result(place)
+        source = load(place)
+    return simulate(source, record="all", events=["teeth"])
+
+
+def _document(run: xr.Dataset) -> str:
+    about = run.attrs
+    told = page_of(run)
+    title = str(about.get("title") or about.get("scene_name") or "chain drive")
+    verdict, *sections = told.sections
+    parts = [
+        f"<h1>{html.escape(title)}</h1>",
+        section(verdict, level=2),
+        _picture("The drive at the start", lambda ax: _layout(run, ax)),
+        *(section(it, level=2) for it in sections),
+        "<h2>Diagrams</h2>",
+        *(_picture(name, draw) for name, draw in _diagrams(run)),
+        "<h2>Inputs and their sources</h2>",
+        _inputs(str(about.get("resolved_scene", ""))),
+        "<h2>Numerics</h2>",
+        f"<pre>{html.escape(told.numerics)}</pre>",
+        _replay(run),
+        "<h2>Scene</h2>",
+        f"<pre>{html.escape(str(about.get('scene', '')))}</pre>",
+        "<h2>Build</h2>",
+        "<p>"
+        + html.escape(
+            f"chaindrive {about.get('chaindrive_version')}, build {about.get('chaindrive_build')}, "
+            f"instruction set {about.get('instruction_set')}."
+        )
+        + "</p>",
+    ]
+    style = (files("chaindrive") / "report.css").read_text(encoding="utf-8")
+    body = "\n".join(parts)
+    return (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<title>{html.escape(title)}</title>\n<style>\n{style}</style>\n</head>\n"
+        f"<body>\n<main>\n{body}\n</main>\n</body>\n</html>\n"
+    )
+
+
+def _layout(run: xr.Dataset, ax: Axes) -> None:
+    from chaindrive import plot
+
+    plot.layout(drive_of(run), ax=ax)
+    ax.set_title("")
+
+
+def _diagrams(run: xr.Dataset) -> Iterator[tuple[str, Callable[[Axes], object]]]:
+    """Diagrams with their titles; each is drawn when it is asked for."""
+    from chaindrive import plot
+
+    for name, draw in (
+        ("Tension of the spans", plot.tension),
+        ("Force around the loop", plot.tension_around_loop),
+        ("Orders in the tension", plot.spectrum),
+        ("Impacts", plot.impacts),
+        ("Losses", plot.losses),
+        ("Utilisation", plot.utilisation),
+        ("Elongation by wear to the limit", plot.elongation),
+    ):
+        yield name, lambda ax, draw=draw: draw(run, ax=ax)  # type: ignore[misc]
+
+
+def _picture(title: str, draw: Callable[[Axes], object]) -> str:
+    """Return a diagram as a figure of the document, or the sentence that says why there is none."""
+    pyplot = extra("matplotlib.pyplot", "plots")
+    from chaindrive.plot.scheme import STYLE
+
+    with pyplot.rc_context(dict(STYLE)):
+        figure, ax = pyplot.subplots(figsize=_SIZE, layout="constrained")
+        try:
+            draw(ax)
+            drawn = io.BytesIO()
+            figure.savefig(drawn, format="png", dpi=_DOTS)
+        except ChaindriveError as reason:
+            return f"<h3>{html.escape(title)}</h3>\n<p>{html.escape(str(reason))}</p>"
+        finally:
+            pyplot.close(figure)
+    data = b64encode(drawn.getvalue()).decode("ascii")
+    caption = html.escape(title)
+    return (
+        f'<figure><img src="data:image/png;base64,{data}" alt="{caption}">'
+        f"<figcaption>{caption}</figcaption></figure>"
+    )
+
+
+#: A line of a scene in full: key, value, and behind them its unit and source.
+_LINE = re.compile(r"^(?P<key>[\w\-]+) = (?P<value>.*?)(?: # (?P<source>.*))?$")
+_HEADING = re.compile(r"^\[+(?P<name>[^\]]+)\]+$")
+
+
+def _inputs(scene: str) -> str:
+    """Return all inputs that say where they are from, as a table; assumed ones are marked."""
+    place, rows = "", []
+    for line in scene.splitlines():
+        if heading := _HEADING.match(line):
+            place = heading["name"] + "."
+        elif (found := _LINE.match(line)) and found["source"]:
+            value = found["value"]
+            shown = value if len(value) <= 60 else value[:57] + "…"
+            mark = "assumed" if "assumed" in found["source"] else ""
+            rows.append([place + found["key"], shown, mark, found["source"]])
+    if not rows:
+        return "<p>The result holds no scene in full.</p>"
+    return table(["input", "value", "", "unit, source"], rows, figures=0)
+
+
+def _replay(run: xr.Dataset) -> str:
+    try:
+        film = replay(run, frames=_FRAMES).html
+    except (ChaindriveError, KeyError) as reason:
+        told = reason.args[0] if isinstance(reason, KeyError) else reason
+        return f"<h2>Replay</h2>\n<p>{html.escape(str(told))}</p>"
+    return (
+        '<section class="replay">\n<h2>Replay</h2>\n'
+        f'<iframe srcdoc="{html.escape(film)}" title="replay"></iframe>\n</section>'
+    )
+
+
+def command(arguments: list[str]) -> int:
+    """Make the report that a command line asks for, and return the exit code."""
+    parser = argparse.ArgumentParser(
+        "chaindrive report", description="Makes the report of a scene or a result: one HTML file."
+    )
+    parser.add_argument("source", help="a scene (.toml, or a preset) or a result (.zarr)")
+    parser.add_argument("-o", "--output", type=Path, help="the report (.html)")
+    parser.add_argument("--overwrite", action="store_true", help="replaces an earlier report")
+    parser.add_argument("-q", "--quiet", action="store_true")
+    given = parser.parse_args(arguments[1:])
+    output = given.output or Path(Path(given.source).stem + ".html")
+    if output.suffix not in (".html", ".htm"):
+        print(f"{output}: the name must end in .html", file=sys.stderr)
+        return 2
+    if output.exists() and not given.overwrite:
+        print(f"{output}: there is already something here; pass --overwrite", file=sys.stderr)
+        return 3
+    try:
+        text = report(_named(given.source))
+        output.write_text(text, encoding="utf-8")
+    except (ChaindriveError, ValueError, OSError, ModuleNotFoundError) as error:
+        print(f"{given.source}: {error}", file=sys.stderr)
+        return 2
+    if not given.quiet:
+        print(f"{output}: {len(text.encode()) / 1e6:.2f} MB", file=sys.stderr)
+    return 0
+
+
+def _named(source: str) -> Drive | str:
+    """Return the drive of a preset, where no file has its name."""
+    from chaindrive import scenes
+
+    if not Path(source).exists() and source in scenes.__all__:
+        drive: Drive = getattr(scenes, source)()
+        return drive
+    return source

@@ -1,0 +1,133 @@
+"""The page of a run against the arrays that it tells of, and the report made of it."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import chaindrive as cd
+from chaindrive.page import Page
+
+PRESETS = ["marine_engine", "industrial_16b", "bicycle"]
+IN_SI = {"N": 1.0, "kN": 1e3, "W": 1.0, "kW": 1e3, "N m": 1.0, "kN m": 1e3}
+ORDER = [
+    "verdict",
+    "record",
+    "what the drive does",
+    "span tensions",
+    "links",
+    "bearing and guide forces",
+    "impacts of rollers that seat",
+    "tensioners",
+    "speed irregularity and transmission error",
+    "losses",
+    "utilisation",
+    "inputs that were assumed",
+]
+
+
+@pytest.fixture(scope="module", params=PRESETS)
+def run(request: pytest.FixtureRequest) -> xr.Dataset:
+    drive = getattr(cd.scenes, request.param)()
+    return cd.simulate(drive, until=0.1, record="all", error=False)
+
+
+def column(page: Page, title: str, heading: str) -> dict[str, float]:
+    """Values in SI of a column, by the names of the rows."""
+    section = next(it for it in page.sections if it["title"] == title)
+    place = next(i for i, it in enumerate(section["columns"]) if it.startswith(heading))
+    unit = re.search(r"\[(.*)\]", section["columns"][place] + section["columns"][0])
+    scale = IN_SI.get(unit[1], 1.0) if unit else 1.0
+    return {row[0]: scale * float(row[place]) for row in section["rows"]}
+
+
+def close(told: dict[str, float], known: xr.DataArray, within: float = 1e-3) -> None:
+    for name, value in told.items():
+        assert value == pytest.approx(float(known.sel({known.dims[0]: name})), rel=within, abs=1e-3)
+
+
+def test_a_page_tells_what_the_arrays_hold(run: xr.Dataset) -> None:
+    page = run.drive.summary()
+    titles = [it["title"].split(":")[0] for it in page.sections]
+    assert titles == [title for title in ORDER if title in titles]
+    does = "what the drive does"
+    power = (run["sprocket_torque"] * run["sprocket_speed"]).mean("time")
+    close(column(page, does, "power"), abs(power), 2e-3)
+    close(column(page, does, "torque"), abs(run["sprocket_torque"].mean("time")), 2e-3)
+    close(column(page, does, "speed"), run["sprocket_speed"].mean("time") * 30 / np.pi)
+    means = run[["sprocket_force_x", "sprocket_force_y"]].mean("time")
+    force = np.hypot(means["sprocket_force_x"], means["sprocket_force_y"])
+    shafts = column(page, "bearing and guide forces", "mean")
+    of_sprockets = {name: it for name, it in shafts.items() if not name.startswith("guide ")}
+    close(of_sprockets, force, 5e-3)
+    greatest = column(page, "span tensions", "greatest")
+    close(greatest, run["span_tension"].max("time"))
+    lost = run["energy_losses"].isel(time=-1) - run["energy_losses"].isel(time=0)
+    duration = float(run["time"][-1] - run["time"][0])
+    told = column(page, "losses", "power")
+    assert told.pop("all") == pytest.approx(float(lost.sum()) / duration, rel=1e-3)
+    close(told, lost / duration, 2e-3)
+    struck = column(page, "impacts of rollers that seat", "99 of 100")
+    for name, value in struck.items():
+        assert value == pytest.approx(run.attrs[f"impact_force_p99_{name}"], rel=1e-3)
+    text = str(page)
+    tight = str(run["span_tension"].mean("time").idxmax().item())
+    assert f"Tight side: {tight}" in text
+    pull = float(run["link_tension"].max())
+    assert re.search(r"The hardest pulled link bears ([\d.]+) (k?N);", text), text
+    found = re.search(r"bears ([\d.]+) (k?N)", text)
+    assert found
+    assert float(found[1]) * IN_SI[found[2]] == pytest.approx(pull, rel=1e-3)
+
+
+def test_a_page_has_no_powers_of_ten_and_shows_itself_in_notebooks(run: xr.Dataset) -> None:
+    page = run.drive.summary()
+    assert not re.search(r"\d[eE][-+]?\d", str(page)), str(page)
+    assert str(page) == run.attrs["summary"] == repr(page)
+    shown = page._repr_html_()
+    assert shown.count("<table>") == sum(bool(it["rows"]) for it in page.sections)
+    assert len(page.sections[0]["sentences"]) <= 3
+    assert "stepping" in page.numerics
+
+
+def test_a_run_that_has_no_page_says_so() -> None:
+    with pytest.raises(ValueError, match="simulate it again"):
+        xr.Dataset().drive.summary()
+
+
+def test_the_verdict_is_seen_in_a_notebook(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Formatter:
+        def for_type(self, kind: type, shown: object) -> None:
+            self.shown = shown
+
+    formatter = Formatter()
+
+    class Shell:
+        display_formatter = type("Display", (), {"formatters": {"text/html": formatter}})
+
+    class IPython:
+        get_ipython = staticmethod(Shell)
+
+    monkeypatch.setitem(__import__("sys").modules, "IPython", IPython)
+    run = cd.simulate(cd.scenes.spinning_ring(), until=2e-3, error=False)
+    assert "Verdict: caution" in formatter.shown(run)
+    assert "Verdict" not in formatter.shown(xr.Dataset())
+
+
+def test_a_report_is_one_file_that_asks_for_nothing(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    drive = cd.scenes.industrial_16b()
+    run = cd.simulate(drive, until=0.1, record="all", events=["teeth"], error=False)
+    place = tmp_path / "report.html"
+    text = cd.report(run, place)
+    assert place.read_text(encoding="utf-8") == text
+    assert len(text.encode()) < 2e6
+    assert not re.search(r'(src|href)="(?!data:|#)', text.split("<iframe")[0])
+    for wanted in ("Verdict: ", "Losses", "assumed", "title = ", run.attrs["chaindrive_build"]):
+        assert wanted in text, wanted
+    # What was not recorded is said in its place.
+    bare = cd.report(cd.simulate(drive, until=0.02, record=["span_tension"], run_in=0, error=False))
+    assert "link_tension" in bare
+    assert "<iframe" not in bare
