@@ -89,11 +89,12 @@ def table(columns: list[str], rows: list[list[str]], figures: int | None = None)
     """
     names = 1 if figures is None else len(columns) - figures
     head = "".join(f"<th>{html.escape(name)}</th>" for name in columns)
+    sides = ["left"] * names + ["right"] * (len(columns) - names)
     body = "\n".join(
         "<tr>"
         + "".join(
-            f'<td style="text-align: {"right" if place >= names else "left"}">{html.escape(cell)}</td>'
-            for place, cell in enumerate(row)
+            f'<td style="text-align: {side}">{html.escape(cell)}</td>'
+            for side, cell in zip(sides, row, strict=True)
         )
         + "</tr>"
         for row in rows

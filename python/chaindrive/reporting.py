@@ -135,11 +135,12 @@ def _layout(run: xr.Dataset, ax: Axes) -> None:
 def _diagrams(run: xr.Dataset) -> Iterator[tuple[str, Callable[[Axes], object]]]:
     """Diagrams with their titles; each is drawn when it is asked for."""
     from chaindrive import plot
+    from chaindrive.plot.panels import orders
 
     for name, draw in (
         ("Tension of the spans", plot.tension),
         ("Force around the loop", plot.tension_around_loop),
-        ("Orders in the tension", plot.spectrum),
+        ("Orders in the tension", orders),
         ("Impacts", plot.impacts),
         ("Losses", plot.losses),
         ("Utilisation", plot.utilisation),
@@ -173,6 +174,8 @@ def _picture(title: str, draw: Callable[[Axes], object]) -> str:
 
 #: A line of a scene in full: key, value, and behind them its unit and source.
 _LINE = re.compile(r"^(?P<key>[\w\-]+) = (?P<value>.*?)(?: # (?P<source>.*))?$")
+#: A number with more digits than anybody gave.
+_LONG = re.compile(r"-?\d+\.\d{8,}")
 _HEADING = re.compile(r"^\[+(?P<name>[^\]]+)\]+$")
 
 
@@ -183,13 +186,14 @@ def _inputs(scene: str) -> str:
         if heading := _HEADING.match(line):
             place = heading["name"] + "."
         elif (found := _LINE.match(line)) and found["source"]:
-            value = found["value"]
+            value = _LONG.sub(lambda it: f"{float(it[0]):.7g}", found["value"])
             shown = value if len(value) <= 60 else value[:57] + "…"
             mark = "assumed" if "assumed" in found["source"] else ""
             rows.append([place + found["key"], shown, mark, found["source"]])
     if not rows:
         return "<p>The result holds no scene in full.</p>"
-    return table(["input", "value", "", "unit, source"], rows, figures=0)
+    listed = table(["input", "value", "", "unit, source"], rows, figures=0)
+    return f'<div class="inputs">\n{listed}\n</div>'
 
 
 def _replay(run: xr.Dataset) -> str:

@@ -116,7 +116,7 @@ def test_contacts_are_logged(bicycle):
     assert (np.diff(lasting.astype(int)) >= 0).all()
     ended = bicycle["event_end"].to_numpy()[~lasting]
     assert (np.diff(ended) >= 0.0).all()
-    assert "joint" in bicycle.attrs["summary"]
+    assert "joint" in bicycle.attrs["numerics"]
 
 
 def test_nothing_is_logged_unasked():

@@ -61,7 +61,7 @@ def test_a_run_in_is_carried_out_before():
     mean = float(run["span_tension"].mean())
     assert "run_in" not in at_once
     assert after["run_in"] == 0.02
-    assert "run-in" in after["summary"]
+    assert "was run in for" in after["summary"]
     assert after["mean_tension"] == pytest.approx(mean, rel=1e-3)
     assert at_once["mean_tension"] != pytest.approx(mean, rel=1e-2)
 

@@ -14,7 +14,7 @@ import chaindrive as cd
 
 pytest.importorskip("zarr")
 posix = pytest.mark.skipif(sys.platform == "win32", reason="signals and pipes")
-WALL = ["stepping_time", "real_time_factor", "ns_per_link_step", "wall_time", "summary"]
+WALL = ["stepping_time", "real_time_factor", "ns_per_link_step", "wall_time", "numerics"]
 
 
 def whole(**settings):

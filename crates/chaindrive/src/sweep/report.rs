@@ -3,7 +3,7 @@
 use std::fmt::{self, Write};
 
 use super::{Account, Dimension, Outcome, Quantity, Statistic, Sweep, Tally};
-use crate::figure::figure;
+use crate::figure::with_digits;
 
 /// Variants of which each has its line; of more, only the extremes are told.
 const LINES: usize = 40;
@@ -156,45 +156,5 @@ fn width(dimension: &Dimension) -> usize {
 
 /// Five digits.
 pub(super) fn short(number: f64) -> String {
-    if number == 0.0 || !number.is_finite() {
-        return number.to_string();
-    }
-    let magnitude = number.abs().log10().floor();
-    if !(-3.0..9.0).contains(&magnitude) {
-        return figure(number);
-    }
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "0 to 7, whatever the number"
-    )]
-    let decimals = (4.0 - magnitude).max(0.0) as usize;
-    let text = format!("{number:.decimals$}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::short;
-
-    #[test]
-    fn numbers_have_five_digits() {
-        let pairs = [
-            (0.0, "0"),
-            (-8.377_580_409, "-8.3776"),
-            (15e3, "15000"),
-            (123_456.7, "123457"),
-            (0.5, "0.5"),
-            (0.001_234_567, "0.0012346"),
-            (1e-9, "1.000e-9"),
-            (f64::NAN, "NaN"),
-        ];
-        for (number, text) in pairs {
-            assert_eq!(short(number), text);
-        }
-    }
+    with_digits(number, 5)
 }

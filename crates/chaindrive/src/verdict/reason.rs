@@ -460,15 +460,18 @@ impl fmt::Display for Reason {
             }
             Self::NotRated { chain, power, twin } => {
                 let told = |power: f64| Measure::Power.told(power);
-                let power = told(*power);
                 write!(
                     f,
-                    "the power{}, {power}, is not judged, for no source rates this type",
-                    of(chain)
+                    "nobody rates this type in a source that could be read, so whether the chain{} may carry {} is not checked",
+                    of(chain),
+                    told(*power)
                 )?;
                 if let Some(twin) = twin {
-                    let twin = told(*twin);
-                    write!(f, " (ASME B29.1 rates its chain of this pitch for {twin})")?;
+                    let (share, twin) = (100.0 * power / twin, told(*twin));
+                    write!(
+                        f,
+                        " ({share:.0} % of the {twin} that ASME B29.1 rates its chain of this pitch for)"
+                    )?;
                 }
                 write!(f, ": give what the maker says as chain.rated_power")
             }

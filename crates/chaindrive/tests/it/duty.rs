@@ -122,7 +122,7 @@ fn a_chain_that_nobody_rates_does_not_carry_in_silence() {
     let silent = verdict(&preset("industrial_16b", &[]), &run);
     assert!(notes(&silent).contains(&"not-rated"), "{silent}");
     assert!(
-        silent.note().contains("of this pitch for 12.2 kW"),
+        silent.note().contains("of the 12.16 kW that ASME B29.1"),
         "{silent}"
     );
     assert!(!names(&silent).contains(&"above-rating"), "{silent}");

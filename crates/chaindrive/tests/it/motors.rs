@@ -132,7 +132,7 @@ fn a_chain_that_a_load_would_break_is_named() {
     let load = r#"load = [{ kind = "constant", torque = "-4 kN m" }]"#;
     let error = refused(&conveyor(driven, load));
     assert!(
-        error.contains("4000 N m on `conveyor`") && error.contains("breaks at 18.0"),
+        error.contains("4000.0 N m on `conveyor`") && error.contains("breaks at 18.0"),
         "{error}"
     );
     assert!(!error.contains("tensioner"), "{error}");

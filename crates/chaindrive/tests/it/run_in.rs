@@ -270,7 +270,7 @@ fn a_run_that_is_carried_on_is_not_run_in_again() {
     }
     let summary = resumed.attributes["summary"].as_str().unwrap();
     assert!(
-        summary.contains("run-in                   20 ms before t = 0"),
+        summary.contains("The drive was run in for 20 ms before t = 0"),
         "{summary}"
     );
 }
@@ -303,8 +303,8 @@ fn the_summary_tells_of_the_run_in() {
         }
         .to_string()
     };
-    assert!(told(None).ends_with("as it was asked for; whether it was enough, the means say"));
-    assert!(told(Some(true)).ends_with("until the tension of every span was steady"));
+    assert!(told(None).ends_with("before t = 0, as asked."));
+    assert!(told(Some(true)).ends_with("until the tension of every span was steady."));
     assert!(told(Some(false)).contains("not every span was steady"));
 }
 

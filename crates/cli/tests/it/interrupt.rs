@@ -72,7 +72,7 @@ fn interrupted_it_ends_the_result_and_the_summary() {
     assert!(
         String::from_utf8(output.stdout)
             .unwrap()
-            .contains("× real time")
+            .contains("The hardest pulled link")
     );
     assert_eq!(String::from_utf8(output.stderr).unwrap(), "interrupted\n");
     let attributes = attributes(&store).unwrap();

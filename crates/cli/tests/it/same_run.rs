@@ -74,9 +74,9 @@ pub(crate) fn timeless(attributes: &Value) -> serde_json::Map<String, Value> {
     for name in WALL {
         assert!(attributes.remove(name).is_some(), "{name}");
     }
-    let summary = attributes["summary"].as_str().unwrap().to_owned();
-    let lines = summary.lines().filter(|line| !line.starts_with("speed"));
-    attributes["summary"] = lines.collect::<Vec<_>>().join("\n").into();
+    let numerics = attributes["numerics"].as_str().unwrap().to_owned();
+    let lines = numerics.lines().filter(|line| !line.starts_with("speed"));
+    attributes["numerics"] = lines.collect::<Vec<_>>().join("\n").into();
     attributes
 }
 
@@ -116,6 +116,8 @@ fn hold(preset: &str, name: &str, case: &[Choice]) {
     assert_eq!(timeless(&memory), rust, "{preset}, {name}");
     for needed in [
         "summary",
+        "page",
+        "numerics",
         "status",
         "method_order",
         "links",
