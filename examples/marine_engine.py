@@ -28,7 +28,7 @@ def main() -> None:
         overwrite=True,
         progress=True,
     )
-    print(run.attrs["summary"])
+    print(run.drive.summary())
     plot(drive, run, arguments.results / "marine_engine.png")
     print(f"written: {arguments.results}/marine_engine.png, {arguments.results}/marine_engine.zarr")
 
