@@ -77,7 +77,9 @@ def section(told: dict[str, Any], level: int = 4) -> str:
     """Return a section as HTML, its heading of a level."""
     parts = [f"<h{level}>{html.escape(_heading(told['title']))}</h{level}>"]
     if told["rows"]:
-        parts.append(table(told["columns"], told["rows"]))
+        # Words behind the names stand left as well: "drives", "mm".
+        words = 1 + (not any(it.isdigit() for it in told["rows"][0][1]))
+        parts.append(table(told["columns"], told["rows"], len(told["columns"]) - words))
     parts += [f"<p>{html.escape(sentence)}</p>" for sentence in told["sentences"]]
     return "\n".join(parts)
 

@@ -160,7 +160,7 @@ def _picture(title: str, draw: Callable[[Axes], object]) -> str:
             draw(ax)
             drawn = io.BytesIO()
             figure.savefig(drawn, format="png", dpi=_DOTS)
-        except ChaindriveError as reason:
+        except (ChaindriveError, ModuleNotFoundError) as reason:
             return f"<h3>{html.escape(title)}</h3>\n<p>{html.escape(str(reason))}</p>"
         finally:
             pyplot.close(figure)

@@ -31,7 +31,7 @@ pub fn with_digits(value: f64, digits: i32) -> String {
         return "–".to_owned();
     }
     if !PLAIN.contains(&value.abs()) {
-        return format!("{value:e}");
+        return format!("{value:.1e}");
     }
     let text = format!("{value:.*}", decimals(value, digits));
     if text.contains('.') {

@@ -105,6 +105,9 @@ impl Assembled {
         {
             return Some("a chain has ends");
         }
+        if let Some(why) = self.function_of_time() {
+            return Some(why);
+        }
         let shafts = self.shaft_speeds();
         let wheels = &self.system.bodies.wheels;
         let turns = |wheel: &usize| shafts[wheels[*wheel].shaft].is_some_and(|it| it != 0.0);
@@ -113,8 +116,7 @@ impl Assembled {
             return Some("no motion turns a sprocket of a chain");
         }
         let stands = !self.slowest_forcing().is_finite();
-        let stands = stands.then_some("a shaft whose turns something follows stands still");
-        self.function_of_time().or(stands)
+        stands.then_some("a shaft whose turns something follows stands still")
     }
 
     /// Every motion that is prescribed.

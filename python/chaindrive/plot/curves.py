@@ -88,7 +88,7 @@ def work_precision(table: xr.Dataset, *, ax: Axes | None = None, cost: str = "wa
     """
     with drawing(ax) as ax:
         error = table["error_tight_span_tension"]
-        methods = table["method"].values.astype(str)
+        methods = [str(method) for method in table["method"].to_numpy()]
         depths = table["onset_depth"].values
         names = [
             name if np.isnan(depth) else f"{name}, onset {1e6 * depth:g} µm"

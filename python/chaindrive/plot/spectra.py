@@ -381,8 +381,8 @@ def speed_ripple(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) 
     if turning.sizes["sprocket"] == 0:
         raise ParameterError("no sprocket turns during the run: there is no ripple", "sprocket")
     with drawing(ax) as ax:
-        names = turning["sprocket"].to_numpy().astype(str)
-        at = np.arange(names.size)
+        names = [str(name) for name in turning["sprocket"].to_numpy()]
+        at = np.arange(len(names))
         ax.bar(at - 0.2, 100 * turning["irregularity"], 0.4, label="peak to peak")
         ax.bar(at + 0.2, 100 * turning["rms_ripple"], 0.4, label="rms")
         ax.set_xticks(at, names)

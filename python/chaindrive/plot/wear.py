@@ -226,7 +226,8 @@ def losses(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axe
         raise ParameterError(message, "energy_losses", "give friction or damping in the scene")
     with drawing(ax) as ax:
         factor, unit = in_trade("W", lost)
-        bars = ax.barh(lost["place"].to_numpy().astype(str), factor * lost, color=_BLUE)
+        places = [str(place) for place in lost["place"].to_numpy()]
+        bars = ax.barh(places, factor * lost, color=_BLUE)
         share = 100 * found["share"].sel(place=lost["place"])
         ax.bar_label(bars, [f"{float(it):.1f} %" for it in share], padding=3, fontsize="small")
         ax.invert_yaxis()

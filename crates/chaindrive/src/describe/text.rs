@@ -200,11 +200,11 @@ impl Description {
                 format!(", {speed:.4} m/s along the normal of the tooth")
             });
             let text = format!(
-                "ratio {:.5} {:+.4} to {:+.4} %, error {}° peak to peak, seating at {:.4} m/s{closing}, {:.2} Hz",
+                "ratio {:.5} {:+.4} to {:+.4} %, error {} peak to peak, seating at {:.4} m/s{closing}, {:.2} Hz",
                 pair.mean_ratio,
                 ratio(pair.least_ratio),
                 ratio(pair.greatest_ratio),
-                figure(pair.transmission_error.to_degrees()),
+                turned(pair.transmission_error),
                 pair.seating_velocity,
                 pair.mesh_frequency
             );
@@ -247,8 +247,8 @@ impl Description {
         );
         if cost.run_in > 0.0 {
             let before = format!(
-                "at most {} s before the record, about {}",
-                cost.run_in,
+                "at most {} before the record, about {}",
+                Measure::Time.told(cost.run_in),
                 duration(cost.run_in_time)
             );
             row(f, "run-in", &before)?;
@@ -331,7 +331,7 @@ impl fmt::Display for LinkFacts {
 
 impl fmt::Display for Closing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "strain {} % as laid, ", figure(100.0 * self.strain))?;
+        write!(f, "strain {} as laid, ", strained(self.strain))?;
         match (&self.adjusted, self.unit) {
             (None, _) => write!(f, "nothing adjusted"),
             (Some(name), "rad") => {
@@ -376,6 +376,24 @@ impl fmt::Display for ContactFacts {
             write!(f, ", friction {}", self.friction)?;
         }
         Ok(())
+    }
+}
+
+/// A strain; rounding is none.
+fn strained(strain: f64) -> String {
+    if strain.abs() < 1e-10 {
+        "0".to_owned()
+    } else {
+        format!("{} %", figure(100.0 * strain))
+    }
+}
+
+/// An angle; rounding is none.
+fn turned(angle: f64) -> String {
+    if angle.abs() < 1e-10 {
+        "0".to_owned()
+    } else {
+        Measure::Angle.told(angle)
     }
 }
 

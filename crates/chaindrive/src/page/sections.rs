@@ -378,12 +378,17 @@ impl Told<'_> {
         }
         let told = |energy: f64| Measure::Power.told(energy / time);
         let rest = ledger.supplied - ledger.delivered - ledger.losses;
+        let way = if rest < 0.0 {
+            "came out of"
+        } else {
+            "went into"
+        };
         Some(format!(
-            "Put in {}, taken out {}, lost {}; {} stays in motion, height and springs, or is unaccounted for.",
+            "Put in {}, taken out {}, lost {}; {} {way} motion, height and springs, with what is unaccounted for.",
             told(ledger.supplied),
             told(ledger.delivered),
             told(ledger.losses),
-            told(rest)
+            told(rest.abs())
         ))
     }
 

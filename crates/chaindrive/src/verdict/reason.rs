@@ -7,7 +7,7 @@ use chaindrive_mechanics::Fight;
 
 use super::{LONG_PRESSED, PRESSED, Trust};
 use crate::figure::Measure;
-use crate::figure::{duration, percent};
+use crate::figure::{duration, percent, with_digits};
 use crate::precision::{ChannelHorizon, Gap};
 use crate::rating::LimitedBy;
 
@@ -390,29 +390,36 @@ impl fmt::Display for Reason {
                 error,
                 was_chosen,
             } => {
+                // As many digits as tell the two apart.
+                let told = |share: f64| match share.is_finite() {
+                    true => format!("{} %", with_digits(100.0 * share, 3)),
+                    false => percent(share),
+                };
                 write!(
                     f,
-                    "an accuracy of {} was asked for, the error found is {}",
-                    percent(*accuracy),
-                    percent(*error)
+                    "the error found is {}, and {} was asked for",
+                    told(*error),
+                    told(*accuracy)
                 )?;
                 if *was_chosen {
-                    let needed = accuracy * accuracy / error;
-                    write!(f, ": take --accuracy \"{}\"", percent(needed))
+                    let needed = 0.9 * accuracy * accuracy / error;
+                    write!(f, ": take --accuracy \"{}\"", told(needed))
                 } else {
                     write!(f, ", the best of all steps tried: give a shorter --step")
                 }
             }
             Self::HorizonWithinRun { spans, links } => {
-                let of =
-                    |horizon: &ChannelHorizon, name| format!("{} for {name}", duration(horizon.at));
+                let of = |horizon: &ChannelHorizon, name| match horizon.at > 0.0 {
+                    true => format!("to {} for {name}", duration(horizon.at)),
+                    false => format!("at no time for {name}"),
+                };
                 let spans = spans.as_ref().map(|horizon| of(horizon, "span tensions"));
                 let links = links.as_ref().map(|horizon| of(horizon, "link tensions"));
                 let ends: Vec<String> = spans.into_iter().chain(links).collect();
                 write!(
                     f,
-                    "waveforms are right to {}: use statistics beyond",
-                    ends.join(", to ")
+                    "waveforms are right {}: use statistics beyond",
+                    ends.join(", ")
                 )
             }
             Self::AboveBreakingLoad {

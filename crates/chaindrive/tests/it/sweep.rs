@@ -382,7 +382,7 @@ fn the_report_tells_every_variant_or_the_extremes_of_many() -> Checked {
     assert!(lines[3].ends_with("failed"), "{report}");
     assert_eq!(lines[4], "variants: 2 of 3 done, 1 failed");
     let failures = sweep.failures(&outcomes);
-    assert!(failures.len() == 1 && failures[0].starts_with("speed = 1e300 rad/s: "));
+    assert!(failures.len() == 1 && failures[0].starts_with("speed = 1.0e300 rad/s: "));
 
     let many = Setting::range(&scene, path, "300 rad/s", "349 rad/s", 50)?;
     let sweep = Sweep::new(&scene, &[(path.to_owned(), many)], &[])?;
