@@ -5,7 +5,7 @@
 //! ```
 //!
 //! A [`Page`] is sections of sentences and tables, as text, or as JSON for whoever sets them otherwise. Steps, contacts and errors are
-//! [numerics](numerics), on a page of their own.
+//! [numerics], on a page of their own.
 
 mod numerics;
 mod sections;
@@ -98,15 +98,14 @@ impl fmt::Display for Section {
         let widths: Vec<usize> = (0..self.columns.len()).map(width).collect();
         for line in lines().filter(|_| !self.rows.is_empty()) {
             write!(f, "\n  ")?;
-            let mut text = String::new();
-            for (column, (cell, width)) in line.iter().zip(&widths).enumerate() {
-                // Names stand left, figures right.
-                text += &match column {
-                    0 => format!("{cell:width$}"),
-                    _ => format!("  {cell:>width$}"),
-                };
-            }
-            write!(f, "{}", text.trim_end())?;
+            let cells = line.iter().zip(&widths).enumerate();
+            // Names stand left, figures right.
+            let cells = cells.map(|(column, (cell, width))| match column {
+                0 => format!("{cell:width$}"),
+                _ => format!("{cell:>width$}"),
+            });
+            let cells: Vec<String> = cells.collect();
+            write!(f, "{}", cells.join("  ").trim_end())?;
         }
         for sentence in &self.sentences {
             write!(f, "\n  {sentence}")?;

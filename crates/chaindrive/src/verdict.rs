@@ -319,7 +319,10 @@ fn steadiness(spans: &[(&str, Steadiness, f64)], until: Option<f64>, time: f64) 
         let span = span.to_owned();
         reasons.push(Reason::StartCounts { span, until, shift });
     }
-    if let Some(until) = until {
+    let unknown = spans
+        .iter()
+        .any(|(_, found, _)| found.mean.half_width.is_nan());
+    if let Some(until) = until.or(unknown.then_some(f64::INFINITY)) {
         reasons.push(Reason::StatisticsUnknown { until });
     }
     let widths = spans

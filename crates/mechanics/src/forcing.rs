@@ -113,7 +113,9 @@ impl Assembled {
         let turns = |wheel: &usize| shafts[wheels[*wheel].shaft].is_some_and(|it| it != 0.0);
         let members = &self.system.chains;
         if members.is_empty() || members.iter().any(|it| !it.route.iter().any(turns)) {
-            return Some("no motion turns a sprocket of a chain");
+            return Some(
+                "no motion turns a sprocket of a chain; where torques do, take --run-in auto",
+            );
         }
         let stands = !self.slowest_forcing().is_finite();
         stands.then_some("a shaft whose turns something follows stands still")

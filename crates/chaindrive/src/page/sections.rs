@@ -71,12 +71,16 @@ impl Told<'_> {
         }
         section.sentences.extend(self.ran_in.map(RanIn::to_string));
         let known = self.summary.steadiness();
-        let mut held = known.iter().flatten().peekable();
-        if held.peek().is_some() {
-            let is_steady = held.all(|it| it.is_steady);
-            let told = if is_steady { "steady" } else { "not steady" };
-            let sentence = format!("The tensions are {told} throughout the record.");
-            section.sentences.push(sentence);
+        if known.iter().flatten().next().is_some() {
+            let is_known = |it: &&crate::record::Steadiness| it.mean.half_width.is_finite();
+            let sentence = if !known.iter().flatten().all(|it| it.is_steady) {
+                "The tensions are not steady throughout the record."
+            } else if known.iter().flatten().all(|it| is_known(&it)) {
+                "The tensions are steady throughout the record."
+            } else {
+                "Nobody can tell from this record whether the tensions are steady."
+            };
+            section.sentences.push(sentence.to_owned());
         }
         section
     }
@@ -397,7 +401,7 @@ impl Told<'_> {
         let ledger = self.summary.ledger();
         if let Some([efficiency, uncertain]) = ledger.efficiency() {
             return format!(
-                "Efficiency: {:.3} % ± {:.3} % by the energy unaccounted for.",
+                "Efficiency, 1 less the share that is lost: {:.3} % ± {:.3} % by the energy unaccounted for.",
                 100.0 * efficiency,
                 100.0 * uncertain
             );
@@ -472,7 +476,8 @@ fn strength(load: &Load) -> String {
         ),
         None => "no breaking load is known: give chain.breaking_load".to_owned(),
     };
-    let pressed = if load.pressed > 0.0 {
+    // Rounding presses no link.
+    let pressed = if load.pressed > 0.0 && -load.least > 1e-6 * load.tension {
         format!(
             " Links are pressed by up to {}, in {} of links and time.",
             Measure::Force.told(-load.least),

@@ -76,7 +76,10 @@ impl RanIn {
 impl fmt::Display for RanIn {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(why) = &self.left_out {
-            return write!(f, "The record begins at the start: {why}.");
+            return write!(
+                f,
+                "The record begins at the start, without a run-in: {why}."
+            );
         }
         let time = Measure::Time.told(self.time);
         write!(f, "The drive was run in for {time} before t = 0")?;

@@ -102,7 +102,7 @@ pub enum Reason {
     },
     /// The record is too short for intervals.
     StatisticsUnknown {
-        /// End of a record that would have them \[s\].
+        /// End of a record that would have them \[s\]; infinite where nothing repeats.
         until: f64,
     },
     /// The span tensions could not be compared with those of a sharper run.
@@ -336,7 +336,7 @@ impl fmt::Display for Reason {
             ),
             Self::NotSteady { span } => write!(
                 f,
-                "the tension of span {span} is not steady yet: take --run-in auto, or a later --until"
+                "the tension of span {span} is not steady yet: take --run-in auto, or where it was taken a later --until"
             ),
             Self::StartCounts { span, until, shift } => write!(
                 f,
@@ -376,10 +376,14 @@ impl fmt::Display for Reason {
                     ""
                 }
             ),
-            Self::StatisticsUnknown { until } => write!(
+            Self::StatisticsUnknown { until } if until.is_finite() => write!(
                 f,
                 "the record has fewer than three periods of the slowest forcing, so statistics have no intervals: take --until \"{}\"",
                 duration(*until)
+            ),
+            Self::StatisticsUnknown { .. } => write!(
+                f,
+                "the motion has no period that is known, so means and percentiles are those of this record and have no intervals: take --run-in auto where it comes to run steadily"
             ),
             Self::SpansNotExamined { gap } => write!(
                 f,
@@ -391,9 +395,12 @@ impl fmt::Display for Reason {
                 was_chosen,
             } => {
                 // As many digits as tell the two apart.
-                let told = |share: f64| match share.is_finite() {
-                    true => format!("{} %", with_digits(100.0 * share, 3)),
-                    false => percent(share),
+                let told = |share: f64| {
+                    if share.is_finite() {
+                        format!("{} %", with_digits(100.0 * share, 3))
+                    } else {
+                        percent(share)
+                    }
                 };
                 write!(
                     f,
@@ -409,9 +416,12 @@ impl fmt::Display for Reason {
                 }
             }
             Self::HorizonWithinRun { spans, links } => {
-                let of = |horizon: &ChannelHorizon, name| match horizon.at > 0.0 {
-                    true => format!("to {} for {name}", duration(horizon.at)),
-                    false => format!("at no time for {name}"),
+                let of = |horizon: &ChannelHorizon, name| {
+                    if horizon.at > 0.0 {
+                        format!("to {} for {name}", duration(horizon.at))
+                    } else {
+                        format!("at no time for {name}")
+                    }
                 };
                 let spans = spans.as_ref().map(|horizon| of(horizon, "span tensions"));
                 let links = links.as_ref().map(|horizon| of(horizon, "link tensions"));

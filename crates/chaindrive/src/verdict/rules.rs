@@ -115,7 +115,7 @@ impl Verdict {
         ),
         caution(
             "statistics-unknown",
-            "the record has fewer than three periods of the slowest forcing".into(),
+            "the record has fewer than three periods of the slowest forcing, or none is known".into(),
             "two periods do not tell how much they differ",
         ),
         caution(

@@ -32,7 +32,7 @@ centre = ["600 mm", 0]
 inertia = 1.5
 {load}
 [route]
-pretension = "150 N"
+pretension = "800 N"
 adjust = {{ kind = "sprocket", name = "motor", direction = [-1, 0], within = "10 mm" }}
 "#
     )
@@ -227,7 +227,7 @@ adjust = {{ kind = "sprocket", name = "driven", direction = [1, 0], within = "20
         );
     }
     let short = conveyor(TABLE, LOAD).replace(
-        "pretension = \"150 N\"",
+        "pretension = \"800 N\"",
         "sag = 0.01\nslack_span = \"motor-conveyer\"",
     );
     let error = refused(&short);
@@ -236,7 +236,7 @@ adjust = {{ kind = "sprocket", name = "driven", direction = [1, 0], within = "20
         "{error}"
     );
     let nothing = conveyor(TABLE, LOAD)
-        .replace("pretension = \"150 N\"", "sag = 0.01")
+        .replace("pretension = \"800 N\"", "sag = 0.01")
         .replace("adjust =", "#");
     assert!(refused(&nothing).contains("nothing is moved to make it"));
 }

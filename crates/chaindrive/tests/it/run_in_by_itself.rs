@@ -213,7 +213,7 @@ fn only_what_repeats_is_run_in_by_itself() {
         (
             "spinning_ring",
             vec![],
-            "no motion turns a sprocket of a chain",
+            "where torques do, take --run-in auto",
         ),
         (
             two,
@@ -252,7 +252,7 @@ fn only_what_repeats_is_run_in_by_itself() {
     let (report, _) = ran(&free, &[("until", "1 ms"), ("method", "verlet")]);
     let told = report.ran_in.unwrap().to_string();
     assert!(
-        told.ends_with("no motion turns a sprocket of a chain."),
+        told.ends_with("where torques do, take --run-in auto."),
         "{told}"
     );
 }

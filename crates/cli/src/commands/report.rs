@@ -27,20 +27,21 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn report(arguments: &Arguments) -> Result<(), Failure> {
-    let mut command = format!("chaindrive report {}", arguments.source);
-    if let Some(output) = &arguments.output {
-        command += &format!(" -o {}", output.display());
-    }
-    for (given, option) in [
+    let output = arguments
+        .output
+        .as_ref()
+        .map(|it| format!(" -o {}", it.display()));
+    let options = [
         (arguments.overwrite, " --overwrite"),
         (arguments.quiet, " -q"),
-    ] {
-        if given {
-            command += option;
-        }
-    }
+    ];
+    let options = options
+        .into_iter()
+        .filter_map(|(given, option)| given.then_some(option));
+    let source = &arguments.source;
     Err(Failure::Argument(format!(
-        "{}: the Python package draws reports; install chaindrive[plot,analysis] there, and give it the same command: {command}",
-        arguments.source
+        "{source}: the Python package draws reports; install chaindrive[plot,analysis] there, and give it the same command: chaindrive report {source}{}{}",
+        output.unwrap_or_default(),
+        options.collect::<String>()
     )))
 }

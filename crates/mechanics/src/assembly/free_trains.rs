@@ -163,14 +163,13 @@ impl FreeTrain {
         self.shafts.iter().map(torque).collect()
     }
 
-    /// Whether its torques decide alone how it sets off: no strand holds it, and no angle at which they balance is looked for.
+    /// Whether its torques decide alone how it sets off: no strand holds it, and no angle is looked for at which they balance, as they do in the mean
+    /// over a turn.
     fn sets_off(&self, system: &System) -> bool {
-        let mut shafts = self
-            .shafts
-            .iter()
-            .map(|(index, _)| &system.bodies.shafts[*index]);
-        let seeks = self.speed == 0.0
-            && shafts.any(|shaft| shaft.torques().any(Torque::turns_with_an_angle));
+        let shafts = &system.bodies.shafts;
+        let mut torques = torques_of(shafts, &self.shafts);
+        let turns = torques.any(|(torque, _)| torque.turns_with_an_angle());
+        let seeks = turns && self.speed == 0.0 && self.working_point == Some(0.0);
         !self.is_held && !seeks
     }
 }
@@ -252,6 +251,15 @@ const A_DECADE: i32 = 20;
 /// Decades of speed that are tried \[rad/s\].
 const DECADES: std::ops::Range<i32> = -3..6;
 
+/// All torques on some shafts, each with the speed of its shaft over that of the first one.
+fn torques_of<'s>(
+    all: &'s [Shaft],
+    shafts: &'s [(usize, f64)],
+) -> impl Iterator<Item = (&'s Torque, f64)> {
+    let own = |(index, c): &'s (usize, f64)| all[*index].torques().map(move |it| (it, *c));
+    shafts.iter().flat_map(own)
+}
+
 /// Speed \[rad/s\] of the first of some shafts at which their torques balance, coming up from rest the way that they drive; 0 where they
 /// balance at rest, none where they never do.
 ///
@@ -259,12 +267,7 @@ const DECADES: std::ops::Range<i32> = -3..6;
 /// F(ω) = Σ c M̄(c ω) = 0      M̄: mean over a turn
 /// ```
 fn working_point(all: &[Shaft], shafts: &[(usize, f64)], t: f64) -> Option<f64> {
-    let torques = || {
-        let own = shafts
-            .iter()
-            .flat_map(|(index, c)| all[*index].torques().map(move |it| (it, *c)));
-        own
-    };
+    let torques = || torques_of(all, shafts);
     let sum = |speed: f64| {
         torques()
             .map(|(torque, c)| c * torque.mean(t, c * speed))

@@ -110,7 +110,7 @@ fn around(
         // The chord of the bow changes with the travel, and little.
         let mut travel = 0.0;
         for _ in 0..3 {
-            let strain = slack::strain(&moving(travel), slack_span, sag)?;
+            let strain = slack::strain(&moving(travel), slack_span, sag, (chain, parts.gravity))?;
             (travel, ..) = close_by_motion(pitch, strain, links, phase, &mut moving, range)?;
         }
         Ok(travel)

@@ -2,8 +2,8 @@
 
 use chaindrive_geometry::{Closing, Point, Route, Span, Vector, Wheel};
 
-use crate::AssemblyError;
 use crate::drive::{GuideSupport, Parts, Stop};
+use crate::{AssemblyError, Chain};
 
 /// The span that takes the slack where nobody says so, by the stop that it leaves: the last one, unless a guide lies along it; then the longest along
 /// which none lies.
@@ -45,19 +45,33 @@ fn distance(span: &Span, place: Point) -> f64 {
     (span.leaves + chord * share.clamp(0.0, 1.0) - place).norm()
 }
 
-/// Strain of all free spans \[–\], negative, that leaves one of them so much longer than its chord that it sags by `sag` \[m\].
+/// Strain of all free spans \[–\] with which one of them sags by `sag` \[m\] under its own weight, which stretches them all.
 ///
 /// ```text
-/// e = L (θ/sin θ − 1),   tan(θ/2) = 2 f/L      f: sag, L: chord
+/// ε = T/(k p) − e/ΣL,   T = w L²/8f,   e = L (θ/sin θ − 1),   tan(θ/2) = 2 f/L      f: sag, L: chord, w: weight a length across it
 /// ```
 ///
 /// The bow is an arc of a circle here. A catenary of the same length sags less, by a share of some (f/L)².
-pub(super) fn strain(wheels: &[Wheel], span: usize, sag: f64) -> Result<f64, AssemblyError> {
+pub(super) fn strain(
+    wheels: &[Wheel],
+    span: usize,
+    sag: f64,
+    (chain, gravity): (&Chain, Vector),
+) -> Result<f64, AssemblyError> {
     let spans = Route::taut(wheels)?.spans;
     let chord = spans[span].length;
     let theta = 2.0 * (2.0 * sag / chord).atan();
     let excess = chord * (theta / theta.sin() - 1.0);
-    Ok(-excess / spans.iter().map(|it| it.length).sum::<f64>())
+    let links = chain.links() as f64;
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let along = (spans[span].arrives - spans[span].leaves) / chord;
+    let across = (gravity - along * gravity.dot(&along)).norm();
+    let weight = mean(&chain.masses) / chain.pitch * across;
+    let pull = weight * chord * chord / (8.0 * sag);
+    // Springs in series: the harmonic mean.
+    let stiffness = links / chain.stiffness.iter().map(|k| 1.0 / k).sum::<f64>();
+    let free = spans.iter().map(|it| it.length).sum::<f64>();
+    Ok(pull / (stiffness * chain.pitch) - excess / free)
 }
 
 /// Roller positions with all slack in one span, and where the chain is seated. The phase is that of the sprocket behind the slack span.

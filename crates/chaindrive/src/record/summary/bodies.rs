@@ -206,7 +206,7 @@ fn leader(drive: &Drive, index: usize) -> (usize, f64) {
             })),
             Layout::Points { .. } => None,
         });
-    let mut routes = routes.map(|stops| stops.collect::<Vec<_>>());
+    let mut routes = routes.map(Iterator::collect::<Vec<_>>);
     let Some(route) = routes.find(|route| route.contains(&index)) else {
         return (index, 1.0);
     };

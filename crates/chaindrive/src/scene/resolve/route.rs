@@ -58,7 +58,7 @@ pub(super) fn layout(
     }
     let phase = route.phase.map(|phase| phase.0);
     let stops = stops?;
-    let slack = slack_span(route, &stops, names, findings)?;
+    let slack = slack_span(route, &stops, names, findings);
     Some(Layout::Route {
         stops,
         start: findings.or_chosen(route.start, "route.start", &defaults::SPAN_START),
@@ -78,16 +78,14 @@ pub(super) fn layout(
     })
 }
 
-/// The stop that the slack span leaves, where one is named; nothing where the name is wrong.
+/// The stop that the slack span leaves, where one is named; a wrong name is a finding.
 fn slack_span(
     route: &Route,
     stops: &[Stop],
     names: &Names<'_>,
     findings: &mut Findings<'_>,
-) -> Option<Option<usize>> {
-    let Some(wanted) = &route.slack_span else {
-        return Some(None);
-    };
+) -> Option<usize> {
+    let wanted = route.slack_span.as_ref()?;
     let name = |stop: &Stop| match stop {
         Stop::Sprocket(index) => names.sprockets[*index],
         Stop::Guide(index) => names.guides[*index],
@@ -103,7 +101,7 @@ fn slack_span(
         let message = format!("no span is named `{wanted}`");
         findings.refuse_with("route.slack_span", message, one_of(wanted, &known));
     }
-    found.map(Some)
+    found
 }
 
 fn stops(

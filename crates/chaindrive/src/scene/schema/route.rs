@@ -28,7 +28,7 @@ pub(crate) struct Route {
     /// How the pretension is made; absent: by shorter links.
     #[serde(default)]
     pub(crate) tighten: Tighten,
-    /// Sag of the slack span in its middle [m] before the load stretches the chain, made by what `adjust` moves, instead of a pretension;
+    /// Sag of the slack span in its middle [m] at rest under its own weight, made by what `adjust` moves, instead of a pretension;
     /// absent: none is asked for.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
