@@ -368,7 +368,9 @@ fn steps_whose_energy_does_not_add_up_are_not_chosen() {
 #[test]
 fn no_run_is_chosen_whose_losses_nobody_would_trust() {
     let scene = Scene::preset("motorcycle").unwrap();
-    let settings = Settings::default().with("until", Given::Number(0.05));
+    let settings = Settings::default()
+        .with("until", Given::Number(0.05))
+        .with("run_in", Given::Number(0.0));
     let request = Request::new(&scene, &settings).unwrap().without_estimate();
     let report = execute(&request, &mut Memory::default(), &|| false).unwrap();
     let choice = report.choice.unwrap();

@@ -100,7 +100,9 @@ fn drive(torque: &str) -> Assembled {
     scene.unwrap().drive().unwrap().assemble().unwrap()
 }
 
+/// What the choice promises of statistics is judged by `choice.rs` on shorter runs.
 #[test]
+#[ignore = "takes 20 s: an ensemble of sharp references"]
 fn the_default_accuracy_has_the_statistics_of_a_sharp_reference() {
     let start = drive("5 kN m");
     let run = Run {
