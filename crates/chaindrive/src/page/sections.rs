@@ -58,7 +58,7 @@ impl Told<'_> {
         section
     }
 
-    /// How long was recorded, behind which run-in.
+    /// Length of the record, and the run-in before it.
     fn record(&self) -> Section {
         let mut section = Section::new("record", []);
         let time = self.summary.duration();
@@ -162,7 +162,7 @@ impl Told<'_> {
         drive.chains.iter().enumerate().filter_map(told).collect()
     }
 
-    /// What a sprocket does for its chain.
+    /// Part of a sprocket in its chain: it drives, is driven or idles.
     fn role(&self, sprocket: &SprocketCourse) -> &'static str {
         let sprockets = self.summary.bodies().sprockets.iter();
         let own = sprockets.filter(|it| it.chain == sprocket.chain);
@@ -416,7 +416,7 @@ impl Told<'_> {
         format!("Efficiency: none, {why}.")
     }
 
-    /// What the chains carry, against what they are rated for.
+    /// Power of the chains against their rating.
     fn utilisation(&self) -> Section {
         let mut section = Section::new("utilisation", []);
         for rating in self.summary.ratings() {
