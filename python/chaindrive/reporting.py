@@ -182,9 +182,15 @@ _HEADING = re.compile(r"^\[+(?P<name>[^\]]+)\]+$")
 def _inputs(scene: str) -> str:
     """Return all inputs that say where they are from, as a table; assumed ones are marked."""
     place, rows = "", []
+    entries: dict[str, int] = {}
     for line in scene.splitlines():
         if heading := _HEADING.match(line):
-            place = heading["name"] + "."
+            name = heading["name"]
+            if line.startswith("[["):
+                # The lists within an entry begin anew with it.
+                entries = {it: n for it, n in entries.items() if not it.startswith(f"{name}.")}
+                entries[name] = entries.get(name, -1) + 1
+            place = _numbered(name, entries) + "."
         elif (found := _LINE.match(line)) and found["source"]:
             value = _LONG.sub(lambda it: f"{float(it[0]):.7g}", found["value"])
             shown = value if len(value) <= 60 else value[:57] + "…"
@@ -194,6 +200,15 @@ def _inputs(scene: str) -> str:
         return "<p>The result holds no scene in full.</p>"
     listed = table(["input", "value", "", "unit, source"], rows, figures=0)
     return f'<div class="inputs">\n{listed}\n</div>'
+
+
+def _numbered(name: str, entries: dict[str, int]) -> str:
+    """Return the path of a heading with the numbers of the entries of lists that it is in."""
+    path, steps = "", name.split(".")
+    for count, step in enumerate(steps, 1):
+        number = entries.get(".".join(steps[:count]))
+        path += f".{step}" if number is None else f".{step}[{number}]"
+    return path[1:]
 
 
 def _replay(run: xr.Dataset) -> str:

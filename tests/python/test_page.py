@@ -126,7 +126,8 @@ def test_a_report_is_one_file_that_asks_for_nothing(tmp_path: Path) -> None:
     assert place.read_text(encoding="utf-8") == text
     assert len(text.encode()) < 2e6
     assert not re.search(r'(src|href)="(?!data:|#)', text.split("<iframe")[0])
-    for wanted in ("Verdict: ", "Losses", "assumed", "title = ", run.attrs["chaindrive_build"]):
+    inputs = ("sprockets[1].inertia", "sprockets[1].load[0].torque", "assumed")
+    for wanted in (*inputs, "Verdict: ", "Losses", "title = ", run.attrs["chaindrive_build"]):
         assert wanted in text, wanted
     # What was not recorded is said in its place.
     bare = cd.report(cd.simulate(drive, until=0.02, record=["span_tension"], run_in=0, error=False))
