@@ -125,7 +125,7 @@ pub struct RatedPower {
     pub service_factor: f64,
     /// The power \[W\], see [`rated_power`](crate::rating::rated_power); absent where no rating is known.
     pub power: Option<f64>,
-    /// What limits it; absent where no rating is known.
+    /// The limit that governs; absent where no rating is known.
     pub limited_by: Option<&'static str>,
     /// Why there is no rating; absent where there is one.
     pub unrated: Option<String>,

@@ -1,4 +1,4 @@
-//! What a chain is made for, beside what a run asks of it: rated power, safety against breaking, bearing pressure, loads of the shafts.
+//! Capacity of a chain beside its duty in a run: rated power, safety against breaking, bearing pressure, loads of the shafts.
 //!
 //! Nothing of this moves the drive. Power is rated where a formula could be read in a public source, that for the chains of ASME B29.1
 //! (see [`PowerLimits`](chaindrive_mechanics::PowerLimits)), or where the scene gives what the maker says; else a [`Rating`] tells why not.
@@ -14,7 +14,7 @@ pub use load::{Load, SprocketDuty};
 pub use lubrication::Lubrication;
 pub use strands::strand_factor;
 
-/// What a chain is made for, beside what a run has asked of it.
+/// Capacity of a chain beside its duty in a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rating {
     /// Name of the chain; empty where there is one only.
@@ -27,7 +27,7 @@ pub struct Rating {
     pub service_factor: f64,
     /// Strands of the chain.
     pub strands: u32,
-    /// How many times a single strand they carry \[–\], see [`strand_factor`].
+    /// Power of all strands over that of a single one \[–\], see [`strand_factor`].
     pub strand_factor: f64,
     /// Limits of its power, or why there are none.
     pub limits: Result<Vec<PowerLimit>, Unrated>,

@@ -1,4 +1,4 @@
-"""What a chain is made for, as its run has judged it."""
+"""Rating of a chain, as its run has judged it."""
 
 from __future__ import annotations
 

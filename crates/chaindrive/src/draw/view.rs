@@ -188,14 +188,14 @@ impl Written {
         }
     }
 
-    /// Whether two names of a height lie on each other, to within rounding.
+    /// Overlap of two names of one height, to within rounding.
     fn meets(&self, other: &Self, height: f64) -> bool {
         let apart = (self.base - other.base).abs();
         self.left < other.right && other.left < self.right && apart < 0.999 * height
     }
 }
 
-/// Where the name of a body stands, and by which end, if it has one: of a sprocket at its centre, or beside it and its chain where
+/// Place of the name of a body, and the end that stands there, if it has one: of a sprocket at its centre, or beside it and its chain where
 /// it has no room, away from the middle of the drive.
 fn name_of(
     figure: &Figure,

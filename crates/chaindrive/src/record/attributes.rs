@@ -214,7 +214,7 @@ pub fn attributes(
 }
 
 /// Cost of the run.
-/// What a chain is made for; of several chains each says its own.
+/// Ratings of the chains; of several chains each says its own.
 fn rating(story: &mut Story, of: &Rating, is_only: bool) {
     let named = |what: &str| {
         if is_only {
