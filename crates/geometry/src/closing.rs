@@ -19,10 +19,13 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use crate::route::WheelKind;
 use crate::{GeometryError, Point, Route, Wheel};
 
+mod misfit;
 mod nearest;
+mod search;
 mod solve;
 
-pub use nearest::{LinkCounts, Search, close_nearest};
+pub use nearest::{LinkCounts, close_nearest};
+pub use search::Search;
 pub use solve::{close_by_motion, close_by_strain, closing_strains};
 
 /// The rollers that one wheel carries.

@@ -1,7 +1,8 @@
 //! How many links a set of wheels takes, and the nearest place in a motion at which a number of them closes.
 
 use super::Closing;
-use super::solve::{bisect, does_not_close};
+use super::misfit::does_not_close;
+use super::search::{Outcome, Search, outward};
 use crate::{GeometryError, Route, Wheel};
 
 /// A misfit below this part of a pitch \[–\] is rounding: the count fits as it is.
@@ -59,27 +60,6 @@ fn whole(links: f64) -> u32 {
     links as u32
 }
 
-/// Where a search for a place that closes begins, and how far it goes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Search {
-    /// Where it begins \[m or rad\].
-    pub start: f64,
-    /// First step either way \[m or rad\], positive; it grows by half from step to step.
-    pub step: f64,
-    /// How far it goes either way \[m or rad\].
-    pub within: f64,
-}
-
-/// One way of a search.
-struct Way {
-    sense: f64,
-    /// The last place that could be laid, and the misfit there.
-    last: (f64, f64),
-    step: f64,
-    /// A place beyond which nothing can be laid.
-    refused: bool,
-}
-
 /// Place in a motion nearest to its start at which `links` links close.
 ///
 /// As [`close_by_motion`](super::close_by_motion), with no need to know a range: the search goes outward either way, and where
@@ -121,75 +101,4 @@ pub fn close_nearest(
             Err(does_not_close(&nearest, Some(&farthest), stretched, links)?)
         }
     }
-}
-
-/// The end of a search.
-pub(super) enum Outcome {
-    /// The place, the wheels there and the chain.
-    Closes(f64, Vec<Wheel>, Closing),
-    /// Nowhere; the wheels where least is missing, and where most is.
-    Nowhere {
-        nearest: Vec<Wheel>,
-        farthest: Vec<Wheel>,
-    },
-}
-
-/// Searches outward from the start, either way.
-pub(super) fn outward(
-    pitch: f64,
-    links: u32,
-    phase: f64,
-    moving: &mut dyn FnMut(f64) -> Vec<Wheel>,
-    search: Search,
-) -> Result<Outcome, GeometryError> {
-    let mut trial = |place: f64| {
-        let wheels = moving(place);
-        let closing = Closing::march(&wheels, pitch, phase)?;
-        Ok((closing.excess(links), (wheels, closing)))
-    };
-    let (misfit, (wheels, closing)) = trial(search.start)?;
-    if misfit.abs() < f64::MIN_POSITIVE {
-        return Ok(Outcome::Closes(search.start, wheels, closing));
-    }
-    let mut nearest = (misfit, wheels.clone());
-    let mut farthest = (misfit, wheels);
-    let mut ways = [1.0, -1.0].map(|sense| Way {
-        sense,
-        last: (search.start, misfit),
-        step: search.step,
-        refused: false,
-    });
-    let goes_on = |way: &Way| {
-        way.step > 1e-9 * search.step && (way.last.0 - search.start).abs() < search.within
-    };
-    while ways.iter().any(goes_on) {
-        for way in ways.iter_mut().filter(|way| goes_on(way)) {
-            let (from, misfit) = way.last;
-            let gone = (from - search.start).abs() + way.step;
-            let to = search.start + way.sense * gone.min(search.within);
-            let Ok((found, (wheels, _))) = trial(to) else {
-                // What cannot be laid lies between: come nearer to it.
-                way.step *= 0.5;
-                way.refused = true;
-                continue;
-            };
-            if (found > 0.0) != (misfit > 0.0)
-                && let Some((place, (wheels, closing))) =
-                    bisect(&mut trial, (from.min(to), from.max(to)))?
-            {
-                return Ok(Outcome::Closes(place, wheels, closing));
-            }
-            if found.abs() < nearest.0.abs() {
-                nearest = (found, wheels);
-            } else if found.abs() > farthest.0.abs() {
-                farthest = (found, wheels);
-            }
-            way.last = (to, found);
-            way.step *= if way.refused { 0.5 } else { 1.5 };
-        }
-    }
-    Ok(Outcome::Nowhere {
-        nearest: nearest.1,
-        farthest: farthest.1,
-    })
 }

@@ -1,9 +1,9 @@
 //! Unknown that makes a chain of given length close: its strain, or a motion of the wheels.
 
 use super::Closing;
-use super::nearest::{Outcome, Search, outward};
-use crate::error::Remedy;
-use crate::{GeometryError, Route, Wheel};
+use super::misfit::does_not_close;
+use super::search::bisect;
+use crate::{GeometryError, Wheel};
 
 /// Slack or shortness beyond which a chain is the wrong one rather than a strained one, in pitches.
 const MOST_MISFIT: f64 = 0.75;
@@ -104,104 +104,4 @@ pub fn closing_strains(
             close_by_strain(wheels, pitch, links, phase).map(|(strain, _)| (phase, strain))
         })
         .collect()
-}
-
-/// Root of a function between two places of opposite sign, with what else it returned there.
-pub(super) fn bisect<T>(
-    trial: &mut impl FnMut(f64) -> Result<(f64, T), GeometryError>,
-    (mut low, mut high): (f64, f64),
-) -> Result<Option<(f64, T)>, GeometryError> {
-    let (at_low, with_low) = trial(low)?;
-    let (at_high, with_high) = trial(high)?;
-    let rising = at_low < at_high;
-    if (at_low > 0.0 && at_high > 0.0) || (at_low < 0.0 && at_high < 0.0) {
-        return Ok(None);
-    }
-    let mut best = if at_low.abs() < at_high.abs() {
-        (at_low, low, with_low)
-    } else {
-        (at_high, high, with_high)
-    };
-    // Halving stops where the interval holds no number of its own.
-    for _ in 0..200 {
-        let middle = low.midpoint(high);
-        if middle <= low.min(high) || middle >= low.max(high) {
-            break;
-        }
-        let (value, with) = trial(middle)?;
-        if (value > 0.0) == rising {
-            high = middle;
-        } else {
-            low = middle;
-        }
-        if value.abs() < best.0.abs() {
-            best = (value, middle, with);
-        }
-        if best.0.abs() < f64::MIN_POSITIVE {
-            break;
-        }
-    }
-    Ok(Some((best.1, best.2)))
-}
-
-/// The message for a designer: how far off, which counts fit better, and where a wheel would have to stand.
-/// Wheels that move are given where least is missing, and where most is.
-pub(super) fn does_not_close(
-    wheels: &[Wheel],
-    farthest: Option<&[Wheel]>,
-    pitch: f64,
-    links: u32,
-) -> Result<GeometryError, GeometryError> {
-    let route = Route::taut(wheels)?;
-    let taut = route.pitches(pitch);
-    let other = farthest.map(Route::taut).transpose()?;
-    let reach = other.map(|other| {
-        let other = other.pitches(pitch);
-        Box::new([taut.min(other), taut.max(other)])
-    });
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a positive count of links"
-    )]
-    let below = taut.floor() as u32;
-    let above = below + 1;
-    Ok(GeometryError::DoesNotClose {
-        links,
-        taut,
-        slack: (f64::from(links) - taut) * pitch,
-        reach,
-        below,
-        short: (taut - f64::from(below)) * pitch,
-        above,
-        long: (f64::from(above) - taut) * pitch,
-        remedy: remedy(&route, pitch, links).map(Box::new),
-    })
-}
-
-/// The most effective wheel, where the links asked for close.
-fn remedy(route: &Route, pitch: f64, links: u32) -> Option<Remedy> {
-    let wheels = &route.wheels;
-    let (wheel, direction) = route.most_effective()?;
-    let two = wheels.len() == 2;
-    let mut moving = |travel: f64| {
-        let mut wheels = wheels.clone();
-        wheels[wheel].centre += direction * travel;
-        wheels
-    };
-    let missing = (f64::from(links) - route.pitches(pitch)).abs() * pitch;
-    let search = Search {
-        start: 0.0,
-        step: 0.25 * pitch,
-        within: 4.0 * missing + pitch,
-    };
-    match outward(pitch, links, 0.5, &mut moving, search).ok()? {
-        Outcome::Closes(travel, moved, _) => Some(Remedy {
-            wheel,
-            travel,
-            centre: moved[wheel].centre,
-            centre_distance: two.then(|| (moved[1].centre - moved[0].centre).norm()),
-        }),
-        Outcome::Nowhere { .. } => None,
-    }
 }
