@@ -3,7 +3,7 @@
 use std::mem::swap;
 
 use crate::finite::Watch;
-use crate::method::Outcome;
+use crate::outcome::Outcome;
 use crate::state::{Size, Snapshot, State};
 use crate::{SecondOrderSystem, Statistics, Weights};
 

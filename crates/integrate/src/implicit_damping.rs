@@ -3,7 +3,7 @@
 use pulp::{Simd, WithSimd};
 
 use crate::finite::Watch;
-use crate::method::Outcome;
+use crate::outcome::Outcome;
 use crate::registers::Registers;
 use crate::state::{Size, Snapshot, State};
 use crate::{Moment, SecondOrderSystem, Statistics, Weights};

@@ -64,6 +64,7 @@ mod generalized_alpha;
 mod implicit_damping;
 mod memory;
 mod method;
+mod outcome;
 mod registers;
 mod runge_kutta;
 mod state;
@@ -72,6 +73,7 @@ mod step_size;
 mod stepper;
 mod system;
 mod tableau;
+mod tolerance;
 mod verlet;
 
 pub use array::Array;

@@ -10,11 +10,13 @@ use crate::generalized_alpha::GeneralizedAlpha;
 use crate::implicit_damping::{self, ImplicitDamping};
 use crate::runge_kutta::{self, RungeKutta};
 use crate::state::{Size, State};
-use crate::step_size::{Tolerance, stable_step};
-use crate::stepper::Stepper;
 use crate::tableau::{DORMAND_PRINCE, RK4};
+use crate::tolerance::Tolerance;
 use crate::verlet::{self, Verlet};
-use crate::{InstructionSet, IntegrationError, SecondOrderSystem};
+use crate::{IntegrationError, SecondOrderSystem};
+
+/// Share of the stability limit a fixed step may use.
+const SAFETY: f64 = 0.9;
 
 /// A method of time stepping with its parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -62,24 +64,6 @@ pub enum Method {
         /// Share ρ of its amplitude that a mode with ωh → ∞ keeps per step, 0 to 1 \[–\].
         spectral_radius: f64,
     },
-}
-
-/// Outcome of an attempt to make a candidate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Outcome {
-    /// A candidate to judge.
-    Done,
-    /// Infinity or NaN.
-    NotFinite,
-    /// The equations of the step were not solved.
-    NoSolution,
-}
-
-impl Outcome {
-    /// A candidate, if it is finite.
-    pub(crate) fn of(finite: bool) -> Self {
-        if finite { Self::Done } else { Self::NotFinite }
-    }
 }
 
 /// Work space of a method.
@@ -238,9 +222,12 @@ impl Method {
         }
     }
 
-    /// Longest step \[s\] a run accepts at the [time scale](Self::time_scale) τ \[s\]: 0.9 of the stability limit.
+    /// Longest step \[s\] a run accepts at the [time scale](Self::time_scale) τ \[s\]: 0.9 of the stability limit; infinite without one.
     pub fn longest_step(&self, time_scale: f64) -> f64 {
-        stable_step(self, time_scale)
+        match self.stability_limit() {
+            Some(limit) => SAFETY * limit * time_scale,
+            None => f64::INFINITY,
+        }
     }
 
     /// Refuses parameters outside their range.
@@ -278,26 +265,6 @@ impl Method {
                 require(allowed, "max_step", max_step, "positive [s]")
             }
         }
-    }
-
-    /// Starts a run: evaluates the accelerations of the state and commits it.
-    ///
-    /// # Errors
-    /// A parameter out of range, an implicit method for a system that cannot solve, a state of the wrong shape, a
-    /// step above [`longest_step`](Self::longest_step), accelerations that are not finite, or an instruction set asked for in vain
-    /// ([`InstructionSet::in_use`]).
-    pub fn start<S: SecondOrderSystem>(
-        &self,
-        system: &mut S,
-        state: &mut State,
-    ) -> Result<Stepper<S>, IntegrationError> {
-        self.check()?;
-        InstructionSet::in_use()?;
-        if self.is_implicit() && !system.can_solve() {
-            let method = self.name();
-            return Err(IntegrationError::Unsupported { method });
-        }
-        Stepper::start(*self, system, state)
     }
 
     /// Every explicit method, for tests; all take steps of about the same length \[s\].

@@ -2,8 +2,8 @@
 
 use crate::finite::Watch;
 use crate::state::{Size, Snapshot, State};
-use crate::step_size::Tolerance;
 use crate::tableau::Tableau;
+use crate::tolerance::Tolerance;
 use crate::{Moment, SecondOrderSystem};
 
 /// Limit of ωh for the classical method: 2.78 on the real axis, 2.83 on the imaginary one.

@@ -2,11 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::method::Method;
 use crate::state::State;
-
-/// Share of the stability limit a fixed step may use.
-pub(crate) const SAFETY: f64 = 0.9;
+use crate::tolerance::Tolerance;
 
 /// Least step, in units of the nominal one, that a verdict can bring about.
 pub(crate) const FLOOR: f64 = 1e-3;
@@ -78,28 +75,6 @@ impl Fixed {
             }
         }
         Some(self.rungs > before)
-    }
-}
-
-/// Allowed error of a step.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(crate) struct Tolerance {
-    pub(crate) relative: f64,
-    pub(crate) absolute: f64,
-    pub(crate) absolute_rate: f64,
-}
-
-impl Tolerance {
-    /// Error of a position, or of a first-order state, in units of its tolerance.
-    #[inline]
-    pub(crate) fn position(self, error: f64, before: f64, after: f64) -> f64 {
-        error.abs() / (self.absolute + self.relative * before.abs().max(after.abs()))
-    }
-
-    /// Error of a velocity in units of its tolerance.
-    #[inline]
-    pub(crate) fn velocity(self, error: f64, before: f64, after: f64) -> f64 {
-        error.abs() / (self.absolute_rate + self.relative * before.abs().max(after.abs()))
     }
 }
 
@@ -189,12 +164,4 @@ pub(crate) fn first_step(tolerance: Tolerance, longest: f64, state: &State) -> f
     }
     // Without a rate the quotient is infinite, and the longest step is taken.
     (0.01 * size / rate).clamp(1e-4 * longest, longest)
-}
-
-/// Longest stable step \[s\] of a method with fixed steps, its reserve included; infinite without a limit.
-pub(crate) fn stable_step(method: &Method, time_scale: f64) -> f64 {
-    match method.stability_limit() {
-        Some(limit) => SAFETY * limit * time_scale,
-        None => f64::INFINITY,
-    }
 }

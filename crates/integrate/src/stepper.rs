@@ -5,12 +5,13 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use crate::finite::Watch;
-use crate::method::{Kernel, Outcome};
+use crate::method::Kernel;
+use crate::outcome::Outcome;
 use crate::state::{Size, Snapshot, State};
-use crate::step_size::{Controller, FLOOR, Fixed, first_step, shortened, stable_step};
+use crate::step_size::{Controller, FLOOR, Fixed, first_step, shortened};
 use crate::{
-    Array, Continuity, IntegrationError, Method, Moment, Quantity, SecondOrderSystem, Statistics,
-    Verdict,
+    Array, Continuity, InstructionSet, IntegrationError, Method, Moment, Quantity,
+    SecondOrderSystem, Statistics, Verdict,
 };
 
 /// An accepted step.
@@ -54,6 +55,28 @@ impl<S: SecondOrderSystem> fmt::Debug for Stepper<S> {
             .field("pace", &self.pace)
             .field("statistics", &self.statistics)
             .finish_non_exhaustive()
+    }
+}
+
+impl Method {
+    /// Starts a run: evaluates the accelerations of the state and commits it.
+    ///
+    /// # Errors
+    /// A parameter out of range, an implicit method for a system that cannot solve, a state of the wrong shape, a
+    /// step above [`longest_step`](Self::longest_step), accelerations that are not finite, or an instruction set asked for in vain
+    /// ([`InstructionSet::in_use`]).
+    pub fn start<S: SecondOrderSystem>(
+        &self,
+        system: &mut S,
+        state: &mut State,
+    ) -> Result<Stepper<S>, IntegrationError> {
+        self.check()?;
+        InstructionSet::in_use()?;
+        if self.is_implicit() && !system.can_solve() {
+            let method = self.name();
+            return Err(IntegrationError::Unsupported { method });
+        }
+        Stepper::start(*self, system, state)
     }
 }
 
@@ -265,7 +288,7 @@ impl<S: SecondOrderSystem> Stepper<S> {
             self.look_ahead(system, state);
         }
         if let Pace::Fixed(fixed) = &mut self.pace {
-            let limit = stable_step(&self.method, self.method.time_scale(system));
+            let limit = self.method.longest_step(self.method.time_scale(system));
             let Some(shortened) = fixed.adapt(limit) else {
                 let (t, step) = (state.t, fixed.step());
                 return Err(IntegrationError::StepUnderflow { t, step });
@@ -308,7 +331,7 @@ fn first_pace(method: Method, time_scale: f64, state: &State) -> Result<Pace, In
     let step = method.step();
     match method.tolerances() {
         None => {
-            let limit = stable_step(&method, time_scale);
+            let limit = method.longest_step(time_scale);
             if step <= limit {
                 Ok(Pace::Fixed(Fixed::new(step)))
             } else {
