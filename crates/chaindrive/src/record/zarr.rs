@@ -33,6 +33,7 @@ mod events;
 mod files;
 mod folder;
 mod inspect;
+mod names;
 mod reader;
 mod stopped;
 mod store;
@@ -56,9 +57,9 @@ use super::error::WriteError;
 use crate::precision::Judgement;
 use crate::{Checkpoint, Simulation};
 use content::Content;
+use names::CHECKPOINT;
 pub use stopped::{ResumeError, Stopped};
 pub(super) use store::Store;
-use target::CHECKPOINT;
 
 /// Wall time between two commits.
 const COMMIT_EVERY: Duration = Duration::from_secs(1);

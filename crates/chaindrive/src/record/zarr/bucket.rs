@@ -18,9 +18,7 @@ use zarrs::storage::{Bytes, StorageError, StoreKey};
 
 use super::error::Fault;
 use super::files::{Change, Files};
-
-/// The object that tells one store from another that is begun in its place later.
-pub(super) const IDENTITY: &str = "identity";
+use super::names::IDENTITY;
 
 /// Begins every identity.
 const MARK: &str = "sweep of chaindrive ";

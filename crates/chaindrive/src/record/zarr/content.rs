@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 use super::about;
 use super::error::Fault;
 use super::events::EventTracks;
-use super::store::Storage;
+use super::files::Storage;
 use super::track::{Track, samples_per_chunk, store_chains, store_labels};
 use crate::record::{Axis, Channel, Provenance, chains_along, labels};
 use crate::{Judgement, Simulation};

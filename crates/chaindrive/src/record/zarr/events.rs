@@ -11,7 +11,7 @@ use zarrs::array::codec::ZstdCodec;
 use zarrs::array::{ArrayBuilder, CodecOptions, data_type};
 
 use super::error::Fault;
-use super::store::Storage;
+use super::files::Storage;
 use super::track::{StoredArray, ZSTD_LEVEL, metadata, store_metadata};
 use crate::record::{EventColumn, EventTable};
 

@@ -56,6 +56,9 @@ pub(super) trait Files: Debug + Send + Sync {
 #[derive(Debug)]
 pub(super) struct Ground(Arc<dyn Files>);
 
+/// Where arrays write their chunks.
+pub(super) type Storage = Arc<Ground>;
+
 impl Ground {
     pub(super) fn of(files: Arc<dyn Files>) -> Arc<Self> {
         Arc::new(Self(files))

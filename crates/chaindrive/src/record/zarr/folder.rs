@@ -16,12 +16,10 @@ use zarrs::storage::{Bytes, StorageError, StoreKey};
 use super::error::Fault;
 use super::files::{Change, Files};
 use super::inspect::read_file;
+use super::names::STAGED;
 
 /// Largest file of a store \[bytes\]: chunks, documents and checkpoints stay far below.
 const LARGEST: u64 = 1 << 30;
-
-/// Begins the end of the name of a file on its way, the number of its process; readers of the store know no such key.
-pub(super) const STAGED: char = '#';
 
 /// A folder with a store in the making.
 #[derive(Debug)]

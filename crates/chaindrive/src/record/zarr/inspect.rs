@@ -9,8 +9,7 @@ use std::path::Path;
 
 use serde_json::{Map, Value};
 
-use super::folder::STAGED;
-use super::target::GROUP;
+use super::names::{GROUP, STAGED};
 
 /// Largest group document \[bytes\].
 const DOCUMENT: u64 = 64 << 20;

@@ -8,8 +8,8 @@ use zarrs::array::{ArrayMetadata, FromArrayBytes};
 
 use super::error::Fault;
 use super::files::Ground;
+use super::files::Storage;
 use super::folder::Folder;
-use super::store::Storage;
 use super::target;
 use super::track::StoredArray;
 use crate::record::claim::is_being_written;

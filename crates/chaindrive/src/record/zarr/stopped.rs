@@ -3,8 +3,8 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use super::names::CHECKPOINT;
 use super::store::Store;
-use super::target::CHECKPOINT;
 use crate::record::WriteError;
 use crate::record::in_store::InStore;
 use crate::run::resume;

@@ -12,15 +12,13 @@ use zarrs::storage::StoreKey;
 
 use super::bucket::{Bucket, Objects};
 use super::error::Fault;
-use super::files::Ground;
+use super::files::{Ground, Storage};
 use super::folder::Folder;
 use super::inspect::inspect;
+use super::names::GROUP;
 use super::{Ending, Existing, target};
 use crate::record::claim::Claim;
 use crate::record::error::WriteError;
-
-/// Where arrays write their chunks.
-pub(super) type Storage = Arc<Ground>;
 
 /// Space for a last group document on a full disk, beyond twice the length of the first.
 const RESERVE: usize = 1 << 16;
@@ -150,12 +148,10 @@ impl Store {
         let path = PathBuf::from(objects.name());
         let bucket = target::bucket(&path, objects)?;
         let storage = Ground::of(Arc::new(bucket));
-        let group = objects
-            .get(target::GROUP)
-            .map_err(|source| WriteError::Io {
-                path: path.clone(),
-                source,
-            })?;
+        let group = objects.get(GROUP).map_err(|source| WriteError::Io {
+            path: path.clone(),
+            source,
+        })?;
         let group = group.as_ref().map(|object| object.bytes.as_slice());
         let group = target::document(&path, group)?;
         Ok(Self::left(&path, storage, None, &group))

@@ -8,18 +8,12 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use super::bucket::{Bucket, IDENTITY, Objects};
-use super::folder::STAGED;
+use super::Existing;
+use super::bucket::{Bucket, Objects};
 use super::inspect::read_group;
-use super::{Existing, variants};
+use super::names::{CHECKPOINT, GROUP, IDENTITY, OF_SWEEPS, RECIPE, STAGED};
 use crate::record::attributes::FORMAT;
 use crate::record::error::WriteError;
-
-/// State from which a run goes on, beside the arrays.
-pub(super) const CHECKPOINT: &str = "checkpoint";
-
-/// The document that makes a folder a Zarr group.
-pub(super) const GROUP: &str = "zarr.json";
 
 /// Refuses a place that holds what must stay. The caller has claimed the place: a result that says `running` there
 /// was left by a process that died.
@@ -69,7 +63,7 @@ pub(super) fn clear(
         let part = |key: &String| {
             let rest = key.split_once('/').map_or("", |(_, rest)| rest);
             key == IDENTITY
-                || variants::FILES.contains(&key.as_str())
+                || OF_SWEEPS.contains(&key.as_str())
                 || rest == GROUP
                 || rest == "c"
                 || rest.starts_with("c/")
@@ -102,7 +96,7 @@ pub(super) fn clear(
 /// A store that was begun in an object store, or copied there from a disk.
 pub(super) fn bucket(asked: &Path, objects: &Arc<dyn Objects>) -> Result<Bucket, WriteError> {
     let found = Bucket::open(objects).and_then(|found| match found {
-        None if objects.size(variants::RECIPE)?.is_some() => {
+        None if objects.size(RECIPE)?.is_some() => {
             Bucket::begin(objects)?;
             Bucket::open(objects)
         }
@@ -132,7 +126,7 @@ fn check_names(
         // A killed run leaves files that it was about to put in place: `zarr.json#1234`.
         let name = name.split(STAGED).next().unwrap_or(name);
         [GROUP, CHECKPOINT, IDENTITY].contains(&name)
-            || variants::FILES.contains(&name)
+            || OF_SWEEPS.contains(&name)
             || arrays.is_some_and(|arrays| arrays.contains_key(name))
     };
     match names.iter().find(|name| !known(name)) {

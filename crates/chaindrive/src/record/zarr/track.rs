@@ -7,8 +7,7 @@ use zarrs::array::codec::ZstdCodec;
 use zarrs::array::{Array, ArrayBuilder, ArrayMetadataOptions, data_type};
 
 use super::error::Fault;
-use super::files::Ground;
-use super::store::Storage;
+use super::files::{Ground, Storage};
 use crate::record::{Axis, labels};
 
 /// An array of the store.

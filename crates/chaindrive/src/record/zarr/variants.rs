@@ -29,18 +29,12 @@ use zarrs::array::codec::ZstdCodec;
 use zarrs::array::{ArrayBuilder, CodecOptions, DataType, data_type};
 
 use super::error::Fault;
-use super::store::Storage;
+use super::files::Storage;
 use super::track::{StoredArray, ZSTD_LEVEL};
 use crate::sweep::{OPEN, Quantity, TEXTS};
 pub use coordinator::SweepStore;
 use layout::Layout;
 pub use worker::{Finished, Worker};
-
-/// Files of a sweep beside its arrays.
-pub(super) const FILES: [&str; 3] = [RECIPE, LAYOUT, LOCK];
-pub(super) const RECIPE: &str = "sweep.json";
-const LAYOUT: &str = "layout.json";
-const LOCK: &str = "layout.lock";
 
 /// The text whose chunk is the last of a task: why variants failed; of those not carried out, that they were not.
 const MARK: &str = "error";

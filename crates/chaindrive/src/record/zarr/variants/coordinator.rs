@@ -10,8 +10,9 @@ use std::time::{Duration, Instant};
 use serde_json::{Map, Value};
 use zarrs::array::{CodecOptions, data_type};
 
+use super::super::names::{LAYOUT, RECIPE};
 use super::layout::Layout;
-use super::{Arrays, Finished, LAYOUT, RECIPE, Worker, every_chunk};
+use super::{Arrays, Finished, Worker, every_chunk};
 use crate::record::attributes::Story;
 use crate::record::zarr::bucket::Objects;
 use crate::record::zarr::error::Fault;

@@ -9,8 +9,9 @@ use serde::de::DeserializeOwned;
 use serde_json::Map;
 use zarrs::storage::{Bytes, StoreKey};
 
+use super::super::names::{LAYOUT, RECIPE};
 use super::layout::{Layout, Region};
-use super::{Arrays, LAYOUT, MARK, RECIPE, Storage, blank, every_chunk, texts_before_the_mark};
+use super::{Arrays, MARK, Storage, blank, every_chunk, texts_before_the_mark};
 use crate::record::WriteError;
 use crate::record::zarr::bucket::Objects;
 use crate::record::zarr::error::Fault;
