@@ -6,9 +6,10 @@
 //! bodies that it touches, never at the system. Nobody outside this folder asks which member it is.
 
 mod balance;
+pub(crate) mod chain;
 mod joints;
 pub(crate) mod links;
-mod model;
+pub(crate) mod model;
 pub(crate) mod particles;
 mod record;
 
@@ -22,7 +23,7 @@ use serde::{Deserialize, Serialize};
 pub(crate) use balance::{Balance, Load, Moving, Sum, Unknown, Way};
 use links::Linkage;
 pub use links::inside::{Contact, Inside, Joints};
-pub use model::ChainModel;
+use model::ChainModel;
 use particles::Particles;
 use particles::points::{self, Points};
 pub(crate) use record::{Loads, Record};

@@ -9,7 +9,7 @@ use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_geometry::{Point, Vector};
 
 use crate::drive::{
-    Adjust, Drive, Fit, GuideSupport, Layout, Parts, PlacedChain, Sprocket, Stop, Support, Surface,
+    Adjust, Drive, Fit, GuideSupport, Layout, Parts, PlacedChain, Sprocket, Stop, Support,
 };
 use crate::{DriveError, Ends};
 
@@ -148,20 +148,6 @@ fn sprocket_problems(sprocket: &Sprocket, tensioners: usize) -> Vec<DriveError> 
     }
     found.extend(finite(sprocket.centre.coords, &format!("{place}.centre")));
     found
-}
-
-impl Surface {
-    /// Names every parameter of its laws that is out of range.
-    pub(crate) fn problems(&self, place: &str) -> Vec<DriveError> {
-        let law = |source| DriveError::Law {
-            path: format!("{place}.contact"),
-            source,
-        };
-        let mut found = Vec::new();
-        found.extend(self.law.check().map_err(law).err());
-        found.extend(self.friction.check().map_err(law).err());
-        found
-    }
 }
 
 fn finite(v: Vector, path: &str) -> Option<DriveError> {

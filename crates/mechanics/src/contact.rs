@@ -18,6 +18,7 @@ mod memory;
 mod plates;
 mod rest;
 mod rollers;
+mod rubbing;
 mod slots;
 mod stacked;
 #[cfg(test)]
@@ -37,15 +38,18 @@ pub(crate) use bristles::Sweep;
 pub(crate) use friction::{LaneFriction, LaneSpring};
 pub use impacts::Impacts;
 pub(crate) use law::SurfaceLaw;
-pub(crate) use memory::{ContactMemory, ContactState, Kept, MemoryLanes, share_to_zero};
+pub(crate) use memory::{ContactMemory, ContactState, FAR, Kept, MemoryLanes, share_to_zero};
 pub(crate) use plates::{Drawn, OfPins, PlateContact, PlatePins, PlatePlaces, Pressing};
 pub(crate) use rollers::Rollers;
-pub(crate) use window::{FAR, Places, Run, Spare};
+pub(crate) use window::{Places, Run, Spare};
 pub(crate) use windows::{PlateMemory, Windows};
 pub(crate) use wrench::{Begun, LaneTally, Wrench};
 
-use crate::drive::{Flank, Surface};
 use crate::profile::{GapFace, RailFace};
+use crate::surface::{Flank, Surface};
+
+/// A depth \[m\] that no power is taken below; the force there is nothing beside rounding.
+const LEAST_DEPTH: f64 = 1e-30;
 
 /// The position and motion of the frame in which a profile is given.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]

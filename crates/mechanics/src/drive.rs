@@ -1,36 +1,9 @@
 //! A drive: everything that stays constant during a run, valid by construction.
 
-use chaindrive_contact::{Elastic, Friction, Law};
 use chaindrive_geometry::{ArcSpline, Point, Side, ToothGap, Vector};
 use serde::{Deserialize, Serialize};
 
-use crate::{Chain, Motion, Tensioner, Torque};
-
-/// How two surfaces push and rub on each other.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Surface {
-    /// Normal force law.
-    pub law: Law,
-    /// Friction law.
-    pub friction: Friction,
-}
-
-/// The flank of a tooth, where it does not answer like its seat.
-///
-/// ```text
-/// g = (1 − s) g_seat(δ) + s g_flank(δ),   s: smooth step from 0 to 1 within ± w of the end of the hollow
-/// ```
-///
-/// A roller in its seat has a counterpart little wider than itself; on the flank that bulges. The patch of
-/// contact lies across the joint of the two while the roller passes it, so the law changes over an
-/// arc and not at a point; w is about its half-width under load.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Flank {
-    /// Elastic law beyond the hollow; dissipation and friction are those of the surface.
-    pub elastic: Elastic,
-    /// Half-width w of the passage \[m\], positive.
-    pub width: f64,
-}
+use crate::{Chain, Coupling, Flank, Motion, Surface, Tensioner, Torque};
 
 /// A toothed wheel.
 #[derive(Clone, Debug)]
@@ -356,23 +329,6 @@ pub struct PlacedChain {
     pub sprockets: Vec<usize>,
     /// Guides that it can touch.
     pub guides: Vec<usize>,
-}
-
-/// A torsional spring and damper between two shafts, without stress as assembled.
-///
-/// ```text
-/// M = k φ + c φ̇,   φ = (θ₁ − θ₁(0)) − (θ₀ − θ₀(0)),   M on the first shaft, −M on the second
-/// ```
-#[derive(Clone, Debug, PartialEq)]
-pub struct Coupling {
-    /// Name, unique among the couplings.
-    pub name: String,
-    /// The two shafts.
-    pub shafts: [usize; 2],
-    /// Stiffness k \[N m/rad\], not negative.
-    pub stiffness: f64,
-    /// Damping c \[N m s/rad\], not negative.
-    pub damping: f64,
 }
 
 /// A pair of gears between two shafts, without play or loss.

@@ -1,9 +1,9 @@
 //! Parts of a drive that nothing joins: each group moves, and settles, as if it were alone.
 
-use crate::Torque;
 use crate::drive::{
-    Adjust, Coupling, GearPair, GuideSupport, Layout, Parts, PlacedChain, Shaft, Stop, Support,
+    Adjust, GearPair, GuideSupport, Layout, Parts, PlacedChain, Shaft, Stop, Support,
 };
+use crate::{Coupling, Torque};
 
 /// Sets that grow together: every entry points to one of its own set, in the end to the least.
 #[derive(Clone, Debug)]

@@ -21,10 +21,10 @@
 mod applied;
 mod articulation;
 mod assembly;
-mod chain;
 mod chains;
 mod check;
 mod contact;
+mod coupling;
 mod drive;
 mod energy;
 mod error;
@@ -45,6 +45,7 @@ mod profile;
 mod standing;
 mod strength;
 mod struck;
+mod surface;
 mod system;
 mod tensioner;
 mod torque;
@@ -52,15 +53,15 @@ mod trains;
 
 pub use articulation::Articulation;
 pub use assembly::{Assembled, Fitting, FreeTrain, Gap, RollerLayout, Statics};
-pub use chain::{Chain, End, Ends};
-pub use chains::ChainModel;
+pub use chains::chain::{Chain, End, Ends};
 pub use chains::links::model::{Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel};
+pub use chains::model::ChainModel;
 pub use chains::particles::points::PointJoints;
 pub use contact::{Impact, Impacts};
+pub use coupling::Coupling;
 pub use drive::{
-    Adjust, Coupling, Drive, Fit, Flank, GearPair, Guide, GuideSupport, Layout, Parts, PlacedChain,
-    PretensionAt, Rotation, Shaft, SpanStart, Sprocket, StartSpeed, Stop, Support, Surface,
-    Tighten, Touches,
+    Adjust, Drive, Fit, GearPair, Guide, GuideSupport, Layout, Parts, PlacedChain, PretensionAt,
+    Rotation, Shaft, SpanStart, Sprocket, StartSpeed, Stop, Support, Tighten, Touches,
 };
 pub use energy::{Energy, Flow, Place, Store};
 pub use error::{AssemblyError, Clash, DriveError, MemoryError};
@@ -75,6 +76,7 @@ pub use pose::{
 };
 pub use strength::{Capacity, PowerLimits, Strength, Unrated};
 pub use struck::Struck;
+pub use surface::{Flank, Surface};
 pub use system::{Input, Record, System, SystemMemory};
 pub use tensioner::{Carrier, Push, PushForce, Tensioner, carriers, pushes};
 pub use torque::{Argument, Torque};

@@ -15,7 +15,7 @@ use crate::drawing;
 use crate::errors::{OrRaise, parameter};
 use crate::law::Law;
 use crate::profile::Profile;
-use crate::run::patiently;
+use crate::signals::patiently;
 
 /// Name, link tensions, span tensions and closed contacts of a static stage.
 type StaticStage<'py> = (

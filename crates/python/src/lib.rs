@@ -20,6 +20,7 @@ mod precision;
 mod profile;
 mod replay;
 mod run;
+mod signals;
 mod sweep;
 
 /// Blocks that begin where a cache line does: whole registers of states and contacts are then read at once, where the system's

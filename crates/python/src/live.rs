@@ -7,7 +7,8 @@ use pyo3::types::PyBytes;
 
 use crate::drive::Drive;
 use crate::errors::{IntoException, OrRaise, parameter};
-use crate::run::{Interpreter, PATIENCE, Setting, merged};
+use crate::run::{Setting, merged};
+use crate::signals::{Interpreter, PATIENCE};
 
 /// A drive in motion.
 #[pyclass(module = "chaindrive._core")]

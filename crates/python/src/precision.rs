@@ -8,7 +8,8 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::drive::Drive;
 use crate::errors::OrRaise;
-use crate::run::{stepping, watched};
+use crate::run::stepping;
+use crate::signals::watched;
 
 /// Method, step, tolerance and onset depth of a variant.
 type Wanted = (String, Option<f64>, Option<f64>, Option<f64>);

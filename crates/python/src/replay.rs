@@ -7,7 +7,7 @@ use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::errors::IntoException;
-use crate::run::watched;
+use crate::signals::watched;
 
 /// A channel as Python has it: name, unit, name in words, labels (none for a scalar), values.
 type Channel<'py> = (

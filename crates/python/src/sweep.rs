@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::errors::{OrRaise, parameter};
-use crate::run::{PATIENCE, look};
+use crate::signals::{PATIENCE, look};
 pub(crate) use stored::{SweepStore, SweepWorker};
 
 /// Variants of a scene.

@@ -1,6 +1,7 @@
 //! The rules of `docs/architecture.md` that a machine can check.
 
 mod arrows;
+mod circles;
 mod layers;
 mod libraries;
 

@@ -2,7 +2,7 @@
 
 use chaindrive_geometry::{ArcSpline, GeometryError, Vector};
 
-use crate::chain::{End, Ends};
+use crate::chains::chain::{End, Ends};
 use crate::drive::{GuideSupport, Layout, Rotation, Support};
 use crate::{AssemblyError, Drive, Motion};
 

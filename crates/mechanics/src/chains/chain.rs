@@ -2,7 +2,8 @@
 
 use chaindrive_contact::Friction;
 
-use crate::{Articulation, ChainModel, DriveError, Strength};
+use super::model::ChainModel;
+use crate::{Articulation, DriveError, Strength};
 
 /// How the two ends of the chain are joined.
 #[derive(Clone, Debug, PartialEq)]

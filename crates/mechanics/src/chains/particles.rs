@@ -27,9 +27,9 @@ use super::{Pose, Rates, Record, Surroundings};
 use crate::contact::PlatePlaces;
 use crate::contact::Rollers;
 use crate::system::HeldEnd;
-pub(super) use articulation::Turning;
 use drag::Drag;
 pub(super) use springs::Links;
+pub(super) use springs::Turning;
 
 /// Rollers as point masses, links as spring-dampers.
 #[derive(Clone, Debug)]

@@ -1,12 +1,10 @@
 //! Checks of shafts, couplings and gears.
 
 use super::{conflict, reference};
-use crate::drive::{
-    Adjust, Coupling, GearPair, Layout, Parts, Rotation, Shaft, StartSpeed, Support,
-};
+use crate::drive::{Adjust, GearPair, Layout, Parts, Rotation, Shaft, StartSpeed, Support};
 use crate::groups::Sets;
 use crate::trains::trains;
-use crate::{DriveError, Torque};
+use crate::{Coupling, DriveError, Torque};
 
 /// Every reason why the shafts of `parts` cannot turn.
 pub(super) fn problems(parts: &Parts) -> Vec<DriveError> {

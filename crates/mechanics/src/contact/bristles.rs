@@ -9,7 +9,7 @@
 use chaindrive_contact::friction::Lugre;
 use pulp::{Simd, WithSimd};
 
-use super::friction::Rubbing;
+use super::rubbing::Rubbing;
 use crate::lanes::{Lane, Wide};
 
 /// The law with its constants worked out.

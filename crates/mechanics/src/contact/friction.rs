@@ -4,6 +4,7 @@ use chaindrive_contact::{Friction, Rub};
 use pulp::Simd;
 
 use super::bristles::Bristles;
+use super::rubbing::Rubbing;
 use crate::lanes::{LANES, Lane, Wide};
 
 /// A slip \[m/s\] that no force is divided by less than.
@@ -36,20 +37,6 @@ pub(crate) enum LaneFriction {
     Bristles(Bristles),
     /// Any other law, one lane after the other.
     General(Friction),
-}
-
-/// Force of friction, and its derivatives.
-pub(crate) struct Rubbing<S: Simd> {
-    /// Force along the slip \[N\].
-    pub(crate) force: Lane<S>,
-    /// Its slope −∂R/∂slip, not negative \[N s/m\].
-    pub(crate) drag: Lane<S>,
-    /// Resistance that a step of one solution reckons with where friction is about to stop the slip \[N s/m\]: |R/slip|, or the slope
-    /// where that is steeper. With it a step cannot carry the slip beyond zero, where the slope of a saturated friction would let it chatter. Of a
-    /// spring that sticks it is a share, [`HELD`], and [`SLIDING`] of one that slides.
-    pub(crate) secant: Lane<S>,
-    /// The slope that limits explicit steps \[N s/m\].
-    pub(crate) steepest: Lane<S>,
 }
 
 /// Share of its stiffness that a step of one solution carries while a spring holds: h²/4 k as of every other contact, where the slope
@@ -193,28 +180,6 @@ impl LaneFriction {
     #[inline(always)]
     pub(crate) fn acts(&self) -> bool {
         !matches!(self, Self::None)
-    }
-}
-
-impl<S: Simd> Rubbing<S> {
-    #[inline(always)]
-    fn none(w: Wide<S>) -> Self {
-        Self::all(w.splat(0.0))
-    }
-
-    #[inline(always)]
-    fn unknown(w: Wide<S>) -> Self {
-        Self::all(w.splat(f64::NAN))
-    }
-
-    #[inline(always)]
-    fn all(value: Lane<S>) -> Self {
-        Self {
-            force: value,
-            drag: value,
-            secant: value,
-            steepest: value,
-        }
     }
 }
 

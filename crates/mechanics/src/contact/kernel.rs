@@ -4,9 +4,9 @@ use pulp::{Simd, WithSimd};
 
 use super::ahead::Ahead;
 use super::look::{FacedSurface, Place, View};
+use super::memory::FAR;
 use super::rest::{CLOSE, Clear};
 use super::slots::Slots;
-use super::window::FAR;
 use super::wrench::{Sums, Wrench};
 use super::{AWAKE, Contacts, Frame, Rollers, Shape, SurfaceLaw, Touch};
 use crate::lanes::{LANES, Lane, Mask, Wide};

@@ -13,14 +13,16 @@ use chaindrive_contact::dissipation::{Action, RATIO_LIMIT};
 use chaindrive_contact::{Approach, Law, Prepared};
 use pulp::Simd;
 
+use super::LEAST_DEPTH;
 use super::ahead::Ahead;
-use super::friction::{LaneFriction, Rubbing};
+use super::friction::LaneFriction;
 use super::logarithm::Logarithm;
 use super::memory::MemoryLanes;
+use super::rubbing::Rubbing;
 use super::stacked::Stacked;
 use super::wrench::LaneTally;
-use crate::drive::{Flank, Surface};
 use crate::lanes::{FixedPower, LANES, Lane, Mask, Wide, rarely};
+use crate::surface::{Flank, Surface};
 
 /// The laws of one pair of surfaces, taken apart once into what lanes need.
 #[derive(Clone, Debug)]
@@ -79,9 +81,6 @@ pub(crate) struct Pressed<S: Simd> {
     /// Normal force \[N\], zero where open.
     pub(crate) force: Lane<S>,
 }
-
-/// A depth \[m\] that no power is taken below; the force there is nothing beside rounding.
-pub(super) const LEAST_DEPTH: f64 = 1e-30;
 
 impl SurfaceLaw {
     pub(crate) fn new(surface: &Surface, flank: Option<Flank>) -> Self {

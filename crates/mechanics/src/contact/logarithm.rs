@@ -13,7 +13,7 @@
 use chaindrive_contact::{Approach, Law, Prepared};
 use pulp::Simd;
 
-use super::law::LEAST_DEPTH;
+use super::LEAST_DEPTH;
 use crate::lanes::{Lane, Polynomial, Wide};
 
 /// The law.

@@ -8,9 +8,11 @@ use chaindrive_integrate::Array;
 use pulp::Simd;
 use serde::{Deserialize, Serialize};
 
-use super::window::FAR;
 use crate::MemoryError;
 use crate::lanes::{LANES, Lane, Lanes, LanesMut, Mask, Wide, padded};
+
+/// Gap \[m\] of what cannot touch.
+pub(crate) const FAR: f64 = 1.0;
 
 /// Quantities remembered of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

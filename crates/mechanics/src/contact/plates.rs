@@ -11,13 +11,14 @@ use chaindrive_geometry::{Point, Vector};
 use pulp::{Simd, WithSimd};
 
 use super::ahead::Ahead;
+use super::memory::FAR;
 use super::rest::Clear;
-use super::window::{FAR, Places};
+use super::window::Places;
 use super::wrench::Sums;
 use super::{AWAKE, Frame, MemoryLanes, SurfaceLaw, Touch, Wrench};
-use crate::drive::Surface;
 use crate::lanes::{LANES, Lane, Wide, padded};
 use crate::profile::{Probe, RailFace};
+use crate::surface::Surface;
 
 /// Where the pins of the link plates are, whatever the chain is made of.
 pub(crate) trait PlatePlaces {

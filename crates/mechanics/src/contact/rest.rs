@@ -75,8 +75,8 @@ mod tests {
 
     use super::*;
     use crate::contact::{Contacts, Frame, Places, Rollers, Shape, Teeth, Touch, Wrench};
-    use crate::drive::Surface;
     use crate::profile::{GapFace, RailFace};
+    use crate::surface::Surface;
 
     struct Look<'a> {
         contacts: &'a Contacts,

@@ -2,8 +2,8 @@
 
 use pulp::Simd;
 
+use super::memory::FAR;
 use super::memory::MemoryLanes;
-use super::window::FAR;
 use super::{Contacts, Touch};
 use crate::lanes::{Lane, Lanes, LanesMut, Wide};
 

@@ -13,7 +13,7 @@ use std::f64::consts::LOG2_E;
 
 use pulp::Simd;
 
-use super::law::LEAST_DEPTH;
+use super::LEAST_DEPTH;
 use crate::lanes::{FixedPower, Lane, Polynomial, Wide};
 
 /// K δⁿ⁻¹/k_s that steps are counted for: beyond the last one the surfaces are as good as rigid, before the first what lies behind.

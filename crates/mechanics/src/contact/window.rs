@@ -6,6 +6,7 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Array;
 use serde::{Deserialize, Serialize};
 
+use super::memory::FAR;
 use super::{Contacts, Frame, Kept, Shape, Teeth, Touch};
 use crate::lanes::LANES;
 
@@ -38,9 +39,6 @@ pub(crate) struct Places<'a> {
 
 /// Share of the roller radius below which a gap may close before the windows are renewed.
 const LIKELY: f64 = 0.1;
-
-/// Gap \[m\] of what cannot touch.
-pub(crate) const FAR: f64 = 1.0;
 
 impl Contacts {
     /// Looks for the rollers within `margin` \[m\] of touching, and carries the memory over.
@@ -236,8 +234,8 @@ mod tests {
     use chaindrive_geometry::{Piece, Segment};
 
     use super::*;
-    use crate::drive::Surface;
     use crate::profile::RailFace;
+    use crate::surface::Surface;
 
     /// Runs hold every roller once, in lanes of eight, and those that are likely to touch in as few lanes as can be.
     #[test]

@@ -3,7 +3,7 @@
 use chaindrive_geometry::{Point, Vector};
 
 use super::{Figure, Instant};
-use crate::chain::Chain;
+use crate::chains::chain::Chain;
 use crate::drive::{Layout, Parts, PlacedChain, Stop, Touches};
 
 /// A chain of a figure.

@@ -7,7 +7,7 @@ use super::bodies::Anchor;
 use crate::chains::{Loads, Pose, Way};
 use crate::contact::{Arrivals, Impacts};
 use crate::contact::{Contacts, Frame, Places, PlateContact};
-use crate::drive::Surface;
+use crate::surface::Surface;
 
 /// Contacts with sprockets, then with guides.
 #[derive(Clone, Debug, Default)]

@@ -17,7 +17,7 @@ use pyo3::types::PyDict;
 use super::Sweep;
 use super::objects::InPython;
 use crate::errors::OrRaise;
-use crate::run::{PATIENCE, look};
+use crate::signals::{PATIENCE, look};
 
 /// The store of a sweep, claimed by this process until it is closed.
 #[pyclass(frozen, module = "chaindrive._core")]

@@ -17,11 +17,20 @@ const CRATES: [Storeys; 4] = [
         layers: &[
             &["applied", "energy", "error", "lanes"],
             &["order"],
-            &["articulation", "motion", "profile", "strength", "tensioner"],
-            &["chain", "torque"],
+            &[
+                "articulation",
+                "coupling",
+                "motion",
+                "profile",
+                "strength",
+                "surface",
+                "tensioner",
+            ],
+            &["contact", "torque"],
+            &["chains"],
             &["drive"],
-            &["contact", "groups"],
-            &["chains", "trains"],
+            &["groups"],
+            &["trains"],
             &["system"],
             &["events", "observe", "standing", "struck"],
             &["check", "fights"],
@@ -29,11 +38,6 @@ const CRATES: [Storeys; 4] = [
             &["forcing", "inside", "modes", "nudge", "pose"],
         ],
         exceptions: &[
-            (
-                "chain",
-                "chains",
-                "a chain is described with the model it is made of, and the models are listed where the members are",
-            ),
             (
                 "chains",
                 "system",
@@ -125,17 +129,13 @@ const CRATES: [Storeys; 4] = [
         folder: "python",
         layers: &[
             &["errors"],
-            &["drawing", "kinematics", "law"],
+            &["drawing", "kinematics", "law", "signals"],
             &["friction", "profile"],
             &["drive"],
             &["design", "run"],
             &["live", "precision", "replay", "sweep"],
         ],
-        exceptions: &[(
-            "drive",
-            "run",
-            "assembling a drive is waited for as patiently as a run: Ctrl-C is heard meanwhile",
-        )],
+        exceptions: &[],
     },
 ];
 

@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 
 use super::element::{Element, Partner};
 use crate::contact::{Begun, FAR, LaneTally, MemoryLanes, SurfaceLaw};
-use crate::drive::Surface;
 use crate::lanes::{Lane, Mask, Wide};
+use crate::surface::Surface;
 
 /// A bore and what turns in it.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@
 use chaindrive_geometry::Vector;
 
 use crate::DriveError;
-use crate::drive::Surface;
+use crate::surface::Surface;
 
 /// Rigid inner and outer links in turn.
 ///

@@ -4,7 +4,8 @@ use chaindrive_integrate::Moment;
 use pulp::{Simd, WithSimd};
 
 use super::Particles;
-use super::articulation::{self, Turning};
+use super::articulation;
+use super::springs::Turning;
 use crate::chains::joints::Resistance;
 use crate::chains::{Loads, Record, Surroundings};
 use crate::contact::{Drawn, OfPins, PlatePins, Pressing, Rollers};

@@ -4,7 +4,6 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Array;
 use pulp::Simd;
 
-use super::articulation::Turning;
 use crate::Chain;
 use crate::contact::Rollers;
 use crate::lanes::{LANES, Wide, padded};
@@ -22,6 +21,33 @@ pub(crate) struct Links {
     pub(crate) stiffness: Array,
     /// Damping \[N s/m\].
     pub(crate) damping: Array,
+}
+
+/// How links turn and pull: work space, filled anew by every evaluation.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Turning {
+    /// Turning of the links \[rad/s\], from entry [`LANES`] on.
+    pub(super) rate: Array,
+    /// Tension of the links \[N\], likewise.
+    pub(super) tension: Array,
+    /// n/ℓ of the links \[1/m\].
+    pub(super) across: [Array; 2],
+}
+
+impl Turning {
+    /// Room for the links to write into.
+    pub(super) fn make_room(&mut self, links: &Links) {
+        let n = links.rest.len();
+        if self.across[0].len() == n {
+            return;
+        }
+        for values in [&mut self.rate, &mut self.tension] {
+            values.resize(n + LANES, 0.0);
+        }
+        for values in &mut self.across {
+            values.resize(n, 0.0);
+        }
+    }
 }
 
 impl Links {

@@ -7,9 +7,9 @@ use pulp::WithSimd;
 
 use super::*;
 use crate::contact::{Places, PlateContact, PlatePlaces, Pressing, Rollers};
-use crate::drive::Surface;
 use crate::lanes::padded;
 use crate::profile::RailFace;
+use crate::surface::Surface;
 
 const PITCH: f64 = 0.01;
 const HALF_HEIGHT: f64 = 0.004;

@@ -11,8 +11,8 @@ use crate::chains::links::Bearing;
 use crate::chains::links::build::way;
 use crate::chains::particles::Particles;
 use crate::contact::ContactMemory;
-use crate::drive::Surface;
 use crate::lanes::padded;
+use crate::surface::Surface;
 
 /// Depth at which contacts that are open now are reckoned with \[m\].
 const SHALLOW: f64 = 1e-7;

@@ -1,0 +1,113 @@
+//! Signals: Python looks at them while the core works, and is told how far a run is.
+
+use std::cell::{Cell, RefCell};
+use std::time::{Duration, Instant};
+
+use chaindrive::{Onlooker, Simulation};
+use pyo3::prelude::*;
+
+use crate::errors::OrRaise;
+
+/// Between two looks at signals.
+pub(crate) const PATIENCE: Duration = Duration::from_millis(50);
+
+/// Python as an onlooker: its signals, and the function that it wants to be told by.
+pub(crate) struct Interpreter<'a> {
+    progress: Option<&'a Py<PyAny>>,
+    /// How far the run is.
+    share: Cell<f64>,
+    /// How far the run-in is, until the run begins.
+    run_in: Cell<Option<f64>>,
+    looked: Cell<Instant>,
+    /// What a signal or the function raised.
+    pub(crate) raised: RefCell<Option<PyErr>>,
+}
+
+impl<'a> Interpreter<'a> {
+    pub(crate) fn new(progress: Option<&'a Py<PyAny>>) -> Self {
+        Self {
+            progress,
+            share: Cell::new(0.0),
+            run_in: Cell::new(None),
+            looked: Cell::new(Instant::now()),
+            raised: RefCell::new(None),
+        }
+    }
+
+    fn look(&self, progress: Option<&Py<PyAny>>) {
+        self.looked.set(Instant::now());
+        let looked = match self.run_in.get() {
+            Some(share) => look_at_run_in(progress, share),
+            None => look(progress, self.share.get()),
+        };
+        if let Err(error) = looked {
+            self.raised.borrow_mut().get_or_insert(error);
+        }
+    }
+}
+
+impl Onlooker for Interpreter<'_> {
+    fn stop(&self) -> bool {
+        if self.looked.get().elapsed() >= PATIENCE {
+            // Before the first step and after the last there is nothing to tell.
+            let under_way = (f64::MIN_POSITIVE..1.0).contains(&self.share.get());
+            let under_way = under_way || self.run_in.get().is_some();
+            self.look(self.progress.filter(|_| under_way));
+        }
+        self.raised.borrow().is_some()
+    }
+
+    fn see_run_in(&self, share: f64) {
+        self.run_in.set(Some(share));
+    }
+
+    fn see(&self, simulation: &Simulation) {
+        self.run_in.set(None);
+        let before = self.share.replace(simulation.progress());
+        if before < 1.0 && self.share.get() >= 1.0 {
+            self.look(self.progress);
+        }
+    }
+}
+
+/// Does something that nobody can interrupt, while Python looks at its signals.
+pub(crate) fn patiently<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> PyResult<T> {
+    let (done, raised) = py.detach(|| watched(|stop| chaindrive::patiently(work, stop)));
+    raised?;
+    done.or_raise()
+}
+
+/// Lets `work` look at Python's signals, and raises what it found there.
+pub(crate) fn watched<T>(work: impl FnOnce(&dyn Fn() -> bool) -> T) -> (T, PyResult<()>) {
+    let interpreter = Interpreter::new(None);
+    let answer = work(&|| interpreter.stop());
+    (answer, interpreter.raised.into_inner().map_or(Ok(()), Err))
+}
+
+/// Lets Python handle signals and tells it how far the run is.
+pub(crate) fn look(progress: Option<&Py<PyAny>>, share: f64) -> PyResult<()> {
+    Python::attach(|py| {
+        py.check_signals()?;
+        progress.map_or(Ok(()), |tell| tell.call1(py, (share,)).map(drop))
+    })
+}
+
+/// The same while a drive is run in: the share goes to the method `run_in` of whoever is told, if it has one, and else that of the run
+/// is told, zero.
+fn look_at_run_in(progress: Option<&Py<PyAny>>, share: f64) -> PyResult<()> {
+    Python::attach(|py| {
+        py.check_signals()?;
+        let Some(tell) = progress.map(|tell| tell.bind(py)) else {
+            return Ok(());
+        };
+        let told = if tell.hasattr("run_in")? {
+            tell.call_method1("run_in", (share,))
+        } else {
+            tell.call1((0.0,))
+        };
+        told.map(drop)
+    })
+}
