@@ -3,7 +3,7 @@
 use chaindrive_integrate::{IntegrationError, Quantity};
 use chaindrive_mechanics::{AssemblyError, Flow, System};
 
-use crate::{Run, Stepping};
+use crate::Stepping;
 
 /// Why a simulation stopped.
 #[derive(Debug, thiserror::Error)]
@@ -124,7 +124,7 @@ pub enum SimulationError {
 
 impl SimulationError {
     /// The error of a start, with the methods as scenes name them.
-    pub(crate) fn starting(error: IntegrationError, run: &Run) -> Self {
+    pub(crate) fn starting(error: IntegrationError, method: Stepping) -> Self {
         match error {
             IntegrationError::Unsupported { .. } => {
                 let explicit =
@@ -132,7 +132,7 @@ impl SimulationError {
                 let explicit = Stepping::ALL.into_iter().filter(explicit);
                 let works: Vec<_> = explicit.map(Stepping::name).collect();
                 Self::Implicit {
-                    method: run.stepping.name(),
+                    method: method.name(),
                     works: works.join(", "),
                 }
             }

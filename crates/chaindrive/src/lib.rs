@@ -19,24 +19,31 @@
 //! ```
 
 pub mod catalogue;
+pub mod channel;
 pub mod describe;
 pub mod design;
 pub mod draw;
 mod error;
+mod event;
+mod execute;
 pub mod figure;
 mod identity;
 pub mod page;
+mod patience;
 mod plain;
 pub mod precision;
 pub mod rating;
 pub mod record;
 mod run;
+mod run_in;
 pub mod scene;
 mod seal;
 mod simulate;
 mod stepping;
+mod summary;
 pub mod sweep;
 pub mod verdict;
+mod zarr;
 
 pub use catalogue::CatalogueChain;
 pub use chaindrive_integrate::{InstructionSet, Method, Statistics};
@@ -45,19 +52,22 @@ pub use chaindrive_mechanics::{
     FigureChain, Flow, Impact, Instant, MissingChannel, Mode, Modes, Observation, Placement,
     PlateShape, Pose, Store,
 };
+pub use channel::{Axis, Channel};
 pub use describe::Description;
 pub use error::SimulationError;
+pub use event::EventTable;
+pub use execute::{Report, RunError, Stop, execute};
 pub use identity::{Build, Origin};
+pub use patience::{assemble, patiently};
 pub use plain::plain;
 pub use precision::{Choice, Estimate, Judgement};
 pub use rating::Rating;
-pub use record::{Axis, Channel, EventTable, ImpactStatistics, Memory, Recording, Summary};
-pub use run::{
-    Checkpoint, End, Given, MOST_CIRCUITS, Onlooker, RanIn, Report, Request, RequestError, Run,
-    RunError, RunIn, Settings, Sink, Stop, assemble, execute, patiently, run_in,
-};
-pub use scene::Scene;
+pub use record::{Checkpoint, End, Memory, Recording, Sink};
+pub use run::{Given, Request, RequestError, Run, Settings};
+pub use run_in::{MOST_CIRCUITS, Onlooker, RanIn, run_in};
+pub use scene::{RunIn, Scene};
 pub use seal::SealError;
 pub use simulate::{Control, Simulation, Snapshot, SnapshotError};
 pub use stepping::Stepping;
+pub use summary::{ImpactStatistics, Summary};
 pub use verdict::{Reason, Rule, Trust, Verdict};

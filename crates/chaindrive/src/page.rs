@@ -16,7 +16,7 @@ use serde::Serialize;
 
 pub use numerics::numerics;
 
-use crate::record::Summary;
+use crate::summary::Summary;
 use crate::{RanIn, Simulation, Verdict};
 
 /// The page of a run.

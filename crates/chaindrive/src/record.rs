@@ -1,37 +1,34 @@
 //! Recordings: labelled columns with units, and the story of how they came about.
 
 mod attributes;
-mod channel;
-mod claim;
-mod error;
-mod event;
+mod checkpoint;
 mod in_store;
 mod memory;
 mod recorded;
-mod summary;
+mod sink;
 mod zarr;
 
-use chaindrive_mechanics::{ChainSize, Energy, Flow, Observation, Place, Store, System};
+use chaindrive_mechanics::{Energy, Observation, System};
 
-use crate::{Run, SimulationError};
+use crate::channel::labels;
+use crate::{Channel, Run, SimulationError};
 
-pub use attributes::{Ending, Provenance, attributes};
-pub use channel::{Axis, Channel};
-pub use claim::{Claim, is_being_written, take_over};
-pub use error::WriteError;
-pub use event::{EventColumn, EventTable};
-pub use in_store::InStore;
-pub use memory::Memory;
-pub use recorded::{LoggedContact, Recorded, RecordedChannel};
-pub use summary::{
+pub use crate::event::{EventColumn, EventTable};
+pub use crate::summary::{
     Bearing, Bodies, ContactStatistics, Course, ForceStatistics, ImpactStatistics, Known, Ledger,
     SpanStatistics, SprocketCourse, Steadiness, Summary,
 };
-pub(crate) use summary::{DRIFT, drift};
-pub use zarr::{
-    Existing, Finished, Object, Objects, ReadError, ResumeError, Stopped, SweepStore, Worker,
-    ZarrWriter, inspect,
+pub use crate::zarr::{
+    Claim, Ending, Existing, Object, Objects, WriteError, is_being_written, take_over,
 };
+pub use attributes::{Provenance, attributes};
+pub use checkpoint::Checkpoint;
+pub(crate) use checkpoint::NotAgain;
+pub use in_store::InStore;
+pub use memory::Memory;
+pub use recorded::{LoggedContact, Recorded, RecordedChannel};
+pub use sink::{End, Sink};
+pub use zarr::{ReadError, ResumeError, Stopped, ZarrWriter, inspect};
 
 /// One channel of a recording.
 #[derive(Clone, Debug)]
@@ -52,42 +49,6 @@ pub struct Recording {
     /// The channels recorded.
     pub columns: Vec<Column>,
     start: Option<Energy>,
-}
-
-impl Axis {
-    /// Whether its labels are numbers, not names.
-    pub fn is_numbered(self) -> bool {
-        matches!(self, Self::Roller | Self::Link | Self::Joint)
-    }
-}
-
-impl Axis {
-    /// Name of the coordinate that tells the chain of every entry.
-    pub fn chain_coordinate(self) -> Option<&'static str> {
-        match self {
-            Self::Roller => Some("roller_chain"),
-            Self::Link => Some("link_chain"),
-            Self::Joint => Some("joint_chain"),
-            Self::Span => Some("span_chain"),
-            _ => None,
-        }
-    }
-}
-
-/// The chain that every entry along an axis belongs to, by name; none where there is one chain only, and along axes that do not
-/// run over chains.
-pub fn chains_along(axis: Axis, system: &System) -> Option<Vec<String>> {
-    let count: fn(&ChainSize) -> usize = match axis {
-        Axis::Roller => |size| size.rollers,
-        Axis::Link => |size| size.links,
-        Axis::Joint => |size| size.joints,
-        Axis::Span => |size| size.spans,
-        _ => return None,
-    };
-    let chains = system.chain_sizes();
-    let several = chains.len() > 1;
-    let repeated = |(name, size): (String, ChainSize)| vec![name; count(&size)];
-    several.then(|| chains.into_iter().flat_map(repeated).collect())
 }
 
 impl Recording {
@@ -157,29 +118,6 @@ impl Recording {
     }
 }
 
-/// Labels along an axis: names, or numbers from 0 for rollers, links and joints; `None` for a scalar.
-pub fn labels(axis: Axis, system: &System) -> Option<Vec<String>> {
-    let numbers = |count: usize| (0..count).map(|i| i.to_string()).collect();
-    match axis {
-        Axis::None => None,
-        Axis::Roller => Some(numbers(system.rollers())),
-        Axis::Link => Some(numbers(system.links())),
-        Axis::Joint => Some(numbers(system.joints())),
-        Axis::Span => Some(system.span_names()),
-        Axis::Sprocket => Some(system.sprocket_names()),
-        Axis::Shaft => Some(system.shaft_names()),
-        Axis::Coupling => Some(system.coupling_names()),
-        Axis::Guide => Some(system.guide_names()),
-        Axis::Tensioner => Some(system.tensioner_names()),
-        Axis::OilColumn => Some(system.oil_column_names()),
-        Axis::Store => Some(Store::ALL.iter().map(|s| s.name().to_owned()).collect()),
-        Axis::Place => Some(Place::ALL.iter().map(|p| p.name().to_owned()).collect()),
-        Axis::Flow => Some(Flow::ALL.iter().map(|f| f.name().to_owned()).collect()),
-    }
-}
-
-/// Memory that this program can still have \[bytes\], limits of its control group included; without bounds where the
-/// system does not say.
 /// Size of the recording of a run.
 struct Size {
     samples: f64,
@@ -202,6 +140,8 @@ impl Size {
     }
 }
 
+/// Memory that this program can still have \[bytes\], limits of its control group included; without bounds where the
+/// system does not say.
 fn free_memory() -> f64 {
     let mut system = sysinfo::System::new();
     system.refresh_memory();

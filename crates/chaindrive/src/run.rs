@@ -1,31 +1,19 @@
 //! Settings of a run: how long, how often to sample, by which method.
 
-mod checkpoint;
-pub(crate) mod execute;
-mod patience;
+mod error;
 mod request;
-mod run_in;
-mod set_off;
 mod settings;
-mod steady;
 
 use chaindrive_integrate::Method;
 use chaindrive_mechanics::{EventKinds, System};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 
-use crate::scene::RunDefaults;
+use crate::scene::{EVERY, RunDefaults, RunIn, Scene, SceneError, TOLERANCE, UNTIL};
 use crate::{SimulationError, Stepping};
 
-pub use checkpoint::Checkpoint;
-pub(crate) use execute::resume;
-pub use execute::{End, Onlooker, Report, RunError, Sink, Stop, execute};
-pub(crate) use patience::LOOK;
-pub use patience::patiently;
-pub use request::{Request, RequestError};
-pub(crate) use run_in::longest;
-pub use run_in::{MOST_CIRCUITS, RanIn, RunIn, run_in};
-pub use set_off::assemble;
+pub use error::RequestError;
+pub use request::Request;
 pub use settings::{Given, Settings};
 
 /// Settings of one run.
@@ -54,20 +42,17 @@ pub struct Run {
 impl Default for Run {
     fn default() -> Self {
         Self {
-            until: 1.0,
+            until: UNTIL,
             run_in: RunIn::None,
-            every: 1e-3,
+            every: EVERY,
             stepping: Stepping::Auto,
             step: None,
-            tolerance: 1e-8,
+            tolerance: TOLERANCE,
             onset_depth: None,
             events: EventKinds::default(),
         }
     }
 }
-
-/// Keys of `[run]` that say how to step, each in place of an accuracy that would choose.
-pub(crate) const STEPPING_KEYS: [&str; 4] = ["method", "step", "tolerance", "onset_depth"];
 
 /// Keys with a number, all of them positive.
 const NUMBERS: [&str; 6] = [
@@ -155,7 +140,7 @@ impl Run {
     }
 
     /// The settings as a scene writes them in `[run]`, once the method is chosen; what the run leaves open is absent.
-    pub(crate) fn table(&self, method: Method) -> Map<String, Json> {
+    fn table(&self, method: Method) -> Map<String, Json> {
         let mut table = Map::new();
         table.insert("until".into(), self.until.into());
         if self.run_in != RunIn::Usual {
@@ -176,5 +161,34 @@ impl Run {
     /// The method for a system, with a default step where none is given.
     pub fn method(&self, system: &System) -> Method {
         self.stepping.method(system, self.step, self.tolerance)
+    }
+}
+
+impl Scene {
+    /// As [`resolved`](Self::resolved), with the settings of a run as they were in the end: what reproduces a result.
+    ///
+    /// # Errors
+    /// As [`Scene::drive`].
+    pub fn resolved_for(&self, run: &Run, method: Method) -> Result<Self, SceneError> {
+        self.resolved_with(run.table(method))
+    }
+}
+
+impl RunIn {
+    /// Names what is out of range.
+    fn check(&self) -> Result<(), SimulationError> {
+        let (value, allowed) = match self {
+            Self::None | Self::Auto | Self::Usual => return Ok(()),
+            Self::Time(time) => (*time, "a time that is not negative"),
+            Self::Turns { turns, .. } => (*turns, "a positive number of turns"),
+        };
+        if value > 0.0 && value.is_finite() {
+            return Ok(());
+        }
+        Err(SimulationError::Setting {
+            name: "run_in",
+            value,
+            allowed,
+        })
     }
 }

@@ -10,11 +10,10 @@ use std::time::Duration;
 
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Statistics, Stepper};
 use chaindrive_mechanics::{
-    Assembled, ContactEvent, Drive, Energy, EventKinds, Impact, Observation, Record, System,
+    Assembled, ContactEvent, Energy, EventKinds, Impact, Observation, Record, System,
 };
 
-use crate::SimulationError;
-use crate::run::{Run, run_in};
+use crate::{Run, SimulationError};
 
 /// A run in progress: ask it for one sample after the other.
 ///
@@ -109,17 +108,6 @@ fn slow_enough(system: &System, state: &State) -> Result<(), SimulationError> {
 const STEPS_PER_LOOK: usize = 64;
 
 impl Simulation {
-    /// Assembles the drive, runs it in if the run says so, and starts the clock at t = 0.
-    ///
-    /// # Errors
-    /// [`SimulationError`] when the drive does not assemble, a setting is out of range, the method is
-    /// not for this chain, or the step asked for is unstable.
-    pub fn start(drive: &Drive, run: &Run) -> Result<Self, SimulationError> {
-        run.check()?;
-        let (start, _) = run_in(drive.assemble()?, run, &|| false)?;
-        Self::from_assembled(start, run)
-    }
-
     /// Starts from a drive already assembled, and run in if it is to be.
     ///
     /// # Errors
@@ -137,7 +125,7 @@ impl Simulation {
         system.keep_forces_from(assembled.time);
         let stepper = method
             .start(&mut system, &mut state)
-            .map_err(|error| SimulationError::starting(error, run))?;
+            .map_err(|error| SimulationError::starting(error, run.stepping))?;
         let dofs = state.q.len();
         let record = system.new_record();
         Ok(Self {

@@ -4,12 +4,15 @@
 //! those of a run on its own, bit for bit, whatever the number of threads.
 
 mod account;
+mod columns;
 mod design;
 mod dimension;
 mod report;
 mod sample;
 mod stack;
+mod store;
 mod tally;
+mod texts;
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -18,13 +21,15 @@ use std::thread::available_parallelism;
 use std::time::Duration;
 
 pub use account::{Account, Entry, Quantity, Statistic};
-pub use design::{Arrangement, Recipe};
-pub use dimension::{Coordinate, Dimension, Setting};
+pub use design::Recipe;
+pub use dimension::{Arrangement, Coordinate, Dimension, Setting};
 pub use report::Report;
 pub use sample::Sample;
-pub(crate) use stack::{OPEN, TEXTS, fill, texts};
 pub use stack::{Stacked, StackedQuantity, StackedText};
+pub(crate) use stack::{fill, texts};
+pub use store::{Finished, SweepStore, Worker};
 pub use tally::Tally;
+pub(crate) use texts::{OPEN, TEXTS};
 
 use crate::scene::SceneError;
 use crate::{Scene, SimulationError};

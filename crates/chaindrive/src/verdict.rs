@@ -15,7 +15,7 @@ mod rules;
 use std::fmt;
 
 use crate::precision::{Attribute, Choice, Estimate, Judgement, LEAST_LOSSES, Promise};
-use crate::record::{Ledger, Steadiness, Summary};
+use crate::summary::{Ledger, Steadiness, Summary};
 use crate::{Channel, RanIn, Simulation};
 
 pub use reason::Reason;

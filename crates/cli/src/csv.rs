@@ -9,7 +9,8 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use chaindrive::record::{Claim, Ending, EventColumn, Existing, WriteError, labels};
+use chaindrive::channel::labels;
+use chaindrive::record::{Claim, Ending, EventColumn, Existing, WriteError};
 use chaindrive::{Channel, ContactEvent, EventKinds, EventTable, Recording, Simulation};
 
 use crate::failure::Failure;

@@ -114,7 +114,7 @@ impl Simulation {
         let axis = channels
             .first()
             .map_or(Axis::None, |channel| channel.axis());
-        Ok(chaindrive::record::labels(axis, self.0.system()))
+        Ok(chaindrive::channel::labels(axis, self.0.system()))
     }
 
     /// The attribute that tells the unit of a channel, and the unit.
@@ -129,7 +129,7 @@ impl Simulation {
         let axis = channels
             .first()
             .map_or(Axis::None, |channel| channel.axis());
-        let chains = chaindrive::record::chains_along(axis, self.0.system());
+        let chains = chaindrive::channel::chains_along(axis, self.0.system());
         Ok(axis.chain_coordinate().zip(chains))
     }
 

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::path::PathBuf;
 
+use chaindrive::channel;
 use chaindrive::record::{self, EventColumn, EventTable, Existing, InStore, Stopped};
 use chaindrive::{
     Axis, Channel, EventKinds, Given, Memory, Report, Request, Settings, Simulation, Stepping,
@@ -204,7 +205,8 @@ fn labels<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let answer = PyDict::new(py);
     for axis in channels.iter().map(|channel| channel.axis()) {
-        if let (Some(name), Some(labels)) = (axis.name(), record::labels(axis, simulation.system()))
+        if let (Some(name), Some(labels)) =
+            (axis.name(), channel::labels(axis, simulation.system()))
         {
             if axis.is_numbered() {
                 answer.set_item(name, labels.len())?;
@@ -224,7 +226,7 @@ fn chains<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let answer = PyDict::new(py);
     for axis in channels.iter().map(|channel| channel.axis()) {
-        let chains = record::chains_along(axis, simulation.system());
+        let chains = channel::chains_along(axis, simulation.system());
         if let (Some(name), Some(along), Some(chains)) =
             (axis.chain_coordinate(), axis.name(), chains)
         {

@@ -6,7 +6,7 @@ use chaindrive_integrate::SecondOrderSystem;
 use chaindrive_mechanics::Assembled;
 use serde::Serialize;
 
-use crate::run::longest;
+use crate::run_in::longest;
 use crate::{Run, Simulation, SimulationError};
 
 /// Method, steps and run time.

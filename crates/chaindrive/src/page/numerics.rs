@@ -4,9 +4,10 @@ use std::fmt::{self, Write as _};
 
 use chaindrive_mechanics::Struck;
 
+use crate::event::EventTable;
 use crate::figure::{Measure, duration, figure, percent};
 use crate::precision::{Choice, Judgement};
-use crate::record::{EventTable, Summary};
+use crate::summary::Summary;
 use crate::{Simulation, Verdict};
 
 /// Notes of the verdict, contacts, energy, steps, choice of the method and errors of a run, as text.

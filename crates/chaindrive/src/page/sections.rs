@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use crate::figure::{Measure, Scale, duration, figure, percent};
 use crate::rating::{Load, Rating};
-use crate::record::{Bearing, SprocketCourse, Summary};
+use crate::summary::{Bearing, SprocketCourse, Summary};
 use crate::{RanIn, Simulation, Verdict};
 
 /// Share of the greatest power of its chain below which a sprocket idles. *Assumed*: bearings and teeth of an idler take less.
@@ -72,7 +72,7 @@ impl Told<'_> {
         section.sentences.extend(self.ran_in.map(RanIn::to_string));
         let known = self.summary.steadiness();
         if known.iter().flatten().next().is_some() {
-            let is_known = |it: &&crate::record::Steadiness| it.mean.half_width.is_finite();
+            let is_known = |it: &&crate::summary::Steadiness| it.mean.half_width.is_finite();
             let sentence = if !known.iter().flatten().all(|it| it.is_steady) {
                 "The tensions are not steady throughout the record."
             } else if known.iter().flatten().all(|it| is_known(&it)) {

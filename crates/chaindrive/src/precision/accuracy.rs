@@ -1,37 +1,12 @@
 //! The accuracy that method and step are chosen to keep, and how well they keep it.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::ACCURACY;
+use crate::scene::Quantity;
 
 /// Share of the energy moved below which losses are not told from none: 0.01 points of efficiency, finer than any is measured.
 /// *Assumed*.
 pub(crate) const LEAST_LOSSES: f64 = 1e-4;
-
-/// The quantity that an accuracy is one of.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Quantity {
-    /// The tension of the tight span, or the statistics of all where the motion is chaotic.
-    #[default]
-    Tension,
-    /// The energy lost, and with it the efficiency.
-    Losses,
-    /// The impacts of rollers that come to a sprocket: median and 99th percentile of their forces, median of their impulses.
-    Impacts,
-}
-
-impl Quantity {
-    /// Relative error \[–\] that a run may have unless told otherwise. *Assumed*: tensions are read off to a hundredth; a twentieth of the
-    /// losses is 0.1 points of an efficiency of 98 %, and impacts scatter by more.
-    pub fn usual_accuracy(self) -> f64 {
-        match self {
-            Self::Tension => ACCURACY,
-            Self::Losses | Self::Impacts => 5.0 * ACCURACY,
-        }
-    }
-}
 
 /// An accuracy that is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,5 +27,34 @@ impl From<f64> for Accuracy {
 impl From<(f64, Quantity)> for Accuracy {
     fn from((value, of): (f64, Quantity)) -> Self {
         Self { value, of }
+    }
+}
+
+/// Quantity that is kept within the accuracy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Promise {
+    /// The tension of the tight span, or of the tightest link where [`Choice::gap`](super::Choice::gap) leaves a span without a
+    /// tension, at every moment of the window, root mean square.
+    Waveform,
+    /// Mean and root mean square of the tension of every span or link, or no more than chance makes of them: the
+    /// run goes on beyond its chaos horizon.
+    Statistics,
+    /// The energy lost, as it is without what chance makes of it, and what is unaccounted for beside it.
+    Losses,
+    /// Median and 99th percentile of the forces of impacts and median of their impulses, on the sprocket that differs most, or no more than
+    /// chance makes of them.
+    Impacts,
+    /// Nothing: the chain carries no tension that could be compared, loses nothing, or strikes nothing.
+    Nothing,
+}
+
+impl Promise {
+    /// Quantity of the accuracy behind the promise.
+    pub(crate) fn quantity(self) -> Quantity {
+        match self {
+            Self::Waveform | Self::Statistics | Self::Nothing => Quantity::Tension,
+            Self::Losses => Quantity::Losses,
+            Self::Impacts => Quantity::Impacts,
+        }
     }
 }

@@ -6,50 +6,19 @@ use chaindrive_mechanics::Assembled;
 use serde::{Deserialize, Serialize};
 
 use super::Watch;
-use super::accuracy::{Accuracy, Quantity};
+use super::accuracy::{Accuracy, Promise};
 use super::attribute::Attribute;
 use super::candidates::{Candidate, Candidates, Entry, work};
 use super::compare::{Account, distances, rms};
-use super::estimate::{pinned, sharper};
 use super::horizon::Horizon;
 use super::impacts::ImpactErrors;
+use super::sharper::{pinned, sharper};
 use super::short_runs::{Beginning, ShortRuns};
 use super::trace::{Gap, Strands, Trace};
 use super::window::Window;
 use crate::figure::{Measure, duration, percent};
+use crate::scene::Quantity;
 use crate::{Run, SimulationError, Stepping};
-
-/// Accuracy that a run has unless told otherwise \[–\].
-pub const ACCURACY: f64 = 0.01;
-
-/// Quantity that is kept within the accuracy.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Promise {
-    /// The tension of the tight span, or of the tightest link where [`Choice::gap`] leaves a span without a
-    /// tension, at every moment of the window, root mean square.
-    Waveform,
-    /// Mean and root mean square of the tension of every span or link, or no more than chance makes of them: the
-    /// run goes on beyond its chaos horizon.
-    Statistics,
-    /// The energy lost, as it is without what chance makes of it, and what is unaccounted for beside it.
-    Losses,
-    /// Median and 99th percentile of the forces of impacts and median of their impulses, on the sprocket that differs most, or no more than
-    /// chance makes of them.
-    Impacts,
-    /// Nothing: the chain carries no tension that could be compared, loses nothing, or strikes nothing.
-    Nothing,
-}
-
-impl Promise {
-    /// Quantity of the accuracy behind the promise.
-    pub(crate) fn quantity(self) -> Quantity {
-        match self {
-            Self::Waveform | Self::Statistics | Self::Nothing => Quantity::Tension,
-            Self::Losses => Quantity::Losses,
-            Self::Impacts => Quantity::Impacts,
-        }
-    }
-}
 
 /// A candidate that was tried.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -3,11 +3,12 @@
 use chaindrive_mechanics::Assembled;
 
 use super::Watch;
-use super::choice::Promise;
+use super::accuracy::Promise;
 use super::compare::{Account, Comparison, Distance, distances, distances_over, rms};
 use super::convergence::factor;
 use super::horizon::{Divergence, Horizon, LIMIT};
 use super::impacts::ImpactErrors;
+use super::sharper::{pinned, sharper};
 use super::short_runs::{Beginning, ShortRuns};
 use super::trace::{Gap, Strands};
 use super::window::Window;
@@ -212,14 +213,6 @@ impl Estimate {
     }
 }
 
-/// The run with the step that it would choose for itself, so that other samples do not change it.
-pub(super) fn pinned(start: &Assembled, run: &Run) -> Run {
-    Run {
-        step: Some(run.method(&start.system).step()),
-        ..run.clone()
-    }
-}
-
 /// Ratio of the differences of three runs, each sharper than the one before, where the method shows its order.
 ///
 /// ```text
@@ -231,31 +224,6 @@ fn expected_ratio(start: &Assembled, run: &Run) -> f64 {
         10.0
     } else {
         f64::from(2_u32.pow(method.order()))
-    }
-}
-
-/// The same run, sharper, and in what.
-pub(super) fn sharper(start: &Assembled, run: &Run) -> (Run, &'static str) {
-    let onset_depth = run.onset_depth.map(|depth| 0.1 * depth);
-    if run.method(&start.system).is_adaptive() {
-        let better = Run {
-            tolerance: 0.1 * run.tolerance,
-            onset_depth,
-            ..run.clone()
-        };
-        return match onset_depth {
-            Some(_) => (better, "a tenth of the tolerance and of the onset depth"),
-            None => (better, "a tenth of the tolerance"),
-        };
-    }
-    let better = Run {
-        step: run.step.map(|step| 0.5 * step),
-        onset_depth,
-        ..run.clone()
-    };
-    match onset_depth {
-        Some(_) => (better, "half the step and a tenth of the onset depth"),
-        None => (better, "half the step"),
     }
 }
 

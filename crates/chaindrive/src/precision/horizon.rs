@@ -4,14 +4,13 @@ use chaindrive_mechanics::Assembled;
 
 use super::Watch;
 use super::compare::{Distance, distances};
-use super::estimate::pinned;
 use super::growth::{Growth, growth};
+use super::sharper::pinned;
+use super::short_runs::APART;
 use super::trace::{Strands, Trace};
 use super::window::Window;
 use crate::{Run, SimulationError};
 
-/// How far the twin's rollers or links start from those of the run \[m\], see `Assembled::nudged`.
-pub(super) const APART: f64 = 1e-12;
 /// Difference of tensions, over the mean tension, at which waveforms no longer agree \[–\].
 pub(super) const LIMIT: f64 = 0.01;
 

@@ -3,10 +3,12 @@
 use chaindrive_mechanics::Assembled;
 
 use super::Watch;
-use super::horizon::APART;
 use super::trace::Trace;
 use super::window::Window;
 use crate::{Run, Simulation, SimulationError};
+
+/// How far the twin's rollers or links start from those of the run \[m\], see `Assembled::nudged`.
+pub(super) const APART: f64 = 1e-12;
 
 /// Short runs from one start, and what they have shown so far.
 ///

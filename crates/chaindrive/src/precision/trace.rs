@@ -10,7 +10,7 @@ use super::Watch;
 use super::accuracy::LEAST_LOSSES;
 use super::window::Window;
 use crate::figure::duration;
-use crate::run::LOOK;
+use crate::patience::LOOK;
 use crate::{Run, Simulation, SimulationError};
 
 /// The samples of a short run.

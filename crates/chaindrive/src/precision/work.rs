@@ -7,8 +7,9 @@ use chaindrive_mechanics::Assembled;
 
 use super::Watch;
 use super::errors::Errors;
-use super::estimate::pinned;
-use super::horizon::{APART, Horizon};
+use super::horizon::Horizon;
+use super::sharper::pinned;
+use super::short_runs::APART;
 use super::trace::{Gap, Strands, Trace};
 use super::variant::{Variant, references, usual};
 use super::window::Window;

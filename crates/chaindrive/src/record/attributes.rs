@@ -9,16 +9,13 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Map, Value};
 
-use super::Summary;
 use crate::RanIn;
+use crate::Summary;
 use crate::page::{Page, numerics};
 use crate::precision::{Attribute, Choice, Judgement};
 use crate::rating::Rating;
-use crate::sweep::Outcome;
-use crate::{Build, Origin, Reason, Run, Scene, Simulation, Stepping, Verdict};
-
-/// Tells a result of this program from any other group.
-pub(super) const FORMAT: &str = "chaindrive";
+use crate::zarr::{Ending, Story};
+use crate::{Reason, Run, Scene, Simulation, Stepping, Verdict};
 
 /// Where a run came from.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,43 +65,6 @@ impl Provenance {
     /// Wall time since somebody asked for it, times at which it was stopped not counted.
     pub(crate) fn wall_time(&self) -> Duration {
         self.earlier + self.began.elapsed()
-    }
-}
-
-/// How a run ended.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum Ending {
-    /// It has not.
-    #[default]
-    None,
-    /// The end was reached.
-    Complete,
-    /// Somebody stopped it.
-    Interrupted,
-    /// The simulation could not go on; with the reason.
-    Failed(String),
-}
-
-impl Ending {
-    /// How a sweep ended that goes on no more; variants that failed count as a failure of the sweep.
-    pub fn of(outcomes: &[Outcome]) -> Self {
-        let failed = outcomes.iter();
-        let failed = failed.filter(|outcome| matches!(outcome, Outcome::Failed(_)));
-        match failed.count() {
-            _ if outcomes.contains(&Outcome::Open) => Self::Interrupted,
-            0 => Self::Complete,
-            failed => Self::Failed(format!("{failed} of {} variants failed", outcomes.len())),
-        }
-    }
-
-    /// Its word in results.
-    pub fn status(&self) -> &'static str {
-        match self {
-            Self::None => "running",
-            Self::Complete => "complete",
-            Self::Interrupted => "interrupted",
-            Self::Failed(_) => "failed",
-        }
     }
 }
 
@@ -213,7 +173,6 @@ pub fn attributes(
     story.0
 }
 
-/// Cost of the run.
 /// Ratings of the chains; of several chains each says its own.
 fn rating(story: &mut Story, of: &Rating, is_only: bool) {
     let named = |what: &str| {
@@ -260,6 +219,7 @@ fn rating(story: &mut Story, of: &Rating, is_only: bool) {
     }
 }
 
+/// Cost of the run.
 fn speed(story: &mut Story, simulation: &Simulation, wall_time: Duration) {
     let wall = simulation.stepping_time();
     let steps = simulation.statistics().steps.max(1) as f64;
@@ -303,47 +263,5 @@ fn assembly(story: &mut Story, simulation: &Simulation) {
         story.list("static_stages", statics.iter().map(|s| s.stage));
         story.list("static_iterations", statics.iter().map(|s| s.iterations));
         story.list("static_residuals", statics.iter().map(|s| s.residual));
-    }
-}
-
-/// Attributes in the order of their telling.
-pub(super) struct Story(pub(super) Map<String, Value>);
-
-impl Story {
-    /// Title and format, and how far the result is.
-    pub(super) fn of(title: &str, ending: &Ending) -> Self {
-        let mut story = Self(Map::new());
-        story.text("title", title);
-        story.text("format", FORMAT);
-        let origin = Origin::here();
-        story.text("chaindrive_version", Build::here().version);
-        story.text("chaindrive_build", &origin.build);
-        story.text("instruction_set", &origin.instruction_set);
-        story.text("status", ending.status());
-        story.count("complete", u64::from(*ending == Ending::Complete));
-        if let Ending::Failed(reason) = ending {
-            story.text("failure", reason);
-        }
-        story
-    }
-
-    pub(super) fn text(&mut self, name: &str, text: &str) {
-        self.0.insert(name.into(), text.into());
-    }
-
-    pub(super) fn count(&mut self, name: &str, count: u64) {
-        self.0.insert(name.into(), count.into());
-    }
-
-    /// A number; JSON has none for infinity, such as the smallest of no steps.
-    pub(super) fn number(&mut self, name: &str, number: f64) {
-        if number.is_finite() {
-            self.0.insert(name.into(), number.into());
-        }
-    }
-
-    pub(super) fn list<T: Into<Value>>(&mut self, name: &str, items: impl IntoIterator<Item = T>) {
-        let items = items.into_iter().map(Into::into).collect();
-        self.0.insert(name.into(), Value::Array(items));
     }
 }

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::zarr::Store;
-use super::{Existing, Provenance, Recording, Size, WriteError, ZarrWriter};
-use crate::run::{Checkpoint, End, Sink};
+use super::{Checkpoint, End, Sink};
+use super::{Provenance, Recording, Size, ZarrWriter};
+use crate::zarr::{Existing, Store, WriteError};
 use crate::{Channel, Run, Simulation};
 
 /// Streams samples and contacts into a Zarr store.

@@ -1,7 +1,7 @@
 //! Results in memory.
 
+use super::{End, Sink};
 use super::{EventTable, Provenance, Recording};
-use crate::run::{End, Sink};
 use crate::{Channel, Run, Simulation, SimulationError};
 
 /// Keeps samples and contacts in memory.

@@ -11,7 +11,7 @@
 //! ```
 //!
 //! `zarrs` makes the arrays and their chunks; every file is put in place by renaming it, whole or not at
-//! all, and so is the store: it is begun beside its place (`record/claim.rs`). A commit writes in this order:
+//! all, and so is the store: it is begun beside its place (`zarr/claim.rs`). A commit writes in this order:
 //!
 //! 1. the chunks in work, filled up with NaN; the samples already there do not change,
 //! 2. the metadata of each array, for readers that do not know consolidated metadata,
@@ -26,20 +26,10 @@
 //! A reader has to open the file of a chunk once, as `zarr-python` does. One that asks for its size
 //! first, as object stores do, may then find another file; once the run has ended this does not matter.
 
-mod bucket;
 mod content;
-mod error;
 mod events;
-mod files;
-mod folder;
-mod inspect;
-mod names;
 mod reader;
 mod stopped;
-mod store;
-mod target;
-mod track;
-mod variants;
 
 use std::fmt;
 use std::path::Path;
@@ -47,32 +37,17 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Map, Value};
 
-pub use bucket::{Object, Objects};
 pub use reader::{ReadError, inspect};
-pub use variants::{Finished, SweepStore, Worker};
-
-use super::Channel;
-use super::attributes::{Ending, Provenance, attributes};
-use super::error::WriteError;
-use crate::precision::Judgement;
-use crate::{Checkpoint, Simulation};
-use content::Content;
-use names::CHECKPOINT;
 pub use stopped::{ResumeError, Stopped};
-pub(super) use store::Store;
+
+use super::attributes::{Provenance, attributes};
+use crate::precision::Judgement;
+use crate::zarr::{CHECKPOINT, Ending, Existing, Store, WriteError};
+use crate::{Channel, Checkpoint, Simulation};
+use content::Content;
 
 /// Wall time between two commits.
 const COMMIT_EVERY: Duration = Duration::from_secs(1);
-
-/// Fate of an earlier result of the same name.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Existing {
-    /// It stays, and the new one is refused.
-    #[default]
-    Keep,
-    /// It is removed. Anything but a result of this program stays in any case.
-    Replace,
-}
 
 /// Streams a run into a Zarr v3 group. Memory is bounded by one chunk a channel, 1 MiB each.
 ///
@@ -324,12 +299,4 @@ impl ZarrWriter {
         self.committed = Instant::now();
         Ok(())
     }
-}
-
-fn about(unit: &str, text: &str) -> Map<String, Value> {
-    let entries = [("units", unit), ("long_name", text)];
-    entries
-        .into_iter()
-        .map(|(key, value)| (key.to_owned(), value.into()))
-        .collect()
 }

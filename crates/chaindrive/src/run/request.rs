@@ -1,8 +1,7 @@
 //! Request of a run.
 
-use super::{Given, Run, Settings};
-use crate::precision::Quantity;
-use crate::scene::SceneError;
+use super::{Given, RequestError, Run, Settings};
+use crate::scene::Quantity;
 use crate::{Channel, Scene, SimulationError};
 
 /// A scene with its settings merged, ready to be carried out.
@@ -22,19 +21,6 @@ pub struct Request {
     pub estimate: bool,
     /// Simulated time \[s\] between two checkpoints, for results that can be carried on; none without.
     pub checkpoint_every: Option<f64>,
-}
-
-/// Why there is nothing that could be run.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum RequestError {
-    /// The scene, or a text given for one of its settings, is wrong.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-
-    /// A setting is out of range.
-    #[error(transparent)]
-    Setting(#[from] SimulationError),
 }
 
 impl Request {

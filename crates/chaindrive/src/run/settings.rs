@@ -2,8 +2,8 @@
 
 use serde_json::Value as Json;
 
-use super::{NUMBERS, STEPPING_KEYS};
-use crate::scene::{Scene, SceneError};
+use super::NUMBERS;
+use crate::scene::{STEPPING_KEYS, Scene, SceneError};
 use crate::{RequestError, SimulationError, Stepping};
 
 /// A value that a caller gives for a key of `[run]`.
@@ -153,7 +153,7 @@ impl Given {
     }
 
     /// A time \[s\] that is no setting of the scene, but written as one; `name` is what messages call it.
-    pub(super) fn time(&self, scene: &Scene, name: &str) -> Result<f64, SceneError> {
+    pub(crate) fn time(&self, scene: &Scene, name: &str) -> Result<f64, SceneError> {
         if let Self::Number(time) = self {
             return Ok(*time);
         }
@@ -166,7 +166,7 @@ impl Given {
         Ok(read.run_defaults().every.unwrap_or(f64::NAN))
     }
 
-    pub(super) fn put(&self, scene: &Scene, path: &str) -> Result<Scene, SceneError> {
+    pub(crate) fn put(&self, scene: &Scene, path: &str) -> Result<Scene, SceneError> {
         match self {
             // `replace` would read it as a number of TOML.
             Self::Text(text) if text.trim().parse::<f64>().is_ok() => {

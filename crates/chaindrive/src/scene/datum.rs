@@ -1,7 +1,8 @@
 //! Looks up single values of a scene, as they were understood: quantities in SI units.
 
-use super::tree::{Value, steps};
-use super::{Scene, schema, validate};
+use super::path::steps;
+use super::tree::Value;
+use super::{Scene, format, validate};
 
 /// A value of a scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +30,7 @@ impl Scene {
         let (place, _) = self.tree.locate(path);
         let mut tree = self.tree.clone();
         tree.expand_chain();
-        let units = validate::units(&mut tree, schema::raw());
+        let units = validate::units(&mut tree, format::raw());
         let unit = units.get(&place).copied();
         match &tree.find(path)?.value {
             Value::Float(number) => Some(Datum::Quantity(*number, unit.unwrap_or("1"))),

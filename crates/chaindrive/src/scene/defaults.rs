@@ -282,7 +282,7 @@ fn properties<'s>(schema: &'s mut Json, place: &str) -> Vec<&'s mut Json> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::schema::raw;
+    use crate::scene::format::raw;
 
     #[test]
     fn every_default_has_a_value_in_every_version_and_a_key_in_the_schema() {

@@ -3,8 +3,9 @@
 use serde_json::Value as Json;
 use toml_edit::{DocumentMut, Item, Value as Toml};
 
+use super::path::steps;
 use super::suggest::one_of;
-use super::tree::{Node, Value, is_json, steps};
+use super::tree::{Node, Value, is_json};
 use super::{Problem, Scene, SceneError, limits};
 
 impl Scene {

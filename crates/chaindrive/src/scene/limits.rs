@@ -9,7 +9,7 @@ use toml_parser::Source;
 use toml_parser::lexer::TokenKind;
 
 use super::error::Problem;
-use super::tree::steps;
+use super::path::steps;
 
 /// Largest text \[bytes\] that is read: room for the tables of a measured drive, not for a film.
 const LARGEST: u64 = 16 << 20;

@@ -50,18 +50,22 @@
 //! # Ok::<(), chaindrive::scene::SceneError>(())
 //! ```
 
+mod accuracy;
 mod datum;
 mod defaults;
 mod diff;
 mod edit;
 mod error;
 mod expected;
+mod format;
 mod limits;
+mod path;
 mod presets;
 mod quantity;
 mod read;
 mod resolve;
 mod resolved;
+mod run_in;
 mod schema;
 mod suggest;
 mod tree;
@@ -75,12 +79,16 @@ use serde::Deserialize;
 pub use datum::Datum;
 pub use diff::{Difference, diff};
 pub use error::{Problem, SceneError};
+pub use format::schema;
 pub use presets::presets;
-pub use schema::{RunDefaults, schema};
+pub use schema::RunDefaults;
 
+pub use accuracy::{ACCURACY, Quantity};
 pub use quantity::{read_length, read_time};
 pub use resolve::chain_named;
+pub use run_in::RunIn;
 use schema::{Contact, SceneText};
+pub(crate) use schema::{EVERY, STEPPING_KEYS, TOLERANCE, UNTIL};
 use tree::Node;
 
 /// Reads a friction law as scenes have them, `{"kind": "coulomb", "coefficient": 0.1}`, with their units and defaults.
@@ -112,7 +120,7 @@ pub fn read_friction(text: &str) -> Result<Friction, SceneError> {
     // A friction stands in a contact.
     let text = format!("{{\"friction\": {text}}}");
     let mut tree = Node::parse_json(&text).map_err(|problem| refuse(vec![problem]))?;
-    let problems = validate::validate_part(&mut tree, schema::raw(), "Contact");
+    let problems = validate::validate_part(&mut tree, format::raw(), "Contact");
     if !problems.is_empty() {
         return Err(refuse(problems.of("friction").problems));
     }
@@ -177,7 +185,7 @@ impl Scene {
         }
         let mut normalised = tree.clone();
         normalised.expand_chain();
-        let mut problems = validate::validate(&mut normalised, schema::raw());
+        let mut problems = validate::validate(&mut normalised, format::raw());
         if !problems.is_empty() {
             // Alone they are told with what else does not go together.
             resolve::refuse_unknown_chains(&normalised, &mut problems);

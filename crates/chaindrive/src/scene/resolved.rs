@@ -7,14 +7,14 @@ use serde::Deserialize;
 use serde_json::{Map, Value as Json, json};
 use toml_edit::{DocumentMut, Item};
 
+use super::path::steps;
 use super::resolve::{self, Assumption};
-use super::schema::SceneText;
-use super::tree::{Node, is_json, steps};
+use super::schema::{EVERY, STEPPING_KEYS, SceneText, TOLERANCE, UNTIL, Version};
+use super::tree::{Node, is_json};
 use super::validate::below;
-use super::{Scene, SceneError, schema, unreadable, validate};
+use super::{Scene, SceneError, format, unreadable, validate};
+use crate::Stepping;
 use crate::figure::{Measure, figure};
-use crate::run::{Run, STEPPING_KEYS};
-use chaindrive_integrate::Method;
 
 /// Remark about a value that is simply not there.
 const EMPTY: &str = "not given";
@@ -52,22 +52,19 @@ impl Scene {
         Self::from_toml(&resolved.text(), &self.name)
     }
 
+    /// The same with other settings of the run.
+    pub(crate) fn resolved_with(&self, run: Map<String, Json>) -> Result<Self, SceneError> {
+        let mut resolved = Resolved::of(self)?;
+        resolved.settle_on(run);
+        Self::from_toml(&resolved.text(), &self.name)
+    }
+
     /// Inputs that nobody measured or gave, as `path = value`: those whose source is the word "assumed", settings of the run left aside.
     ///
     /// # Errors
     /// As [`Scene::drive`].
     pub fn assumed(&self) -> Result<Vec<String>, SceneError> {
         Ok(Resolved::of(self)?.assumed())
-    }
-
-    /// As [`resolved`](Self::resolved), with the settings of a run as they were in the end: what reproduces a result.
-    ///
-    /// # Errors
-    /// As [`Scene::drive`].
-    pub fn resolved_for(&self, run: &Run, method: Method) -> Result<Self, SceneError> {
-        let mut resolved = Resolved::of(self)?;
-        resolved.settle_on(run, method);
-        Self::from_toml(&resolved.text(), &self.name)
     }
 }
 
@@ -110,8 +107,7 @@ impl Resolved {
     }
 
     /// Puts the settings of a run in place of those of the scene.
-    fn settle_on(&mut self, run: &Run, method: Method) {
-        let mut settings = run.table(method);
+    fn settle_on(&mut self, mut settings: Map<String, Json>) {
         // What a run does not decide stays as the scene says it.
         let decided = |key: &str| key == "accuracy" || STEPPING_KEYS.contains(&key);
         let kept = self.values.get("run").and_then(Json::as_object);
@@ -168,7 +164,7 @@ impl Resolved {
 
     /// The scene as TOML.
     pub(crate) fn text(&self) -> String {
-        let version = schema::Version::default().name();
+        let version = Version::default().name();
         let mut text = format!("format = \"{version}\"\ndefaults = \"{version}\"\n");
         self.table(&self.values, "", "", &mut text);
         text
@@ -241,7 +237,7 @@ impl Resolved {
 
 /// Settings of a run that the scene leaves open.
 fn run_defaults(scene: &Scene) -> Vec<Assumption> {
-    let (run, wanted) = (Run::default(), scene.run_defaults());
+    let wanted = scene.run_defaults();
     let assumed = |key: &str, value: Json| Assumption {
         path: format!("run.{key}"),
         value,
@@ -249,20 +245,20 @@ fn run_defaults(scene: &Scene) -> Vec<Assumption> {
     };
     let mut open = Vec::new();
     if wanted.until.is_none() {
-        open.push(assumed("until", run.until.into()));
+        open.push(assumed("until", UNTIL.into()));
     }
     if wanted.every.is_none() {
-        open.push(assumed("every", run.every.into()));
+        open.push(assumed("every", EVERY.into()));
     }
     match (wanted.accuracy, wanted.chosen_accuracy()) {
         (None, Some(accuracy)) => open.push(assumed("accuracy", accuracy.into())),
         (Some(_), _) => {}
         (None, None) => {
             if wanted.method.is_none() {
-                open.push(assumed("method", run.stepping.name().into()));
+                open.push(assumed("method", Stepping::default().name().into()));
             }
             if wanted.tolerance.is_none() {
-                open.push(assumed("tolerance", run.tolerance.into()));
+                open.push(assumed("tolerance", TOLERANCE.into()));
             }
         }
     }
@@ -385,7 +381,7 @@ fn collect(item: &Item, place: &str, found: &mut HashMap<String, String>) {
 
 /// SI units of the quantities of a valid scene.
 fn units(values: &Json) -> HashMap<String, &'static str> {
-    validate::units(&mut Node::from_json(values), schema::raw())
+    validate::units(&mut Node::from_json(values), format::raw())
 }
 
 fn join(heading: &str, key: &str) -> String {

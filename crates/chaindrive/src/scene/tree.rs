@@ -5,8 +5,9 @@ use toml_edit::{Item, TableLike, Value as Toml};
 
 use super::error::Problem;
 use super::limits;
-use super::validate::shorten;
+use super::path::{push_step, steps};
 use crate::plain::is_command;
+use crate::plain::shorten;
 
 /// A value and the line it stands on.
 #[derive(Clone, Debug, PartialEq)]
@@ -288,27 +289,6 @@ impl Node {
 /// Whether a text is meant as JSON.
 pub(crate) fn is_json(text: &str) -> bool {
     text.trim_start().starts_with('{')
-}
-
-/// The steps of a dotted path: `sprockets[1].teeth` is `sprockets`, `1`, `teeth`.
-pub(crate) fn steps(path: &str) -> impl Iterator<Item = String> + '_ {
-    path.split(['.', '[', ']'])
-        .map(|step| step.trim().to_owned())
-        .filter(|step| !step.is_empty())
-}
-
-/// Appends a key to a path.
-pub(crate) fn push_step(path: &mut String, step: &str) {
-    if step.bytes().all(|b| b.is_ascii_digit()) {
-        path.push('[');
-        path.push_str(step);
-        path.push(']');
-        return;
-    }
-    if !path.is_empty() {
-        path.push('.');
-    }
-    path.push_str(step);
 }
 
 fn one_line(message: &str) -> String {

@@ -9,11 +9,13 @@ use serde_json::{Map, Value as Json};
 
 use super::error::{Problem, Problems};
 use super::expected::{Expected, Reading, kind_of, request};
+use super::path::push_step;
 use super::quantity::{CONTACT_STIFFNESS, Dimension};
+use super::run_in::RunIn;
 use super::schema::Version;
 use super::suggest::{nearest, one_of};
-use super::tree::{Entry, Node, Value, push_step};
-use crate::RunIn;
+use super::tree::{Entry, Node, Value};
+use crate::plain::shorten;
 
 /// Checks `tree` against `schema` and normalises it: quantities become SI numbers, bare names of
 /// kinds become tables.
@@ -484,14 +486,4 @@ pub(crate) fn below(path: &str, step: &str) -> String {
     let mut place = path.to_owned();
     push_step(&mut place, &shorten(step));
     place
-}
-
-/// A text cut to what fits in a message, on one line.
-pub(crate) fn shorten(text: &str) -> String {
-    let clean = text.chars().map(|c| if c.is_control() { ' ' } else { c });
-    let mut short: String = clean.take(60).collect();
-    if short.chars().count() < text.chars().count() {
-        short.push('…');
-    }
-    short
 }

@@ -4,7 +4,7 @@ use chaindrive_mechanics::{Assembled, ContactEvent, EventKinds, Impact, Observat
 
 use super::live::Changes;
 use super::{Arc, Simulation};
-use crate::run::LOOK;
+use crate::patience::LOOK;
 use crate::{Run, SimulationError};
 
 /// All that a sample says, on the clock of the drive.

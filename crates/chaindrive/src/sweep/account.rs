@@ -6,10 +6,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use chaindrive_mechanics::EventKinds;
 
 use super::Outcome;
+use crate::channel::labels;
+use crate::event::EventTable;
 use crate::precision::{Choice, Promise};
-use crate::record::{
-    ContactStatistics, EventTable, ImpactStatistics, Provenance, SpanStatistics, Steadiness, labels,
-};
+use crate::record::Provenance;
+use crate::summary::{ContactStatistics, ImpactStatistics, SpanStatistics, Steadiness};
 use crate::verdict::WrittenVerdict;
 use crate::{
     Channel, End, Recording, Report, Request, RunError, Scene, Settings, Simulation,

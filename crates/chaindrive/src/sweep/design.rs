@@ -5,23 +5,13 @@ use std::collections::HashMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 
+use super::dimension::Arrangement;
 use super::{CHOSEN, Dimension, MOST, Setting, Sweep, SweepError, dimension};
 use crate::scene::{Datum, Scene, SceneError};
 use crate::{Channel, Origin, Run};
 
 /// Variants that are made before a sweep begins, until one of them is a drive. *Assumed*: some milliseconds each.
 const TRIED: usize = 24;
-
-/// How the values of several paths become variants.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Arrangement {
-    /// Every value with every value of the other paths; the last path varies fastest.
-    #[default]
-    Grid,
-    /// The first value of each path, then the second value of each, and so on.
-    Table,
-}
 
 /// Everything that decides about the numbers of a sweep: who has it computes the same variants.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

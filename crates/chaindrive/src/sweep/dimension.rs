@@ -3,12 +3,23 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 
-use super::report::short;
-use super::stack::TEXTS;
-use super::{Arrangement, MOST, Quantity, Statistic, SweepError, VARIANT};
+use super::columns::short;
+use super::texts::TEXTS;
+use super::{MOST, Quantity, Statistic, SweepError, VARIANT};
+use crate::Axis;
 use crate::Channel;
-use crate::record::Axis;
 use crate::scene::{Datum, Scene, SceneError};
+
+/// How the values of several paths become variants.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Arrangement {
+    /// Every value with every value of the other paths; the last path varies fastest.
+    #[default]
+    Grid,
+    /// The first value of each path, then the second value of each, and so on.
+    Table,
+}
 
 /// One value for a place in a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

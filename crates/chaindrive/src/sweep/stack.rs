@@ -1,21 +1,8 @@
 //! Stacks the accounts of all variants: one array a quantity, the swept dimensions first.
 
+use super::texts::{OPEN, TEXTS};
 use super::{Account, Coordinate, Entry, Outcome, Quantity, Statistic, Sweep};
-use crate::record::Axis;
-
-/// Message for a variant that was not carried out.
-pub(crate) const OPEN: &str = "not carried out: the sweep was stopped";
-
-/// Names and descriptions of the texts that results have of every variant.
-pub(crate) const TEXTS: [(&str, &str); 4] = [
-    (
-        "verdict",
-        "whether the numbers can be trusted: trusted, caution or distrusted",
-    ),
-    ("reasons", "names of what speaks against the numbers"),
-    ("verdict_note", "what speaks against the numbers, in words"),
-    ("error", "what went wrong; empty where nothing did"),
-];
+use crate::Axis;
 
 /// One text of all variants.
 #[derive(Clone, Debug, PartialEq)]

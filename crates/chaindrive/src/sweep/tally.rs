@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
-use super::report::{COLUMNS, short};
+use super::columns::{COLUMNS, short};
 use super::{Account, Outcome, Sweep};
+use crate::zarr::Ending;
 
 /// Failures that are told.
 const FAILURES: usize = 20;
@@ -40,6 +41,16 @@ impl Tally {
             tally.push(index, outcome);
         }
         tally
+    }
+
+    /// How a sweep ended that goes on no more; variants that failed count as a failure of the sweep.
+    pub fn ending(&self) -> Ending {
+        let all = self.finished + self.failed + self.open;
+        match self.failed {
+            _ if self.open > 0 => Ending::Interrupted,
+            0 => Ending::Complete,
+            failed => Ending::Failed(format!("{failed} of {all} variants failed")),
+        }
     }
 
     /// Takes the outcome of a variant.

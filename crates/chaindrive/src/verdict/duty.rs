@@ -5,7 +5,7 @@ use chaindrive_mechanics::{Struck, Unrated};
 
 use super::Reason;
 use crate::rating::{Load, Rating};
-use crate::record::Ledger;
+use crate::summary::Ledger;
 use crate::{Simulation, Summary};
 
 /// Samples a tooth passing below which the mesh is seen at another frequency than its own: H. Nyquist, *Trans. AIEE* **47**, 1928,

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::figure::percent;
 use crate::precision::LEAST_LOSSES;
-use crate::record::DRIFT;
+use crate::summary::DRIFT;
 use crate::{MOST_CIRCUITS, Trust};
 
 /// When a reason speaks.

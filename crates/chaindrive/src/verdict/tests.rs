@@ -5,7 +5,7 @@ use chaindrive_mechanics::Fight;
 
 use crate::precision::Gap;
 use crate::rating::LimitedBy;
-use crate::record::Known;
+use crate::summary::Known;
 
 /// A drive that takes in 100 J and loses 2 J.
 fn ledger_with(residual: f64) -> Ledger {

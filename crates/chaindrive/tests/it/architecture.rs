@@ -134,6 +134,42 @@ fn mechanics_reads_no_file_clock_or_chance() {
     }
 }
 
+/// A page that names a file which has moved leads nobody anywhere. `NAME` stands for a file to be written.
+#[test]
+fn files_that_pages_name_are_there() {
+    let others = ["benchmarks", "docs"].map(|folder| sources(&root().join(folder)));
+    let known: Vec<String> = project_files()
+        .iter()
+        .chain(others.iter().flatten())
+        .map(|path| path.to_string_lossy().replace("/src/", "/"))
+        .collect();
+    let mut pages = vec![root().join("README.md"), root().join("CONTRIBUTING.md")];
+    let docs = fs::read_dir(root().join("docs")).expect("there are pages");
+    pages.extend(docs.flatten().map(|entry| entry.path()));
+    pages.retain(|path| path.extension().is_some_and(|it| it == "md"));
+    let mut named = 0;
+    for page in pages {
+        let text = fs::read_to_string(&page).expect("pages are text");
+        for name in text.split('`').skip(1).step_by(2) {
+            let is_source = [".rs", ".py"].iter().any(|end| name.ends_with(end));
+            let is_path = name
+                .chars()
+                .all(|c| c.is_alphanumeric() || "/_.".contains(c));
+            if !is_source || !is_path || name.contains("NAME") || !name.contains('/') {
+                continue;
+            }
+            named += 1;
+            let place = format!("/{}", name.replace("/src/", "/"));
+            assert!(
+                known.iter().any(|path| path.ends_with(&place)),
+                "{} names `{name}`, which is not there",
+                page.display()
+            );
+        }
+    }
+    assert!(named > 50, "only {named} files were found on the pages");
+}
+
 /// A method is asked for its step, tolerance and parameters; only its own table, the table of names and the usual variants of a study
 /// tell methods apart.
 #[test]

@@ -9,8 +9,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
 use chaindrive::Scene;
-use chaindrive::record::{Existing, Finished, Object, Objects, SweepStore, Worker, WriteError};
-use chaindrive::sweep::{Go, Sample, Setting, Sweep};
+use chaindrive::record::{Existing, Object, Objects, WriteError};
+use chaindrive::sweep::{Finished, Go, Sample, Setting, Sweep, SweepStore, Worker};
 
 type Checked = Result<(), Box<dyn Error>>;
 

@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use chaindrive::record::{chains_along, labels};
+use chaindrive::channel::{chains_along, labels};
 use chaindrive::scene::{Scene, diff};
 use chaindrive::{Axis, Description, Run, Simulation, Stepping, Summary};
 use chaindrive_mechanics::Observation;

@@ -8,8 +8,8 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use chaindrive::Request;
-use chaindrive::record::{Ending, Existing, SweepStore, WriteError, take_over};
-use chaindrive::sweep::{Go, Outcome, Sweep, Tally};
+use chaindrive::record::{Existing, WriteError, take_over};
+use chaindrive::sweep::{Go, Outcome, Sweep, SweepStore, Tally};
 use clap::Args;
 
 use super::output::Target;
@@ -140,12 +140,13 @@ fn in_memory(
     if let Some(error) = refused {
         return Err(error);
     }
+    let tally = Tally::of(&outcomes);
     // With nothing to put in its place, an earlier table stays.
     if outcomes.iter().any(|outcome| *outcome != Outcome::Open) {
-        output.write(sweep, &outcomes, &Ending::of(&outcomes))?;
+        output.write(sweep, &outcomes, &tally.ending())?;
     }
     let report = sweep.report(&outcomes).to_string();
-    conclude(arguments, sweep, &Tally::of(&outcomes), report)
+    conclude(arguments, sweep, &tally, report)
 }
 
 /// Begins a store, or goes on with one of the same sweep that was stopped or killed.

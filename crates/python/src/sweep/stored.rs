@@ -8,8 +8,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Instant;
 
-use chaindrive::record::{self, Existing, Finished, Objects, Worker, WriteError};
-use chaindrive::sweep::Go;
+use chaindrive::record::{Existing, Objects, WriteError};
+use chaindrive::sweep::{self, Finished, Go, Worker};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -22,7 +22,7 @@ use crate::signals::{PATIENCE, look};
 /// The store of a sweep, claimed by this process until it is closed.
 #[pyclass(frozen, module = "chaindrive._core")]
 #[derive(Debug)]
-pub(crate) struct SweepStore(Mutex<Option<record::SweepStore>>);
+pub(crate) struct SweepStore(Mutex<Option<sweep::SweepStore>>);
 
 /// A store opened to carry out tasks.
 #[pyclass(frozen, module = "chaindrive._core")]
@@ -78,10 +78,10 @@ impl SweepStore {
         let sample = sample.or_raise()?;
         raised.map_or(Ok(()), Err)?;
         let begin = || match place {
-            Place::Disk(path) => record::SweepStore::begin(&path, &sweep.0, &sample, existing),
+            Place::Disk(path) => sweep::SweepStore::begin(&path, &sweep.0, &sample, existing),
             Place::Objects(object) => {
                 let objects = Place::objects(object);
-                record::SweepStore::begin_in(&objects, &sweep.0, &sample, existing)
+                sweep::SweepStore::begin_in(&objects, &sweep.0, &sample, existing)
             }
         };
         Ok(Self(Mutex::new(Some(py.detach(begin).or_raise()?))))
@@ -91,9 +91,9 @@ impl SweepStore {
     #[staticmethod]
     fn go_on(py: Python<'_>, place: Place, sweep: &Sweep) -> PyResult<Self> {
         let store = py.detach(|| match place {
-            Place::Disk(path) => record::SweepStore::go_on(&path, &sweep.0),
+            Place::Disk(path) => sweep::SweepStore::go_on(&path, &sweep.0),
             Place::Objects(object) => {
-                record::SweepStore::go_on_in(&Place::objects(object), &sweep.0)
+                sweep::SweepStore::go_on_in(&Place::objects(object), &sweep.0)
             }
         });
         Ok(Self(Mutex::new(Some(store.or_raise()?))))
@@ -187,7 +187,7 @@ impl Drop for SweepStore {
 }
 
 impl SweepStore {
-    fn inner(&self) -> MutexGuard<'_, Option<record::SweepStore>> {
+    fn inner(&self) -> MutexGuard<'_, Option<sweep::SweepStore>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -196,7 +196,7 @@ impl SweepStore {
         &self,
         py: Python<'py>,
         progress: Option<Py<PyAny>>,
-        act: impl FnOnce(&mut record::SweepStore, &mut dyn FnMut(usize) -> Go) -> Result<(), WriteError>
+        act: impl FnOnce(&mut sweep::SweepStore, &mut dyn FnMut(usize) -> Go) -> Result<(), WriteError>
         + Send,
     ) -> PyResult<Option<Bound<'py, PyAny>>> {
         let mut raised = None;
@@ -223,7 +223,7 @@ impl SweepStore {
         Ok(raised.map(|error| error.into_value(py).into_bound(py).into_any()))
     }
 
-    fn with<T>(&self, act: impl FnOnce(&mut record::SweepStore) -> PyResult<T>) -> PyResult<T> {
+    fn with<T>(&self, act: impl FnOnce(&mut sweep::SweepStore) -> PyResult<T>) -> PyResult<T> {
         match self.inner().as_mut() {
             Some(store) => act(store),
             None => Err(PyValueError::new_err("the store is closed")),

@@ -3,12 +3,10 @@
 use chaindrive_mechanics::{Energy, EventKinds};
 use serde_json::{Map, Value};
 
-use super::about;
-use super::error::Fault;
 use super::events::EventTracks;
-use super::files::Storage;
-use super::track::{Track, samples_per_chunk, store_chains, store_labels};
-use crate::record::{Axis, Channel, Provenance, chains_along, labels};
+use crate::channel::{Axis, Channel, chains_along, labels};
+use crate::record::Provenance;
+use crate::zarr::{Fault, Storage, Track, about, samples_per_chunk, store_chains, store_labels};
 use crate::{Judgement, Simulation};
 
 /// All arrays of a run.

@@ -10,10 +10,8 @@ use serde_json::{Map, Value};
 use zarrs::array::codec::ZstdCodec;
 use zarrs::array::{ArrayBuilder, CodecOptions, data_type};
 
-use super::error::Fault;
-use super::files::Storage;
-use super::track::{StoredArray, ZSTD_LEVEL, metadata, store_metadata};
-use crate::record::{EventColumn, EventTable};
+use crate::event::{EventColumn, EventTable};
+use crate::zarr::{Fault, Storage, StoredArray, ZSTD_LEVEL, metadata, store_metadata};
 
 /// Contacts in a chunk.
 const EVENTS_PER_CHUNK: usize = 1 << 13;

@@ -6,14 +6,11 @@ use std::sync::Arc;
 use serde_json::{Map, Value};
 use zarrs::array::{ArrayMetadata, FromArrayBytes};
 
-use super::error::Fault;
-use super::files::Ground;
-use super::files::Storage;
-use super::folder::Folder;
-use super::target;
-use super::track::StoredArray;
-use crate::record::claim::is_being_written;
-use crate::record::{EventColumn, LoggedContact, Recorded, RecordedChannel, WriteError};
+use crate::event::EventColumn;
+use crate::record::{LoggedContact, Recorded, RecordedChannel};
+use crate::zarr::{
+    self, Fault, Folder, Ground, Storage, StoredArray, WriteError, is_being_written,
+};
 
 /// Why a store cannot be read.
 #[derive(Debug, thiserror::Error)]
@@ -57,13 +54,13 @@ pub fn inspect(path: &Path) -> Result<(), ReadError> {
     if !path.exists() {
         return Err(ReadError::Missing { path: path.into() });
     }
-    let group = target::group(path, path);
+    let group = zarr::group(path, path);
     let group = group.map_err(|_| ReadError::Foreign { path: path.into() })?;
     looked_at(path, &group)
 }
 
 fn looked_at(path: &Path, group: &Value) -> Result<(), ReadError> {
-    super::inspect::inspect(path, group).map_err(|why| ReadError::Suspect {
+    zarr::inspect(path, group).map_err(|why| ReadError::Suspect {
         path: path.into(),
         why,
     })
@@ -85,12 +82,12 @@ impl Recorded {
             return Err(ReadError::Missing { path: path.into() });
         }
         let foreign = |_| ReadError::Foreign { path: path.into() };
-        let mut group = target::group(path, path).map_err(foreign)?;
+        let mut group = zarr::group(path, path).map_err(foreign)?;
         // A writer says how it ended before it gives its claim back: looked at again, a result that nobody writes has
         // ended, or its writer was killed.
         let mut killed = false;
         if group["attributes"]["status"] == "running" && !is_being_written(path)? {
-            group = target::group(path, path).map_err(foreign)?;
+            group = zarr::group(path, path).map_err(foreign)?;
             killed = group["attributes"]["status"] == "running";
         }
         if group["attributes"].get("samples").is_none() {

@@ -3,12 +3,10 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use super::names::CHECKPOINT;
-use super::store::Store;
-use crate::record::WriteError;
+use crate::record::Checkpoint;
 use crate::record::in_store::InStore;
-use crate::run::resume;
-use crate::{Checkpoint, Given, Onlooker, Report, RequestError, RunError, SealError};
+use crate::zarr::{CHECKPOINT, Store, WriteError};
+use crate::{Given, RequestError, SealError};
 
 /// A result whose run can go on, claimed for that.
 ///
@@ -144,13 +142,10 @@ impl Stopped {
         &self.checkpoint
     }
 
-    /// Takes the run to its end.
-    ///
-    /// # Errors
-    /// [`RunError`] when the run cannot go on, or the store refuses.
-    pub fn resume(self, onlooker: &dyn Onlooker) -> Result<Report, RunError<WriteError>> {
+    /// The checkpoint, and the store as the sink of what follows.
+    pub(crate) fn into_parts(self) -> (Checkpoint, InStore) {
         let Self { store, checkpoint } = self;
-        let mut sink = InStore::left(store, checkpoint.clone());
-        resume(&checkpoint, &mut sink, onlooker)
+        let sink = InStore::left(store, checkpoint.clone());
+        (checkpoint, sink)
     }
 }

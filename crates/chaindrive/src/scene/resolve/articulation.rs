@@ -6,7 +6,7 @@ use chaindrive_mechanics::Articulation;
 use serde_json::json;
 
 use super::contact::Spring;
-use super::links::stiffness_under_pretension;
+use super::pressed::stiffness_under_pretension;
 use super::{Findings, contact};
 use crate::catalogue::{CatalogueChain, Number};
 use crate::scene::defaults;

@@ -3,6 +3,7 @@
 use chaindrive_mechanics::{Capacity, Chain, ChainModel, End, Ends, Strength, Unrated};
 
 use super::articulation::{self, Joints};
+use super::body::Body;
 use super::chains::Described;
 use super::law::Pair;
 use super::scatter::Normal;
@@ -217,14 +218,6 @@ fn damping(
     pairs
         .map(|(k, m)| 2.0 * ratio * (k * m).max(0.0).sqrt())
         .collect()
-}
-
-/// The part between the joints.
-#[derive(Debug)]
-pub(super) struct Body {
-    pub(super) masses: Vec<f64>,
-    pub(super) stiffness: Vec<f64>,
-    pub(super) model: ChainModel,
 }
 
 fn particles(text: &schema::Chain, links: usize, findings: &mut Findings<'_>) -> Option<Body> {

@@ -13,14 +13,12 @@ use chaindrive_mechanics::{
 use serde_json::json;
 
 use super::articulation::Joints;
-use super::chain::Body;
+use super::body::Body;
 use super::law::{Pair, cylindrical, elastic, steel};
+use super::pressed::{PRESSED, stiffness_under_pretension};
 use super::{Findings, contact};
 use crate::scene::defaults;
 use crate::scene::schema::{self, Rollers, Route, SceneText};
-
-/// Indentation \[m\] at which a contact counts as pressed, where no pretension says how far.
-const PRESSED: f64 = 1e-6;
 
 /// Whether roller, bush and pin of a particle chain are points of their own.
 pub(super) fn are_points(text: &schema::Chain) -> bool {
@@ -487,27 +485,6 @@ fn laying_stiffness(
     let tooth = teeth.stiffness(PRESSED);
     let default = &defaults::LAYING_STIFFNESS;
     Some(findings.or_multiple(None, "chain.stiffness", default, tooth))
-}
-
-/// Stiffness \[N/m\] of a joint that bears the pretension, or next to nothing where there is none.
-pub(super) fn stiffness_under_pretension(law: &Law, route: Option<&Route>, radius: f64) -> f64 {
-    let pretension = route.map_or(0.0, |route| route.pretension.0);
-    law.stiffness(indentation(law, pretension, radius).max(PRESSED))
-}
-
-/// Indentation \[m\] at which a law reaches a force \[N\], at most `most`.
-fn indentation(law: &Law, force: f64, most: f64) -> f64 {
-    let (mut low, mut high) = (0.0, most);
-    // Down to the rounding of a length.
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if law.elastic_force(middle) < force {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    low
 }
 
 /// Masses of the rollers while the chain is laid \[kg\]: every link halved between its ends.

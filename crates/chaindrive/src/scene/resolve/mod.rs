@@ -1,17 +1,20 @@
 //! From the scene as written to the drive: names become indices, choices become models.
 
 mod articulation;
+mod body;
 mod catalogue;
 mod chain;
 mod chains;
 mod contact;
 mod count;
+mod ends;
 mod flank;
 mod guide;
 mod law;
 mod links;
 mod motion;
 mod on_span;
+mod pressed;
 mod route;
 mod scatter;
 mod shafts;

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use chaindrive_mechanics::{Argument, DriveError, Harmonic, Motion, Order, Table, Torque};
 
 use super::Findings;
-use super::shafts::Ends;
+use super::ends::Ends;
 use crate::scene::quantity::{Angle, AngularSpeed, Length, Speed};
 use crate::scene::schema::{self, SceneText};
 use crate::scene::suggest::one_of;

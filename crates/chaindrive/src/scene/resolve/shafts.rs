@@ -2,10 +2,10 @@
 
 use chaindrive_mechanics::{Coupling, GearPair, Rotation, Shaft, StartSpeed};
 
+use super::ends::Ends;
 use super::{Findings, Names, motion};
 use crate::scene::quantity::{Angle, AngularSpeed};
 use crate::scene::schema::{self, SceneText};
-use crate::scene::suggest::one_of;
 
 /// All that turns.
 #[derive(Debug)]
@@ -178,43 +178,4 @@ fn rotation(
             Some(schema::StartSpeed::Word(_)) => StartSpeed::WorkingPoint,
         },
     })
-}
-
-/// Shafts that couplings and gears can join, and torques follow, by name.
-pub(super) struct Ends<'n> {
-    shafts: Vec<&'n str>,
-    sprockets: Vec<&'n str>,
-    /// Number of shafts before those of the scene.
-    own: usize,
-    of_sprockets: &'n [usize],
-}
-
-impl Ends<'_> {
-    /// The shafts that two names mean.
-    fn find(
-        &self,
-        between: &[String; 2],
-        path: &str,
-        findings: &mut Findings<'_>,
-    ) -> Option<[usize; 2]> {
-        let [first, second] =
-            [0, 1].map(|i| self.one(&between[i], &format!("{path}.between[{i}]"), findings));
-        Some([first?, second?])
-    }
-
-    /// The shaft that a name means.
-    pub(super) fn one(&self, name: &str, path: &str, findings: &mut Findings<'_>) -> Option<usize> {
-        let shaft = self.shafts.iter().position(|known| *known == name);
-        let sprocket = || self.sprockets.iter().position(|known| *known == name);
-        let found = shaft
-            .map(|shaft| self.own + shaft)
-            .or_else(|| sprocket().map(|sprocket| self.of_sprockets[sprocket]));
-        if found.is_none() {
-            let all = self.shafts.iter().chain(&self.sprockets);
-            let known: Vec<&str> = all.copied().collect();
-            let message = format!("no shaft or sprocket is named `{name}`");
-            findings.refuse_with(path, message, one_of(name, &known));
-        }
-        found
-    }
 }

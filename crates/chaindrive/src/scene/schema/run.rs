@@ -6,11 +6,24 @@ use chaindrive_mechanics::EventKinds;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
-use crate::precision::Quantity;
+use crate::Stepping;
+use crate::scene::accuracy::Quantity;
 use crate::scene::quantity::{Length, Ratio, Time};
-use crate::{RunIn, Stepping};
+use crate::scene::run_in::RunIn;
 
 use super::Version;
+
+/// End of a run \[s\]. *Assumed*.
+pub(crate) const UNTIL: f64 = 1.0;
+
+/// Interval between samples \[s\]. *Assumed*.
+pub(crate) const EVERY: f64 = 1e-3;
+
+/// Relative tolerance \[–\] of a method under error control. *Assumed*.
+pub(crate) const TOLERANCE: f64 = 1e-8;
+
+/// Keys of `[run]` that say how to step, each in place of an accuracy that would choose.
+pub(crate) const STEPPING_KEYS: [&str; 4] = ["method", "step", "tolerance", "onset_depth"];
 
 /// Settings of a run and channels to record, unless the caller gives others.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]

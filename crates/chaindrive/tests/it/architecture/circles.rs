@@ -315,28 +315,11 @@ fn tokens(text: &str) -> Vec<String> {
 /// A circle that stands: its crate, the modules at the root that its files lie in, and the reason.
 type Known = (&'static str, &'static [&'static str], &'static str);
 
-const KNOWN: [Known; 2] = [
-    (
-        "mechanics",
-        &["chains", "events", "observe", "system"],
-        "chains borrow the bodies, which lie in the system's folder, and write into the observation and the log beside it",
-    ),
-    (
-        "chaindrive",
-        &[
-            "error",
-            "page",
-            "precision",
-            "record",
-            "run",
-            "scene",
-            "simulate",
-            "sweep",
-            "verdict",
-        ],
-        "what is asked of a run lies beside what carries it out, and the channels beside the results",
-    ),
-];
+const KNOWN: [Known; 1] = [(
+    "mechanics",
+    &["chains", "events", "observe", "system"],
+    "chains borrow the bodies, which lie in the system's folder, and write into the observation and the log beside it",
+)];
 
 /// Whoever closes a circle meets this test: move what both need below both, or put the reason into the table. A circle that is opened
 /// must leave the table.

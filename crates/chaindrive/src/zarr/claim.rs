@@ -19,7 +19,7 @@ use std::time::Duration;
 
 use same_file::Handle;
 
-use super::error::WriteError;
+use super::write_error::WriteError;
 
 /// Times that the lock is tried: readers that ask whether a result is being written hold it for a moment.
 const TRIES: u32 = 10;
@@ -131,12 +131,12 @@ impl Claim {
     }
 
     /// Sets space aside for the last words of a result on a disk that is full.
-    pub(super) fn reserve(&self, bytes: usize) -> io::Result<()> {
+    pub(crate) fn reserve(&self, bytes: usize) -> io::Result<()> {
         fs::write(self.beside.join("reserve"), vec![0x5a; bytes])
     }
 
     /// Gives the space back.
-    pub(super) fn spend_reserve(&self) {
+    pub(crate) fn spend_reserve(&self) {
         // Nothing was set aside when the store was never begun.
         let _ = fs::remove_file(self.beside.join("reserve"));
     }

@@ -9,17 +9,11 @@ use serde::de::DeserializeOwned;
 use serde_json::Map;
 use zarrs::storage::{Bytes, StoreKey};
 
-use super::super::names::{LAYOUT, RECIPE};
 use super::layout::{Layout, Region};
 use super::{Arrays, MARK, Storage, blank, every_chunk, texts_before_the_mark};
-use crate::record::WriteError;
-use crate::record::zarr::bucket::Objects;
-use crate::record::zarr::error::Fault;
-use crate::record::zarr::files::Ground;
-use crate::record::zarr::folder::Folder;
-use crate::record::zarr::target;
 use crate::sweep::{Account, Entry, OPEN, Outcome, Quantity, Recipe, Sweep, TEXTS, fill, texts};
 use crate::verdict::WrittenVerdict;
+use crate::zarr::{self, Fault, Folder, Ground, LAYOUT, Objects, RECIPE, WriteError};
 
 /// Counts of a task that is stored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -71,7 +65,7 @@ impl Worker {
     /// As [`open`](Self::open).
     pub fn open_in(objects: &Arc<dyn Objects>) -> Result<Self, WriteError> {
         let path = PathBuf::from(objects.name());
-        let bucket = target::bucket(&path, objects)?;
+        let bucket = zarr::bucket(&path, objects)?;
         Self::on(Ground::of(Arc::new(bucket)), &path)
     }
 

@@ -78,7 +78,7 @@ pub enum WriteError {
 
 impl WriteError {
     /// The message for the result itself, which knows where it is.
-    pub(super) fn without_path(&self) -> String {
+    pub(crate) fn without_path(&self) -> String {
         let reason = match self {
             Self::Io { source, .. } => source.to_string(),
             Self::Store { source, .. } => source.to_string(),

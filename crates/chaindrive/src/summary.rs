@@ -11,8 +11,8 @@ use chaindrive_mechanics::{ContactEvent, Energy, Flow, Impact, Observation, Plac
 use hdrhistogram::Histogram;
 use serde::{Deserialize, Serialize};
 
-use super::event::{EventTable, kind};
 use crate::Simulation;
+use crate::event::{EventTable, kind};
 use crate::rating::{Load, Rating};
 use blocks::Blocks;
 pub use bodies::{Bearing, Bodies, Course, SprocketCourse};

@@ -11,20 +11,20 @@ use zarrs::metadata::v3::{AdditionalFieldV3, GroupMetadataV3};
 use zarrs::storage::StoreKey;
 
 use super::bucket::{Bucket, Objects};
-use super::error::Fault;
+use super::claim::Claim;
+use super::fault::Fault;
 use super::files::{Ground, Storage};
 use super::folder::Folder;
 use super::inspect::inspect;
 use super::names::GROUP;
+use super::write_error::WriteError;
 use super::{Ending, Existing, target};
-use crate::record::claim::Claim;
-use crate::record::error::WriteError;
 
 /// Space for a last group document on a full disk, beyond twice the length of the first.
 const RESERVE: usize = 1 << 16;
 
 /// A store with its files and the last group document.
-pub(in crate::record) struct Store {
+pub(crate) struct Store {
     path: PathBuf,
     disk: Option<Disk>,
     storage: Storage,
@@ -51,7 +51,7 @@ struct Document {
 impl Store {
     /// Claims a place and begins a store beside it. What was in the place stays until
     /// [`publish`](Self::publish).
-    pub(super) fn begin(path: &Path, existing: Existing) -> Result<Self, WriteError> {
+    pub(crate) fn begin(path: &Path, existing: Existing) -> Result<Self, WriteError> {
         let io = |source| WriteError::Io {
             path: path.to_owned(),
             source,
@@ -86,7 +86,7 @@ impl Store {
     }
 
     /// Begins a store in an object store, where nobody else has begun one. What was in the place is removed at once.
-    pub(super) fn begin_in(
+    pub(crate) fn begin_in(
         objects: &Arc<dyn Objects>,
         existing: Existing,
     ) -> Result<Self, WriteError> {
@@ -108,12 +108,12 @@ impl Store {
     }
 
     /// Claims a store that was left, to go on with it. It says what it said until the next [`tell`](Self::tell).
-    pub(super) fn reopen(path: &Path) -> Result<Self, WriteError> {
+    pub(crate) fn reopen(path: &Path) -> Result<Self, WriteError> {
         Self::reopen_by(path, Folder::open)
     }
 
     /// Claims a store that was left, to go on with it together with other processes.
-    pub(super) fn reopen_shared(path: &Path) -> Result<Self, WriteError> {
+    pub(crate) fn reopen_shared(path: &Path) -> Result<Self, WriteError> {
         Self::reopen_by(path, |root| {
             let folder = Folder::shared(root)?;
             folder.clear_staged()?;
@@ -144,7 +144,7 @@ impl Store {
     }
 
     /// A store in an object store, to go on with it together with other processes.
-    pub(super) fn reopen_in(objects: &Arc<dyn Objects>) -> Result<Self, WriteError> {
+    pub(crate) fn reopen_in(objects: &Arc<dyn Objects>) -> Result<Self, WriteError> {
         let path = PathBuf::from(objects.name());
         let bucket = target::bucket(&path, objects)?;
         let storage = Ground::of(Arc::new(bucket));
@@ -174,34 +174,34 @@ impl Store {
     }
 
     /// Goes on: from here on the store is being written.
-    pub(super) fn go_on(&mut self) -> Result<(), WriteError> {
+    pub(crate) fn go_on(&mut self) -> Result<(), WriteError> {
         self.ended = false;
         self.set_aside()
     }
 
     /// Attributes of the store.
-    pub(super) fn attributes(&self) -> &Map<String, Value> {
+    pub(crate) fn attributes(&self) -> &Map<String, Value> {
         &self.last.attributes
     }
 
     /// A file of its own, beside the arrays.
-    pub(super) fn read(&self, key: &str) -> Result<Option<Vec<u8>>, Fault> {
+    pub(crate) fn read(&self, key: &str) -> Result<Option<Vec<u8>>, Fault> {
         let bytes = self.storage.read(&StoreKey::new(key)?)?;
         Ok(bytes.map(Vec::from))
     }
 
     /// Puts such a file in place, whole or not at all.
-    pub(super) fn put(&self, key: &str, bytes: &[u8]) -> Result<(), Fault> {
+    pub(crate) fn put(&self, key: &str, bytes: &[u8]) -> Result<(), Fault> {
         Ok(self.storage.put(&StoreKey::new(key)?, bytes)?)
     }
 
     /// Removes it, if it is there.
-    pub(super) fn remove(&self, key: &str) -> Result<(), Fault> {
+    pub(crate) fn remove(&self, key: &str) -> Result<(), Fault> {
         Ok(self.storage.remove(&StoreKey::new(key)?)?)
     }
 
     /// Removes the chunks of an array behind the last that is used along its first dimension.
-    pub(super) fn clear_behind(&self, array: &str, last: u64) -> Result<(), Fault> {
+    pub(crate) fn clear_behind(&self, array: &str, last: u64) -> Result<(), Fault> {
         let chunks = format!("{array}/c/");
         for key in self.storage.held(&chunks)? {
             let place = key.as_str().trim_start_matches(&chunks);
@@ -213,28 +213,28 @@ impl Store {
         Ok(())
     }
 
-    pub(in crate::record) fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
-    pub(super) fn storage(&self) -> &Storage {
+    pub(crate) fn storage(&self) -> &Storage {
         &self.storage
     }
 
     /// Where the store is, symbolic links followed.
-    pub(super) fn place(&self) -> &Path {
+    pub(crate) fn place(&self) -> &Path {
         let disk = self.disk.as_ref();
         disk.map_or(&self.path, |disk| disk.claim.place())
     }
 
     /// Number of the open file that holds the claim, on a disk.
     #[cfg(unix)]
-    pub(super) fn descriptor(&self) -> Option<i32> {
+    pub(crate) fn descriptor(&self) -> Option<i32> {
         self.disk.as_ref().map(|disk| disk.claim.descriptor())
     }
 
     /// Lets other processes write in the store as well, once it is in place.
-    pub(super) fn share(&mut self) -> Result<(), WriteError> {
+    pub(crate) fn share(&mut self) -> Result<(), WriteError> {
         if let Some(disk) = &mut self.disk {
             let folder = Folder::shared(disk.claim.place());
             let folder = folder.map_err(|source| WriteError::Io {
@@ -248,7 +248,7 @@ impl Store {
     }
 
     /// Puts the store in place, with space set aside for its last words.
-    pub(super) fn publish(&self) -> Result<(), WriteError> {
+    pub(crate) fn publish(&self) -> Result<(), WriteError> {
         self.set_aside()?;
         if let Some(Disk { claim, folder }) = &self.disk {
             claim.put_in_place()?;
@@ -273,7 +273,7 @@ impl Store {
     /// Writes the group document: from here on readers see what it lists.
     ///
     /// A store ends only when everything that was written is still there.
-    pub(super) fn tell(
+    pub(crate) fn tell(
         &mut self,
         attributes: Map<String, Value>,
         arrays: Map<String, Value>,
@@ -317,7 +317,7 @@ impl Store {
     }
 
     /// A fault with its place; that the store was taken away explains every other.
-    pub(super) fn fault(&self, fault: Fault) -> WriteError {
+    pub(crate) fn fault(&self, fault: Fault) -> WriteError {
         match self.storage.missing() {
             Some(what) => self.vanished(what),
             None => WriteError::Store {
@@ -335,7 +335,7 @@ impl Store {
     }
 
     /// Says in the store why nothing more is written: what was told last stays as it is otherwise.
-    pub(super) fn give_up(&mut self, reason: &str) {
+    pub(crate) fn give_up(&mut self, reason: &str) {
         if self.ended {
             return;
         }

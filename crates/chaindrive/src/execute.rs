@@ -1,119 +1,25 @@
 //! One run, whoever asks for it: assemble, choose, step, sample, judge.
 
+mod set_off;
+
 use std::convert::Infallible;
 
 use chaindrive_mechanics::Drive;
 use serde_json::{Map, Value};
 
-use super::checkpoint::NotAgain;
-use super::patience::LOOK;
-use super::set_off::{Begun, Chosen, assemble, choose, not_begun, set_off, short_runs};
-use super::{Checkpoint, Request};
+use crate::patience::{LOOK, assemble};
 use crate::precision::{Choice, Judgement, ShortRuns};
-use crate::record::{Ending, Provenance, Summary, attributes};
+use crate::record::{
+    Checkpoint, End, Ending, NotAgain, Provenance, Sink, Stopped, WriteError, attributes,
+};
+use crate::run_in::Onlooker;
 use crate::scene::SceneError;
-use crate::{Channel, RanIn, Run, RunIn, Simulation, SimulationError, SnapshotError, Verdict};
+use crate::summary::Summary;
+use crate::{
+    Channel, RanIn, Request, Run, RunIn, Simulation, SimulationError, SnapshotError, Verdict,
+};
 
-/// Where samples go: memory, a store, a table.
-pub trait Sink {
-    /// Why it refuses.
-    type Error: std::error::Error;
-
-    /// Takes note of a run that is about to begin: once, or before its run-in and behind it.
-    ///
-    /// # Errors
-    /// The place is taken, or cannot be written.
-    fn begin(
-        &mut self,
-        simulation: &Simulation,
-        channels: &[Channel],
-        provenance: &Provenance,
-    ) -> Result<(), Self::Error>;
-
-    /// Refuses what it could not keep, before anything moves.
-    ///
-    /// # Errors
-    /// There is no room for so many samples.
-    fn has_room(
-        &self,
-        simulation: &Simulation,
-        channels: &[Channel],
-        run: &Run,
-    ) -> Result<(), Self::Error> {
-        let _ = (simulation, channels, run);
-        Ok(())
-    }
-
-    /// Whether it keeps the samples, so that somebody will look at more than the summary of them.
-    fn keeps_samples(&self) -> bool {
-        true
-    }
-
-    /// Takes the last sample of the simulation.
-    ///
-    /// # Errors
-    /// It cannot be written.
-    fn push(&mut self, simulation: &Simulation) -> Result<(), Self::Error>;
-
-    /// Keeps what the run goes on from if it is stopped or killed, until the next one takes its place or the result is
-    /// closed with no sample more. Called for every checkpoint that is asked for, and when the user stops the run;
-    /// places that cannot be carried on have nothing to do.
-    ///
-    /// # Errors
-    /// It cannot be written.
-    fn keep(
-        &mut self,
-        simulation: &Simulation,
-        checkpoint: &Checkpoint,
-    ) -> Result<(), Self::Error> {
-        let _ = (simulation, checkpoint);
-        Ok(())
-    }
-
-    /// Closes the result, however the run ended.
-    ///
-    /// # Errors
-    /// It cannot be written.
-    fn end(&mut self, end: &End<'_>) -> Result<(), Self::Error>;
-}
-
-/// Facts that are known when a run has ended.
-#[derive(Debug)]
-pub struct End<'a> {
-    /// The simulation at its last state.
-    pub simulation: &'a Simulation,
-    /// The account of its samples.
-    pub summary: &'a Summary,
-    /// How exact it is; nothing is said of a run that failed.
-    pub judgement: Option<&'a Judgement>,
-    /// How it ended.
-    pub ending: &'a Ending,
-    /// Attributes of the result.
-    pub attributes: &'a Map<String, Value>,
-}
-
-/// Looks on while a run is carried out, and may have it stopped.
-pub trait Onlooker {
-    /// Whether the user wants it to stop; asked after every sample, and every 50 ms where there is none.
-    fn stop(&self) -> bool;
-
-    /// Is told how far the run is, as often as [`stop`](Self::stop) is asked.
-    fn see(&self, simulation: &Simulation) {
-        let _ = simulation;
-    }
-
-    /// Is told how much of the run-in is done, 0 to 1, as often as [`stop`](Self::stop) is asked there. Where a run-in ends by
-    /// itself, first how much of the longest that is tried, and then of the one that is carried out.
-    fn see_run_in(&self, share: f64) {
-        let _ = share;
-    }
-}
-
-impl<F: Fn() -> bool> Onlooker for F {
-    fn stop(&self) -> bool {
-        self()
-    }
-}
+use set_off::{Begun, Chosen, choose, not_begun, set_off, short_runs};
 
 /// Why there is no result at all, or no whole one.
 #[derive(Debug, thiserror::Error)]
@@ -246,11 +152,22 @@ pub fn execute<S: Sink>(
     complete(request, begun, sink, onlooker)
 }
 
+impl Stopped {
+    /// Takes the run to its end.
+    ///
+    /// # Errors
+    /// [`RunError`] when the run cannot go on, or the store refuses.
+    pub fn resume(self, onlooker: &dyn Onlooker) -> Result<Report, RunError<WriteError>> {
+        let (checkpoint, mut sink) = self.into_parts();
+        resume(&checkpoint, &mut sink, onlooker)
+    }
+}
+
 /// Carries a run on from a checkpoint: the report is that of the run that was never stopped, but for the wall times.
 ///
 /// The sink must hold the samples and contacts up to the checkpoint, and nothing else: see
 /// [`Stopped`](crate::record::Stopped), which opens the store of a run that was stopped or killed.
-pub(crate) fn resume<S: Sink>(
+fn resume<S: Sink>(
     checkpoint: &Checkpoint,
     sink: &mut S,
     onlooker: &dyn Onlooker,

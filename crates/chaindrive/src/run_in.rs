@@ -1,48 +1,43 @@
 //! The run-in: motion before t = 0, so that the record begins where it is steady.
 
+mod steady;
+
 use std::f64::consts::TAU;
 use std::fmt;
-use std::str::FromStr;
 
 use chaindrive_mechanics::{Assembled, Drive, EventKinds};
 use serde::{Deserialize, Serialize};
 
-use super::execute::Onlooker;
-use super::patience::LOOK;
-use super::set_off::assemble;
-use super::{Run, steady};
 use crate::figure::Measure;
-use crate::scene::read_time;
-use crate::{Simulation, SimulationError};
-
-/// Motion that is simulated before t = 0.
-///
-/// In a scene, for the command and in Python: a time (`"0.5 s"`), turns of a sprocket (`"5 turns"` of the first one, or
-/// `"5 turns of camshaft"`), or `"auto"`.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub enum RunIn {
-    /// Nothing: the record begins with the start.
-    #[default]
-    None,
-    /// A time \[s\], positive.
-    Time(f64),
-    /// So many turns of a sprocket at its mean speed; of the first one without a name.
-    Turns {
-        /// Turns, positive.
-        turns: f64,
-        /// The sprocket.
-        sprocket: Option<String>,
-    },
-    /// Until the tension of every span is steady, at most [`MOST_CIRCUITS`] circuits of the slowest chain.
-    Auto,
-    /// Default of scenes without a run-in: [`Auto`](Self::Auto) for a [motion that repeats](Assembled::why_it_does_not_repeat), nothing for others and for
-    /// a [`Simulation`] moved from outside.
-    Usual,
-}
+use crate::patience::{LOOK, assemble};
+use crate::{Run, RunIn, Simulation, SimulationError};
 
 /// Circuits of the chain \[–\] after which a run-in that ends by itself gives up. *Assumed*: what swings longer than that is no
 /// start that dies out.
 pub const MOST_CIRCUITS: u32 = 32;
+
+/// Looks on while a run is carried out, and may have it stopped.
+pub trait Onlooker {
+    /// Whether the user wants it to stop; asked after every sample, and every 50 ms where there is none.
+    fn stop(&self) -> bool;
+
+    /// Is told how far the run is, as often as [`stop`](Self::stop) is asked.
+    fn see(&self, simulation: &Simulation) {
+        let _ = simulation;
+    }
+
+    /// Is told how much of the run-in is done, 0 to 1, as often as [`stop`](Self::stop) is asked there. Where a run-in ends by
+    /// itself, first how much of the longest that is tried, and then of the one that is carried out.
+    fn see_run_in(&self, share: f64) {
+        let _ = share;
+    }
+}
+
+impl<F: Fn() -> bool> Onlooker for F {
+    fn stop(&self) -> bool {
+        self()
+    }
+}
 
 /// How a run was run in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -59,7 +54,7 @@ pub struct RanIn {
 
 impl RanIn {
     /// A run-in longer than nothing: the record begins behind the assembly.
-    pub(super) fn has_moved(&self) -> bool {
+    pub(crate) fn has_moved(&self) -> bool {
         self.time > 0.0
     }
 
@@ -95,75 +90,16 @@ impl fmt::Display for RanIn {
     }
 }
 
-impl fmt::Display for RunIn {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::None => write!(f, "0 s"),
-            Self::Time(time) => write!(f, "{time} s"),
-            Self::Turns {
-                turns,
-                sprocket: None,
-            } => write!(f, "{turns} turns"),
-            Self::Turns {
-                turns,
-                sprocket: Some(name),
-            } => write!(f, "{turns} turns of {name}"),
-            Self::Auto => write!(f, "auto"),
-            Self::Usual => write!(f, "as usual"),
-        }
-    }
-}
-
-impl FromStr for RunIn {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let text = text.trim();
-        if text == "auto" {
-            return Ok(Self::Auto);
-        }
-        let (amount, sprocket) = match text.split_once(" of ") {
-            Some((amount, name)) => (amount.trim_end(), Some(name.trim().to_owned())),
-            None => (text, None),
-        };
-        let turns = amount
-            .strip_suffix("turns")
-            .or_else(|| amount.strip_suffix("turn"));
-        if let Some(turns) = turns {
-            let turns: f64 = turns
-                .trim_end()
-                .parse()
-                .map_err(|_| format!("`{}` is no number of turns", turns.trim_end()))?;
-            return Ok(Self::Turns { turns, sprocket });
-        }
-        if sprocket.is_some() {
-            return Err(format!("`{amount}` is no number of turns"));
-        }
-        let time = read_time(text)?;
-        Ok(if time == 0.0 {
-            Self::None
-        } else {
-            Self::Time(time)
-        })
-    }
-}
-
-impl RunIn {
-    /// Names what is out of range.
-    pub(super) fn check(&self) -> Result<(), SimulationError> {
-        let (value, allowed) = match self {
-            Self::None | Self::Auto | Self::Usual => return Ok(()),
-            Self::Time(time) => (*time, "a time that is not negative"),
-            Self::Turns { turns, .. } => (*turns, "a positive number of turns"),
-        };
-        if value > 0.0 && value.is_finite() {
-            return Ok(());
-        }
-        Err(SimulationError::Setting {
-            name: "run_in",
-            value,
-            allowed,
-        })
+impl Simulation {
+    /// Assembles the drive, runs it in if the run says so, and starts the clock at t = 0.
+    ///
+    /// # Errors
+    /// [`SimulationError`] when the drive does not assemble, a setting is out of range, the method is
+    /// not for this chain, or the step asked for is unstable.
+    pub fn start(drive: &Drive, run: &Run) -> Result<Self, SimulationError> {
+        run.check()?;
+        let (start, _) = run_in(drive.assemble()?, run, &|| false)?;
+        Self::from_assembled(start, run)
     }
 }
 
@@ -189,22 +125,22 @@ pub fn run_in(
 }
 
 /// A drive where its record begins.
-pub(super) struct Beginning {
-    pub(super) start: Assembled,
-    pub(super) ran_in: Option<RanIn>,
+pub(crate) struct Beginning {
+    pub(crate) start: Assembled,
+    pub(crate) ran_in: Option<RanIn>,
     /// The simulation from there, where the run-in has gone on with it.
-    pub(super) simulation: Option<Simulation>,
+    pub(crate) simulation: Option<Simulation>,
 }
 
 impl Beginning {
     /// A run-in longer than nothing.
-    pub(super) fn has_moved(&self) -> bool {
+    pub(crate) fn has_moved(&self) -> bool {
         self.ran_in.as_ref().is_some_and(RanIn::has_moved)
     }
 }
 
 /// Runs an assembled drive in, if the run says so.
-pub(super) fn begin(
+pub(crate) fn begin(
     start: Assembled,
     run: &Run,
     onlooker: &dyn Onlooker,
@@ -322,34 +258,5 @@ fn turns_last(
         Err(refuse(format!(
             "`{name}` turns at {speed} rad/s in the mean: give a time, or turns of a sprocket that turns"
         )))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn texts_are_read_and_written() {
-        let turns = |turns, name: Option<&str>| RunIn::Turns {
-            turns,
-            sprocket: name.map(str::to_owned),
-        };
-        for (text, meant) in [
-            ("auto", RunIn::Auto),
-            ("0.5 s", RunIn::Time(0.5)),
-            ("500 ms", RunIn::Time(0.5)),
-            ("0 s", RunIn::None),
-            ("5 turns", turns(5.0, None)),
-            ("1 turn of camshaft", turns(1.0, Some("camshaft"))),
-            ("2.5 turns of the hub", turns(2.5, Some("the hub"))),
-        ] {
-            let read: RunIn = text.parse().unwrap();
-            assert_eq!(read, meant, "{text}");
-            assert_eq!(read.to_string().parse::<RunIn>().unwrap(), meant);
-        }
-        for text in ["automatic", "five turns", "5 mm", "5 s of crank", ""] {
-            assert!(text.parse::<RunIn>().is_err(), "{text}");
-        }
     }
 }

@@ -28,10 +28,8 @@ use zarrs::array::builder::ArrayBuilderFillValue;
 use zarrs::array::codec::ZstdCodec;
 use zarrs::array::{ArrayBuilder, CodecOptions, DataType, data_type};
 
-use super::error::Fault;
-use super::files::Storage;
-use super::track::{StoredArray, ZSTD_LEVEL};
-use crate::sweep::{OPEN, Quantity, TEXTS};
+use super::{OPEN, Quantity, TEXTS};
+use crate::zarr::{Fault, Storage, StoredArray, ZSTD_LEVEL};
 pub use coordinator::SweepStore;
 use layout::Layout;
 pub use worker::{Finished, Worker};

@@ -16,7 +16,7 @@ use std::sync::Arc;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use zarrs::storage::{Bytes, StorageError, StoreKey};
 
-use super::error::Fault;
+use super::fault::Fault;
 use super::files::{Change, Files};
 use super::names::IDENTITY;
 
@@ -85,7 +85,7 @@ pub trait Objects: fmt::Debug + Send + Sync {
 
 /// The objects of one store.
 #[derive(Debug)]
-pub(super) struct Bucket {
+pub(crate) struct Bucket {
     objects: Arc<dyn Objects>,
     identity: Vec<u8>,
     waiting: ThreadPool,
@@ -93,7 +93,7 @@ pub(super) struct Bucket {
 
 impl Bucket {
     /// The first to begin a store here; none where somebody was before.
-    pub(super) fn begin(objects: &Arc<dyn Objects>) -> io::Result<Option<Self>> {
+    pub(crate) fn begin(objects: &Arc<dyn Objects>) -> io::Result<Option<Self>> {
         // Keys of hashing are drawn by lot.
         let lots = [(); 2].map(|()| RandomState::new().hash_one(std::process::id()));
         let identity = format!("{MARK}{:016x}{:016x}\n", lots[0], lots[1]).into_bytes();
@@ -107,12 +107,12 @@ impl Bucket {
     }
 
     /// Whether this is the identity of a store of this program.
-    pub(super) fn is_identity(bytes: &[u8]) -> bool {
+    pub(crate) fn is_identity(bytes: &[u8]) -> bool {
         bytes.starts_with(MARK.as_bytes())
     }
 
     /// A store that was begun; none where there is none.
-    pub(super) fn open(objects: &Arc<dyn Objects>) -> io::Result<Option<Self>> {
+    pub(crate) fn open(objects: &Arc<dyn Objects>) -> io::Result<Option<Self>> {
         let identity = objects.get(IDENTITY)?;
         let identity = identity.map(|object| Self::of(objects, object.bytes));
         identity.transpose()

@@ -5,7 +5,7 @@ use zarrs::group::GroupCreateError;
 use zarrs::storage::{StorageError, StoreKeyError};
 
 #[derive(Debug, thiserror::Error)]
-pub(super) enum Fault {
+pub(crate) enum Fault {
     #[error(transparent)]
     Storage(#[from] StorageError),
     #[error(transparent)]

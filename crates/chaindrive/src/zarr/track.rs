@@ -6,29 +6,29 @@ use zarrs::array::CodecOptions;
 use zarrs::array::codec::ZstdCodec;
 use zarrs::array::{Array, ArrayBuilder, ArrayMetadataOptions, data_type};
 
-use super::error::Fault;
+use super::fault::Fault;
 use super::files::{Ground, Storage};
-use crate::record::{Axis, labels};
+use crate::channel::{Axis, labels};
 
 /// An array of the store.
-pub(super) type StoredArray = Array<Ground>;
+pub(crate) type StoredArray = Array<Ground>;
 
 /// Numbers in a chunk, 1 MiB of them, and samples at most.
 const NUMBERS_PER_CHUNK: usize = 1 << 17;
 const SAMPLES_PER_CHUNK: usize = 1 << 14;
 
 /// Level of the compression: what is zero or constant shrinks at any level, the rest at none.
-pub(super) const ZSTD_LEVEL: i32 = 3;
+pub(crate) const ZSTD_LEVEL: i32 = 3;
 
 /// Samples in a chunk of every array of a run, by the width of the widest: `dask` wants the arrays of a
 /// dataset to be cut at the same times.
-pub(super) fn samples_per_chunk(width: usize) -> usize {
+pub(crate) fn samples_per_chunk(width: usize) -> usize {
     (NUMBERS_PER_CHUNK / width.max(1)).clamp(1, SAMPLES_PER_CHUNK)
 }
 
 /// An array that grows with time.
-pub(super) struct Track {
-    pub(super) name: &'static str,
+pub(crate) struct Track {
+    pub(crate) name: &'static str,
     array: StoredArray,
     /// Entries a sample.
     width: usize,
@@ -42,7 +42,7 @@ pub(super) struct Track {
 }
 
 impl Track {
-    pub(super) fn new(
+    pub(crate) fn new(
         storage: &Storage,
         name: &'static str,
         axis: Axis,
@@ -76,7 +76,7 @@ impl Track {
     }
 
     /// Goes on behind the samples that are in the store; what there is more of them is forgotten.
-    pub(super) fn go_on(&mut self, samples: u64) -> Result<(), Fault> {
+    pub(crate) fn go_on(&mut self, samples: u64) -> Result<(), Fault> {
         self.set_length(samples)?;
         self.chunk = samples / self.samples as u64;
         #[expect(
@@ -96,7 +96,7 @@ impl Track {
     }
 
     /// The last chunk in use.
-    pub(super) fn last_chunk(&self) -> u64 {
+    pub(crate) fn last_chunk(&self) -> u64 {
         self.chunk
     }
 
@@ -109,7 +109,7 @@ impl Track {
     }
 
     /// Takes one sample, written by `read`; stores the chunk when it is full.
-    pub(super) fn push(&mut self, read: impl FnOnce(&mut Vec<f64>)) -> Result<(), Fault> {
+    pub(crate) fn push(&mut self, read: impl FnOnce(&mut Vec<f64>)) -> Result<(), Fault> {
         read(&mut self.pending);
         if self.width > 0 && self.pending.len() >= self.samples * self.width {
             self.store()?;
@@ -121,7 +121,7 @@ impl Track {
     }
 
     /// Stores the chunk in work, filled up with NaN.
-    pub(super) fn store(&mut self) -> Result<(), Fault> {
+    pub(crate) fn store(&mut self) -> Result<(), Fault> {
         let held = self.pending.len();
         if held == self.stored {
             return Ok(());
@@ -140,29 +140,29 @@ impl Track {
     }
 
     /// Adds an attribute; takes effect with the metadata.
-    pub(super) fn tell(&mut self, name: &str, value: Value) {
+    pub(crate) fn tell(&mut self, name: &str, value: Value) {
         self.array.attributes_mut().insert(name.into(), value);
     }
 
     /// Makes the array as long as there are samples; takes effect with its metadata.
-    pub(super) fn set_length(&mut self, samples: u64) -> Result<(), Fault> {
+    pub(crate) fn set_length(&mut self, samples: u64) -> Result<(), Fault> {
         let mut shape = self.array.shape().to_vec();
         shape[0] = samples;
         self.array.set_shape(shape)?;
         Ok(())
     }
 
-    pub(super) fn metadata(&self) -> Result<Value, Fault> {
+    pub(crate) fn metadata(&self) -> Result<Value, Fault> {
         metadata(&self.array)
     }
 
-    pub(super) fn store_metadata(&self) -> Result<(), Fault> {
+    pub(crate) fn store_metadata(&self) -> Result<(), Fault> {
         store_metadata(&self.array)
     }
 }
 
 /// Writes the labels of an axis, which do not change, and returns the array's metadata.
-pub(super) fn store_labels(
+pub(crate) fn store_labels(
     storage: &Storage,
     name: &'static str,
     axis: Axis,
@@ -172,7 +172,7 @@ pub(super) fn store_labels(
 }
 
 /// Writes the names of the chains that the entries of an axis belong to, and returns the array's metadata.
-pub(super) fn store_chains(
+pub(crate) fn store_chains(
     storage: &Storage,
     name: &'static str,
     along: &'static str,
@@ -215,10 +215,10 @@ fn plain() -> ArrayMetadataOptions {
     ArrayMetadataOptions::default().with_include_zarrs_metadata(false)
 }
 
-pub(super) fn metadata(array: &StoredArray) -> Result<Value, Fault> {
+pub(crate) fn metadata(array: &StoredArray) -> Result<Value, Fault> {
     Ok(serde_json::to_value(array.metadata_opt(&plain()))?)
 }
 
-pub(super) fn store_metadata(array: &StoredArray) -> Result<(), Fault> {
+pub(crate) fn store_metadata(array: &StoredArray) -> Result<(), Fault> {
     Ok(array.store_metadata_opt(&plain())?)
 }

@@ -12,12 +12,12 @@ use super::Existing;
 use super::bucket::{Bucket, Objects};
 use super::inspect::read_group;
 use super::names::{CHECKPOINT, GROUP, IDENTITY, OF_SWEEPS, RECIPE, STAGED};
-use crate::record::attributes::FORMAT;
-use crate::record::error::WriteError;
+use super::story::FORMAT;
+use super::write_error::WriteError;
 
 /// Refuses a place that holds what must stay. The caller has claimed the place: a result that says `running` there
 /// was left by a process that died.
-pub(super) fn check(asked: &Path, place: &Path, existing: Existing) -> Result<(), WriteError> {
+pub(crate) fn check(asked: &Path, place: &Path, existing: Existing) -> Result<(), WriteError> {
     let io = |source| WriteError::Io {
         path: asked.to_owned(),
         source,
@@ -40,7 +40,7 @@ pub(super) fn check(asked: &Path, place: &Path, existing: Existing) -> Result<()
 }
 
 /// Refuses a place in an object store that holds what must stay, and empties it of what need not.
-pub(super) fn clear(
+pub(crate) fn clear(
     asked: &Path,
     objects: &dyn Objects,
     existing: Existing,
@@ -94,7 +94,7 @@ pub(super) fn clear(
 }
 
 /// A store that was begun in an object store, or copied there from a disk.
-pub(super) fn bucket(asked: &Path, objects: &Arc<dyn Objects>) -> Result<Bucket, WriteError> {
+pub(crate) fn bucket(asked: &Path, objects: &Arc<dyn Objects>) -> Result<Bucket, WriteError> {
     let found = Bucket::open(objects).and_then(|found| match found {
         None if objects.size(RECIPE)?.is_some() => {
             Bucket::begin(objects)?;
@@ -139,12 +139,12 @@ fn check_names(
 }
 
 /// The group document of an earlier result; an error if the folder is anything else.
-pub(super) fn group(asked: &Path, place: &Path) -> Result<Value, WriteError> {
+pub(crate) fn group(asked: &Path, place: &Path) -> Result<Value, WriteError> {
     document(asked, read_group(place).ok().flatten().as_deref())
 }
 
 /// The same of what is in that file.
-pub(super) fn document(asked: &Path, text: Option<&[u8]>) -> Result<Value, WriteError> {
+pub(crate) fn document(asked: &Path, text: Option<&[u8]>) -> Result<Value, WriteError> {
     let group: Option<Value> = text.and_then(|text| serde_json::from_slice(text).ok());
     group
         .filter(|group| group["attributes"]["format"] == FORMAT)

@@ -13,13 +13,13 @@ use zarrs::storage::{
     StorageError, StoreKey, StorePrefix, WritableStorageTraits, store_set_partial_many,
 };
 
-use super::error::Fault;
+use super::fault::Fault;
 
 /// New contents of a file, from what it holds; none where it stays as it is.
-pub(super) type Change<'a> = dyn FnMut(Option<Bytes>) -> Result<Option<Bytes>, Fault> + 'a;
+pub(crate) type Change<'a> = dyn FnMut(Option<Bytes>) -> Result<Option<Bytes>, Fault> + 'a;
 
 /// Files by key, in a folder or a bucket.
-pub(super) trait Files: Debug + Send + Sync {
+pub(crate) trait Files: Debug + Send + Sync {
     /// Contents of a file, if it is there.
     fn read(&self, key: &StoreKey) -> Result<Option<Bytes>, StorageError>;
 
@@ -54,13 +54,13 @@ pub(super) trait Files: Debug + Send + Sync {
 
 /// The files as `zarrs` reads and writes them.
 #[derive(Debug)]
-pub(super) struct Ground(Arc<dyn Files>);
+pub(crate) struct Ground(Arc<dyn Files>);
 
 /// Where arrays write their chunks.
-pub(super) type Storage = Arc<Ground>;
+pub(crate) type Storage = Arc<Ground>;
 
 impl Ground {
-    pub(super) fn of(files: Arc<dyn Files>) -> Arc<Self> {
+    pub(crate) fn of(files: Arc<dyn Files>) -> Arc<Self> {
         Arc::new(Self(files))
     }
 
@@ -68,7 +68,7 @@ impl Ground {
     ///
     /// # Errors
     /// One of those that came up.
-    pub(super) fn on_each<T: Sync, A: Send>(
+    pub(crate) fn on_each<T: Sync, A: Send>(
         &self,
         items: &[T],
         act: impl Fn(&T) -> Result<A, Fault> + Send + Sync,

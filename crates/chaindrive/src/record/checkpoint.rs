@@ -6,16 +6,18 @@ use serde::{Deserialize, Serialize};
 
 use chaindrive_mechanics::{Assembled, Drive, SystemMemory};
 
-use super::set_off::assemble;
-use super::{Given, RanIn, Request, Run, RunIn};
+use super::Provenance;
+use crate::patience::assemble;
 use crate::precision::{Choice, Quantity};
-use crate::record::{Provenance, Summary};
 use crate::scene::SceneError;
 use crate::seal::{Sealed, opened, sealed};
-use crate::{RequestError, Scene, SealError, Simulation, SimulationError, Snapshot, SnapshotError};
+use crate::{
+    Given, RanIn, Request, RequestError, Run, RunIn, Scene, SealError, Simulation, SimulationError,
+    Snapshot, SnapshotError, Summary,
+};
 
 /// Why a drive does not stand where it stood.
-pub(super) enum NotAgain {
+pub(crate) enum NotAgain {
     Start(SimulationError),
     Snapshot(SnapshotError),
 }
@@ -44,12 +46,12 @@ pub struct Checkpoint {
     every: Option<f64>,
     choice: Option<Choice>,
     /// Verification of the choice at the end of the run-in: done or not.
-    pub(super) is_verified: bool,
+    pub(crate) is_verified: bool,
     /// Wall time of the run so far, and that of its stepping \[s\].
     spent: [f64; 2],
-    pub(super) summary: Summary,
+    pub(crate) summary: Summary,
     /// None before the first sample of a run that is run in: it begins anew.
-    pub(super) snapshot: Option<Snapshot>,
+    pub(crate) snapshot: Option<Snapshot>,
     /// Where the record begins, if the drive was run in.
     start: Option<Start>,
 }
@@ -71,7 +73,7 @@ impl Sealed for Checkpoint {
 
 impl Checkpoint {
     /// A run as it is now.
-    pub(super) fn of(
+    pub(crate) fn of(
         request: &Request,
         provenance: &Provenance,
         simulation: &Simulation,
@@ -102,7 +104,7 @@ impl Checkpoint {
     }
 
     /// A run before its run-in.
-    pub(super) fn of_beginning(
+    pub(crate) fn of_beginning(
         request: &Request,
         provenance: &Provenance,
         simulation: &Simulation,
@@ -204,7 +206,7 @@ impl Checkpoint {
     }
 
     /// The request, with method and step as they were chosen.
-    pub(super) fn request(&self) -> Result<Request, SceneError> {
+    pub(crate) fn request(&self) -> Result<Request, SceneError> {
         Ok(Request {
             scene: Scene::from_text(&self.scene, &self.scene_name)?,
             run: self.run.clone(),
@@ -217,12 +219,12 @@ impl Checkpoint {
     }
 
     /// How the drive was run in, if it was.
-    pub(super) fn ran_in(&self) -> Option<RanIn> {
+    pub(crate) fn ran_in(&self) -> Option<RanIn> {
         self.start.as_ref().map(|start| start.ran_in.clone())
     }
 
     /// A run-in before the record, longer than nothing.
-    pub(super) fn has_moved(&self) -> bool {
+    pub(crate) fn has_moved(&self) -> bool {
         self.start.as_ref().is_some_and(|it| it.ran_in.has_moved())
     }
 
@@ -230,7 +232,7 @@ impl Checkpoint {
     ///
     /// # Errors
     /// It does not assemble, or is another one; somebody wants to stop.
-    pub(super) fn start(
+    pub(crate) fn start(
         &self,
         drive: &Drive,
         stop: &dyn Fn() -> bool,
@@ -251,12 +253,12 @@ impl Checkpoint {
     }
 
     /// How method and step were chosen.
-    pub(super) fn choice(&self) -> Option<&Choice> {
+    pub(crate) fn choice(&self) -> Option<&Choice> {
         self.choice.as_ref()
     }
 
     /// Wall time spent on the run and on its stepping before it was stopped.
-    pub(super) fn spent(&self) -> [Duration; 2] {
+    pub(crate) fn spent(&self) -> [Duration; 2] {
         let time = |seconds: f64| Duration::try_from_secs_f64(seconds).unwrap_or_default();
         self.spent.map(time)
     }

@@ -1,6 +1,8 @@
 //! The channels: what a run can record, with names, units and dimensions.
 
-use chaindrive_mechanics::{Energy, Flow, Observation, Parts, Store, Support, System};
+use chaindrive_mechanics::{
+    ChainSize, Energy, Flow, Observation, Parts, Place, Store, Support, System,
+};
 
 use crate::SimulationError;
 
@@ -226,7 +228,7 @@ impl Channel {
             Self::TensionerPosition => tensioners().map(|(position, _)| position).collect(),
             Self::TensionerForce => tensioners().map(|(_, force)| force).collect(),
             _ => {
-                let entries = super::labels(self.axis(), system).map_or(1, |labels| labels.len());
+                let entries = labels(self.axis(), system).map_or(1, |labels| labels.len());
                 vec![self.unit(); entries]
             }
         }
@@ -378,5 +380,60 @@ impl Channel {
             Self::EnergyFlows => to.extend(Flow::ALL.map(|flow| energy.flow(flow))),
             Self::EnergyLosses => to.extend(energy.losses()),
         }
+    }
+}
+
+impl Axis {
+    /// Whether its labels are numbers, not names.
+    pub fn is_numbered(self) -> bool {
+        matches!(self, Self::Roller | Self::Link | Self::Joint)
+    }
+
+    /// Name of the coordinate that tells the chain of every entry.
+    pub fn chain_coordinate(self) -> Option<&'static str> {
+        match self {
+            Self::Roller => Some("roller_chain"),
+            Self::Link => Some("link_chain"),
+            Self::Joint => Some("joint_chain"),
+            Self::Span => Some("span_chain"),
+            _ => None,
+        }
+    }
+}
+
+/// The chain that every entry along an axis belongs to, by name; none where there is one chain only, and along axes that do not
+/// run over chains.
+pub fn chains_along(axis: Axis, system: &System) -> Option<Vec<String>> {
+    let count: fn(&ChainSize) -> usize = match axis {
+        Axis::Roller => |size| size.rollers,
+        Axis::Link => |size| size.links,
+        Axis::Joint => |size| size.joints,
+        Axis::Span => |size| size.spans,
+        _ => return None,
+    };
+    let chains = system.chain_sizes();
+    let several = chains.len() > 1;
+    let repeated = |(name, size): (String, ChainSize)| vec![name; count(&size)];
+    several.then(|| chains.into_iter().flat_map(repeated).collect())
+}
+
+/// Labels along an axis: names, or numbers from 0 for rollers, links and joints; `None` for a scalar.
+pub fn labels(axis: Axis, system: &System) -> Option<Vec<String>> {
+    let numbers = |count: usize| (0..count).map(|i| i.to_string()).collect();
+    match axis {
+        Axis::None => None,
+        Axis::Roller => Some(numbers(system.rollers())),
+        Axis::Link => Some(numbers(system.links())),
+        Axis::Joint => Some(numbers(system.joints())),
+        Axis::Span => Some(system.span_names()),
+        Axis::Sprocket => Some(system.sprocket_names()),
+        Axis::Shaft => Some(system.shaft_names()),
+        Axis::Coupling => Some(system.coupling_names()),
+        Axis::Guide => Some(system.guide_names()),
+        Axis::Tensioner => Some(system.tensioner_names()),
+        Axis::OilColumn => Some(system.oil_column_names()),
+        Axis::Store => Some(Store::ALL.iter().map(|s| s.name().to_owned()).collect()),
+        Axis::Place => Some(Place::ALL.iter().map(|p| p.name().to_owned()).collect()),
+        Axis::Flow => Some(Flow::ALL.iter().map(|f| f.name().to_owned()).collect()),
     }
 }

@@ -1,25 +1,25 @@
 //! Names of the files of a store beside its arrays.
 
 /// State from which a run goes on, beside the arrays.
-pub(super) const CHECKPOINT: &str = "checkpoint";
+pub(crate) const CHECKPOINT: &str = "checkpoint";
 
 /// The document that makes a folder a Zarr group.
-pub(super) const GROUP: &str = "zarr.json";
+pub(crate) const GROUP: &str = "zarr.json";
 
 /// The object that tells one store from another that is begun in its place later.
-pub(super) const IDENTITY: &str = "identity";
+pub(crate) const IDENTITY: &str = "identity";
 
 /// Begins the end of the name of a file on its way, the number of its process; readers of the store know no such key.
-pub(super) const STAGED: char = '#';
+pub(crate) const STAGED: char = '#';
 
 /// Recipe of a sweep.
-pub(super) const RECIPE: &str = "sweep.json";
+pub(crate) const RECIPE: &str = "sweep.json";
 
 /// How the arrays of a sweep are cut.
-pub(super) const LAYOUT: &str = "layout.json";
+pub(crate) const LAYOUT: &str = "layout.json";
 
 /// Lock of the layout.
 const LOCK: &str = "layout.lock";
 
 /// Files of a sweep beside its arrays.
-pub(super) const OF_SWEEPS: [&str; 3] = [RECIPE, LAYOUT, LOCK];
+pub(crate) const OF_SWEEPS: [&str; 3] = [RECIPE, LAYOUT, LOCK];

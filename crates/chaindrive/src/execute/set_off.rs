@@ -3,13 +3,13 @@
 use chaindrive_integrate::Method;
 use chaindrive_mechanics::{Assembled, Drive};
 
-use super::execute::{Onlooker, RunError};
-use super::patience::patiently;
-use super::run_in::{self, Beginning};
-use super::{Request, RunIn};
+use super::RunError;
+use crate::patience::assemble;
 use crate::precision::{Choice, Estimate, ShortRuns, choose_with, estimate};
-use crate::record::{Provenance, Summary};
-use crate::{Simulation, SimulationError};
+use crate::record::Provenance;
+use crate::run_in::{self, Beginning, Onlooker};
+use crate::summary::Summary;
+use crate::{Request, RunIn, Simulation, SimulationError};
 
 /// A run that is ready to move.
 pub(super) struct Begun {
@@ -195,13 +195,4 @@ pub(super) fn set_off<E: std::error::Error>(
         short_runs,
         estimate,
     })
-}
-
-/// Assembles a drive on a thread of its own, so that the user need not wait for a chain that settles.
-///
-/// # Errors
-/// [`SimulationError`] when the drive does not assemble, or somebody wants to stop.
-pub fn assemble(drive: &Drive, stop: &dyn Fn() -> bool) -> Result<Assembled, SimulationError> {
-    let drive = drive.clone();
-    Ok(patiently(move || drive.assemble(), stop)??)
 }

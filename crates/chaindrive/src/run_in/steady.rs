@@ -21,12 +21,10 @@ use std::collections::VecDeque;
 
 use chaindrive_mechanics::{Assembled, EventKinds, Observation};
 
-use super::execute::Onlooker;
-use super::run_in::MOST_CIRCUITS;
-use super::{Run, RunIn};
-use crate::record::drift;
+use super::{MOST_CIRCUITS, Onlooker};
 use crate::simulate::Sample;
-use crate::{Channel, Simulation, SimulationError};
+use crate::summary::drift;
+use crate::{Channel, Run, RunIn, Simulation, SimulationError};
 
 /// Teeth of a block at least, looks a tooth, and what has to be steady at least: teeth, and periods of the forcing and times of tensioners.
 const BLOCK: f64 = 2.5;

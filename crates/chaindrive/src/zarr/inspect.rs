@@ -31,7 +31,7 @@ const TYPES: [(&str, Option<u64>); 6] = [
 const CODECS: [&str; 3] = ["bytes", "vlen-utf8", "zstd"];
 
 /// Reads a file that is one, and not larger than it should be; none where there is nothing.
-pub(super) fn read_file(path: &Path, most: u64) -> io::Result<Option<Vec<u8>>> {
+pub(crate) fn read_file(path: &Path, most: u64) -> io::Result<Option<Vec<u8>>> {
     let about = match fs::symlink_metadata(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
         about => about?,
@@ -53,7 +53,7 @@ pub(super) fn read_file(path: &Path, most: u64) -> io::Result<Option<Vec<u8>>> {
 }
 
 /// The group document of a store, as far as it can be one.
-pub(super) fn read_group(store: &Path) -> io::Result<Option<Vec<u8>>> {
+pub(crate) fn read_group(store: &Path) -> io::Result<Option<Vec<u8>>> {
     read_file(&store.join(GROUP), DOCUMENT)
 }
 
@@ -61,7 +61,7 @@ pub(super) fn read_group(store: &Path) -> io::Result<Option<Vec<u8>>> {
 ///
 /// # Errors
 /// The place in the store, and what is wrong with it.
-pub(super) fn inspect(store: &Path, group: &Value) -> Result<(), String> {
+pub(crate) fn inspect(store: &Path, group: &Value) -> Result<(), String> {
     walk(store, Path::new(""), 0)?;
     if group["zarr_format"] != 3 {
         return Err("it is not of Zarr format 3".into());

@@ -13,7 +13,7 @@ use rayon::ThreadPool;
 use same_file::Handle;
 use zarrs::storage::{Bytes, StorageError, StoreKey};
 
-use super::error::Fault;
+use super::fault::Fault;
 use super::files::{Change, Files};
 use super::inspect::read_file;
 use super::names::STAGED;
@@ -23,7 +23,7 @@ const LARGEST: u64 = 1 << 30;
 
 /// A folder with a store in the making.
 #[derive(Debug)]
-pub(super) struct Folder {
+pub(crate) struct Folder {
     /// Keeps the folder recognisable, wherever it is moved.
     itself: Handle,
     state: Mutex<State>,
@@ -42,7 +42,7 @@ struct State {
 
 impl Folder {
     /// Makes an empty folder.
-    pub(super) fn create(root: PathBuf) -> io::Result<Self> {
+    pub(crate) fn create(root: PathBuf) -> io::Result<Self> {
         fs::create_dir(&root)?;
         Ok(Self {
             itself: Handle::from_path(&root)?,
@@ -56,7 +56,7 @@ impl Folder {
     }
 
     /// Opens a folder with a store that was left, and clears away what was on its way when its writer died.
-    pub(super) fn open(root: &Path) -> io::Result<Self> {
+    pub(crate) fn open(root: &Path) -> io::Result<Self> {
         let mut state = State {
             root: root.to_owned(),
             folders: HashSet::new(),
@@ -71,7 +71,7 @@ impl Folder {
     }
 
     /// Opens a folder to read it, whoever writes there: nothing is cleared away.
-    pub(super) fn to_read(root: &Path) -> io::Result<Self> {
+    pub(crate) fn to_read(root: &Path) -> io::Result<Self> {
         Ok(Self {
             itself: Handle::from_path(root)?,
             state: Mutex::new(State {
@@ -84,19 +84,19 @@ impl Folder {
     }
 
     /// Opens a folder in which several processes write, each files of its own.
-    pub(super) fn shared(root: &Path) -> io::Result<Self> {
+    pub(crate) fn shared(root: &Path) -> io::Result<Self> {
         let folder = Self::to_read(root)?;
         folder.state().shared = true;
         Ok(folder)
     }
 
     /// Clears away what was on its way when a writer died.
-    pub(super) fn clear_staged(&self) -> io::Result<()> {
+    pub(crate) fn clear_staged(&self) -> io::Result<()> {
         clear_staged(&self.state().root)
     }
 
     /// Takes note that the folder was moved.
-    pub(super) fn moved_to(&self, root: &Path) {
+    pub(crate) fn moved_to(&self, root: &Path) {
         root.clone_into(&mut self.state().root);
     }
 

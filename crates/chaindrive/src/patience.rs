@@ -3,6 +3,8 @@
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
+use chaindrive_mechanics::{Assembled, Drive};
+
 use crate::SimulationError;
 
 /// Wall time between two looks at whoever may want to stop.
@@ -36,6 +38,15 @@ pub fn patiently<T: Send + 'static>(
             },
         }
     }
+}
+
+/// Assembles a drive on a thread of its own, so that the user need not wait for a chain that settles.
+///
+/// # Errors
+/// [`SimulationError`] when the drive does not assemble, or somebody wants to stop.
+pub fn assemble(drive: &Drive, stop: &dyn Fn() -> bool) -> Result<Assembled, SimulationError> {
+    let drive = drive.clone();
+    Ok(patiently(move || drive.assemble(), stop)??)
 }
 
 #[cfg(test)]

@@ -10,17 +10,14 @@ use std::time::{Duration, Instant};
 use serde_json::{Map, Value};
 use zarrs::array::{CodecOptions, data_type};
 
-use super::super::names::{LAYOUT, RECIPE};
 use super::layout::Layout;
 use super::{Arrays, Finished, Worker, every_chunk};
-use crate::record::attributes::Story;
-use crate::record::zarr::bucket::Objects;
-use crate::record::zarr::error::Fault;
-use crate::record::zarr::store::Store;
-use crate::record::zarr::track::{StoredArray, metadata, store_metadata};
-use crate::record::zarr::{Ending, Existing, about};
-use crate::record::{Axis, WriteError};
+use crate::Axis;
 use crate::sweep::{Coordinate, Go, Outcome, Quantity, Recipe, Sample, Sweep, TEXTS, Tally};
+use crate::zarr::{
+    Ending, Existing, Fault, LAYOUT, Objects, RECIPE, Store, StoredArray, Story, WriteError, about,
+    metadata, store_metadata,
+};
 
 /// Wall time between two accounts of a sweep in its store.
 const TELL_EVERY: Duration = Duration::from_secs(5);
@@ -380,12 +377,7 @@ impl SweepStore {
             }
         })?;
         self.finished = counts(&tally);
-        let ending = match tally.failed {
-            _ if tally.open > 0 => Ending::Interrupted,
-            0 => Ending::Complete,
-            failed => Ending::Failed(format!("{failed} of {} variants failed", self.sweep.len())),
-        };
-        self.tell(&ending)?;
+        self.tell(&tally.ending())?;
         let report = if few {
             self.sweep.report(&outcomes).to_string()
         } else {

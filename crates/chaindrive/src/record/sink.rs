@@ -1,0 +1,86 @@
+//! Where the samples of a run go.
+
+use serde_json::{Map, Value};
+
+use super::{Checkpoint, Provenance};
+use crate::precision::Judgement;
+use crate::zarr::Ending;
+use crate::{Channel, Run, Simulation, Summary};
+
+/// Where samples go: memory, a store, a table.
+pub trait Sink {
+    /// Why it refuses.
+    type Error: std::error::Error;
+
+    /// Takes note of a run that is about to begin: once, or before its run-in and behind it.
+    ///
+    /// # Errors
+    /// The place is taken, or cannot be written.
+    fn begin(
+        &mut self,
+        simulation: &Simulation,
+        channels: &[Channel],
+        provenance: &Provenance,
+    ) -> Result<(), Self::Error>;
+
+    /// Refuses what it could not keep, before anything moves.
+    ///
+    /// # Errors
+    /// There is no room for so many samples.
+    fn has_room(
+        &self,
+        simulation: &Simulation,
+        channels: &[Channel],
+        run: &Run,
+    ) -> Result<(), Self::Error> {
+        let _ = (simulation, channels, run);
+        Ok(())
+    }
+
+    /// Whether it keeps the samples, so that somebody will look at more than the summary of them.
+    fn keeps_samples(&self) -> bool {
+        true
+    }
+
+    /// Takes the last sample of the simulation.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    fn push(&mut self, simulation: &Simulation) -> Result<(), Self::Error>;
+
+    /// Keeps what the run goes on from if it is stopped or killed, until the next one takes its place or the result is
+    /// closed with no sample more. Called for every checkpoint that is asked for, and when the user stops the run;
+    /// places that cannot be carried on have nothing to do.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    fn keep(
+        &mut self,
+        simulation: &Simulation,
+        checkpoint: &Checkpoint,
+    ) -> Result<(), Self::Error> {
+        let _ = (simulation, checkpoint);
+        Ok(())
+    }
+
+    /// Closes the result, however the run ended.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    fn end(&mut self, end: &End<'_>) -> Result<(), Self::Error>;
+}
+
+/// Facts that are known when a run has ended.
+#[derive(Debug)]
+pub struct End<'a> {
+    /// The simulation at its last state.
+    pub simulation: &'a Simulation,
+    /// The account of its samples.
+    pub summary: &'a Summary,
+    /// How exact it is; nothing is said of a run that failed.
+    pub judgement: Option<&'a Judgement>,
+    /// How it ended.
+    pub ending: &'a Ending,
+    /// Attributes of the result.
+    pub attributes: &'a Map<String, Value>,
+}

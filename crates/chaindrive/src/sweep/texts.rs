@@ -1,0 +1,15 @@
+//! Texts that results have of every variant.
+
+/// Message for a variant that was not carried out.
+pub(crate) const OPEN: &str = "not carried out: the sweep was stopped";
+
+/// Names and descriptions of the texts that results have of every variant.
+pub(crate) const TEXTS: [(&str, &str); 4] = [
+    (
+        "verdict",
+        "whether the numbers can be trusted: trusted, caution or distrusted",
+    ),
+    ("reasons", "names of what speaks against the numbers"),
+    ("verdict_note", "what speaks against the numbers, in words"),
+    ("error", "what went wrong; empty where nothing did"),
+];
