@@ -5,8 +5,8 @@
 //! laid. Coordinates are counted from the chain's own first one, and states come as the chain's own part. A chain may look at the
 //! bodies that it touches, never at the system. Nobody outside this folder asks which member it is.
 
-mod balance;
 pub(crate) mod chain;
+mod held_end;
 mod joints;
 pub(crate) mod links;
 pub(crate) mod model;
@@ -17,22 +17,22 @@ use std::ops::Range;
 
 use chaindrive_contact::Prepared;
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::{Moment, Prediction, Registers, Weights};
+use chaindrive_integrate::{Moment, Registers, Weights};
 use serde::{Deserialize, Serialize};
 
-pub(crate) use balance::{Balance, Load, Moving, Sum, Unknown, Way};
+use held_end::held_ends;
 use links::Linkage;
 pub use links::inside::{Contact, Inside, Joints};
 use model::ChainModel;
 use particles::Particles;
 use particles::points::{self, Points};
-pub(crate) use record::{Loads, Record};
+pub(crate) use record::Record;
 
+use crate::bodies::{GroupBodies, Surroundings};
 use crate::contact::{ContactState, Frame, PlateContact};
 use crate::energy::Energy;
-use crate::observe::Observation;
-use crate::system::{Bodies, BodyContacts, GroupBodies, HeldEnd};
-use crate::{End, Ends, MemoryError};
+use crate::seam::{Load, Moving, Observation, Pose, Rates, Sum, Unknown};
+use crate::{End, MemoryError};
 
 /// A chain ready to move.
 #[derive(Clone, Debug)]
@@ -56,54 +56,6 @@ pub(crate) enum ChainMemory {
     Links(Box<links::Memory>, Option<joints::Stick>),
 }
 
-/// Surroundings in which a chain is evaluated.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Surroundings<'a> {
-    /// All bodies of the drive.
-    pub(crate) bodies: &'a Bodies,
-    /// First coordinate of the bodies of the chain's group.
-    pub(crate) first: usize,
-    /// The chain's contacts with them.
-    pub(crate) contacts: &'a BodyContacts,
-    /// How the velocities of the chain were predicted, if they were.
-    pub(crate) prediction: Option<Prediction<'a>>,
-}
-
-/// ω² and damping rates of the stiffest mode.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Rates {
-    /// ω² \[1/s²\].
-    pub(crate) squared: f64,
-    /// D \[1/s\].
-    pub(crate) damping: f64,
-    /// D without the damping that is taken at the end of a step whose velocities are predicted.
-    pub(crate) predicted: f64,
-    /// ω² of what limits steps of one solution, those springs left out that are taken at their end \[1/s²\].
-    pub(crate) carried: f64,
-}
-
-impl Rates {
-    /// Of a mode whose damping is taken where it is asked for.
-    pub(crate) fn of([squared, damping]: [f64; 2]) -> Self {
-        Self {
-            squared,
-            damping,
-            predicted: damping,
-            carried: squared,
-        }
-    }
-
-    /// The larger of each.
-    pub(crate) fn max(self, other: Self) -> Self {
-        Self {
-            squared: self.squared.max(other.squared),
-            damping: self.damping.max(other.damping),
-            predicted: self.predicted.max(other.predicted),
-            carried: self.carried.max(other.carried),
-        }
-    }
-}
-
 /// How a chain was laid.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LaidAs<'a> {
@@ -115,15 +67,6 @@ pub(crate) struct LaidAs<'a> {
     /// Sprockets that it can touch.
     pub(crate) sprockets: &'a [usize],
     pub(crate) gravity: Vector,
-}
-
-/// Where the rollers are and how they move, ghosts behind the last one included.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Pose<'a> {
-    pub(crate) x: &'a [f64],
-    pub(crate) y: &'a [f64],
-    pub(crate) vx: &'a [f64],
-    pub(crate) vy: &'a [f64],
 }
 
 /// Asks the member, whichever it is.
@@ -565,21 +508,5 @@ impl Chain {
             Self::Particles(_) | Self::Points(_) => {}
             Self::Links(chain) => chain.each_hinge(q, visit),
         }
-    }
-}
-
-/// The ends of a strand, and where they were laid.
-fn held_ends(chain: &crate::Chain, places: &[Point]) -> Vec<HeldEnd> {
-    match &chain.ends {
-        Ends::Closed => Vec::new(),
-        Ends::Open(ends) => [0, chain.rollers() - 1]
-            .into_iter()
-            .zip(ends)
-            .map(|(roller, end)| HeldEnd {
-                roller,
-                end: end.clone(),
-                place: places[roller],
-            })
-            .collect(),
     }
 }

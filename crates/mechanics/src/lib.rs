@@ -21,6 +21,7 @@
 mod applied;
 mod articulation;
 mod assembly;
+mod bodies;
 mod chains;
 mod check;
 mod contact;
@@ -42,6 +43,7 @@ mod observe;
 mod order;
 mod pose;
 mod profile;
+mod seam;
 mod standing;
 mod strength;
 mod struck;
@@ -53,6 +55,7 @@ mod trains;
 
 pub use articulation::Articulation;
 pub use assembly::{Assembled, Fitting, FreeTrain, Gap, RollerLayout, Statics};
+pub use bodies::Input;
 pub use chains::chain::{Chain, End, Ends};
 pub use chains::links::model::{Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel};
 pub use chains::model::ChainModel;
@@ -65,19 +68,19 @@ pub use drive::{
 };
 pub use energy::{Energy, Flow, Place, Store};
 pub use error::{AssemblyError, Clash, DriveError, MemoryError};
-pub use events::{ContactEvent, ContactPair, EventKinds};
 pub use fights::Fight;
 pub use modes::{Mode, Modes};
 pub use motion::{Harmonic, Kinematics, Motion, Table};
-pub use observe::{ChainSize, Observation};
+pub use observe::ChainSize;
 pub use order::Order;
 pub use pose::{
     Body, BodyKind, Figure, FigureChain, Instant, MissingChannel, Placement, PlateShape, Pose,
 };
+pub use seam::{ContactEvent, ContactPair, EventKinds, Observation};
 pub use strength::{Capacity, PowerLimits, Strength, Unrated};
 pub use struck::Struck;
 pub use surface::{Flank, Surface};
-pub use system::{Input, Record, System, SystemMemory};
+pub use system::{Record, System, SystemMemory};
 pub use tensioner::{Carrier, Push, PushForce, Tensioner, carriers, pushes};
 pub use torque::{Argument, Torque};
 

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use chaindrive_geometry::Vector;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use crate::system::{Wheel, WheelSupport};
+use crate::bodies::{Wheel, WheelSupport};
 use crate::{Assembled, AssemblyError, assembly};
 
 /// Small free vibrations of a drive about its static state, in ascending order.

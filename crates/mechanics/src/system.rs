@@ -5,16 +5,11 @@
 //! ```
 
 mod beside;
-mod bodies;
 mod build;
-mod contacts;
-mod equations;
 mod group;
 mod inputs;
 mod member;
 mod memory;
-mod shafts;
-mod slide;
 mod solve;
 
 use chaindrive_geometry::Point;
@@ -24,22 +19,18 @@ use chaindrive_integrate::{
 };
 use serde::{Deserialize, Serialize};
 
-pub(crate) use bodies::{Bodies, RailSupport, Wheel, WheelSupport};
 pub(crate) use build::{Laid, LaidChain};
-pub(crate) use contacts::{BodyContacts, OnRail, OnWheel, RailContact};
-pub(crate) use group::{Group, GroupBodies};
-pub use inputs::Input;
+pub(crate) use group::Group;
 pub(crate) use member::Member;
 pub use memory::SystemMemory;
-pub(crate) use shafts::{Shaft, Turn, TurnedBy};
-pub(crate) use slide::Slide;
 
-use crate::chains::{self, Chain, LaidAs, Rates};
+use crate::applied;
+use crate::bodies::Bodies;
+use crate::chains::{self, Chain, LaidAs};
 use crate::contact::Wrench;
 use crate::energy::Flow;
-use crate::events::EventLog;
+use crate::seam::{EventLog, Rates};
 use crate::tensioner::Slopes;
-use crate::{End, applied};
 
 /// A drive ready to move.
 #[derive(Clone, Debug)]
@@ -60,15 +51,6 @@ pub struct System {
     onset_depth: Option<f64>,
     /// Time at which it was assembled \[s\].
     pub(crate) begin: f64,
-}
-
-/// An end roller whose motion or load is given.
-#[derive(Clone, Debug)]
-pub(crate) struct HeldEnd {
-    pub(crate) roller: usize,
-    pub(crate) end: End,
-    /// Where it was laid.
-    pub(crate) place: Point,
 }
 
 /// Results of one evaluation: contact states, work space and loads of the bodies.

@@ -12,8 +12,9 @@
 use chaindrive_integrate::Moment;
 
 use super::setting_off::spread;
+use crate::bodies::Shaft;
 use crate::drive::{Layout, Parts, Rotation, StartSpeed};
-use crate::system::{Shaft, System};
+use crate::system::System;
 use crate::{AssemblyError, Torque};
 
 /// Shafts that chains, gears and couplings join and no motion turns.

@@ -19,8 +19,9 @@ use nalgebra_sparse::factorization::CscCholesky;
 use nalgebra_sparse::pattern::SparsityPattern;
 use nalgebra_sparse::{CooMatrix, CscMatrix};
 
-use crate::chains::{Balance, Load, Sum};
-use crate::system::{Member, WheelSupport};
+use crate::bodies::WheelSupport;
+use crate::seam::{Balance, Load, Sum};
+use crate::system::Member;
 use crate::tensioner::Extension;
 use crate::{AssemblyError, System};
 

@@ -5,8 +5,9 @@ use std::f64::consts::TAU;
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 
+use crate::bodies::{Shaft, TurnedBy};
 use crate::drive::{Layout, SpanStart, Stop};
-use crate::system::{Member, Shaft, TurnedBy};
+use crate::system::Member;
 use crate::{Motion, System};
 
 /// Velocities at the start: those that the layouts of the chains ask for, and along routes those of the sprockets at the speeds of the shafts.
@@ -202,7 +203,7 @@ fn along_route(
 }
 
 /// Angle that one pitch of chain turns a wheel, per metre of chain.
-fn pitch_angle(pitch: f64, wheel: &crate::system::Wheel) -> f64 {
+fn pitch_angle(pitch: f64, wheel: &crate::bodies::Wheel) -> f64 {
     // 2π / (z p)
     TAU / (f64::from(wheel.teeth) * pitch)
 }

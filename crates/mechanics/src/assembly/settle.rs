@@ -13,10 +13,11 @@
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Moment, SecondOrderSystem, Weights};
 
-use crate::chains::Rates;
+use crate::bodies::{RailSupport, Turn, WheelSupport};
 use crate::drive::PretensionAt;
 use crate::energy::Flow;
-use crate::system::{RailSupport, Record, System, Turn, WheelSupport};
+use crate::seam::Rates;
+use crate::system::{Record, System};
 use crate::{AssemblyError, Motion};
 
 /// Forces out of balance, relative to the largest joint force, at which a state counts as static.

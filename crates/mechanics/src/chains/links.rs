@@ -51,13 +51,14 @@ pub(super) use meshing::{rail_mount, wheel_mount};
 pub(crate) use pins::{Pairs, Pins};
 pub(crate) use posture::{Posture, Shapes, free_part};
 
+use super::Record;
 use super::joints::Joints;
-use super::{Record, Surroundings};
 use crate::End;
+use crate::bodies::Surroundings;
+use crate::chains::held_end::HeldEnd;
 use crate::contact::{ContactMemory, Kept, LaneTally, MemoryLanes};
 use crate::energy::Flow;
 use crate::lanes::Wide;
-use crate::system::HeldEnd;
 
 /// A body of the chain: a link, or a free roller.
 #[derive(Clone, Copy, Debug)]

@@ -22,11 +22,13 @@ mod statics;
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Array, Moment, Prediction, Registers};
 
+use super::Record;
 use super::joints::Joints;
-use super::{Pose, Rates, Record, Surroundings};
+use crate::bodies::Surroundings;
+use crate::chains::held_end::HeldEnd;
 use crate::contact::PlatePlaces;
 use crate::contact::Rollers;
-use crate::system::HeldEnd;
+use crate::seam::{Pose, Rates};
 use drag::Drag;
 pub(super) use springs::Links;
 pub(super) use springs::Turning;

@@ -7,7 +7,7 @@ use chaindrive_integrate::Array;
 use serde::{Deserialize, Serialize};
 
 use super::memory::FAR;
-use super::{Contacts, Frame, Kept, Shape, Teeth, Touch};
+use super::{ContactState, Contacts, Frame, Kept, Shape, Teeth, Touch};
 use crate::lanes::LANES;
 
 /// A run of consecutive rollers, no more than one lane of eight holds.
@@ -158,6 +158,13 @@ impl Contacts {
     /// Calls `visit` with (slot, roller) for every slot in use.
     pub(crate) fn for_each_slot(&self, visit: impl FnMut(usize, usize)) {
         for_each_slot(&self.runs, visit);
+    }
+
+    /// Calls `visit` with every roller near this body, and how it stands to it.
+    ///
+    /// A roller is open long before it ceases to be near.
+    pub(crate) fn each_candidate(&self, mut visit: impl FnMut(usize, ContactState)) {
+        self.for_each_slot(|slot, roller| visit(roller, self.both_sides(&self.memory.state, slot)));
     }
 }
 

@@ -1,6 +1,7 @@
 //! Systems that nothing joins, as one.
 
-use super::{Group as Solved, RailSupport, System, WheelSupport};
+use super::{Group as Solved, System};
+use crate::bodies::{RailSupport, WheelSupport};
 use crate::groups::{Group, in_order};
 
 impl System {

@@ -5,9 +5,11 @@ use std::ops::Range;
 
 use chaindrive_geometry::Point;
 
-use super::bodies::{Anchor, Bodies, Rail, RailSupport, Wheel, WheelSupport};
-use super::shafts::{Shaft, Turn, TurnedBy};
-use super::{BodyContacts, Group, Member, OnRail, OnWheel, RailContact, Slide, System};
+use super::{Group, Member, System};
+use crate::bodies::{
+    Anchor, Bodies, BodyContacts, Inputs, OnRail, OnWheel, Rail, RailContact, RailSupport, Shaft,
+    Slide, Turn, TurnedBy, Wheel, WheelSupport,
+};
 use crate::chains;
 use crate::contact::{Arrivals, Impacts};
 use crate::contact::{Contacts, PlateContact, Shape, Teeth};
@@ -90,7 +92,7 @@ impl System {
             states: 0,
             inertias: Vec::new(),
             rates: [0.0; 2],
-            inputs: super::inputs::Inputs::default(),
+            inputs: Inputs::default(),
         };
         bodies.number_states();
         bodies.weigh(dofs - first);

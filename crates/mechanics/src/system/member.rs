@@ -4,9 +4,11 @@ use std::ops::Range;
 
 use chaindrive_integrate::{Moment, Prediction};
 
-use super::{Bodies, BodyContacts, Wheel};
-use crate::chains::{Chain, Loads, Rates, Record, Surroundings};
+use crate::bodies::Surroundings;
+use crate::bodies::{Bodies, BodyContacts, Wheel};
+use crate::chains::{Chain, Record};
 use crate::contact::Impacts;
+use crate::seam::{Loads, Rates};
 
 /// One chain and what it touches.
 #[derive(Clone, Debug)]

@@ -6,14 +6,15 @@
 use chaindrive_integrate::SecondOrderSystem;
 use serde::{Deserialize, Serialize};
 
-use super::bodies::Anchor;
-use super::inputs::{Inputs, OnwardCentre};
-use super::{BodyContacts, Member, RailContact, Record, System};
+use super::inputs::OnwardCentre;
+use super::{Member, Record, System};
 use crate::MemoryError;
 use crate::applied;
-use crate::chains::{ChainMemory, Rates};
+use crate::bodies::{Anchor, BodyContacts, Inputs, RailContact};
+use crate::chains::ChainMemory;
 use crate::contact::{Arrivals, Impacts, PlateMemory, Windows};
-use crate::events::EventLog;
+use crate::seam::EventLog;
+use crate::seam::Rates;
 
 /// Contacts, windows, inputs and the log of a [`System`].
 #[derive(Clone, Debug, Serialize, Deserialize)]

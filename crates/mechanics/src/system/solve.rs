@@ -19,7 +19,8 @@
 use chaindrive_integrate::Weights;
 use nalgebra::{DMatrix, DVector};
 
-use super::{Bodies, GroupBodies, Record, System};
+use super::{Record, System};
+use crate::bodies::{Bodies, GroupBodies};
 use crate::tensioner::Slopes;
 
 impl System {

@@ -317,8 +317,8 @@ type Known = (&'static str, &'static [&'static str], &'static str);
 
 const KNOWN: [Known; 1] = [(
     "mechanics",
-    &["chains", "events", "observe", "system"],
-    "chains borrow the bodies, which lie in the system's folder, and write into the observation and the log beside it",
+    &["chains"],
+    "the record of a chain has room for the work of every member, and members take the whole of it",
 )];
 
 /// Whoever closes a circle meets this test: move what both need below both, or put the reason into the table. A circle that is opened

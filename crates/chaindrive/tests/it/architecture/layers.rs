@@ -27,6 +27,8 @@ const CRATES: [Storeys; 4] = [
                 "tensioner",
             ],
             &["contact", "torque"],
+            &["seam"],
+            &["bodies"],
             &["chains"],
             &["drive"],
             &["groups"],
@@ -37,23 +39,7 @@ const CRATES: [Storeys; 4] = [
             &["assembly"],
             &["forcing", "inside", "modes", "nudge", "pose"],
         ],
-        exceptions: &[
-            (
-                "chains",
-                "system",
-                "chains borrow the bodies and their contacts with them, which lie in the system's folder; never the system",
-            ),
-            (
-                "chains",
-                "observe",
-                "every chain writes what it shows into an observation, which lies beside what the system shows",
-            ),
-            (
-                "system",
-                "events",
-                "the system keeps the log of contacts that it writes when a step is accepted",
-            ),
-        ],
+        exceptions: &[],
     },
     Storeys {
         folder: "chaindrive",

@@ -5,10 +5,11 @@ use chaindrive_integrate::Moment;
 
 use super::{Sum, at_rest};
 use crate::System;
-use crate::chains::{Moving, Way};
+use crate::bodies::{Bodies, RailContact, RailSupport, Wheel, WheelSupport};
 use crate::contact::{Contacts, Frame, PlateContact};
 use crate::profile::Probe;
-use crate::system::{Bodies, Member, RailContact, RailSupport, Wheel, WheelSupport};
+use crate::seam::{Moving, Way};
+use crate::system::Member;
 
 /// State entries that place a body: its angle, and what moves its centre.
 #[derive(Clone, Default)]

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{Newton, Unknowns};
 use crate::System;
-use crate::chains::{Load, Moving};
+use crate::seam::{Load, Moving};
 
 /// Second derivatives of the energy at a state under full gravity and load.
 #[derive(Clone, Debug)]

@@ -5,7 +5,7 @@
 //! there. What the drive does then is to move downhill, and so does this.
 
 use super::{CONVERGED, Found, Newton};
-use crate::chains::Load;
+use crate::seam::Load;
 
 /// Longest step, as a share of the radius of a roller: well within the curvature of a seat.
 const CAP: f64 = 3e-3;

@@ -3,8 +3,9 @@
 use chaindrive_integrate::Moment;
 
 use super::{Joining, Linkage, Memory, Shapes};
-use crate::chains::{Pose, Record};
+use crate::chains::Record;
 use crate::lanes::padded;
+use crate::seam::Pose;
 use crate::{End, MemoryError, Motion};
 
 impl Linkage {

@@ -6,7 +6,7 @@ use nalgebra::Matrix2;
 use super::bearing::CENTRED;
 use super::{Bearing, Joining, Linkage, Mate, turned};
 use crate::End;
-use crate::chains::{Load, Moving, Sum, Unknown};
+use crate::seam::{Load, Moving, Sum, Unknown};
 
 /// Depth at which joints are asked for their stiffness \[m\].
 const PRESSED: f64 = 1e-6;

@@ -10,12 +10,12 @@ use super::{
     Bearing, Body, FreeRollers, Hinges, Joining, JointMates, JointState, Linkage, Mate, Memory,
     Pairs, Shapes, turned,
 };
+use crate::bodies::{Bodies, GroupBodies};
 use crate::chains::LaidAs;
 use crate::chains::joints::Joints;
 use crate::chains::particles::Particles;
 use crate::contact::ContactMemory;
 use crate::lanes::padded;
-use crate::system::{Bodies, GroupBodies};
 use crate::{Chain, End};
 
 /// A chain of rigid links in the place of laid particles, with its coordinates and velocities.

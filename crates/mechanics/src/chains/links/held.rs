@@ -23,8 +23,8 @@ use super::implicit::Sum;
 use super::posture::Posture;
 use super::reactions::{Inertia, Reactions, load};
 use super::{Blocks, JointState, Linkage, Mate};
+use crate::bodies::GroupBodies;
 use crate::lanes::Wide;
-use crate::system::GroupBodies;
 
 /// Prescribed value of J x at the hinges.
 #[derive(Clone, Copy)]

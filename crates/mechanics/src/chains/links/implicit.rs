@@ -16,8 +16,8 @@ use super::held::Prescribed;
 use super::impulses::MOST_WHEELS;
 use super::loose::Loose;
 use super::{Blocks, Element, Joining, JointState, Linkage, Mount, Partner, cross, turned};
+use crate::bodies::GroupBodies;
 use crate::chains::Record;
-use crate::system::GroupBodies;
 
 /// Share of a link's mass that a step need not carry across a contact. *Assumed*.
 const SOFT: f64 = 0.05;

@@ -10,10 +10,10 @@ use super::implicit::{Equations, Sum};
 use super::impulses::Step;
 use super::pins::{Contacts, Pins};
 use super::{Element, Impulses, Joining, JointState, Linkage, turned};
+use crate::bodies::GroupBodies;
 use crate::chains::{Chain, Record};
 use crate::contact::{ContactMemory, Kept, LaneTally, MemoryLanes};
 use crate::lanes::Wide;
-use crate::system::GroupBodies;
 
 /// A chain of rigid links with its state, and the bodies beside it.
 pub struct Inside<'a> {

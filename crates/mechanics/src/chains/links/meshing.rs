@@ -7,11 +7,12 @@ use pulp::{Simd, WithSimd};
 
 use super::rates::LinkPins;
 use super::{Element, JointState, Linkage, Mount, Partner, Posture};
-use crate::chains::{Loads, Surroundings, Way};
+use crate::bodies::Surroundings;
+use crate::bodies::{Bodies, RailContact, RailSupport, Wheel, WheelSupport};
 use crate::contact::{Contacts, Frame, Kept, Pressing, Rollers, Touch, Wrench};
 use crate::energy::Flow;
 use crate::lanes::Wide;
-use crate::system::{Bodies, RailContact, RailSupport, Wheel, WheelSupport};
+use crate::seam::{Loads, Way};
 
 impl Linkage {
     /// Contacts with wheels and rails.

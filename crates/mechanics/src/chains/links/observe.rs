@@ -8,7 +8,7 @@ use super::{Joining, JointState, Linkage, Mate, Partner, free_part};
 use crate::chains::Record;
 use crate::contact::{ContactState, Frame, Kept, PlateContact};
 use crate::energy::{Energy, Store};
-use crate::observe::Observation;
+use crate::seam::Observation;
 
 impl Linkage {
     /// Appends what belongs to the chain.

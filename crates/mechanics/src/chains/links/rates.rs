@@ -5,10 +5,12 @@ use nalgebra::Vector3;
 use pulp::Simd;
 
 use super::{Element, Joining, JointState, Linkage, Partner, Posture, cross, turned};
+use crate::bodies::Surroundings;
+use crate::chains::Record;
 use crate::chains::joints::Joints;
-use crate::chains::{Rates, Record, Surroundings};
 use crate::contact::{Drawn, OfPins, PlatePins, PlatePlaces};
 use crate::lanes::{Lane, Wide};
+use crate::seam::Rates;
 
 /// Shares of a contact between chain and wheel: 1 + ε and 1 + 1/ε with ε = 0.1.
 const WHEEL_SHARE: f64 = 1.1;

@@ -5,10 +5,10 @@ use chaindrive_integrate::Moment;
 
 use super::{Particles, Turning};
 use crate::chains::Record;
+use crate::chains::held_end::HeldEnd;
 use crate::chains::joints::Resistance;
 use crate::energy::Flow;
 use crate::motion::Kinematics;
-use crate::system::HeldEnd;
 use crate::{End, Motion};
 
 impl Particles {

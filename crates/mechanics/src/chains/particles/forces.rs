@@ -6,12 +6,14 @@ use pulp::{Simd, WithSimd};
 use super::Particles;
 use super::articulation;
 use super::springs::Turning;
+use crate::bodies::RailContact;
+use crate::bodies::Surroundings;
+use crate::chains::Record;
 use crate::chains::joints::Resistance;
-use crate::chains::{Loads, Record, Surroundings};
 use crate::contact::{Drawn, OfPins, PlatePins, Pressing, Rollers};
 use crate::energy::Flow;
 use crate::lanes::Wide;
-use crate::system::RailContact;
+use crate::seam::Loads;
 
 /// What bodies feel, how links turn, and what resists in the joints.
 type Found<'a> = (&'a mut Loads, &'a mut Turning, &'a mut Resistance);

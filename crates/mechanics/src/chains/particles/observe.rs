@@ -7,7 +7,7 @@ use super::Particles;
 use crate::chains::Record;
 use crate::contact::{Frame, PlateContact};
 use crate::energy::{Energy, Store};
-use crate::observe::Observation;
+use crate::seam::Observation;
 
 impl Particles {
     pub(crate) fn observe(&self, at: Moment<'_>, _record: &Record, out: &mut Observation) {

@@ -26,12 +26,13 @@ use serde::{Deserialize, Serialize};
 pub use model::PointJoints;
 
 use super::Links;
+use crate::chains::Record;
+use crate::chains::held_end::HeldEnd;
 use crate::chains::joints::Joints;
 use crate::chains::links::{Bearing, Tally};
-use crate::chains::{Pose, Record};
 use crate::contact::{ContactMemory, Drawn, OfPins, PlatePins, PlatePlaces};
 use crate::lanes::Wide;
-use crate::system::HeldEnd;
+use crate::seam::Pose;
 
 /// Roller, bush and pin as point masses.
 #[derive(Clone, Debug)]

@@ -4,7 +4,8 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 
 use super::Particles;
-use crate::chains::{Load, Moving, Record, Sum, Unknown};
+use crate::chains::Record;
+use crate::seam::{Load, Moving, Sum, Unknown};
 use crate::{End, Motion};
 
 impl Particles {

@@ -19,11 +19,13 @@ use pulp::{Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
 use super::{AFTER, BEFORE, Found, Points, ROLLERS};
+use crate::bodies::Surroundings;
+use crate::bodies::{GroupBodies, RailContact};
+use crate::chains::Record;
 use crate::chains::links::{Mount, rail_mount, solve_dense, turned, wheel_mount};
-use crate::chains::{Loads, Record, Surroundings};
 use crate::contact::{Contacts, Frame, Touch};
 use crate::lanes::{LANES, Lane, Mask, Wide, padded};
-use crate::system::{GroupBodies, RailContact};
+use crate::seam::Loads;
 
 /// One direction of a closed contact between a roller and a wheel or rail.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]

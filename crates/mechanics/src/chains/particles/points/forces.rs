@@ -4,16 +4,18 @@ use chaindrive_integrate::Moment;
 use pulp::{Simd, WithSimd};
 
 use super::{AFTER, BEFORE, Ends, Found, Held, Points, ROLLERS};
+use crate::bodies::RailContact;
+use crate::bodies::Surroundings;
+use crate::chains::Record;
 use crate::chains::joints::Resistance;
 use crate::chains::links::{Apart, Grip, Tally};
 use crate::chains::particles::articulation;
 use crate::chains::particles::forces::{plate_forces, touch_bodies};
 use crate::chains::particles::springs::Turning;
-use crate::chains::{Loads, Record, Surroundings};
 use crate::contact::{LaneTally, MemoryLanes, Rollers};
 use crate::energy::Flow;
 use crate::lanes::{LANES, Lane, Wide, padded};
-use crate::system::RailContact;
+use crate::seam::Loads;
 
 /// Steps take the damping of bodies by the contacts explicitly, and shall be at most so long in units of its time.
 const OF_BODIES: f64 = 4.0;

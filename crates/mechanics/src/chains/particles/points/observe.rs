@@ -8,7 +8,7 @@ use super::{AFTER, BEFORE, Ends, Points, ROLLERS};
 use crate::chains::Record;
 use crate::contact::{ContactState, Frame, Kept, PlateContact};
 use crate::energy::{Energy, Store};
-use crate::observe::Observation;
+use crate::seam::Observation;
 
 /// Sign of the force on a pin along n, which leads from the end before to the end after: the bush pushes it back.
 fn pushed_back(pin: usize) -> f64 {

@@ -5,8 +5,9 @@ use chaindrive_integrate::Moment;
 use nalgebra::Matrix2;
 
 use super::{AFTER, BEFORE, Points, ROLLERS};
+use crate::chains::Record;
 use crate::chains::links::add_joint;
-use crate::chains::{Load, Moving, Record, Sum, Unknown};
+use crate::seam::{Load, Moving, Sum, Unknown};
 
 /// Depth at which joints are asked for their stiffness \[m\].
 const PRESSED: f64 = 1e-6;

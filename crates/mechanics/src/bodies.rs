@@ -1,15 +1,29 @@
 //! Wheels, rails and carriers, compiled: where they are and how they move.
 
+mod anchor;
+mod contacts;
+mod equations;
+mod group;
+mod inputs;
+mod shafts;
+mod slide;
+mod surroundings;
+
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Moment, Weights};
-use serde::{Deserialize, Serialize};
 
-use super::Slide;
-use super::inputs::Inputs;
-use super::shafts::{Shaft, Turn};
-use crate::chains::Rates;
+pub(crate) use anchor::Anchor;
+pub(crate) use contacts::{BodyContacts, OnRail, OnWheel, RailContact};
+pub(crate) use group::GroupBodies;
+pub use inputs::Input;
+pub(crate) use inputs::Inputs;
+pub(crate) use shafts::{Shaft, Turn, TurnedBy};
+pub(crate) use slide::Slide;
+pub(crate) use surroundings::Surroundings;
+
 use crate::contact::Frame;
 use crate::motion::Kinematics;
+use crate::seam::Rates;
 use crate::tensioner::Slopes;
 use crate::{Coupling, Motion};
 
@@ -90,59 +104,6 @@ pub(crate) enum RailSupport {
     Fixed,
     Prescribed { x: Motion, y: Motion },
     Carried(usize),
-}
-
-/// An angle whose cosine and sine are known.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(crate) struct Anchor {
-    angle: f64,
-    turn: [f64; 2],
-}
-
-/// Coefficients of the series: 1/(2k)! and 1/(2k+1)!.
-const COSINE: [f64; 7] = [
-    1.0,
-    1.0 / 2.0,
-    1.0 / 24.0,
-    1.0 / 720.0,
-    1.0 / 40_320.0,
-    1.0 / 3_628_800.0,
-    1.0 / 479_001_600.0,
-];
-const SINE: [f64; 6] = [
-    1.0,
-    1.0 / 6.0,
-    1.0 / 120.0,
-    1.0 / 5040.0,
-    1.0 / 362_880.0,
-    1.0 / 39_916_800.0,
-];
-
-impl Anchor {
-    pub(crate) fn at(angle: f64) -> Self {
-        Self {
-            angle,
-            turn: [angle.cos(), angle.sin()],
-        }
-    }
-
-    /// Cosine and sine of an angle near the anchor, without a trigonometric function.
-    ///
-    /// Taylor's series to the twelfth power: exact to rounding for |Δ| ≤ 0.35.
-    #[inline(always)]
-    pub(crate) fn turn(&self, angle: f64) -> [f64; 2] {
-        let d = angle - self.angle;
-        if d.abs() > 0.35 {
-            return [angle.cos(), angle.sin()];
-        }
-        // cos Δ = Σ (−Δ²)ᵏ/(2k)!,   sin Δ = Δ Σ (−Δ²)ᵏ/(2k+1)!
-        let s = -d * d;
-        let series = |terms: &[f64]| terms.iter().rev().fold(0.0, |sum, term| sum * s + term);
-        let cosine = series(&COSINE);
-        let sine = d * series(&SINE);
-        let [c, si] = self.turn;
-        [c * cosine - si * sine, si * cosine + c * sine]
-    }
 }
 
 impl Bodies {
@@ -467,24 +428,6 @@ impl Rail {
                     velocity,
                     spin: turning * pose.rate,
                 }
-            }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_anchor_turns_as_exactly_as_the_functions() {
-        for start in [-250.0, 0.0, 1.3] {
-            let anchor = Anchor::at(start);
-            for i in -40..=40 {
-                let angle = start + 0.01 * f64::from(i);
-                let [cosine, sine] = anchor.turn(angle);
-                assert!((cosine - angle.cos()).abs() < 4e-16, "{start}, {i}");
-                assert!((sine - angle.sin()).abs() < 4e-16, "{start}, {i}");
             }
         }
     }

@@ -3,7 +3,7 @@
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Prediction;
 
-use crate::chains::Way;
+use crate::seam::Way;
 use crate::tensioner::{Extension, Reduced, Slopes, Weight};
 use crate::{Carrier, Push, PushForce};
 

@@ -3,15 +3,15 @@
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Moment, Prediction};
 
-use super::bodies::{Bodies, RailSupport, WheelSupport};
 use super::slide::Pose;
+use super::{Bodies, RailSupport, WheelSupport};
 use crate::contact::Wrench;
 use crate::energy::Flow;
 use crate::tensioner::Slopes;
 
 impl Bodies {
     /// Accelerations of the bodies under what all chains together do to wheels and rails, and the powers that go with them.
-    pub(super) fn accelerate(
+    pub(crate) fn accelerate(
         &self,
         at: Moment<'_>,
         prediction: Option<Prediction<'_>>,

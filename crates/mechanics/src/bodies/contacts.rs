@@ -2,11 +2,10 @@
 
 use chaindrive_integrate::Moment;
 
-use super::Bodies;
-use super::bodies::Anchor;
-use crate::chains::{Loads, Pose, Way};
+use super::{Anchor, Bodies};
 use crate::contact::{Arrivals, Impacts};
 use crate::contact::{Contacts, Frame, Places, PlateContact};
+use crate::seam::{Loads, Pose, Way};
 use crate::surface::Surface;
 
 /// Contacts with sprockets, then with guides.
