@@ -460,5 +460,5 @@ impl Summary {
     }
 }
 
-/// Share of the energy present below which a residual is taken for rounding.
+/// Share of the energy present below which a residual is taken for rounding. *Assumed*: the last digits of many steps add up.
 const ROUNDING: f64 = 1e-9;

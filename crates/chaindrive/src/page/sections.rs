@@ -10,10 +10,10 @@ use crate::{RanIn, Simulation, Verdict};
 
 /// Share of the greatest power of its chain below which a sprocket idles. *Assumed*: bearings and teeth of an idler take less.
 const IDLES: f64 = 0.02;
-/// Inputs that are named before the rest is counted.
+/// Inputs that are named before the rest is counted. *Assumed*: two lines of a terminal.
 const NAMED: usize = 6;
 
-/// Keys of inputs that decide most of a result.
+/// Keys of inputs that decide most of a result: how things rub, strike and yield. They are named first. *Assumed*.
 const DECIDE: [&str; 7] = [
     "coefficient",
     "restitution",
@@ -23,6 +23,9 @@ const DECIDE: [&str; 7] = [
     "clearance",
     "modulus",
 ];
+
+/// Share of the greatest pull of a link below which a link that is pressed is rounding. *Assumed*.
+const ROUNDING: f64 = 1e-6;
 
 /// A run as the page tells it.
 pub(super) struct Told<'a> {
@@ -431,7 +434,6 @@ impl Told<'_> {
         if assumed.is_empty() {
             return section;
         }
-        // What decides a result most: how things rub, strike and yield.
         let decides = |it: &&String| {
             let path = it.split(" = ").next().unwrap_or_default();
             DECIDE.iter().any(|key| path.ends_with(key))
@@ -476,8 +478,7 @@ fn strength(load: &Load) -> String {
         ),
         None => "no breaking load is known: give chain.breaking_load".to_owned(),
     };
-    // Rounding presses no link.
-    let pressed = if load.pressed > 0.0 && -load.least > 1e-6 * load.tension {
+    let pressed = if load.pressed > 0.0 && -load.least > ROUNDING * load.tension {
         format!(
             " Links are pressed by up to {}, in {} of links and time.",
             Measure::Force.told(-load.least),
