@@ -196,6 +196,33 @@ def test_losses_are_those_of_the_ledger(industrial):
         industrial.drive.losses(start=0.19999, end=0.2)
 
 
+@pytest.mark.parametrize(("until", "unknown"), [(0.1, None), (0.01, "to and fro")])
+def test_one_efficiency_everywhere(until, unknown, monkeypatch):
+    """Cams that take and give: page, attributes, analysis, plot and a part of the run agree."""
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    record = ["energy_losses", "energy_flows"]
+    run = cd.simulate(
+        cd.scenes.timing_drive(), until=until, every=2e-4, record=record, run_in=0, error=False
+    )
+    whole, title = run.drive.losses()["efficiency"], cd.plot.losses(run).get_title()
+    pyplot.close()
+    part = run.drive.losses(start=1e-9)["efficiency"]
+    if unknown is None:
+        value = run.attrs["efficiency"]
+        assert float(whole) == value
+        assert f"{100 * value:.3f} %" in run.attrs["summary"]
+        assert title == f"efficiency {100 * value:.2f} %"
+        assert float(part) == pytest.approx(value, abs=0.01)
+    else:
+        why = run.attrs["efficiency_unknown"]
+        assert unknown in why
+        assert f"Efficiency: none, {why}." in run.attrs["summary"]
+        assert title == f"no efficiency: {why}"
+        assert whole.attrs["unknown"] == part.attrs["unknown"] == why
+        assert np.isnan(whole)
+
+
 # Joints.
 
 

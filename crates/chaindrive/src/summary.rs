@@ -126,6 +126,10 @@ pub struct Ledger {
     pub supplied: f64,
     /// Energy that those have taken out that took more than they put in \[J\].
     pub delivered: f64,
+    /// The most that those who put it in had taken back of it at any moment \[J\].
+    pub supplied_back: f64,
+    /// The most that those who took it out had given back of it at any moment \[J\].
+    pub delivered_back: f64,
     /// Energy that they have put in and taken out again, added up without regard to direction \[J\].
     pub exchanged: f64,
     /// Energy that loads have put in, those that took some out counted against it \[J\].
@@ -138,29 +142,51 @@ pub struct Ledger {
     pub rounding: f64,
 }
 
-/// Share of the energy exchanged with the outside that has to go one way before its ratio is an efficiency: a driver that
-/// swings to and fro has none.
-const ONE_WAY: f64 = 0.25;
+/// Uncertainty of an efficiency, by where within a swing the record ends, beyond which there is none. *Assumed*.
+const TO_AND_FRO: f64 = 0.1;
 /// Share of the energy supplied that somebody has to take out before the rest of it is an efficiency. *Assumed*: less is rounding and
 /// the run-up, and what a drive that serves nobody keeps in its motion is not its use.
 const TAKEN: f64 = 1e-6;
 
 impl Ledger {
-    /// Share of the energy supplied that is not lost, and by how much the energy unaccounted for makes it uncertain; none where
-    /// energy goes to and fro, or nobody takes any out.
+    /// Share of the energy supplied that is not lost, and how uncertain it is; none where [`unknown`](Self::unknown) says why.
     ///
     /// ```text
-    /// η = 1 − D/E ± |R|/E       D: losses, R: residual, E: energy supplied
+    /// η = 1 − D/E ± (|R| + B D/E)/E       D: losses, R: residual, E: energy supplied, B: what its suppliers had taken back at most
     /// ```
+    ///
+    /// E is a net: what the springs of valves give back over the cams, and a crank takes back, has not been supplied, and what it costs to move it
+    /// to and fro is lost. A record that ends within a swing has up to B more or less in E.
     pub fn efficiency(&self) -> Option<[f64; 2]> {
-        let goes_one_way = self.supplied > ONE_WAY * self.exchanged;
         let share = |of: f64| of / self.supplied;
-        (goes_one_way && !self.idles())
-            .then(|| [1.0 - share(self.losses), share(self.residual.abs())])
+        self.unknown().is_none().then(|| {
+            let uncertain = share(self.residual.abs()) + self.by_swings();
+            [1.0 - share(self.losses), uncertain]
+        })
+    }
+
+    /// Uncertainty of the efficiency by what its suppliers take back and put in anew: B D/E².
+    fn by_swings(&self) -> f64 {
+        self.supplied_back / self.supplied * self.losses / self.supplied
+    }
+
+    /// Why there is no efficiency, in words; none where there is one.
+    pub fn unknown(&self) -> Option<&'static str> {
+        // What a spring takes and gives back is not taken out, wherever the record ends.
+        let swings = self.by_swings() > TO_AND_FRO || self.delivered_back > self.delivered;
+        if self.supplied <= 0.0 {
+            Some("nobody puts energy in")
+        } else if self.idles() {
+            Some("nobody takes energy out")
+        } else if swings {
+            Some("too much energy goes to and fro for this record: take a longer one")
+        } else {
+            None
+        }
     }
 
     /// Whether nobody takes out what is supplied: all of it is lost, or stays in motion, height and springs.
-    pub fn idles(&self) -> bool {
+    fn idles(&self) -> bool {
         self.delivered <= TAKEN * self.supplied
     }
 }
@@ -169,7 +195,7 @@ impl Ledger {
 ///
 /// Net work is no measure for that: a driver that reverses takes back what it gave, and a chain that
 /// swings or spins freely is given nothing at all.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Turnover {
     /// Σ |ΔW| over all flows and samples \[J\].
     flowed: f64,
@@ -177,16 +203,44 @@ struct Turnover {
     exchanged: f64,
     /// The same over loads alone \[J\].
     loads: f64,
+    /// Work of every flow that is no loss.
+    works: Vec<Swing>,
     /// Least and greatest kinetic and stored energy \[J\].
     ranges: Option<[[f64; 2]; 2]>,
 }
 
+/// Work since the start, and how much of it has gone back.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+struct Swing {
+    /// The work now, and its least and greatest value so far \[J\].
+    work: f64,
+    least: f64,
+    greatest: f64,
+    /// The most that it has been below the greatest and above the least value before \[J\].
+    fall: f64,
+    rise: f64,
+}
+
+impl Swing {
+    fn push(&mut self, work: f64) {
+        self.work = work;
+        self.least = self.least.min(work);
+        self.greatest = self.greatest.max(work);
+        self.fall = self.fall.max(self.greatest - work);
+        self.rise = self.rise.max(work - self.least);
+    }
+}
+
 impl Turnover {
-    fn push(&mut self, before: &Energy, now: &Energy) {
+    fn push(&mut self, start: &Energy, before: &Energy, now: &Energy) {
         let worked = |flow: &Flow| (now.flow(*flow) - before.flow(*flow)).abs();
         self.flowed += Flow::ALL.iter().map(worked).sum::<f64>();
         let outside = Flow::ALL.iter().filter(|flow| !flow.is_loss());
-        self.exchanged += outside.map(worked).sum::<f64>();
+        self.exchanged += outside.clone().map(worked).sum::<f64>();
+        self.works.resize(outside.clone().count(), Swing::default());
+        for (swing, &flow) in self.works.iter_mut().zip(outside) {
+            swing.push(now.flow(flow) - start.flow(flow));
+        }
         self.loads += worked(&Flow::Load);
         let stores = [now.kinetic(), now.stored()];
         let ranges = self.ranges.get_or_insert(stores.map(|energy| [energy; 2]));
@@ -291,7 +345,7 @@ impl Summary {
         }
         let before = self.start.map_or(sample.energy, |_| self.last);
         let start = *self.start.get_or_insert(sample.energy);
-        self.turnover.push(&before, &sample.energy);
+        self.turnover.push(&start, &before, &sample.energy);
         let residual = sample.energy.residual(&start);
         if residual.abs() > self.residual.abs() || residual.is_nan() {
             self.residual = residual;
@@ -401,16 +455,17 @@ impl Summary {
     /// The energy of the run so far.
     pub fn ledger(&self) -> Ledger {
         let start = self.start.unwrap_or_default();
-        let flows = Flow::ALL.iter().filter(|flow| !flow.is_loss());
-        let net: Vec<f64> = flows
-            .map(|&flow| self.last.flow(flow) - start.flow(flow))
-            .collect();
+        let works = &self.turnover.works;
+        let supplies = || works.iter().filter(|it| it.work > 0.0);
+        let takes = || works.iter().filter(|it| it.work < 0.0);
         Ledger {
             residual: self.residual,
             losses: self.energy_dissipated(),
             moved: self.energy_moved(),
-            supplied: net.iter().filter(|work| **work > 0.0).sum(),
-            delivered: -net.iter().filter(|work| **work < 0.0).sum::<f64>(),
+            supplied: supplies().map(|it| it.work).sum(),
+            delivered: -takes().map(|it| it.work).sum::<f64>(),
+            supplied_back: supplies().map(|it| it.fall).sum(),
+            delivered_back: takes().map(|it| it.rise).sum(),
             exchanged: self.turnover.exchanged,
             by_loads: self.last.flow(Flow::Load) - start.flow(Flow::Load),
             loads_exchanged: self.turnover.loads,

@@ -233,9 +233,11 @@ def losses(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axe
         ax.invert_yaxis()
         ax.margins(x=0.15)
         ax.set_xlabel(written("power lost", unit))
-        efficiency = float(found["efficiency"])
+        efficiency = found["efficiency"]
         if np.isfinite(efficiency):
-            ax.set_title(f"efficiency {100 * efficiency:.2f} %")
+            ax.set_title(f"efficiency {100 * float(efficiency):.2f} %")
+        elif unknown := efficiency.attrs.get("unknown"):
+            ax.set_title(f"no efficiency: {unknown}", fontsize="small")
     return ax
 
 

@@ -403,19 +403,18 @@ impl Told<'_> {
     fn efficiency(&self) -> String {
         let ledger = self.summary.ledger();
         if let Some([efficiency, uncertain]) = ledger.efficiency() {
+            let swings = if ledger.supplied_back > 0.0 {
+                " and what goes to and fro"
+            } else {
+                ""
+            };
             return format!(
-                "Efficiency, 1 less the share that is lost: {:.3} % ± {:.3} % by the energy unaccounted for.",
+                "Efficiency, 1 less the share that is lost: {:.3} % ± {:.3} % by the energy unaccounted for{swings}.",
                 100.0 * efficiency,
                 100.0 * uncertain
             );
         }
-        let why = if ledger.supplied <= 0.0 {
-            "nobody puts energy in"
-        } else if ledger.idles() {
-            "nobody takes energy out"
-        } else {
-            "energy goes to and fro, and too little goes one way"
-        };
+        let why = ledger.unknown().unwrap_or_default();
         format!("Efficiency: none, {why}.")
     }
 

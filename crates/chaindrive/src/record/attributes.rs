@@ -121,9 +121,13 @@ pub fn attributes(
         story.number("energy_supplied", summary.energy_supplied());
         story.number("energy_dissipated", summary.energy_dissipated());
         story.number("energy_moved", summary.energy_moved());
-        if let Some([efficiency, uncertain]) = summary.ledger().efficiency() {
+        let ledger = summary.ledger();
+        if let Some([efficiency, uncertain]) = ledger.efficiency() {
             story.number("efficiency", efficiency);
             story.number("efficiency_error", uncertain);
+        }
+        if let Some(why) = ledger.unknown() {
+            story.text("efficiency_unknown", why);
         }
         let ratings = summary.ratings();
         let one = ratings.len() == 1;

@@ -334,6 +334,40 @@ fn impacts_are_counted_as_they_are_logged() {
     assert_eq!(impacts.gentle, impacts.count - 1, "{impacts:?}");
 }
 
+/// The cams of an engine take nearly as much as they give back, and its crank swings: the efficiency is that of the mean powers, by what goes in and
+/// out but for what the stores keep, and the same wherever within a swing the record ends.
+#[test]
+fn an_efficiency_is_one_of_mean_powers() {
+    let drive = preset("timing_drive", &[]).drive().unwrap();
+    let mut simulation = Simulation::start(&drive, &run(0.107, 535.0)).unwrap();
+    let mut summary = Summary::new(&simulation);
+    let mut found = Vec::new();
+    while simulation.next_sample().unwrap().is_some() {
+        summary.push(simulation.observation());
+        // Swings last 10 ms.
+        if ![501, 516, 536].contains(&summary.samples) {
+            continue;
+        }
+        let ledger = summary.ledger();
+        let [efficiency, uncertain] = ledger.efficiency().unwrap();
+        let stored = (ledger.supplied - ledger.delivered - ledger.losses).abs();
+        let by_powers = ledger.delivered / ledger.supplied;
+        assert!((efficiency - by_powers).abs() <= stored / ledger.supplied + 1e-12);
+        found.push([efficiency, uncertain]);
+    }
+    assert_eq!(found.len(), 3);
+    for [efficiency, uncertain] in &found {
+        let apart = (efficiency - found[0][0]).abs();
+        assert!(apart < uncertain + found[0][1], "{found:?}");
+    }
+    let told = format!("lost: {:.3} % ± ", 100.0 * found[2][0]);
+    let page = page(&summary, &simulation);
+    assert!(
+        page.contains(&told) && page.contains("to and fro"),
+        "{page}"
+    );
+}
+
 /// Teeth, rail, arm and joints that rub: every place has its part, and together they are what is lost.
 #[test]
 fn losses_by_place_add_up() {
@@ -344,7 +378,7 @@ fn losses_by_place_add_up() {
         &[
             ("contact.teeth.friction", friction),
             ("contact.guides.friction", friction),
-            // An efficiency needs power that flows one way: an even crank, and camshafts that do not drive for half of the time.
+            // An even crank and even camshafts: little goes to and fro within 4 ms.
             (
                 "sprockets.crank.motion",
                 r#"{ kind = "constant", speed = "-3000 rpm" }"#,
