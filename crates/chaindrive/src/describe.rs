@@ -13,15 +13,15 @@ mod text;
 use chaindrive_geometry::mesh_frequency;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 use chaindrive_mechanics::{
-    Adjust, Assembled, Capacity, Carrier, ChainModel, Clash, Drive, Fight, Fitting, Flow,
-    GuideSupport, Layout, Observation, PlacedChain, Rotation, Statics, Unrated,
+    Adjust, Assembled, Capacity, Carrier, Clash, Drive, Fight, Fitting, Flow, GuideSupport, Layout,
+    Observation, PlacedChain, Rotation, Statics, Unrated,
 };
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 pub use cost::Cost;
 pub use free_train::FreeTrainFacts;
-pub use links::{ContactFacts, LinkFacts};
+pub use links::{ContactFacts, LinkFacts, left_out};
 pub use polygon::PolygonPair;
 pub use route::{SpanAtRest, StopFacts, spans_at_rest};
 
@@ -452,26 +452,16 @@ fn model(drive: &Drive, assembled: &Assembled) -> Model {
         .filter(|guide| guide.support == GuideSupport::Fixed);
     let [free, driven] = assembled.system.turning_sprockets();
     let fixed = fixed.count();
-    let contacts = links::contacts(drive);
-    let mut chains = drive.chains.iter();
-    let undamped = chains.all(|placed| {
-        let particles = !matches!(placed.chain.model, ChainModel::Rigid(_));
-        particles && placed.chain.damping.iter().all(|d| *d <= 0.0)
-    });
-    let slippery = contacts.iter().all(|contact| contact.friction == "none");
-    let mut chains = drive.chains.iter();
-    let rubbing = chains.any(|placed| LinkFacts::of(&placed.chain).joint_friction.is_some());
-    let lacks = [
+    let bodies = [
         (drive.sprockets.is_empty(), "sprockets"),
         (drive.guides.is_empty(), "guides"),
         (drive.tensioners.is_empty(), "tensioners"),
-        (slippery && !rubbing, "friction"),
-        // Pins that turn in their bushes rub in no contact of these.
-        (slippery && rubbing, "friction on teeth and guides"),
-        (undamped, "damping of the links"),
-        (drive.gravity.norm() <= 0.0, "gravity"),
-        (!drive.settle, "settling before the start"),
     ];
+    let start = [(!drive.settle, "settling before the start")];
+    let lacking = |(lacks, name): (bool, &'static str)| lacks.then_some(name);
+    let effects = left_out(drive);
+    let absent = bodies.into_iter().filter_map(lacking).chain(effects);
+    let absent = absent.chain(start.into_iter().filter_map(lacking));
     Model {
         degrees_of_freedom: assembled.system.free_dofs(),
         rollers: assembled.system.rollers(),
@@ -481,11 +471,7 @@ fn model(drive: &Drive, assembled: &Assembled) -> Model {
         fixed_guides: fixed,
         moving_guides: drive.guides.len() - fixed,
         tensioners: drive.tensioners.len(),
-        contacts,
-        absent: lacks
-            .iter()
-            .filter(|(lacking, _)| *lacking)
-            .map(|(_, name)| *name)
-            .collect(),
+        contacts: links::contacts(drive),
+        absent: absent.collect(),
     }
 }

@@ -124,6 +124,38 @@ pub(super) fn contacts(drive: &Drive) -> Vec<ContactFacts> {
     found
 }
 
+/// Effects that the model of a drive leaves out, in words: friction where parts touch, damping of the links, gravity.
+pub fn left_out(drive: &Drive) -> Vec<&'static str> {
+    let contacts = contacts(drive);
+    let facts: Vec<LinkFacts> = drive
+        .chains
+        .iter()
+        .map(|it| LinkFacts::of(&it.chain))
+        .collect();
+    // What does not touch does not lack friction.
+    let slips = |pair: &str| {
+        let own = || contacts.iter().filter(|contact| contact.pair == pair);
+        own().next().is_some() && own().all(|contact| contact.friction == "none")
+    };
+    // Pins that turn in their bushes rub in no contact of these.
+    let idle = !facts.is_empty() && facts.iter().all(|it| it.joint_friction.is_none());
+    let mut chains = drive.chains.iter();
+    let undamped = chains.all(|placed| {
+        let particles = !matches!(placed.chain.model, ChainModel::Rigid(_));
+        particles && placed.chain.damping.iter().all(|d| *d <= 0.0)
+    });
+    let lacks = [
+        (slips("teeth"), "friction on teeth"),
+        (slips("guides"), "friction on guides"),
+        (slips("rollers"), "friction of rollers on their bushes"),
+        (idle, "friction of pins in their bushes"),
+        (undamped, "damping of the links"),
+        (drive.gravity.norm() <= 0.0, "gravity"),
+    ];
+    let found = lacks.into_iter().filter(|(lacking, _)| *lacking);
+    found.map(|(_, name)| name).collect()
+}
+
 /// The kind of a law, as scenes write it.
 fn kind(law: serde_json::Result<Value>) -> String {
     let kind = law

@@ -3,6 +3,7 @@
 use super::Section;
 use std::f64::consts::TAU;
 
+use crate::describe::left_out;
 use crate::figure::{Measure, Scale, duration, figure, percent};
 use crate::rating::{Load, Rating};
 use crate::summary::{Bearing, SprocketCourse, Summary};
@@ -429,8 +430,12 @@ impl Told<'_> {
 
     fn inputs(&self) -> Section {
         let mut section = Section::new("inputs that were assumed", []);
+        let left_out = left_out(&self.simulation.assembled().drive);
+        let left_out = (!left_out.is_empty())
+            .then(|| format!("The model leaves out {}.", left_out.join(", ")));
         let assumed = self.assumed;
         if assumed.is_empty() {
+            section.sentences.extend(left_out);
             return section;
         }
         let decides = |it: &&String| {
@@ -448,6 +453,7 @@ impl Told<'_> {
             format!("Nobody measured {}{rest}.", named.join(", ")),
             "`chaindrive resolve` lists all inputs with their sources.".to_owned(),
         ];
+        section.sentences.extend(left_out);
         section
     }
 }

@@ -3,6 +3,8 @@
 
 use chaindrive::{Description, Run, Scene, Stepping};
 
+use crate::judged::{finished, page, preset, run};
+
 fn describe(preset: &str) -> Description {
     let scene = Scene::preset(preset).unwrap();
     let run = Run::suggested(&scene.run_defaults());
@@ -74,6 +76,29 @@ fn a_drive_without_a_route() {
         text.contains("absent                 sprockets, guides"),
         "{text}"
     );
+}
+
+/// What a description calls absent, and is no body, the page of a run tells as left out: friction on rails where they have none.
+#[test]
+fn a_page_tells_what_the_model_leaves_out() {
+    let rubs = ("contact.guides.friction", "{ coefficient = 0.1 }");
+    for (changes, left_out) in [
+        (
+            &[][..],
+            "friction on teeth, friction on guides, damping of the links",
+        ),
+        (&[rubs][..], "friction on teeth, damping of the links"),
+    ] {
+        let scene = preset("marine_engine", changes);
+        let run = run(1e-4, 2.0);
+        let drive = scene.drive().unwrap();
+        let it = Description::of(&drive, &run).unwrap();
+        assert_eq!(it.model.absent.join(", "), left_out);
+        let (simulation, summary) = finished(&scene, &run);
+        let page = page(&summary, &simulation);
+        let told = format!("\n  The model leaves out {left_out}.\n");
+        assert!(page.contains(&told), "{page}");
+    }
 }
 
 /// A step of a thousand links with play takes a tenth of a second: nobody waits for four hundred of them to learn the cost.

@@ -251,7 +251,7 @@ fn descriptions_count_and_name_what_they_tell_of() {
         .lines()
         .find(|line| line.starts_with("  absent"))
         .unwrap();
-    assert!(absent.contains("friction on teeth and guides"), "{absent}");
+    assert!(absent.contains("friction on teeth"), "{absent}");
 
     let (_, out, _) = run(TWO_SPROCKETS, &["check", "scene.toml"]);
     assert!(
