@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use crate::describe::left_out;
 use crate::figure::{Measure, Scale, duration, figure, percent};
 use crate::rating::{Load, Rating};
-use crate::summary::{Bearing, SprocketCourse, Summary};
+use crate::summary::{Bearing, SprocketCourse, Steadiness, Summary};
 use crate::{RanIn, Simulation, Verdict};
 
 /// Share of the greatest power of its chain below which a sprocket idles. *Assumed*: bearings and teeth of an idler take less.
@@ -76,7 +76,7 @@ impl Told<'_> {
         section.sentences.extend(self.ran_in.map(RanIn::to_string));
         let known = self.summary.steadiness();
         if known.iter().flatten().next().is_some() {
-            let is_known = |it: &&crate::summary::Steadiness| it.mean.half_width.is_finite();
+            let is_known = |it: &&Steadiness| it.mean.half_width.is_finite();
             let sentence = if !known.iter().flatten().all(|it| it.is_steady) {
                 "The tensions are not steady throughout the record."
             } else if known.iter().flatten().all(|it| is_known(&it)) {
@@ -232,6 +232,11 @@ impl Told<'_> {
             let until = duration(until);
             section.sentences.push(format!(
                 "Intervals are unknown below three periods of {period}, the slowest forcing. Take --until \"{until}\"."
+            ));
+        } else if self.summary.steadiness().iter().flatten().any(is_blank) {
+            let until = duration(2.0 * self.summary.duration());
+            section.sentences.push(format!(
+                "The record has too few periods for some intervals of p1 and p99. Take --until \"{until}\"."
             ));
         }
         section
@@ -456,6 +461,11 @@ impl Told<'_> {
         section.sentences.extend(left_out);
         section
     }
+}
+
+/// Whether intervals of quantiles are unknown.
+fn is_blank(of: &Steadiness) -> bool {
+    of.p1.half_width.is_nan() || of.p99.half_width.is_nan()
 }
 
 /// A half width, where it is known.

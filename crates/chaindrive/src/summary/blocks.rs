@@ -130,6 +130,11 @@ impl Blocks {
         self.statistics().map_or(f64::NAN, |it| it.values[0])
     }
 
+    /// Greatest less least value in a block, or a sum of some, to a bin.
+    pub(super) fn range(&self, block: &Block) -> f64 {
+        self.grid.quantile(block, 1.0) - self.grid.quantile(block, 0.0)
+    }
+
     /// Length of a block \[s\].
     pub(super) fn length(&self) -> f64 {
         self.length

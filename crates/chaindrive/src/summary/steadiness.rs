@@ -13,6 +13,10 @@
 //! 1.5 for quantiles, whose few blocks scatter less than they err. Δ is the drift of yᵢ from one half of the record to the other: what dies out goes
 //! on by about as much behind it. The grain is what one sample more or less makes of a quantile. The least is a share of the scale.
 //!
+//! A block or two may hold all that lies beyond a quantile. To leave one of a few blocks out then moves the quantile far, g − 1 times as far its yᵢ, and
+//! t is 4 for three blocks and up to 13 for what is correlated: the interval would be wider than all samples lie apart. It tells nothing then, and the
+//! half width of the quantile is unknown. Of a tension that hardly changes the least counts instead, however near its samples lie.
+//!
 //! The start of a run, before the steady state, is cut off where the standard error of the rest is least (MSER: White, *Simulation* **69**,
 //! 1997):
 //!
@@ -43,7 +47,7 @@ const MANY: usize = 8;
 pub struct Known {
     /// Its value.
     pub value: f64,
-    /// Half width of its 95 % interval; NaN below three periods.
+    /// Half width of its 95 % interval; NaN below three periods, and of a quantile whose interval would be wider than all samples lie apart.
     pub half_width: f64,
 }
 
@@ -90,6 +94,7 @@ impl Blocks {
         let means: Vec<f64> = whole.iter().map(|it| self.values(it)[0]).collect();
         let cut = truncation(&means);
         let settled = self.values(&sum(&whole[cut..]))[0];
+        let range = self.range(&all);
         let spreads = [0, 1, 2, 3].map(|k| self.spread(&whole, &all, found.values, k));
         let steady = |it: &Spread| it.drift.abs() <= it.doubt.max(DRIFT * scale);
         let is_steady = spreads[..2].iter().all(steady);
@@ -102,16 +107,17 @@ impl Blocks {
                 0.0
             };
             let of_chance = factor * students(spreads[k].freedom) * spreads[k].error;
-            let parts = [
-                of_chance,
-                spreads[k].drift,
-                grain,
-                LEAST_WIDTH[k] * scale,
-                start,
-            ];
+            let parts = [of_chance, spreads[k].drift, grain, start];
+            let of_record = parts.iter().map(|part| part * part).sum::<f64>().sqrt();
+            let least = LEAST_WIDTH[k] * scale;
+            let tells_nothing = k >= 2 && of_record > range.max(least);
             Known {
                 value: found.values[k],
-                half_width: parts.iter().map(|part| part * part).sum::<f64>().sqrt(),
+                half_width: if tells_nothing {
+                    f64::NAN
+                } else {
+                    of_record.hypot(least)
+                },
             }
         };
         Some(Steadiness {
@@ -388,6 +394,35 @@ mod tests {
         assert!(found.mean.value.is_finite() && found.p99.value > found.mean.value);
         let found = of(series(3, 0.5, 301), 100.0, 1.0);
         assert!(STATISTICS.iter().all(|it| it(&found).half_width > 0.0));
+    }
+
+    /// One of three periods dips: whether 1 % of the time lies in such dips or none does, three periods do not tell, and the interval of p1 is not said to
+    /// be wider than all samples. Twenty periods tell. What hardly changes is known by the least width, which is wider than its samples lie apart.
+    #[test]
+    fn an_interval_is_unknown_where_it_would_be_wider_than_all_samples() {
+        let dips = |i: usize, every: usize, by: f64| {
+            let wave = (TAU * i as f64 / 100.0).sin();
+            100.0 + wave
+                - if i / 100 % every == 1 && i % 100 > 90 {
+                    by
+                } else {
+                    0.0
+                }
+        };
+        let short = of((0..301).map(|i| dips(i, 3, 20.0)), 100.0, 100.0);
+        assert!(short.p1.half_width.is_nan(), "{short:?}");
+        assert!(
+            short.mean.half_width > 0.0 && short.p99.half_width < 22.0,
+            "{short:?}"
+        );
+        let long = of((0..2101).map(|i| dips(i, 3, 20.0)), 100.0, 100.0);
+        assert!(long.p1.half_width < 22.0, "{long:?}");
+        let nearly = of(
+            (0..301).map(|i| dips(i, 3, 0.0) * 1e-3 + 99.9),
+            100.0,
+            100.0,
+        );
+        assert!((nearly.p1.half_width - 0.5).abs() < 1e-3, "{nearly:?}");
     }
 
     /// A drift that counts is told, one that nobody would read is not, however sure it is.

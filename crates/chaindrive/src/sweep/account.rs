@@ -64,9 +64,9 @@ statistics! {
     SpanTensionStd, "span_tension_std", "N", Some("span"), "standard deviation of the span tension";
     SpanTensionStdHalfWidth, "span_tension_std_half_width", "N", Some("span"), "half width of the 95 % interval of the standard deviation; NaN below three periods";
     SpanTensionP1, "span_tension_p1", "N", Some("span"), "tension that the span has less of in 1 % of the time";
-    SpanTensionP1HalfWidth, "span_tension_p1_half_width", "N", Some("span"), "half width of its 95 % interval; NaN below three periods";
+    SpanTensionP1HalfWidth, "span_tension_p1_half_width", "N", Some("span"), "half width of its 95 % interval; NaN below three periods, and where they are too few to tell it";
     SpanTensionP99, "span_tension_p99", "N", Some("span"), "tension that the span has less of in 99 % of the time";
-    SpanTensionP99HalfWidth, "span_tension_p99_half_width", "N", Some("span"), "half width of its 95 % interval; NaN below three periods";
+    SpanTensionP99HalfWidth, "span_tension_p99_half_width", "N", Some("span"), "half width of its 95 % interval; NaN below three periods, and where they are too few to tell it";
     SpanTensionMin, "span_tension_min", "N", Some("span"), "least sample of the span tension";
     SpanTensionMax, "span_tension_max", "N", Some("span"), "greatest sample of the span tension";
     ContactForceP50, "contact_force_p50", "N", None, "median of the forces of loaded rollers on teeth";
