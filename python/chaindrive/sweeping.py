@@ -126,7 +126,8 @@ def sweep(
         - statistics of each variant, such as ``span_tension_mean``, ``span_tension_half_width``
           (of the 95 % interval of the mean), ``span_tension_std``, ``span_tension_min``,
           ``span_tension_max`` (…, span), ``contact_force_p99``,
-          ``contact_force_max`` [N], ``impact_force_p50``, ``impact_force_p99`` [N],
+          ``contact_force_max`` [N], ``impact_force_p50``, ``impact_force_p99`` [N] (NaN below 100
+          impacts),
           ``impact_impulse`` [N s], ``impact_speed`` [m/s] (…, sprocket), see the summary of a run,
           ``energy_dissipated_total``, ``energy_residual_max`` [J],
           ``steps``; those of contacts by kind where the scene logs them; ``accuracy_error`` and

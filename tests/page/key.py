@@ -30,7 +30,7 @@ def key(preset: str) -> list[str]:
     shaft, bearing = greatest(np.hypot(mean["sprocket_force_x"], mean["sprocket_force_y"]))
     breaking = tomllib.loads(run.attrs["resolved_scene"])["chain"].get("breaking_load")
     pull = float(run["link_tension"].max())
-    struck = {str(name): run.attrs[f"impact_force_p99_{name}"] for name in run.sprocket.values}
+    struck = {str(name): run.attrs[f"impact_force_max_{name}"] for name in run.sprocket.values}
     hardest = max(struck, key=lambda name: struck[name])
     lost = run["energy_losses"].isel(time=-1) - run["energy_losses"].isel(time=0)
     place, _ = greatest(lost)

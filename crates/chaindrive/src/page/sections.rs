@@ -309,7 +309,7 @@ impl Told<'_> {
                 it.sprocket.clone(),
                 it.count.to_string(),
                 scale.cell(it.force(0.5)),
-                scale.cell(it.force(0.99)),
+                scale.cell(it.columns()[1].1),
                 scale.cell(it.greatest),
                 impulses.cell(it.impulse(0.5)),
                 format!("{:.3}", it.speed(0.5)),

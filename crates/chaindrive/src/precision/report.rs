@@ -54,7 +54,8 @@ impl Estimate {
             number(&format!("spread_{name}"), compared.spread);
         }
         for it in &self.impacts {
-            for (name, error) in it.columns() {
+            let greatest = ("impact_force_max", it.p99);
+            for (name, error) in it.columns().into_iter().chain([greatest]) {
                 number(&format!("error_{name}_{}", it.sprocket), error);
             }
         }

@@ -168,7 +168,14 @@ pub fn attributes(
     });
     let choice = choice.map(|it| it.attributes(is_missed));
     let judgement = judgement.map(Judgement::attributes);
-    for (name, value) in [verdict, choice, judgement].into_iter().flatten().flatten() {
+    // A percentile that the impacts are too few to tell has no error.
+    let struck = summary.into_iter().flat_map(Summary::impacts);
+    let few = struck.filter(|it| !it.tells(0.99));
+    let few: Vec<String> = few
+        .map(|it| format!("error_impact_force_p99_{}", it.sprocket))
+        .collect();
+    let all = [verdict, choice, judgement].into_iter().flatten().flatten();
+    for (name, value) in all.filter(|(name, _)| !few.contains(name)) {
         match value {
             Attribute::Text(text) => story.text(&name, &text),
             Attribute::Number(number) => story.number(&name, number),

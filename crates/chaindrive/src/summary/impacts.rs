@@ -58,19 +58,39 @@ impl ImpactStatistics {
         }
     }
 
-    /// Names and values in results: forces \[N\], median impulse \[N s\], median closing speed \[m/s\]; NaN where nothing struck.
+    /// Names and values in results: forces \[N\], median impulse \[N s\], median closing speed \[m/s\]; NaN where nothing struck, or too few to
+    /// [tell](Self::tells) the quantile.
     pub fn columns(&self) -> [(&'static str, f64); 5] {
         let of = |value: f64| if self.count > 0 { value } else { f64::NAN };
         [
             ("impact_force_p50", of(self.force(0.5))),
-            ("impact_force_p99", of(self.force(0.99))),
+            (
+                "impact_force_p99",
+                if self.tells(0.99) {
+                    self.force(0.99)
+                } else {
+                    f64::NAN
+                },
+            ),
             ("impact_force_max", of(self.greatest)),
             ("impact_impulse", of(self.impulse(0.5))),
             ("impact_speed", of(self.speed(0.5))),
         ]
     }
 
-    /// A quantile of the largest forces \[N\].
+    /// Whether the impacts are enough to tell a quantile above the median: one of them at least lies beyond it.
+    ///
+    /// ```text
+    /// n (1 − q) ≥ 1
+    /// ```
+    ///
+    /// Of fewer than 100 impacts the 99th percentile would be the greatest force of all, whatever their distribution.
+    pub fn tells(&self, quantile: f64) -> bool {
+        // 1 − q has its rounding.
+        self.count as f64 * (1.0 - quantile) >= 1.0 - 1e-9
+    }
+
+    /// A quantile of the largest forces \[N\]; the greatest where the impacts are too few to [tell](Self::tells) it.
     pub fn force(&self, quantile: f64) -> f64 {
         // A class of the histogram reaches beyond the values that it counts.
         (self.forces.value_at_quantile(quantile) as f64 / COUNTS_PER_NEWTON).min(self.greatest)
@@ -84,5 +104,38 @@ impl ImpactStatistics {
     /// A quantile of the closing speeds at touch, along the normal of the tooth \[m/s\].
     pub fn speed(&self, quantile: f64) -> f64 {
         self.speeds.value_at_quantile(quantile) as f64 / COUNTS_PER_METRE_A_SECOND
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of 99 forces none lies beyond their 99th percentile but the greatest; of 100 one does.
+    #[test]
+    fn a_percentile_takes_as_many_impacts_as_it_leaves_one_beyond() {
+        let mut statistics = ImpactStatistics {
+            sprocket: "a".to_owned(),
+            count: 0,
+            greatest: 0.0,
+            forces: histogram(),
+            impulses: histogram(),
+            speeds: histogram(),
+        };
+        for n in 1..=100 {
+            statistics.push(&Impact {
+                sprocket: 0,
+                roller: n,
+                time: 0.0,
+                speed: 1.0,
+                peak_force: n as f64,
+                impulse: 1.0,
+            });
+            let [(_, p50), (_, p99), (_, greatest), ..] = statistics.columns();
+            assert!(p50.is_finite() && (greatest - n as f64).abs() < 1e-9);
+            assert_eq!(p99.is_finite(), n == 100, "{n}: {p99}");
+        }
+        let p99 = statistics.columns()[1].1;
+        assert!((p99 - 99.0).abs() < 0.1, "{p99}");
     }
 }

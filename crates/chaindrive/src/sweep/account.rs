@@ -75,7 +75,7 @@ statistics! {
     ContactForceMax, "contact_force_max", "N", None, "largest sample of the forces of rollers on teeth";
     ImpactCount, "impact_count", "1", Some(SPROCKET), "number of impacts of rollers that came to the sprocket";
     ImpactForceP50, "impact_force_p50", "N", Some(SPROCKET), "median of the largest forces of impacts";
-    ImpactForceP99, "impact_force_p99", "N", Some(SPROCKET), "99th percentile of the largest forces of impacts";
+    ImpactForceP99, "impact_force_p99", "N", Some(SPROCKET), "99th percentile of the largest forces of impacts; NaN below 100 impacts";
     ImpactForceMax, "impact_force_max", "N", Some(SPROCKET), "largest force of all impacts";
     ImpactImpulse, "impact_impulse", "N s", Some(SPROCKET), "median of the impulses of impacts";
     ImpactSpeed, "impact_speed", "m/s", Some(SPROCKET), "median of the closing speeds of impacts, along the normal of the tooth";

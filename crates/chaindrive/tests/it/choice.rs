@@ -273,8 +273,11 @@ fn impacts(start: &Assembled, run: &Run) -> Vec<Vec<(&'static str, f64)>> {
         summary.strike(simulation.impacts());
     }
     let of = |it: &ImpactStatistics| {
-        let [p50, p99, _, impulse, _] = it.columns();
-        vec![p50, p99, impulse]
+        vec![
+            ("force p50", it.force(0.5)),
+            ("force p99", it.force(0.99)),
+            ("impulse p50", it.impulse(0.5)),
+        ]
     };
     let struck = summary.impacts().iter().filter(|it| it.count > 0);
     struck.map(of).collect()
