@@ -146,8 +146,8 @@ def simulate(
         The numerical error is estimated from the beginning of the run, ``error_window`` [s] long,
         by the differences from runs with half and with a quarter of the step:
         ``error_span_tension`` and ``error_tight_span_tension`` of the waveform, root mean square
-        over the mean tension [–]; ``error_span_tension_mean``, ``error_span_tension_rms``,
-        ``error_contact_force_p50``, ``_p90`` and ``_p99`` of the statistics [–];
+        over the mean tension [–]; ``error_span_tension_mean``, ``_rms``, ``_std``, ``_p1`` and
+        ``_p99``, ``error_contact_force_p50``, ``_p90`` and ``_p99`` of the statistics [–];
         ``error_contact_force`` is the largest of the last three. Where no roller holds a span for
         some time, its tension is NaN, and link tensions are compared instead:
         ``error_link_tension`` and so on, and ``error_gap`` says why. ``spread_…`` is the difference

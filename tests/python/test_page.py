@@ -99,6 +99,30 @@ def test_a_page_has_no_powers_of_ten_and_shows_itself_in_notebooks(run: xr.Datas
     assert "stepping" in page.numerics
 
 
+def test_a_page_tells_the_errors_by_the_step(run: xr.Dataset) -> None:
+    """As the attributes have them; what is not estimated says how to estimate it."""
+    assert "Run it without --no-error, to its end." in str(run.drive.summary())
+    judged = cd.simulate(cd.scenes.industrial_16b(), until=0.05, run_in=0)
+    text = str(judged.drive.summary())
+    told = re.search(r"Half the step moves means by (.*), std by (.*), p1 by (.*) and p99 by", text)
+    assert told, text
+    assert not re.search(r"\d[eE][-+]?\d", text), text
+    for found, name in zip(told.groups(), ("mean", "std", "p1"), strict=True):
+        error = 100.0 * judged.attrs[f"error_span_tension_{name}"]
+        if not found.startswith("below"):
+            assert float(found.split()[0]) == pytest.approx(error, abs=5e-4)
+    section = next(it for it in judged.drive.summary().sections if "impacts" in it["title"])
+    places = [i for i, it in enumerate(section["columns"]) if it == "± step [%]"]
+    assert len(places) == 2
+    for row in section["rows"]:
+        for place, name in zip(places, ("p50", "max"), strict=True):
+            known = judged.attrs.get(f"error_impact_force_{name}_{row[0]}")
+            if known is None:
+                assert row[place] == "unknown"
+            else:
+                assert float(row[place]) == pytest.approx(100.0 * known, rel=0.05)
+
+
 def test_a_run_that_has_no_page_says_so() -> None:
     with pytest.raises(ValueError, match="simulate it again"):
         xr.Dataset().drive.summary()

@@ -16,7 +16,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         summary.push(sample);
     }
     let verdict = Verdict::of(&summary, &simulation, None, None, None);
-    let page = Page::of(&verdict, &summary, &simulation, None, &scene.assumed()?);
+    let page = Page::of(
+        &verdict,
+        &summary,
+        &simulation,
+        None,
+        None,
+        &scene.assumed()?,
+    );
     writeln!(std::io::stdout(), "{page}")?;
     Ok(())
 }

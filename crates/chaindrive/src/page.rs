@@ -7,6 +7,7 @@
 //! A [`Page`] is sections of sentences and tables, as text, or as JSON for whoever sets them otherwise. Steps, contacts and errors are
 //! [numerics], on a page of their own.
 
+mod by_the_step;
 mod numerics;
 mod sections;
 
@@ -16,6 +17,7 @@ use serde::Serialize;
 
 pub use numerics::numerics;
 
+use crate::precision::Judgement;
 use crate::summary::Summary;
 use crate::{RanIn, Simulation, Verdict};
 
@@ -54,12 +56,13 @@ impl Section {
 }
 
 impl Page {
-    /// The page of a run: its verdict, its samples, how it was run in, and the inputs that were assumed.
+    /// The page of a run: its verdict, its samples, how it was run in, the estimate of its error, and the inputs that were assumed.
     pub fn of(
         verdict: &Verdict,
         summary: &Summary,
         simulation: &Simulation,
         ran_in: Option<&RanIn>,
+        judgement: Option<&Judgement>,
         assumed: &[String],
     ) -> Self {
         let run = sections::Told {
@@ -67,6 +70,7 @@ impl Page {
             summary,
             simulation,
             ran_in,
+            judgement,
             assumed,
         };
         let mut sections = run.sections();

@@ -1,10 +1,11 @@
 //! The sections of the page.
 
-use super::Section;
+use super::{Section, by_the_step};
 use std::f64::consts::TAU;
 
 use crate::describe::left_out;
 use crate::figure::{Measure, Scale, duration, figure, percent};
+use crate::precision::Judgement;
 use crate::rating::{Load, Rating};
 use crate::summary::{Bearing, SprocketCourse, Steadiness, Summary};
 use crate::{RanIn, Simulation, Verdict};
@@ -34,6 +35,7 @@ pub(super) struct Told<'a> {
     pub(super) summary: &'a Summary,
     pub(super) simulation: &'a Simulation,
     pub(super) ran_in: Option<&'a RanIn>,
+    pub(super) judgement: Option<&'a Judgement>,
     pub(super) assumed: &'a [String],
 }
 
@@ -227,6 +229,10 @@ impl Told<'_> {
                 ));
             }
         }
+        if !section.rows.is_empty() {
+            let errors = by_the_step::of_tensions(self.judgement);
+            section.sentences.push(errors);
+        }
         if let Some(until) = self.summary.known_from() {
             let period = duration(self.summary.slowest_forcing());
             let until = duration(until);
@@ -294,26 +300,33 @@ impl Told<'_> {
         let struck: Vec<_> = struck.collect();
         let scale = Measure::Force.scale(struck.iter().map(|it| it.greatest));
         let impulses = Measure::Impulse.scale(struck.iter().map(|it| it.impulse(0.5)));
-        let columns = [
-            "on".to_owned(),
-            "number".to_owned(),
-            scale.heading("half below"),
-            scale.heading("99 of 100 below"),
-            scale.heading("greatest"),
-            impulses.heading("impulse"),
-            "closing [m/s]".to_owned(),
-        ];
+        let estimate = self.judgement.and_then(Judgement::estimate);
+        let by_step = estimate.map(|_| "± step [%]".to_owned());
+        let columns = ["on".to_owned(), "number".to_owned()].into_iter();
+        let columns = columns.chain([scale.heading("half below")]);
+        let columns = columns.chain(by_step.clone());
+        let columns = columns.chain(["99 of 100 below", "greatest"].map(|it| scale.heading(it)));
+        let columns = columns.chain(by_step);
+        let columns = columns.chain([impulses.heading("impulse"), "closing [m/s]".to_owned()]);
         let mut section = Section::new("impacts of rollers that seat", columns);
         for it in struck {
-            section.rows.push(vec![
-                it.sprocket.clone(),
-                it.count.to_string(),
-                scale.cell(it.force(0.5)),
-                scale.cell(it.columns()[1].1),
-                scale.cell(it.greatest),
+            let errors = estimate.map(|all| by_the_step::of_impacts(all, &it.sprocket));
+            let half = errors.map(|it| by_the_step::cell(it.map(|it| it.p50)));
+            let greatest = errors.map(|it| by_the_step::cell(it.map(|it| it.p99)));
+            let mut row = vec![it.sprocket.clone(), it.count.to_string()];
+            row.push(scale.cell(it.force(0.5)));
+            row.extend(half);
+            row.extend([it.columns()[1].1, it.greatest].map(|force| scale.cell(force)));
+            row.extend(greatest);
+            row.extend([
                 impulses.cell(it.impulse(0.5)),
                 format!("{:.3}", it.speed(0.5)),
             ]);
+            section.rows.push(row);
+        }
+        if !section.rows.is_empty() {
+            let impulses = estimate.and_then(by_the_step::of_impulses);
+            section.sentences.extend(impulses);
         }
         section
     }

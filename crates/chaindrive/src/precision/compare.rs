@@ -144,6 +144,49 @@ impl Account {
     }
 }
 
+/// How the tensions of one trace scatter: standard deviation, and the values below which 1 % and 99 % of the samples are, of every strand \[N\].
+pub(super) struct Scatter {
+    values: [Vec<f64>; 3],
+    /// Mean tension of all strands, which differences are relative to.
+    scale: f64,
+}
+
+impl Scatter {
+    /// Of the first samples of a trace.
+    pub(super) fn of(trace: &Trace, samples: usize, strands: Strands) -> Self {
+        let samples = samples.min(trace.len());
+        let tensions = trace.tensions(strands);
+        let mut scatter = Self {
+            values: Default::default(),
+            scale: tensions.mean_of_first(samples),
+        };
+        for strand in 0..tensions.strands {
+            let mut sorted: Vec<f64> = tensions.of(strand).take(samples).collect();
+            sorted.sort_unstable_by(f64::total_cmp);
+            let mean = sorted.iter().sum::<f64>() / samples.max(1) as f64;
+            let deviation = rms(sorted.iter().map(|value| value - mean));
+            let found = [
+                deviation,
+                percentile(&sorted, 0.01),
+                percentile(&sorted, 0.99),
+            ];
+            for (values, found) in scatter.values.iter_mut().zip(found) {
+                values.push(found);
+            }
+        }
+        scatter
+    }
+
+    /// Largest differences from another trace, of each, over the mean tension \[–\].
+    pub(super) fn apart(&self, from: &Self) -> [f64; 3] {
+        let largest = |k: usize| {
+            let pairs = self.values[k].iter().zip(&from.values[k]);
+            pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / from.scale
+        };
+        [0, 1, 2].map(largest)
+    }
+}
+
 fn apart(of: &[f64], from: &[f64]) -> f64 {
     let scale = from.iter().map(|value| value.abs()).sum::<f64>() / from.len() as f64;
     let apart = || of.iter().zip(from).map(|(a, b)| (a - b).abs());
@@ -191,6 +234,26 @@ mod tests {
             assert!(account(of).mean_apart(&account(from)) > 1e12);
             assert!(account(of).rms_apart(&account(from)) > 1e12);
         }
+    }
+
+    /// Twice the swing about the same mean: σ of 0, …, 100 is √((101² − 1)/12) = 29.15.
+    #[test]
+    fn scatter_is_compared_over_the_mean_tension() {
+        let trace = |swing: f64| {
+            let mut trace = Trace {
+                time: (0..101).map(f64::from).collect(),
+                ..Trace::default()
+            };
+            trace.spans.values = (0..101)
+                .map(|i| 1000.0 + swing * f64::from(i - 50))
+                .collect();
+            trace.spans.strands = 1;
+            trace
+        };
+        let [one, two] = [1.0, 2.0].map(|it| Scatter::of(&trace(it), 101, Strands::Spans));
+        let [deviation, p1, p99] = two.apart(&one);
+        assert!((deviation - 0.029_15).abs() < 1e-5, "{deviation}");
+        assert!((p1 - 0.049).abs() < 1e-9 && (p99 - 0.049).abs() < 1e-9);
     }
 
     #[test]

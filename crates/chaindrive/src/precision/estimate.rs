@@ -4,7 +4,7 @@ use chaindrive_mechanics::Assembled;
 
 use super::Watch;
 use super::accuracy::Promise;
-use super::compare::{Account, Comparison, Distance, distances, distances_over, rms};
+use super::compare::{Account, Comparison, Distance, Scatter, distances, distances_over, rms};
 use super::convergence::factor;
 use super::horizon::{Divergence, Horizon, LIMIT};
 use super::impacts::ImpactErrors;
@@ -52,6 +52,8 @@ pub struct Estimate {
     pub mean: Comparison,
     /// Root mean square of the tension, that of the strand that differs most.
     pub rms: Comparison,
+    /// Standard deviation, 1st and 99th percentile of the tension, over the mean tension, those of the strand that differs most.
+    pub scatter: [Comparison; 3],
     /// 50th, 90th and 99th percentile of the contact forces.
     pub force: [Comparison; 3],
     /// Impacts of rollers, by sprocket; none where no roller came to one.
@@ -167,6 +169,9 @@ pub(crate) fn estimate_with(
     };
     let of = |trace| Account::of(trace, shadow.len(), strands);
     let (run_account, twin_account, better_account) = (of(base), of(twin), of(shadow));
+    let scatter = |trace| Scatter::of(trace, shadow.len(), strands);
+    let own = scatter(base);
+    let [shadowed, by_chance] = [shadow, twin].map(|it| scatter(it).apart(&own));
     let compared = |apart: &dyn Fn(&Account) -> f64| Comparison {
         difference: apart(&better_account),
         spread: apart(&twin_account),
@@ -182,6 +187,10 @@ pub(crate) fn estimate_with(
         tight_tension: rms(inside().map(|[_, tight]| *tight)),
         mean: compared(&|other| other.mean_apart(&run_account)),
         rms: compared(&|other| other.rms_apart(&run_account)),
+        scatter: [0, 1, 2].map(|k| Comparison {
+            difference: shadowed[k],
+            spread: by_chance[k],
+        }),
         force: [0, 1, 2].map(|k| compared(&|other| other.force_apart(&run_account)[k])),
         impacts: ImpactErrors::of(base, shadow, &start.system.sprocket_names(), of_order),
         horizon,

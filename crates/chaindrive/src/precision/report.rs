@@ -39,13 +39,20 @@ impl Estimate {
         let force = |of: fn(&Comparison) -> f64| self.force.iter().map(of).fold(f64::NAN, f64::max);
         number("error_contact_force", force(|compared| compared.difference));
         let [p50, p90, p99] = self.force;
-        let (mean, rms) = match self.strands {
-            Strands::Spans => ("span_tension_mean", "span_tension_rms"),
-            Strands::Links => ("link_tension_mean", "link_tension_rms"),
+        let tension = match self.strands {
+            Strands::Spans => "span_tension",
+            Strands::Links => "link_tension",
         };
+        let of_tension = |statistic: &str| format!("{tension}_{statistic}");
+        let [mean, rms, std] = ["mean", "rms", "std"].map(of_tension);
+        let tails = ["p1", "p99"].map(of_tension);
+        let [deviation, low, high] = self.scatter;
         for (name, compared) in [
-            (mean, self.mean),
-            (rms, self.rms),
+            (mean.as_str(), self.mean),
+            (rms.as_str(), self.rms),
+            (std.as_str(), deviation),
+            (tails[0].as_str(), low),
+            (tails[1].as_str(), high),
             ("contact_force_p50", p50),
             ("contact_force_p90", p90),
             ("contact_force_p99", p99),
@@ -177,6 +184,11 @@ impl fmt::Display for Estimate {
             percent(self.tight_tension)
         )?;
         writeln!(f, "  {all}, average  mean {}, rms {}", self.mean, self.rms)?;
+        let [deviation, low, high] = &self.scatter;
+        writeln!(
+            f,
+            "  {all}, scatter  std {deviation}, p1 {low}, p99 {high} of the mean tension"
+        )?;
         let [p50, p90, p99] = &self.force;
         if p50.difference.is_finite() {
             writeln!(

@@ -156,7 +156,8 @@ pub fn attributes(
             judgement,
         );
         let ran_in = provenance.ran_in.as_ref();
-        let page = Page::of(&verdict, summary, simulation, ran_in, &provenance.assumed);
+        let assumed = &provenance.assumed;
+        let page = Page::of(&verdict, summary, simulation, ran_in, judgement, assumed);
         story.text("summary", &page.to_string());
         // Texts and lists of texts always become JSON.
         story.text("page", &serde_json::to_string(&page).unwrap_or_default());

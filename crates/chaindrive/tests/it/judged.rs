@@ -51,7 +51,7 @@ pub(crate) fn notes(verdict: &Verdict) -> Vec<&'static str> {
 /// The page of a run, and its numerics.
 pub(crate) fn page(summary: &Summary, simulation: &Simulation) -> String {
     let verdict = Verdict::of(summary, simulation, None, None, None);
-    let page = Page::of(&verdict, summary, simulation, None, &[]);
+    let page = Page::of(&verdict, summary, simulation, None, None, &[]);
     let numerics = numerics(&verdict, summary, simulation, None, None);
     format!("{page}\n{numerics}")
 }
