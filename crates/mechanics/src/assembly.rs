@@ -235,6 +235,7 @@ impl Drive {
         let torques = free_trains::balance(&mut system, &trains, &q);
         let mut statics = Vec::new();
         if self.settle {
+            overload::check(&system, &laid.parts)?;
             statics = relax::settle(&mut system, &mut q)
                 .map_err(|error| laid_through_a_guide(&laid).unwrap_or(error))
                 .map_err(|error| overload::named(error, &system, &laid.parts))?;
