@@ -11,7 +11,6 @@ mod joints;
 pub(crate) mod links;
 pub(crate) mod model;
 pub(crate) mod particles;
-mod record;
 
 use std::ops::Range;
 
@@ -21,17 +20,17 @@ use chaindrive_integrate::{Moment, Registers, Weights};
 use serde::{Deserialize, Serialize};
 
 use held_end::held_ends;
-use links::Linkage;
+use joints::Resistance;
 pub use links::inside::{Contact, Inside, Joints};
+use links::{Impulses, JointState, Linkage};
 use model::ChainModel;
-use particles::Particles;
 use particles::points::{self, Points};
-pub(crate) use record::Record;
+use particles::{Particles, Turning};
 
-use crate::bodies::{GroupBodies, Surroundings};
-use crate::contact::{ContactState, Frame, PlateContact};
+use crate::bodies::{BodyContacts, GroupBodies, Surroundings};
+use crate::contact::{Begun, ContactState, Frame, PlateContact, Touch, Wrench};
 use crate::energy::Energy;
-use crate::seam::{Load, Moving, Observation, Pose, Rates, Sum, Unknown};
+use crate::seam::{Load, Loads, Moving, Observation, Pose, Rates, Sum, Unknown};
 use crate::{End, MemoryError};
 
 /// A chain ready to move.
@@ -54,6 +53,66 @@ pub(crate) enum ChainMemory {
     Points(Box<points::Memory>, Option<joints::Stick>),
     /// The contacts in its joints, and the friction of those without clearance.
     Links(Box<links::Memory>, Option<joints::Stick>),
+}
+
+/// Contact states, and the work space of the member.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Record {
+    pub(crate) loads: Loads,
+    /// What joints leave behind; empty where links are springs.
+    joint_state: JointState,
+    #[serde(skip)]
+    impulses: Impulses,
+    /// Findings in joints that are points; empty elsewhere.
+    points: points::Found,
+    /// What resists in the joints; empty where nothing does.
+    resistance: Resistance,
+    /// How the links of particles turn, where something resists that.
+    #[serde(skip)]
+    turning: Turning,
+}
+
+impl Record {
+    /// Room for every evaluation of a chain with these contacts.
+    pub(crate) fn new(contacts: &BodyContacts) -> Self {
+        let (wheels, rails) = (contacts.teeth.len(), contacts.rails.len());
+        let touches = |count: usize| vec![Box::<Touch>::default(); count];
+        Self {
+            loads: Loads {
+                teeth: touches(wheels),
+                rails: touches(rails),
+                wheel_wrenches: vec![Wrench::default(); wheels],
+                rail_wrenches: vec![Wrench::default(); rails],
+                frames: vec![Frame::fixed(); wheels + rails],
+                ways: vec![None; wheels + rails],
+            },
+            ..Self::default()
+        }
+    }
+
+    /// How contacts began: depth \[m\], and the share of the step after which they did.
+    pub(crate) fn onsets(&self) -> impl Iterator<Item = (f64, f64)> {
+        let Loads {
+            wheel_wrenches,
+            rail_wrenches,
+            ..
+        } = &self.loads;
+        let joints = self.joint_state.tallies.iter().chain(&self.points.tallies);
+        let wrenches = wheel_wrenches.iter().chain(rail_wrenches);
+        wrenches
+            .map(|wrench| (wrench.first_depth, wrench.first_share))
+            .chain(joints.map(|tally| (tally.first_depth, tally.first_share)))
+    }
+
+    /// Contacts that began in the joints, and their depths: pins in bushes, bushes in rollers.
+    pub(crate) fn joints(&self) -> [(Begun, f64); 2] {
+        // A chain has links or points.
+        let [links, points] = [&self.joint_state.tallies, &self.points.tallies];
+        [0, 1].map(|k| {
+            let begun = links[k].begun.and(points[k].begun);
+            (begun, links[k].depth.max(points[k].depth))
+        })
+    }
 }
 
 /// How a chain was laid.

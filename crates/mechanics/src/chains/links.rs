@@ -16,6 +16,7 @@ pub(crate) mod build;
 mod by_link;
 mod drag;
 mod element;
+mod equations;
 mod held;
 mod hinge;
 mod implicit;
@@ -173,7 +174,7 @@ pub(crate) struct JointState {
     pub(crate) tallies: [Tally; 2],
     // Work space, filled anew before it is read.
     #[serde(skip)]
-    pub(crate) equations: implicit::Equations,
+    pub(crate) equations: equations::Equations,
     #[serde(skip)]
     pub(crate) reactions: reactions::Reactions,
     #[serde(skip)]

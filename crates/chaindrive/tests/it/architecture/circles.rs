@@ -312,47 +312,19 @@ fn tokens(text: &str) -> Vec<String> {
     found
 }
 
-/// A circle that stands: its crate, the modules at the root that its files lie in, and the reason.
-type Known = (&'static str, &'static [&'static str], &'static str);
-
-const KNOWN: [Known; 1] = [(
-    "mechanics",
-    &["chains"],
-    "the record of a chain has room for the work of every member, and members take the whole of it",
-)];
-
-/// Whoever closes a circle meets this test: move what both need below both, or put the reason into the table. A circle that is opened
-/// must leave the table.
+/// Whoever closes a circle meets this test: move what both need below both.
 #[test]
-fn files_stand_in_no_circle_but_those_known() {
-    let mut standing = Vec::new();
+fn files_stand_in_no_circle() {
     let mut problems = Vec::new();
     for folder in CRATES {
         let graph = graph(&read(&root().join("crates").join(folder).join("src")));
         for circle in circles(&graph) {
-            let within = |(crate_of, modules, _): &Known| {
-                *crate_of == folder
-                    && circle
-                        .iter()
-                        .all(|file| modules.contains(&file[0].as_str()))
-            };
-            if let Some(at) = KNOWN.iter().position(within) {
-                standing.push(at);
-                continue;
-            }
             problems.push(format!("{folder}:"));
             for file in &circle {
                 let to = graph[file].iter().filter(|it| circle.contains(it));
                 let to: Vec<String> = to.map(|it| it.join("/")).collect();
                 problems.push(format!("    {} names {}", file.join("/"), to.join(", ")));
             }
-        }
-    }
-    for (at, (folder, modules, _)) in KNOWN.iter().enumerate() {
-        if standing.iter().filter(|it| **it == at).count() != 1 {
-            problems.push(format!(
-                "{folder}: there is not one circle in {modules:?}: amend the table"
-            ));
         }
     }
     assert!(problems.is_empty(), "{}", problems.join("\n"));

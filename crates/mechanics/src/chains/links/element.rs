@@ -2,6 +2,7 @@
 
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::Weights;
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// The other side of a contact.
@@ -118,5 +119,47 @@ impl Element {
     /// Moment on b about its centre of mass, or about the origin of its frame \[N m\].
     pub(crate) fn moment_b(&self, push: Vector) -> f64 {
         -cross(self.arm_b, push) - self.lever_b * self.rub
+    }
+}
+
+/// A row over the unknowns of the partner.
+#[derive(Clone, Copy)]
+pub(super) enum Row {
+    Nothing,
+    Body(usize, Vector3<f64>),
+    /// Coordinates of wheels and tensioners, unused ones `usize::MAX`.
+    Border([(usize, f64); 3]),
+}
+
+/// How the partner moves along a direction at the circle's centre, with a lever for its rotation.
+pub(super) fn partner_row(
+    element: &Element,
+    mounts: &[Mount],
+    direction: Vector,
+    lever: f64,
+) -> Row {
+    match element.b {
+        Partner::Ground => Row::Nothing,
+        Partner::Body(body) => Row::Body(
+            body,
+            Vector3::new(
+                direction.x,
+                direction.y,
+                cross(element.arm_b, direction) + lever,
+            ),
+        ),
+        Partner::Mount(index) => {
+            let mount = &mounts[index];
+            let mut entries = [(usize::MAX, 0.0); 3];
+            for (entry, shift) in entries.iter_mut().zip(&mount.shifts) {
+                if let Some((j, shift)) = shift {
+                    *entry = (*j, direction.dot(shift));
+                }
+            }
+            if let Some((j, ratio)) = mount.turn {
+                entries[2] = (j, (direction.dot(&turned(element.arm_b)) + lever) * ratio);
+            }
+            Row::Border(entries)
+        }
     }
 }

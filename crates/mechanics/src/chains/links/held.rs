@@ -19,7 +19,7 @@ use chaindrive_integrate::{Array, Weights};
 use pulp::{Simd, WithSimd};
 
 use super::by_link::ByLink;
-use super::implicit::Sum;
+use super::equations::Sum;
 use super::posture::Posture;
 use super::reactions::{Inertia, Reactions, load};
 use super::{Blocks, JointState, Linkage, Mate};

@@ -5,8 +5,8 @@ use chaindrive_integrate::{Moment, Registers, Weights};
 use nalgebra::{DMatrix, DVector, Matrix2x3};
 
 use super::bearing::Tally;
+use super::equations::{Equations, Sum};
 use super::held::{Prescribed, limbs};
-use super::implicit::{Equations, Sum};
 use super::impulses::Step;
 use super::pins::{Contacts, Pins};
 use super::{Element, Impulses, Joining, JointState, Linkage, turned};

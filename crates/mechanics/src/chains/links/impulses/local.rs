@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 use super::rows::Rows;
 use super::tridiagonal::Tridiagonal;
 use super::{JointState, Linkage};
-use crate::chains::links::implicit::{Row, partner_row};
+use crate::chains::links::element::{Row, partner_row};
 use crate::chains::links::{Element, Partner, cross};
 
 /// One row of J over the chain's bodies, with the partner's sign in it.
