@@ -100,7 +100,7 @@ pages: setup $(VENV)/site-ready docs ## Build the documentation in target/site; 
 	$(BIN)/sphinx-build -W --keep-going -q -d target/site-trees docs target/site
 	cp -r target/doc target/site/rust
 
-site: browser pages ## Build the documentation, and test replays in a browser
+site: browser pages ## Build the documentation, and test replays and reports in a browser
 	$(BIN)/pytest tests/site
 
 wheels: $(VENV)/wheels-ready ## Build a wheel for Linux and the source distribution in dist, and try them
@@ -111,7 +111,7 @@ wheels: $(VENV)/wheels-ready ## Build a wheel for Linux and the source distribut
 .PHONY: browser
 browser:
 	@command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null || { \
-		echo "Chromium is missing, in which replays are tested: install the package chromium (Debian: apt-get install chromium), or build without the test: make pages" >&2; exit 1; }
+		echo "Chromium is missing, in which replays and reports are tested: install the package chromium (Debian: apt-get install chromium), or build without the test: make pages" >&2; exit 1; }
 
 clean: ## Remove everything that was built
 	rm -rf $(VENV) target results dist

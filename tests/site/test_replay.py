@@ -1,10 +1,7 @@
 """Replays in a real browser: they play, scrub, zoom, and show what was recorded."""
 
-import shutil
-
 import numpy as np
 import pytest
-from playwright.sync_api import sync_playwright
 
 import chaindrive as cd
 
@@ -15,17 +12,6 @@ CHANNELS += ["tensioner_position", "link_tension", "contact_force", "span_tensio
 FIRST_FRAME = 1.0
 # [ms]
 SCRIPT_OF_A_FRAME = 4.0
-
-
-@pytest.fixture(scope="session")
-def browser():
-    names = ("chromium", "chromium-browser", "google-chrome")
-    program = next(filter(None, map(shutil.which, names)), None)
-    assert program, "Chromium is missing: install the Debian package chromium"
-    with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
-        yield chromium
-        chromium.close()
 
 
 @pytest.fixture(scope="session")
@@ -47,24 +33,16 @@ def file(run, tmp_path_factory):
     return path
 
 
-def opened(browser, path, **how):
+def opened(visit, path, **how):
     """A page that shows a replay; every error in it fails the test that closes it."""
-    page = browser.new_page(**how)
-    page.errors = []
-    page.on("pageerror", lambda error: page.errors.append(str(error)))
-    page.on("request", lambda request: page.errors.extend(outside(request.url)))
-    page.goto(path.as_uri())
+    page = visit(path, **how)
     page.wait_for_function("window.replay && window.replay.firstFrame", timeout=20_000)
     return page
 
 
-def outside(url):
-    return [] if url.startswith(("file:", "data:", "blob:", "about:")) else [f"asks for {url}"]
-
-
 @pytest.fixture
-def page(browser, file):
-    page = opened(browser, file, viewport={"width": 1280, "height": 800})
+def page(visit, file):
+    page = opened(visit, file, viewport={"width": 1280, "height": 800})
     yield page
     assert page.errors == []
     page.close()
@@ -164,8 +142,8 @@ def test_followed_roller_is_told(page, run):
     assert told == pytest.approx(x, abs=0.1)
 
 
-def test_theme_follows_the_system_and_the_switch(browser, file):
-    page = opened(browser, file, color_scheme="dark")
+def test_theme_follows_the_system_and_the_switch(visit, file):
+    page = opened(visit, file, color_scheme="dark")
     theme = "document.documentElement.dataset.theme"
     assert page.evaluate(theme) == "dark"
     page.keyboard.press("d")
@@ -179,8 +157,8 @@ def test_keys_are_told(page):
     assert "next contact" in page.inner_text("#help")
 
 
-def test_narrow_window_has_no_overflow(browser, file):
-    page = opened(browser, file, viewport={"width": 360, "height": 740})
+def test_narrow_window_has_no_overflow(visit, file):
+    page = opened(visit, file, viewport={"width": 360, "height": 740})
     assert page.evaluate("document.documentElement.scrollWidth") <= 360
     legend = page.locator("#legend").bounding_box()
     picture = page.locator("#picture").bounding_box()
@@ -188,11 +166,11 @@ def test_narrow_window_has_no_overflow(browser, file):
     page.close()
 
 
-def test_first_frame_and_script_time_keep_their_limits(browser, file):
+def test_first_frame_and_script_time_keep_their_limits(visit, file):
     """Of several tries the shortest counts: other work of the machine only adds to it."""
     firsts = []
     for _ in range(5):
-        page = opened(browser, file, viewport={"width": 1280, "height": 800})
+        page = opened(visit, file, viewport={"width": 1280, "height": 800})
         firsts.append(1e-3 * page.evaluate("replay.firstFrame"))
         if firsts[-1] <= FIRST_FRAME:
             break
@@ -208,12 +186,12 @@ def test_first_frame_and_script_time_keep_their_limits(browser, file):
 
 
 @pytest.mark.parametrize("name", list(cd.scenes.presets()))
-def test_presets_are_drawn(browser, name, tmp_path):
+def test_presets_are_drawn(visit, name, tmp_path):
     drive = getattr(cd.scenes, name)()
     run = cd.simulate(drive, until=2e-3, every=1e-4, record=CHANNELS, error=False)
     path = tmp_path / f"{name}.html"
     cd.replay(run, path)
-    page = opened(browser, path, viewport={"width": 1000, "height": 640})
+    page = opened(visit, path, viewport={"width": 1000, "height": 640})
     inked = page.evaluate(
         "() => { const c = document.getElementById('picture'); "
         "const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; "

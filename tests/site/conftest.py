@@ -1,0 +1,37 @@
+"""A real browser, without a network."""
+
+import shutil
+
+import pytest
+from playwright.sync_api import sync_playwright
+
+
+@pytest.fixture(scope="session")
+def browser():
+    names = ("chromium", "chromium-browser", "google-chrome")
+    program = next(filter(None, map(shutil.which, names)), None)
+    assert program, "Chromium is missing: install the Debian package chromium"
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        yield chromium
+        chromium.close()
+
+
+@pytest.fixture(scope="session")
+def visit(browser):
+    """Open a file in a page that writes down its errors, and whatever it asks of a network."""
+
+    def visited(path, **how):
+        page = browser.new_page(**how)
+        page.errors = []
+        page.on("pageerror", lambda error: page.errors.append(str(error)))
+        page.on("request", lambda request: page.errors.extend(outside(request.url)))
+        page.goto(path.as_uri())
+        return page
+
+    return visited
+
+
+def outside(url):
+    """What is to be said of an address: nothing of those within the page."""
+    return [] if url.startswith(("file:", "data:", "blob:", "about:")) else [f"asks for {url}"]
