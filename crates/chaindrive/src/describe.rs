@@ -197,10 +197,19 @@ impl Description {
     /// As [`Simulation::start`](crate::Simulation::start).
     pub fn of(drive: &Drive, run: &Run) -> Result<Self, SimulationError> {
         run.check()?;
-        let assembled = drive.assemble()?;
-        let start = at_start(&assembled);
+        Self::of_assembled(&drive.assemble()?, run)
+    }
+
+    /// The same of a drive that is assembled already: settling takes a while.
+    ///
+    /// # Errors
+    /// As [`Simulation::from_assembled`](crate::Simulation::from_assembled).
+    pub fn of_assembled(assembled: &Assembled, run: &Run) -> Result<Self, SimulationError> {
+        run.check()?;
+        let drive = &assembled.drive;
+        let start = at_start(assembled);
         let system = &assembled.system;
-        let spans = spans_at_rest(drive, &assembled);
+        let spans = spans_at_rest(drive, assembled);
         let speed = |x: f64, y: f64| x.hypot(y);
         let speeds = start
             .roller_vx
@@ -219,10 +228,10 @@ impl Description {
                 })
                 .collect(),
             shafts: shafts(drive, &start),
-            free_trains: free_train::of(&assembled),
-            stops: route::stops(drive, &assembled, &start),
-            statics: static_stages(drive, &assembled),
-            model: model(drive, &assembled),
+            free_trains: free_train::of(assembled),
+            stops: route::stops(drive, assembled, &start),
+            statics: static_stages(drive, assembled),
+            model: model(drive, assembled),
             time_scales: TimeScales {
                 stiffest: system.time_scale(),
                 undamped: system.undamped_time_scale(),
@@ -230,8 +239,8 @@ impl Description {
                 mesh_frequencies: mesh.collect(),
             },
             polygon: polygon::pairs(drive, &start),
-            cost: cost::measure(&assembled, run)?,
-            warnings: warnings(&assembled, run.until),
+            cost: cost::measure(assembled, run)?,
+            warnings: warnings(assembled, run.until),
             spans,
         })
     }

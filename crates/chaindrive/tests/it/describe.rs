@@ -2,6 +2,8 @@
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use chaindrive::{Description, Run, Scene, Stepping};
+use chaindrive_geometry::Point;
+use chaindrive_mechanics::Clash;
 
 use crate::judged::{finished, page, preset, run};
 
@@ -116,4 +118,24 @@ fn the_cost_of_large_chains_is_measured_in_bounded_time() {
     let cost = Description::of(&drive, &run).unwrap().cost;
     assert!((1..400).contains(&cost.measured), "{}", cost.measured);
     assert!(cost.time_per_step > 0.0 && cost.run_time > 1.0);
+}
+
+/// Settling takes far longer than describing: a drive that stands already is described as it stands.
+#[test]
+fn an_assembled_drive_is_described_without_settling_it_again() {
+    let scene = Scene::preset("spinning_ring").unwrap();
+    let run = Run::suggested(&scene.run_defaults());
+    let mut start = scene.drive().unwrap().assemble().unwrap();
+    // Settled anew, it would forget this.
+    start.warnings = vec![Clash::Sprockets {
+        first: "a".into(),
+        second: "b".into(),
+        depth: 1e-3,
+        at: Point::origin(),
+    }];
+    let told = Description::of_assembled(&start, &run).unwrap();
+    assert_eq!(told.warnings, [start.warnings[0].to_string()]);
+    let anew = Description::of(&start.drive, &run).unwrap();
+    let facts = |it: &Description| (it.chains.clone(), it.spans.clone(), it.statics.clone());
+    assert_eq!(facts(&told), facts(&anew));
 }

@@ -37,14 +37,15 @@ pub(crate) fn describe(
     for note in arguments.scene.notes(&scene) {
         say(note);
     }
+    // Assembled once: long chains that sag take half a minute to settle.
+    let start = Failure::or_interrupted(assemble(&drive, interrupted), scene.name())?;
     // What a run would do, it would do by the method that it would choose.
-    let choice = accuracy.map(|accuracy| {
-        let start = assemble(&drive, interrupted)?;
-        choose(&start, &run, (accuracy, accuracy_of), interrupted)
-    });
-    let choice = Failure::or_interrupted(choice.transpose(), scene.name())?;
+    let choice = accuracy
+        .map(|accuracy| choose(&start, &run, (accuracy, accuracy_of), interrupted))
+        .transpose();
+    let choice = Failure::or_interrupted(choice, scene.name())?;
     let run = choice.as_ref().map_or(run, |choice| choice.run.clone());
-    let described = patiently(move || Description::of(&drive, &run), interrupted);
+    let described = patiently(move || Description::of_assembled(&start, &run), interrupted);
     let described = described.and_then(|described| described);
     let description = Failure::or_interrupted(described, scene.name())?;
     if arguments.json {
