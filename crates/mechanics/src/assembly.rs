@@ -20,7 +20,7 @@ use chaindrive_geometry::{ArcSpline, Point, Wheel};
 use chaindrive_integrate::{Moment, SecondOrderSystem, State};
 
 use crate::chains::LaidAs;
-use crate::check::clash::clashes;
+use crate::check::clash::{clashes, fixed_in_teeth};
 use crate::drive::{Layout, Parts, PretensionAt};
 use crate::groups::groups;
 use crate::standing::Standing;
@@ -227,6 +227,7 @@ impl Drive {
 
     fn assemble_as_is(&self) -> Result<Assembled, AssemblyError> {
         let (laid, fittings) = lay::lay(self)?;
+        cuts_into_teeth(&laid).map_or(Ok(()), Err)?;
         let (mut system, mut q) = System::build(&laid)?;
         let layouts: Vec<&Layout> = self.chains.iter().map(|placed| &placed.layout).collect();
         let begin = system.begin;
@@ -393,6 +394,12 @@ impl Assembled {
             Err(AssemblyError::Clash { clashes: certain })
         }
     }
+}
+
+/// Guides that cut into teeth wherever the chains settle, as neither moves.
+fn cuts_into_teeth(laid: &Laid) -> Option<AssemblyError> {
+    let clashes = fixed_in_teeth(&laid.parts, &Standing::laid(laid));
+    (!clashes.is_empty()).then_some(AssemblyError::Clash { clashes })
 }
 
 /// What keeps a chain from settling, where it was laid through a guide.

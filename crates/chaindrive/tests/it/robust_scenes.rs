@@ -310,3 +310,37 @@ fn an_open_bow_without_links_is_told_what_it_can_reach() {
         ],
     );
 }
+
+/// Ends of a quarter of the length of a long rail reach into the teeth: those that nobody gave are as large as leave half a pitch, or half of the gap
+/// beside the straight part.
+#[test]
+fn the_ends_of_a_long_rail_clear_the_teeth() {
+    let rail = |more: &str| {
+        let mut scene = around_two("chain = '16B-1'");
+        scene += "[[guides]]\nname = 'rail'\nface = { kind = 'on-span', between = ['b', 'a'], bow = '0 mm', material = 'left', ";
+        scene += &format!("from = '10 %', to = '92 %'{more} }}\n");
+        let drive = Scene::from_text(&scene, "test").unwrap().drive().unwrap();
+        let gap = |index: usize| {
+            let it = &drive.sprockets[index];
+            let foot = drive.guides[0].face.nearest(it.centre, 10.0).unwrap();
+            foot.distance.abs() - it.gap.tip_radius
+        };
+        let gaps = [gap(0), gap(1)];
+        (gaps, drive)
+    };
+    // Edges instead of ends: the gaps beside the straight part.
+    let ([a, b], _) = rail(", end_radius = '1 um'");
+    let wanted = 0.5 * a.min(b).min(25.4e-3);
+    let ([a, b], _) = rail("");
+    assert!((a.min(b) - wanted).abs() < 2e-5, "{a}, {b}, {wanted}");
+    // A quarter of the length, when asked for.
+    let ([a, b], drive) = rail(", end_radius = '211 mm'");
+    assert!(a.min(b) < 0.0, "{a}, {b}");
+    let message = drive.assemble().unwrap_err().to_string();
+    assert!(
+        message.contains("guide `rail` cuts into the teeth of `")
+            && message.contains("or give its ends a smaller radius")
+            && !message.contains("deep through"),
+        "{message}"
+    );
+}

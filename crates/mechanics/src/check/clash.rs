@@ -6,7 +6,7 @@
 
 use chaindrive_geometry::{ArcSpline, Piece, Point, Segment};
 
-use crate::drive::{Parts, PlacedChain, Touches};
+use crate::drive::{GuideSupport, Parts, PlacedChain, Support, Touches};
 use crate::standing::Standing;
 use crate::{Clash, DriveError, Ends};
 
@@ -105,6 +105,24 @@ fn teeth(parts: &Parts, standing: &Standing) -> Vec<Clash> {
         }
     }
     found
+}
+
+/// Fixed guides that cut into the teeth of sprockets in fixed bearings, and cannot pass beside them.
+pub(crate) fn fixed_in_teeth(parts: &Parts, standing: &Standing) -> Vec<Clash> {
+    let stands = |clash: &Clash| {
+        let Clash::Teeth {
+            guide, sprocket, ..
+        } = clash
+        else {
+            return false;
+        };
+        let mut guides = parts.guides.iter();
+        let mut sprockets = parts.sprockets.iter();
+        guides.any(|it| it.name == *guide && it.support == GuideSupport::Fixed)
+            && sprockets.any(|it| it.name == *sprocket && it.support == Support::Fixed)
+    };
+    let found = teeth(parts, standing).into_iter();
+    found.filter(|it| !it.may_pass() && stands(it)).collect()
 }
 
 /// Guides on the same support are one body, whose faces may cross.

@@ -22,7 +22,7 @@ pub enum Clash {
     /// The teeth of a sprocket sweep over the face of a guide.
     #[error(
         "guide `{guide}` cuts into the teeth of `{sprocket}` by {}; {}", told(*.depth, .at),
-        if *.beside { "it must pass beside them, or be moved back or shortened" } else { "move it back or shorten its face" }
+        if *.beside { "it must pass beside them, or be moved back or shortened" } else { "move it back, shorten its face, or give its ends a smaller radius" }
     )]
     Teeth {
         guide: String,

@@ -94,11 +94,24 @@ fn a_face_within_the_tips_cuts_into_the_teeth() {
         "{at}"
     );
     let expected = format!(
-        "guide `rail` cuts into the teeth of `crank` by 1.3 mm at (0.0, {:.1}) mm; move it back or shorten its face",
+        "guide `rail` cuts into the teeth of `crank` by 1.3 mm at (0.0, {:.1}) mm; move it back, shorten its face, or give its ends a smaller radius",
         at.y * 1e3
     );
     assert_eq!(message, expected);
     assert_eq!(assembly(beside(below(1e-4), Touches::Rollers)), Ok(vec![]));
+}
+
+/// A fixed rail that cuts into teeth does so wherever the chain settles: it is told at once, and not what the chain does at the rail.
+#[test]
+fn a_rail_in_the_teeth_is_told_before_anything_settles() {
+    let y = -(crank_tip() - 1.3e-3);
+    let mut parts = with_guides(vec![guide("rail", line([-0.2, y], [0.2, y]))]);
+    parts.settle = true;
+    // The rail lies within the wrap, so the chain is laid through it as well.
+    let (found, _) = clashes(parts);
+    let [Clash::Teeth { .. }] = &found[..] else {
+        panic!("{found:?}")
+    };
 }
 
 /// A guide that carries plates may lie beside the teeth, so it is a warning.

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use chaindrive_geometry::{Arc, ArcSpline, GeometryError, Piece, Point, bar, rail};
-use chaindrive_mechanics::{Guide, GuideSupport};
+use chaindrive_mechanics::{Guide, GuideSupport, Sprocket, Touches};
 
 use super::chain::Resolved;
 use super::law::linear;
@@ -18,6 +18,7 @@ pub(super) fn resolve_all<'c>(
     scene: &SceneText,
     names: &Names<'_>,
     findings: &mut Findings<'_>,
+    sprockets: &[Sprocket],
     chain_of: impl Fn(usize) -> (&'c Resolved, Passing<'c>),
 ) -> Option<Vec<Guide>> {
     let guides: Vec<_> = scene
@@ -26,7 +27,8 @@ pub(super) fn resolve_all<'c>(
         .enumerate()
         .map(|(i, text)| {
             let path = format!("guides[{i}]");
-            resolve(text, &path, scene, names, chain_of(i), findings)
+            let passed = (chain_of(i), sprockets);
+            resolve(text, &path, scene, names, passed, findings)
         })
         .collect();
     guides.into_iter().collect()
@@ -37,12 +39,15 @@ fn resolve(
     path: &str,
     scene: &SceneText,
     names: &Names<'_>,
-    (chain, passing): (&Resolved, Passing<'_>),
+    ((chain, passing), sprockets): ((&Resolved, Passing<'_>), &[Sprocket]),
     findings: &mut Findings<'_>,
 ) -> Option<Guide> {
     let place = format!("{path}.face");
     let face = match &text.face {
-        Face::OnSpan { .. } => on_span(text, &place, (chain, &passing), findings),
+        Face::OnSpan { .. } => {
+            let passed = (chain, &passing, sprockets);
+            on_span(text, &place, passed, findings)
+        }
         face => {
             let face = placed(face, &place, findings);
             findings.keep(&place, face)
@@ -74,7 +79,7 @@ fn resolve(
 fn on_span(
     guide: &schema::Guide,
     path: &str,
-    (chain, passing): (&Resolved, &Passing<'_>),
+    (chain, passing, sprockets): (&Resolved, &Passing<'_>, &[Sprocket]),
     findings: &mut Findings<'_>,
 ) -> Option<ArcSpline> {
     let Face::OnSpan {
@@ -104,7 +109,20 @@ fn on_span(
         let side = on_span::side(*material);
         let across = span.away_from(side) * (bow.0 - on_span::above(guide.touches, passing.size));
         let ends = [from.0, to.0].map(|share| span.at(share) + across);
-        let face = straight(ends, (end_radius, end_angle, *material), path, findings);
+        let mut end_radius = *end_radius;
+        if end_radius.is_none() && guide.touches == Touches::Rollers {
+            let tips = passing.tips(guide, between.as_ref(), sprockets);
+            let angle = end_angle.map_or(defaults::END_ANGLE.value(findings.version), |it| it.0);
+            let usual = defaults::END_RADIUS.value(findings.version) * (ends[1] - ends[0]).norm();
+            if let Some((radius, name)) =
+                shorter_ends(ends, (usual, angle, *material), &tips, passing.size[0])
+            {
+                let remark = format!("computed: clear of the teeth of `{name}`");
+                findings.assume(&format!("{path}.end_radius"), radius, remark);
+                end_radius = Some(Length(radius));
+            }
+        }
+        let face = straight(ends, (&end_radius, end_angle, *material), path, findings);
         return findings.keep(path, face);
     }
     let bow = match bow {
@@ -135,6 +153,59 @@ fn on_span(
     findings.keep(path, ArcSpline::open(&[Piece::Arc(arc)]))
 }
 
+/// Halvings until a radius is found to rounding.
+const HALVINGS: u32 = 60;
+/// Share of the usual radius of ends below which they are edges.
+const LEAST_END: f64 = 1e-3;
+
+/// Radius \[m\] of curved ends that clear the teeth, and the sprocket that limits it, where ends of the usual radius would cut into teeth. None where those are clear, or
+/// the straight part cuts into teeth itself.
+///
+/// The gap left is half a pitch, or half of that beside the straight part where this is less.
+fn shorter_ends<'t>(
+    ends: [Point; 2],
+    (usual, angle, material): (f64, f64, TravelSide),
+    tips: &'t [(String, Point, f64)],
+    pitch: f64,
+) -> Option<(f64, &'t str)> {
+    // The sprocket whose teeth are nearest, and the gap to them.
+    let nearest = |radius: f64| {
+        let face = along_travel(ends, (radius, angle, material)).ok()?;
+        let gap = |(name, centre, tip): &'t (String, Point, f64)| {
+            let foot = face.nearest(*centre, f64::INFINITY)?;
+            Some((foot.distance.abs() - tip, name.as_str()))
+        };
+        let gaps = tips.iter().filter_map(gap);
+        gaps.min_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let (gap, mut name) = nearest(usual)?;
+    let (beside, _) = nearest(LEAST_END * usual)?;
+    if gap > 0.0 || beside <= 0.0 {
+        return None;
+    }
+    let wanted = 0.5 * beside.min(pitch);
+    let [mut fits, mut cuts] = [LEAST_END * usual, usual];
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (fits + cuts);
+        match nearest(middle)? {
+            (gap, _) if gap > wanted => fits = middle,
+            (_, limiting) => (name, cuts) = (limiting, middle),
+        }
+    }
+    Some((fits, name))
+}
+
+/// A straight face between two ends \[m\] in the order of travel, with curved ends.
+fn along_travel(
+    [start, end]: [Point; 2],
+    (radius, angle, material): (f64, f64, TravelSide),
+) -> Result<ArcSpline, GeometryError> {
+    match material {
+        TravelSide::Left => bar(start, end, radius, angle),
+        TravelSide::Right => bar(end, start, radius, angle),
+    }
+}
+
 /// A straight face between two ends \[m\] in the order of travel, with what a scene says of its curved ends.
 fn straight(
     [start, end]: [Point; 2],
@@ -142,10 +213,6 @@ fn straight(
     path: &str,
     findings: &mut Findings<'_>,
 ) -> Result<ArcSpline, GeometryError> {
-    let (start, end) = match material {
-        TravelSide::Left => (start, end),
-        TravelSide::Right => (end, start),
-    };
     let radius = end_radius.map(|radius| radius.0);
     let place = format!("{path}.end_radius");
     let length = (end - start).norm();
@@ -153,7 +220,7 @@ fn straight(
     let angle = end_angle.map(|angle| angle.0);
     let place = format!("{path}.end_angle");
     let angle = findings.or_default(angle, &place, &defaults::END_ANGLE);
-    bar(start, end, radius, angle)
+    along_travel([start, end], (radius, angle, material))
 }
 
 /// Working face in a place of its own, with its material on the left of travel.

@@ -132,7 +132,8 @@ fn parts(
     let sprockets = sprocket::resolve_all(scene, names, findings, |body| {
         owner(described.iter().position(|it| it.sprockets.contains(&body)))
     });
-    let guides = guide::resolve_all(scene, names, findings, |body| {
+    let beside = sprockets.as_deref().unwrap_or_default();
+    let guides = guide::resolve_all(scene, names, findings, beside, |body| {
         let index = described.iter().position(|it| it.guides.contains(&body));
         let chain = owner(index);
         let made = &chain.chain;

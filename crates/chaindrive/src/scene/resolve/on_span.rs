@@ -3,10 +3,10 @@
 use std::f64::consts::TAU;
 
 use chaindrive_geometry::{
-    Closing, CurvedGuide, GeometryError, Plan, Search, Side, Span, Station, Vector, Wheel,
+    Closing, CurvedGuide, GeometryError, Plan, Point, Search, Side, Span, Station, Vector, Wheel,
     close_nearest,
 };
-use chaindrive_mechanics::Touches;
+use chaindrive_mechanics::{Sprocket, Touches};
 
 use super::chains::Described;
 use super::point;
@@ -147,6 +147,27 @@ impl<'s> Passing<'s> {
         Span::between(&before, &after).map_err(|error| {
             error.with_names(&|wheel| ["the sprocket before", "the sprocket behind"][wheel].into())
         })
+    }
+
+    /// The sprockets beside the span that a guide lies on: name, centre \[m\], and radius of the tips \[m\].
+    pub(super) fn tips(
+        &self,
+        guide: &Guide,
+        between: Option<&[String; 2]>,
+        sprockets: &[Sprocket],
+    ) -> Vec<(String, Point, f64)> {
+        let stop = self.stops.iter().position(|stop| *stop == guide.name);
+        let is_beside = |sprocket: &&Sprocket| match (between, stop) {
+            (Some(names), _) => names.contains(&sprocket.name),
+            (None, stop) => {
+                let wheels = stop.and_then(|stop| self.beside(stop));
+                let centres = wheels.iter().flatten().map(|wheel| wheel.centre);
+                centres.into_iter().any(|it| it == sprocket.centre)
+            }
+        };
+        let beside = sprockets.iter().filter(is_beside);
+        let told = |it: &Sprocket| (it.name.clone(), it.centre, it.gap.tip_radius);
+        beside.map(told).collect()
     }
 
     /// The least and the greatest number of pitches that the route takes with some bow of a guide; none where it cannot be laid.

@@ -95,7 +95,8 @@ pub(crate) enum Face {
         /// as makes the links close without stress where the first sprocket stands symmetric, for one convex face that is a stop.
         #[serde(default)]
         bow: Option<Length>,
-        /// Radius of the ends of a straight face [m]; absent: a quarter of its length.
+        /// Radius of the ends of a straight face [m]; absent: a quarter of its length, or where such ends would cut into the teeth of the sprockets beside it,
+        /// so much less that they clear them.
         #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
         end_radius: Option<Length>,
