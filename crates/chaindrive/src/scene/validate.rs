@@ -444,7 +444,12 @@ impl<'s> Validator<'s> {
         };
         if let Some(allowed) = refusal {
             let message = format!("{value}, must be {allowed}{unit}");
-            self.refuse(Problem::new(path, node.line, message));
+            let problem = Problem::new(path, node.line, message);
+            let remedy = schema.get("x-remedy").and_then(Json::as_str);
+            self.refuse(match remedy {
+                Some(remedy) => problem.hint(remedy),
+                None => problem,
+            });
         }
     }
 }

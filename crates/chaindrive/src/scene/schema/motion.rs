@@ -88,8 +88,12 @@ pub(crate) struct Term<Position> {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Order_of_{Amplitude}")]
 pub(crate) struct OrderTerm<Amplitude> {
-    /// Periods per turn [–]: 0.5 repeats every second turn.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    /// Periods per turn [–]: 0.5 repeats every second turn. The mean is no order.
+    #[schemars(extend(
+        "exclusiveMinimum" = 0,
+        "examples" = [0.5, 2, 7],
+        "x-remedy" = "the mean is no order: give that of a motion as its `speed`, that of a torque as one of the kind `constant` in the same list, that of a centre or guide as its place",
+    ))]
     pub(crate) order: Ratio,
     /// Amplitude (an angle, a length or a torque).
     pub(crate) amplitude: Amplitude,
@@ -186,6 +190,7 @@ pub(crate) enum Torque {
         /// Amplitude [N m].
         amplitude: Moment,
         /// Periods per turn [–].
+        #[schemars(extend("examples" = [0.5, 2, 7]))]
         order: Ratio,
         /// Phase where the simulation began, before the run-in [rad]; absent: 0.
         #[serde(default)]
