@@ -236,10 +236,10 @@ impl Drive {
         let torques = free_trains::balance(&mut system, &trains, &q);
         let mut statics = Vec::new();
         if self.settle {
-            overload::check(&system, &laid.parts)?;
+            overload::check(&system, &laid.parts, (&q, &torques))?;
             statics = relax::settle(&mut system, &mut q)
                 .map_err(|error| laid_through_a_guide(&laid).unwrap_or(error))
-                .map_err(|error| overload::named(error, &system, &laid.parts))?;
+                .map_err(|error| overload::named(error, &system, &laid.parts, (&q, &torques)))?;
         }
         for train in trains.iter().filter(|it| it.speed != 0.0) {
             for (shaft, ratio) in &train.shafts {

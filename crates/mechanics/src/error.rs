@@ -143,6 +143,42 @@ impl MemoryError {
     }
 }
 
+/// What a sprocket asks of its chain, with all that turns with it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pull {
+    /// Name of the sprocket.
+    pub sprocket: String,
+    /// Torque on it \[N m\], with those that other chains, gears and couplings bring.
+    pub given: f64,
+    /// The part of it that comes to the chain \[N m\]: less what speeds the shafts up.
+    pub torque: f64,
+    /// Pull at the pitch circle \[N\].
+    pub pull: f64,
+    /// Whether it is the sum of what all others ask for, which a motion brings.
+    pub is_brought: bool,
+}
+
+impl std::fmt::Display for Pull {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let on = if self.is_brought {
+            "that the loads ask of"
+        } else {
+            "on"
+        };
+        let given = plain(self.given);
+        write!(f, "the torque of {given} N m {on} `{}`", self.sprocket)?;
+        // What rounding leaves is no difference.
+        if (self.given - self.torque).abs() > 1e-3 * self.given {
+            let torque = plain(self.torque);
+            write!(
+                f,
+                ", {torque} N m of it at the chain while the drive speeds up,"
+            )?;
+        }
+        write!(f, " asks for a pull of {} kN", plain(self.pull * 1e-3))
+    }
+}
+
 /// Why a valid drive could not be brought into its initial state.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -161,7 +197,8 @@ pub enum AssemblyError {
 
     /// Newton's iteration for the static state ended without converging.
     #[error(
-        "static equilibrium not found while applying {stage}: residual {residual:.1e} of the chain tension after {iterations} iterations; {}raise the pretension, or start with `settle = false`",
+        "static equilibrium not found while applying {stage}: residual {residual:.1e} of the chain tension after {iterations} iterations; {}{}raise the pretension, or start with `settle = false`",
+        .pull.as_ref().map_or_else(String::new, |pull| format!("{pull}: see that the chain and its tensioners can hold that, or lower it; ")),
         if *.tensioned { "see that every tensioner pushes onto the chain (torques are positive counter-clockwise), " } else { "" }
     )]
     NoEquilibrium {
@@ -170,21 +207,16 @@ pub enum AssemblyError {
         iterations: usize,
         /// Whether the drive has tensioners.
         tensioned: bool,
+        /// The largest pull that a torque asks of a chain, where one does.
+        pull: Option<Box<Pull>>,
     },
 
     /// A load that breaks the chain before it is in equilibrium.
     #[error(
-        "the torque of {} N m on `{sprocket}` asks for a pull of {} kN, and the chain breaks at {} kN; lower the torque, or take a stronger chain",
-        plain(*.torque),
-        plain(.pull * 1e-3),
+        "{pull}, and the chain breaks at {} kN; lower the torque, or take a stronger chain",
         plain(.breaking * 1e-3)
     )]
-    Overloaded {
-        sprocket: String,
-        torque: f64,
-        pull: f64,
-        breaking: f64,
-    },
+    Overloaded { pull: Pull, breaking: f64 },
 
     /// A speed at the start other than that of what the shaft is joined with.
     #[error(

@@ -67,7 +67,7 @@ pub use drive::{
     Rotation, Shaft, SpanStart, Sprocket, StartSpeed, Stop, Support, Tighten, Touches,
 };
 pub use energy::{Energy, Flow, Place, Store};
-pub use error::{AssemblyError, Clash, DriveError, MemoryError};
+pub use error::{AssemblyError, Clash, DriveError, MemoryError, Pull};
 pub use fights::Fight;
 pub use modes::{Mode, Modes};
 pub use motion::{Harmonic, Kinematics, Motion, Table};

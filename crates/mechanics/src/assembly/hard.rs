@@ -88,6 +88,7 @@ impl Drive {
             residual: 1.0,
             iterations: MOST,
             tensioned: !parts.tensioners.is_empty(),
+            pull: None,
         })
     }
 }

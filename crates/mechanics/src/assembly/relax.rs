@@ -267,6 +267,7 @@ impl Newton<'_> {
                 residual: found.residual,
                 iterations: found.iterations,
                 tensioned: self.system.is_tensioned(),
+                pull: None,
             });
         }
         statics.push(Statics {

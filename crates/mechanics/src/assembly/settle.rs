@@ -77,6 +77,7 @@ fn accept(
         residual: balance.residual,
         iterations: balance.iterations,
         tensioned: system.is_tensioned(),
+        pull: None,
     })
 }
 
@@ -133,6 +134,7 @@ fn tighten(
         residual: 1.0,
         iterations: 60,
         tensioned: system.is_tensioned(),
+        pull: None,
     })
 }
 
