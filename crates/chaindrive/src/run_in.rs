@@ -212,19 +212,21 @@ fn before(
     Simulation::from_assembled(start, &silent)
 }
 
-/// Time \[s\] that is simulated before t = 0 at most, that in which a run-in by itself looks for its end included.
+/// Times \[s\] that are simulated before t = 0 at least and at most, those in which a run-in by itself looks for its end included. Not numbers where torques bring
+/// a drive up to speed before: nobody knows how long that takes.
 ///
 /// # Errors
 /// As [`run_in`].
-pub(crate) fn longest(start: &Assembled, run: &Run) -> Result<f64, SimulationError> {
+pub(crate) fn bounds(start: &Assembled, run: &Run) -> Result<[f64; 2], SimulationError> {
     match &run.run_in {
-        RunIn::None => Ok(0.0),
-        RunIn::Usual if start.why_it_does_not_repeat().is_some() => Ok(0.0),
-        RunIn::Time(time) => Ok(*time),
-        RunIn::Turns { turns, sprocket } => turns_last(start, *turns, sprocket.as_deref()),
-        // How long a run-up lasts nobody knows before.
-        RunIn::Auto if steady::stands(start) => Ok(f64::NAN),
-        RunIn::Auto | RunIn::Usual => Ok(f64::from(MOST_CIRCUITS) * steady::circuit(start)?),
+        RunIn::None => Ok([0.0; 2]),
+        RunIn::Usual if start.why_it_does_not_repeat().is_some() => Ok([0.0; 2]),
+        RunIn::Time(time) => Ok([*time; 2]),
+        RunIn::Turns { turns, sprocket } => {
+            Ok([turns_last(start, *turns, sprocket.as_deref())?; 2])
+        }
+        RunIn::Auto if steady::stands(start) => Ok([f64::NAN; 2]),
+        RunIn::Auto | RunIn::Usual => steady::bounds(start, run),
     }
 }
 

@@ -6,7 +6,7 @@ use chaindrive_integrate::SecondOrderSystem;
 use chaindrive_mechanics::Assembled;
 use serde::Serialize;
 
-use crate::run_in::longest;
+use crate::run_in::bounds;
 use crate::{Run, Simulation, SimulationError};
 
 /// Method, steps and run time.
@@ -32,10 +32,14 @@ pub struct Cost {
     pub real_time_ratio: f64,
     /// Steps measured.
     pub measured: u64,
-    /// Simulated time before the record \[s\], at most; zero without a run-in.
+    /// Simulated time before the record \[s\], at most; zero without a run-in, and not a number where torques bring the drive up to speed before.
     pub run_in: f64,
+    /// The same at least \[s\]: less where a run-in ends by itself.
+    pub run_in_least: f64,
     /// Wall time expected for it, at most \[s\].
     pub run_in_time: f64,
+    /// The same at least \[s\].
+    pub run_in_least_time: f64,
     /// Accuracy \[–\] that a run chooses another method or step for; absent where it takes these.
     pub unless_chosen_for: Option<f64>,
 }
@@ -87,7 +91,7 @@ pub(super) fn measure(assembled: &Assembled, run: &Run) -> Result<Cost, Simulati
     let step = if adaptive { mean_step } else { step };
     let steps = (run.until / step).ceil();
     let run_time = steps * time_per_step;
-    let run_in = longest(assembled, run)?;
+    let [run_in_least, run_in] = bounds(assembled, run)?;
     Ok(Cost {
         method: method.name(),
         step,
@@ -100,7 +104,9 @@ pub(super) fn measure(assembled: &Assembled, run: &Run) -> Result<Cost, Simulati
         real_time_ratio: run_time / run.until,
         measured: taken,
         run_in,
+        run_in_least,
         run_in_time: run_in / step * time_per_step,
+        run_in_least_time: run_in_least / step * time_per_step,
         unless_chosen_for: None,
     })
 }

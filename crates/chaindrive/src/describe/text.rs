@@ -6,7 +6,7 @@ use std::fmt;
 use crate::figure::{Measure, figure};
 
 use super::{
-    ChainFacts, Closing, ContactFacts, Description, LinkFacts, Model, RatedPower, SpanAtRest,
+    ChainFacts, Closing, ContactFacts, Cost, Description, LinkFacts, Model, RatedPower, SpanAtRest,
     counted,
 };
 
@@ -245,16 +245,28 @@ impl Description {
             duration(cost.time_per_step),
             cost.measured
         );
-        if cost.run_in > 0.0 {
-            let before = format!(
-                "at most {} before the record, about {}",
-                Measure::Time.told(cost.run_in),
-                duration(cost.run_in_time)
-            );
+        if let Some(before) = run_in(cost) {
             row(f, "run-in", &before)?;
         }
         row(f, "run time", &time)
     }
+}
+
+/// What is simulated before the record; none where nothing is.
+fn run_in(cost: &Cost) -> Option<String> {
+    let [least, most] = [cost.run_in_least, cost.run_in].map(|time| Measure::Time.told(time));
+    if cost.run_in.is_nan() {
+        let text = "until torques have brought the drive up to speed and the tensions are steady; how long that takes is not known before";
+        return Some(text.to_owned());
+    }
+    let time = duration(cost.run_in_time);
+    if cost.run_in <= cost.run_in_least {
+        return (cost.run_in > 0.0).then(|| format!("{most} before the record, about {time}"));
+    }
+    let soonest = duration(cost.run_in_least_time);
+    Some(format!(
+        "until the tensions are steady: {least} simulated at least, about {soonest}; given up after {most}, about {time}"
+    ))
 }
 
 impl fmt::Display for Model {

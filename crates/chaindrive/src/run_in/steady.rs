@@ -109,29 +109,13 @@ pub(super) fn settle(
         let moving = run_up(start, run, onlooker)?;
         return settle(&moving, run, onlooker);
     }
-    let circuit = circuit(start)?;
-    if let Some(what) = start.function_of_time() {
-        return Err(refused(&format!(
-            "there is {what}, whose times are those of the record: give a time"
-        )));
-    }
-    let (tooth, period) = (start.slowest_tooth(), start.slowest_forcing());
-    if !period.is_finite() {
-        return Err(refused(
-            "a shaft whose turns something follows stands still: give a time",
-        ));
-    }
-    let block = period * (BLOCK * tooth / period).ceil();
-    let looks = counted(LOOKS * block / tooth);
-    let pushes = start.drive.tensioners.iter().map(|it| it.push.relaxation());
-    let slowest = pushes.fold(0.0, f64::max);
-    let longest = f64::from(MOST_CIRCUITS) * circuit;
-    // What becomes the record has to be steady throughout.
-    let record = run.until.min(RECORD * longest);
-    let least = (TEETH * tooth)
-        .max(PERIODS * period.max(slowest))
-        .max(record);
-    let least = counted(least / block).max(FEWEST);
+    let Extent {
+        tooth,
+        block,
+        looks,
+        longest,
+        least,
+    } = Extent::of(start, run)?;
     let mut course = Course::default();
     let stop = || onlooker.stop();
     let mut taken = Taken::new(start, run, &stop)?;
@@ -165,6 +149,70 @@ pub(super) fn settle(
             return taken.recorded_from(found.unwrap_or(earliest), found.is_some());
         }
     }
+}
+
+/// How long a run-in by itself may last.
+struct Extent {
+    /// Period of the slowest tooth \[s\].
+    tooth: f64,
+    /// Length of a block \[s\], and looks in it.
+    block: f64,
+    looks: usize,
+    /// Time after which it gives up \[s\].
+    longest: f64,
+    /// Blocks that have to be steady at least.
+    least: usize,
+}
+
+impl Extent {
+    fn of(start: &Assembled, run: &Run) -> Result<Self, SimulationError> {
+        let circuit = circuit(start)?;
+        if let Some(what) = start.function_of_time() {
+            return Err(refused(&format!(
+                "there is {what}, whose times are those of the record: give a time"
+            )));
+        }
+        let (tooth, period) = (start.slowest_tooth(), start.slowest_forcing());
+        if !period.is_finite() {
+            return Err(refused(
+                "a shaft whose turns something follows stands still: give a time",
+            ));
+        }
+        let block = period * (BLOCK * tooth / period).ceil();
+        let looks = counted(LOOKS * block / tooth);
+        let pushes = start.drive.tensioners.iter().map(|it| it.push.relaxation());
+        let slowest = pushes.fold(0.0, f64::max);
+        let longest = f64::from(MOST_CIRCUITS) * circuit;
+        // What becomes the record has to be steady throughout.
+        let record = run.until.min(RECORD * longest);
+        let least = (TEETH * tooth)
+            .max(PERIODS * period.max(slowest))
+            .max(record);
+        let least = counted(least / block).max(FEWEST);
+        Ok(Self {
+            tooth,
+            block,
+            looks,
+            longest,
+            least,
+        })
+    }
+
+    /// Blocks after which the first beginning may be found steady: those in the first quarter are not tried.
+    fn fewest(&self) -> usize {
+        let is_enough = |n: &usize| n - n / EARLIEST >= self.least;
+        (self.least..).find(is_enough).unwrap_or(self.least)
+    }
+}
+
+/// Times \[s\] that a run-in by itself simulates at least, where all is steady from the start, and at most; what becomes the record included.
+///
+/// # Errors
+/// As a run-in by itself.
+pub(super) fn bounds(start: &Assembled, run: &Run) -> Result<[f64; 2], SimulationError> {
+    let extent = Extent::of(start, run)?;
+    let shortest = extent.fewest() as f64 * extent.block;
+    Ok([shortest.min(extent.longest), extent.longest])
 }
 
 /// A drive at rest with closed chains, for torques to turn.

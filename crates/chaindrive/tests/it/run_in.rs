@@ -324,13 +324,26 @@ fn what_a_run_in_costs_is_described() {
     assert!(
         endless
             .to_string()
-            .contains("at most 1000000000 s before the record")
+            .contains("run-in                 1000000000 s before the record")
+    );
+    // What was asked for is neither less nor more.
+    assert_eq!(
+        endless.cost.run_in.to_bits(),
+        endless.cost.run_in_least.to_bits()
     );
     // 112 links at 100 teeth a second, 32 circuits.
-    let by_itself = described(RunIn::Auto).cost.run_in;
+    let by_itself = described(RunIn::Auto);
+    let most = by_itself.cost.run_in;
+    assert!((most / (32.0 * 1.12) - 1.0).abs() < 1e-9, "{most}");
+    // A record of 1 s that is steady from the start: 40 blocks of two and a half teeth, behind the quarter that is not tried.
+    let least = by_itself.cost.run_in_least;
+    assert!((1.3..1.4).contains(&least), "{least}");
+    let told = by_itself.to_string();
     assert!(
-        (by_itself / (32.0 * 1.12) - 1.0).abs() < 1e-9,
-        "{by_itself}"
+        told.contains("until the tensions are steady: 1.3"),
+        "{told}"
     );
+    assert!(told.contains("s simulated at least, about"), "{told}");
+    assert!(told.contains("given up after 35.84 s"), "{told}");
     assert!(described(RunIn::None).cost.run_in.abs() < f64::MIN_POSITIVE);
 }
