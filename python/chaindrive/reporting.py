@@ -20,7 +20,6 @@ from chaindrive.drive import Drive, load
 from chaindrive.errors import ChaindriveError
 from chaindrive.extras import extra
 from chaindrive.page import page_of, section, table
-from chaindrive.pose import drive_of
 from chaindrive.replaying import replay
 from chaindrive.simulation import simulate
 
@@ -128,7 +127,7 @@ def _document(run: xr.Dataset) -> str:
 def _layout(run: xr.Dataset, ax: Axes) -> None:
     from chaindrive import plot
 
-    plot.layout(drive_of(run), ax=ax)
+    plot.layout(run, ax=ax)
     ax.set_title("")
 
 

@@ -80,6 +80,8 @@ pub struct ChainFacts {
     pub rated_power: Option<RatedPower>,
     /// How the chain was fitted; absent when it does not run around sprockets.
     pub closing: Option<Closing>,
+    /// That it runs against the order of its route, and so against the names of its spans, in a sentence; absent where it does not.
+    pub against_route: Option<String>,
 }
 
 /// A shaft and all that turns with it.
@@ -219,14 +221,18 @@ impl Description {
         let meshing = drive.sprockets.iter().zip(&start.sprocket_speed);
         let mesh = meshing.map(|(s, speed)| (s.name.clone(), mesh_frequency(s.gap.teeth, *speed)));
         let chains = drive.chains.iter().zip(&assembled.fittings);
+        let mut chains: Vec<ChainFacts> = chains
+            .map(|(placed, fitting)| {
+                let rated_power = rated_power(drive, placed, &start);
+                let closing = fitting.as_ref().map(|it| closing(drive, placed, it));
+                chain_facts(placed, closing, rated_power, &spans)
+            })
+            .collect();
+        for against in drive.against_routes(&assembled.mean_speeds()) {
+            chains[against.index].against_route = Some(against.to_string());
+        }
         Ok(Self {
-            chains: chains
-                .map(|(placed, fitting)| {
-                    let rated_power = rated_power(drive, placed, &start);
-                    let closing = fitting.as_ref().map(|it| closing(drive, placed, it));
-                    chain_facts(placed, closing, rated_power, &spans)
-                })
-                .collect(),
+            chains,
             shafts: shafts(drive, &start),
             free_trains: free_train::of(assembled),
             stops: route::stops(drive, assembled, &start),
@@ -438,6 +444,7 @@ fn chain_facts(
     ChainFacts {
         name: placed.name.clone(),
         closing,
+        against_route: None,
         rated_power,
         links: chain.links(),
         pitch: chain.pitch,

@@ -402,6 +402,58 @@ impl Drive {
     }
 }
 
+impl Parts {
+    /// Chains that run against the order of their stops at such speeds of the sprockets \[rad/s\].
+    ///
+    /// Spans bear the names of their stops in this order, so such chains run against the names of their spans.
+    ///
+    /// ```text
+    /// v = s R ω < 0      s: +1 of a sprocket on the left of the chain, −1 on the right
+    /// ```
+    pub fn against_routes(&self, speeds: &[f64]) -> Vec<AgainstRoute> {
+        let told = |(index, placed): (usize, &PlacedChain)| {
+            let Layout::Route { stops, .. } = &placed.layout else {
+                return None;
+            };
+            let mut sprockets = stops.iter().filter_map(|stop| match stop {
+                Stop::Sprocket(index) => Some(*index),
+                Stop::Guide(_) => None,
+            });
+            let (first, second) = (sprockets.next()?, sprockets.next()?);
+            let speed = self.sprockets[first].side.sense() * speeds.get(first)?;
+            (speed < 0.0).then(|| AgainstRoute {
+                index,
+                chain: placed.name.clone(),
+                span: [first, second].map(|it| self.sprockets[it].name.clone()),
+            })
+        };
+        self.chains.iter().enumerate().filter_map(told).collect()
+    }
+}
+
+/// A chain that runs against the order of its stops.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AgainstRoute {
+    /// Its index.
+    pub index: usize,
+    /// Its name; none where there is one only.
+    pub chain: Option<String>,
+    /// Its first two sprockets, which the first span is named after.
+    pub span: [String; 2],
+}
+
+impl std::fmt::Display for AgainstRoute {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let name = self.chain.as_ref().map(|it| format!(" {it}"));
+        let [from, to] = &self.span;
+        write!(
+            f,
+            "The chain{} runs against the order of its route: span {from}-{to} leads from {to} to {from}.",
+            name.unwrap_or_default()
+        )
+    }
+}
+
 impl std::ops::Deref for Drive {
     type Target = Parts;
 

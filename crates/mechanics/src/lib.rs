@@ -63,8 +63,9 @@ pub use chains::particles::points::PointJoints;
 pub use contact::{Impact, Impacts};
 pub use coupling::Coupling;
 pub use drive::{
-    Adjust, Drive, Fit, GearPair, Guide, GuideSupport, Layout, Parts, PlacedChain, PretensionAt,
-    Rotation, Shaft, SpanStart, Sprocket, StartSpeed, Stop, Support, Tighten, Touches,
+    Adjust, AgainstRoute, Drive, Fit, GearPair, Guide, GuideSupport, Layout, Parts, PlacedChain,
+    PretensionAt, Rotation, Shaft, SpanStart, Sprocket, StartSpeed, Stop, Support, Tighten,
+    Touches,
 };
 pub use energy::{Energy, Flow, Place, Store};
 pub use error::{AssemblyError, Clash, DriveError, MemoryError, Pull};

@@ -85,7 +85,16 @@ def work_precision(table: xr.Dataset, *, ax: Axes | None = None, cost: str = "wa
     Returns
     -------
     matplotlib.axes.Axes
+
+    Raises
+    ------
+    ParameterError
+        This is no such table.
     """
+    if "error_tight_span_tension" not in table:
+        raise ParameterError(
+            "a table of errors and costs is drawn here: make one by chaindrive.work_precision(drive)"
+        )
     with drawing(ax) as ax:
         error = table["error_tight_span_tension"]
         methods = [str(method) for method in table["method"].to_numpy()]

@@ -12,7 +12,7 @@ from chaindrive.drive import Drive
 from chaindrive.plot.axes import colour_bar, drawing
 from chaindrive.plot.scheme import CARRIER, GUIDE, MARK, OUTLINE, PLATES, STEEL
 from chaindrive.plot.units import in_trade, written
-from chaindrive.pose import Pose, figure_of, recorded_at
+from chaindrive.pose import Pose, drive_of, figure_of, recorded_at
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,7 +39,11 @@ def __dir__() -> list[str]:
 
 
 def layout(
-    drive: Drive, *, ax: Axes | None = None, names: bool = True, settled: bool = True
+    drive: Drive | xr.Dataset,
+    *,
+    ax: Axes | None = None,
+    names: bool = True,
+    settled: bool = True,
 ) -> Axes:
     """Draw a drive as it stands at the start: teeth, rollers, plates, guides and tensioners.
 
@@ -50,7 +54,7 @@ def layout(
     Parameters
     ----------
     drive
-        What to draw.
+        What to draw: a drive, or a run for its drive.
     ax
         Where to draw; new axes when absent.
     names
@@ -69,6 +73,7 @@ def layout(
     that does not close is laid from the first stop of its route as far as it reaches, and its gap
     marked; parts in each other's way are marked with the depth of their overlap.
     """
+    drive = drive if isinstance(drive, Drive) else drive_of(drive)
     figure = drive._inner.figure(settled, 0.0)
     with drawing(ax) as ax:
         _Picture(ax, figure, Pose(**figure.start())).draw(names=names)

@@ -495,6 +495,8 @@ def _map(ax: Axes, x: Any, y: Any, amplitude: xr.DataArray) -> None:
     """Draw amplitudes (x, y) in decibels of the largest, in the order of x."""
     _changing(x)
     values = amplitude.to_numpy().T
+    if len(values) < 2:
+        raise ParameterError("the run is too short for any frequency but zero: simulate longer")
     # At the ends of a ramp windows follow each other at one speed.
     order = np.argsort(x)
     order = order[np.insert(np.diff(x[order]) > 1e-6 * np.ptp(x), 0, True)]

@@ -109,6 +109,9 @@ impl Description {
                 "  {name:22} {pitches:>7}   {length:>10.4}   {tension:>11.1}   {frequency:>20}"
             )?;
         }
+        if let Some(against) = &chain.against_route {
+            writeln!(f, "  {against}")?;
+        }
         row(f, "closing", &closing.to_string())
     }
 

@@ -121,6 +121,11 @@ impl Told<'_> {
             ]);
         }
         section.sentences.extend(self.chain_speeds());
+        let speeds: Vec<f64> = sprockets.iter().map(|it| it.speed.mean()).collect();
+        let against = self.simulation.assembled().drive.against_routes(&speeds);
+        section
+            .sentences
+            .extend(against.iter().map(ToString::to_string));
         for (chain, spans) in self.chains() {
             let mean = |index: &usize| self.summary.spans[*index].mean();
             let held = spans.filter(|index| mean(index).is_finite());

@@ -201,7 +201,9 @@ impl Extent {
     /// Blocks after which the first beginning may be found steady: those in the first quarter are not tried.
     fn fewest(&self) -> usize {
         let is_enough = |n: &usize| n - n / EARLIEST >= self.least;
-        (self.least..).find(is_enough).unwrap_or(self.least)
+        (self.least..=2 * self.least)
+            .find(is_enough)
+            .unwrap_or(self.least)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Descriptions agree with closed forms.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
-use chaindrive::{Description, Run, Scene, Stepping};
+use chaindrive::{Description, Memory, Request, Run, Scene, Settings, Stepping, execute};
 use chaindrive_geometry::Point;
 use chaindrive_mechanics::Clash;
 
@@ -138,4 +138,54 @@ fn an_assembled_drive_is_described_without_settling_it_again() {
     let anew = Description::of(&start.drive, &run).unwrap();
     let facts = |it: &Description| (it.chains.clone(), it.spans.clone(), it.statics.clone());
     assert_eq!(facts(&told), facts(&anew));
+}
+
+/// Names of spans follow the order of the stops, whichever way the chain runs: the description and the page say where these differ.
+#[test]
+fn a_chain_that_runs_against_its_route_is_told() {
+    let drive = |speed: &str, side: &str| {
+        let text = format!(
+            "chain = {{ type = '08B-1', links = 32 }}
+            [[sprockets]]
+            name = 'a'
+            teeth = 11
+            side = '{side}'
+            centre = [0, 0]
+            motion = {{ kind = 'constant', speed = '{speed}' }}
+            [[sprockets]]
+            name = 'b'
+            teeth = 11
+            side = '{side}'
+            centre = ['133.34999 mm', 0]
+            inertia = 1e-3
+            [route]
+            stops = ['a', 'b']
+            [run]
+            until = '5 ms'\nevery = '1 ms'\nrun_in = 0"
+        );
+        Scene::from_text(&text, "test").unwrap()
+    };
+    let told = |scene: &Scene| {
+        let run = Run::suggested(&scene.run_defaults());
+        let described = Description::of(&scene.drive().unwrap(), &run).unwrap();
+        let against = described.chains[0].against_route.clone();
+        let text = described.to_string();
+        assert!(against.iter().all(|it| text.contains(it)), "{text}");
+        let request = Request::new(scene, &Settings::default()).unwrap();
+        let report = execute(
+            &request.with_default_step(),
+            &mut Memory::default(),
+            &|| false,
+        );
+        let page = report.unwrap().attributes["summary"].to_string();
+        let is_told = page.contains("runs against the order of its route");
+        assert_eq!(is_told, against.is_some(), "{page}");
+        against
+    };
+    let against =
+        "The chain runs against the order of its route: span a-b leads from b to a.".to_owned();
+    assert_eq!(told(&drive("300 rpm", "left")), None);
+    assert_eq!(told(&drive("-300 rpm", "left")), Some(against));
+    // With the sprockets on the other side of the route, names follow the chain again.
+    assert_eq!(told(&drive("-300 rpm", "right")), None);
 }

@@ -318,7 +318,9 @@ fn the_ends_of_a_long_rail_clear_the_teeth() {
     let rail = |more: &str| {
         let mut scene = around_two("chain = '16B-1'");
         scene += "[[guides]]\nname = 'rail'\nface = { kind = 'on-span', between = ['b', 'a'], bow = '0 mm', material = 'left', ";
-        scene += &format!("from = '10 %', to = '92 %'{more} }}\n");
+        scene += "from = '10 %', to = '92 %'";
+        scene += more;
+        scene += " }\n";
         let drive = Scene::from_text(&scene, "test").unwrap().drive().unwrap();
         let gap = |index: usize| {
             let it = &drive.sprockets[index];
