@@ -149,6 +149,24 @@ def test_what_is_neither_run_nor_analysis_is_refused() -> None:
     assert figures() == 1
 
 
+def test_the_layout_of_a_run_is_that_of_its_drive() -> None:
+    drive = cd.scenes.industrial_16b()
+    run = cd.simulate(drive, until=1e-3, run_in=0, error=False)
+    lines = [cd.plot.layout(it).lines for it in (drive, run)]
+    for one, other in zip(*lines, strict=True):
+        np.testing.assert_array_equal(one.get_xydata(), other.get_xydata())
+    with pytest.raises(cd.ParameterError, match="work_precision"):
+        cd.plot.work_precision(run)
+    assert len(plt.get_fignums()) == 2
+
+
+def test_a_run_of_a_few_samples_has_no_map() -> None:
+    run = cd.simulate(cd.scenes.marine_engine(), until=0.06, run_in=0, error=False)
+    with pytest.raises(cd.ParameterError, match="simulate longer"):
+        cd.plot.campbell(run)
+    assert not plt.get_fignums()
+
+
 def test_options_choose_within_a_run() -> None:
     run = run_of("timing_drive")
     cut = cd.plot.span_motion(run, str(run["span"][1].item()), places=[0.3, 0.6])

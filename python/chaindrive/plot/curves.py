@@ -93,7 +93,7 @@ def work_precision(table: xr.Dataset, *, ax: Axes | None = None, cost: str = "wa
     """
     if "error_tight_span_tension" not in table:
         raise ParameterError(
-            "a table of errors and costs is drawn here: make one by chaindrive.work_precision(drive)"
+            "this draws a table of errors and costs: make it by chaindrive.work_precision(drive)"
         )
     with drawing(ax) as ax:
         error = table["error_tight_span_tension"]
