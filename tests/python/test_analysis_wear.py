@@ -213,6 +213,7 @@ def test_one_efficiency_everywhere(until, unknown, monkeypatch):
         assert float(whole) == value
         assert f"{100 * value:.3f} %" in run.attrs["summary"]
         assert title == f"efficiency {100 * value:.2f} %"
+        # The first interval of 500 is left out.
         assert float(part) == pytest.approx(value, abs=0.01)
     else:
         why = run.attrs["efficiency_unknown"]

@@ -384,7 +384,7 @@ impl Channel {
 }
 
 impl Axis {
-    /// Whether its labels are numbers, not names.
+    /// Labels that are numbers, not names.
     pub fn is_numbered(self) -> bool {
         matches!(self, Self::Roller | Self::Link | Self::Joint)
     }

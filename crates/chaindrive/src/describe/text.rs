@@ -255,7 +255,7 @@ impl Description {
     }
 }
 
-/// What is simulated before the record; none where nothing is.
+/// The run-in, if there is one.
 fn run_in(cost: &Cost) -> Option<String> {
     let [least, most] = [cost.run_in_least, cost.run_in].map(|time| Measure::Time.told(time));
     if cost.run_in.is_nan() {

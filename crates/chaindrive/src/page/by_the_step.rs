@@ -3,7 +3,7 @@
 use crate::figure::{duration, percent, with_digits};
 use crate::precision::{Estimate, ImpactErrors, Judgement, Strands};
 
-/// How far the step is off in the statistics of tensions.
+/// Errors of the statistics of tensions.
 pub(super) fn of_tensions(judgement: Option<&Judgement>) -> String {
     let Some(estimate) = judgement.and_then(Judgement::estimate) else {
         return "Errors by the step are not estimated. Run it without --no-error, to its end."

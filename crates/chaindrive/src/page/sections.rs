@@ -481,7 +481,7 @@ impl Told<'_> {
     }
 }
 
-/// Whether intervals of quantiles are unknown.
+/// Unknown intervals of quantiles: one or more.
 fn is_blank(of: &Steadiness) -> bool {
     of.p1.half_width.is_nan() || of.p99.half_width.is_nan()
 }

@@ -144,7 +144,7 @@ impl Account {
     }
 }
 
-/// How the tensions of one trace scatter: standard deviation, and the values below which 1 % and 99 % of the samples are, of every strand \[N\].
+/// Standard deviation, 1st and 99th percentile of the tension of every strand of a trace \[N\].
 pub(super) struct Scatter {
     values: [Vec<f64>; 3],
     /// Mean tension of all strands, which differences are relative to.

@@ -7,7 +7,7 @@ use super::trace::Trace;
 use super::window::Window;
 use crate::{Run, Simulation, SimulationError};
 
-/// How far the twin's rollers or links start from those of the run \[m\], see `Assembled::nudged`.
+/// Distance of the twin's rollers or links from those of the run at the start \[m\], see `Assembled::nudged`.
 pub(super) const APART: f64 = 1e-12;
 
 /// Short runs from one start, and what they have shown so far.

@@ -13,6 +13,9 @@ use crate::{AssemblyError, Pull};
 /// hundreds of iterations that such a chain leaves its teeth.
 const HOPELESS: f64 = 10.0;
 
+/// Sum of pulls over the largest one \[–\] beyond which the sum is told. *Assumed*: less is rounding.
+const ADDED: f64 = 1.001;
+
 /// Refuses a load that is hopeless. `given` are the torques as they were before those of free trains were balanced.
 pub(super) fn check(
     system: &System,
@@ -59,7 +62,7 @@ pub(super) fn named(
     }
 }
 
-/// What is asked of every chain.
+/// Pulls on every chain, each with the index of the chain.
 fn all_pulls(system: &System, parts: &Parts, (q, given): (&[f64], &Torques)) -> Vec<(usize, Pull)> {
     let own = torques(system, q, None);
     let given = torques(system, q, Some(given));
@@ -175,6 +178,3 @@ fn pulls(system: &System, parts: &Parts, chain: usize, [own, given]: [&[f64]; 2]
     }
     found
 }
-
-/// Share of the largest pull of one sprocket from which on pulls of several count as their sum.
-const ADDED: f64 = 1.001;
