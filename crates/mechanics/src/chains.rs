@@ -7,10 +7,11 @@
 
 pub(crate) mod chain;
 mod held_end;
-mod joints;
+mod laid;
 pub(crate) mod links;
 pub(crate) mod model;
 pub(crate) mod particles;
+pub(crate) mod points;
 
 use std::ops::Range;
 
@@ -20,16 +21,17 @@ use chaindrive_integrate::{Moment, Registers, Weights};
 use serde::{Deserialize, Serialize};
 
 use held_end::held_ends;
-use joints::Resistance;
+pub(crate) use laid::LaidAs;
 pub use links::inside::{Contact, Inside, Joints};
 use links::{Impulses, JointState, Linkage};
 use model::ChainModel;
-use particles::points::{self, Points};
 use particles::{Particles, Turning};
+use points::Points;
 
 use crate::bodies::{BodyContacts, GroupBodies, Surroundings};
 use crate::contact::{Begun, ContactState, Frame, PlateContact, Touch, Wrench};
 use crate::energy::Energy;
+use crate::joints::{self, Resistance};
 use crate::seam::{Load, Loads, Moving, Observation, Pose, Rates, Sum, Unknown};
 use crate::{End, MemoryError};
 
@@ -113,19 +115,6 @@ impl Record {
             (begun, links[k].depth.max(points[k].depth))
         })
     }
-}
-
-/// How a chain was laid.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LaidAs<'a> {
-    pub(crate) chain: &'a crate::Chain,
-    /// Tension that it was laid with \[N\].
-    pub(crate) pretension: f64,
-    /// Whether it runs around sprockets.
-    pub(crate) on_route: bool,
-    /// Sprockets that it can touch.
-    pub(crate) sprockets: &'a [usize],
-    pub(crate) gravity: Vector,
 }
 
 /// Asks the member, whichever it is.

@@ -7,6 +7,7 @@
 
 mod ahead;
 mod arrivals;
+mod bearing;
 mod bristles;
 mod friction;
 mod impacts;
@@ -34,6 +35,7 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) use arrivals::Arrivals;
 pub use arrivals::Impact;
+pub(crate) use bearing::{Apart, Bearing, CENTRED, Grip, Tally};
 pub(crate) use bristles::Sweep;
 pub(crate) use friction::{LaneFriction, LaneSpring};
 pub use impacts::Impacts;

@@ -26,6 +26,7 @@ mod chains;
 mod check;
 mod contact;
 mod coupling;
+mod dense;
 mod drive;
 mod energy;
 mod error;
@@ -35,6 +36,7 @@ mod forcing;
 mod groups;
 #[doc(hidden)]
 pub mod inside;
+mod joints;
 mod lanes;
 mod modes;
 mod motion;
@@ -57,9 +59,9 @@ pub use articulation::Articulation;
 pub use assembly::{Assembled, Fitting, FreeTrain, Gap, RollerLayout, Statics};
 pub use bodies::Input;
 pub use chains::chain::{Chain, End, Ends};
-pub use chains::links::model::{Clearance, FreeRoller, Joint, LinkBody, RigidLinks, RollerModel};
+pub use chains::links::model::{Joint, LinkBody, RigidLinks, RollerModel};
 pub use chains::model::ChainModel;
-pub use chains::particles::points::PointJoints;
+pub use chains::points::PointJoints;
 pub use contact::{Impact, Impacts};
 pub use coupling::Coupling;
 pub use drive::{
@@ -70,6 +72,7 @@ pub use drive::{
 pub use energy::{Energy, Flow, Place, Store};
 pub use error::{AssemblyError, Clash, DriveError, MemoryError, Pull};
 pub use fights::Fight;
+pub use joints::{Clearance, FreeRoller};
 pub use modes::{Mode, Modes};
 pub use motion::{Harmonic, Kinematics, Motion, Table};
 pub use observe::ChainSize;

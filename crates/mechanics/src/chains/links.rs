@@ -10,12 +10,10 @@
 
 mod answers;
 mod balance;
-mod bearing;
 mod blocks;
 pub(crate) mod build;
 mod by_link;
 mod drag;
-mod element;
 mod equations;
 mod held;
 mod hinge;
@@ -26,13 +24,10 @@ mod loose;
 mod meshing;
 pub(crate) mod model;
 mod observe;
-mod pins;
 mod posture;
 pub(crate) mod rates;
 mod reactions;
 mod resist;
-#[cfg(test)]
-mod validation_slider_crank;
 
 use chaindrive_contact::Prepared;
 use chaindrive_geometry::Vector;
@@ -40,25 +35,20 @@ use chaindrive_integrate::{Array, Moment, Registers};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-pub(super) use balance::add_joint;
-pub(super) use bearing::{Apart, Grip};
-pub(crate) use bearing::{Bearing, Part, Tally};
 pub(crate) use blocks::Blocks;
-pub(super) use blocks::solve_dense;
-pub(crate) use element::{Element, Mount, Partner, cross, turned};
 pub(crate) use hinge::Hinges;
 pub(crate) use impulses::Impulses;
-pub(super) use meshing::{rail_mount, wheel_mount};
-pub(crate) use pins::{Pairs, Pins};
 pub(crate) use posture::{Posture, Shapes, free_part};
 
 use super::Record;
-use super::joints::Joints;
 use crate::End;
 use crate::bodies::Surroundings;
 use crate::chains::held_end::HeldEnd;
-use crate::contact::{ContactMemory, Kept, LaneTally, MemoryLanes};
+use crate::contact::{Bearing, ContactMemory, Kept, LaneTally, MemoryLanes, Tally};
 use crate::energy::Flow;
+use crate::joints::{
+    Contacts, Element, JointMates, Joints, Mate, Mount, Pairs, Part, Partner, Pins, cross, touch,
+};
 use crate::lanes::Wide;
 
 /// A body of the chain: a link, or a free roller.
@@ -68,24 +58,6 @@ pub(crate) struct Body {
     pub(crate) inertia: f64,
     /// Joint ends from the centre of mass, in the frame of the body \[m\].
     pub(crate) arms: [Vector; 2],
-}
-
-/// One side of a joint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Mate {
-    /// An end of a link: 0 towards the joint of its own number, 1 towards the next.
-    Link { link: usize, end: usize },
-    /// A support at an end of the strand.
-    Ground(usize),
-}
-
-/// A joint of the chain.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct JointMates {
-    /// The hole and the pin; none where the chain simply ends.
-    pub(crate) pair: Option<[Mate; 2]>,
-    /// What the roller sits on.
-    pub(crate) carrier: Mate,
 }
 
 /// Rollers loose on their bushes.
@@ -248,10 +220,11 @@ impl Linkage {
             return Tally::new();
         };
         let dt = at.t - self.memory.time;
-        let tally = self.registers.dispatch(pins::Contacts {
-            linkage: self,
+        let tally = self.registers.dispatch(Contacts {
+            sides: joint_state.posture.sides(),
+            pairs: &self.pairs,
             bearing,
-            posture: &joint_state.posture,
+            known: &self.memory.joints,
             memory: &mut joint_state.memory.joints,
             pins: &mut joint_state.pins,
             dt,
@@ -309,8 +282,15 @@ impl Linkage {
             let bush = self.part(joint.carrier, at, &joint_state.posture);
             let roller = free_part(body, at);
             let parts = [&roller, &bush];
-            let bearing = &free.bearing;
-            let element = bearing.touch(index, parts, &mut memory, index, dt, &mut tally);
+            let element = touch(
+                &free.bearing,
+                index,
+                parts,
+                &mut memory,
+                index,
+                dt,
+                &mut tally,
+            );
             if let Some(element) = element {
                 joint_state.apply(&element, element.push());
             }
@@ -379,13 +359,10 @@ impl Linkage {
     pub(crate) fn each_element(&self, joint_state: &JointState, mut visit: impl FnMut(&Element)) {
         if let Joining::Clearance(bearing) = &self.joining {
             for joint in 0..self.joints.len() {
-                if let Some(element) =
-                    joint_state
-                        .pins
-                        .element(joint, self, bearing, &joint_state.posture)
-                {
-                    visit(&element);
-                }
+                let sides = joint_state.posture.sides();
+                let pins = &joint_state.pins;
+                let element = pins.element(joint, &self.joints[joint], bearing, sides);
+                element.iter().for_each(&mut visit);
             }
         }
         joint_state.elements.iter().for_each(visit);

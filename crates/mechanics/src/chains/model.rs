@@ -1,8 +1,9 @@
 //! Models of a chain, as a drive describes them.
 
-use super::links::model::{Clearance, FreeRoller, Joint, RigidLinks, RollerModel};
-use super::particles::points::PointJoints;
+use super::links::model::{Joint, RigidLinks, RollerModel};
+use super::points::PointJoints;
 use crate::DriveError;
+use crate::joints::{Clearance, FreeRoller};
 
 /// Model of a chain: no more than a scene needs.
 #[derive(Clone, Debug, PartialEq)]

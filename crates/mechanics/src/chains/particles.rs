@@ -8,28 +8,28 @@
 //! copies of the first ones; they are given the accelerations of their originals and so follow
 //! them bit by bit, and the loops never wrap around.
 
-mod articulation;
+pub(super) mod articulation;
 mod build;
 mod drag;
 mod ends;
-mod forces;
+pub(super) mod forces;
 mod observe;
-pub(crate) mod points;
 mod set_off;
-mod springs;
+pub(super) mod springs;
 mod statics;
 
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Array, Moment, Prediction, Registers};
 
+use drag::Drag;
+
 use super::Record;
-use super::joints::Joints;
 use crate::bodies::Surroundings;
 use crate::chains::held_end::HeldEnd;
-use crate::contact::PlatePlaces;
-use crate::contact::Rollers;
+use crate::contact::{PlatePlaces, Rollers};
+use crate::joints::Joints;
 use crate::seam::{Pose, Rates};
-use drag::Drag;
+
 pub(super) use springs::Links;
 pub(super) use springs::Turning;
 

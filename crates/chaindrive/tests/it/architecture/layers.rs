@@ -15,7 +15,7 @@ const CRATES: [Storeys; 4] = [
     Storeys {
         folder: "mechanics",
         layers: &[
-            &["applied", "energy", "error", "lanes"],
+            &["applied", "dense", "energy", "error", "lanes"],
             &["order"],
             &[
                 "articulation",
@@ -29,6 +29,7 @@ const CRATES: [Storeys; 4] = [
             &["contact", "torque"],
             &["seam"],
             &["bodies"],
+            &["joints"],
             &["chains"],
             &["drive"],
             &["groups"],

@@ -1,11 +1,10 @@
 //! Rigid links in equilibrium: the energy of their joints, and its derivatives.
 
 use chaindrive_geometry::{Point, Vector};
-use nalgebra::Matrix2;
 
-use super::bearing::CENTRED;
-use super::{Bearing, Joining, Linkage, Mate, turned};
+use super::{Joining, Linkage};
 use crate::End;
+use crate::joints::{Mate, add_joint};
 use crate::seam::{Load, Moving, Sum, Unknown};
 
 /// Depth at which joints are asked for their stiffness \[m\].
@@ -113,24 +112,4 @@ fn on_body(q: &[f64], body: usize, at: Vector) -> Moving {
     let (s, c) = q[first + 2].sin_cos();
     let arm = Vector::new(c * at.x - s * at.y, s * at.x + c * at.y);
     Moving::on_body(Point::new(q[first], q[first + 1]), first, arm)
-}
-
-/// Adds the energy of a pin in a hole.
-///
-/// ```text
-/// ∂U/∂e = F n,   ∂²U/∂e² = k n nᵀ + F/|e| t tᵀ,   e = P_pin − P_hole
-/// ```
-pub(in crate::chains) fn add_joint(bearing: &Bearing, [hole, pin]: [Moving; 2], sum: &mut Sum<'_>) {
-    let offset = pin.place - hole.place;
-    let eccentricity = offset.norm();
-    let depth = eccentricity - bearing.clearance;
-    if depth <= 0.0 || eccentricity < CENTRED {
-        return;
-    }
-    let (n, answer) = (offset / eccentricity, bearing.at_rest(depth));
-    let t = turned(n);
-    let stiffness: Matrix2<f64> =
-        n * n.transpose() * answer.stiffness + t * t.transpose() * (answer.elastic / eccentricity);
-    sum.balance.tensions.push(answer.elastic);
-    sum.stretch([&hole, &pin], n * answer.elastic, &stiffness);
 }

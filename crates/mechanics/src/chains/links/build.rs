@@ -6,15 +6,13 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Moment, Registers};
 
 use super::model::{Joint, RigidLinks, RollerModel};
-use super::{
-    Bearing, Body, FreeRollers, Hinges, Joining, JointMates, JointState, Linkage, Mate, Memory,
-    Pairs, Shapes, turned,
-};
+use super::{Body, FreeRollers, Hinges, Joining, JointState, Linkage, Memory, Shapes};
 use crate::bodies::{Bodies, GroupBodies};
 use crate::chains::LaidAs;
-use crate::chains::joints::Joints;
+use crate::chains::laid::length_through;
 use crate::chains::particles::Particles;
-use crate::contact::ContactMemory;
+use crate::contact::{Bearing, ContactMemory};
+use crate::joints::{JointMates, Joints, Mate, Pairs, turned};
 use crate::lanes::padded;
 use crate::{Chain, End};
 
@@ -44,7 +42,7 @@ pub(crate) fn replace(
     let laid_at: Vec<Point> = (0..count).map(|k| particles.place(q, k)).collect();
     let places: Vec<Point> = (0..count).map(place).collect();
     // Bushes at the bottom of their rollers run on a smaller circle: so much shorter is the chain that is as tight there.
-    let change = way(&places, linkage.links) - way(&laid_at, linkage.links);
+    let change = length_through(&places, linkage.links) - length_through(&laid_at, linkage.links);
     linkage.lengthen(change / linkage.links as f64);
     let after = |link: usize| (link + 1) % count;
     if links.joint == Joint::Ideal && laid.on_route {
@@ -297,16 +295,6 @@ fn bush_shifts(
     shifts.collect()
 }
 
-/// Length of a chain of so many links through its joints \[m\]; a closed one has as many joints as links.
-pub(in crate::chains) fn way(joints: &[Point], links: usize) -> f64 {
-    let ends = |link: usize| [joints[link], joints[(link + 1) % joints.len()]];
-    let lengths = (0..links).map(|link| {
-        let [a, b] = ends(link);
-        (b - a).norm()
-    });
-    lengths.sum()
-}
-
 fn compile(particles: &Particles, laid: &LaidAs<'_>, links: &RigidLinks) -> Linkage {
     let LaidAs {
         chain, pretension, ..
@@ -378,7 +366,11 @@ fn compile(particles: &Particles, laid: &LaidAs<'_>, links: &RigidLinks) -> Link
             bushes: ContactMemory::open(joints.len()),
         },
         pairs: Pairs::of(&joints),
-        resisting: Joints::new(chain, padded(joints.len())),
+        resisting: Joints::new(
+            chain.articulation,
+            (count, chain.is_closed()),
+            padded(joints.len()),
+        ),
         drag: chain.drag,
         joints,
         joining,

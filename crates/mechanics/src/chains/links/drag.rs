@@ -8,7 +8,8 @@
 
 use nalgebra::Vector3;
 
-use super::{JointState, Linkage, cross, turned};
+use super::{JointState, Linkage};
+use crate::joints::{cross, turned};
 
 impl Linkage {
     /// Adds the drag to the forces on the links, and returns the power \[W\] lost by it.

@@ -4,10 +4,10 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::Weights;
 use nalgebra::{Matrix3, Vector3};
 
-use super::element::{Row, partner_row};
 use super::loose::Loose;
-use super::{Blocks, Element, Linkage, Mount, Partner, cross};
+use super::{Blocks, Linkage};
 use crate::bodies::GroupBodies;
+use crate::joints::{Element, Mount, Partner, Row, cross, partner_row};
 
 /// Where a body's unknowns stand.
 #[derive(Clone, Copy, PartialEq)]

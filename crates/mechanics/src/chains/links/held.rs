@@ -22,8 +22,9 @@ use super::by_link::ByLink;
 use super::equations::Sum;
 use super::posture::Posture;
 use super::reactions::{Inertia, Reactions, load};
-use super::{Blocks, JointState, Linkage, Mate};
+use super::{Blocks, JointState, Linkage};
 use crate::bodies::GroupBodies;
+use crate::joints::Mate;
 use crate::lanes::Wide;
 
 /// Prescribed value of J x at the hinges.

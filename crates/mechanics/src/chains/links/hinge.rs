@@ -16,9 +16,10 @@ use pulp::{Simd, WithSimd};
 
 use super::by_link::ByLink;
 use super::reactions::{Inertia, Reactions, arms, load};
-use super::{JointState, Linkage, Mate, Posture, supplied};
+use super::{JointState, Linkage, Posture, supplied};
 use crate::End;
 use crate::energy::Flow;
+use crate::joints::Mate;
 use crate::lanes::Wide;
 
 /// Ideal joints.

@@ -20,14 +20,16 @@ mod tridiagonal;
 use chaindrive_integrate::Weights;
 use pulp::{Simd, WithSimd};
 
-use super::by_link::ByLink;
-use super::reactions::load;
-use super::{Bearing, Joining, JointState, Linkage};
-use crate::bodies::GroupBodies;
-use crate::lanes::Wide;
 use local::Local;
 use rows::Rows;
 use tridiagonal::{Place, Tridiagonal};
+
+use super::by_link::ByLink;
+use super::reactions::load;
+use super::{Joining, JointState, Linkage};
+use crate::bodies::GroupBodies;
+use crate::contact::Bearing;
+use crate::lanes::Wide;
 
 /// The rows of one step and their factors.
 #[derive(Clone, Debug, Default)]

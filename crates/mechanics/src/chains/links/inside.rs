@@ -4,15 +4,14 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Moment, Registers, Weights};
 use nalgebra::{DMatrix, DVector, Matrix2x3};
 
-use super::bearing::Tally;
 use super::equations::{Equations, Sum};
 use super::held::{Prescribed, limbs};
 use super::impulses::Step;
-use super::pins::{Contacts, Pins};
-use super::{Element, Impulses, Joining, JointState, Linkage, turned};
+use super::{Impulses, Joining, JointState, Linkage};
 use crate::bodies::GroupBodies;
 use crate::chains::{Chain, Record};
-use crate::contact::{ContactMemory, Kept, LaneTally, MemoryLanes};
+use crate::contact::{ContactMemory, Kept, LaneTally, MemoryLanes, Tally};
+use crate::joints::{Contacts, Element, Pins, touch, turned};
 use crate::lanes::Wide;
 
 /// A chain of rigid links with its state, and the bodies beside it.
@@ -172,15 +171,16 @@ impl<'a> Inside<'a> {
         let posture = &self.joint_state.posture;
         let (mut memory, mut pins) = (ContactMemory::default(), Pins::default());
         let tally = registers.dispatch(Contacts {
-            linkage,
+            sides: posture.sides(),
+            pairs: &linkage.pairs,
             bearing,
-            posture,
+            known: &linkage.memory.joints,
             memory: &mut memory,
             pins: &mut pins,
             dt: 0.0,
         });
         let closed = (0..linkage.joints.len()).map(|joint| {
-            let element = pins.element(joint, linkage, bearing, posture);
+            let element = pins.element(joint, &linkage.joints[joint], bearing, posture.sides());
             element.as_ref().map(Contact::of)
         });
         Joints::new(closed.collect(), &memory, &tally)
@@ -205,7 +205,15 @@ impl<'a> Inside<'a> {
         for (joint, mates) in linkage.joints.iter().enumerate() {
             closed.push(mates.pair.and_then(|mates| {
                 let [hole, pin] = mates.map(|mate| linkage.part(mate, at, posture));
-                let element = bearing.touch(joint, [&hole, &pin], &mut lanes, joint, 0.0, &mut sum);
+                let element = touch(
+                    bearing,
+                    joint,
+                    [&hole, &pin],
+                    &mut lanes,
+                    joint,
+                    0.0,
+                    &mut sum,
+                );
                 element.as_ref().map(Contact::of)
             }));
         }

@@ -6,13 +6,13 @@ use chaindrive_integrate::{Array, Moment};
 use pulp::{Simd, WithSimd};
 
 use super::rates::LinkPins;
-use super::{Element, JointState, Linkage, Mount, Partner, Posture};
-use crate::bodies::Surroundings;
-use crate::bodies::{Bodies, RailContact, RailSupport, Wheel, WheelSupport};
+use super::{JointState, Linkage, Posture};
+use crate::bodies::{RailContact, Surroundings};
 use crate::contact::{Contacts, Frame, Kept, Pressing, Rollers, Touch, Wrench};
 use crate::energy::Flow;
+use crate::joints::{Element, Partner, rail_mount, wheel_mount};
 use crate::lanes::Wide;
-use crate::seam::{Loads, Way};
+use crate::seam::Loads;
 
 impl Linkage {
     /// Contacts with wheels and rails.
@@ -72,39 +72,6 @@ impl Linkage {
             rates[Flow::GuideFriction as usize] += wrench.friction_loss;
             loads.rail_wrenches[i] = wrench;
         }
-    }
-}
-
-/// How a wheel can move.
-pub(in crate::chains) fn wheel_mount(first: usize, wheel: &Wheel, way: Option<Way>) -> Mount {
-    let border = |dof: usize| dof - first;
-    let turned = wheel.turn.turned_by();
-    let turn = turned.map(|(dof, ratio)| (border(dof), ratio));
-    let shifts = match &wheel.support {
-        WheelSupport::Fixed | WheelSupport::Prescribed { .. } => [None; 2],
-        WheelSupport::Springs { dof, .. } => [
-            Some((border(*dof), Vector::x())),
-            Some((border(dof + 1), Vector::y())),
-        ],
-        WheelSupport::Carried(_) => [way.map(|way| (border(way.entry), way.first)), None],
-    };
-    Mount { shifts, turn }
-}
-
-/// How a rail can move.
-pub(in crate::chains) fn rail_mount(
-    (bodies, first): (&Bodies, usize),
-    support: &RailSupport,
-    way: Option<Way>,
-) -> Mount {
-    let border = |dof: usize| dof - first;
-    let turn = match support {
-        RailSupport::Carried(index) => bodies.slides[*index].turn(),
-        RailSupport::Fixed | RailSupport::Prescribed { .. } => None,
-    };
-    Mount {
-        shifts: [way.map(|way| (border(way.entry), way.first)), None],
-        turn: turn.map(|(dof, ratio)| (border(dof), ratio)),
     }
 }
 

@@ -4,10 +4,11 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
 
 use super::rates::LinkPlaces;
-use super::{Joining, JointState, Linkage, Mate, Partner, free_part};
+use super::{Joining, JointState, Linkage, free_part};
 use crate::chains::Record;
 use crate::contact::{ContactState, Frame, Kept, PlateContact};
 use crate::energy::{Energy, Store};
+use crate::joints::{Mate, Partner};
 use crate::seam::Observation;
 
 impl Linkage {

@@ -5,33 +5,10 @@ use chaindrive_integrate::{Array, Moment};
 use pulp::{Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
-use super::bearing::Part;
-use super::{Linkage, Mate};
+use super::Linkage;
 use crate::End;
+use crate::joints::{Mate, Part, Sides, Tip};
 use crate::lanes::{LANES, Lane, Wide, padded};
-
-/// One joint end of a link.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Tip {
-    /// Place \[m\].
-    pub(crate) place: Point,
-    /// Velocity \[m/s\].
-    pub(crate) velocity: Vector,
-    /// From the centre of mass \[m\].
-    pub(crate) arm: Vector,
-}
-
-/// One side of every joint, whole lanes: places, velocities, arms from the centre of mass, angular speeds.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(crate) struct Sides {
-    pub(crate) x: Array,
-    pub(crate) y: Array,
-    pub(crate) vx: Array,
-    pub(crate) vy: Array,
-    pub(crate) arm_x: Array,
-    pub(crate) arm_y: Array,
-    pub(crate) spin: Array,
-}
 
 /// Places and velocities that follow from the coordinates.
 ///
@@ -138,39 +115,6 @@ impl Shapes {
     }
 }
 
-impl Sides {
-    fn all(&mut self) -> [&mut Array; 7] {
-        [
-            &mut self.x,
-            &mut self.y,
-            &mut self.vx,
-            &mut self.vy,
-            &mut self.arm_x,
-            &mut self.arm_y,
-            &mut self.spin,
-        ]
-    }
-
-    #[inline(always)]
-    fn tip(&self, joint: usize) -> Tip {
-        Tip {
-            place: Point::new(self.x[joint], self.y[joint]),
-            velocity: Vector::new(self.vx[joint], self.vy[joint]),
-            arm: Vector::new(self.arm_x[joint], self.arm_y[joint]),
-        }
-    }
-
-    fn set(&mut self, joint: usize, part: &Part) {
-        self.x[joint] = part.place.x;
-        self.y[joint] = part.place.y;
-        self.vx[joint] = part.velocity.x;
-        self.vy[joint] = part.velocity.y;
-        self.arm_x[joint] = part.arm.x;
-        self.arm_y[joint] = part.arm.y;
-        self.spin[joint] = part.spin;
-    }
-}
-
 impl Posture {
     /// One end of a link: 0 towards the joint of its own number, 1 towards the next.
     #[inline]
@@ -185,12 +129,16 @@ impl Posture {
     /// The same end from the centre of mass \[m\].
     #[inline(always)]
     pub(crate) fn arm(&self, link: usize, end: usize) -> Vector {
-        let (side, joint) = if end == 0 {
-            (&self.after, link)
+        if end == 0 {
+            self.after.arm(link)
         } else {
-            (&self.before, link + 1)
-        };
-        Vector::new(side.arm_x[joint], side.arm_y[joint])
+            self.before.arm(link + 1)
+        }
+    }
+
+    /// The sides before and after the joints.
+    pub(crate) fn sides(&self) -> [&Sides; 2] {
+        [&self.before, &self.after]
     }
 
     /// Length of the sides: whole lanes of joints, of which a strand has one more than links, are read from one joint further on.
@@ -240,10 +188,10 @@ impl Linkage {
         if self.closed {
             let tip = posture.before.tip(last);
             let spin = posture.before.spin[last];
-            posture.before.set(0, &of_link(last - 1, tip, spin));
+            posture.before.set(0, &Part::of_link(last - 1, tip, spin));
             let tip = posture.after.tip(0);
             let spin = posture.after.spin[0];
-            posture.after.set(last, &of_link(0, tip, spin));
+            posture.after.set(last, &Part::of_link(0, tip, spin));
         } else {
             posture.before.set(0, &self.ground(0, at));
             posture.after.set(last, &self.ground(1, at));
@@ -303,7 +251,9 @@ impl Linkage {
     #[inline]
     pub(crate) fn part(&self, mate: Mate, at: Moment<'_>, posture: &Posture) -> Part {
         match mate {
-            Mate::Link { link, end } => of_link(link, posture.tip(link, end), at.v[3 * link + 2]),
+            Mate::Link { link, end } => {
+                Part::of_link(link, posture.tip(link, end), at.v[3 * link + 2])
+            }
             Mate::Ground(end) => self.ground(end, at),
         }
     }
@@ -330,16 +280,6 @@ impl Linkage {
             arm: Vector::zeros(),
             spin: 0.0,
         }
-    }
-}
-
-fn of_link(link: usize, tip: Tip, spin: f64) -> Part {
-    Part {
-        body: Some(link),
-        place: tip.place,
-        velocity: tip.velocity,
-        arm: tip.arm,
-        spin,
     }
 }
 

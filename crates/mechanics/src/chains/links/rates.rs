@@ -4,11 +4,11 @@ use chaindrive_geometry::{Point, Vector};
 use nalgebra::Vector3;
 use pulp::Simd;
 
-use super::{Element, Joining, JointState, Linkage, Partner, Posture, cross, turned};
+use super::{Joining, JointState, Linkage, Posture};
 use crate::bodies::Surroundings;
 use crate::chains::Record;
-use crate::chains::joints::Joints;
 use crate::contact::{Drawn, OfPins, PlatePins, PlatePlaces};
+use crate::joints::{Element, Joints, Partner, cross, turned};
 use crate::lanes::{Lane, Wide};
 use crate::seam::Rates;
 

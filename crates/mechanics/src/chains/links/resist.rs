@@ -6,8 +6,8 @@ use pulp::{Simd, WithSimd};
 use super::hinge::Hinges;
 use super::posture::Posture;
 use super::{Joining, JointState, Linkage};
-use crate::chains::joints::{Joints, Resistance, Turns};
 use crate::energy::Flow;
+use crate::joints::{Joints, Resistance, Turns};
 use crate::lanes::{Lane, Lanes, Wide, padded};
 
 impl Linkage {

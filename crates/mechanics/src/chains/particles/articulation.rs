@@ -15,13 +15,13 @@ use pulp::Simd;
 
 use super::Particles;
 use super::springs::{Links, Turning};
-use crate::chains::joints::{Joints, Resistance, Turns};
 use crate::contact::Rollers;
+use crate::joints::{Joints, Resistance, Turns};
 use crate::lanes::{LANES, Lane, Lanes, Wide};
 
 /// Adds what the joints do to the rollers, and returns the power \[W\] that goes into them.
 #[inline(always)]
-pub(super) fn act<S: Simd>(
+pub(in crate::chains) fn act<S: Simd>(
     joints: &Joints,
     w: Wide<S>,
     t: f64,
@@ -43,7 +43,7 @@ pub(super) fn act<S: Simd>(
 
 /// Finds the torques of all joints from how the links turn; returns the power \[W\] that goes into the joints.
 #[inline(always)]
-pub(super) fn torques<S: Simd>(
+pub(in crate::chains) fn torques<S: Simd>(
     joints: &Joints,
     w: Wide<S>,
     t: f64,
@@ -107,7 +107,7 @@ impl Particles {
     ///
     /// Torques act on second differences of what is across, and their forces are second differences again: the row of the fourth
     /// difference is 1, −4, 6, −4, 1.
-    pub(super) fn joint_rates(&self, found: &Resistance) -> [f64; 2] {
+    pub(in crate::chains) fn joint_rates(&self, found: &Resistance) -> [f64; 2] {
         found
             .slopes
             .map(|value| 16.0 * value * self.lightest / (self.pitch * self.pitch))

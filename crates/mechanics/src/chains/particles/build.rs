@@ -6,7 +6,7 @@ use chaindrive_integrate::Registers;
 use super::drag::Drag;
 use super::{Links, Particles};
 use crate::chains::held_ends;
-use crate::chains::joints::Joints;
+use crate::joints::Joints;
 use crate::{Chain, End};
 
 impl Particles {
@@ -29,7 +29,11 @@ impl Particles {
         let particles = Self {
             lightest: inverse_masses.iter().copied().fold(0.0, f64::max),
             link_rates: link_rates(&links, &inverse_masses, rollers),
-            joints: Joints::new(chain, links.rest.len()),
+            joints: Joints::new(
+                chain.articulation,
+                (chain.links(), chain.is_closed()),
+                links.rest.len(),
+            ),
             drag: Drag::new(chain, links.rest.len()),
             links,
             rollers,

@@ -6,8 +6,8 @@ use chaindrive_integrate::Moment;
 use super::{Particles, Turning};
 use crate::chains::Record;
 use crate::chains::held_end::HeldEnd;
-use crate::chains::joints::Resistance;
 use crate::energy::Flow;
+use crate::joints::Resistance;
 use crate::motion::Kinematics;
 use crate::{End, Motion};
 

@@ -3,15 +3,13 @@
 use chaindrive_integrate::Moment;
 use pulp::{Simd, WithSimd};
 
-use super::Particles;
-use super::articulation;
 use super::springs::Turning;
-use crate::bodies::RailContact;
-use crate::bodies::Surroundings;
+use super::{Particles, articulation};
+use crate::bodies::{RailContact, Surroundings};
 use crate::chains::Record;
-use crate::chains::joints::Resistance;
 use crate::contact::{Drawn, OfPins, PlatePins, Pressing, Rollers};
 use crate::energy::Flow;
+use crate::joints::Resistance;
 use crate::lanes::Wide;
 use crate::seam::Loads;
 
@@ -99,7 +97,7 @@ impl Particles {
 
 /// Contacts of the rollers with wheels and guides.
 #[inline(always)]
-pub(super) fn touch_bodies<S: Simd>(
+pub(in crate::chains) fn touch_bodies<S: Simd>(
     w: Wide<S>,
     around: Surroundings<'_>,
     t: f64,
@@ -143,7 +141,7 @@ pub(super) fn touch_bodies<S: Simd>(
 
 /// Contacts of link plates with guides.
 #[inline(always)]
-pub(super) fn plate_forces<S: Simd>(
+pub(in crate::chains) fn plate_forces<S: Simd>(
     w: Wide<S>,
     around: Surroundings<'_>,
     t: f64,

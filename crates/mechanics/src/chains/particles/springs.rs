@@ -27,16 +27,16 @@ pub(crate) struct Links {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Turning {
     /// Turning of the links \[rad/s\], from entry [`LANES`] on.
-    pub(super) rate: Array,
+    pub(in crate::chains) rate: Array,
     /// Tension of the links \[N\], likewise.
-    pub(super) tension: Array,
+    pub(in crate::chains) tension: Array,
     /// n/ℓ of the links \[1/m\].
-    pub(super) across: [Array; 2],
+    pub(in crate::chains) across: [Array; 2],
 }
 
 impl Turning {
     /// Room for the links to write into.
-    pub(super) fn make_room(&mut self, links: &Links) {
+    pub(in crate::chains) fn make_room(&mut self, links: &Links) {
         let n = links.rest.len();
         if self.across[0].len() == n {
             return;

@@ -14,8 +14,7 @@ use nalgebra::Vector3;
 use super::rows::Rows;
 use super::tridiagonal::Tridiagonal;
 use super::{JointState, Linkage};
-use crate::chains::links::element::{Row, partner_row};
-use crate::chains::links::{Element, Partner, cross};
+use crate::joints::{Element, Partner, Row, cross, partner_row};
 
 /// One row of J over the chain's bodies, with the partner's sign in it.
 #[derive(Clone, Copy, Debug)]

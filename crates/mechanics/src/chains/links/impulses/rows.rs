@@ -7,7 +7,8 @@ use pulp::Simd;
 
 use crate::chains::links::by_link::ByLink;
 use crate::chains::links::reactions::{arms, load};
-use crate::chains::links::{Bearing, JointState, Linkage};
+use crate::chains::links::{JointState, Linkage};
+use crate::contact::Bearing;
 use crate::lanes::{Lane, Wide};
 
 /// One row a joint, whole lanes; all zero where there is no contact.

@@ -6,7 +6,7 @@ use nalgebra::Matrix2;
 
 use super::{AFTER, BEFORE, Points, ROLLERS};
 use crate::chains::Record;
-use crate::chains::links::add_joint;
+use crate::joints::add_joint;
 use crate::seam::{Load, Moving, Sum, Unknown};
 
 /// Depth at which joints are asked for their stiffness \[m\].

@@ -13,10 +13,9 @@ use chaindrive_integrate::{Continuity, Method, Moment, SecondOrderSystem, State,
 use chaindrive_validation::Case;
 use chaindrive_validation::Tolerance::{Absolute, Relative};
 
-use super::bearing::{Bearing, Part, Tally};
-use super::element::turned;
+use super::{Part, touch, turned};
 use crate::Surface;
-use crate::contact::{ContactMemory, LaneTally, MemoryLanes};
+use crate::contact::{Bearing, ContactMemory, LaneTally, MemoryLanes, Tally};
 use crate::lanes::Wide;
 
 /// One contact of pin and bush.
@@ -135,7 +134,7 @@ impl SecondOrderSystem for SliderCrank {
         let mut memory = MemoryLanes::new(w, &self.memory.1, &mut record.touch, 1);
         let mut tally = LaneTally::new(w);
         let parts = [&slider, &pin];
-        let element = self.bearing.touch(0, parts, &mut memory, 0, dt, &mut tally);
+        let element = touch(&self.bearing, 0, parts, &mut memory, 0, dt, &mut tally);
         record.tally = Tally::of(&tally);
         let push = element.map_or_else(Vector::zeros, |element| element.push());
         // J φ̈ = M − m l/2 (n·a_hinge),   m_s ẍ = −F_x

@@ -6,11 +6,10 @@ use chaindrive_integrate::{Array, Moment, Registers};
 
 use super::{AFTER, BEFORE, Memory, PointJoints, Points, ROLLERS};
 use crate::chains::LaidAs;
-use crate::chains::joints::Joints;
-use crate::chains::links::Bearing;
-use crate::chains::links::build::way;
+use crate::chains::laid::length_through;
 use crate::chains::particles::Particles;
-use crate::contact::ContactMemory;
+use crate::contact::{Bearing, ContactMemory};
+use crate::joints::Joints;
 use crate::lanes::padded;
 use crate::surface::Surface;
 
@@ -96,7 +95,7 @@ impl Points {
         });
         let open = || ContactMemory::open(padded(count));
         let mut chain = Self {
-            joints: Joints::new(laid.chain, links.rest.len()),
+            joints: Joints::new(laid.chain.articulation, (count, true), links.rest.len()),
             link_rates: [0.0; 2],
             shallow: [pin.stiffness(SHALLOW), bush.stiffness(SHALLOW)],
             links,
@@ -154,7 +153,8 @@ impl Points {
         // Bushes at the bottom of their rollers run on a smaller circle: so much shorter is the chain that is as tight there.
         if laid.on_route {
             let laid_at: Vec<Point> = (0..count).map(place).collect();
-            let change = (way(&bushes, count) - way(&laid_at, count)) / count as f64;
+            let change =
+                (length_through(&bushes, count) - length_through(&laid_at, count)) / count as f64;
             self.lengthen(change);
         }
         let mut q = vec![0.0; self.coordinates()];

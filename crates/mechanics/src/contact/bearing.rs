@@ -5,12 +5,10 @@
 //! ```
 
 use chaindrive_contact::{Approach, Prepared, Response};
-use chaindrive_geometry::{Point, Vector};
 use pulp::Simd;
 use serde::{Deserialize, Serialize};
 
-use super::element::{Element, Partner};
-use crate::contact::{Begun, FAR, LaneTally, MemoryLanes, SurfaceLaw};
+use super::{Begun, FAR, LaneTally, MemoryLanes, SurfaceLaw};
 use crate::lanes::{Lane, Mask, Wide};
 use crate::surface::Surface;
 
@@ -19,26 +17,11 @@ use crate::surface::Surface;
 pub(crate) struct Bearing {
     pub(crate) law: Prepared,
     /// The same with the friction, for lanes.
-    pub(super) lanes: SurfaceLaw,
+    pub(crate) lanes: SurfaceLaw,
     /// Radial clearance c \[m\].
     pub(crate) clearance: f64,
     /// Radius of what turns in the bore \[m\].
     pub(crate) radius: f64,
-}
-
-/// One of the two sides of a joint.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Part {
-    /// Body that it belongs to; none for the frame.
-    pub(crate) body: Option<usize>,
-    /// Centre of the circle \[m\].
-    pub(crate) place: Point,
-    /// Its velocity \[m/s\].
-    pub(crate) velocity: Vector,
-    /// From the body's centre of mass \[m\].
-    pub(crate) arm: Vector,
-    /// Angular speed of the body \[rad/s\].
-    pub(crate) spin: f64,
 }
 
 /// Cost of a contact, and how it began.
@@ -68,7 +51,7 @@ impl Tally {
 
     /// The sums of a tally by lanes.
     #[inline(always)]
-    pub(in crate::chains) fn of<S: Simd>(lanes: &LaneTally<S>) -> Self {
+    pub(crate) fn of<S: Simd>(lanes: &LaneTally<S>) -> Self {
         let [first_depth, first_share] = lanes.first();
         Self {
             normal_loss: lanes.normal_loss.sum(),
@@ -82,16 +65,16 @@ impl Tally {
 }
 
 /// How the two sides of the joints of a lane stand to each other: the side after, seen from the side before.
-pub(in crate::chains) struct Apart<S: Simd> {
+pub(crate) struct Apart<S: Simd> {
     /// Eccentricity \[m\] and its rate \[m/s\].
-    pub(in crate::chains) offset: [Lane<S>; 2],
-    pub(in crate::chains) rate: [Lane<S>; 2],
+    pub(crate) offset: [Lane<S>; 2],
+    pub(crate) rate: [Lane<S>; 2],
     /// Angular speeds of the bodies before and after \[rad/s\]; nothing where nothing rubs.
-    pub(in crate::chains) spin: [Lane<S>; 2],
+    pub(crate) spin: [Lane<S>; 2],
     /// Where there is a pin in a bore at all.
-    pub(in crate::chains) present: Mask<S>,
+    pub(crate) present: Mask<S>,
     /// Where the side after has the pin.
-    pub(in crate::chains) pin_after: Mask<S>,
+    pub(crate) pin_after: Mask<S>,
 }
 
 /// What the side after feels; the side before feels the opposite.
@@ -99,27 +82,27 @@ pub(in crate::chains) struct Apart<S: Simd> {
 /// ```text
 /// −F n + R t,   t = ẑ × n,   slip = t·(v_after − v_before) + ℓ_after ω_after − ℓ_before ω_before
 /// ```
-pub(in crate::chains) struct Grip<S: Simd> {
-    pub(in crate::chains) gap: Lane<S>,
+pub(crate) struct Grip<S: Simd> {
+    pub(crate) gap: Lane<S>,
     /// n, zero for concentric circles.
-    pub(in crate::chains) normal: [Lane<S>; 2],
+    pub(crate) normal: [Lane<S>; 2],
     /// Normal force F and friction R \[N\].
-    pub(in crate::chains) force: Lane<S>,
-    pub(in crate::chains) rub: Lane<S>,
+    pub(crate) force: Lane<S>,
+    pub(crate) rub: Lane<S>,
     /// ∂F/∂δ \[N/m\] and ∂F/∂δ̇ \[N s/m\].
-    pub(in crate::chains) stiffness: Lane<S>,
-    pub(in crate::chains) damping: Lane<S>,
+    pub(crate) stiffness: Lane<S>,
+    pub(crate) damping: Lane<S>,
     /// −∂R/∂slip, and the secant |R/slip| \[N s/m\].
-    pub(in crate::chains) drag: Lane<S>,
-    pub(in crate::chains) secant: Lane<S>,
+    pub(crate) drag: Lane<S>,
+    pub(crate) secant: Lane<S>,
     /// Stiffness across, F/|e| \[N/m\].
-    pub(in crate::chains) across: Lane<S>,
+    pub(crate) across: Lane<S>,
     /// From the centres of the sides before and after along n to where they touch \[m\].
-    pub(in crate::chains) levers: [Lane<S>; 2],
+    pub(crate) levers: [Lane<S>; 2],
 }
 
 /// Eccentricity below which a pin has no direction \[m\].
-pub(super) const CENTRED: f64 = 1e-12;
+pub(crate) const CENTRED: f64 = 1e-12;
 
 impl Bearing {
     pub(crate) fn new(surface: &Surface, bore: f64, radius: f64) -> Self {
@@ -133,7 +116,7 @@ impl Bearing {
 
     /// The contacts of a lane of joints, `dt` after the accepted state.
     #[inline(always)]
-    pub(in crate::chains) fn grip<S: Simd>(
+    pub(crate) fn grip<S: Simd>(
         &self,
         w: Wide<S>,
         memory: &mut MemoryLanes<'_, S>,
@@ -188,55 +171,12 @@ impl Bearing {
         grip
     }
 
-    /// The contact of `pin` in `hole` at a joint, which the memory has in `lane`: one lane of one.
-    pub(crate) fn touch(
-        &self,
-        joint: usize,
-        [hole, pin]: [&Part; 2],
-        memory: &mut MemoryLanes<'_, pulp::Scalar>,
-        lane: usize,
-        dt: f64,
-        tally: &mut LaneTally<pulp::Scalar>,
-    ) -> Option<Element> {
-        let w = Wide(pulp::Scalar);
-        let lanes = |v: Vector| [w.splat(v.x), w.splat(v.y)];
-        let all = w.first(1);
-        let apart = Apart {
-            offset: lanes(pin.place - hole.place),
-            rate: lanes(pin.velocity - hole.velocity),
-            spin: [w.splat(hole.spin), w.splat(pin.spin)],
-            present: all,
-            pin_after: all,
-        };
-        let grip = self.grip(w, memory, lane, &apart, dt, tally);
-        let gap = grip.gap.sum();
-        let [lever_pin, lever_hole] = self.levers(-gap);
-        (gap < 0.0).then(|| Element {
-            joint,
-            a: pin.body,
-            b: hole.body.map_or(Partner::Ground, Partner::Body),
-            arm_a: pin.arm,
-            arm_b: hole.arm,
-            pivot_b: hole.arm,
-            lever_a: lever_pin,
-            lever_b: lever_hole,
-            normal: Vector::new(grip.normal[0].sum(), grip.normal[1].sum()),
-            force: grip.force.sum(),
-            rub: grip.rub.sum(),
-            stiffness: grip.stiffness.sum(),
-            damping: grip.damping.sum(),
-            drag: grip.drag.sum(),
-            secant: grip.secant.sum(),
-            across: grip.across.sum(),
-        })
-    }
-
-    pub(super) fn rubs(&self) -> bool {
+    pub(crate) fn rubs(&self) -> bool {
         self.lanes.friction.acts()
     }
 
     /// From the centres of pin and hole to where they touch \[m\].
-    pub(super) fn levers(&self, depth: f64) -> [f64; 2] {
+    pub(crate) fn levers(&self, depth: f64) -> [f64; 2] {
         // Both surfaces at the middle of the overlap: R_pin − δ/2 and R_hole + δ/2.
         [
             self.radius - 0.5 * depth,
@@ -246,7 +186,7 @@ impl Bearing {
 
     /// From the centres of the sides before and after along n to where they touch \[m\], of a lane of joints.
     #[inline(always)]
-    pub(super) fn lever_lanes<S: Simd>(
+    pub(crate) fn lever_lanes<S: Simd>(
         &self,
         w: Wide<S>,
         pin_after: Mask<S>,
@@ -261,7 +201,7 @@ impl Bearing {
     }
 
     /// From the centres of the sides before and after along n to where they touch \[m\].
-    pub(super) fn side_levers(&self, pin_after: bool, depth: f64) -> [f64; 2] {
+    pub(crate) fn side_levers(&self, pin_after: bool, depth: f64) -> [f64; 2] {
         let [pin, hole] = self.levers(depth);
         // Seen along n, the touching point lies behind the pin's centre if the pin is on the side before.
         if pin_after {
@@ -279,7 +219,7 @@ impl Bearing {
 
 impl Bearing {
     /// Answer of a contact that neither closes nor opens.
-    pub(in crate::chains) fn at_rest(&self, depth: f64) -> Response {
+    pub(crate) fn at_rest(&self, depth: f64) -> Response {
         self.law.respond(Approach {
             penetration: depth,
             rate: 0.0,

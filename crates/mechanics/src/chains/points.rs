@@ -23,16 +23,15 @@ use chaindrive_integrate::{Array, Moment, Registers};
 use pulp::Simd;
 use serde::{Deserialize, Serialize};
 
-pub use model::PointJoints;
-
-use super::Links;
+use super::particles::Links;
 use crate::chains::Record;
 use crate::chains::held_end::HeldEnd;
-use crate::chains::joints::Joints;
-use crate::chains::links::{Bearing, Tally};
-use crate::contact::{ContactMemory, Drawn, OfPins, PlatePins, PlatePlaces};
+use crate::contact::{Bearing, ContactMemory, Drawn, OfPins, PlatePins, PlatePlaces, Tally};
+use crate::joints::Joints;
 use crate::lanes::Wide;
 use crate::seam::Pose;
+
+pub use model::PointJoints;
 
 /// Roller, bush and pin as point masses.
 #[derive(Clone, Debug)]

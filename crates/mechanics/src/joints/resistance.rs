@@ -19,7 +19,7 @@ use crate::lanes::{Lane, Wide, padded};
 
 /// The joints in flat arrays, and what their friction remembers.
 #[derive(Clone, Debug)]
-pub(super) struct Joints {
+pub(crate) struct Joints {
     friction: LaneFriction,
     /// Radius r of what slides \[m\], whole lanes; zero where no two links meet.
     radius: Array,
@@ -27,7 +27,7 @@ pub(super) struct Joints {
     damping: Array,
     /// Largest r² \[m²\] and c \[N m s/rad\].
     largest: [f64; 2],
-    pub(super) memory: Stick,
+    pub(crate) memory: Stick,
 }
 
 /// State of the friction in all joints at an accepted moment.
@@ -44,7 +44,7 @@ pub(crate) struct Stick {
 pub(crate) struct Resistance {
     /// Torque of every joint on the link after it \[N m\], and whole lanes behind.
     #[serde(skip)]
-    pub(super) torque: Array,
+    pub(crate) torque: Array,
     /// Normal forces and slips, for laws that are asked for all joints at once.
     #[serde(skip)]
     normal: Array,
@@ -52,20 +52,24 @@ pub(crate) struct Resistance {
     slip: Array,
     stick: Stick,
     /// Energy in the springs of friction that holds \[J\].
-    pub(super) stored: f64,
+    pub(crate) stored: f64,
     /// As [`Stick`] has them.
-    pub(super) slopes: [f64; 2],
+    pub(crate) slopes: [f64; 2],
 }
 
 impl Joints {
-    /// The joints of a chain, in so many entries; none where nothing resists.
-    pub(super) fn new(chain: &crate::Chain, entries: usize) -> Option<Self> {
+    /// The joints of a chain of so many links, in so many entries; none where nothing resists.
+    pub(crate) fn new(
+        articulation: Option<Articulation>,
+        (links, closed): (usize, bool),
+        entries: usize,
+    ) -> Option<Self> {
         let Articulation {
             friction,
             radius,
             damping,
-        } = chain.articulation?;
-        let meet = |joint: usize| joint < chain.links() && (joint > 0 || chain.is_closed());
+        } = articulation?;
+        let meet = |joint: usize| joint < links && (joint > 0 || closed);
         let at_joints = |value: f64| {
             let each = |joint| if meet(joint) { value } else { 0.0 };
             (0..entries).map(each).collect::<Array>()
@@ -85,22 +89,22 @@ impl Joints {
     }
 
     /// σ and damping of the stiffest joint at the accepted state.
-    pub(super) fn slopes(&self) -> [f64; 2] {
+    pub(crate) fn slopes(&self) -> [f64; 2] {
         self.memory.slopes
     }
 
     /// Says when the memory is of.
-    pub(super) fn set_clock(&mut self, t: f64) {
+    pub(crate) fn set_clock(&mut self, t: f64) {
         self.memory.time = t;
     }
 
     /// Whether the normal force matters.
-    pub(super) fn rub(&self) -> bool {
+    pub(crate) fn rub(&self) -> bool {
         self.friction.acts()
     }
 
     /// Takes the accepted state of the friction.
-    pub(super) fn commit(&mut self, found: &mut Resistance) {
+    pub(crate) fn commit(&mut self, found: &mut Resistance) {
         std::mem::swap(&mut self.memory, &mut found.stick);
         self.memory.slopes = found.slopes;
     }
@@ -114,7 +118,7 @@ impl Joints {
 
     /// Finds the torques; returns the power \[W\] that goes into the joints.
     #[inline(always)]
-    pub(super) fn resist<S: Simd>(
+    pub(crate) fn resist<S: Simd>(
         &self,
         w: Wide<S>,
         t: f64,
@@ -251,7 +255,7 @@ impl Joints {
 }
 
 /// How the links of a member turn against each other.
-pub(super) trait Turns<S: Simd> {
+pub(crate) trait Turns<S: Simd> {
     /// ω \[rad/s\] and N \[N\] of a lane of joints.
     fn at(&self, w: Wide<S>, lane: usize) -> [Lane<S>; 2];
 }
@@ -267,7 +271,7 @@ struct Sums<S: Simd> {
 }
 
 /// Goes on from what the joints of another chain remembered; there must be some in both or in none.
-pub(super) fn remember(
+pub(crate) fn remember(
     joints: Option<&mut Joints>,
     memory: Option<Stick>,
 ) -> Result<(), MemoryError> {

@@ -19,11 +19,11 @@ use pulp::{Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
 use super::{AFTER, BEFORE, Found, Points, ROLLERS};
-use crate::bodies::Surroundings;
-use crate::bodies::{GroupBodies, RailContact};
+use crate::bodies::{GroupBodies, RailContact, Surroundings};
 use crate::chains::Record;
-use crate::chains::links::{Mount, rail_mount, solve_dense, turned, wheel_mount};
 use crate::contact::{Contacts, Frame, Touch};
+use crate::dense::solve_dense;
+use crate::joints::{Mount, rail_mount, turned, wheel_mount};
 use crate::lanes::{LANES, Lane, Mask, Wide, padded};
 use crate::seam::Loads;
 

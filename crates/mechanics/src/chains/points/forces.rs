@@ -4,16 +4,14 @@ use chaindrive_integrate::Moment;
 use pulp::{Simd, WithSimd};
 
 use super::{AFTER, BEFORE, Ends, Found, Held, Points, ROLLERS};
-use crate::bodies::RailContact;
-use crate::bodies::Surroundings;
+use crate::bodies::{RailContact, Surroundings};
 use crate::chains::Record;
-use crate::chains::joints::Resistance;
-use crate::chains::links::{Apart, Grip, Tally};
 use crate::chains::particles::articulation;
 use crate::chains::particles::forces::{plate_forces, touch_bodies};
 use crate::chains::particles::springs::Turning;
-use crate::contact::{LaneTally, MemoryLanes, Rollers};
+use crate::contact::{Apart, Grip, LaneTally, MemoryLanes, Rollers, Tally};
 use crate::energy::Flow;
+use crate::joints::Resistance;
 use crate::lanes::{LANES, Lane, Wide, padded};
 use crate::seam::Loads;
 

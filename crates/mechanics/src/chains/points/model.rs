@@ -1,7 +1,7 @@
 //! Joints of a particle chain as points, as a drive describes them.
 
 use crate::DriveError;
-use crate::chains::links::model::{Clearance, FreeRoller};
+use crate::joints::{Clearance, FreeRoller};
 
 /// Roller, bush and pin of every joint as point masses with play between them.
 ///

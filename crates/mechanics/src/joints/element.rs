@@ -5,6 +5,8 @@ use chaindrive_integrate::Weights;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use super::Mount;
+
 /// The other side of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Partner {
@@ -14,15 +16,6 @@ pub(crate) enum Partner {
     Body(usize),
     /// A wheel or rail, by its place among the mounts.
     Mount(usize),
-}
-
-/// How a wheel or rail can move: which coordinates of the bodies shift its frame, and which one turns it, counted from the first.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(crate) struct Mount {
-    /// (coordinate, shift of the frame's origin per unit); unused ones have none.
-    pub(crate) shifts: [Option<(usize, Vector)>; 2],
-    /// Coordinate of the rotation, and how far the frame turns with it.
-    pub(crate) turn: Option<(usize, f64)>,
 }
 
 /// A closed contact between a body `a` and its partner `b`.
@@ -84,8 +77,8 @@ impl Element {
     /// ```
     ///
     /// r is the secant where friction is about to stop the slip, and the slope where the slip grows: the secant would hold it back
-    /// with more than the friction. Below `soft` \[N/m\] F/|e| is left to the forces, as [`Linkage::soft`](super::Linkage::soft) says.
-    pub(super) fn step_weights(&self, weights: Weights, soft: f64, change: f64) -> [f64; 2] {
+    /// with more than the friction. Below `soft` \[N/m\] F/|e| is left to the forces, as chains of rigid links say.
+    pub(crate) fn step_weights(&self, weights: Weights, soft: f64, change: f64) -> [f64; 2] {
         let drag = if self.rub * change > 0.0 {
             self.secant
         } else {
@@ -98,7 +91,7 @@ impl Element {
     }
 
     /// F/|e| \[N/m\] where it holds, and with no less than `soft`.
-    pub(super) fn stiffly_across(&self, soft: f64) -> f64 {
+    pub(crate) fn stiffly_across(&self, soft: f64) -> f64 {
         if self.across > soft { self.across } else { 0.0 }
     }
 
@@ -124,7 +117,7 @@ impl Element {
 
 /// A row over the unknowns of the partner.
 #[derive(Clone, Copy)]
-pub(super) enum Row {
+pub(crate) enum Row {
     Nothing,
     Body(usize, Vector3<f64>),
     /// Coordinates of wheels and tensioners, unused ones `usize::MAX`.
@@ -132,7 +125,7 @@ pub(super) enum Row {
 }
 
 /// How the partner moves along a direction at the circle's centre, with a lever for its rotation.
-pub(super) fn partner_row(
+pub(crate) fn partner_row(
     element: &Element,
     mounts: &[Mount],
     direction: Vector,

@@ -12,9 +12,8 @@ use chaindrive_integrate::Array;
 use pulp::{Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
-use super::bearing::Apart;
-use super::{Bearing, Element, JointMates, Linkage, Mate, Partner, Posture, Tally};
-use crate::contact::{ContactMemory, LaneTally, MemoryLanes};
+use super::{Element, JointMates, Mate, Partner, Sides};
+use crate::contact::{Apart, Bearing, ContactMemory, LaneTally, MemoryLanes, Tally};
 use crate::lanes::{LANES, Mask, Wide, padded};
 
 /// Forces of the joints, whole lanes.
@@ -50,6 +49,8 @@ pub(crate) struct Pins {
 /// Which joints there are, and how they are put together.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pairs {
+    /// Number of joints.
+    count: usize,
     /// One where there is a pin in a bush, zero elsewhere, whole lanes.
     present: Array,
     /// The same of the next joint, which after the last one is the first.
@@ -70,34 +71,34 @@ impl Pairs {
             flags.resize(padded(joints.len()), 0.0);
             flags
         };
-        let after = |mate| matches!(mate, Mate::Link { end: 0, .. } | Mate::Ground(1));
         let present = flags(&|joint| joint.pair.is_some());
         let mut present_next = present.clone();
         present_next[..joints.len()].rotate_left(1);
         Self {
+            count: joints.len(),
             present,
             present_next,
-            pin_after: flags(&|joint| joint.pair.is_some_and(|[_, pin]| after(pin))),
-            bush_after: flags(&|joint| after(joint.carrier)),
+            pin_after: flags(&|joint| joint.pair.is_some_and(|[_, pin]| pin.is_after())),
+            bush_after: flags(&|joint| joint.carrier.is_after()),
         }
     }
 
     /// Where there are two sides, of the joints from one on.
     #[inline(always)]
-    pub(super) fn present<S: Simd>(&self, w: Wide<S>, joint: usize) -> Mask<S> {
+    pub(crate) fn present<S: Simd>(&self, w: Wide<S>, joint: usize) -> Mask<S> {
         w.load(&self.present, joint).greater(w.splat(0.0))
     }
 
     /// Where there are two sides in a joint and in the next, of the joints from one on.
     #[inline(always)]
-    pub(super) fn both_present<S: Simd>(&self, w: Wide<S>, joint: usize) -> Mask<S> {
+    pub(crate) fn both_present<S: Simd>(&self, w: Wide<S>, joint: usize) -> Mask<S> {
         let next = w.load(&self.present_next, joint).greater(w.splat(0.0));
         self.present(w, joint) & next
     }
 
     /// Where the side after has the pin, of the joints from one on.
     #[inline(always)]
-    pub(super) fn pins_after<S: Simd>(&self, w: Wide<S>, joint: usize) -> Mask<S> {
+    pub(crate) fn pins_after<S: Simd>(&self, w: Wide<S>, joint: usize) -> Mask<S> {
         w.load(&self.pin_after, joint).greater(w.splat(0.0))
     }
 
@@ -140,7 +141,7 @@ impl Pins {
     }
 
     /// Repeats the first joint of a closed chain behind the last.
-    pub(super) fn close(&mut self, joints: usize) {
+    pub(crate) fn close(&mut self, joints: usize) {
         for values in self.all() {
             values[joints] = values[0];
         }
@@ -160,16 +161,17 @@ impl Pins {
     pub(crate) fn element(
         &self,
         joint: usize,
-        linkage: &Linkage,
+        mates: &JointMates,
         bearing: &Bearing,
-        posture: &Posture,
+        [before, after]: [&Sides; 2],
     ) -> Option<Element> {
-        let [hole, pin] = linkage.joints[joint].pair?;
+        let [hole, pin] = mates.pair?;
         if self.gap[joint] >= 0.0 {
             return None;
         }
         let side = |mate| match mate {
-            Mate::Link { link, end } => (Some(link), posture.arm(link, end)),
+            Mate::Link { link, end: 0 } => (Some(link), after.arm(joint)),
+            Mate::Link { link, .. } => (Some(link), before.arm(joint)),
             Mate::Ground(_) => (None, Vector::zeros()),
         };
         let ((a, arm_a), (b, arm_b)) = (side(pin), side(hole));
@@ -184,11 +186,7 @@ impl Pins {
             pivot_b: arm_b,
             lever_a: lever_pin,
             lever_b: lever_hole,
-            normal: if linkage.pairs.pin_after(joint) {
-                normal
-            } else {
-                -normal
-            },
+            normal: if pin.is_after() { normal } else { -normal },
             force: self.force[joint],
             rub: self.rub[joint],
             stiffness: self.stiffness[joint],
@@ -201,14 +199,17 @@ impl Pins {
 }
 
 /// The contact of all joints, as one call that is compiled for every kind of processor.
-pub(super) struct Contacts<'a> {
-    pub(super) linkage: &'a Linkage,
-    pub(super) bearing: &'a Bearing,
-    pub(super) posture: &'a Posture,
-    pub(super) memory: &'a mut ContactMemory,
-    pub(super) pins: &'a mut Pins,
+pub(crate) struct Contacts<'a> {
+    /// Sides before and after the joints.
+    pub(crate) sides: [&'a Sides; 2],
+    pub(crate) pairs: &'a Pairs,
+    pub(crate) bearing: &'a Bearing,
+    /// Memory of the accepted state, and of this one.
+    pub(crate) known: &'a ContactMemory,
+    pub(crate) memory: &'a mut ContactMemory,
+    pub(crate) pins: &'a mut Pins,
     /// Time since the accepted state \[s\].
-    pub(super) dt: f64,
+    pub(crate) dt: f64,
 }
 
 impl WithSimd for Contacts<'_> {
@@ -223,15 +224,14 @@ impl WithSimd for Contacts<'_> {
 
 impl Contacts<'_> {
     #[inline(always)]
-    pub(super) fn act<S: Simd>(self, w: Wide<S>) -> Tally {
-        let joints = self.linkage.joints.len();
+    pub(crate) fn act<S: Simd>(self, w: Wide<S>) -> Tally {
+        let joints = self.pairs.count;
         self.memory.resize(padded(joints));
         self.pins.resize(joints);
-        let (before, after) = (&self.posture.before, &self.posture.after);
-        let pairs = &self.linkage.pairs;
+        let [before, after] = self.sides;
+        let pairs = self.pairs;
         let (bearing, pins) = (self.bearing, self.pins);
-        let known = &self.linkage.memory.joints;
-        let mut memory = MemoryLanes::new(w, known, self.memory, padded(joints));
+        let mut memory = MemoryLanes::new(w, self.known, self.memory, padded(joints));
         let mut tally = LaneTally::new(w);
         let rubs = bearing.rubs();
         for (lane, start) in (0..joints).step_by(Wide::<S>::COUNT).enumerate() {

@@ -1,0 +1,19 @@
+//! Joints between the links of a chain, whatever the links are: pins and rollers with play, closed contacts, resistance.
+
+mod clearance;
+mod element;
+mod mount;
+mod pin;
+mod pins;
+mod resistance;
+mod side;
+#[cfg(test)]
+mod validation_slider_crank;
+
+pub use clearance::{Clearance, FreeRoller};
+pub(crate) use element::{Element, Partner, Row, cross, partner_row, turned};
+pub(crate) use mount::{Mount, rail_mount, wheel_mount};
+pub(crate) use pin::{add_joint, touch};
+pub(crate) use pins::{Contacts, Pairs, Pins};
+pub(crate) use resistance::{Joints, Resistance, Stick, Turns, remember};
+pub(crate) use side::{JointMates, Mate, Part, Sides, Tip};
