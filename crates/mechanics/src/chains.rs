@@ -1,17 +1,19 @@
 //! Chains as a family: this table of contents, and one folder a member.
 //!
-//! A chain owns its part of the state and answers every question about it: how many coordinates there are and what they are
-//! called, where its rollers and plates are, what a force on a roller does, what it stores and loses, how stiff it is, how it is
-//! laid. Coordinates are counted from the chain's own first one, and states come as the chain's own part. A chain may look at the
-//! bodies that it touches, never at the system. Nobody outside this folder asks which member it is.
+//! A chain owns its part of the state and answers every question about it ([`Makeup`], [`Statics`]): how many coordinates there are
+//! and what they are called, where its rollers and plates are, what a force on a roller does, what it stores and loses, how stiff it
+//! is, how it is laid. Coordinates are counted from the chain's own first one, and states come as the chain's own part. A chain may
+//! look at the bodies that it touches, never at the system. Nobody outside this folder asks which member it is.
 
 pub(crate) mod chain;
 mod held_end;
 mod laid;
 pub(crate) mod links;
+mod makeup;
 pub(crate) mod model;
 pub(crate) mod particles;
 pub(crate) mod points;
+mod series;
 
 use std::ops::Range;
 
@@ -20,20 +22,21 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Moment, Registers, Weights};
 use serde::{Deserialize, Serialize};
 
-use held_end::held_ends;
 pub(crate) use laid::LaidAs;
+use links::Linkage;
 pub use links::inside::{Contact, Inside, Joints};
-use links::{Impulses, JointState, Linkage};
+use makeup::{Makeup, Statics};
 use model::ChainModel;
-use particles::{Particles, Turning};
+use particles::Particles;
 use points::Points;
+use series::Series;
 
+use crate::MemoryError;
 use crate::bodies::{BodyContacts, GroupBodies, Surroundings};
 use crate::contact::{Begun, ContactState, Frame, PlateContact, Touch, Wrench};
 use crate::energy::Energy;
-use crate::joints::{self, Resistance};
+use crate::joints::{self, JointFindings, JointMemory, Stick};
 use crate::seam::{Load, Loads, Moving, Observation, Pose, Rates, Sum, Unknown};
-use crate::{End, MemoryError};
 
 /// A chain ready to move.
 #[derive(Clone, Debug)]
@@ -46,32 +49,20 @@ pub(crate) enum Chain {
     Links(Box<Linkage>),
 }
 
-/// Memory of a chain beside its contacts with bodies.
+/// Memory of a chain beside its contacts with bodies: contacts in its joints, and the friction that resists beside them.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) enum ChainMemory {
-    /// The friction of its joints, if there is any.
-    Particles(Option<joints::Stick>),
-    /// The contacts in its joints, and their friction.
-    Points(Box<points::Memory>, Option<joints::Stick>),
-    /// The contacts in its joints, and the friction of those without clearance.
-    Links(Box<links::Memory>, Option<joints::Stick>),
+pub(crate) struct ChainMemory {
+    joints: JointMemory,
+    stick: Option<Stick>,
 }
 
-/// Contact states, and the work space of the member.
+/// Contact states, and the work space of every member; empty but for the one that the chain is.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Record {
     pub(crate) loads: Loads,
-    /// What joints leave behind; empty where links are springs.
-    joint_state: JointState,
-    #[serde(skip)]
-    impulses: Impulses,
-    /// Findings in joints that are points; empty elsewhere.
-    points: points::Found,
-    /// What resists in the joints; empty where nothing does.
-    resistance: Resistance,
-    /// How the links of particles turn, where something resists that.
-    #[serde(skip)]
-    turning: Turning,
+    particles: particles::Work,
+    points: points::Work,
+    links: links::Work,
 }
 
 impl Record {
@@ -92,6 +83,11 @@ impl Record {
         }
     }
 
+    /// What was found in joints that can have contacts: those of links and of points.
+    fn findings(&self) -> [&JointFindings; 2] {
+        [&self.links.joints, &self.points.joints]
+    }
+
     /// How contacts began: depth \[m\], and the share of the step after which they did.
     pub(crate) fn onsets(&self) -> impl Iterator<Item = (f64, f64)> {
         let Loads {
@@ -99,7 +95,7 @@ impl Record {
             rail_wrenches,
             ..
         } = &self.loads;
-        let joints = self.joint_state.tallies.iter().chain(&self.points.tallies);
+        let joints = self.findings().into_iter().flat_map(|it| &it.tallies);
         let wrenches = wheel_wrenches.iter().chain(rail_wrenches);
         wrenches
             .map(|wrench| (wrench.first_depth, wrench.first_share))
@@ -109,7 +105,7 @@ impl Record {
     /// Contacts that began in the joints, and their depths: pins in bushes, bushes in rollers.
     pub(crate) fn joints(&self) -> [(Begun, f64); 2] {
         // A chain has links or points.
-        let [links, points] = [&self.joint_state.tallies, &self.points.tallies];
+        let [links, points] = self.findings().map(|it| &it.tallies);
         [0, 1].map(|k| {
             let begun = links[k].begun.and(points[k].begun);
             (begun, links[k].depth.max(points[k].depth))
@@ -117,7 +113,7 @@ impl Record {
     }
 }
 
-/// Asks the member, whichever it is.
+/// Asks the member, whichever it is; with a record, for its own work there.
 macro_rules! ask {
     ($chain:expr, $member:ident => $answer:expr) => {
         match $chain {
@@ -125,6 +121,36 @@ macro_rules! ask {
             Chain::Points($member) => $answer,
             Chain::Links($member) => $answer,
         }
+    };
+    ($chain:expr, $record:expr, ($member:ident, $work:ident) => $answer:expr) => {
+        match ($chain, $record) {
+            (
+                Chain::Particles($member),
+                Record {
+                    particles: $work, ..
+                },
+            ) => $answer,
+            (Chain::Points($member), Record { points: $work, .. }) => $answer,
+            (Chain::Links($member), Record { links: $work, .. }) => $answer,
+        }
+    };
+}
+
+/// Hands questions of [`Makeup`] and [`Statics`] on to the member.
+macro_rules! hand_on {
+    ($(fn $name:ident(&self $(, $arg:ident: $kind:ty)*) $(-> $answer:ty)?;)*) => {
+        $(pub(crate) fn $name(&self $(, $arg: $kind)*) $(-> $answer)? {
+            ask!(self, chain => chain.$name($($arg),*))
+        })*
+    };
+}
+
+/// Hands questions on that the member answers from what an evaluation left in a record.
+macro_rules! hand_on_with_record {
+    ($(fn $name:ident(&self, $at:ident: $moment:ty, $record:ident $(, $arg:ident: $kind:ty)*) $(-> $answer:ty)?;)*) => {
+        $(pub(crate) fn $name(&self, $at: $moment, $record: &Record $(, $arg: $kind)*) $(-> $answer)? {
+            ask!(self, $record, (chain, work) => chain.$name($at, work $(, $arg)*))
+        })*
     };
 }
 
@@ -168,96 +194,117 @@ impl Chain {
             }
         }
     }
+}
 
-    /// Brings velocities of the chain and, behind it, the bodies to where no joint opens.
-    pub(crate) fn close_in_motion(
-        &self,
-        begin: f64,
-        bodies: GroupBodies<'_>,
-        q: &[f64],
-        v: &mut [f64],
-    ) {
-        match self {
-            Self::Particles(_) | Self::Points(_) => {}
-            Self::Links(chain) => chain.close_in_motion(begin, bodies, q, v),
+/// The row of its links, whatever they are made of.
+impl Chain {
+    fn series(&self) -> &Series {
+        ask!(self, chain => chain.series())
+    }
+
+    fn series_mut(&mut self) -> &mut Series {
+        ask!(self, chain => chain.series_mut())
+    }
+
+    pub(crate) fn rollers(&self) -> usize {
+        self.series().rollers
+    }
+
+    pub(crate) fn links(&self) -> usize {
+        self.series().links
+    }
+
+    /// Nominal pitch \[m\].
+    pub(crate) fn pitch(&self) -> f64 {
+        self.series().pitch
+    }
+
+    /// Whether something pulls at an end.
+    pub(crate) fn is_pulled(&self) -> bool {
+        self.series().is_pulled()
+    }
+
+    /// Time \[s\] of the first knot of an end's motion after t; none without one.
+    pub(crate) fn next_knot(&self, t: f64) -> Option<f64> {
+        self.series().next_knot(t)
+    }
+
+    /// Lets driven ends stand still.
+    pub(crate) fn hold_still(&mut self) {
+        self.series_mut().hold_still();
+    }
+
+    /// Says when the memory of joints and free rollers is of.
+    pub(crate) fn set_clock(&mut self, t: f64) {
+        self.series_mut().set_clock(t);
+    }
+
+    /// Computes on other registers from now on.
+    pub(crate) fn compute_on(&mut self, registers: Registers) {
+        self.series_mut().registers = registers;
+    }
+
+    /// How a pin stands to its bush, and a bush to its roller, where they have play.
+    pub(crate) fn contacts_of(&self, joint: usize) -> [Option<ContactState>; 2] {
+        let JointMemory { pins, bushes, .. } = &self.series().memory;
+        [pins, bushes].map(|memory| (memory.len() > 0).then(|| memory.at(joint)))
+    }
+
+    /// See [`System::memory`](crate::System::memory).
+    pub(crate) fn memory(&self) -> ChainMemory {
+        let Series { joints, memory, .. } = self.series();
+        ChainMemory {
+            joints: memory.clone(),
+            stick: joints.as_ref().map(|joints| joints.memory.clone()),
         }
     }
 
-    /// Gives rollers at these places these velocities.
-    pub(crate) fn set_off(&self, places: &[Point], velocities: &[Vector], v: &mut [f64]) {
-        ask!(self, chain => chain.set_off(places, velocities, v));
+    /// See [`System::remember`](crate::System::remember).
+    pub(crate) fn remember(&mut self, remembered: ChainMemory) -> Result<(), MemoryError> {
+        let Series { joints, memory, .. } = self.series_mut();
+        joints::remember(joints.as_mut(), remembered.stick)?;
+        memory.remember(remembered.joints)
     }
 }
 
 /// Its model.
 impl Chain {
-    /// Number of coordinates.
-    pub(crate) fn coordinates(&self) -> usize {
-        ask!(self, chain => chain.coordinates())
+    hand_on! {
+        fn coordinates(&self) -> usize;
+        fn name(&self, coordinate: usize) -> String;
+        fn inertias(&self) -> Vec<f64>;
+        fn joints(&self) -> usize;
+        fn bearing_laws(&self) -> [Option<Prepared>; 2];
+        fn has_springs(&self) -> bool;
+        fn elongation(&self) -> f64;
     }
 
     /// Number of coordinates that can move.
     pub(crate) fn free_coordinates(&self) -> usize {
-        ask!(self, chain => chain.free_coordinates())
+        self.unknowns().len()
     }
 
-    /// Description of a coordinate, in words.
-    pub(crate) fn name(&self, coordinate: usize) -> String {
-        ask!(self, chain => chain.name(coordinate))
-    }
-
-    /// Mass or inertia that goes with every coordinate \[kg or kg m²\].
-    pub(crate) fn inertias(&self) -> Vec<f64> {
-        ask!(self, chain => chain.inertias())
-    }
-
-    pub(crate) fn rollers(&self) -> usize {
-        ask!(self, chain => chain.rollers())
-    }
-
-    pub(crate) fn links(&self) -> usize {
-        ask!(self, chain => chain.links())
-    }
-
-    /// Joints that have a state of their own: none where links are springs.
-    pub(crate) fn joints(&self) -> usize {
-        match self {
-            Self::Particles(_) => 0,
-            Self::Points(chain) => chain.joints(),
-            Self::Links(chain) => chain.joints(),
-        }
-    }
-
-    /// Laws of pins in bushes with clearance, and of bushes in free rollers.
-    pub(crate) fn bearing_laws(&self) -> [Option<Prepared>; 2] {
-        match self {
-            Self::Particles(_) => [None, None],
-            Self::Points(chain) => chain.bearing_laws(),
-            Self::Links(chain) => chain.bearing_laws(),
-        }
-    }
-
-    /// Nominal pitch \[m\].
-    pub(crate) fn pitch(&self) -> f64 {
-        ask!(self, chain => chain.pitch())
-    }
-
-    /// Length of the chain without load, in nominal pitches a link.
-    pub(crate) fn elongation(&self) -> f64 {
-        ask!(self, chain => chain.elongation())
+    /// Makes every link longer by `change` \[m\].
+    pub(crate) fn lengthen(&mut self, change: f64) {
+        ask!(self, chain => chain.lengthen(change));
     }
 }
 
 /// How it moves.
 impl Chain {
+    hand_on! {
+        fn set_off(&self, places: &[Point], velocities: &[Vector], v: &mut [f64]);
+        fn close_in_motion(&self, begin: f64, bodies: GroupBodies<'_>, q: &[f64], v: &mut [f64]);
+        fn nudge(&self, q: &mut [f64], shift: impl FnMut() -> f64);
+        fn stabilisation(&self) -> f64;
+    }
+
     /// Where the rollers are.
     pub(crate) fn pose<'a>(&self, at: Moment<'a>, record: &'a mut Record) -> Pose<'a> {
-        ask!(self, chain => chain.pose(at, record))
+        ask!(self, record, (chain, work) => chain.pose(at, work))
     }
 
     /// Accelerations of the chain, its powers, and what the bodies feel of it.
-    ///
-    /// The frames of the contacts stand in the record; powers are added to those of others.
     pub(crate) fn evaluate(
         &self,
         around: Surroundings<'_>,
@@ -266,68 +313,66 @@ impl Chain {
         rates: &mut [f64],
         record: &mut Record,
     ) {
-        ask!(self, chain => chain.evaluate(around, at, a, rates, record));
-    }
-
-    /// Says when the memory of joints and free rollers is of.
-    pub(crate) fn set_clock(&mut self, t: f64) {
-        let resisting = match self {
-            Self::Particles(chain) => chain.joints.as_mut(),
+        match self {
+            Self::Particles(chain) => {
+                let Record {
+                    loads, particles, ..
+                } = record;
+                chain.evaluate(around, at, a, rates, loads, particles);
+            }
             Self::Points(chain) => {
-                chain.memory.time = t;
-                chain.joints.as_mut()
+                let Record { loads, points, .. } = record;
+                chain.evaluate(around, at, a, rates, loads, points);
             }
             Self::Links(chain) => {
-                chain.memory.time = t;
-                chain.resisting.as_mut()
+                let Record { loads, links, .. } = record;
+                chain.evaluate(around, at, a, rates, loads, links);
             }
-        };
-        if let Some(joints) = resisting {
-            joints.set_clock(t);
         }
     }
 
     /// Takes an accepted state: memory, and places that are given in time.
     pub(crate) fn commit(&mut self, t: f64, q: &mut [f64], v: &mut [f64], record: &mut Record) {
-        ask!(self, chain => chain.commit(t, q, v, record));
+        ask!(self, record, (chain, work) => {
+            let Series { joints, memory, .. } = chain.series_mut();
+            memory.commit(joints.as_mut(), &mut work.joints);
+            chain.drive_ends(t, q, v);
+        });
     }
 
     /// ω² and damping rate D of the stiffest mode, bodies by themselves left out.
     pub(crate) fn rates(&self, around: Surroundings<'_>, record: &mut Record) -> Rates {
         match self {
-            Self::Particles(chain) => chain.rates(around, record),
-            Self::Points(chain) => Rates::of(chain.rates(around, record)),
-            Self::Links(chain) => chain.rates(around, record),
+            Self::Particles(chain) => chain.rates(around, &record.loads, &mut record.particles),
+            Self::Points(chain) => chain.rates(around, &record.loads, &mut record.points),
+            Self::Links(chain) => chain.rates(around, &record.loads, &mut record.links),
         }
     }
 
-    /// Frequency \[1/s\] of what every method takes explicitly, beside the mode above.
-    pub(crate) fn stabilisation(&self) -> f64 {
+    /// See [`Makeup::READS_FACES`].
+    pub(crate) fn reads_faces(&self) -> bool {
         match self {
-            Self::Particles(_) | Self::Points(_) => 0.0,
-            Self::Links(chain) => chain.stabilisation(),
+            Self::Particles(_) => Particles::READS_FACES,
+            Self::Points(_) => Points::READS_FACES,
+            Self::Links(_) => Linkage::READS_FACES,
         }
     }
 
-    /// Whether contacts are to write down the faces that rollers press on.
-    pub(crate) fn wants_faces(&self) -> bool {
-        self.can_solve()
-    }
-
-    /// Whether [`solve`](Self::solve) is there.
+    /// Whether [`solve`](Self::solve) knows the equations of an implicit step.
     pub(crate) fn can_solve(&self) -> bool {
         match self {
-            Self::Particles(_) => false,
-            Self::Points(_) | Self::Links(_) => true,
+            Self::Particles(_) => Particles::SOLVES,
+            Self::Points(_) => Points::SOLVES,
+            Self::Links(_) => Linkage::SOLVES,
         }
     }
 
-    /// Whether damping is so stiff in it that a method had better take it implicitly: contacts in joints are, springs between
-    /// rollers are not.
-    pub(crate) fn prefers_implicit_damping(&self) -> bool {
+    /// See [`Makeup::DAMPS_STIFFLY`].
+    pub(crate) fn damps_stiffly(&self) -> bool {
         match self {
-            Self::Particles(_) => false,
-            Self::Points(_) | Self::Links(_) => true,
+            Self::Particles(_) => Particles::DAMPS_STIFFLY,
+            Self::Points(_) => Points::DAMPS_STIFFLY,
+            Self::Links(_) => Linkage::DAMPS_STIFFLY,
         }
     }
 
@@ -339,80 +384,17 @@ impl Chain {
         record: &mut Record,
         x: &mut [f64],
     ) -> bool {
-        match self {
-            Self::Particles(_) => false,
-            Self::Points(chain) => chain.solve(bodies, weights, record, x),
-            Self::Links(chain) => chain.solve(bodies, weights, record, x),
-        }
-    }
-
-    /// Computes on other registers from now on.
-    pub(crate) fn compute_on(&mut self, registers: Registers) {
-        match self {
-            Self::Particles(chain) => chain.registers = registers,
-            Self::Points(chain) => chain.registers = registers,
-            Self::Links(chain) => chain.registers = registers,
-        }
-    }
-
-    /// Moves every roller or body along x and y by what `shift` says.
-    pub(crate) fn nudge(&self, q: &mut [f64], shift: impl FnMut() -> f64) {
-        ask!(self, chain => chain.nudge(q, shift));
-    }
-}
-
-/// Its memory.
-impl Chain {
-    /// See [`System::memory`](crate::System::memory).
-    pub(crate) fn memory(&self) -> ChainMemory {
-        let stick = |joints: Option<&joints::Joints>| joints.map(|joints| joints.memory.clone());
-        match self {
-            Self::Particles(chain) => ChainMemory::Particles(stick(chain.joints.as_ref())),
-            Self::Points(chain) => {
-                let memory = Box::new(chain.memory.clone());
-                ChainMemory::Points(memory, stick(chain.joints.as_ref()))
-            }
-            Self::Links(chain) => {
-                let memory = Box::new(chain.memory.clone());
-                ChainMemory::Links(memory, stick(chain.resisting.as_ref()))
-            }
-        }
-    }
-
-    /// See [`System::remember`](crate::System::remember).
-    pub(crate) fn remember(&mut self, memory: ChainMemory) -> Result<(), MemoryError> {
-        match (self, memory) {
-            (Self::Particles(chain), ChainMemory::Particles(memory)) => {
-                joints::remember(chain.joints.as_mut(), memory)
-            }
-            (Self::Points(chain), ChainMemory::Points(memory, stick)) => {
-                joints::remember(chain.joints.as_mut(), stick)?;
-                chain.remember(*memory)
-            }
-            (Self::Links(chain), ChainMemory::Links(memory, stick)) => {
-                joints::remember(chain.resisting.as_mut(), stick)?;
-                chain.remember(*memory)
-            }
-            (Self::Particles(_) | Self::Points(_) | Self::Links(_), _) => Err(MemoryError::Model),
-        }
+        ask!(self, record, (chain, work) => chain.solve(bodies, weights, work, x))
     }
 }
 
 /// Quantities that can be read off it.
 impl Chain {
-    /// Appends what belongs to the chain.
-    pub(crate) fn observe(&self, at: Moment<'_>, record: &Record, out: &mut Observation) {
-        ask!(self, chain => chain.observe(at, record, out));
-    }
-
-    /// Appends forces of joints, and tensions of links, as a record has them.
-    pub(crate) fn observe_forces(&self, at: Moment<'_>, record: &Record, out: &mut Observation) {
-        ask!(self, chain => chain.observe_forces(at, record, out));
-    }
-
-    /// Whether the tension of its links follows from the places of their ends.
-    pub(crate) fn has_springs(&self) -> bool {
-        !matches!(self, Self::Links(_))
+    hand_on_with_record! {
+        fn tensions(&self, at: Moment<'_>, record) -> Vec<f64>;
+        fn pressed(&self, at: Moment<'_>, record) -> f64;
+        fn observe(&self, at: Moment<'_>, record, out: &mut Observation);
+        fn observe_forces(&self, at: Moment<'_>, record, out: &mut Observation);
     }
 
     /// Adds kinetic energy, weight, and what links or joints store.
@@ -423,7 +405,7 @@ impl Chain {
         record: &Record,
         out: &mut Energy,
     ) {
-        ask!(self, chain => chain.energies(at, gravity, record, out));
+        ask!(self, record, (chain, work) => chain.energies(at, gravity, work, out));
     }
 
     /// What the contacts of link plates with a guide store \[J\].
@@ -434,127 +416,23 @@ impl Chain {
         frame: &Frame,
         record: &Record,
     ) -> f64 {
-        ask!(self, chain => chain.plate_energy(at, plates, frame, record))
-    }
-
-    /// How a pin stands to its bush, and a bush to its roller, where they have play.
-    pub(crate) fn contacts_of(&self, joint: usize) -> [Option<ContactState>; 2] {
-        match self {
-            Self::Particles(_) => [None; 2],
-            Self::Points(chain) => chain.contacts_of(joint),
-            Self::Links(chain) => chain.contacts_of(joint),
-        }
+        ask!(self, record, (chain, work) => chain.plate_energy(at, plates, frame, work))
     }
 }
 
-/// How joints find their places after the chain was laid.
+/// How it is settled.
 impl Chain {
-    /// Whether they must: those with play lie somewhere in their bushes.
-    pub(crate) fn has_play(&self) -> bool {
-        match self {
-            Self::Particles(_) | Self::Points(_) => false,
-            Self::Links(chain) => chain.has_play(),
-        }
-    }
-
-    /// Makes every link longer by `change` \[m\].
-    pub(crate) fn lengthen(&mut self, change: f64) {
-        ask!(self, chain => chain.lengthen(change));
-    }
-
-    /// Lets driven ends stand still.
-    pub(crate) fn hold_still(&mut self) {
-        ask!(self, chain => chain.hold_still());
-    }
-
-    /// Tension of every link \[N\].
-    pub(crate) fn tensions(&self, at: Moment<'_>, record: &Record) -> Vec<f64> {
-        ask!(self, chain => chain.tensions(at, record))
-    }
-
-    /// Largest force out of balance that accelerates a roller or body \[N\].
-    pub(crate) fn imbalance(&self, a: &[f64]) -> f64 {
-        ask!(self, chain => chain.imbalance(a))
-    }
-
-    /// Largest force in a link or contact \[N\].
-    pub(crate) fn pressed(&self, at: Moment<'_>, record: &Record) -> f64 {
-        ask!(self, chain => chain.pressed(at, record))
-    }
-
-    /// Share of a step that moves nothing too far.
-    pub(crate) fn reach(&self, step: &[f64]) -> f64 {
-        ask!(self, chain => chain.reach(step))
-    }
-}
-
-/// Equilibrium: forces and their derivatives.
-impl Chain {
-    /// Coordinates that are unknown in equilibrium, in an order that keeps neighbours together.
-    pub(crate) fn unknowns(&self) -> Vec<Unknown> {
-        ask!(self, chain => chain.unknowns())
-    }
-
-    /// How the circle that runs on the teeth moves with the coordinates.
-    pub(crate) fn roller_moving(&self, q: &[f64], roller: usize) -> Moving {
-        ask!(self, chain => chain.roller_moving(q, roller))
-    }
-
-    /// How the first (0) or second (1) pin of a link moves with the coordinates.
-    pub(crate) fn pin_moving(&self, q: &[f64], link: usize, end: usize) -> Moving {
-        ask!(self, chain => chain.pin_moving(q, link, end))
-    }
-
-    /// Stiffness of the stiffest link or joint \[N/m\].
-    pub(crate) fn stiffest_spring(&self) -> f64 {
-        ask!(self, chain => chain.stiffest_spring())
-    }
-
-    /// Mass of the chain, and of its heaviest roller or body \[kg\].
-    pub(crate) fn weights(&self) -> [f64; 2] {
-        ask!(self, chain => chain.weights())
-    }
-
-    /// Whether something pulls at an end.
-    pub(crate) fn is_pulled(&self) -> bool {
-        let ends = ask!(self, chain => &chain.ends);
-        ends.iter()
-            .any(|held| matches!(held.end, End::Pulled { .. }))
-    }
-
-    /// Time \[s\] of the first knot of an end's motion after t; none without one.
-    pub(crate) fn next_knot(&self, t: f64) -> Option<f64> {
-        let ends = ask!(self, chain => &chain.ends);
-        let knots = ends.iter().filter_map(|held| match &held.end {
-            End::Driven { x, y } => x
-                .next_knot(t)
-                .into_iter()
-                .chain(y.next_knot(t))
-                .reduce(f64::min),
-            End::Free | End::Fixed | End::Pulled { .. } => None,
-        });
-        knots.reduce(f64::min)
-    }
-
-    /// Gives copies of coordinates the values of their originals.
-    pub(crate) fn copy_ghosts(&self, values: &mut [f64]) {
-        match self {
-            Self::Particles(chain) => chain.copy_ghosts(values),
-            Self::Points(chain) => chain.copy_ghosts(values),
-            Self::Links(_) => {}
-        }
-    }
-
-    /// Adds the energy of links or joints, weight, and forces at the ends.
-    pub(crate) fn add_balance(&self, q: &[f64], gravity: Vector, load: Load, sum: &mut Sum<'_>) {
-        ask!(self, chain => chain.add_balance(q, gravity, load, sum));
-    }
-
-    /// Visits the joints that no energy but a condition holds together: the pin and its hole, where they move.
-    pub(crate) fn each_hinge(&self, q: &[f64], visit: impl FnMut([Moving; 2])) {
-        match self {
-            Self::Particles(_) | Self::Points(_) => {}
-            Self::Links(chain) => chain.each_hinge(q, visit),
-        }
+    hand_on! {
+        fn unknowns(&self) -> Vec<Unknown>;
+        fn roller_moving(&self, q: &[f64], roller: usize) -> Moving;
+        fn pin_moving(&self, q: &[f64], link: usize, end: usize) -> Moving;
+        fn add_balance(&self, q: &[f64], gravity: Vector, load: Load, sum: &mut Sum<'_>);
+        fn each_hinge(&self, q: &[f64], visit: impl FnMut([Moving; 2]));
+        fn stiffest_spring(&self) -> f64;
+        fn weights(&self) -> [f64; 2];
+        fn imbalance(&self, a: &[f64]) -> f64;
+        fn reach(&self, step: &[f64]) -> f64;
+        fn copy_ghosts(&self, values: &mut [f64]);
+        fn has_play(&self) -> bool;
     }
 }

@@ -41,7 +41,7 @@ pub(crate) use friction::{LaneFriction, LaneSpring};
 pub use impacts::Impacts;
 pub(crate) use law::SurfaceLaw;
 pub(crate) use memory::{ContactMemory, ContactState, FAR, Kept, MemoryLanes, share_to_zero};
-pub(crate) use plates::{Drawn, OfPins, PlateContact, PlatePins, PlatePlaces, Pressing};
+pub(crate) use plates::{Drawn, OfPins, PlateContact, PlatePins, Pressing};
 pub(crate) use rollers::Rollers;
 pub(crate) use window::{Places, Run, Spare};
 pub(crate) use windows::{PlateMemory, Windows};

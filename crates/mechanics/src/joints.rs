@@ -2,6 +2,7 @@
 
 mod clearance;
 mod element;
+mod memory;
 mod mount;
 mod pin;
 mod pins;
@@ -12,6 +13,7 @@ mod validation_slider_crank;
 
 pub use clearance::{Clearance, FreeRoller};
 pub(crate) use element::{Element, Partner, Row, cross, partner_row, turned};
+pub(crate) use memory::{JointFindings, JointMemory};
 pub(crate) use mount::{Mount, rail_mount, wheel_mount};
 pub(crate) use pin::{add_joint, touch};
 pub(crate) use pins::{Contacts, Pairs, Pins};

@@ -19,11 +19,6 @@ use chaindrive_integrate::{
 };
 use serde::{Deserialize, Serialize};
 
-pub(crate) use build::{Laid, LaidChain};
-pub(crate) use group::Group;
-pub(crate) use member::Member;
-pub use memory::SystemMemory;
-
 use crate::applied;
 use crate::bodies::Bodies;
 use crate::chains::{self, Chain, LaidAs};
@@ -31,6 +26,11 @@ use crate::contact::Wrench;
 use crate::energy::Flow;
 use crate::seam::{EventLog, Rates};
 use crate::tensioner::Slopes;
+
+pub(crate) use build::{Laid, LaidChain};
+pub(crate) use group::Group;
+pub(crate) use member::Member;
+pub use memory::SystemMemory;
 
 /// A drive ready to move.
 #[derive(Clone, Debug)]
@@ -113,7 +113,7 @@ impl System {
     /// Whether a chain has damping so stiff that a method had better take it implicitly, and all chains let one do so.
     pub fn prefers_implicit_damping(&self) -> bool {
         let mut chains = self.chains.iter();
-        self.can_solve() && chains.any(|member| member.chain.prefers_implicit_damping())
+        self.can_solve() && chains.any(|member| member.chain.damps_stiffly())
     }
 
     /// Number of rollers of all chains.
@@ -228,7 +228,7 @@ impl System {
         self.dofs = grown(self.dofs);
         let member = &mut self.chains[index];
         member.entries = old.start..old.start + chain_q.len();
-        member.contacts.write_faces(chain.wants_faces());
+        member.contacts.write_faces(chain.reads_faces());
         member.chain = chain;
         q.splice(old.clone(), chain_q);
         v.splice(old, chain_v);

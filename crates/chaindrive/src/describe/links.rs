@@ -1,9 +1,7 @@
 //! Links, joints and rollers of the chain, and the laws of their contacts.
 
 use chaindrive_contact::Friction;
-use chaindrive_mechanics::{
-    Chain, ChainModel, Clearance, Drive, FreeRoller, Joint, RollerModel, Surface,
-};
+use chaindrive_mechanics::{Chain, Clearance, Drive, FreeRoller, Surface};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -32,9 +30,7 @@ impl LinkFacts {
     pub(super) fn of(chain: &Chain) -> Self {
         let resisting = chain.articulation.as_ref();
         let mut rubbing = resisting.map(|it| (it.friction, it.radius));
-        if let ChainModel::Rigid(links) = &chain.model
-            && let Joint::Clearance(joint) = &links.joint
-        {
+        if let (true, Some(joint)) = (chain.model.rubs_in_bushes(), chain.model.clearance()) {
             rubbing = Some((joint.surface.friction, joint.pin_radius));
         }
         let rubbing = rubbing.filter(|(friction, _)| *friction != Friction::None);
@@ -46,22 +42,7 @@ impl LinkFacts {
             None => (None, None),
         };
         let joint_damping = resisting.map_or(0.0, |it| it.damping);
-        let (model, rollers) = match &chain.model {
-            ChainModel::Particles => ("particles", None),
-            ChainModel::Points(_) => ("particles", Some("free")),
-            ChainModel::Rigid(links) => {
-                let model = match &links.joint {
-                    Joint::Ideal => "ideal-joints",
-                    Joint::Clearance(_) => "clearance-joints",
-                };
-                let rollers = match &links.rollers {
-                    RollerModel::Lumped { .. } => "lumped",
-                    RollerModel::Free(_) => "free",
-                    RollerModel::Bush => "none",
-                };
-                (model, Some(rollers))
-            }
-        };
+        let (model, rollers) = chain.model.names();
         Self {
             model,
             rollers,
@@ -141,8 +122,8 @@ pub fn left_out(drive: &Drive) -> Vec<&'static str> {
     let idle = !facts.is_empty() && facts.iter().all(|it| it.joint_friction.is_none());
     let mut chains = drive.chains.iter();
     let undamped = chains.all(|placed| {
-        let particles = !matches!(placed.chain.model, ChainModel::Rigid(_));
-        particles && placed.chain.damping.iter().all(|d| *d <= 0.0)
+        let springs = placed.chain.model.has_springs();
+        springs && placed.chain.damping.iter().all(|d| *d <= 0.0)
     });
     let lacks = [
         (slips("teeth"), "friction on teeth"),

@@ -29,9 +29,11 @@ pub(crate) mod rates;
 mod reactions;
 mod resist;
 
-use chaindrive_contact::Prepared;
+use crate::chains::series::Series;
+use crate::joints::{JointFindings, JointMemory};
+use crate::seam::Loads;
 use chaindrive_geometry::Vector;
-use chaindrive_integrate::{Array, Moment, Registers};
+use chaindrive_integrate::{Array, Moment};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -40,14 +42,12 @@ pub(crate) use hinge::Hinges;
 pub(crate) use impulses::Impulses;
 pub(crate) use posture::{Posture, Shapes, free_part};
 
-use super::Record;
 use crate::End;
 use crate::bodies::Surroundings;
-use crate::chains::held_end::HeldEnd;
 use crate::contact::{Bearing, ContactMemory, Kept, LaneTally, MemoryLanes, Tally};
 use crate::energy::Flow;
 use crate::joints::{
-    Contacts, Element, JointMates, Joints, Mate, Mount, Pairs, Part, Partner, Pins, cross, touch,
+    Contacts, Element, JointMates, Mate, Mount, Pairs, Part, Partner, Pins, cross, touch,
 };
 use crate::lanes::Wide;
 
@@ -82,39 +82,20 @@ pub(crate) enum Joining {
 /// A chain of rigid links.
 #[derive(Clone, Debug)]
 pub(crate) struct Linkage {
-    pub(crate) links: usize,
-    pub(crate) closed: bool,
-    /// Length of the roller arrays, copies included.
-    pub(crate) stride: usize,
-    pub(crate) pitch: f64,
+    pub(crate) series: Series,
     pub(crate) bodies: Vec<Body>,
     /// The links among them, for lanes.
     pub(crate) shapes: Shapes,
     pub(crate) joints: Vec<JointMates>,
     pub(crate) pairs: Pairs,
     pub(crate) joining: Joining,
-    /// What resists in the joints beside the contact of pin and bush, if anything.
-    pub(super) resisting: Option<Joints>,
     /// Drag across the links per length \[N s/m²\].
     drag: f64,
     pub(crate) free_rollers: Option<FreeRollers>,
     /// Whether what runs on the teeth turns with its link: a bush.
     pub(crate) bush_turns: bool,
-    pub(crate) ends: Vec<HeldEnd>,
     /// Length without load, in nominal pitches a link.
     pub(crate) elongation: f64,
-    /// What the joints remember of the last accepted state.
-    pub(crate) memory: Memory,
-    pub(crate) registers: Registers,
-}
-
-/// State of all joints at an accepted moment.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(crate) struct Memory {
-    pub(crate) time: f64,
-    pub(crate) joints: ContactMemory,
-    /// Of the free rollers on their bushes, by joint.
-    pub(crate) bushes: ContactMemory,
 }
 
 /// What the kernel of the teeth wants of rollers beside their places and velocities.
@@ -134,7 +115,6 @@ pub(crate) struct JointState {
     pub(crate) posture: Posture,
     /// Force and moment on every body \[N, N, N m\].
     pub(crate) forces: Vec<Vector3<f64>>,
-    pub(crate) memory: Memory,
     /// Pins in bushes with clearance.
     pub(crate) pins: Pins,
     /// Force on the pin of every ideal joint \[N\].
@@ -142,8 +122,6 @@ pub(crate) struct JointState {
     /// All closed contacts, but those of pins in bushes.
     pub(crate) elements: Vec<Element>,
     pub(crate) mounts: Vec<Mount>,
-    /// Of pins in bushes with clearance, and of bushes in free rollers.
-    pub(crate) tallies: [Tally; 2],
     // Work space, filled anew before it is read.
     #[serde(skip)]
     pub(crate) equations: equations::Equations,
@@ -165,38 +143,49 @@ pub(crate) struct JointState {
     pub(crate) idle: Idle,
 }
 
+/// Findings and work space of an evaluation.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Work {
+    pub(crate) joints: JointFindings,
+    pub(crate) joint_state: JointState,
+    #[serde(skip)]
+    impulses: Impulses,
+}
+
 impl Linkage {
     /// Accelerations of the chain's bodies, and what wheels and rails feel.
-    pub(crate) fn evaluate(
+    fn accelerate(
         &self,
         around: Surroundings<'_>,
         at: Moment<'_>,
         a: &mut [f64],
         rates: &mut [f64],
-        record: &mut Record,
+        (loads, work): (&mut Loads, &mut Work),
     ) {
-        let Record {
+        let Work {
+            joints,
             joint_state,
-            loads,
-            resistance,
             ..
-        } = record;
+        } = work;
         self.pose_links(at, &mut joint_state.posture);
         joint_state.elements.clear();
-        joint_state.memory.time = at.t;
-        joint_state.tallies = [self.joint_forces(at, rates, joint_state), Tally::new()];
+        joints.memory.time = at.t;
+        joints.tallies = [
+            self.joint_forces(at, rates, joint_state, &mut joints.memory.pins),
+            Tally::new(),
+        ];
         self.body_forces(around.bodies.gravity, joint_state);
         if self.drag > 0.0 {
             rates[Flow::DragLoss as usize] += self.drag_forces(joint_state);
         }
-        self.roller_forces(at, rates, joint_state);
+        self.roller_forces(at, rates, joint_state, joints);
         self.end_loads(rates, joint_state);
         self.mesh(around, at, rates, loads, joint_state);
         if matches!(self.joining, Joining::Hinges(_)) {
             Hinges::factor(self, joint_state);
         }
-        if let Some(joints) = &self.resisting {
-            self.resist(joints, at, rates, joint_state, resistance);
+        if let Some(resisting) = &self.series.joints {
+            self.resist(resisting, at, rates, joint_state, &mut joints.resistance);
         }
         if let Joining::Hinges(hinges) = &self.joining {
             hinges.hold(self, at, rates, joint_state);
@@ -215,28 +204,29 @@ impl Linkage {
         at: Moment<'_>,
         rates: &mut [f64],
         joint_state: &mut JointState,
+        memory: &mut ContactMemory,
     ) -> Tally {
         let Joining::Clearance(bearing) = &self.joining else {
             return Tally::new();
         };
-        let dt = at.t - self.memory.time;
-        let tally = self.registers.dispatch(Contacts {
+        let dt = at.t - self.series.memory.time;
+        let tally = self.series.registers.dispatch(Contacts {
             sides: joint_state.posture.sides(),
             pairs: &self.pairs,
             bearing,
-            known: &self.memory.joints,
-            memory: &mut joint_state.memory.joints,
+            known: &self.series.memory.pins,
+            memory,
             pins: &mut joint_state.pins,
             dt,
         });
-        if self.closed {
-            joint_state.pins.close(self.links);
+        if self.series.is_closed() {
+            joint_state.pins.close(self.series.links);
         } else {
             let push = |joint| joint_state.pins.push(joint);
             let part = |end| self.ground(end, at);
             // A push acts on what lies after its joint: on the chain at the first, on the support at the last.
             rates[Flow::Motions as usize] +=
-                part(0).velocity.dot(&push(0)) - part(1).velocity.dot(&push(self.links));
+                part(0).velocity.dot(&push(0)) - part(1).velocity.dot(&push(self.series.links));
         }
         rates[Flow::JointLoss as usize] += tally.normal_loss;
         rates[Flow::ArticulationLoss as usize] += tally.friction_loss;
@@ -255,7 +245,7 @@ impl Linkage {
             let pins = &joint_state.pins;
             let pushes = pins.push_x.windows(2).zip(pins.push_y.windows(2));
             let moments = pins.moment_after.iter().zip(&pins.moment_before[1..]);
-            let links = joint_state.forces[..self.links].iter_mut();
+            let links = joint_state.forces[..self.series.links].iter_mut();
             for (force, ((x, y), (after, before))) in links.zip(pushes.zip(moments)) {
                 force.x += x[0] - x[1];
                 force.y += y[0] - y[1];
@@ -265,15 +255,21 @@ impl Linkage {
     }
 
     /// Bushes in their rollers.
-    fn roller_forces(&self, at: Moment<'_>, rates: &mut [f64], joint_state: &mut JointState) {
+    fn roller_forces(
+        &self,
+        at: Moment<'_>,
+        rates: &mut [f64],
+        joint_state: &mut JointState,
+        found: &mut JointFindings,
+    ) {
         let Some(free) = &self.free_rollers else {
             return;
         };
         let joints = self.joints.len();
-        let (w, dt) = (Wide(pulp::Scalar), at.t - self.memory.time);
-        let mut bushes = std::mem::take(&mut joint_state.memory.bushes);
+        let (w, dt) = (Wide(pulp::Scalar), at.t - self.series.memory.time);
+        let bushes = &mut found.memory.bushes;
         bushes.resize(joints);
-        let mut memory = MemoryLanes::new(w, &self.memory.bushes, &mut bushes, joints);
+        let mut memory = MemoryLanes::new(w, &self.series.memory.bushes, bushes, joints);
         let mut tally = LaneTally::new(w);
         for (index, joint) in self.joints.iter().enumerate() {
             let Some(body) = free.body[index] else {
@@ -295,41 +291,30 @@ impl Linkage {
                 joint_state.apply(&element, element.push());
             }
         }
-        joint_state.memory.bushes = bushes;
         let tally = Tally::of(&tally);
         rates[Flow::RollerLoss as usize] += tally.normal_loss;
         rates[Flow::RollerFriction as usize] += tally.friction_loss;
-        joint_state.tallies[1] = tally;
+        found.tallies[1] = tally;
     }
 
     /// Forces that pull at the ends of a strand.
     fn end_loads(&self, rates: &mut [f64], joint_state: &mut JointState) {
-        for (index, held) in self.ends.iter().enumerate() {
+        for (index, held) in self.series.ends.iter().enumerate() {
             let End::Pulled { force } = &held.end else {
                 continue;
             };
-            let link = if index == 0 { 0 } else { self.links - 1 };
+            let link = if index == 0 { 0 } else { self.series.links - 1 };
             let tip = joint_state.posture.tip(link, index);
             joint_state.forces[link] += Vector3::new(force.x, force.y, cross(tip.arm, *force));
             rates[Flow::DriveTorque as usize] += force.dot(&tip.velocity);
         }
     }
 
-    /// Laws of pins in bushes with clearance, and of bushes in free rollers.
-    pub(crate) fn bearing_laws(&self) -> [Option<Prepared>; 2] {
-        let pins = match &self.joining {
-            Joining::Hinges(_) => None,
-            Joining::Clearance(bearing) => Some(bearing.law),
-        };
-        let free = self.free_rollers.as_ref();
-        [pins, free.map(|free| free.bearing.law)]
-    }
-
     /// Elastic energy of the joints \[J\].
-    pub(crate) fn stored(&self, memory: &Memory) -> f64 {
+    pub(crate) fn stored(&self, memory: &JointMemory) -> f64 {
         let mut sum = 0.0;
         if let Joining::Clearance(bearing) = &self.joining {
-            let gaps = memory.joints.each(Kept::Gap).take(self.joints.len());
+            let gaps = memory.pins.each(Kept::Gap).take(self.joints.len());
             let closed = gaps.filter(|gap| *gap < 0.0);
             sum += closed.map(|gap| bearing.energy(gap)).sum::<f64>();
         }
@@ -341,12 +326,12 @@ impl Linkage {
     }
 
     /// Energy of the friction of pins that stick in their bushes \[J\].
-    pub(crate) fn stuck(&self, memory: &Memory) -> f64 {
+    pub(crate) fn stuck(&self, memory: &JointMemory) -> f64 {
         let Joining::Clearance(bearing) = &self.joining else {
             return 0.0;
         };
         let friction = &bearing.lanes.friction;
-        let joints = &memory.joints;
+        let joints = &memory.pins;
         let state = |joint| [Kept::Gap, Kept::Force, Kept::Stick].map(|it| joints.get(it, joint));
         let closed = (0..joints.len()).map(state).filter(|[gap, ..]| *gap < 0.0);
         // U = ½ k z²
@@ -378,9 +363,8 @@ impl Linkage {
     }
 
     /// Tension of all links \[N\]: half of what stretches them from both ends, joints, teeth and given loads together.
-    pub(crate) fn tensions(&self, _at: Moment<'_>, record: &Record) -> Vec<f64> {
-        let joint_state = &record.joint_state;
-        let mut stretch = vec![[Vector::zeros(); 2]; self.links];
+    fn stretches(&self, joint_state: &JointState) -> Vec<f64> {
+        let mut stretch = vec![[Vector::zeros(); 2]; self.series.links];
         let mut load = |body: Option<usize>, joint: usize, force: Vector| {
             // Rollers have no ends.
             if let Some(ends) = body.and_then(|body| stretch.get_mut(body)) {
@@ -404,9 +388,9 @@ impl Linkage {
                 load(Some(body), element.joint, -element.push());
             }
         }
-        for (index, held) in self.ends.iter().enumerate() {
+        for (index, held) in self.series.ends.iter().enumerate() {
             if let End::Pulled { force } = &held.end {
-                let link = if index == 0 { 0 } else { self.links - 1 };
+                let link = if index == 0 { 0 } else { self.series.links - 1 };
                 load(Some(link), link + index, *force);
             }
         }

@@ -17,6 +17,47 @@ pub enum ChainModel {
 }
 
 impl ChainModel {
+    /// Its name, and that of its rollers where they are told apart.
+    pub fn names(&self) -> (&'static str, Option<&'static str>) {
+        match self {
+            Self::Particles => ("particles", None),
+            Self::Points(_) => ("particles", Some("free")),
+            Self::Rigid(links) => {
+                let joints = match &links.joint {
+                    Joint::Ideal => "ideal-joints",
+                    Joint::Clearance(_) => "clearance-joints",
+                };
+                let rollers = match &links.rollers {
+                    RollerModel::Lumped { .. } => "lumped",
+                    RollerModel::Free(_) => "free",
+                    RollerModel::Bush => "none",
+                };
+                (joints, Some(rollers))
+            }
+        }
+    }
+
+    /// Whether links are springs with dampers.
+    pub fn has_springs(&self) -> bool {
+        match self {
+            Self::Particles | Self::Points(_) => true,
+            Self::Rigid(_) => false,
+        }
+    }
+
+    /// Whether roller and bush, and bush and pin, are one body: then no law of theirs yields behind a tooth.
+    pub fn fused(&self) -> [bool; 2] {
+        match self {
+            Self::Particles => [true; 2],
+            Self::Points(_) => [false; 2],
+            Self::Rigid(links) => {
+                let free = matches!(links.rollers, RollerModel::Free(_));
+                let lumped = matches!(links.rollers, RollerModel::Lumped { .. });
+                [lumped, links.joint == Joint::Ideal && !free]
+            }
+        }
+    }
+
     /// Whether links give when they are pulled, by themselves or at their joints.
     pub(crate) fn stretches(&self) -> bool {
         match self {
@@ -64,7 +105,7 @@ impl ChainModel {
     }
 
     /// Whether pins rub by the contact with their bushes.
-    pub(crate) fn rubs_in_bushes(&self) -> bool {
+    pub fn rubs_in_bushes(&self) -> bool {
         matches!(self, Self::Rigid(links) if matches!(links.joint, Joint::Clearance(_)))
     }
 

@@ -13,22 +13,22 @@ mod build;
 mod drag;
 mod ends;
 pub(super) mod forces;
-mod observe;
-mod set_off;
 pub(super) mod springs;
 mod statics;
 
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::{Array, Moment, Prediction, Registers};
+use chaindrive_integrate::{Array, Moment, Prediction};
+use serde::{Deserialize, Serialize};
 
 use drag::Drag;
 
-use super::Record;
 use crate::bodies::Surroundings;
-use crate::chains::held_end::HeldEnd;
-use crate::contact::{PlatePlaces, Rollers};
-use crate::joints::Joints;
-use crate::seam::{Pose, Rates};
+use crate::chains::makeup::{Makeup, Statics};
+use crate::chains::series::Series;
+use crate::contact::Rollers;
+use crate::energy::{Energy, Store};
+use crate::joints::JointFindings;
+use crate::seam::{Loads, Observation, Pose, Rates};
 
 pub(super) use springs::Links;
 pub(super) use springs::Turning;
@@ -36,71 +36,28 @@ pub(super) use springs::Turning;
 /// Rollers as point masses, links as spring-dampers.
 #[derive(Clone, Debug)]
 pub(crate) struct Particles {
+    pub(super) series: Series,
     pub(super) links: Links,
-    /// Resistance of the joints, if there is any.
-    pub(super) joints: Option<Joints>,
     /// Drag across the links, if any.
     drag: Option<Drag>,
-    pub(super) rollers: usize,
-    /// Distance from the x to the y block of the state.
-    pub(super) stride: usize,
-    pub(super) pitch: f64,
     /// Masses \[kg\] and inverse masses \[1/kg\] of the rollers; held ends have none of the latter.
     pub(super) masses: Array,
     pub(super) inverse_masses: Array,
-    pub(super) ends: Vec<HeldEnd>,
     /// Inverse mass of the lightest roller \[1/kg\].
     lightest: f64,
     /// ω² of the links alone and twice their damping rate.
     link_rates: [f64; 2],
-    pub(super) registers: Registers,
 }
 
-/// The plates of the particle chain: link i between roller i and the next.
-impl PlatePlaces for Rollers<'_> {
-    fn place(&self, link: usize, end: usize) -> Point {
-        self.place(link + end)
-    }
+/// Findings in the joints, and how the links turn where something resists that.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Work {
+    pub(crate) joints: JointFindings,
+    #[serde(skip)]
+    turning: Turning,
 }
 
 impl Particles {
-    pub(super) fn coordinates(&self) -> usize {
-        2 * self.stride
-    }
-
-    pub(super) fn free_coordinates(&self) -> usize {
-        let free = |i: &usize| self.inverse_masses[*i] > 0.0;
-        2 * (0..self.rollers).filter(free).count()
-    }
-
-    pub(super) fn name(&self, coordinate: usize) -> String {
-        let n = self.stride;
-        let axis = if coordinate < n { "x" } else { "y" };
-        format!("roller {} along {axis}", coordinate % n % self.rollers)
-    }
-
-    pub(super) fn inertias(&self) -> Vec<f64> {
-        [&*self.masses, &self.masses].concat()
-    }
-
-    pub(super) fn rollers(&self) -> usize {
-        self.rollers
-    }
-
-    pub(super) fn links(&self) -> usize {
-        self.links.count
-    }
-
-    pub(super) fn pitch(&self) -> f64 {
-        self.pitch
-    }
-
-    pub(super) fn elongation(&self) -> f64 {
-        let rest: f64 = self.links.rest[..self.links.count].iter().sum();
-        let nominal = self.links.count as f64 * self.pitch;
-        rest / nominal
-    }
-
     #[inline(always)]
     pub(super) fn view<'a>(
         &'a self,
@@ -109,7 +66,7 @@ impl Particles {
         a: &'a mut [f64],
     ) -> Rollers<'a> {
         let Moment { q, v, .. } = at;
-        let n = self.stride;
+        let n = self.series.stride;
         let (ax, rest) = a.split_at_mut(n);
         Rollers {
             x: &q[..n],
@@ -126,24 +83,66 @@ impl Particles {
 
     /// Place of one roller.
     pub(super) fn place(&self, q: &[f64], roller: usize) -> Point {
-        Point::new(q[roller], q[self.stride + roller])
+        Point::new(q[roller], q[self.series.stride + roller])
     }
 
     /// Place and velocity of one roller; the index behind the last link of a closed chain means its
     /// first roller.
     pub(super) fn pin(&self, at: Moment<'_>, roller: usize) -> (Point, Vector) {
-        let velocity = Vector::new(at.v[roller], at.v[self.stride + roller]);
+        let velocity = Vector::new(at.v[roller], at.v[self.series.stride + roller]);
         (self.place(at.q, roller), velocity)
     }
+}
 
-    pub(super) fn pose<'a>(&self, at: Moment<'a>, _record: &'a mut Record) -> Pose<'a> {
-        let n = self.stride;
-        Pose {
-            x: &at.q[..n],
-            y: &at.q[n..2 * n],
-            vx: &at.v[..n],
-            vy: &at.v[n..2 * n],
+impl Makeup for Particles {
+    type Work = Work;
+
+    fn series(&self) -> &Series {
+        &self.series
+    }
+
+    fn series_mut(&mut self) -> &mut Series {
+        &mut self.series
+    }
+
+    fn coordinates(&self) -> usize {
+        2 * self.series.stride
+    }
+
+    fn name(&self, coordinate: usize) -> String {
+        let n = self.series.stride;
+        let axis = if coordinate < n { "x" } else { "y" };
+        let roller = coordinate % n % self.series.rollers;
+        format!("roller {roller} along {axis}")
+    }
+
+    fn inertias(&self) -> Vec<f64> {
+        [&*self.masses, &self.masses].concat()
+    }
+
+    /// Copies behind the last roller get the velocities of their originals.
+    fn set_off(&self, _places: &[Point], velocities: &[Vector], v: &mut [f64]) {
+        for (i, velocity) in velocities.iter().enumerate() {
+            v[i] = velocity.x;
+            v[self.series.stride + i] = velocity.y;
         }
+        self.copy_ghosts(v);
+    }
+
+    fn pose<'a>(&self, at: Moment<'a>, _work: &'a mut Work) -> Pose<'a> {
+        Pose::of_first(at, self.series.stride)
+    }
+
+    fn evaluate(
+        &self,
+        around: Surroundings<'_>,
+        at: Moment<'_>,
+        a: &mut [f64],
+        rates: &mut [f64],
+        loads: &mut Loads,
+        work: &mut Work,
+    ) {
+        self.accelerate(around, at, a, rates, (loads, work));
     }
 
     /// ω² and D as estimated from the links, the deepest contact and the damping.
@@ -154,19 +153,19 @@ impl Particles {
     ///
     /// The damping rate enters because Verlet's predicted velocity limits h D to 1; that of teeth and guides along their normals does not, where
     /// it is taken at the end of the step.
-    pub(super) fn rates(&self, around: Surroundings<'_>, record: &mut Record) -> Rates {
+    fn rates(&self, around: Surroundings<'_>, loads: &Loads, work: &mut Work) -> Rates {
         let Surroundings {
             bodies, contacts, ..
         } = around;
         let [mut squared, mut damping] = self.link_rates;
         // Across the links, where these have no stiffness of their own: the stiffer of both counts.
-        let [across, drag] = self.joint_rates(&record.resistance);
+        let [across, drag] = self.joint_rates(&work.joints.resistance);
         squared = squared.max(across);
         let dragged = self.drag.as_ref();
         let dragged = dragged.map_or(0.0, |it| it.rate(&self.links, self.lightest));
         damping = damping.max(drag + dragged);
         let (mut contact, mut drag, mut predicted) = (0.0_f64, 0.0_f64, 0.0_f64);
-        for (on, wrench) in contacts.teeth.iter().zip(&record.loads.wheel_wrenches) {
+        for (on, wrench) in contacts.teeth.iter().zip(&loads.wheel_wrenches) {
             let stiffness = on.contacts.surface.stiffness(wrench.depth);
             let mobility = bodies.wheels[on.wheel].mobility;
             let shared = mobility * on.contacts.candidates as f64;
@@ -174,7 +173,7 @@ impl Particles {
             drag = drag.max(wrench.damping * (self.lightest + shared));
             predicted = predicted.max(wrench.across * (self.lightest + shared));
         }
-        for (on, wrench) in contacts.rails.iter().zip(&record.loads.rail_wrenches) {
+        for (on, wrench) in contacts.rails.iter().zip(&loads.rail_wrenches) {
             let stiffness = on.contact.surface().stiffness(wrench.depth);
             contact = contact.max(stiffness * self.lightest);
             let damped = wrench.damping * self.lightest;
@@ -189,27 +188,38 @@ impl Particles {
         }
     }
 
-    /// Moves every roller that is not held; copies behind the last one follow.
-    pub(super) fn nudge(&self, q: &mut [f64], mut shift: impl FnMut() -> f64) {
-        let n = self.stride;
-        for i in 0..self.rollers {
-            let (x, y) = (shift(), shift());
-            if self.inverse_masses[i] > 0.0 {
-                q[i] += x;
-                q[n + i] += y;
-            }
-        }
-        self.copy_ghosts(q);
+    fn tensions(&self, at: Moment<'_>, _work: &Work) -> Vec<f64> {
+        let links = (0..self.links.count).map(|link| {
+            let pins = [self.pin(at, link), self.pin(at, link + 1)];
+            self.links.tension(link, pins)
+        });
+        links.collect()
     }
 
-    /// Gives the copies behind the last roller of a closed chain the values of their originals.
-    pub(super) fn copy_ghosts(&self, values: &mut [f64]) {
-        if self.links.closed {
-            let n = self.stride;
-            for ghost in self.rollers..n {
-                values[ghost] = values[ghost % self.rollers];
-                values[n + ghost] = values[n + ghost % self.rollers];
-            }
+    fn observe(&self, at: Moment<'_>, _work: &Work, out: &mut Observation) {
+        out.add_rollers(Pose::of_first(at, self.series.stride), self.series.rollers);
+    }
+
+    fn energies(&self, at: Moment<'_>, gravity: Vector, work: &Work, out: &mut Energy) {
+        let mut none = vec![0.0; self.coordinates()];
+        let rollers = self.view(at, None, &mut none);
+        let mut add = |store: Store, value: f64| out.stores[store as usize] += value;
+        for i in 0..self.series.rollers {
+            let mass = self.masses[i];
+            add(
+                Store::Chain,
+                0.5 * mass * rollers.velocity(i).norm_squared(),
+            );
+            add(
+                Store::Gravity,
+                -mass * gravity.dot(&rollers.place(i).coords),
+            );
         }
+        add(Store::Links, self.links.stored(&rollers));
+        out.hold_in_joints(work.joints.resistance.stored);
+    }
+
+    fn drive_ends(&self, t: f64, q: &mut [f64], v: &mut [f64]) {
+        self.put_ends(t, q, v);
     }
 }

@@ -18,27 +18,30 @@ pub(crate) mod model;
 mod observe;
 mod statics;
 
+use chaindrive_contact::Prepared;
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::{Array, Moment, Registers};
+use chaindrive_integrate::Weights;
+use chaindrive_integrate::{Array, Moment};
 use pulp::Simd;
 use serde::{Deserialize, Serialize};
 
-use super::particles::Links;
-use crate::chains::Record;
-use crate::chains::held_end::HeldEnd;
-use crate::contact::{Bearing, ContactMemory, Drawn, OfPins, PlatePins, PlatePlaces, Tally};
-use crate::joints::Joints;
+use super::particles::{Links, Turning};
+use crate::bodies::{GroupBodies, Surroundings};
+use crate::chains::makeup::{Makeup, Statics};
+use crate::chains::series::Series;
+use crate::contact::{Bearing, Drawn, OfPins, PlatePins};
+use crate::energy::Energy;
+use crate::joints::JointFindings;
 use crate::lanes::Wide;
-use crate::seam::Pose;
+use crate::seam::{Loads, Observation, Pose, Rates};
 
 pub use model::PointJoints;
 
 /// Roller, bush and pin as point masses.
 #[derive(Clone, Debug)]
 pub(crate) struct Points {
+    series: Series,
     pub(super) links: Links,
-    /// Resistance in the joints beside the contacts, if any.
-    pub(in crate::chains) joints: Option<Joints>,
     /// Pins in bushes, and bushes in rollers.
     pin: Bearing,
     bush: Bearing,
@@ -46,9 +49,6 @@ pub(crate) struct Points {
     shallow: [f64; 2],
     /// One where the end after a joint is the bush, zero elsewhere.
     bush_after: Array,
-    rollers: usize,
-    stride: usize,
-    pitch: f64,
     /// Masses \[kg\] and inverse masses \[1/kg\] of rollers, ends before and ends after.
     masses: [Array; 3],
     inverse_masses: [Array; 3],
@@ -56,11 +56,6 @@ pub(crate) struct Points {
     lightest: [f64; 3],
     /// ω² of the links alone and twice their damping rate.
     link_rates: [f64; 2],
-    /// Memory of the joints of the last accepted state.
-    pub(in crate::chains) memory: Memory,
-    /// None: the chain is closed.
-    pub(in crate::chains) ends: Vec<HeldEnd>,
-    pub(in crate::chains) registers: Registers,
 }
 
 /// Rollers, ends before the joints, ends after them: the order of the blocks.
@@ -68,20 +63,13 @@ const ROLLERS: usize = 0;
 const BEFORE: usize = 1;
 const AFTER: usize = 2;
 
-/// State of the contacts in the joints at an accepted moment.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(crate) struct Memory {
-    pub(in crate::chains) time: f64,
-    pub(in crate::chains) pins: ContactMemory,
-    /// Of the bushes in their rollers.
-    pub(in crate::chains) bushes: ContactMemory,
-}
-
 /// Findings of one evaluation in the joints.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(crate) struct Found {
-    pub(in crate::chains) memory: Memory,
-    pub(in crate::chains) tallies: [Tally; 2],
+pub(crate) struct Work {
+    pub(crate) joints: JointFindings,
+    /// How the links turn, where something resists that.
+    #[serde(skip)]
+    turning: Turning,
     pins: Held,
     bushes: Held,
     /// Closed contacts of rollers with wheels and rails.
@@ -137,29 +125,10 @@ struct Ends<'a> {
 }
 
 impl Ends<'_> {
-    /// Block and number of an end of a link.
-    fn entry(&self, link: usize, end: usize) -> (usize, usize) {
-        if end == 0 {
-            (AFTER, link)
-        } else {
-            // Behind the last link is the first joint again.
-            (BEFORE, (link + 1) % self.chain.rollers)
-        }
-    }
-}
-
-impl PlatePlaces for Ends<'_> {
-    fn place(&self, link: usize, end: usize) -> Point {
-        let (block, i) = self.entry(link, end);
-        self.chain.point(self.q, block, i)
-    }
-}
-
-impl Ends<'_> {
     /// What the ends of a lane of links have.
     #[inline(always)]
     fn of_lane<S: Simd>(&self, w: Wide<S>, values: &[f64], link: usize) -> OfPins<S> {
-        let n = self.chain.stride;
+        let n = self.chain.series.stride;
         let (after, before) = (2 * AFTER * n + link, 2 * BEFORE * n + link + 1);
         [
             [w.load(values, after), w.load(values, after + n)],
@@ -187,7 +156,7 @@ impl PlatePins for Ends<'_> {
 
     #[inline(always)]
     fn push<S: Simd>(&mut self, w: Wide<S>, link: usize, [first, second]: OfPins<S>) {
-        let n = self.chain.stride;
+        let n = self.chain.series.stride;
         for (block, i, force) in [(AFTER, link, first), (BEFORE, link + 1, second)] {
             let inverse_mass = w.load(&self.chain.inverse_masses[block], i);
             let (x, y) = (2 * block * n + i, (2 * block + 1) * n + i);
@@ -200,13 +169,13 @@ impl PlatePins for Ends<'_> {
 impl Points {
     /// Two coordinates as a point.
     fn point(&self, q: &[f64], block: usize, joint: usize) -> Point {
-        let n = self.stride;
+        let n = self.series.stride;
         Point::new(q[2 * block * n + joint], q[(2 * block + 1) * n + joint])
     }
 
     /// Entries of a point in the state.
     fn entries(&self, block: usize, joint: usize) -> [usize; 2] {
-        let n = self.stride;
+        let n = self.series.stride;
         [2 * block * n + joint, (2 * block + 1) * n + joint]
     }
 
@@ -218,19 +187,31 @@ impl Points {
             [BEFORE, AFTER]
         }
     }
+}
 
-    pub(in crate::chains) fn coordinates(&self) -> usize {
-        6 * self.stride
+impl Makeup for Points {
+    type Work = Work;
+
+    const SOLVES: bool = true;
+    const READS_FACES: bool = true;
+    const DAMPS_STIFFLY: bool = true;
+
+    fn series(&self) -> &Series {
+        &self.series
     }
 
-    pub(in crate::chains) fn free_coordinates(&self) -> usize {
-        6 * self.rollers
+    fn series_mut(&mut self) -> &mut Series {
+        &mut self.series
     }
 
-    pub(in crate::chains) fn name(&self, coordinate: usize) -> String {
-        let n = self.stride;
+    fn coordinates(&self) -> usize {
+        6 * self.series.stride
+    }
+
+    fn name(&self, coordinate: usize) -> String {
+        let n = self.series.stride;
         let (block, axis) = (coordinate / n / 2, coordinate / n % 2);
-        let joint = coordinate % n % self.rollers;
+        let joint = coordinate % n % self.series.rollers;
         let [bush, _] = self.sides(joint);
         let part = match block {
             ROLLERS => "roller",
@@ -240,75 +221,14 @@ impl Points {
         format!("{part} {joint} along {}", ["x", "y"][axis])
     }
 
-    pub(in crate::chains) fn inertias(&self) -> Vec<f64> {
+    fn inertias(&self) -> Vec<f64> {
         let each = self.masses.iter();
         each.flat_map(|masses| [&**masses, masses].concat())
             .collect()
     }
 
-    pub(in crate::chains) fn rollers(&self) -> usize {
-        self.rollers
-    }
-
-    pub(in crate::chains) fn links(&self) -> usize {
-        self.links.count
-    }
-
-    pub(in crate::chains) fn joints(&self) -> usize {
-        self.rollers
-    }
-
-    pub(in crate::chains) fn pitch(&self) -> f64 {
-        self.pitch
-    }
-
-    /// Length of the chain without load, from roller to roller, in nominal pitches a link.
-    pub(in crate::chains) fn elongation(&self) -> f64 {
-        let rest: f64 = self.links.rest[..self.links.count].iter().sum();
-        // Every joint adds the play of its pin.
-        rest / (self.links.count as f64 * self.pitch) + self.pin.clearance / self.pitch
-    }
-
-    pub(in crate::chains) fn pose<'a>(&self, at: Moment<'a>, _record: &'a mut Record) -> Pose<'a> {
-        let n = self.stride;
-        Pose {
-            x: &at.q[..n],
-            y: &at.q[n..2 * n],
-            vx: &at.v[..n],
-            vy: &at.v[n..2 * n],
-        }
-    }
-
-    /// Moves the three points of every joint by the same.
-    pub(in crate::chains) fn nudge(&self, q: &mut [f64], mut shift: impl FnMut() -> f64) {
-        for i in 0..self.rollers {
-            let shift = [shift(), shift()];
-            for block in [ROLLERS, BEFORE, AFTER] {
-                for (entry, shift) in self.entries(block, i).into_iter().zip(shift) {
-                    q[entry] += shift;
-                }
-            }
-        }
-        self.copy_ghosts(q);
-    }
-
-    /// Gives the copies behind the last joint the values of their originals.
-    pub(in crate::chains) fn copy_ghosts(&self, values: &mut [f64]) {
-        for block in values[..self.coordinates()].chunks_exact_mut(self.stride) {
-            // A copy behind the first turn is one of the turn before.
-            for ghost in self.rollers..block.len() {
-                block[ghost] = block[ghost - self.rollers];
-            }
-        }
-    }
-
     /// Gives the points of every joint the velocity of its roller.
-    pub(in crate::chains) fn set_off(
-        &self,
-        _places: &[Point],
-        velocities: &[Vector],
-        v: &mut [f64],
-    ) {
+    fn set_off(&self, _places: &[Point], velocities: &[Vector], v: &mut [f64]) {
         for (i, velocity) in velocities.iter().enumerate() {
             for block in [ROLLERS, BEFORE, AFTER] {
                 let [x, y] = self.entries(block, i);
@@ -318,25 +238,67 @@ impl Points {
         self.copy_ghosts(v);
     }
 
-    pub(in crate::chains) fn commit(
-        &mut self,
-        _t: f64,
-        _q: &mut [f64],
-        _v: &mut [f64],
-        record: &mut Record,
-    ) {
-        std::mem::swap(&mut self.memory, &mut record.points.memory);
-        if let Some(joints) = &mut self.joints {
-            joints.commit(&mut record.resistance);
-        }
+    fn pose<'a>(&self, at: Moment<'a>, _work: &'a mut Work) -> Pose<'a> {
+        Pose::of_first(at, self.series.stride)
     }
 
-    /// Goes on from what the joints remembered.
-    pub(in crate::chains) fn remember(&mut self, memory: Memory) -> Result<(), crate::MemoryError> {
-        let count = crate::lanes::padded(self.rollers);
-        memory.pins.check(count)?;
-        memory.bushes.check(count)?;
-        self.memory = memory;
-        Ok(())
+    fn evaluate(
+        &self,
+        around: Surroundings<'_>,
+        at: Moment<'_>,
+        a: &mut [f64],
+        rates: &mut [f64],
+        loads: &mut Loads,
+        work: &mut Work,
+    ) {
+        self.accelerate(around, at, a, rates, (loads, work));
+    }
+
+    fn rates(&self, around: Surroundings<'_>, loads: &Loads, work: &mut Work) -> Rates {
+        Rates::of(self.stiffest_mode(around, loads, work))
+    }
+
+    fn tensions(&self, at: Moment<'_>, _work: &Work) -> Vec<f64> {
+        let end = |block: usize, joint: usize| {
+            let place = self.point(at.q, block, joint);
+            (place, self.point(at.v, block, joint).coords)
+        };
+        let links = (0..self.series.rollers).map(|link| {
+            let next = (link + 1) % self.series.rollers;
+            let ends = [end(AFTER, link), end(BEFORE, next)];
+            self.links.tension(link, ends)
+        });
+        links.collect()
+    }
+
+    fn observe(&self, at: Moment<'_>, _work: &Work, out: &mut Observation) {
+        self.observe_motion(at, out);
+    }
+
+    fn energies(&self, at: Moment<'_>, gravity: Vector, work: &Work, out: &mut Energy) {
+        self.add_energies(at, gravity, &work.joints, out);
+    }
+
+    fn observe_forces(&self, at: Moment<'_>, work: &Work, out: &mut Observation) {
+        out.link_tension.extend(self.tensions(at, work));
+        self.observe_joints(work, out);
+    }
+
+    fn joints(&self) -> usize {
+        self.series.rollers
+    }
+
+    fn bearing_laws(&self) -> [Option<Prepared>; 2] {
+        [&self.pin, &self.bush].map(|bearing| Some(bearing.law))
+    }
+
+    fn solve(
+        &self,
+        bodies: GroupBodies<'_>,
+        weights: Weights,
+        work: &mut Work,
+        x: &mut [f64],
+    ) -> bool {
+        self.implicit_step(bodies, weights, work, x)
     }
 }

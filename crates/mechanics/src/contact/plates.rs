@@ -20,12 +20,6 @@ use crate::lanes::{LANES, Lane, Wide, padded};
 use crate::profile::{Probe, RailFace};
 use crate::surface::Surface;
 
-/// Where the pins of the link plates are, whatever the chain is made of.
-pub(crate) trait PlatePlaces {
-    /// Place of a link's first (0) or second (1) pin.
-    fn place(&self, link: usize, end: usize) -> Point;
-}
-
 /// A vector for each of the two pins of the links of a lane.
 pub(crate) type OfPins<S> = [[Lane<S>; 2]; 2];
 
@@ -488,11 +482,15 @@ impl PlateContact {
     }
 
     /// Sum of the elastic energies \[J\].
-    pub(crate) fn stored(&self, pins_of: &impl PlatePlaces, frame: &Frame, links: usize) -> f64 {
+    pub(crate) fn stored(
+        &self,
+        pin: impl Fn(usize, usize) -> Point,
+        frame: &Frame,
+        links: usize,
+    ) -> f64 {
         (0..links)
             .map(|link| {
-                let [a, b] =
-                    [0, 1].map(|end| frame.local(pins_of.place(link, end), self.reference));
+                let [a, b] = [0, 1].map(|end| frame.local(pin(link, end), self.reference));
                 if self.far(a) && self.far(b) {
                     return 0.0;
                 }

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::pose::Pose;
 use crate::energy::Energy;
 
 /// Everything that can be read off one state. SI units; arrays in the order of the drive.
@@ -92,6 +93,14 @@ pub struct Observation {
 }
 
 impl Observation {
+    /// Appends the rollers of a chain, copies behind the last one apart.
+    pub(crate) fn add_rollers(&mut self, pose: Pose<'_>, rollers: usize) {
+        self.roller_x.extend_from_slice(&pose.x[..rollers]);
+        self.roller_y.extend_from_slice(&pose.y[..rollers]);
+        self.roller_vx.extend_from_slice(&pose.vx[..rollers]);
+        self.roller_vy.extend_from_slice(&pose.vy[..rollers]);
+    }
+
     /// Makes room for what every chain appends.
     pub(crate) fn clear_chains(&mut self) {
         for values in [

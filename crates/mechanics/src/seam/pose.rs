@@ -1,5 +1,7 @@
 //! Places and velocities of the rollers of a chain.
 
+use chaindrive_integrate::Moment;
+
 /// Where the rollers are and how they move, ghosts behind the last one included.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pose<'a> {
@@ -7,4 +9,16 @@ pub(crate) struct Pose<'a> {
     pub(crate) y: &'a [f64],
     pub(crate) vx: &'a [f64],
     pub(crate) vy: &'a [f64],
+}
+
+impl<'a> Pose<'a> {
+    /// Of coordinates that begin with x, then y of the rollers, `stride` of each.
+    pub(crate) fn of_first(at: Moment<'a>, stride: usize) -> Self {
+        Self {
+            x: &at.q[..stride],
+            y: &at.q[stride..2 * stride],
+            vx: &at.v[..stride],
+            vy: &at.v[stride..2 * stride],
+        }
+    }
 }

@@ -10,7 +10,7 @@ use super::pressed::stiffness_under_pretension;
 use super::{Findings, contact};
 use crate::catalogue::{CatalogueChain, Number};
 use crate::scene::defaults;
-use crate::scene::schema::{self, ChainModel, Route, SceneText};
+use crate::scene::schema::{self, Route, SceneText};
 
 /// The joints of a chain, as far as friction is concerned.
 #[derive(Clone, Copy, Debug)]
@@ -67,7 +67,7 @@ impl<'a> Joints<'a> {
     /// The spring of friction in the joints, if the stiffness of a link is known.
     fn spring(&self) -> Option<Spring> {
         let link = self.link_stiffness?;
-        if self.text.model == ChainModel::ClearanceJoints {
+        if self.text.model.has_play() {
             return Some(Spring {
                 unit: link,
                 factor: &defaults::PLAY_SPRING,
@@ -156,7 +156,7 @@ impl<'a> Joints<'a> {
     pub(super) fn articulation(&self, findings: &mut Findings<'_>) -> Option<Articulation> {
         let joint = self.text.joint.as_ref();
         let damping = joint.map_or(0.0, |joint| joint.damping.0);
-        let play = self.text.model == ChainModel::ClearanceJoints;
+        let play = self.text.model.has_play();
         let friction = if play {
             Friction::None
         } else {

@@ -7,7 +7,7 @@ use super::Findings;
 use crate::catalogue::{CatalogueChain, Number, Status, catalogue};
 use crate::scene::error::Problem;
 use crate::scene::quantity::{Force, Inertia, Length, Mass, Stiffness};
-use crate::scene::schema::{self, ChainModel, Rollers};
+use crate::scene::schema::{self, Rollers};
 use crate::scene::suggest::{nearest, one_of};
 
 /// The chain of the catalogue of a name.
@@ -119,7 +119,7 @@ pub(super) fn completed(
         Number::BreakingLoad,
         Force,
     );
-    if text.model == ChainModel::Particles {
+    if text.model.has_springs() {
         if text.masses.is_none() {
             take.value(&mut text.mass, "mass", chain.mass().map(Mass), Status::Mass);
         }
@@ -165,7 +165,7 @@ pub(super) fn completed(
     if text.rollers != Some(Rollers::None) {
         take.roller(&mut text);
     }
-    if text.model == ChainModel::ClearanceJoints {
+    if text.model.has_play() {
         take.joint(&mut text);
     }
     text

@@ -37,7 +37,7 @@ impl Resolved {
 
     /// Whether the links are rigid.
     pub(super) fn is_rigid(&self) -> bool {
-        matches!(self.chain.model, ChainModel::Rigid(_))
+        !self.chain.model.has_springs()
     }
 
     /// Mean stiffness of the links \[N/m\].
@@ -56,10 +56,10 @@ pub(super) fn resolve(
     let touched = !(described.sprockets.is_empty() && described.guides.is_empty());
     let of_type = written.of_type.as_ref();
     let of_type = of_type.map(|name| catalogue::named(name, findings));
-    if written.model == schema::ChainModel::Particles {
+    if written.model.has_springs() {
         links::refuse_on_particles(written, findings);
     }
-    if written.model != schema::ChainModel::ClearanceJoints && !links::are_points(written) {
+    if !written.model.has_play() && !written.is_of_points() {
         articulation::refuse_play(written, findings);
     }
     let text = &match of_type {
@@ -110,9 +110,8 @@ pub(super) fn resolve(
     } = body?;
     let masses = vary(masses, scatter.mass.0, 1, None);
     let stiffness = vary(stiffness, scatter.stiffness.0, 2, None);
-    let springs = !matches!(model, ChainModel::Rigid(_));
     let mean = stiffness.iter().sum::<f64>() / stiffness.len() as f64;
-    let joints = Joints::new(scene, text, springs.then_some(mean));
+    let joints = Joints::new(scene, text, model.has_springs().then_some(mean));
     let articulation = joints.articulation(findings);
     let damping = damping(text, &stiffness, &masses, &model, findings);
     let behind_teeth = Behind::new(text, &model, findings);
@@ -183,11 +182,11 @@ fn body(
     (roller_diameter, roller_length): (f64, Option<f64>),
     findings: &mut Findings<'_>,
 ) -> Option<Body> {
-    if text.model != schema::ChainModel::Particles {
+    if !text.model.has_springs() {
         return links::resolve(all, text, links, roller_diameter, roller_length, findings);
     }
     let body = particles(text, links, findings);
-    if !links::are_points(text) {
+    if !text.is_of_points() {
         return body;
     }
     let model = links::points(all, text, roller_diameter, roller_length, findings);
@@ -207,11 +206,11 @@ fn damping(
         return vec![damping.0; stiffness.len()];
     }
     let ratio = text.damping_ratio.map(|ratio| ratio.0);
-    let ratio = if matches!(model, ChainModel::Rigid(_)) {
+    let ratio = if model.has_springs() {
+        findings.or_default(ratio, "chain.damping_ratio", &defaults::DAMPING_RATIO)
+    } else {
         // Rigid links are laid, not damped: whatever damping belongs to the laying stiffness.
         ratio.unwrap_or(defaults::DAMPING_RATIO.value(findings.version))
-    } else {
-        findings.or_default(ratio, "chain.damping_ratio", &defaults::DAMPING_RATIO)
     };
     // c = 2 ζ √(k m)
     let pairs = stiffness.iter().zip(masses);
@@ -246,7 +245,7 @@ fn particles(text: &schema::Chain, links: usize, findings: &mut Findings<'_>) ->
     Some(Body {
         masses: masses?,
         stiffness: stiffness?,
-        model: ChainModel::Particles,
+        model: links::particles(),
     })
 }
 
@@ -277,9 +276,8 @@ fn lengths(
     }
     let inner = text.inner_pitch.map_or(pitch, |length| length.0);
     let outer = text.outer_pitch.map_or(pitch, |length| length.0);
-    let rigid = text.model != schema::ChainModel::Particles;
-    let alternating = rigid
-        || links::are_points(text)
+    let alternating = !text.model.has_springs()
+        || text.is_of_points()
         || text.inner_pitch.is_some()
         || text.outer_pitch.is_some();
     if alternating && text.ends.is_none() && links % 2 == 1 {

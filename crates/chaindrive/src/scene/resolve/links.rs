@@ -20,14 +20,14 @@ use super::{Findings, contact};
 use crate::scene::defaults;
 use crate::scene::schema::{self, Rollers, Route, SceneText};
 
-/// Whether roller, bush and pin of a particle chain are points of their own.
-pub(super) fn are_points(text: &schema::Chain) -> bool {
-    text.model == schema::ChainModel::Particles && text.rollers == Some(Rollers::Free)
+/// Point masses at the rollers.
+pub(super) fn particles() -> ChainModel {
+    ChainModel::Particles
 }
 
 /// Keys of rigid links have no meaning for particles.
 pub(super) fn refuse_on_particles(text: &schema::Chain, findings: &mut Findings<'_>) {
-    if are_points(text) {
+    if text.is_of_points() {
         let inertia = |link: Option<schema::Link>| link.is_some_and(|it| it.inertia.is_some());
         let given = [
             ("inner.inertia", inertia(text.inner)),
@@ -350,7 +350,7 @@ fn joint(
     };
     let known = Joints::new(scene, text, text.stiffness.map(|stiffness| stiffness.0));
     // Particles have their friction beside the contact, and half of their plates in the links.
-    let points = are_points(text);
+    let points = text.is_of_points();
     let friction = if points {
         Some(Friction::None)
     } else {

@@ -6,13 +6,13 @@
 
 use chaindrive_contact::Elastic;
 use chaindrive_contact::elastic::{CylinderLaw, Cylinders, ElasticLaw};
-use chaindrive_mechanics::{ChainModel, Joint, RollerModel};
+use chaindrive_mechanics::ChainModel;
 
 use super::Findings;
 use super::law::steel;
 use crate::catalogue::{CatalogueChain, Number};
 use crate::scene::defaults;
-use crate::scene::schema;
+use crate::scene::schema::{self, Rollers};
 
 /// Stiffness of what lies behind the surface of a tooth, zero where that is nothing, and why.
 #[derive(Clone, Debug)]
@@ -51,18 +51,9 @@ fn compliance(
     if load <= 0.0 {
         return None;
     }
-    let rollers = chain.kind != "bush";
-    let [on_bush, on_pin] = match model {
-        ChainModel::Particles => [rollers, true],
-        // These are bodies or points that push each other by laws of their own.
-        ChainModel::Points(_) => [false; 2],
-        ChainModel::Rigid(links) => {
-            let lumped = matches!(links.rollers, RollerModel::Lumped { .. });
-            let held = links.joint == Joint::Ideal;
-            let free = matches!(links.rollers, RollerModel::Free(_));
-            [lumped, held && !free]
-        }
-    };
+    // A chain that the catalogue knows as a bush chain has been completed without rollers.
+    let [roller, on_pin] = model.fused();
+    let on_bush = roller && text.rollers != Some(Rollers::None);
     let number = |given: Option<f64>, of| given.or_else(|| chain.number(of));
     let joint = text.joint.clone().unwrap_or_default();
     let play = joint.clearance.map(|it| it.0).filter(|play| *play > 0.0);

@@ -129,6 +129,13 @@ pub(crate) struct Chain {
     pub(crate) start: Option<Start>,
 }
 
+impl Chain {
+    /// Whether roller, bush and pin of every joint are points of their own.
+    pub(crate) fn is_of_points(&self) -> bool {
+        self.model.has_springs() && self.rollers == Some(Rollers::Free)
+    }
+}
+
 /// One of several chains: all that a chain has, a name, and a route of its own.
 ///
 /// Chains run in planes of their own. A sprocket or guide belongs to the chain whose route passes it, or that its `chain` names.

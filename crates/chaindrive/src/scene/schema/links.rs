@@ -19,6 +19,18 @@ pub(crate) enum ChainModel {
     ClearanceJoints,
 }
 
+impl ChainModel {
+    /// Whether links are springs with dampers.
+    pub(crate) fn has_springs(self) -> bool {
+        self == Self::Particles
+    }
+
+    /// Whether pins have play in their bushes.
+    pub(crate) fn has_play(self) -> bool {
+        self == Self::ClearanceJoints
+    }
+}
+
 /// Rollers on the teeth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]

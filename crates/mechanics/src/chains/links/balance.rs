@@ -4,6 +4,9 @@ use chaindrive_geometry::{Point, Vector};
 
 use super::{Joining, Linkage};
 use crate::End;
+use crate::bodies::GroupBodies;
+use crate::chains::links::Shapes;
+use crate::chains::makeup::{Makeup, Statics};
 use crate::joints::{Mate, add_joint};
 use crate::seam::{Load, Moving, Sum, Unknown};
 
@@ -11,10 +14,20 @@ use crate::seam::{Load, Moving, Sum, Unknown};
 const PRESSED: f64 = 1e-6;
 
 impl Linkage {
+    /// One side of a joint; supports stand where they were laid.
+    fn side_moving(&self, q: &[f64], mate: Mate) -> Moving {
+        match mate {
+            Mate::Link { link, end } => self.pin_moving(q, link, end),
+            Mate::Ground(end) => Moving::held(self.series.ends[end].place),
+        }
+    }
+}
+
+impl Statics for Linkage {
     /// All bodies; the ring of links is folded (0, N−1, 1, N−2, …) so that the Hessian becomes a band.
-    pub(crate) fn unknowns(&self) -> Vec<Unknown> {
-        let lever = 0.25 * self.pitch * self.pitch;
-        let n = self.links;
+    fn unknowns(&self) -> Vec<Unknown> {
+        let lever = 0.25 * self.series.pitch * self.series.pitch;
+        let n = self.series.links;
         let folded = (0..n).map(|i| {
             if i.is_multiple_of(2) {
                 i / 2
@@ -32,7 +45,7 @@ impl Linkage {
     }
 
     /// The circle that runs on the teeth: a free roller, or the end of the link that carries it.
-    pub(crate) fn roller_moving(&self, q: &[f64], roller: usize) -> Moving {
+    fn roller_moving(&self, q: &[f64], roller: usize) -> Moving {
         let joint = roller % self.joints.len();
         let free = self.free_rollers.as_ref();
         match free.and_then(|free| free.body[joint]) {
@@ -42,20 +55,12 @@ impl Linkage {
     }
 
     /// An end of a link.
-    pub(crate) fn pin_moving(&self, q: &[f64], link: usize, end: usize) -> Moving {
+    fn pin_moving(&self, q: &[f64], link: usize, end: usize) -> Moving {
         on_body(q, link, self.bodies[link].arms[end])
     }
 
-    /// One side of a joint; supports stand where they were laid.
-    fn side_moving(&self, q: &[f64], mate: Mate) -> Moving {
-        match mate {
-            Mate::Link { link, end } => self.pin_moving(q, link, end),
-            Mate::Ground(end) => Moving::held(self.ends[end].place),
-        }
-    }
-
     /// Stiffness of the stiffest joint under a little load \[N/m\]; none where joints are ideal.
-    pub(crate) fn stiffest_spring(&self) -> f64 {
+    fn stiffest_spring(&self) -> f64 {
         let joint = match &self.joining {
             Joining::Clearance(bearing) => bearing.stiffness(PRESSED),
             Joining::Hinges(_) => 0.0,
@@ -65,7 +70,7 @@ impl Linkage {
     }
 
     /// Adds E = Σ U(δ) − Σ m g·x − Σ F·x.
-    pub(crate) fn add_balance(&self, q: &[f64], gravity: Vector, load: Load, sum: &mut Sum<'_>) {
+    fn add_balance(&self, q: &[f64], gravity: Vector, load: Load, sum: &mut Sum<'_>) {
         if let Joining::Clearance(bearing) = &self.joining {
             for joint in &self.joints {
                 if let Some(sides) = joint.pair {
@@ -86,9 +91,9 @@ impl Linkage {
                 sum.force(3 * index + axis, -load.gravity * body.mass * gravity[axis]);
             }
         }
-        for (index, held) in self.ends.iter().enumerate() {
+        for (index, held) in self.series.ends.iter().enumerate() {
             if let End::Pulled { force } = &held.end {
-                let link = if index == 0 { 0 } else { self.links - 1 };
+                let link = if index == 0 { 0 } else { self.series.links - 1 };
                 let tip = self.pin_moving(q, link, index);
                 sum.pull(&tip, force * -load.torque);
             }
@@ -96,13 +101,80 @@ impl Linkage {
     }
 
     /// Ideal joints: hole and pin.
-    pub(crate) fn each_hinge(&self, q: &[f64], mut visit: impl FnMut([Moving; 2])) {
+    fn each_hinge(&self, q: &[f64], mut visit: impl FnMut([Moving; 2])) {
         if matches!(self.joining, Joining::Clearance(_)) {
             return;
         }
         for sides in self.joints.iter().filter_map(|joint| joint.pair) {
             visit(sides.map(|side| self.side_moving(q, side)));
         }
+    }
+
+    /// Mass of all bodies, and of the heaviest \[kg\].
+    fn weights(&self) -> [f64; 2] {
+        let masses = self.bodies.iter().map(|body| body.mass);
+        [masses.clone().sum(), masses.fold(0.0, f64::max)]
+    }
+
+    fn elongation(&self) -> f64 {
+        self.elongation
+    }
+
+    /// Makes every link longer by `change` \[m\], between its joints.
+    fn lengthen(&mut self, change: f64) {
+        for body in &mut self.bodies[..self.series.links] {
+            let along = (body.arms[1] - body.arms[0]).normalize();
+            body.arms[0] -= along * (0.5 * change);
+            body.arms[1] += along * (0.5 * change);
+        }
+        self.shapes = Shapes::of(&self.bodies, self.series.links, self.series.is_closed());
+    }
+
+    /// Largest force out of balance \[N\] that accelerates a body.
+    fn imbalance(&self, a: &[f64]) -> f64 {
+        let lever = 0.5 * self.series.pitch;
+        let mut worst = 0.0_f64;
+        for (body, a) in self.bodies.iter().zip(a.chunks_exact(3)) {
+            worst = worst
+                .max(body.mass * a[0].hypot(a[1]))
+                .max(body.inertia * a[2].abs() / lever);
+        }
+        worst
+    }
+
+    /// Share of a step that moves no body farther than the clearance.
+    fn reach(&self, step: &[f64]) -> f64 {
+        let cap = match &self.joining {
+            Joining::Clearance(bearing) if bearing.clearance > 0.0 => bearing.clearance.max(1e-6),
+            // Without play there is no gap that a step could jump.
+            Joining::Clearance(_) | Joining::Hinges(_) => 1e-4,
+        };
+        let lever = 0.5 * self.series.pitch;
+        let mut farthest = 0.0_f64;
+        for step in step.chunks_exact(3) {
+            farthest = farthest
+                .max(step[0].abs())
+                .max(step[1].abs())
+                .max(step[2].abs() * lever);
+        }
+        (cap / farthest).min(1.0)
+    }
+
+    /// Moves every body, and turns none.
+    fn nudge(&self, q: &mut [f64], mut shift: impl FnMut() -> f64) {
+        for body in q[..self.coordinates()].chunks_exact_mut(3) {
+            body[0] += shift();
+            body[1] += shift();
+        }
+    }
+
+    /// Whether pins have play in their bushes.
+    fn has_play(&self) -> bool {
+        matches!(self.joining, Joining::Clearance(_))
+    }
+
+    fn close_in_motion(&self, begin: f64, bodies: GroupBodies<'_>, q: &[f64], v: &mut [f64]) {
+        self.close_velocities(begin, bodies, q, v);
     }
 }
 

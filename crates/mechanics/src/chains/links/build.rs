@@ -3,16 +3,17 @@
 use std::ops::Range;
 
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::{Moment, Registers};
+use chaindrive_integrate::Moment;
 
 use super::model::{Joint, RigidLinks, RollerModel};
-use super::{Body, FreeRollers, Hinges, Joining, JointState, Linkage, Memory, Shapes};
+use super::{Body, FreeRollers, Hinges, Joining, JointState, Linkage, Shapes};
 use crate::bodies::{Bodies, GroupBodies};
 use crate::chains::LaidAs;
 use crate::chains::laid::length_through;
+use crate::chains::makeup::{Makeup, Statics};
 use crate::chains::particles::Particles;
-use crate::contact::{Bearing, ContactMemory};
-use crate::joints::{JointMates, Joints, Mate, Pairs, turned};
+use crate::contact::Bearing;
+use crate::joints::{JointMates, JointMemory, Mate, Pairs, turned};
 use crate::lanes::padded;
 use crate::{Chain, End};
 
@@ -33,28 +34,33 @@ pub(crate) fn replace(
     at: Moment<'_>,
 ) -> Replacement {
     let (q, v) = (&at.q[entries.clone()], &at.v[entries]);
-    let n = particles.stride;
+    let n = particles.series.stride;
     let inward = bush_shifts(particles, (bodies.all, laid.sprockets), links, at, q);
     let place = |k: usize| Point::new(q[k], q[n + k]) + inward[k];
     let velocity = |k: usize| Vector::new(v[k], v[n + k]);
-    let count = particles.rollers;
+    let count = particles.series.rollers;
     let mut linkage = compile(particles, laid, links);
     let laid_at: Vec<Point> = (0..count).map(|k| particles.place(q, k)).collect();
     let places: Vec<Point> = (0..count).map(place).collect();
     // Bushes at the bottom of their rollers run on a smaller circle: so much shorter is the chain that is as tight there.
-    let change = length_through(&places, linkage.links) - length_through(&laid_at, linkage.links);
-    linkage.lengthen(change / linkage.links as f64);
+    let change = length_through(&places, linkage.series.links)
+        - length_through(&laid_at, linkage.series.links);
+    linkage.lengthen(change / linkage.series.links as f64);
     let after = |link: usize| (link + 1) % count;
     if links.joint == Joint::Ideal && laid.on_route {
         // The chain was settled with links that hardly stretch; what is left of that is theirs.
-        for link in 0..linkage.links {
+        for link in 0..linkage.series.links {
             let length = (place(after(link)) - place(link)).norm();
             linkage.bodies[link] = body(links, link, length, 0.0);
         }
-        linkage.shapes = Shapes::of(&linkage.bodies, linkage.links, linkage.closed);
+        linkage.shapes = Shapes::of(
+            &linkage.bodies,
+            linkage.series.links,
+            linkage.series.is_closed(),
+        );
     }
     let mut chain_q = Vec::with_capacity(linkage.coordinates());
-    for (link, body) in linkage.bodies[..linkage.links].iter().enumerate() {
+    for (link, body) in linkage.bodies[..linkage.series.links].iter().enumerate() {
         let ends = [place(link), place(after(link))];
         let line = ends[1] - ends[0];
         let angle = line.y.atan2(line.x);
@@ -70,7 +76,7 @@ pub(crate) fn replace(
     }
     let mut chain_v = vec![0.0; linkage.coordinates()];
     let velocities: Vec<Vector> = (0..count).map(velocity).collect();
-    linkage.set_off(&places, &velocities, &mut chain_v);
+    linkage.move_with(&places, &velocities, &mut chain_v);
     if !laid.on_route {
         // Along a route the links have taken the lengths that they were laid with.
         let mut whole = [chain_q, vec![0.0; bodies.count]].concat();
@@ -94,10 +100,10 @@ fn to_middle(body: &Body, angle: f64) -> Vector {
 
 impl Linkage {
     /// Gives every link the motion of the rollers at its ends, and free rollers their own.
-    pub(crate) fn set_off(&self, places: &[Point], velocities: &[Vector], v: &mut [f64]) {
+    pub(super) fn move_with(&self, places: &[Point], velocities: &[Vector], v: &mut [f64]) {
         let after = |link: usize| (link + 1) % places.len();
         let links = v.as_chunks_mut::<3>().0.iter_mut();
-        for (link, (v, body)) in links.zip(&self.bodies[..self.links]).enumerate() {
+        for (link, (v, body)) in links.zip(&self.bodies[..self.series.links]).enumerate() {
             let speeds = [velocities[link], velocities[after(link)]];
             let line = places[after(link)] - places[link];
             // ω = ẑ·(d × u)/d²
@@ -148,7 +154,7 @@ impl Linkage {
         }
         let offsets = self.offsets(begin, q, &mut joint_state);
         let mut apart = seats.iter().zip(&offsets).map(|(s, o)| (s - o).norm());
-        let reached = apart.all(|apart| apart < 1e-9 * self.pitch);
+        let reached = apart.all(|apart| apart < 1e-9 * self.series.pitch);
         if !reached && self.has_play() {
             q.copy_from_slice(&laid);
         }
@@ -198,7 +204,7 @@ impl Linkage {
 
     /// Velocities of the chain and, behind it, the bodies brought to where no hinge opens: what the stabilisation would otherwise
     /// take out of the chain in its first milliseconds.
-    pub(crate) fn close_in_motion(
+    pub(super) fn close_velocities(
         &self,
         begin: f64,
         bodies: GroupBodies<'_>,
@@ -263,7 +269,7 @@ fn bush_shifts(
     at: Moment<'_>,
     q: &[f64],
 ) -> Vec<Vector> {
-    let count = particles.rollers;
+    let count = particles.series.rollers;
     let RollerModel::Free(roller) = &links.rollers else {
         return vec![Vector::zeros(); count];
     };
@@ -315,6 +321,7 @@ fn compile(particles: &Particles, laid: &LaidAs<'_>, links: &RigidLinks) -> Link
         // c + δ(T₀)
         Joining::Clearance(bearing) => bearing.clearance + bearing.indentation(pretension),
     };
+    let has_play = matches!(joining, Joining::Clearance(_));
     let mut bodies: Vec<Body> = (0..count)
         .map(|link| {
             // p (1 + ε₀) under T₀
@@ -354,31 +361,26 @@ fn compile(particles: &Particles, laid: &LaidAs<'_>, links: &RigidLinks) -> Link
         RollerModel::Lumped { .. } | RollerModel::Bush => None,
     };
     Linkage {
-        links: count,
-        closed: chain.is_closed(),
-        stride: particles.stride,
-        pitch: chain.pitch,
+        series: particles.series.with_contacts(
+            chain,
+            padded(joints.len()),
+            JointMemory::open(
+                0.0,
+                [
+                    if has_play { padded(joints.len()) } else { 0 },
+                    free_rollers.as_ref().map_or(0, |_| joints.len()),
+                ],
+            ),
+        ),
         shapes: Shapes::of(&bodies, count, chain.is_closed()),
         bodies,
-        memory: Memory {
-            time: 0.0,
-            joints: ContactMemory::open(padded(joints.len())),
-            bushes: ContactMemory::open(joints.len()),
-        },
         pairs: Pairs::of(&joints),
-        resisting: Joints::new(
-            chain.articulation,
-            (count, chain.is_closed()),
-            padded(joints.len()),
-        ),
         drag: chain.drag,
         joints,
         joining,
         free_rollers,
         bush_turns: links.rollers == RollerModel::Bush,
-        ends: particles.ends.clone(),
         elongation: particles.elongation(),
-        registers: Registers::in_use(),
     }
 }
 

@@ -1,7 +1,8 @@
 //! Three numbers a link, each kind by itself: what lanes of joints and of links read.
 
-use super::Linkage;
 use chaindrive_integrate::Array;
+
+use super::Linkage;
 
 /// Along x, along y, and of the turning; that of link i stands behind place i + 1, whole lanes.
 ///
@@ -21,7 +22,7 @@ impl ByLink {
     /// long as one by one.
     #[inline(never)]
     pub(super) fn read(&mut self, linkage: &Linkage, values: impl Iterator<Item = [f64; 3]>) {
-        let (lanes, links) = (linkage.shapes.lanes(), linkage.links);
+        let (lanes, links) = (linkage.shapes.lanes(), linkage.series.links);
         for all in [&mut self.x, &mut self.y, &mut self.turn] {
             all.resize(lanes, 0.0);
         }
@@ -36,10 +37,10 @@ impl ByLink {
     /// Repeats the ends of a closed chain beside each other.
     #[inline(always)]
     pub(super) fn close(&mut self, linkage: &Linkage) {
-        if linkage.closed {
+        if linkage.series.is_closed() {
             for all in [&mut self.x, &mut self.y, &mut self.turn] {
-                all[0] = all[linkage.links];
-                all[linkage.links + 1] = all[1];
+                all[0] = all[linkage.series.links];
+                all[linkage.series.links + 1] = all[1];
             }
         }
     }

@@ -15,7 +15,7 @@ impl Linkage {
     /// Adds the drag to the forces on the links, and returns the power \[W\] lost by it.
     pub(super) fn drag_forces(&self, joint_state: &mut JointState) -> f64 {
         let mut loss = 0.0;
-        for link in 0..self.links {
+        for link in 0..self.series.links {
             let [first, second] = [0, 1].map(|end| joint_state.posture.tip(link, end));
             let line = second.arm - first.arm;
             let length = line.norm();

@@ -7,6 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::loose::Loose;
 use super::{Blocks, Linkage};
 use crate::bodies::GroupBodies;
+use crate::chains::makeup::Makeup;
 use crate::joints::{Element, Mount, Partner, Row, cross, partner_row};
 
 /// Where a body's unknowns stand.
@@ -45,10 +46,10 @@ impl<'a> Sum<'a> {
         x: &[f64],
     ) -> Self {
         let Equations { blocks, loose } = equations;
-        let first = 3 * (linkage.links - row);
+        let first = 3 * (linkage.series.links - row);
         let border = first + x.len() - linkage.coordinates();
         blocks.clear(row, border);
-        loose.resize_with(linkage.bodies.len() - linkage.links, Loose::default);
+        loose.resize_with(linkage.bodies.len() - linkage.series.links, Loose::default);
         loose.iter_mut().for_each(Loose::clear);
         Self {
             linkage,
@@ -98,7 +99,7 @@ impl<'a> Sum<'a> {
 
     /// Takes the solution out of the right-hand sides.
     pub(super) fn read(&self, x: &mut [f64]) {
-        let links = self.linkage.links;
+        let links = self.linkage.series.links;
         for link in 0..links {
             let found = self.found(link);
             x[3 * link..3 * link + 3].copy_from_slice(found.as_slice());
@@ -132,8 +133,8 @@ impl<'a> Sum<'a> {
     }
 
     fn place(&self, body: usize) -> Place {
-        if body >= self.linkage.links {
-            Place::Roller(body - self.linkage.links)
+        if body >= self.linkage.series.links {
+            Place::Roller(body - self.linkage.series.links)
         } else if body < self.blocks.diagonal.len() {
             Place::Link(body)
         } else {
@@ -324,8 +325,8 @@ impl<'a> Sum<'a> {
     fn index(&self, place: Place) -> usize {
         match place {
             Place::Link(i) => i,
-            Place::Corner => self.linkage.links - 1,
-            Place::Roller(i) => self.linkage.links + i,
+            Place::Corner => self.linkage.series.links - 1,
+            Place::Roller(i) => self.linkage.series.links + i,
         }
     }
 

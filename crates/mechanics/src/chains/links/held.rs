@@ -60,7 +60,7 @@ impl Linkage {
         asked: Prescribed<'_>,
     ) -> bool {
         let mut equations = std::mem::take(&mut joint_state.equations);
-        let mut sum = Sum::new(self, &mut equations, self.links, x);
+        let mut sum = Sum::new(self, &mut equations, self.series.links, x);
         sum.add_masses(bodies, weights, x);
         if matches!(asked, Prescribed::Kept) {
             self.each_element(joint_state, |element| {
@@ -107,7 +107,7 @@ impl Held<'_> {
         asked: Prescribed<'_>,
     ) -> bool {
         let linkage = self.linkage;
-        let (links, border) = (linkage.links, blocks.right_border.len());
+        let (links, border) = (linkage.series.links, blocks.right_border.len());
         let inverted = self.reactions.invert(linkage, &blocks.diagonal);
         let inertia = Inertia::OfBlocks;
         if !inverted || !self.reactions.factor(linkage, self.posture, inertia) {
@@ -131,7 +131,7 @@ impl Held<'_> {
             let beside = blocks.beside[j..].iter().step_by(border);
             column.read(linkage, beside.map(|r| [r.x, r.y, r.z]));
         }
-        linkage.registers.dispatch(Answer {
+        linkage.series.registers.dispatch(Answer {
             held: self,
             answers,
             kept,
@@ -179,7 +179,7 @@ impl Held<'_> {
             }
         }
         self.reactions.solve(w);
-        for link in (0..linkage.links).step_by(Wide::<S>::COUNT) {
+        for link in (0..linkage.series.links).step_by(Wide::<S>::COUNT) {
             let push = self.reactions.load(w, posture, link);
             let [x, y, turn] = self.reactions.yielding(w, link, push);
             let [r_x, r_y, r_turn] = load(w, r, link + 1);

@@ -53,16 +53,16 @@ impl Hinges {
     ) {
         self.find(linkage, at, joint_state);
         let loads = &mut joint_state.loads;
-        let forces = joint_state.forces[..linkage.links].iter_mut();
-        for (force, load) in forces.zip(loads.each(linkage.links)) {
+        let forces = joint_state.forces[..linkage.series.links].iter_mut();
+        for (force, load) in forces.zip(loads.each(linkage.series.links)) {
             force.x += load[0];
             force.y += load[1];
             force.z += load[2];
         }
-        if linkage.closed {
+        if linkage.series.is_closed() {
             return;
         }
-        for joint in [0, linkage.links] {
+        for joint in [0, linkage.series.links] {
             let Some(mates) = linkage.joints[joint].pair else {
                 continue;
             };
@@ -82,7 +82,7 @@ impl Hinges {
             loads,
             ..
         } = joint_state;
-        let of_links = forces[..linkage.links].iter();
+        let of_links = forces[..linkage.series.links].iter();
         loads.read(linkage, of_links.map(|force| [force.x, force.y, force.z]));
         let ground = [0, 1].map(|end| {
             let joint = linkage.joints[end * (linkage.joints.len() - 1)];
@@ -90,7 +90,7 @@ impl Hinges {
             let by = mates.map(|mate| ground_acceleration(linkage, mate, at));
             by.sum()
         });
-        linkage.registers.dispatch(Find {
+        linkage.series.registers.dispatch(Find {
             rate: self.rate,
             linkage,
             posture,
@@ -170,7 +170,7 @@ impl WithSimd for Find<'_> {
                 present.select(-drift, zero).store(to, start);
             }
         }
-        if !linkage.closed {
+        if !linkage.series.is_closed() {
             let [first, last] = ground;
             for (k, right) in reactions.right.iter_mut().enumerate() {
                 right[0] += first[k];
@@ -178,7 +178,7 @@ impl WithSimd for Find<'_> {
             }
         }
         reactions.solve(w);
-        for link in (0..linkage.links).step_by(Wide::<S>::COUNT) {
+        for link in (0..linkage.series.links).step_by(Wide::<S>::COUNT) {
             let [x, y, turn] = reactions.load(w, posture, link);
             x.store(&mut loads.x, link + 1);
             y.store(&mut loads.y, link + 1);
@@ -189,7 +189,7 @@ impl WithSimd for Find<'_> {
 
 fn ground_acceleration(linkage: &Linkage, mate: Mate, at: Moment<'_>) -> Vector {
     match mate {
-        Mate::Ground(end) => match &linkage.ends[end].end {
+        Mate::Ground(end) => match &linkage.series.ends[end].end {
             End::Driven { x, y } => Vector::new(x.at(at.t).acceleration, y.at(at.t).acceleration),
             End::Free | End::Fixed | End::Pulled { .. } => Vector::zeros(),
         },

@@ -16,25 +16,26 @@ use super::held::Prescribed;
 use super::impulses::MOST_WHEELS;
 use super::{Joining, JointState, Linkage};
 use crate::bodies::GroupBodies;
-use crate::chains::Record;
+use crate::chains::links::Work;
+use crate::chains::makeup::Makeup;
 
 /// Share of a link's mass that a step need not carry across a contact. *Assumed*.
 const SOFT: f64 = 0.05;
 
 impl Linkage {
     /// x ← (M + c C + k K)⁻¹ M x of the chain and, behind it, the bodies, at the state that the record was left by.
-    pub(crate) fn solve(
+    pub(super) fn implicit_step(
         &self,
         bodies: GroupBodies<'_>,
         weights: Weights,
-        record: &mut Record,
+        work: &mut Work,
         x: &mut [f64],
     ) -> bool {
-        let Record {
+        let Work {
             joint_state,
             impulses,
             ..
-        } = record;
+        } = work;
         let weights = if weights.once && !self.carries() {
             Weights {
                 stiffness: 0.0,
@@ -100,7 +101,7 @@ impl Linkage {
     ) -> bool {
         let mut equations = std::mem::take(&mut joint_state.equations);
         // The last link of a closed chain touches both ends of the row, and stands in the border.
-        let row = self.links - usize::from(self.closed);
+        let row = self.series.links - usize::from(self.series.is_closed());
         let mut sum = Sum::new(self, &mut equations, row, x);
         sum.add_masses(bodies, weights, x);
         self.each_element(joint_state, |element| {

@@ -28,6 +28,7 @@ use super::by_link::ByLink;
 use super::reactions::load;
 use super::{Joining, JointState, Linkage};
 use crate::bodies::GroupBodies;
+use crate::chains::makeup::Makeup;
 use crate::contact::Bearing;
 use crate::lanes::Wide;
 
@@ -96,7 +97,7 @@ impl Impulses {
         step: Step<'_>,
         x: &mut [f64],
     ) -> bool {
-        step.linkage.registers.dispatch(Solution::<R, C, B> {
+        step.linkage.series.registers.dispatch(Solution::<R, C, B> {
             work: self,
             step,
             x,
@@ -118,7 +119,7 @@ impl Impulses {
             joint_state,
         } = step;
         let wheels = x.len() - linkage.coordinates();
-        let b = x[..3 * linkage.links].as_chunks::<3>().0;
+        let b = x[..3 * linkage.series.links].as_chunks::<3>().0;
         self.known.read(linkage, b.iter().copied());
         self.rows[0].set_normals(w, joint_state, weights);
         if R == 2 {
@@ -214,7 +215,7 @@ impl Impulses {
     #[inline(always)]
     fn apply<S: Simd, const R: usize>(&mut self, w: Wide<S>, linkage: &Linkage, x: &mut [f64]) {
         let shapes = &linkage.shapes;
-        for start in (0..linkage.links).step_by(Wide::<S>::COUNT) {
+        for start in (0..linkage.series.links).step_by(Wide::<S>::COUNT) {
             let mut impulse = [w.splat(0.0); 3];
             for p in 0..R {
                 let (row, next) = (self.rows[p].load(w, start), self.rows[p].load(w, start + 1));
@@ -232,7 +233,7 @@ impl Impulses {
             (impulse[1] * mass).store(&mut self.known.y, start + 1);
             (impulse[2] * inertia).store(&mut self.known.turn, start + 1);
         }
-        self.known.subtract_from(&mut x[..3 * linkage.links]);
+        self.known.subtract_from(&mut x[..3 * linkage.series.links]);
     }
 }
 

@@ -9,6 +9,7 @@ use super::held::{Prescribed, limbs};
 use super::impulses::Step;
 use super::{Impulses, Joining, JointState, Linkage};
 use crate::bodies::GroupBodies;
+use crate::chains::makeup::Makeup;
 use crate::chains::{Chain, Record};
 use crate::contact::{ContactMemory, Kept, LaneTally, MemoryLanes, Tally};
 use crate::joints::{Contacts, Element, Pins, touch, turned};
@@ -40,7 +41,7 @@ impl<'a> Inside<'a> {
         Some(Self {
             linkage,
             bodies,
-            joint_state: &mut record.joint_state,
+            joint_state: &mut record.links.joint_state,
         })
     }
 
@@ -48,14 +49,14 @@ impl<'a> Inside<'a> {
     pub fn equations(&self, weights: Weights, b: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
         let (linkage, joint_state) = (self.linkage, &*self.joint_state);
         let mut equations = Equations::default();
-        let mut sum = Sum::new(linkage, &mut equations, linkage.links, b);
+        let mut sum = Sum::new(linkage, &mut equations, linkage.series.links, b);
         sum.add_masses(self.bodies, weights, b);
         linkage.each_element(joint_state, |element| {
             sum.add(element, &joint_state.mounts, weights, b);
         });
         sum.add_hinge_turns(joint_state, weights.stiffness);
         let Equations { blocks, loose } = equations;
-        let (links, chain) = (linkage.links, linkage.coordinates());
+        let (links, chain) = (linkage.series.links, linkage.coordinates());
         let size = b.len() + 2 * linkage.joints.len();
         let mut matrix = DMatrix::zeros(size, size);
         let mut right = DVector::zeros(size);
@@ -174,7 +175,7 @@ impl<'a> Inside<'a> {
             sides: posture.sides(),
             pairs: &linkage.pairs,
             bearing,
-            known: &linkage.memory.joints,
+            known: &linkage.series.memory.pins,
             memory: &mut memory,
             pins: &mut pins,
             dt: 0.0,
@@ -199,7 +200,7 @@ impl<'a> Inside<'a> {
         let w = Wide(pulp::Scalar);
         let count = linkage.joints.len();
         let mut memory = ContactMemory::open(count);
-        let mut lanes = MemoryLanes::new(w, &linkage.memory.joints, &mut memory, count);
+        let mut lanes = MemoryLanes::new(w, &linkage.series.memory.pins, &mut memory, count);
         let mut sum = LaneTally::new(w);
         let mut closed = Vec::new();
         for (joint, mates) in linkage.joints.iter().enumerate() {

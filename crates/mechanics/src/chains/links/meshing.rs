@@ -60,12 +60,12 @@ impl Linkage {
                         frame,
                         pins: &mut LinkPins {
                             joint_state,
-                            links: self.links,
+                            links: self.series.links,
                         },
                         yielding: 0.0,
                         touch: &mut loads.rails[i],
                     };
-                    self.registers.dispatch(pressing)
+                    self.series.registers.dispatch(pressing)
                 }
             };
             rates[Flow::GuideLoss as usize] += wrench.normal_loss;
@@ -125,7 +125,7 @@ impl Linkage {
         } else {
             idle.spin.clear();
         }
-        let wrench = self.registers.dispatch(Touching {
+        let wrench = self.series.registers.dispatch(Touching {
             contacts,
             frame,
             t: at.t,
@@ -202,7 +202,7 @@ impl Linkage {
 
     /// Whether the circle on the teeth turns with its body: a free roller, or a bush.
     fn spins(&self, body: Option<usize>) -> bool {
-        let free = body.is_some_and(|body| body >= self.links);
+        let free = body.is_some_and(|body| body >= self.series.links);
         free || self.bush_turns
     }
 }

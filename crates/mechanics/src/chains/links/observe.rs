@@ -3,37 +3,30 @@
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
 
-use super::rates::LinkPlaces;
 use super::{Joining, JointState, Linkage, free_part};
-use crate::chains::Record;
-use crate::contact::{ContactState, Frame, Kept, PlateContact};
+use crate::chains::links::Work;
+use crate::contact::Kept;
 use crate::energy::{Energy, Store};
-use crate::joints::{Mate, Partner};
+use crate::joints::{JointFindings, Mate, Partner};
 use crate::seam::Observation;
 
 impl Linkage {
-    /// Appends what belongs to the chain.
-    pub(crate) fn observe(&self, at: Moment<'_>, record: &Record, out: &mut Observation) {
-        let joint_state = &record.joint_state;
-        let count = self.joints.len();
-        out.roller_x
-            .extend_from_slice(&joint_state.posture.x[..count]);
-        out.roller_y
-            .extend_from_slice(&joint_state.posture.y[..count]);
-        out.roller_vx
-            .extend_from_slice(&joint_state.posture.vx[..count]);
-        out.roller_vy
-            .extend_from_slice(&joint_state.posture.vy[..count]);
+    /// Appends places, velocities, and how joints and bushes stand.
+    pub(super) fn observe_motion(&self, at: Moment<'_>, work: &Work, out: &mut Observation) {
+        let Work {
+            joints,
+            joint_state,
+            ..
+        } = work;
+        out.add_rollers(joint_state.posture.pose(), self.joints.len());
         out.link_angle
-            .extend((0..self.links).map(|link| at.q[3 * link + 2]));
+            .extend((0..self.series.links).map(|link| at.q[3 * link + 2]));
         for (index, joint) in self.joints.iter().enumerate() {
             let offset = self.offset(index, at, joint_state);
             out.joint_offset_x.push(offset.x);
             out.joint_offset_y.push(offset.y);
             out.joint_depth.push(match &self.joining {
-                Joining::Clearance(_) => {
-                    (-joint_state.memory.joints.get(Kept::Gap, index)).max(0.0)
-                }
+                Joining::Clearance(_) => (-joints.memory.pins.get(Kept::Gap, index)).max(0.0),
                 Joining::Hinges(_) => 0.0,
             });
             out.joint_angle.push(match joint.pair {
@@ -41,13 +34,11 @@ impl Linkage {
                 None => f64::NAN,
             });
         }
-        self.observe_bushes(at, joint_state, out);
+        self.observe_bushes(at, work, out);
     }
 
-    /// Appends the forces of joints and free rollers, and what they make of the tension of links.
-    pub(crate) fn observe_forces(&self, at: Moment<'_>, record: &Record, out: &mut Observation) {
-        let joint_state = &record.joint_state;
-        out.link_tension.extend(self.tensions(at, record));
+    /// Appends the forces of joints and free rollers.
+    pub(super) fn observe_joints(&self, joint_state: &JointState, out: &mut Observation) {
         for joint in 0..self.joints.len() {
             let force = self.pin_force(joint_state, joint);
             out.joint_force_x.push(force.x);
@@ -71,15 +62,15 @@ impl Linkage {
     }
 
     /// Appends how every bush stands to its roller, where rollers are free.
-    fn observe_bushes(&self, at: Moment<'_>, joint_state: &JointState, out: &mut Observation) {
+    fn observe_bushes(&self, at: Moment<'_>, work: &Work, out: &mut Observation) {
         for (index, joint) in self.joints.iter().enumerate() {
             let free = self.free_rollers.as_ref();
             let body = free.and_then(|free| free.body[index]);
             let nothing = Vector::new(f64::NAN, f64::NAN);
             let (offset, depth) = body.map_or((nothing, f64::NAN), |body| {
-                let bush = self.part(joint.carrier, at, &joint_state.posture);
+                let bush = self.part(joint.carrier, at, &work.joint_state.posture);
                 let offset = bush.place - free_part(body, at).place;
-                let gap = joint_state.memory.bushes.get(Kept::Gap, index);
+                let gap = work.joints.memory.bushes.get(Kept::Gap, index);
                 (offset, (-gap).max(0.0))
             });
             out.bush_offset_x.push(offset.x);
@@ -100,11 +91,11 @@ impl Linkage {
     }
 
     /// Energies of the chain.
-    pub(crate) fn energies(
+    pub(super) fn add_energies(
         &self,
         at: Moment<'_>,
         gravity: Vector,
-        record: &Record,
+        found: &JointFindings,
         out: &mut Energy,
     ) {
         for (index, body) in self.bodies.iter().enumerate() {
@@ -114,28 +105,9 @@ impl Linkage {
                 0.5 * (body.mass * (vx * vx + vy * vy) + body.inertia * spin * spin);
             out.stores[Store::Gravity as usize] -= body.mass * (gravity.x * x + gravity.y * y);
         }
-        out.stores[Store::Joints as usize] += self.stored(&record.joint_state.memory);
-        let stuck = self.stuck(&record.joint_state.memory);
-        out.hold_in_joints(record.resistance.stored + stuck);
-    }
-
-    /// What the contacts of the plates with a guide store \[J\].
-    pub(crate) fn plate_energy(
-        &self,
-        _at: Moment<'_>,
-        plates: &PlateContact,
-        frame: &Frame,
-        record: &Record,
-    ) -> f64 {
-        plates.stored(&LinkPlaces(&record.joint_state), frame, self.links)
-    }
-
-    /// How a pin stands to its bush, and a bush to its roller, for those who count impacts.
-    pub(crate) fn contacts_of(&self, joint: usize) -> [Option<ContactState>; 2] {
-        let pin = matches!(self.joining, Joining::Clearance(_));
-        let pin = pin.then(|| self.memory.joints.at(joint));
-        let bush = self.free_rollers.is_some();
-        [pin, bush.then(|| self.memory.bushes.at(joint))]
+        out.stores[Store::Joints as usize] += self.stored(&found.memory);
+        let stuck = self.stuck(&found.memory);
+        out.hold_in_joints(found.resistance.stored + stuck);
     }
 }
 

@@ -9,6 +9,7 @@ use super::Linkage;
 use crate::End;
 use crate::joints::{Mate, Part, Sides, Tip};
 use crate::lanes::{LANES, Lane, Wide, padded};
+use crate::seam::Pose;
 
 /// Places and velocities that follow from the coordinates.
 ///
@@ -141,9 +142,19 @@ impl Posture {
         [&self.before, &self.after]
     }
 
+    /// Where the circles are that run on the teeth.
+    pub(crate) fn pose(&self) -> Pose<'_> {
+        Pose {
+            x: &self.x,
+            y: &self.y,
+            vx: &self.vx,
+            vy: &self.vy,
+        }
+    }
+
     /// Length of the sides: whole lanes of joints, of which a strand has one more than links, are read from one joint further on.
     fn room(linkage: &Linkage) -> usize {
-        padded(linkage.links + 1) + LANES
+        padded(linkage.series.links + 1) + LANES
     }
 
     fn resize(&mut self, linkage: &Linkage) {
@@ -153,10 +164,10 @@ impl Posture {
             values.resize(count, 0.0);
         }
         for values in &mut self.links {
-            values.resize(padded(linkage.links), 0.0);
+            values.resize(padded(linkage.series.links), 0.0);
         }
         for values in [&mut self.x, &mut self.y, &mut self.vx, &mut self.vy] {
-            values.resize(linkage.stride.max(padded(linkage.joints.len())), 0.0);
+            values.resize(linkage.series.stride.max(padded(linkage.joints.len())), 0.0);
         }
     }
 }
@@ -169,12 +180,12 @@ impl Linkage {
         }
         let [x, y, angle, vx, vy, spin] = &mut posture.links;
         for (from, [a, b, c]) in [(at.q, [x, y, angle]), (at.v, [vx, vy, spin])] {
-            let links = from[..3 * self.links].as_chunks::<3>().0;
+            let links = from[..3 * self.series.links].as_chunks::<3>().0;
             for (((from, a), b), c) in links.iter().zip(a).zip(b).zip(c) {
                 [*a, *b, *c] = *from;
             }
         }
-        self.registers.dispatch(Ends {
+        self.series.registers.dispatch(Ends {
             linkage: self,
             posture,
         });
@@ -184,8 +195,8 @@ impl Linkage {
 
     /// What is beside the first and the last link.
     fn pose_ends(&self, at: Moment<'_>, posture: &mut Posture) {
-        let last = self.links;
-        if self.closed {
+        let last = self.series.links;
+        if self.series.is_closed() {
             let tip = posture.before.tip(last);
             let spin = posture.before.spin[last];
             posture.before.set(0, &Part::of_link(last - 1, tip, spin));
@@ -200,7 +211,7 @@ impl Linkage {
 
     fn pose_rollers(&self, at: Moment<'_>, posture: &mut Posture) {
         let joints = self.joints.len();
-        self.registers.dispatch(Circles {
+        self.series.registers.dispatch(Circles {
             on_after: &self.pairs.bush_after,
             posture,
         });
@@ -214,22 +225,22 @@ impl Linkage {
                 posture.vy[joint] = part.velocity.y;
             }
         }
-        for joint in joints..self.stride {
+        for joint in joints..self.series.stride {
             for values in [
                 &mut posture.x,
                 &mut posture.y,
                 &mut posture.vx,
                 &mut posture.vy,
             ] {
-                values[joint] = if self.closed {
+                values[joint] = if self.series.is_closed() {
                     values[joint - joints]
                 } else {
                     0.0
                 };
             }
-            if !self.closed {
+            if !self.series.is_closed() {
                 // Behind a strand stand still points one pitch apart.
-                posture.x[joint] = posture.x[joint - 1] + self.pitch;
+                posture.x[joint] = posture.x[joint - 1] + self.series.pitch;
                 posture.y[joint] = posture.y[joint - 1];
             }
         }
@@ -260,7 +271,7 @@ impl Linkage {
 
     /// A support at an end of the strand.
     pub(super) fn ground(&self, end: usize, at: Moment<'_>) -> Part {
-        let held = self.ends.get(end);
+        let held = self.series.ends.get(end);
         let (shift, velocity) = match held.map(|held| &held.end) {
             Some(End::Driven { x, y }) => {
                 let (x, y) = (x.at(at.t), y.at(at.t));
@@ -303,7 +314,7 @@ impl WithSimd for Ends<'_> {
             ..
         } = self.posture;
         let [x, y, angle, vx, vy, spin] = links;
-        for start in (0..self.linkage.links).step_by(Wide::<S>::COUNT) {
+        for start in (0..self.linkage.series.links).step_by(Wide::<S>::COUNT) {
             let [x, y, vx, vy, spin] = [&x, &y, &vx, &vy, &spin].map(|all| w.load(all, start));
             let [s, c] = w.load(angle, start).sin_cos();
             // Link i begins at joint i and ends at the next.

@@ -1,13 +1,13 @@
 //! Time scales of a linkage, and its plates as guides see them.
 
-use chaindrive_geometry::{Point, Vector};
+use chaindrive_geometry::Vector;
 use nalgebra::Vector3;
 use pulp::Simd;
 
 use super::{Joining, JointState, Linkage, Posture};
 use crate::bodies::Surroundings;
-use crate::chains::Record;
-use crate::contact::{Drawn, OfPins, PlatePins, PlatePlaces};
+use crate::chains::links::Work;
+use crate::contact::{Drawn, OfPins, PlatePins};
 use crate::joints::{Element, Joints, Partner, cross, turned};
 use crate::lanes::{Lane, Wide};
 use crate::seam::Rates;
@@ -33,8 +33,8 @@ impl Linkage {
     /// λ is the largest eigenvalue of a three-by-three matrix. Against a wheel the contact is shared unevenly:
     /// 1.1 for the chain, 11 for the wheel, and 1 where the wheel does not answer. Friction counts as damping, but where springs hold what
     /// sticks: steps of one solution take these at their end.
-    pub(crate) fn rates(&self, around: Surroundings<'_>, record: &mut Record) -> Rates {
-        let joint_state = &mut record.joint_state;
+    pub(super) fn stiffest_mode(&self, around: Surroundings<'_>, work: &mut Work) -> Rates {
+        let joint_state = &mut work.joint_state;
         let mut sums = std::mem::take(&mut joint_state.sums);
         sums.clear();
         sums.resize(self.bodies.len(), [Packed::default(); 3]);
@@ -85,7 +85,7 @@ impl Linkage {
             stiffest = stiffest.max(RIM_SHARE * rim);
             damping = damping.max(RIM_SHARE * drag);
         }
-        let [turning, drag] = self.joint_rates(record.resistance.slopes);
+        let [turning, drag] = self.joint_rates(work.joints.resistance.slopes);
         stiffest = stiffest.max(turning);
         damping = damping.max(drag + self.drag_rate());
         if let Joining::Hinges(hinges) = &self.joining {
@@ -114,8 +114,8 @@ impl Linkage {
     ///
     /// The stabilisation is a damper and a spring of rate α: symplectic Euler takes steps up to 0.83/α with it, and this is 0.41/α.
     /// Torques are reckoned with as explicit methods do, by D + √(D² + ω²).
-    pub(crate) fn stabilisation(&self) -> f64 {
-        let joints = self.resisting.as_ref();
+    pub(super) fn explicit_rate(&self) -> f64 {
+        let joints = self.series.joints.as_ref();
         let [squared, damping] = self.joint_rates(joints.map_or([0.0; 2], Joints::slopes));
         let damping = damping + self.drag_rate();
         let torques = damping + (damping * damping + squared).sqrt();
@@ -179,10 +179,10 @@ impl Linkage {
             let n = pins.normal(joint);
             let t = turned(n);
             let before = match joint {
-                0 => self.closed.then(|| self.links - 1),
+                0 => self.series.is_closed().then(|| self.series.links - 1),
                 _ => Some(joint - 1),
             };
-            let after = (joint < self.links).then_some(joint);
+            let after = (joint < self.series.links).then_some(joint);
             let share = if before.is_some() && after.is_some() {
                 2.0
             } else {
@@ -270,15 +270,6 @@ impl JointState {
 pub(super) struct LinkPins<'a> {
     pub(super) joint_state: &'a mut JointState,
     pub(super) links: usize,
-}
-
-/// Where they are.
-pub(crate) struct LinkPlaces<'a>(pub(crate) &'a JointState);
-
-impl PlatePlaces for LinkPlaces<'_> {
-    fn place(&self, link: usize, end: usize) -> Point {
-        self.0.posture.tip(link, end).place
-    }
 }
 
 impl PlatePins for LinkPins<'_> {

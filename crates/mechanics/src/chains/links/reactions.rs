@@ -20,6 +20,7 @@ use super::by_link::ByLink;
 use super::posture::Posture;
 use super::{Linkage, Shapes};
 use crate::lanes::{LANES, Lane, Wide, padded};
+
 pub(super) use sections::Sections;
 
 /// Share of its stiffest direction below which a block counts as singular: a strand that is straight between two
@@ -72,16 +73,23 @@ impl Reactions {
             [tx[place], ty[place], tt[place]] = [block[(2, 0)], block[(2, 1)], block[(2, 2)]];
         }
         let inverse = &mut self.inverse;
-        let sound = linkage.registers.dispatch(Invert { inverse, linkage });
+        let sound = linkage
+            .series
+            .registers
+            .dispatch(Invert { inverse, linkage });
         for values in &mut self.inverse {
-            values[0] = if linkage.closed {
-                values[linkage.links]
+            values[0] = if linkage.series.is_closed() {
+                values[linkage.series.links]
             } else {
                 0.0
             };
-            let first = if linkage.closed { values[1] } else { 0.0 };
-            values[linkage.links + 1..].fill(0.0);
-            values[linkage.links + 1] = first;
+            let first = if linkage.series.is_closed() {
+                values[1]
+            } else {
+                0.0
+            };
+            values[linkage.series.links + 1..].fill(0.0);
+            values[linkage.series.links + 1] = first;
         }
         sound
     }
@@ -103,8 +111,8 @@ impl Reactions {
             }
         }
         self.sections
-            .lay_out(linkage.joints.len(), linkage.closed, SINGULAR);
-        self.sound = linkage.registers.dispatch(Factor {
+            .lay_out(linkage.joints.len(), linkage.series.is_closed(), SINGULAR);
+        self.sound = linkage.series.registers.dispatch(Factor {
             reactions: self,
             linkage,
             posture,
@@ -177,7 +185,7 @@ impl Reactions {
     /// r ← A⁻¹ r of the blocks that were inverted last.
     #[inline(always)]
     pub(super) fn yield_to<S: Simd>(&self, w: Wide<S>, linkage: &Linkage, r: &mut ByLink) {
-        for link in (0..linkage.links).step_by(Wide::<S>::COUNT) {
+        for link in (0..linkage.series.links).step_by(Wide::<S>::COUNT) {
             let [x, y, turn] = self.yielding(w, link, load(w, r, link + 1));
             x.store(&mut r.x, link + 1);
             y.store(&mut r.y, link + 1);
@@ -215,7 +223,7 @@ impl WithSimd for Invert<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> bool {
         let w = Wide(simd);
-        let (links, inverse) = (self.linkage.links, self.inverse);
+        let (links, inverse) = (self.linkage.series.links, self.inverse);
         let one = w.splat(1.0);
         let mut least = one;
         for link in (0..links).step_by(Wide::<S>::COUNT) {

@@ -26,7 +26,7 @@ impl Linkage {
         if let (Joining::Hinges(hinges), true) = (&self.joining, joints.rub()) {
             self.press(hinges, at, joint_state);
         }
-        let power = self.registers.dispatch(Torques {
+        let power = self.series.registers.dispatch(Torques {
             joints,
             posture: &joint_state.posture,
             normal: &joint_state.normal,
@@ -35,11 +35,11 @@ impl Linkage {
         });
         rates[Flow::ArticulationLoss as usize] += power;
         let torque = &mut found.torque;
-        if self.closed {
+        if self.series.is_closed() {
             // Behind the last link is the first joint again.
-            torque[self.links] = torque[0];
+            torque[self.series.links] = torque[0];
         }
-        let links = joint_state.forces[..self.links].iter_mut();
+        let links = joint_state.forces[..self.series.links].iter_mut();
         for (force, ends) in links.zip(torque.windows(2)) {
             force.z += ends[0] - ends[1];
         }

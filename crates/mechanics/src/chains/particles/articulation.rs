@@ -110,7 +110,7 @@ impl Particles {
     pub(in crate::chains) fn joint_rates(&self, found: &Resistance) -> [f64; 2] {
         found
             .slopes
-            .map(|value| 16.0 * value * self.lightest / (self.pitch * self.pitch))
+            .map(|value| 16.0 * value * self.lightest / (self.series.pitch * self.series.pitch))
     }
 }
 

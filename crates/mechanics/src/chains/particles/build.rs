@@ -1,12 +1,10 @@
 //! From places of rollers to flat arrays.
 
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::Registers;
 
 use super::drag::Drag;
 use super::{Links, Particles};
-use crate::chains::held_ends;
-use crate::joints::Joints;
+use crate::chains::series::Series;
 use crate::{Chain, End};
 
 impl Particles {
@@ -15,10 +13,10 @@ impl Particles {
         let links = Links::new(chain);
         let stride = links.stride();
         let rollers = chain.rollers();
-        let ends = held_ends(chain, places);
+        let series = Series::laid(chain, places, [stride, links.rest.len()]);
         let mut masses = chain.masses.clone();
         let mut inverse_masses: Vec<f64> = masses.iter().map(|m| 1.0 / m).collect();
-        for held in &ends {
+        for held in &series.ends {
             if matches!(held.end, End::Fixed | End::Driven { .. }) {
                 inverse_masses[held.roller] = 0.0;
             }
@@ -29,20 +27,11 @@ impl Particles {
         let particles = Self {
             lightest: inverse_masses.iter().copied().fold(0.0, f64::max),
             link_rates: link_rates(&links, &inverse_masses, rollers),
-            joints: Joints::new(
-                chain.articulation,
-                (chain.links(), chain.is_closed()),
-                links.rest.len(),
-            ),
             drag: Drag::new(chain, links.rest.len()),
             links,
-            rollers,
-            stride,
-            pitch: chain.pitch,
             masses: masses.into(),
             inverse_masses: inverse_masses.into(),
-            ends,
-            registers: Registers::in_use(),
+            series,
         };
         (particles, q)
     }

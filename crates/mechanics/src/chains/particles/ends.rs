@@ -4,7 +4,6 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
 
 use super::{Particles, Turning};
-use crate::chains::Record;
 use crate::chains::held_end::HeldEnd;
 use crate::energy::Flow;
 use crate::joints::Resistance;
@@ -12,13 +11,10 @@ use crate::motion::Kinematics;
 use crate::{End, Motion};
 
 impl Particles {
-    /// Puts driven ends where they are given, and keeps what the friction of joints remembers.
-    pub(crate) fn commit(&mut self, t: f64, q: &mut [f64], v: &mut [f64], record: &mut Record) {
-        if let Some(joints) = &mut self.joints {
-            joints.commit(&mut record.resistance);
-        }
-        let n = self.stride;
-        for held in &self.ends {
+    /// Puts driven ends where they are given.
+    pub(super) fn put_ends(&self, t: f64, q: &mut [f64], v: &mut [f64]) {
+        let n = self.series.stride;
+        for held in &self.series.ends {
             if let End::Driven { x, y } = &held.end {
                 let (x, y): (Kinematics, Kinematics) = (Motion::at(x, t), y.at(t));
                 q[held.roller] = held.place.x + x.position;
@@ -38,8 +34,8 @@ impl Particles {
         rates: &mut [f64],
         joints: (&Turning, &Resistance),
     ) {
-        let n = self.stride;
-        for held in &self.ends {
+        let n = self.series.stride;
+        for held in &self.series.ends {
             let i = held.roller;
             match &held.end {
                 End::Free => {}
@@ -81,7 +77,7 @@ impl Particles {
         if let Some(drag) = &self.drag {
             force += drag.at_end(self, at, [link, end]);
         }
-        if self.joints.is_some() {
+        if self.series.joints.is_some() {
             // F = ± (M_i − M_{i+1}) n_i/ℓ_i
             let couple = found.torque[link] - found.torque[link + 1];
             let [x, y] = &turning.across;

@@ -6,7 +6,7 @@ use pulp::{Simd, WithSimd};
 use super::springs::Turning;
 use super::{Particles, articulation};
 use crate::bodies::{RailContact, Surroundings};
-use crate::chains::Record;
+use crate::chains::particles::Work;
 use crate::contact::{Drawn, OfPins, PlatePins, Pressing, Rollers};
 use crate::energy::Flow;
 use crate::joints::Resistance;
@@ -17,40 +17,36 @@ use crate::seam::Loads;
 type Found<'a> = (&'a mut Loads, &'a mut Turning, &'a mut Resistance);
 
 impl Particles {
-    pub(crate) fn evaluate(
+    pub(super) fn accelerate(
         &self,
         around: Surroundings<'_>,
         at: Moment<'_>,
         a: &mut [f64],
         rates: &mut [f64],
-        record: &mut Record,
+        (loads, work): (&mut Loads, &mut Work),
     ) {
-        let Record {
-            loads,
-            resistance,
-            turning,
-            ..
-        } = record;
-        self.registers.dispatch(Forces {
+        let Work { joints, turning } = work;
+        let resistance = &mut joints.resistance;
+        self.series.registers.dispatch(Forces {
             chain: self,
             around,
             at,
             a: &mut *a,
             rates: &mut *rates,
-            found: (loads, turning, resistance),
+            found: (loads, &mut *turning, &mut *resistance),
         });
-        let n = self.stride;
+        let n = self.series.stride;
         if self.links.closed {
             // A ghost behind the first turn copies one of the turn before.
-            for ghost in self.rollers..n {
-                a[ghost] = a[ghost - self.rollers];
-                a[n + ghost] = a[n + ghost - self.rollers];
+            for ghost in self.series.rollers..n {
+                a[ghost] = a[ghost - self.series.rollers];
+                a[n + ghost] = a[n + ghost - self.series.rollers];
             }
         } else {
             let joints = (&*turning, &*resistance);
             self.hold_ends(around.bodies.gravity, at, a, rates, joints);
-            a[self.rollers..n].fill(0.0);
-            a[n + self.rollers..2 * n].fill(0.0);
+            a[self.series.rollers..n].fill(0.0);
+            a[n + self.series.rollers..2 * n].fill(0.0);
         }
     }
 
@@ -67,7 +63,7 @@ impl Particles {
         let mut rollers = self.view(at, around.prediction, a);
         let gravity = [around.bodies.gravity.x, around.bodies.gravity.y];
         let links = &self.links;
-        let loss = if let Some(joints) = &self.joints {
+        let loss = if let Some(joints) = &self.series.joints {
             let loss = links.act::<S, true>(w, &mut rollers, gravity, turning);
             let found = (turning, found);
             rates[Flow::ArticulationLoss as usize] +=

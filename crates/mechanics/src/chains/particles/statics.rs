@@ -1,24 +1,23 @@
 //! The particle chain in equilibrium: its forces and their derivatives.
 
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::Moment;
 
 use super::Particles;
-use crate::chains::Record;
+use crate::End;
+use crate::chains::makeup::Statics;
 use crate::seam::{Load, Moving, Sum, Unknown};
-use crate::{End, Motion};
 
-impl Particles {
+impl Statics for Particles {
     /// Rollers that are not held; the ring is folded (0, N−1, 1, N−2, …) so that the Hessian becomes a band.
-    pub(crate) fn unknowns(&self) -> Vec<Unknown> {
-        let n = self.rollers;
+    fn unknowns(&self) -> Vec<Unknown> {
+        let n = self.series.rollers;
         let folded = (0..n.div_ceil(2)).flat_map(|i| [i, n - 1 - i]);
         let mut seen = vec![false; n];
         let mut unknowns = Vec::new();
         for roller in folded {
             let new = !std::mem::replace(&mut seen[roller], true);
             if new && self.inverse_masses[roller] > 0.0 {
-                for entry in [roller, self.stride + roller] {
+                for entry in [roller, self.series.stride + roller] {
                     unknowns.push(Unknown { entry, lever: 1.0 });
                 }
             }
@@ -27,24 +26,24 @@ impl Particles {
     }
 
     /// A roller; the one behind the last of a closed chain is the first.
-    pub(crate) fn roller_moving(&self, q: &[f64], roller: usize) -> Moving {
-        let roller = roller % self.rollers;
-        Moving::free(self.place(q, roller), [roller, self.stride + roller])
+    fn roller_moving(&self, q: &[f64], roller: usize) -> Moving {
+        let roller = roller % self.series.rollers;
+        Moving::free(self.place(q, roller), [roller, self.series.stride + roller])
     }
 
     /// A pin, which is a roller here.
-    pub(crate) fn pin_moving(&self, q: &[f64], link: usize, end: usize) -> Moving {
+    fn pin_moving(&self, q: &[f64], link: usize, end: usize) -> Moving {
         self.roller_moving(q, link + end)
     }
 
     /// Stiffness of the stiffest link \[N/m\].
-    pub(crate) fn stiffest_spring(&self) -> f64 {
+    fn stiffest_spring(&self) -> f64 {
         self.links.stiffness.iter().copied().fold(0.0, f64::max)
     }
 
     /// Mass of all rollers, and of the heaviest \[kg\].
-    pub(crate) fn weights(&self) -> [f64; 2] {
-        let masses = &self.masses[..self.rollers];
+    fn weights(&self) -> [f64; 2] {
+        let masses = &self.masses[..self.series.rollers];
         [
             masses.iter().sum(),
             masses.iter().copied().fold(0.0, f64::max),
@@ -52,11 +51,11 @@ impl Particles {
     }
 
     /// Adds E = Σ ½ k (ℓ − p)² − Σ m g·x − Σ F·x.
-    pub(crate) fn add_balance(&self, q: &[f64], gravity: Vector, load: Load, sum: &mut Sum<'_>) {
-        let n = self.stride;
+    fn add_balance(&self, q: &[f64], gravity: Vector, load: Load, sum: &mut Sum<'_>) {
+        let n = self.series.stride;
         let place = |i: usize| -> Point { self.place(q, i) };
         for link in 0..self.links.count {
-            let (a, b) = (link, (link + 1) % self.rollers);
+            let (a, b) = (link, (link + 1) % self.series.rollers);
             let d = place(b) - place(a);
             let length = d.norm();
             let u = d / length;
@@ -82,11 +81,11 @@ impl Particles {
                 }
             }
         }
-        for i in 0..self.rollers {
+        for i in 0..self.series.rollers {
             sum.force(i, -load.gravity * self.masses[i] * gravity.x);
             sum.force(n + i, -load.gravity * self.masses[i] * gravity.y);
         }
-        for held in &self.ends {
+        for held in &self.series.ends {
             if let End::Pulled { force } = &held.end {
                 sum.force(held.roller, -load.torque * force.x);
                 sum.force(n + held.roller, -load.torque * force.y);
@@ -95,37 +94,52 @@ impl Particles {
     }
 
     /// Makes every link longer by `change` \[m\].
-    pub(crate) fn lengthen(&mut self, change: f64) {
+    fn lengthen(&mut self, change: f64) {
         for rest in &mut self.links.rest[..self.links.count] {
             *rest += change;
         }
     }
 
-    /// Lets driven ends stand still.
-    pub(crate) fn hold_still(&mut self) {
-        for held in &mut self.ends {
-            if let End::Driven { x, y } = &mut held.end {
-                (*x, *y) = (Motion::Held, Motion::Held);
-            }
-        }
-    }
-
     /// Largest force out of balance \[N\] that accelerates a roller.
-    pub(crate) fn imbalance(&self, a: &[f64]) -> f64 {
-        let rollers = 0..self.rollers;
-        let forces = rollers.map(|i| self.masses[i] * a[i].hypot(a[self.stride + i]));
+    fn imbalance(&self, a: &[f64]) -> f64 {
+        let rollers = 0..self.series.rollers;
+        let forces = rollers.map(|i| self.masses[i] * a[i].hypot(a[self.series.stride + i]));
         forces.fold(0.0, f64::max)
     }
 
-    /// Largest tension of a link \[N\].
-    pub(crate) fn pressed(&self, at: Moment<'_>, record: &Record) -> f64 {
-        let tensions = self.tensions(at, record);
-        tensions.iter().fold(0.0, |m, t| f64::max(m, t.abs()))
+    /// Share of a step that moves no roller farther than a hundredth of a pitch.
+    fn reach(&self, step: &[f64]) -> f64 {
+        let farthest = step.iter().fold(0.0, |m, x| f64::max(m, x.abs()));
+        (0.01 * self.series.pitch / farthest).min(1.0)
     }
 
-    /// Share of a step that moves no roller farther than a hundredth of a pitch.
-    pub(crate) fn reach(&self, step: &[f64]) -> f64 {
-        let farthest = step.iter().fold(0.0, |m, x| f64::max(m, x.abs()));
-        (0.01 * self.pitch / farthest).min(1.0)
+    fn elongation(&self) -> f64 {
+        let rest: f64 = self.links.rest[..self.links.count].iter().sum();
+        let nominal = self.links.count as f64 * self.series.pitch;
+        rest / nominal
+    }
+
+    /// Moves every roller that is not held; copies behind the last one follow.
+    fn nudge(&self, q: &mut [f64], mut shift: impl FnMut() -> f64) {
+        let n = self.series.stride;
+        for i in 0..self.series.rollers {
+            let (x, y) = (shift(), shift());
+            if self.inverse_masses[i] > 0.0 {
+                q[i] += x;
+                q[n + i] += y;
+            }
+        }
+        self.copy_ghosts(q);
+    }
+
+    /// Gives the copies behind the last roller of a closed chain the values of their originals.
+    fn copy_ghosts(&self, values: &mut [f64]) {
+        if self.links.closed {
+            let n = self.series.stride;
+            for ghost in self.series.rollers..n {
+                values[ghost] = values[ghost % self.series.rollers];
+                values[n + ghost] = values[n + ghost % self.series.rollers];
+            }
+        }
     }
 }

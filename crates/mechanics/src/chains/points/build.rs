@@ -2,14 +2,15 @@
 
 use chaindrive_contact::Friction;
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::{Array, Moment, Registers};
+use chaindrive_integrate::{Array, Moment};
 
-use super::{AFTER, BEFORE, Memory, PointJoints, Points, ROLLERS};
+use super::{AFTER, BEFORE, PointJoints, Points, ROLLERS};
 use crate::chains::LaidAs;
 use crate::chains::laid::length_through;
+use crate::chains::makeup::{Makeup, Statics};
 use crate::chains::particles::Particles;
-use crate::contact::{Bearing, ContactMemory};
-use crate::joints::Joints;
+use crate::contact::Bearing;
+use crate::joints::JointMemory;
 use crate::lanes::padded;
 use crate::surface::Surface;
 
@@ -37,8 +38,8 @@ impl Points {
         points: &PointJoints,
         at: Moment<'_>,
     ) -> (Self, [Vec<f64>; 2]) {
-        let count = particles.rollers;
-        let stride = particles.stride;
+        let count = particles.series.rollers;
+        let stride = particles.series.stride;
         let smooth = |surface: &Surface| Surface {
             friction: Friction::None,
             ..*surface
@@ -93,28 +94,21 @@ impl Points {
             let all = inverse_masses[block].iter().copied();
             all.fold(0.0, f64::max)
         });
-        let open = || ContactMemory::open(padded(count));
         let mut chain = Self {
-            joints: Joints::new(laid.chain.articulation, (count, true), links.rest.len()),
+            series: particles.series.with_contacts(
+                laid.chain,
+                links.rest.len(),
+                JointMemory::open(at.t, [padded(count); 2]),
+            ),
             link_rates: [0.0; 2],
             shallow: [pin.stiffness(SHALLOW), bush.stiffness(SHALLOW)],
             links,
             pin,
             bush,
             bush_after,
-            rollers: count,
-            stride,
-            pitch: particles.pitch,
             masses: masses.map(Array::from),
             inverse_masses,
             lightest,
-            memory: Memory {
-                time: at.t,
-                pins: open(),
-                bushes: open(),
-            },
-            ends: Vec::new(),
-            registers: Registers::in_use(),
         };
         chain.link_rates = chain.rates_of_links();
         let q = chain.seat(particles, laid, at);
@@ -127,7 +121,7 @@ impl Points {
     /// Where the points stand: bushes pressed into rollers that are pressed on something, rollers hanging on the others, and every link
     /// with the tension that it was laid with.
     fn seat(&mut self, particles: &Particles, laid: &LaidAs<'_>, at: Moment<'_>) -> Vec<f64> {
-        let count = self.rollers;
+        let count = self.series.rollers;
         let place = |i: usize| particles.place(at.q, i % count);
         let direction = |i: usize| (place(i + 1) - place(i)).normalize();
         let tension = |i: usize| {

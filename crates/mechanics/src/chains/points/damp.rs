@@ -18,9 +18,9 @@ use nalgebra::{DMatrix, DVector};
 use pulp::{Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
-use super::{AFTER, BEFORE, Found, Points, ROLLERS};
+use super::{AFTER, BEFORE, Points, ROLLERS, Work};
 use crate::bodies::{GroupBodies, RailContact, Surroundings};
-use crate::chains::Record;
+use crate::chains::makeup::{Makeup, Statics};
 use crate::contact::{Contacts, Frame, Touch};
 use crate::dense::solve_dense;
 use crate::joints::{Mount, rail_mount, turned, wheel_mount};
@@ -66,7 +66,7 @@ impl Points {
         around: Surroundings<'_>,
         at: Moment<'_>,
         loads: &Loads,
-        found: &mut Found,
+        found: &mut Work,
     ) {
         let Surroundings {
             bodies,
@@ -100,7 +100,7 @@ impl Points {
         number: usize,
         mount: &Mount,
         at: Moment<'_>,
-        found: &mut Found,
+        found: &mut Work,
     ) {
         let rubs = contacts.surface.friction != Friction::None;
         found.mounts.push(coordinates(mount));
@@ -110,8 +110,9 @@ impl Points {
                 let slots = side * contacts.slots + lane * LANES;
                 for k in (0..LANES).filter(|k| touch.state.is_closed(slots + k)) {
                     let (faces, index) = (&touch.faces, slots + k);
-                    let joint = (run.start + k) % self.rollers;
-                    let arm = Point::new(at.q[joint], at.q[self.stride + joint]) - frame.origin;
+                    let joint = (run.start + k) % self.series.rollers;
+                    let arm =
+                        Point::new(at.q[joint], at.q[self.series.stride + joint]) - frame.origin;
                     let along = Vector::new(faces.normal_x[index], faces.normal_y[index]);
                     let normal = Touching {
                         joint,
@@ -141,23 +142,22 @@ impl Points {
     }
 
     /// x ← (M + c C + k K)⁻¹ M x of the chain and, behind it, the bodies, at the state that the record was left by.
-    pub(in crate::chains) fn solve(
+    pub(super) fn implicit_step(
         &self,
         bodies: GroupBodies<'_>,
         weights: Weights,
-        record: &mut Record,
+        found: &mut Work,
         x: &mut [f64],
     ) -> bool {
-        let found = &mut record.points;
         let (own, beside) = x.split_at_mut(self.coordinates());
         found.pressed.collect(
             &mut found.touching,
             &found.mounts,
             weights,
             beside,
-            padded(self.rollers),
+            padded(self.series.rollers),
         );
-        self.registers.dispatch(Joints {
+        self.series.registers.dispatch(Joints {
             chain: self,
             weights,
             found,
@@ -274,7 +274,7 @@ impl Pressed {
 struct Joints<'a> {
     chain: &'a Points,
     weights: Weights,
-    found: &'a Found,
+    found: &'a Work,
     x: &'a mut [f64],
 }
 
@@ -290,9 +290,9 @@ impl WithSimd for Joints<'_> {
             found,
             x,
         } = self;
-        let count = padded(chain.rollers);
-        let n = chain.stride;
-        let Found {
+        let count = padded(chain.series.rollers);
+        let n = chain.series.stride;
+        let Work {
             pins,
             bushes,
             pressed,

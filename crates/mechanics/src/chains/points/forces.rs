@@ -3,55 +3,40 @@
 use chaindrive_integrate::Moment;
 use pulp::{Simd, WithSimd};
 
-use super::{AFTER, BEFORE, Ends, Found, Held, Points, ROLLERS};
+use super::{AFTER, BEFORE, Ends, Held, Points, ROLLERS};
 use crate::bodies::{RailContact, Surroundings};
-use crate::chains::Record;
+use crate::chains::makeup::Statics;
 use crate::chains::particles::articulation;
 use crate::chains::particles::forces::{plate_forces, touch_bodies};
 use crate::chains::particles::springs::Turning;
+use crate::chains::points::Work;
 use crate::contact::{Apart, Grip, LaneTally, MemoryLanes, Rollers, Tally};
 use crate::energy::Flow;
-use crate::joints::Resistance;
 use crate::lanes::{LANES, Lane, Wide, padded};
 use crate::seam::Loads;
 
 /// Steps take the damping of bodies by the contacts explicitly, and shall be at most so long in units of its time.
 const OF_BODIES: f64 = 4.0;
 
-/// Arrays that one evaluation fills in.
-type Filled<'a> = (
-    &'a mut Loads,
-    &'a mut Turning,
-    &'a mut Resistance,
-    &'a mut Found,
-);
-
 impl Points {
-    pub(in crate::chains) fn evaluate(
+    pub(super) fn accelerate(
         &self,
         around: Surroundings<'_>,
         at: Moment<'_>,
         a: &mut [f64],
         rates: &mut [f64],
-        record: &mut Record,
+        (loads, work): (&mut Loads, &mut Work),
     ) {
-        let Record {
-            loads,
-            resistance,
-            turning,
-            points,
-            ..
-        } = record;
-        points.memory.time = at.t;
-        self.registers.dispatch(Forces {
+        work.joints.memory.time = at.t;
+        self.series.registers.dispatch(Forces {
             chain: self,
             around,
             at,
             a: &mut *a,
             rates: &mut *rates,
-            filled: (&mut *loads, turning, resistance, &mut *points),
+            found: (&mut *loads, &mut *work),
         });
-        self.list_touching(around, at, loads, points);
+        self.list_touching(around, at, loads, work);
         self.copy_ghosts(a);
     }
 
@@ -63,19 +48,26 @@ impl Points {
         at: Moment<'_>,
         a: &mut [f64],
         rates: &mut [f64],
-        (loads, turning, resistance, found): Filled<'_>,
+        (loads, work): (&mut Loads, &mut Work),
     ) {
         let gravity = [around.bodies.gravity.x, around.bodies.gravity.y];
-        rates[Flow::LinkLoss as usize] += self.pull(w, at, a, gravity, turning);
-        if let Some(joints) = &self.joints {
+        rates[Flow::LinkLoss as usize] += self.pull(w, at, a, gravity, &mut work.turning);
+        if let Some(joints) = &self.series.joints {
+            let Work {
+                turning,
+                joints: found,
+                ..
+            } = &mut *work;
+            let resistance = &mut found.resistance;
             let power = articulation::torques(joints, w, at.t, &self.links, turning, resistance);
             rates[Flow::ArticulationLoss as usize] += power;
             self.turn(w, a, &resistance.torque, turning);
         }
-        found.tallies = self.bear(w, at, a, found);
-        rates[Flow::JointLoss as usize] += found.tallies[0].normal_loss;
-        rates[Flow::RollerLoss as usize] += found.tallies[1].normal_loss;
-        let n = self.stride;
+        let tallies = self.bear(w, at, a, work);
+        rates[Flow::JointLoss as usize] += tallies[0].normal_loss;
+        rates[Flow::RollerLoss as usize] += tallies[1].normal_loss;
+        work.joints.tallies = tallies;
+        let n = self.series.stride;
         let (ax, rest) = a.split_at_mut(n);
         let mut rollers = Rollers {
             x: &at.q[..n],
@@ -110,8 +102,8 @@ impl Points {
     /// One coordinate of a block.
     #[inline(always)]
     fn column<'a>(&self, values: &'a [f64], block: usize, axis: usize) -> &'a [f64] {
-        let first = (2 * block + axis) * self.stride;
-        &values[first..first + self.stride]
+        let first = (2 * block + axis) * self.series.stride;
+        &values[first..first + self.series.stride]
     }
 
     /// Sets all accelerations to gravity and the pull of the links; returns the power \[W\] lost in their dampers.
@@ -126,7 +118,7 @@ impl Points {
     ) -> f64 {
         let links = &self.links;
         let n = links.rest.len();
-        let articulated = self.joints.is_some();
+        let articulated = self.series.joints.is_some();
         if articulated {
             turning.make_room(links);
         }
@@ -138,11 +130,11 @@ impl Points {
         let ([x_next, y_next], [vx_next, vy_next]) = (second(at.q), second(at.v));
         let im_before = w.lanes(&self.inverse_masses[BEFORE][..n]);
         let im_after = w.lanes(&self.inverse_masses[AFTER][..n]);
-        let (on_rollers, ends) = a.split_at_mut(2 * self.stride);
-        for (column, g) in on_rollers.chunks_exact_mut(self.stride).zip(gravity) {
+        let (on_rollers, ends) = a.split_at_mut(2 * self.series.stride);
+        for (column, g) in on_rollers.chunks_exact_mut(self.series.stride).zip(gravity) {
             column.fill(g);
         }
-        let mut columns = ends.chunks_exact_mut(self.stride);
+        let mut columns = ends.chunks_exact_mut(self.series.stride);
         let mut next = || Wide::<S>::lanes_mut(&mut columns.next().unwrap_or_default()[..n]);
         let (mut bx, mut by, mut ax, mut ay) = (next(), next(), next(), next());
         let [gx, gy] = gravity.map(|g| w.splat(g));
@@ -191,7 +183,7 @@ impl Points {
         }
         // The joint behind the last link is the first one.
         for axis in [2 * BEFORE, 2 * BEFORE + 1] {
-            let column = &mut a[axis * self.stride..(axis + 1) * self.stride];
+            let column = &mut a[axis * self.series.stride..(axis + 1) * self.series.stride];
             column[0] = column[links.count];
         }
         loss.sum()
@@ -205,10 +197,10 @@ impl Points {
         let (across_x, across_y) = (w.lanes(&turning.across[0]), w.lanes(&turning.across[1]));
         let im_before = w.lanes(&self.inverse_masses[BEFORE][..n]);
         let im_after = w.lanes(&self.inverse_masses[AFTER][..n]);
-        let ends = &mut a[2 * self.stride..];
+        let ends = &mut a[2 * self.series.stride..];
         let count = self.links.count;
-        let behind = [ends[count], ends[self.stride + count]];
-        let mut columns = ends.chunks_exact_mut(self.stride);
+        let behind = [ends[count], ends[self.series.stride + count]];
+        let mut columns = ends.chunks_exact_mut(self.series.stride);
         let mut next_column = || Wide::<S>::lanes_mut(&mut columns.next().unwrap_or_default()[..n]);
         let (mut bx, mut by) = (next_column(), next_column());
         let (mut ax, mut ay) = (next_column(), next_column());
@@ -225,7 +217,7 @@ impl Points {
             before = push;
         }
         for (axis, behind) in behind.into_iter().enumerate() {
-            let first = axis * self.stride;
+            let first = axis * self.series.stride;
             ends[first] += ends[first + count] - behind;
         }
     }
@@ -237,20 +229,22 @@ impl Points {
         w: Wide<S>,
         at: Moment<'_>,
         a: &mut [f64],
-        found: &mut Found,
+        found: &mut Work,
     ) -> [Tally; 2] {
-        let count = padded(self.rollers);
-        let dt = at.t - self.memory.time;
-        let Found {
-            memory,
+        let count = padded(self.series.rollers);
+        let dt = at.t - self.series.memory.time;
+        let Work {
+            joints,
             pins,
             bushes,
             ..
         } = found;
+        let memory = &mut joints.memory;
         memory.pins.resize(count);
         memory.bushes.resize(count);
-        let mut of_pins = MemoryLanes::new(w, &self.memory.pins, &mut memory.pins, count);
-        let mut of_bushes = MemoryLanes::new(w, &self.memory.bushes, &mut memory.bushes, count);
+        let mut of_pins = MemoryLanes::new(w, &self.series.memory.pins, &mut memory.pins, count);
+        let mut of_bushes =
+            MemoryLanes::new(w, &self.series.memory.bushes, &mut memory.bushes, count);
         let (mut pins, mut bushes) = (Grips::new(w, pins, count), Grips::new(w, bushes, count));
         let (mut in_bushes, mut in_rollers) = (LaneTally::new(w), LaneTally::new(w));
         let block = |values, block| {
@@ -263,7 +257,7 @@ impl Points {
         let inverse = |block: usize| w.lanes(&self.inverse_masses[block][..count]);
         let (im_roller, im_before, im_after) = (inverse(ROLLERS), inverse(BEFORE), inverse(AFTER));
         let bush_after = w.lanes(&self.bush_after[..count]);
-        let mut columns = a.chunks_exact_mut(self.stride);
+        let mut columns = a.chunks_exact_mut(self.series.stride);
         let mut next = || Wide::<S>::lanes_mut(&mut columns.next().unwrap_or_default()[..count]);
         let (mut on_rx, mut on_ry) = (next(), next());
         let (mut on_bx, mut on_by) = (next(), next());
@@ -271,7 +265,7 @@ impl Points {
         let zero = w.splat(0.0);
         let half = w.splat(0.5);
         for i in 0..count / Wide::<S>::COUNT {
-            let present = w.first(self.rollers.saturating_sub(i * Wide::<S>::COUNT));
+            let present = w.first(self.series.rollers.saturating_sub(i * Wide::<S>::COUNT));
             let (before_x, before_y) = (bx.get(i), by.get(i));
             let (before_vx, before_vy) = (bvx.get(i), bvy.get(i));
             let (after_x, after_y) = (ax.get(i), ay.get(i));
@@ -334,27 +328,22 @@ impl Points {
     ///
     /// The part that implicit steps take explicitly (dampers of links, viscous joints, and what contacts do to the bodies) counts as
     /// frequency too.
-    pub(in crate::chains) fn rates(
+    pub(super) fn stiffest_mode(
         &self,
         around: Surroundings<'_>,
-        record: &mut Record,
+        loads: &Loads,
+        found: &Work,
     ) -> [f64; 2] {
         let Surroundings {
             bodies, contacts, ..
         } = around;
-        let found = &record.points;
         let bear = |shallow: f64, held: &Held| [held.stiffest.max(shallow), held.damped];
         let [pin, bush] = [
             bear(self.shallow[0], &found.pins),
             bear(self.shallow[1], &found.bushes),
         ];
         let (mut tooth, mut of_bodies) = ([0.0_f64; 2], 0.0_f64);
-        for (mount, (on, wrench)) in contacts
-            .teeth
-            .iter()
-            .zip(&record.loads.wheel_wrenches)
-            .enumerate()
-        {
+        for (mount, (on, wrench)) in contacts.teeth.iter().zip(&loads.wheel_wrenches).enumerate() {
             let mobility = bodies.wheels[on.wheel].mobility;
             let here = found
                 .touching
@@ -370,7 +359,7 @@ impl Points {
             tooth[1] = tooth[1].max(wrench.damping * share);
         }
         let mut plates = [0.0_f64; 2];
-        for (on, wrench) in contacts.rails.iter().zip(&record.loads.rail_wrenches) {
+        for (on, wrench) in contacts.rails.iter().zip(&loads.rail_wrenches) {
             let stiffness = on.contact.surface().stiffness(wrench.depth);
             if matches!(on.contact, RailContact::Plates(_)) {
                 plates = [plates[0].max(stiffness), plates[1].max(wrench.damping)];
@@ -393,8 +382,9 @@ impl Points {
             )
         };
         let [contacts, damping] = [along(0), along(1) + lightest_end * plates[1]];
-        let turns = |slope: f64| 8.0 * slope * lightest_end / (self.pitch * self.pitch);
-        let [across, drag] = record.resistance.slopes.map(turns);
+        let turns =
+            |slope: f64| 8.0 * slope * lightest_end / (self.series.pitch * self.series.pitch);
+        let [across, drag] = found.joints.resistance.slopes.map(turns);
         let explicit = self.link_rates[1] + drag + lightest_end * plates[1];
         // ω = D + √(D² + ω²) of what damps explicitly
         let stiff = contacts + lightest_end * plates[0] + across;
@@ -493,7 +483,7 @@ struct Forces<'a> {
     at: Moment<'a>,
     a: &'a mut [f64],
     rates: &'a mut [f64],
-    filled: Filled<'a>,
+    found: (&'a mut Loads, &'a mut Work),
 }
 
 impl WithSimd for Forces<'_> {
@@ -508,9 +498,9 @@ impl WithSimd for Forces<'_> {
             at,
             a,
             rates,
-            filled,
+            found,
         } = self;
-        chain.forces(Wide(simd), around, at, a, rates, filled);
+        chain.forces(Wide(simd), around, at, a, rates, found);
     }
 }
 

@@ -1,14 +1,14 @@
 //! Observations of a chain of points.
 
-use chaindrive_contact::Prepared;
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
 
-use super::{AFTER, BEFORE, Ends, Points, ROLLERS};
-use crate::chains::Record;
-use crate::contact::{ContactState, Frame, Kept, PlateContact};
+use super::{AFTER, BEFORE, Points, ROLLERS};
+use crate::chains::points::Work;
+use crate::contact::Kept;
 use crate::energy::{Energy, Store};
-use crate::seam::Observation;
+use crate::joints::JointFindings;
+use crate::seam::{Observation, Pose};
 
 /// Sign of the force on a pin along n, which leads from the end before to the end after: the bush pushes it back.
 fn pushed_back(pin: usize) -> f64 {
@@ -16,18 +16,10 @@ fn pushed_back(pin: usize) -> f64 {
 }
 
 impl Points {
-    pub(in crate::chains) fn observe(
-        &self,
-        at: Moment<'_>,
-        _record: &Record,
-        out: &mut Observation,
-    ) {
-        let n = self.stride;
-        let count = self.rollers;
-        out.roller_x.extend_from_slice(&at.q[..count]);
-        out.roller_y.extend_from_slice(&at.q[n..n + count]);
-        out.roller_vx.extend_from_slice(&at.v[..count]);
-        out.roller_vy.extend_from_slice(&at.v[n..n + count]);
+    /// Appends places, velocities, and how pins and bushes stand.
+    pub(super) fn observe_motion(&self, at: Moment<'_>, out: &mut Observation) {
+        let count = self.series.rollers;
+        out.add_rollers(Pose::of_first(at, self.series.stride), count);
         let angles: Vec<f64> = (0..count)
             .map(|link| {
                 let along = self.along(at.q, link);
@@ -53,16 +45,9 @@ impl Points {
         out.link_angle.extend(angles);
     }
 
-    /// Appends the forces of joints and free rollers, and the tensions of the links.
-    pub(in crate::chains) fn observe_forces(
-        &self,
-        at: Moment<'_>,
-        record: &Record,
-        out: &mut Observation,
-    ) {
-        out.link_tension.extend(self.tensions(at, record));
-        let found = &record.points;
-        for joint in 0..self.rollers {
+    /// Appends the forces of joints and free rollers.
+    pub(super) fn observe_joints(&self, found: &Work, out: &mut Observation) {
+        for joint in 0..self.series.rollers {
             let [_, pin] = self.sides(joint);
             let force = pushed_back(pin) * found.pins.force[joint];
             out.joint_force_x.push(force * found.pins.normal_x[joint]);
@@ -76,34 +61,19 @@ impl Points {
 
     /// From the first end of a link to the second.
     pub(super) fn along(&self, q: &[f64], link: usize) -> Vector {
-        let next = (link + 1) % self.rollers;
+        let next = (link + 1) % self.series.rollers;
         self.point(q, BEFORE, next) - self.point(q, AFTER, link)
     }
 
-    /// Tension of every link \[N\].
-    pub(in crate::chains) fn tensions(&self, at: Moment<'_>, _record: &Record) -> Vec<f64> {
-        let end = |block: usize, joint: usize| {
-            let place = self.point(at.q, block, joint);
-            (place, self.point(at.v, block, joint).coords)
-        };
-        let links = 0..self.rollers;
-        links
-            .map(|link| {
-                let next = (link + 1) % self.rollers;
-                self.links
-                    .tension(link, [end(AFTER, link), end(BEFORE, next)])
-            })
-            .collect()
-    }
-
-    pub(in crate::chains) fn energies(
+    /// Adds kinetic energy, weight, and what links and joints store.
+    pub(super) fn add_energies(
         &self,
         at: Moment<'_>,
         gravity: Vector,
-        record: &Record,
+        found: &JointFindings,
         out: &mut Energy,
     ) {
-        for joint in 0..self.rollers {
+        for joint in 0..self.series.rollers {
             for block in [ROLLERS, BEFORE, AFTER] {
                 let mass = self.masses[block][joint];
                 let place = self.point(at.q, block, joint).coords;
@@ -116,40 +86,14 @@ impl Points {
             out.stores[Store::Links as usize] +=
                 0.5 * self.links.stiffness[joint] * stretch * stretch;
         }
-        let memory = &record.points.memory;
+        let memory = &found.memory;
         let bearings = [(&self.pin, &memory.pins), (&self.bush, &memory.bushes)];
         for (bearing, memory) in bearings {
-            let gaps = memory.each(Kept::Gap).take(self.rollers);
+            let gaps = memory.each(Kept::Gap).take(self.series.rollers);
             let stored = gaps.filter(|gap| *gap < 0.0);
             let stored = stored.map(|gap| bearing.energy(gap));
             out.stores[Store::Joints as usize] += stored.sum::<f64>();
         }
-        out.hold_in_joints(record.resistance.stored);
-    }
-
-    pub(in crate::chains) fn plate_energy(
-        &self,
-        at: Moment<'_>,
-        plates: &PlateContact,
-        frame: &Frame,
-        _record: &Record,
-    ) -> f64 {
-        let ends = Ends {
-            chain: self,
-            q: at.q,
-            v: at.v,
-            a: &mut [],
-        };
-        plates.stored(&ends, frame, self.links.count)
-    }
-
-    /// Laws of pins in bushes, and of bushes in rollers.
-    pub(in crate::chains) fn bearing_laws(&self) -> [Option<Prepared>; 2] {
-        [&self.pin, &self.bush].map(|bearing| Some(bearing.law))
-    }
-
-    /// How a pin stands to its bush, and a bush to its roller.
-    pub(in crate::chains) fn contacts_of(&self, joint: usize) -> [Option<ContactState>; 2] {
-        [&self.memory.pins, &self.memory.bushes].map(|memory| Some(memory.at(joint)))
+        out.hold_in_joints(found.resistance.stored);
     }
 }

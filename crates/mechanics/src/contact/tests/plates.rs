@@ -6,7 +6,8 @@ use chaindrive_integrate::Registers;
 use pulp::WithSimd;
 
 use super::*;
-use crate::contact::{Places, PlateContact, PlatePlaces, Pressing, Rollers};
+
+use crate::contact::{Places, PlateContact, Pressing, Rollers};
 use crate::lanes::padded;
 use crate::profile::RailFace;
 use crate::surface::Surface;
@@ -95,7 +96,7 @@ fn one_by_one(plates: &PlateContact, frame: &Frame, slack: &mut Slack) -> (Vec<V
     let mut forces = vec![Vector::zeros(); links + 1];
     let mut sums = [0.0; 5];
     for link in 0..links {
-        let pins = [0, 1].map(|end| PlatePlaces::place(&rollers, link, end));
+        let pins = [0, 1].map(|end| rollers.place(link + end));
         let [a, b] = pins.map(|pin| frame.local(pin, plates.reference));
         let point = plates.nearest(a, b);
         let depth = -point.probe.gap;
@@ -259,7 +260,7 @@ fn no_plate_touches_unseen() {
         plates.accepted = t;
         let rollers = slack.rollers();
         for link in 0..links {
-            let [a, b] = [0, 1].map(|end| PlatePlaces::place(&rollers, link, end));
+            let [a, b] = [0, 1].map(|end| rollers.place(link + end));
             let inside = plates.nearest(a, b).probe.gap < 0.0;
             let seen = plates.memory.state.closed(link).is_some();
             assert_eq!(inside, seen, "link {link} at {t}");

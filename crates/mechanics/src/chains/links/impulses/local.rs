@@ -14,6 +14,7 @@ use nalgebra::Vector3;
 use super::rows::Rows;
 use super::tridiagonal::Tridiagonal;
 use super::{JointState, Linkage};
+use crate::chains::makeup::Makeup;
 use crate::joints::{Element, Partner, Row, cross, partner_row};
 
 /// One row of J over the chain's bodies, with the partner's sign in it.
@@ -68,19 +69,21 @@ impl Local {
         let soft = linkage.soft(weights);
         // Counting sort by link.
         self.starts.clear();
-        self.starts.resize(linkage.links + 1, 0);
+        self.starts.resize(linkage.series.links + 1, 0);
         for element in &joint_state.elements {
             self.starts[linkage.home(element) + 1] += may_weigh(element, weights, soft)
                 .into_iter()
                 .filter(|may| *may)
                 .count();
         }
-        for link in 0..linkage.links {
+        for link in 0..linkage.series.links {
             self.starts[link + 1] += self.starts[link];
         }
         self.order.clear();
-        self.order.extend_from_slice(&self.starts[..linkage.links]);
-        self.lines.resize(self.starts[linkage.links], Line::EMPTY);
+        self.order
+            .extend_from_slice(&self.starts[..linkage.series.links]);
+        self.lines
+            .resize(self.starts[linkage.series.links], Line::EMPTY);
         for element in &joint_state.elements {
             let levers = [element.lever_a, element.lever_b];
             let rows = [(element.normal, [0.0; 2]), (element.tangent(), levers)];
@@ -115,7 +118,7 @@ impl Local {
         self.around.clear();
         self.around.resize(self.lines.len() * C, 0.0);
         let mut around = self.around.as_chunks_mut::<C>().0;
-        for link in 0..linkage.links {
+        for link in 0..linkage.series.links {
             let lines = &self.lines[self.starts[link]..self.starts[link + 1]];
             if lines.is_empty() {
                 continue;
@@ -160,7 +163,7 @@ impl Local {
         let columns = 2 * R + x.len() - linkage.coordinates();
         let mut factors = &self.factors[..];
         let mut around = self.around.as_chunks_mut::<C>().0;
-        for link in 0..linkage.links {
+        for link in 0..linkage.series.links {
             let lines = &self.lines[self.starts[link]..self.starts[link + 1]];
             let count = lines.len();
             if count == 0 {
@@ -246,7 +249,7 @@ fn substitute<const C: usize>(
 impl Linkage {
     /// The joint at the end of a link.
     pub(super) fn joint_behind(&self, link: usize) -> usize {
-        if self.closed && link + 1 == self.links {
+        if self.series.is_closed() && link + 1 == self.series.links {
             0
         } else {
             link + 1
@@ -260,7 +263,7 @@ impl Linkage {
             (None, Partner::Ground | Partner::Mount(_)) => 0,
         };
         match &self.free_rollers {
-            Some(free) if body >= self.links => free.link[body - self.links],
+            Some(free) if body >= self.series.links => free.link[body - self.series.links],
             _ => body,
         }
     }

@@ -159,9 +159,9 @@ impl Rows {
                 present.select(value, zero).store(to, start);
             }
         }
-        if linkage.closed {
+        if linkage.series.is_closed() {
             for values in self.all() {
-                values[linkage.links] = values[0];
+                values[linkage.series.links] = values[0];
             }
         }
     }

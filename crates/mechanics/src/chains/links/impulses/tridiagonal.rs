@@ -62,7 +62,7 @@ impl Tridiagonal {
         wheels: usize,
     ) {
         let joints = linkage.joints.len();
-        self.held = usize::from(linkage.closed && R == 1);
+        self.held = usize::from(linkage.series.is_closed() && R == 1);
         self.border = self.held + wheels;
         self.count = joints - self.held;
         let lanes = padded(joints);
@@ -344,7 +344,8 @@ impl Tridiagonal {
         corner: &mut [[f64; B]; B],
     ) -> bool {
         // Quasi-definite: whatever is positive will do, since the rows of one joint may differ by any power of ten.
-        self.sections.lay_out(self.count, linkage.closed, 0.0);
+        self.sections
+            .lay_out(self.count, linkage.series.is_closed(), 0.0);
         let [xx, _, yx, yy] = &self.own;
         self.sections
             .take_in([&xx[..], &yx[..], &yy[..]], &self.coupling);
@@ -432,9 +433,9 @@ impl Tridiagonal {
                 self.find::<B>(behind, Some((behind - 1, behind - 1)), &edge);
             }
         }
-        if linkage.closed {
+        if linkage.series.is_closed() {
             self.found[0][self.count] = self.edge[0];
-            self.found[0][linkage.links] = self.found[0][0];
+            self.found[0][linkage.series.links] = self.found[0][0];
         }
     }
 
