@@ -7,6 +7,7 @@ mod account;
 mod columns;
 mod design;
 mod dimension;
+mod layout;
 mod report;
 mod sample;
 mod stack;

@@ -8,9 +8,8 @@ use std::time::{Duration, Instant};
 use serde_json::{Map, Value};
 use zarrs::array::{CodecOptions, data_type};
 
-use super::layout::Layout;
 use super::{Arrays, Finished, Worker, every_chunk};
-use crate::Axis;
+use crate::sweep::layout::Layout;
 use crate::sweep::threads::on_threads;
 use crate::sweep::{Coordinate, Go, Outcome, Quantity, Recipe, Sample, Sweep, TEXTS, Tally};
 use crate::zarr::{
@@ -491,12 +490,7 @@ fn lay(store: &Store, sweep: &Sweep, layout: &Layout) -> Result<Map<String, Valu
         written.insert("time".into(), array);
     }
     for axis in &layout.axes {
-        let mut known = Axis::ALL.iter();
-        let labels = if known.any(|it| it.name() == Some(&axis.name) && it.is_numbered()) {
-            Coordinate::Whole((0..).take(axis.labels.len()).collect())
-        } else {
-            Coordinate::Texts(axis.labels.clone())
-        };
+        let labels = axis.coordinate();
         let (name, cut) = (axis.name.as_str(), axis.cut);
         let array = put_coordinate(&arrays, name, name, &labels, cut, Map::new())?;
         written.insert(axis.name.clone(), array);
