@@ -174,8 +174,10 @@ class Sweep:
         vary: Sequence[tuple[str, Sequence[str]]],
         record: Sequence[str],
         table: bool = ...,
-        given: Sequence[tuple[str, str]] = ...,
+        given: Sequence[tuple[str, str | float | Sequence[str]]] = ...,
     ) -> Sweep: ...
+    @property
+    def text(self) -> str: ...
     def __len__(self) -> int: ...
     def run(
         self, jobs: int | None, progress: Callable[[float], object] | None

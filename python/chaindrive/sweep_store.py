@@ -6,8 +6,7 @@ import os
 import time
 import warnings
 from collections.abc import Callable
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from itertools import islice
+from concurrent.futures import Executor
 from typing import Any
 from uuid import uuid4
 
@@ -15,18 +14,13 @@ import xarray as xr
 
 from chaindrive import _core
 from chaindrive.errors import DistrustedResultWarning, SimulationError, WriteError
+from chaindrive.executors import ORIGIN, same_origin, spread
 from chaindrive.extras import extra
 from chaindrive.objects import Objects, Place
 from chaindrive.results import _open
 from chaindrive.signals import heard
 
 __all__ = ["into_store"]
-
-# Tasks that an executor has at a time: enough for hundreds of workers, few beside a large sweep.
-_AHEAD = 1024
-
-# Who computes here: workers of another origin would give other bits.
-ORIGIN = f"{_core.__build__} on {_core._origin['instruction_set']}"
 
 # The worker of the sweep whose tasks this process carries out.
 _opened: dict[str, _core.SweepWorker] = {}
@@ -115,46 +109,15 @@ def _spread(
 ) -> tuple[KeyboardInterrupt | None, list[Exception]]:
     """Have an executor carry out all open tasks; return an interrupt, and why tasks were lost."""
     sweep = uuid4().hex
-    pending: set[Future[tuple[int, int, int]]] = set()
-    lost: list[Exception] = []
-    tasks = iter(store.open_tasks())
-    try:
-        while True:
-            try:
-                for task in islice(tasks, _AHEAD - len(pending)):
-                    pending.add(executor.submit(_task, ORIGIN, place, sweep, task))
-            except Exception as error:
-                # Such as a pool whose worker was killed: it takes no more tasks.
-                lost.append(error)
-                tasks = iter(())
-            if not pending:
-                return None, lost
-            done, pending = wait(pending, return_when=FIRST_COMPLETED)
-            for future in done:
-                try:
-                    counts = future.result()
-                except Exception as error:
-                    # A worker that died, or that has no chaindrive: other tasks are not its fault.
-                    lost.append(error)
-                else:
-                    store.count(counts)
-            if tell is not None:
-                tell(store.stored() / variants)
-    except KeyboardInterrupt as interrupt:
-        return interrupt, lost
-    finally:
-        for future in pending:
-            future.cancel()
 
+    def take(_: object, counts: tuple[int, int, int]) -> None:
+        store.count(counts)
+        if tell is not None:
+            tell(store.stored() / variants)
 
-def same_origin(origin: str) -> None:
-    """Refuse to compute for a process of another build, or on another instruction set."""
-    if origin != ORIGIN:
-        message = f"a worker has chaindrive {ORIGIN} instead of {origin}"
-        remedy = "install the same build everywhere"
-        if origin.split(" on ")[0] == _core.__build__:
-            remedy = "set CHAINDRIVE_INSTRUCTION_SET to the same everywhere"
-        raise SimulationError(message, "executor", remedy)
+    tasks = [(ORIGIN, place, sweep, task) for task in store.open_tasks()]
+    # What is lost stays open, and the same call goes on with it.
+    return spread(executor, _task, tasks, take, lambda *_: None)
 
 
 def _task(origin: str, place: Place, sweep: str, task: int) -> tuple[int, int, int]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 import warnings
 from collections.abc import Callable, Iterable, Mapping
-from concurrent.futures import Executor, Future, as_completed
+from concurrent.futures import Executor
 from functools import lru_cache
 from os import PathLike
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -16,11 +16,12 @@ import xarray as xr
 from chaindrive import _core
 from chaindrive.drive import Drive, _json, _needed
 from chaindrive.errors import DistrustedResultWarning, ParameterError, SimulationError
+from chaindrive.executors import ORIGIN, same_origin, spread
 from chaindrive.objects import place_of
 from chaindrive.progress import told
-from chaindrive.settings import Quantity, Recorded
+from chaindrive.settings import ContactPlace, MethodName, Quantity, Recorded, Target
 from chaindrive.simulation import _listed
-from chaindrive.sweep_store import ORIGIN, into_store, same_origin
+from chaindrive.sweep_store import into_store
 
 if TYPE_CHECKING:
     from obstore.store import ObjectStore
@@ -29,6 +30,9 @@ __all__ = ["sweep"]
 
 _Recipe: TypeAlias = tuple[str, str, tuple[tuple[str, tuple[str, ...]], ...], tuple[str, ...], bool]
 """Parts of a sweep: text and name of the scene, values as JSON by path, channels, table or not."""
+
+_Chunk: TypeAlias = tuple[str, _Recipe, int, int]
+"""What an executor gets: the origin of this process, the recipe, the first variant and the end."""
 
 # An executor gets so many chunks that its workers end at about the same time.
 _CHUNKS = 128
@@ -45,7 +49,13 @@ def sweep(
     run_in: Quantity | None = None,
     every: Quantity | None = None,
     record: Recorded | Iterable[Recorded] = (),
+    method: MethodName | None = None,
+    step: Quantity | None = None,
+    tolerance: Quantity | None = None,
+    onset_depth: Quantity | None = None,
     accuracy: Quantity | None = None,
+    accuracy_of: Target | None = None,
+    events: ContactPlace | Iterable[ContactPlace] | None = None,
     output: str | PathLike[str] | ObjectStore | None = None,
     overwrite: bool = False,
     jobs: int | None = None,
@@ -93,9 +103,10 @@ def sweep(
     accuracy
         Largest relative error of the tension [–], such as 0.01 or ``"1 %"``: every variant begins
         with the trials of ``simulate(…, accuracy=…)``, and gives its bits. The same as
-        ``run.accuracy`` in the scene. Other settings of the run are given or varied as values of
-        the scene: ``run.method``, ``run.step``, ``run.tolerance``, ``run.onset_depth``,
-        ``run.events``.
+        ``run.accuracy`` in the scene.
+    method, step, tolerance, onset_depth, accuracy_of, events
+        As `simulate` takes them, for every variant; they go before what the scene says. Any of them
+        may be varied instead, as ``run.method`` and so on.
     output
         Zarr store, a path that ends in ``.zarr``, for sweeps that outgrow the memory or the
         patience: takes the extra ``zarr``. Variants are computed in tasks of about a second, and
@@ -194,13 +205,23 @@ def sweep(
         raise ParameterError(message, "jobs", "leave it out, or give it to the executor")
     if jobs is not None and jobs < 1:
         raise ParameterError(f"jobs = {jobs}, must be at least 1", "jobs", "at least 1")
-    arguments = {"until": until, "run_in": run_in, "every": every, "accuracy": accuracy}
-    settings = {f"run.{name}": value for name, value in arguments.items() if value is not None}
-    base = drive.replace(settings) if settings else drive
+    given: dict[str, Any] = {
+        "until": until,
+        "run_in": run_in,
+        "every": every,
+        "method": method,
+        "step": step,
+        "tolerance": tolerance,
+        "onset_depth": onset_depth,
+        "accuracy": accuracy,
+        "accuracy_of": accuracy_of,
+        "events": None if events is None else _listed(events),
+    }
+    settings = [(key, value) for key, value in given.items() if value is not None]
     varied = tuple((path, _values(values, path)) for path, values in columns.items())
-    recipe = (base.text, base.name, varied, tuple(_listed(record)), design is not None)
-    given = [(path, path.removeprefix("run.")) for path in settings]
-    core = _core.Sweep(*recipe, given)
+    parts = (varied, tuple(_listed(record)), design is not None)
+    core = _core.Sweep(drive.text, drive.name, *parts, settings)
+    recipe = (core.text, drive.name, *parts)
     start = time.perf_counter()
     if output is not None:
         with told(progress, "sweep") as tell:
@@ -213,12 +234,12 @@ def sweep(
             result = core.stack(outcomes) | {"stop": interrupt}
     stop: Any = result["stop"]
     attributes = {
-        "title": base.title,
+        "title": drive.title,
         "format": "chaindrive",
         **_core._origin,
-        "scene_name": base.name,
-        "scene": base.text,
-        "method": ", ".join(result["methods"]) or base.run_defaults["method"],
+        "scene_name": drive.name,
+        "scene": core.text,
+        "method": ", ".join(result["methods"]) or method or drive.run_defaults["method"],
         "swept": [path for path, _ in varied],
         "variants": len(core),
         "finished": result["finished"],
@@ -309,35 +330,29 @@ def _spread(
     After Ctrl-C, which is returned too, None stands for those that had not come back.
     """
     size = min(max(count // _CHUNKS, 1), _LARGEST_CHUNK)
-    pending: dict[Future[list[Any]], range] = {}
     outcomes: list[Any] = [None] * count
-    lost: list[Exception] = []
-    finished = 0
-    stop = None
-    try:
-        for first in range(0, count, size):
-            chunk = range(first, min(first + size, count))
-            future = executor.submit(_part, ORIGIN, recipe, chunk.start, chunk.stop)
-            pending[future] = chunk
-        for future in as_completed(pending):
-            chunk = pending[future]
-            try:
-                outcomes[chunk.start : chunk.stop] = future.result()
-            except Exception as error:
-                # A worker that died, or that has no chaindrive: the other chunks are not its fault.
-                lost.append(error)
-                message = f"the executor lost this variant: {type(error).__name__}: {error}"
-                nothing: Any = (message, "", np.empty(0), [], [], ("", "", ""))
-                outcomes[chunk.start : chunk.stop] = [nothing] * len(chunk)
-            finished += len(chunk)
-            if tell is not None:
-                tell(finished / count)
-    except KeyboardInterrupt as interrupt:
-        stop = interrupt
-    finally:
-        for future in pending:
-            future.cancel()
-    if stop is None and len(lost) == len(pending):
+    finished = missing = 0
+
+    def take(task: _Chunk, part: list[Any]) -> None:
+        nonlocal finished
+        *_, first, end = task
+        outcomes[first:end] = part
+        finished += end - first
+        if tell is not None:
+            tell(finished / count)
+
+    def lose(task: _Chunk, error: Exception) -> None:
+        nonlocal missing
+        *_, first, end = task
+        missing += end - first
+        message = f"the executor lost this variant: {type(error).__name__}: {error}"
+        nothing: Any = (message, "", np.empty(0), [], [], ("", "", ""))
+        take(task, [nothing] * (end - first))
+
+    chunks = range(0, count, size)
+    tasks = [(ORIGIN, recipe, first, min(first + size, count)) for first in chunks]
+    stop, lost = spread(executor, _part, tasks, take, lose)
+    if stop is None and missing == count:
         message = f"the executor lost every variant: {type(lost[0]).__name__}: {lost[0]}"
         raise SimulationError(message, "executor") from lost[0]
     return outcomes, stop

@@ -1,5 +1,6 @@
 """Sweeps: what one run gives, stacked; the same bits on threads, processes and other machines."""
 
+import inspect
 import multiprocessing
 import os
 import signal
@@ -99,6 +100,20 @@ def test_an_accuracy_that_is_not_reached_is_told():
     assert "1 without the accuracy asked for" in result.attrs["summary"]
 
 
+def test_settings_of_a_run_are_arguments_of_a_sweep():
+    """All but those of a single result, and they go before the scene as they do in a run."""
+    runs, sweeps = (set(inspect.signature(it).parameters) for it in (cd.simulate, cd.sweep))
+    assert runs - sweeps == {"checkpoint_every", "error"}
+    settings = {"until": 2e-3, "every": 4e-4, "method": "rk4", "step": 4e-6, "events": "teeth"}
+    drive = marine().replace({"run.accuracy": "0.1 %"})
+    result = cd.sweep(drive, {PRETENSION: [10e3]}, **settings)
+    run = cd.simulate(marine().replace({PRETENSION: 10e3}), **settings, error=False)
+    assert result.attrs["method"] == "rk4"
+    assert result["steps"].item() == run.attrs["steps"]
+    assert result["contact_count"].dims == ("pretension", "contact_kind")
+    assert "accuracy_kept" not in result
+
+
 def test_dimensions_are_named_and_have_units(built_in):
     assert built_in["span_tension"].dims == ("speed", "torque", "pretension", "time", "span")
     assert built_in["span_tension_mean"].dims == ("speed", "torque", "pretension", "span")
@@ -173,6 +188,19 @@ def test_a_worker_that_is_lost_is_the_failure_of_its_variants():
     assert np.isnan(result["contact_force_max"].to_numpy()).tolist() == [False, True, False]
 
 
+def test_a_pool_that_breaks_is_the_failure_of_the_variants_that_it_did_not_take():
+    class Broken(ThreadPoolExecutor):
+        def submit(self, task, /, *arguments):
+            if arguments[-2] == 1:
+                raise OSError("a worker was killed")
+            return super().submit(task, *arguments)
+
+    with Broken(1) as executor:
+        result = cd.sweep(marine(), {PRETENSION: [10e3, 12e3, 14e3]}, until=1e-3, executor=executor)
+    assert [bool(error) for error in result["error"].to_numpy()] == [False, True, True]
+    assert "a worker was killed" in str(result["error"][2].item())
+
+
 def test_an_executor_that_loses_everything_is_an_error():
     class Broken(Executor):
         def submit(self, task, /, *arguments):
@@ -222,10 +250,13 @@ def test_values_may_be_anything_that_a_scene_takes():
         (
             {PRETENSION: [1e3]},
             {"accuracy": 2.0},
-            cd.SceneError,
-            "run.accuracy: 2, must be less than 1",
+            cd.ParameterError,
+            "accuracy.*2.*between 0 and 1",
         ),
-        ({PRETENSION: [1e3]}, {"accuracy": 1.0}, cd.SceneError, "must be less than 1"),
+        ({PRETENSION: [1e3]}, {"accuracy": 1.0}, cd.ParameterError, "between 0 and 1"),
+        ({PRETENSION: [1e3]}, {"accuracy": 0.1, "step": 1e-6}, cd.ParameterError, "step"),
+        ({"run.step": [1e-6]}, {"step": 1e-6}, cd.ParameterError, "given as `step` as well"),
+        ({PRETENSION: [1e3]}, {"method": "euler"}, cd.ParameterError, "euler"),
         ({PRETENSION: b"abc"}, {}, cd.ParameterError, "bytes has no place"),
         ([PRETENSION], {}, TypeError, "a dict of values by path"),
         ({PRETENSION: [1e3]}, {"accuracy": "1 mm"}, cd.SceneError, "is a length"),

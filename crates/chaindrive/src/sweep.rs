@@ -7,18 +7,17 @@ mod account;
 mod columns;
 mod design;
 mod dimension;
+mod layout;
 mod report;
 mod sample;
 mod stack;
 mod store;
 mod tally;
 mod texts;
+mod threads;
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::thread::available_parallelism;
-use std::time::Duration;
+use std::sync::atomic::AtomicBool;
 
 pub use account::{Account, Entry, Quantity, Statistic};
 pub use design::Recipe;
@@ -30,6 +29,7 @@ pub(crate) use stack::{fill, texts};
 pub use store::{Finished, SweepStore, Worker};
 pub use tally::Tally;
 pub(crate) use texts::{OPEN, TEXTS};
+use threads::on_threads;
 
 use crate::scene::SceneError;
 use crate::{Scene, SimulationError};
@@ -196,9 +196,6 @@ const VARIANT: &str = "variant";
 /// Settings that an accuracy chooses, whatever the scene says about them.
 const CHOSEN: [&str; 4] = ["run.method", "run.step", "run.tolerance", "run.onset_depth"];
 
-/// Wall time between two looks at progress and interrupts while no variant ends.
-const LOOK: Duration = Duration::from_millis(50);
-
 impl Sweep {
     /// Refuses settings that a varied path would silently replace: pairs of the path in the scene, into which they
     /// have been put, and of what the user calls them.
@@ -333,56 +330,27 @@ impl Sweep {
         jobs: Option<usize>,
         mut watch: impl FnMut(Progress<'_>) -> Go,
     ) -> Result<Vec<Outcome>, SweepError> {
-        let (first, end) = (variants.start, variants.end.min(self.len));
-        let count = end.saturating_sub(first);
-        let cores = || available_parallelism().map_or(1, usize::from);
-        let jobs = jobs.unwrap_or_else(cores).clamp(1, count.max(1));
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
-        let pool = pool.map_err(|error| SweepError::Threads {
-            reason: error.to_string(),
-        })?;
-        let mut outcomes = vec![Outcome::Open; count];
-        let stop = AtomicBool::new(false);
-        let next = AtomicUsize::new(first);
-        let (sender, receiver) = channel();
-        pool.in_place_scope(|scope| {
-            for _ in 0..jobs {
-                let (sender, stop, next) = (sender.clone(), &stop, &next);
-                scope.spawn(move |_| {
-                    // In their order, so that what is finished early is one stretch.
-                    while !stop.load(Ordering::Relaxed) {
-                        let index = next.fetch_add(1, Ordering::Relaxed);
-                        if index >= end {
-                            break;
-                        }
-                        let outcome = self.carry_out(index, stop);
-                        if sender.send((index, outcome)).is_err() {
-                            break; // the watcher has panicked
-                        }
-                    }
-                });
+        let first = variants.start;
+        let indices: Vec<usize> = (first..variants.end.min(self.len)).collect();
+        let mut outcomes = vec![Outcome::Open; indices.len()];
+        let (mut finished, mut go) = (0, Go::On);
+        let carry_out = |index, stop: &AtomicBool| self.carry_out(index, stop);
+        let ended = on_threads(&indices, jobs, carry_out, |ended| {
+            if let Some((index, outcome)) = ended {
+                finished += usize::from(outcome != Outcome::Open);
+                outcomes[index - first] = outcome;
             }
-            drop(sender);
-            let receiver = receiver;
-            let mut finished = 0;
-            loop {
-                match receiver.recv_timeout(LOOK) {
-                    Ok((index, outcome)) => {
-                        finished += usize::from(outcome != Outcome::Open);
-                        outcomes[index - first] = outcome;
-                    }
-                    Err(RecvTimeoutError::Timeout) => {}
-                    Err(RecvTimeoutError::Disconnected) => break,
-                }
-                let progress = Progress {
+            if go == Go::On {
+                go = watch(Progress {
                     outcomes: &outcomes,
                     finished,
-                };
-                if !stop.load(Ordering::Relaxed) && watch(progress) == Go::NoFurther {
-                    stop.store(true, Ordering::Relaxed);
-                }
+                });
             }
+            go
         });
+        ended.map_err(|error| SweepError::Threads {
+            reason: error.to_string(),
+        })?;
         Ok(outcomes)
     }
 }

@@ -5,17 +5,18 @@ mod stored;
 
 use std::time::Instant;
 
-use chaindrive::Scene;
 use chaindrive::sweep::{
-    self, Account, Arrangement, Coordinate, Entry, Go, Outcome, Progress, Quantity, Setting,
+    self, Account, Arrangement, Coordinate, Entry, Go, Outcome, Progress, Quantity,
 };
 use chaindrive::verdict::WrittenVerdict;
+use chaindrive::{Request, Scene};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::errors::{OrRaise, parameter};
+use crate::run::{Setting, merged};
 use crate::signals::{PATIENCE, look};
 pub(crate) use stored::{SweepStore, SweepWorker};
 
@@ -39,7 +40,7 @@ struct Parts<'py>(
 #[pymethods]
 impl Sweep {
     /// Paths with their values as JSON, put into the scene of a text, in every combination or as the columns of a table; `given` are
-    /// paths that have been put there before, with what the caller calls them.
+    /// settings of the runs, which go before those of the scene as they do in a run.
     #[new]
     #[pyo3(signature = (text, name, vary, record, table=false, given=Vec::new()))]
     fn new(
@@ -49,12 +50,12 @@ impl Sweep {
         vary: Vec<(String, Vec<String>)>,
         record: Vec<String>,
         table: bool,
-        given: Vec<(String, String)>,
+        given: Vec<(String, Setting)>,
     ) -> PyResult<Self> {
         let mut settings = Vec::new();
         for (path, values) in vary {
             let values = values.iter().map(|json| match serde_json::from_str(json) {
-                Ok(value) => Ok(Setting::Json(value)),
+                Ok(value) => Ok(sweep::Setting::Json(value)),
                 Err(error) => {
                     let message = format!("{path}: {error}");
                     Err(parameter(message, &path, "a value of JSON"))
@@ -64,6 +65,11 @@ impl Sweep {
             settings.push((path, values));
         }
         let scene = Scene::from_text(text, name).or_raise()?;
+        let names: Vec<(String, String)> = given
+            .iter()
+            .map(|(key, _)| (format!("run.{key}"), key.clone()))
+            .collect();
+        let scene = Request::new(&scene, &merged(given)).or_raise()?.scene;
         let sweep = py.detach(|| {
             if table {
                 sweep::Sweep::of_table(&scene, &settings, &record)
@@ -72,8 +78,14 @@ impl Sweep {
             }
         });
         let sweep = sweep.or_raise()?;
-        sweep.check_given(&given).or_raise()?;
+        sweep.check_given(&names).or_raise()?;
         Ok(Self(sweep))
+    }
+
+    /// Text of the scene that is varied, settings included.
+    #[getter]
+    fn text(&self) -> &str {
+        self.0.scene().text()
     }
 
     fn __len__(&self) -> usize {

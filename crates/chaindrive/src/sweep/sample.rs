@@ -1,8 +1,8 @@
 //! A timed sample of variants: how many of them make a task.
 
-use std::thread::available_parallelism;
 use std::time::{Duration, Instant};
 
+use super::threads::cores;
 use super::{Account, Go, Outcome, Sweep, SweepError};
 
 /// Wall time of a task: 0.5 to 5 s are short beside a sweep, and long beside the writing of some forty files.
@@ -55,7 +55,6 @@ impl Sweep {
         workers: Option<usize>,
         mut watch: impl FnMut() -> Go,
     ) -> Result<Sample, SweepError> {
-        let cores = || available_parallelism().map_or(1, usize::from);
         let workers = workers.unwrap_or_else(cores).max(1);
         let count = (self.len() / ONE_IN).clamp(1, MOST);
         let mut sample = Sample::default();

@@ -1,8 +1,8 @@
 //! Stacks the accounts of all variants: one array a quantity, the swept dimensions first.
 
+use super::layout::Layout;
 use super::texts::{OPEN, TEXTS};
-use super::{Account, Coordinate, Entry, Outcome, Quantity, Statistic, Sweep};
-use crate::Axis;
+use super::{Account, Coordinate, Entry, Outcome, Quantity, Sweep};
 
 /// One text of all variants.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,47 +51,39 @@ impl Sweep {
     /// Stacks the outcomes of all variants, in their order. Runs that sample longer than others, or have
     /// more links, decide about the size of the arrays; what the others do not have is NaN.
     pub fn stack(&self, outcomes: &[Outcome]) -> Stacked {
-        let (shape, names) = (self.shape(), self.dims());
-        let accounts: Vec<Option<&Account>> = outcomes
-            .iter()
-            .map(|outcome| match outcome {
-                Outcome::Done(account) => Some(account),
-                Outcome::Failed(_) | Outcome::Open => None,
-            })
-            .collect();
-        let time = longest(&accounts);
-        let labels = all_labels(&accounts);
-        let stack = |quantity: Quantity| {
-            let width = quantity.along().map(|along| {
-                let found = labels.iter().find(|(name, _)| name == along);
-                found.map_or(&[] as &[String], |(_, labels)| labels.as_slice())
-            });
-            let mut dims: Vec<String> = names.iter().map(|&name| name.to_owned()).collect();
-            let mut sizes = shape.clone();
-            if quantity.is_sampled() {
-                dims.push("time".into());
-                sizes.push(time.len());
+        let layout = Layout::of(self, outcomes);
+        let stack = |(name, units): &(String, Vec<String>)| {
+            let quantity = Quantity::from_name(name)?;
+            let (mut dims, mut shape) = (self.dims(), layout.shape.clone());
+            for beside in layout.beside(quantity) {
+                dims.push(beside.name);
+                shape.push(beside.len);
             }
-            if let (Some(along), Some(labels)) = (quantity.along(), width) {
-                dims.push(along.to_owned());
-                sizes.push(labels.len());
-            }
-            let mut values = vec![f64::NAN; sizes.iter().product()];
-            let block = sizes[shape.len()..].iter().product::<usize>().max(1);
-            for (account, to) in accounts.iter().zip(values.chunks_mut(block)) {
-                if let Some(account) = account {
-                    fill(account, quantity, width, to);
+            let labels = layout.axis(quantity).map(|axis| axis.labels.as_slice());
+            let mut values = vec![f64::NAN; shape.iter().product()];
+            let block = shape[layout.shape.len()..].iter().product::<usize>().max(1);
+            for (outcome, to) in outcomes.iter().zip(values.chunks_mut(block)) {
+                if let Outcome::Done(account) = outcome {
+                    fill(account, quantity, labels, to);
                 }
             }
-            StackedQuantity {
+            Some(StackedQuantity {
                 quantity,
-                unit: unit(&accounts, quantity),
-                dims,
-                shape: sizes,
+                unit: units.join(" or "),
+                dims: dims.into_iter().map(str::to_owned).collect(),
+                shape,
                 values,
-            }
+            })
         };
-        let quantities: Vec<_> = quantities(&accounts).into_iter().map(stack).collect();
+        let quantities: Vec<_> = layout.quantities.iter().filter_map(stack).collect();
+        let axes = layout.axes.iter();
+        let mut labels: Vec<_> = axes.map(|it| (it.name.clone(), it.coordinate())).collect();
+        // Where no variant has a label, the dimension is there all the same.
+        for along in quantities.iter().filter_map(|it| it.quantity.along()) {
+            if labels.iter().all(|(name, _)| name != along) {
+                labels.push((along.to_owned(), Coordinate::Texts(Vec::new())));
+            }
+        }
         let sampled = quantities.iter().any(|it| it.quantity.is_sampled());
         let of_variants = outcomes.iter().map(texts);
         let texts = TEXTS.iter().enumerate();
@@ -101,12 +93,12 @@ impl Sweep {
             texts: of_variants.clone().map(|of| of[index].to_owned()).collect(),
         });
         Stacked {
-            shape,
-            time: sampled.then(|| time.to_vec()),
-            labels: labels.into_iter().map(coordinate).collect(),
+            shape: layout.shape,
+            time: sampled.then_some(layout.time),
+            labels,
             quantities,
             texts: texts.collect(),
-            methods: methods(&accounts),
+            methods: layout.methods,
         }
     }
 }
@@ -120,91 +112,6 @@ pub(crate) fn texts(outcome: &Outcome) -> [&str; TEXTS.len()] {
         Outcome::Failed(message) => ["", "", "", message],
         Outcome::Open => ["", "", "", OPEN],
     }
-}
-
-/// The unit of a quantity in all accounts; where they differ, every one of them.
-fn unit(accounts: &[Option<&Account>], quantity: Quantity) -> String {
-    let mut units: Vec<&str> = Vec::new();
-    let entries = accounts.iter().flatten().flat_map(|it| &it.entries);
-    for entry in entries.filter(|entry| entry.quantity == quantity) {
-        if !units.contains(&entry.unit.as_str()) {
-            units.push(&entry.unit);
-        }
-    }
-    if units.is_empty() {
-        quantity.unit().to_owned()
-    } else {
-        units.join(" or ")
-    }
-}
-
-fn longest<'a>(accounts: &[Option<&'a Account>]) -> &'a [f64] {
-    let times = accounts.iter().flatten().map(|account| &account.time);
-    times
-        .max_by_key(|time| time.len())
-        .map_or(&[], Vec::as_slice)
-}
-
-fn methods(accounts: &[Option<&Account>]) -> Vec<String> {
-    let mut all: Vec<String> = Vec::new();
-    for account in accounts.iter().flatten() {
-        if !all.contains(&account.method) {
-            all.push(account.method.clone());
-        }
-    }
-    all
-}
-
-/// The labels of all accounts, each once, in the order of their appearance.
-fn all_labels(accounts: &[Option<&Account>]) -> Vec<(String, Vec<String>)> {
-    let mut all: Vec<(String, Vec<String>)> = vec![("span".into(), Vec::new())];
-    for (name, labels) in accounts
-        .iter()
-        .flatten()
-        .flat_map(|account| &account.labels)
-    {
-        let known = all.iter().position(|(known, _)| known == name);
-        let index = known.unwrap_or_else(|| {
-            all.push((name.clone(), Vec::new()));
-            all.len() - 1
-        });
-        let known = &mut all[index].1;
-        if !known.starts_with(labels) {
-            for label in labels {
-                if !known.contains(label) {
-                    known.push(label.clone());
-                }
-            }
-        }
-    }
-    all
-}
-
-fn coordinate((name, labels): (String, Vec<String>)) -> (String, Coordinate) {
-    let numbered = Axis::ALL
-        .iter()
-        .any(|axis| axis.name() == Some(&name) && axis.is_numbered());
-    let coordinate = if numbered {
-        Coordinate::Whole((0..).take(labels.len()).collect())
-    } else {
-        Coordinate::Texts(labels)
-    };
-    (name, coordinate)
-}
-
-/// The quantities that any of the accounts has; those of a run without channels in any case.
-fn quantities(accounts: &[Option<&Account>]) -> Vec<Quantity> {
-    let mut all: Vec<Quantity> = Statistic::of_every_run().map(Quantity::Statistic).collect();
-    for entry in accounts
-        .iter()
-        .flatten()
-        .flat_map(|account| &account.entries)
-    {
-        if !all.contains(&entry.quantity) {
-            all.push(entry.quantity);
-        }
-    }
-    all
 }
 
 /// Puts the entries of one account where their labels are in the stack.

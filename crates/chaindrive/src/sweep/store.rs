@@ -18,7 +18,6 @@
 //! renaming it), so a chunk is there or not. A task whose worker died is carried out again and gives the same bits.
 
 mod coordinator;
-mod layout;
 mod worker;
 
 use std::sync::Arc;
@@ -28,10 +27,10 @@ use zarrs::array::builder::ArrayBuilderFillValue;
 use zarrs::array::codec::ZstdCodec;
 use zarrs::array::{ArrayBuilder, CodecOptions, DataType, data_type};
 
+use super::layout::Layout;
 use super::{OPEN, Quantity, TEXTS};
 use crate::zarr::{Fault, Storage, StoredArray, ZSTD_LEVEL};
 pub use coordinator::SweepStore;
-use layout::Layout;
 pub use worker::{Finished, Worker};
 
 /// The text whose chunk is the last of a task: why variants failed; of those not carried out, that they were not.
@@ -54,16 +53,10 @@ impl Arrays<'_> {
         let layout = self.layout;
         let mut dims: Vec<&str> = self.swept();
         let (mut shape, mut chunk) = (layout.shape.clone(), layout.cuts.clone());
-        if quantity.is_sampled() {
-            dims.push("time");
-            shape.push(layout.time.len());
-            chunk.push(layout.samples);
-        }
-        if let Some(along) = quantity.along() {
-            dims.push(along);
-            let axis = layout.axis(quantity);
-            shape.push(axis.map_or(0, |axis| axis.labels.len()));
-            chunk.push(axis.map_or(1, |axis| axis.cut));
+        for beside in layout.beside(quantity) {
+            dims.push(beside.name);
+            shape.push(beside.len);
+            chunk.push(beside.cut);
         }
         let kind = data_type::float64();
         self.array(

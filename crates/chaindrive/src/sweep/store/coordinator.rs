@@ -2,17 +2,15 @@
 
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::thread::{self, available_parallelism};
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use serde_json::{Map, Value};
 use zarrs::array::{CodecOptions, data_type};
 
-use super::layout::Layout;
 use super::{Arrays, Finished, Worker, every_chunk};
-use crate::Axis;
+use crate::sweep::layout::Layout;
+use crate::sweep::threads::on_threads;
 use crate::sweep::{Coordinate, Go, Outcome, Quantity, Recipe, Sample, Sweep, TEXTS, Tally};
 use crate::zarr::{
     Ending, Existing, Fault, LAYOUT, Objects, RECIPE, Store, StoredArray, Story, WriteError, about,
@@ -24,9 +22,6 @@ const TELL_EVERY: Duration = Duration::from_secs(5);
 
 /// Tasks that are read back at a time.
 const TASKS_AT_A_TIME: usize = 64;
-
-/// Wall time between two looks at interrupts while no task ends.
-const LOOK: Duration = Duration::from_millis(50);
 
 /// The store of a sweep, claimed by the process that hands out its tasks.
 pub struct SweepStore {
@@ -251,7 +246,7 @@ impl SweepStore {
             return Ok(Go::On);
         }
         let first: Vec<usize> = self.open_tasks()?.into_iter().take(1).collect();
-        let go = self.carry_out(&first, 1, watch)?;
+        let go = self.carry_out(&first, Some(1), watch)?;
         self.publish()?;
         Ok(go)
     }
@@ -271,8 +266,6 @@ impl SweepStore {
             return Ok(());
         }
         let open = self.open_tasks()?;
-        let cores = || available_parallelism().map_or(1, usize::from);
-        let jobs = jobs.unwrap_or_else(cores).clamp(1, open.len().max(1));
         self.carry_out(&open, jobs, watch).map(drop)
     }
 
@@ -280,57 +273,32 @@ impl SweepStore {
     fn carry_out(
         &mut self,
         open: &[usize],
-        jobs: usize,
+        jobs: Option<usize>,
         mut watch: impl FnMut(usize) -> Go,
     ) -> Result<Go, WriteError> {
         let worker = Worker::on(self.store.storage().clone(), self.store.path())?;
-        let stop = AtomicBool::new(false);
-        let next = AtomicUsize::new(0);
-        let (sender, receiver) = channel();
-        thread::scope(|scope| {
-            for _ in 0..jobs {
-                let sender = sender.clone();
-                let (worker, stop, next) = (&worker, &stop, &next);
-                let work = move || {
-                    while !stop.load(Ordering::Relaxed) {
-                        let Some(task) = open.get(next.fetch_add(1, Ordering::Relaxed)) else {
-                            break;
-                        };
-                        let finished = worker.carry_out(*task, stop);
-                        if sender.send(finished).is_err() {
-                            break; // the watcher has panicked
-                        }
-                    }
-                };
-                let spawned = thread::Builder::new().spawn_scoped(scope, work);
-                if let Err(source) = spawned {
-                    stop.store(true, Ordering::Relaxed);
-                    let path = self.store.path().to_owned();
-                    return Err(WriteError::Io { path, source });
+        let (mut refused, mut go) = (None, Go::On);
+        let carry_out = |task, stop: &AtomicBool| worker.carry_out(task, stop);
+        let ended = on_threads(open, jobs, carry_out, |ended| {
+            let counted = match ended {
+                Some((_, finished)) => {
+                    finished.and_then(|finished| self.count(finished.unwrap_or_default()))
                 }
+                None => Ok(()),
+            };
+            if let Err(error) = counted {
+                refused.get_or_insert(error);
+                go = Go::NoFurther;
             }
-            drop(sender);
-            let mut refused = None;
-            loop {
-                let counted = match receiver.recv_timeout(LOOK) {
-                    Ok(finished) => {
-                        finished.and_then(|finished| self.count(finished.unwrap_or_default()))
-                    }
-                    Err(RecvTimeoutError::Timeout) => Ok(()),
-                    Err(RecvTimeoutError::Disconnected) => break,
-                };
-                if let Err(error) = counted {
-                    refused.get_or_insert(error);
-                    stop.store(true, Ordering::Relaxed);
-                }
-                let stopped = stop.load(Ordering::Relaxed);
-                if !stopped && watch(self.stored()) == Go::NoFurther {
-                    stop.store(true, Ordering::Relaxed);
-                }
+            if go == Go::On {
+                go = watch(self.stored());
             }
-            let stopped = stop.load(Ordering::Relaxed);
-            let go = if stopped { Go::NoFurther } else { Go::On };
-            refused.map_or(Ok(go), Err)
+            go
+        });
+        refused.map_or(Ok(()), Err)?;
+        ended.map_err(|source| WriteError::Io {
+            path: self.store.path().to_owned(),
+            source,
         })
     }
 
@@ -522,12 +490,7 @@ fn lay(store: &Store, sweep: &Sweep, layout: &Layout) -> Result<Map<String, Valu
         written.insert("time".into(), array);
     }
     for axis in &layout.axes {
-        let mut known = Axis::ALL.iter();
-        let labels = if known.any(|it| it.name() == Some(&axis.name) && it.is_numbered()) {
-            Coordinate::Whole((0..).take(axis.labels.len()).collect())
-        } else {
-            Coordinate::Texts(axis.labels.clone())
-        };
+        let labels = axis.coordinate();
         let (name, cut) = (axis.name.as_str(), axis.cut);
         let array = put_coordinate(&arrays, name, name, &labels, cut, Map::new())?;
         written.insert(axis.name.clone(), array);

@@ -9,8 +9,8 @@ use serde::de::DeserializeOwned;
 use serde_json::Map;
 use zarrs::storage::{Bytes, StoreKey};
 
-use super::layout::{Layout, Region};
 use super::{Arrays, MARK, Storage, blank, every_chunk, texts_before_the_mark};
+use crate::sweep::layout::{Layout, Region};
 use crate::sweep::{Account, Entry, OPEN, Outcome, Quantity, Recipe, Sweep, TEXTS, fill, texts};
 use crate::verdict::WrittenVerdict;
 use crate::zarr::{self, Fault, Folder, Ground, LAYOUT, Objects, RECIPE, WriteError};
@@ -181,15 +181,7 @@ impl Worker {
 
     /// The layout with room for all outcomes; where it has to grow, it does so for all workers.
     fn with_room(&self, mut layout: Layout, outcomes: &[Outcome]) -> Result<Layout, Fault> {
-        let grow = |layout: &mut Layout| {
-            let mut grown = false;
-            for outcome in outcomes {
-                if let Outcome::Done(account) = outcome {
-                    grown |= layout.make_room(account);
-                }
-            }
-            grown
-        };
+        let grow = |layout: &mut Layout| layout.make_room_for(outcomes);
         if !grow(&mut layout.clone()) {
             return Ok(layout);
         }

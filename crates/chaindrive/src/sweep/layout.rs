@@ -1,11 +1,12 @@
-//! Layout of a sweep's store: how the arrays are cut into tasks, and what they have beside the variants.
+//! Layout of a sweep's arrays: what they have beside the variants, and how they are cut into tasks.
 //!
-//! It is a file of the store that only grows. A worker whose variant has more samples, labels or quantities than any
+//! In memory it is made of all outcomes at once. In a store it is a file that only grows. A worker whose variant has more samples, labels or quantities than any
 //! before makes room for them under a lock, and what others have written stays where it is.
 
 use serde::{Deserialize, Serialize};
 
-use crate::sweep::{Account, Quantity, Statistic, Sweep, places};
+use super::{Account, Coordinate, Outcome, Quantity, Statistic, Sweep, places};
+use crate::Axis;
 
 /// Numbers in a chunk at most, about 1 MiB, unless a single sample of a single variant has more.
 const NUMBERS_PER_CHUNK: usize = 1 << 17;
@@ -40,6 +41,15 @@ pub(super) struct LabelledAxis {
     pub(super) labels: Vec<String>,
 }
 
+/// A dimension that a quantity has beside those of the sweep.
+pub(super) struct Beside {
+    pub(super) name: &'static str,
+    /// Entries.
+    pub(super) len: usize,
+    /// Entries in a chunk.
+    pub(super) cut: usize,
+}
+
 /// One chunk of every array: the variants in it, and where they are.
 pub(super) struct Region {
     /// Place of the chunk along each dimension of the sweep.
@@ -48,11 +58,23 @@ pub(super) struct Region {
     pub(super) variants: Vec<(usize, usize)>,
 }
 
+impl LabelledAxis {
+    /// Its labels, or numbers where they are numbered.
+    pub(super) fn coordinate(&self) -> Coordinate {
+        let mut known = Axis::ALL.iter();
+        if known.any(|it| it.name() == Some(&self.name) && it.is_numbered()) {
+            Coordinate::Whole((0..).take(self.labels.len()).collect())
+        } else {
+            Coordinate::Texts(self.labels.clone())
+        }
+    }
+}
+
 impl Layout {
-    /// A layout for tasks of about so many variants, with room for one account, if there is one.
-    pub(super) fn new(sweep: &Sweep, variants: usize, sample: Option<&Account>) -> Self {
+    /// A layout without any account: what every run has.
+    fn bare(sweep: &Sweep) -> Self {
         let shape = sweep.shape();
-        let mut layout = Self {
+        Self {
             cuts: vec![1; shape.len()],
             shape,
             most_samples: sweep.most_samples(),
@@ -60,7 +82,19 @@ impl Layout {
                 .map(|it| (it.name().to_owned(), vec![it.unit().to_owned()]))
                 .collect(),
             ..Self::default()
-        };
+        }
+    }
+
+    /// The layout of arrays that hold these outcomes.
+    pub(super) fn of(sweep: &Sweep, outcomes: &[Outcome]) -> Self {
+        let mut layout = Self::bare(sweep);
+        layout.make_room_for(outcomes);
+        layout
+    }
+
+    /// A layout for tasks of about so many variants, with room for one account, if there is one.
+    pub(super) fn new(sweep: &Sweep, variants: usize, sample: Option<&Account>) -> Self {
+        let mut layout = Self::bare(sweep);
         if let Some(account) = sample {
             layout.make_room(account);
         }
@@ -81,12 +115,25 @@ impl Layout {
         let Some(quantity) = Quantity::from_name(name) else {
             return 1;
         };
-        let samples = if quantity.is_sampled() {
-            self.samples
-        } else {
-            1
-        };
-        samples * self.axis(quantity).map_or(1, |axis| axis.cut)
+        self.beside(quantity).iter().map(|it| it.cut).product()
+    }
+
+    /// The dimensions of a quantity beside those of the sweep.
+    pub(super) fn beside(&self, quantity: Quantity) -> Vec<Beside> {
+        let time = quantity.is_sampled().then_some(Beside {
+            name: "time",
+            len: self.time.len(),
+            cut: self.samples,
+        });
+        let labels = quantity.along().map(|name| {
+            let axis = self.axis(quantity);
+            Beside {
+                name,
+                len: axis.map_or(0, |axis| axis.labels.len()),
+                cut: axis.map_or(1, |axis| axis.cut),
+            }
+        });
+        time.into_iter().chain(labels).collect()
     }
 
     /// The axis of a quantity beside time.
@@ -95,8 +142,19 @@ impl Layout {
         self.axes.iter().find(|axis| axis.name == along)
     }
 
+    /// Makes room for all that outcomes have; tells whether there was too little.
+    pub(super) fn make_room_for(&mut self, outcomes: &[Outcome]) -> bool {
+        let mut grown = false;
+        for outcome in outcomes {
+            if let Outcome::Done(account) = outcome {
+                grown |= self.make_room(account);
+            }
+        }
+        grown
+    }
+
     /// Makes room for what an account has; tells whether there was too little.
-    pub(super) fn make_room(&mut self, account: &Account) -> bool {
+    fn make_room(&mut self, account: &Account) -> bool {
         let mut grown = false;
         if account.time.len() > self.time.len() {
             self.time.clone_from(&account.time);
