@@ -31,7 +31,7 @@ def marine():
 
 @pytest.fixture(scope="module")
 def built_in():
-    return cd.sweep(marine(), VARY, **SETTINGS)
+    return cd.sweep(marine(), VARY, **SETTINGS, jobs=2)
 
 
 def assert_same_bits(one, other):
@@ -136,7 +136,7 @@ def test_a_variant_that_fails_leaves_its_message_and_the_others(built_in):
     assert built_in.attrs["failed"] == 6
 
 
-@pytest.mark.parametrize("jobs", [1, 2, 7])
+@pytest.mark.parametrize("jobs", [1, 7])
 def test_any_number_of_threads_gives_the_same_bits(built_in, jobs):
     assert_same_bits(cd.sweep(marine(), VARY, **SETTINGS, jobs=jobs), built_in)
 

@@ -1,14 +1,24 @@
 //! Stepping from outside: pieces, inputs and snapshots, to the bit.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
-use chaindrive::{Channel, Control, Flow, Observation, Run, Scene, Simulation, Snapshot, Stepping};
+use chaindrive::{
+    Assembled, Channel, Control, Flow, Observation, Run, Scene, Simulation, Snapshot, Stepping,
+};
 
 fn start(scene: &Scene, stepping: Stepping) -> Simulation {
+    moving(&assembled(scene), stepping)
+}
+
+fn assembled(scene: &Scene) -> Assembled {
+    scene.drive().unwrap().assemble().unwrap()
+}
+
+fn moving(assembled: &Assembled, stepping: Stepping) -> Simulation {
     let run = Run {
         stepping,
         ..Run::default()
     };
-    Simulation::start(&scene.drive().unwrap(), &run).unwrap()
+    Simulation::from_assembled(assembled.clone(), &run).unwrap()
 }
 
 fn preset(name: &str) -> Scene {
@@ -106,14 +116,15 @@ fn a_run_in_a_hundred_pieces_is_the_run_in_one() {
         loose(),
         oiled(),
     ] {
+        let assembled = assembled(&scene);
         for stepping in METHODS {
-            let mut whole = start(&scene, stepping);
-            let end = bits(whole.advance_to(5e-4).unwrap());
-            let mut pieces = start(&scene, stepping);
+            let mut whole = moving(&assembled, stepping);
+            let mut pieces = whole.clone();
+            let end = bits(whole.advance_to(4e-4).unwrap());
             for k in 0..100 {
-                pieces.advance_to(5e-6 * f64::from(k)).unwrap();
+                pieces.advance_to(4e-6 * f64::from(k)).unwrap();
             }
-            assert_eq!(bits(pieces.advance_to(5e-4).unwrap()), end, "{stepping:?}");
+            assert_eq!(bits(pieces.advance_to(4e-4).unwrap()), end, "{stepping:?}");
             assert_eq!(pieces.statistics(), whole.statistics(), "{stepping:?}");
         }
     }
@@ -158,19 +169,21 @@ fn a_snapshot_brings_back_every_bit() {
         rubbing(),
         oiled(),
     ] {
+        let assembled = assembled(&scene);
         for stepping in METHODS {
-            let mut simulation = start(&scene, stepping);
+            let fresh = moving(&assembled, stepping);
+            let mut simulation = fresh.clone();
             simulation.advance_to(4.2e-4).unwrap();
             let kept = simulation.snapshot();
-            let end = bits(simulation.advance_to(1e-3).unwrap());
+            let end = bits(simulation.advance_to(8e-4).unwrap());
             simulation.restore(&kept).unwrap();
-            assert_eq!(bits(simulation.advance_to(1e-3).unwrap()), end);
+            assert_eq!(bits(simulation.advance_to(8e-4).unwrap()), end);
             // Another simulation of the drive takes it as well, from memory or from bytes.
             let written = Snapshot::from_bytes(&kept.to_bytes()).unwrap();
             for kept in [&kept, &written] {
-                let mut other = start(&scene, stepping);
+                let mut other = fresh.clone();
                 other.restore(kept).unwrap();
-                assert_eq!(bits(other.advance_to(1e-3).unwrap()), end);
+                assert_eq!(bits(other.advance_to(8e-4).unwrap()), end);
                 assert_eq!(other.statistics(), simulation.statistics());
             }
         }
@@ -191,11 +204,12 @@ fn a_run_by_snapshots_is_the_run_in_one() {
         (ideal, true),
         (particles, false),
     ] {
+        let assembled = assembled(&scene);
         for stepping in [METHODS.as_slice(), &[Stepping::GeneralizedAlpha]].concat() {
             if stepping.is_implicit() && !solves {
                 continue;
             }
-            let fresh = start(&scene, stepping);
+            let fresh = moving(&assembled, stepping);
             let mut whole = fresh.clone();
             let end = bits(whole.advance_to(2e-4).unwrap());
             let mut bytes = fresh.snapshot().to_bytes();

@@ -28,7 +28,7 @@ const LUGRE: &str = "contact.joints.friction={ kind = \"lugre\", static_coeffici
 const CASES: [Case; 6] = [
     Case {
         name: "particles",
-        scene: &["marine_engine", "--until", "20 ms", "--method", "verlet"],
+        scene: &["marine_engine", "--until", "10 ms", "--method", "verlet"],
         checkpoint_every: "0.5 ms",
         kills: 20,
     },
@@ -46,7 +46,7 @@ const CASES: [Case; 6] = [
     },
     Case {
         name: "clearance joints",
-        scene: &["bicycle", "--until", "5 ms", "--method", "implicit-damping"],
+        scene: &["bicycle", "--until", "3 ms", "--method", "implicit-damping"],
         checkpoint_every: "0.2 ms",
         kills: 20,
     },
@@ -71,7 +71,7 @@ const CASES: [Case; 6] = [
             "--set",
             LUGRE,
             "--until",
-            "5 ms",
+            "3 ms",
             "--method",
             "implicit-damping",
         ],
@@ -331,10 +331,10 @@ fn a_complete_run_goes_on_to_a_later_end() {
         let run = ["run", "marine_two_sprockets", "--until", until];
         [&run[..], &short, more].concat()
     };
-    assert_eq!(run(at, &of("30 ms", &["-o", "whole.zarr"])).0, Some(0));
+    assert_eq!(run(at, &of("15 ms", &["-o", "whole.zarr"])).0, Some(0));
     let to = of("1 ms", &["-o", "run.zarr", "--checkpoint-every", "1 ms"]);
     assert_eq!(run(at, &to).0, Some(0));
-    let on = ["resume", "run.zarr", "-q", "--until", "30 ms"];
+    let on = ["resume", "run.zarr", "-q", "--until", "15 ms"];
     let store = at.join("run.zarr");
     let child = start(at, &on);
     wait_for("it does not go on", || status(&store) == "running");
@@ -344,9 +344,9 @@ fn a_complete_run_goes_on_to_a_later_end() {
     assert_eq!((code, err.as_str()), (Some(0), ""));
     let [whole, carried] = ["whole.zarr", "run.zarr"].map(|name| files(&at.join(name)));
     assert!(whole == carried);
-    let (code, err) = run(at, &["resume", "run.zarr", "--until", "29 ms"]);
+    let (code, err) = run(at, &["resume", "run.zarr", "--until", "14 ms"]);
     assert_eq!(code, Some(2));
-    assert!(err.contains("until = 0.029 s is past"), "{err}");
+    assert!(err.contains("until = 0.014 s is past"), "{err}");
 }
 
 #[test]
