@@ -19,7 +19,6 @@ _BRINGS = {
     "matplotlib": "plot",
     "obstore": "object-store",
     "pyarrow": "parquet",
-    "rainflow": "analysis",
     "scipy": "analysis",
     "tqdm": "progress",
     "zarr": "zarr",

@@ -8,6 +8,7 @@
     reason = "Python hands over its arguments; references to them cannot be extracted"
 )]
 
+mod cycles;
 mod design;
 mod drawing;
 mod drive;
@@ -38,6 +39,8 @@ mod core {
     use pyo3::prelude::*;
     use pyo3::types::IntoPyDict;
 
+    #[pymodule_export]
+    use crate::cycles::rainflow;
     #[pymodule_export]
     use crate::design::{layout_around, layouts_of};
     #[pymodule_export]

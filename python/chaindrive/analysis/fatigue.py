@@ -6,10 +6,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
+from chaindrive import _core
 from chaindrive.analysis.parts import circuits, one_chain
 from chaindrive.analysis.signal import recorded
 from chaindrive.errors import ParameterError
-from chaindrive.extras import extra
 
 __all__ = ["cycles", "rainflow"]
 
@@ -27,21 +27,14 @@ def cycles(values: ArrayLike) -> NDArray[np.float64]:
     (cycles, 3)
         Range, mean, and count: 1 for a cycle, ½ for a half.
 
-    Notes
-    -----
-    The package ``rainflow`` counts. It is given the turning points only, the same cycles in a
-    fraction of the time.
-
     Examples
     --------
     >>> from chaindrive.analysis import cycles
     >>> cycles([-2, 1, -3, 5, -1, 3, -4, 4, -2]).tolist()[0]
     [3.0, -0.5, 0.5]
     """
-    counted = extra("rainflow", "cycle counts").extract_cycles(
-        _turning_points(np.asarray(values, dtype=float))
-    )
-    return np.array([cycle[:3] for cycle in counted], dtype=float).reshape(-1, 3)
+    counted, _ = _core.rainflow(np.asarray(values, dtype=float).reshape(1, -1))
+    return counted
 
 
 def rainflow(
@@ -85,8 +78,6 @@ def rainflow(
     ------
     ParameterError
         The channel was not recorded.
-    ImportError
-        The package ``rainflow`` is missing, of the extra ``analysis``.
     """
     recorded(run, "link_tension")
     if ranges < 1 or means < 1:
@@ -94,8 +85,7 @@ def rainflow(
     which = one_chain(run, chain)
     own = slice(which.first, which.first + which.links)
     tension = run["link_tension"].isel(link=own).transpose("link", "time").to_numpy().astype(float)
-    counted = [cycles(values) for values in tension]
-    table = np.concatenate(counted)
+    table, each = _core.rainflow(tension)
     high = float(table[:, 0].max()) if table.size else 0.0
     least, most = float(tension.min()), float(tension.max())
     edges = np.linspace(0.0, high or 1.0, ranges + 1)
@@ -111,7 +101,9 @@ def rainflow(
         equivalent = (damage / (which.links * around)) ** (1.0 / exponent)
     else:
         equivalent = np.nan
-    largest = [float(it[:, 0].max()) if it.size else 0.0 for it in counted]
+    of_link = np.repeat(np.arange(which.links), each.astype(np.intp))
+    largest = np.zeros(which.links)
+    np.maximum.at(largest, of_link, table[:, 0])
     newton = {"units": "N"}
     per_link = {"units": "1"}
     return xr.Dataset(
@@ -160,12 +152,3 @@ def rainflow(
 def _middles(edges: NDArray[np.float64]) -> NDArray[np.float64]:
     middles: NDArray[np.float64] = 0.5 * (edges[1:] + edges[:-1])
     return middles
-
-
-def _turning_points(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the first and last value and those between where the signal turns."""
-    steps = np.diff(values)
-    # On a plateau the signal turns once.
-    moving = values[np.concatenate([[True], steps != 0.0])]
-    turns = np.flatnonzero(np.diff(moving)[1:] * np.diff(moving)[:-1] < 0.0) + 1
-    return np.concatenate([moving[:1], moving[turns], moving[-1:]])

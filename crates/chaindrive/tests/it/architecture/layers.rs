@@ -45,7 +45,7 @@ const CRATES: [Storeys; 4] = [
     Storeys {
         folder: "chaindrive",
         layers: &[
-            &["figure", "identity", "plain", "stepping"],
+            &["figure", "identity", "plain", "rainflow", "stepping"],
             &["catalogue", "design", "draw", "rating", "seal"],
             &["error", "scene"],
             &["channel", "patience"],
@@ -76,7 +76,7 @@ const CRATES: [Storeys; 4] = [
         folder: "python",
         layers: &[
             &["errors"],
-            &["drawing", "kinematics", "law", "signals"],
+            &["cycles", "drawing", "kinematics", "law", "signals"],
             &["friction", "profile"],
             &["drive"],
             &["design", "run"],
