@@ -297,6 +297,8 @@ impl Chain {
         fn close_in_motion(&self, begin: f64, bodies: GroupBodies<'_>, q: &[f64], v: &mut [f64]);
         fn nudge(&self, q: &mut [f64], shift: impl FnMut() -> f64);
         fn stabilisation(&self) -> f64;
+        fn damps_stiffly(&self, touches: bool) -> bool;
+        fn has_reactions(&self) -> bool;
     }
 
     /// Where the rollers are.
@@ -367,15 +369,6 @@ impl Chain {
         }
     }
 
-    /// See [`Makeup::DAMPS_STIFFLY`].
-    pub(crate) fn damps_stiffly(&self) -> bool {
-        match self {
-            Self::Particles(_) => Particles::DAMPS_STIFFLY,
-            Self::Points(_) => Points::DAMPS_STIFFLY,
-            Self::Links(_) => Linkage::DAMPS_STIFFLY,
-        }
-    }
-
     /// x ← (M + c C + k K)⁻¹ M x over the chain and, behind it, the bodies of its group.
     pub(crate) fn solve(
         &self,
@@ -395,6 +388,11 @@ impl Chain {
         fn pressed(&self, at: Moment<'_>, record) -> f64;
         fn observe(&self, at: Moment<'_>, record, out: &mut Observation);
         fn observe_forces(&self, at: Moment<'_>, record, out: &mut Observation);
+    }
+
+    /// See [`Makeup::show_reactions`].
+    pub(crate) fn show_reactions(&self, at: Moment<'_>, record: &mut Record) {
+        ask!(self, record, (chain, work) => chain.show_reactions(at, work));
     }
 
     /// Adds kinetic energy, weight, and what links or joints store.

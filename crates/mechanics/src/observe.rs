@@ -151,7 +151,8 @@ impl System {
         self.evaluate(at, &mut a, &mut rates, record);
         out.time = at.t;
         out.clear_chains();
-        for (member, record) in self.chains.iter().zip(&record.chains) {
+        for (member, record) in self.chains.iter().zip(&mut record.chains) {
+            member.chain.show_reactions(member.own(at), record);
             member.chain.observe(member.own(at), record, out);
         }
         self.observe_forces(at, record, out);
@@ -214,24 +215,31 @@ impl System {
         self.applied = applied;
     }
 
-    /// Puts the forces that steps applied in the place of those of the laws, where they are known; the tension of links that are
-    /// springs is that of their law.
+    /// Puts the forces that steps applied in the place of those of the laws, where they are known. The tension of links that are
+    /// springs is that of their law, and reactions of chains that touch nothing are those of the state at t.
     fn blend_forces(&self, t: f64, out: &mut Observation) {
         let Some((share, [before, now])) = self.applied.around(t) else {
             return;
         };
-        // Links that are springs keep what their law says at t.
-        let springs = out.link_tension.clone();
+        let tension = out.link_tension.clone();
+        let joints = [out.joint_force_x.clone(), out.joint_force_y.clone()];
         let lists = before.lists.iter().zip(&now.lists);
         for ((before, now), list) in lists.zip(forces(out)) {
             blended(share, before, now, list);
         }
-        let mut first = 0;
+        let (mut first, mut first_joint) = (0, 0);
         for member in &self.chains {
             let links = first..first + member.chain.links();
-            first = links.end;
-            if member.chain.has_springs() {
-                out.link_tension[links.clone()].copy_from_slice(&springs[links]);
+            let own = first_joint..first_joint + member.chain.joints();
+            (first, first_joint) = (links.end, own.end);
+            let reacts = member.chain.has_reactions() && !member.contacts.any();
+            if member.chain.has_springs() || reacts {
+                out.link_tension[links.clone()].copy_from_slice(&tension[links]);
+            }
+            if reacts {
+                let [x, y] = &joints;
+                out.joint_force_x[own.clone()].copy_from_slice(&x[own.clone()]);
+                out.joint_force_y[own.clone()].copy_from_slice(&y[own]);
             }
         }
     }

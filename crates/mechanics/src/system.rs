@@ -113,7 +113,7 @@ impl System {
     /// Whether a chain has damping so stiff that a method had better take it implicitly, and all chains let one do so.
     pub fn prefers_implicit_damping(&self) -> bool {
         let mut chains = self.chains.iter();
-        self.can_solve() && chains.any(|member| member.chain.damps_stiffly())
+        self.can_solve() && chains.any(|member| member.chain.damps_stiffly(member.contacts.any()))
     }
 
     /// Number of rollers of all chains.

@@ -15,6 +15,13 @@ pub(crate) struct BodyContacts {
     pub(crate) rails: Vec<OnRail>,
 }
 
+impl BodyContacts {
+    /// Whether there is anything to touch.
+    pub(crate) fn any(&self) -> bool {
+        !(self.teeth.is_empty() && self.rails.is_empty())
+    }
+}
+
 /// Contacts with the teeth of one sprocket.
 #[derive(Clone, Debug)]
 pub(crate) struct OnWheel {

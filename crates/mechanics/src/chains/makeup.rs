@@ -23,10 +23,6 @@ pub(crate) trait Makeup: Statics {
     /// Whether it wants to know the faces of bodies that its rollers press on, beside the forces.
     const READS_FACES: bool = false;
 
-    /// Whether damping is so stiff in it that a method had better take it implicitly: that of contacts in joints is, that of springs
-    /// between rollers is not.
-    const DAMPS_STIFFLY: bool = false;
-
     fn series(&self) -> &Series;
 
     fn series_mut(&mut self) -> &mut Series;
@@ -105,6 +101,20 @@ pub(crate) trait Makeup: Statics {
 
     /// Puts coordinates that are given in time where they are at t.
     fn drive_ends(&self, _t: f64, _q: &mut [f64], _v: &mut [f64]) {}
+
+    /// Whether damping is so stiff in it that a method had better take it implicitly: that of contacts between bodies is, that of springs
+    /// between rollers is not. `touches`: whether there are sprockets or guides that it can touch.
+    fn damps_stiffly(&self, _touches: bool) -> bool {
+        false
+    }
+
+    /// Whether reactions hold its joints: forces that follow from a state by themselves, without a law.
+    fn has_reactions(&self) -> bool {
+        false
+    }
+
+    /// Rids the reactions in the joints of what draws these together where the time stepping has let them open.
+    fn show_reactions(&self, _at: Moment<'_>, _work: &mut Self::Work) {}
 
     /// Frequency \[1/s\] of what every method takes explicitly, beside the mode of [`rates`](Self::rates).
     fn stabilisation(&self) -> f64 {

@@ -194,7 +194,6 @@ impl Makeup for Points {
 
     const SOLVES: bool = true;
     const READS_FACES: bool = true;
-    const DAMPS_STIFFLY: bool = true;
 
     fn series(&self) -> &Series {
         &self.series
@@ -290,6 +289,10 @@ impl Makeup for Points {
 
     fn bearing_laws(&self) -> [Option<Prepared>; 2] {
         [&self.pin, &self.bush].map(|bearing| Some(bearing.law))
+    }
+
+    fn damps_stiffly(&self, _touches: bool) -> bool {
+        true
     }
 
     fn solve(

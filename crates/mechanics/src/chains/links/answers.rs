@@ -4,7 +4,7 @@ use chaindrive_contact::Prepared;
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Moment, Weights};
 
-use super::{Joining, Linkage, Work};
+use super::{Hinges, Joining, Linkage, Work};
 use crate::bodies::{GroupBodies, Surroundings};
 use crate::chains::makeup::Makeup;
 use crate::chains::series::Series;
@@ -17,7 +17,6 @@ impl Makeup for Linkage {
 
     const SOLVES: bool = true;
     const READS_FACES: bool = true;
-    const DAMPS_STIFFLY: bool = true;
 
     fn series(&self) -> &Series {
         &self.series
@@ -119,6 +118,21 @@ impl Makeup for Linkage {
         let posture = &work.joint_state.posture;
         let pin = |link, end| posture.tip(link, end).place;
         plates.stored(pin, frame, self.series.links)
+    }
+
+    fn damps_stiffly(&self, touches: bool) -> bool {
+        let joints = matches!(self.joining, Joining::Clearance(_));
+        touches || joints || self.free_rollers.is_some()
+    }
+
+    fn has_reactions(&self) -> bool {
+        matches!(self.joining, Joining::Hinges(_))
+    }
+
+    fn show_reactions(&self, at: Moment<'_>, work: &mut Work) {
+        if self.has_reactions() {
+            Hinges::undrawn(self, at, &mut work.joint_state);
+        }
     }
 
     fn stabilisation(&self) -> f64 {

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! ⎡ D  Wᵀ  Jᵀ ⎤ ⎡x⎤   ⎡M b ⎤      D: blocks of the links, W: their couplings with the wheels, S: the wheels
-//! ⎢ W  S      ⎥ ⎢z⎥ = ⎢M b ⎥      s: J b, or what is given
+//! ⎢ W  S      ⎥ ⎢z⎥ = ⎢M b ⎥      s: a share of J b, or what is given
 //! ⎣ J         ⎦ ⎣λ⎦   ⎣ s  ⎦
 //! ```
 //!
@@ -30,8 +30,8 @@ use crate::lanes::Wide;
 /// Prescribed value of J x at the hinges.
 #[derive(Clone, Copy)]
 pub(super) enum Prescribed<'a> {
-    /// That of J b, with all contacts.
-    Kept,
+    /// This share of J b, with all contacts.
+    Kept(f64),
     /// These values of P_pin − P_hole, by joint, with none.
     Given(&'a [Vector]),
 }
@@ -62,7 +62,7 @@ impl Linkage {
         let mut equations = std::mem::take(&mut joint_state.equations);
         let mut sum = Sum::new(self, &mut equations, self.series.links, x);
         sum.add_masses(bodies, weights, x);
-        if matches!(asked, Prescribed::Kept) {
+        if matches!(asked, Prescribed::Kept(_)) {
             self.each_element(joint_state, |element| {
                 sum.add(element, &joint_state.mounts, weights, x);
             });
@@ -114,14 +114,14 @@ impl Held<'_> {
             return false;
         }
         let kept = match asked {
-            Prescribed::Kept => {
+            Prescribed::Kept(share) => {
                 let b = b[..3 * links].as_chunks::<3>().0;
                 answers.known.read(linkage, b.iter().copied());
-                true
+                Some(share)
             }
             Prescribed::Given(given) => {
                 answers.ask(linkage, given);
-                false
+                None
             }
         };
         let right = blocks.right.iter();
@@ -210,8 +210,8 @@ impl Answers {
 struct Answer<'a, 'b> {
     held: &'a mut Held<'b>,
     answers: &'a mut Answers,
-    /// Whether J x is to be J b.
-    kept: bool,
+    /// Share of J b that J x is to be, if it is.
+    kept: Option<f64>,
 }
 
 impl WithSimd for Answer<'_, '_> {
@@ -231,12 +231,14 @@ impl WithSimd for Answer<'_, '_> {
             whole,
             columns,
         } = answers;
-        if kept {
+        if let Some(share) = kept {
             held.reactions
                 .set_opening(w, held.linkage, held.posture, known);
             for (asked, right) in asked.iter_mut().zip(&held.reactions.right) {
                 asked.resize(held.linkage.joints.len(), 0.0);
-                asked.copy_from_slice(&right[..held.linkage.joints.len()]);
+                for (asked, right) in asked.iter_mut().zip(&**right) {
+                    *asked = share * right;
+                }
             }
         }
         held.answer(w, whole, Some(asked));

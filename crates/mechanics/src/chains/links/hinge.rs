@@ -11,7 +11,7 @@
 //! J. Baumgarte, *Comput. Methods Appl. Mech. Eng.* **1**, 1972, 1–16 (stabilisation).
 
 use chaindrive_geometry::Vector;
-use chaindrive_integrate::Moment;
+use chaindrive_integrate::{Moment, Weights};
 use pulp::{Simd, WithSimd};
 
 use super::by_link::ByLink;
@@ -69,6 +69,36 @@ impl Hinges {
             let force = joint_state.hinge_forces[joint];
             let [hole, pin] = mates.map(|mate| linkage.part(mate, at, &joint_state.posture));
             rates[Flow::Motions as usize] += supplied(&mates, force, &hole, &pin);
+        }
+    }
+
+    /// Share of J b that a correction x opens the joints by: what draws them together answers to x as well.
+    ///
+    /// ```text
+    /// J x + c 2 α J x + k α² J x = J b
+    /// ```
+    ///
+    /// Steps of one solution take what draws the joints together explicitly.
+    pub(super) fn share(&self, weights: Weights) -> f64 {
+        if weights.once {
+            return 1.0;
+        }
+        let Weights {
+            damping, stiffness, ..
+        } = weights;
+        1.0 / (1.0 + 2.0 * self.rate * damping + self.rate * self.rate * stiffness)
+    }
+
+    /// Takes out of the joint forces, which the bodies feel already, what draws the ends together.
+    ///
+    /// ```text
+    /// J M⁻¹ Jᵀ Δλ = −(J a + J̇ v − s̈) = 2 α ċ + α² c   of the accelerations a under λ:   λ + Δλ
+    /// ```
+    pub(super) fn undrawn(linkage: &Linkage, at: Moment<'_>, joint_state: &mut JointState) {
+        let drawn = joint_state.hinge_forces.clone();
+        Self { rate: 0.0 }.find(linkage, at, joint_state);
+        for (force, drawn) in joint_state.hinge_forces.iter_mut().zip(drawn) {
+            *force += drawn;
         }
     }
 

@@ -44,8 +44,9 @@ impl Linkage {
         } else {
             weights
         };
-        if matches!(self.joining, Joining::Hinges(_)) {
-            return self.solve_held(bodies, weights, joint_state, x, Prescribed::Kept);
+        if let Joining::Hinges(hinges) = &self.joining {
+            let share = hinges.share(weights);
+            return self.solve_held(bodies, weights, joint_state, x, Prescribed::Kept(share));
         }
         let few = x.len() - self.coordinates() <= MOST_WHEELS;
         if weights.once && few {

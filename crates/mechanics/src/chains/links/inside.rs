@@ -120,7 +120,13 @@ impl<'a> Inside<'a> {
         let mut x = b.to_vec();
         let bodies = self.bodies;
         self.linkage
-            .solve_held(bodies, weights, self.joint_state, &mut x, Prescribed::Kept)
+            .solve_held(
+                bodies,
+                weights,
+                self.joint_state,
+                &mut x,
+                Prescribed::Kept(1.0),
+            )
             .then_some(x)
     }
 

@@ -96,8 +96,14 @@ impl Linkage {
         sliding = sliding.max(stiffest);
         // The stiffness that a step carries as inertia has no limit, but has to be resolved.
         let reach = if self.carries() { CARRIED } else { 1.0 };
+        // What draws ideal joints together is a damper of rate 2 α.
+        let drawing = match &self.joining {
+            Joining::Hinges(hinges) => 2.0 * hinges.rate,
+            Joining::Clearance(_) => 0.0,
+        };
         Rates {
             carried: sliding / (reach * reach),
+            predicted: damping.max(drawing),
             ..Rates::of([squared, damping])
         }
     }
