@@ -13,7 +13,7 @@ mod text;
 use chaindrive_geometry::mesh_frequency;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 use chaindrive_mechanics::{
-    Adjust, Assembled, Capacity, Carrier, Clash, Drive, Fight, Fitting, Flow, GuideSupport, Layout,
+    Adjust, Assembled, Capacity, Clash, Drive, Fight, Fitting, Flow, GuideSupport, Layout,
     Observation, PlacedChain, Rotation, Statics, Unrated,
 };
 use serde::ser::SerializeMap;
@@ -363,11 +363,7 @@ fn closing(drive: &Drive, placed: &PlacedChain, fitting: &Fitting) -> Closing {
         Adjust::Sprocket { sprocket, .. } => (Some(&drive.sprockets[*sprocket].name), "m"),
         Adjust::Tensioner { tensioner, .. } => {
             let tensioner = &drive.tensioners[*tensioner];
-            let unit = match tensioner.carrier {
-                Carrier::Slider(_) => "m",
-                Carrier::Arm(_) => "rad",
-            };
-            (Some(&tensioner.name), unit)
+            (Some(&tensioner.name), tensioner.carrier.coordinate_unit())
         }
     };
     Closing {

@@ -41,7 +41,7 @@ pub fn svg(figure: &Figure, pose: &Pose, title: &str) -> String {
     let bodies = || figure.bodies.iter().zip(&pose.placements);
     // Carriers lie behind what they carry, and sprockets before guides.
     let layers = [
-        |kind: &BodyKind| matches!(kind, BodyKind::Arm | BodyKind::Slider | BodyKind::Plunger),
+        |kind: &BodyKind| matches!(kind, BodyKind::Carrier { .. } | BodyKind::Plunger),
         |kind: &BodyKind| matches!(kind, BodyKind::Guide { .. }),
         |kind: &BodyKind| matches!(kind, BodyKind::Sprocket { .. }),
     ];
@@ -96,13 +96,13 @@ fn body(out: &mut String, body: &Body, placement: &Placement) {
                 ),
             );
         }
-        BodyKind::Arm => {
+        BodyKind::Carrier { pivots: true, .. } => {
             let pivot = format!(
                 "<circle id=\"{id}-pivot\" class=\"pivot\" cx=\"{x}\" cy=\"{y}\" r=\"2\"/>"
             );
             line(out, format_args!("{pivot}"));
         }
-        BodyKind::Guide { .. } | BodyKind::Slider | BodyKind::Plunger => {}
+        BodyKind::Guide { .. } | BodyKind::Carrier { .. } | BodyKind::Plunger => {}
     }
 }
 

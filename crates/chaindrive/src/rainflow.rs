@@ -73,7 +73,6 @@ fn turning_points(signal: &[f64]) -> Vec<f64> {
         let turns = (it[1] - it[0]) * (it[2] - it[1]) < 0.0;
         turns.then_some(it[1])
     });
-    let ends = [moving.first(), moving.last()].map(|end| end.copied());
-    let [first, last] = ends;
+    let [first, last] = [moving.first(), moving.last()].map(Option::<&f64>::copied);
     first.into_iter().chain(turns).chain(last).collect()
 }

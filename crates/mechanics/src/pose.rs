@@ -83,11 +83,14 @@ pub enum BodyKind {
         /// Part of the chain that touches it.
         touches: Touches,
     },
-    /// The arm of a tensioner; its frame has the pivot as origin.
-    Arm,
-    /// The slide of a tensioner.
-    Slider,
-    /// The plunger that pushes an arm; its frame has the tip as origin and the push along x.
+    /// What a tensioner carries sprockets and guides with; where it turns, its frame has the pivot as origin.
+    Carrier {
+        /// Its kind in one word.
+        name: &'static str,
+        /// Whether it turns about a pivot.
+        pivots: bool,
+    },
+    /// The plunger that pushes a carrier; its frame has the tip as origin and the push along x.
     Plunger,
 }
 
@@ -97,8 +100,7 @@ impl BodyKind {
         match self {
             Self::Sprocket { .. } => "sprocket",
             Self::Guide { .. } => "guide",
-            Self::Arm => "arm",
-            Self::Slider => "slider",
+            Self::Carrier { name, .. } => name,
             Self::Plunger => "plunger",
         }
     }

@@ -46,7 +46,7 @@ impl Figure {
                     drawn.set_item("tip_radius", tip_radius)?;
                 }
                 BodyKind::Guide { touches } => drawn.set_item("touches", touches.name())?,
-                BodyKind::Arm | BodyKind::Slider | BodyKind::Plunger => {}
+                BodyKind::Carrier { .. } | BodyKind::Plunger => {}
             }
             bodies.append(drawn)?;
         }

@@ -1,7 +1,7 @@
 //! Motion of sprockets and tensioners, and what their bearings and the guides bear.
 
 use chaindrive_geometry::mesh_frequency;
-use chaindrive_mechanics::{Carrier, Drive, Layout, Observation, Rotation, Stop};
+use chaindrive_mechanics::{Drive, Layout, Observation, Rotation, Stop};
 use serde::{Deserialize, Serialize};
 
 use crate::rating::SprocketDuty;
@@ -134,10 +134,7 @@ impl Bodies {
         let sprockets = drive.sprockets.iter().enumerate();
         let guides = drive.guides.iter().map(|it| it.name.clone());
         let tensioners = drive.tensioners.iter().map(|it| {
-            let unit = match it.carrier {
-                Carrier::Slider(_) => "m",
-                Carrier::Arm(_) => "rad",
-            };
+            let unit = it.carrier.coordinate_unit();
             (it.name.clone(), unit.to_owned(), [Course::default(); 2])
         });
         let sprocket = |(index, it): (usize, &chaindrive_mechanics::Sprocket)| {

@@ -4,6 +4,7 @@ mod arrows;
 mod circles;
 mod layers;
 mod libraries;
+mod recipes;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -3,7 +3,6 @@
 use chaindrive_geometry::{ArcSpline, GeometryError, Piece, Point, Segment, Vector};
 
 use super::{Body, BodyKind, backing, carried};
-use crate::Carrier;
 use crate::drive::Parts;
 
 /// Length of a drawn plunger in pitches: long enough to show which way it pushes.
@@ -40,22 +39,21 @@ pub(super) fn of(parts: &Parts) -> Result<Vec<Body>, GeometryError> {
     }
     for (index, tensioner) in parts.tensioners.iter().enumerate() {
         let origin = tensioner.carrier.origin();
-        let lines = carried::lines(parts, index, pitch);
+        let lines = tensioner.carrier.lines(&carried::by(parts, index), pitch);
         let lines = lines
             .into_iter()
             .map(|line| line.map(|p| p - origin.coords));
         let outlines: Result<_, _> = lines.filter_map(straight).collect();
-        let (kind, plunger) = match &tensioner.carrier {
-            Carrier::Slider(_) => (BodyKind::Slider, false),
-            Carrier::Arm(arm) => (BodyKind::Arm, arm.plunger.is_some()),
-        };
         bodies.push(Body {
             name: tensioner.name.clone(),
-            kind,
+            kind: BodyKind::Carrier {
+                name: tensioner.carrier.name(),
+                pivots: tensioner.carrier.turning() != 0.0,
+            },
             outlines: outlines?,
             backing: Vec::new(),
         });
-        if plunger {
+        if tensioner.carrier.plunger().is_some() {
             let rod = [Point::new(-PLUNGER * pitch, 0.0), Point::origin()];
             bodies.push(Body {
                 name: tensioner.name.clone(),

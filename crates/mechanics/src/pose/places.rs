@@ -5,9 +5,9 @@ use std::f64::consts::FRAC_PI_2;
 use chaindrive_geometry::{Point, Vector};
 
 use super::{Body, BodyKind, Figure, Placement, Pose};
+use crate::Observation;
 use crate::drive::{GuideSupport, Support};
 use crate::tensioner::carriers::Plunger;
-use crate::{Carrier, Observation};
 
 /// The instant of a motion, as far as it is known: values of the channels of the same names.
 #[derive(Clone, Copy, Debug, Default)]
@@ -189,15 +189,12 @@ impl Figure {
                 },
                 GuideSupport::Tensioner(tensioner) => self.carried(*tensioner, at)?,
             },
-            BodyKind::Arm | BodyKind::Slider => self.carried(self.tensioner(body), at)?,
+            BodyKind::Carrier { .. } => self.carried(self.tensioner(body), at)?,
             BodyKind::Plunger => {
                 let tensioner = self.tensioner(body);
                 let s = self.coordinate(tensioner, at)?;
                 let carrier = &self.parts.tensioners[tensioner].carrier;
-                let Carrier::Arm(arm) = carrier else {
-                    return Ok(Placement::default());
-                };
-                let Some(Plunger { at: tip, direction }) = arm.plunger else {
+                let Some(Plunger { at: tip, direction }) = carrier.plunger() else {
                     return Ok(Placement::default());
                 };
                 let tip = tip + direction * carrier.extension(s).length;

@@ -40,6 +40,17 @@ macro_rules! ask {
 
 /// Questions that a carrier answers.
 trait Carries: Copy {
+    /// Its kind in one word, as scenes write it.
+    fn name(&self) -> &'static str;
+
+    /// Lines from what it moves along or turns about to what it carries. For the eye: the drive knows no shape of a carrier.
+    fn lines(&self, carried: &Carried<'_>, pitch: f64) -> Vec<[Point; 2]>;
+
+    /// The plunger that pushes on it, where there is one to be seen.
+    fn plunger(&self) -> Option<Plunger> {
+        None
+    }
+
     /// SI unit of the coordinate.
     fn coordinate_unit(&self) -> &'static str;
 
@@ -128,8 +139,33 @@ pub(crate) struct Reduced {
     pub(crate) slope: f64,
 }
 
+/// Sprockets that a carrier carries, by centre and radius of the tips \[m\], and faces of guides, where they are when s = 0.
+#[derive(Clone, Debug)]
+pub(crate) struct Carried<'a> {
+    pub(crate) sprockets: Vec<(Point, f64)>,
+    pub(crate) faces: Vec<&'a ArcSpline>,
+}
+
 /// A mass \[kg\] and where it is when s = 0.
 pub(crate) type Weight = (f64, Point);
+
+/// Its looks.
+impl Carrier {
+    /// Its kind in one word, as scenes write it.
+    pub fn name(&self) -> &'static str {
+        ask!(self, carrier => carrier.name())
+    }
+
+    /// Lines from what it moves along or turns about to what it carries.
+    pub(crate) fn lines(&self, carried: &Carried<'_>, pitch: f64) -> Vec<[Point; 2]> {
+        ask!(self, carrier => carrier.lines(carried, pitch))
+    }
+
+    /// The plunger that pushes on it, where there is one to be seen.
+    pub(crate) fn plunger(&self) -> Option<Plunger> {
+        ask!(self, carrier => carrier.plunger())
+    }
+}
 
 /// Units and ranges.
 impl Carrier {

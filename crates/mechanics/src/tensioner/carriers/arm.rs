@@ -2,7 +2,7 @@
 
 use chaindrive_geometry::{Point, Vector};
 
-use super::{Carries, Extension, require_unit};
+use super::{Carried, Carries, Extension, require_unit};
 use crate::DriveError;
 
 /// An arm about a pivot, pushed by a plunger or by a torque.
@@ -45,6 +45,33 @@ fn across(r: Vector) -> Vector {
 }
 
 impl Carries for Arm {
+    fn name(&self) -> &'static str {
+        "arm"
+    }
+
+    /// From the pivot to all that it carries, and from there to the plunger.
+    fn lines(&self, carried: &Carried<'_>, _pitch: f64) -> Vec<[Point; 2]> {
+        let ends = |from: Point| {
+            let faces = carried.faces.iter();
+            let feet = faces.filter_map(move |face| face.nearest(from, f64::INFINITY));
+            let centres = carried.sprockets.iter().map(|(centre, _)| *centre);
+            feet.map(|foot| foot.point).chain(centres)
+        };
+        let nearest =
+            |from: Point| ends(from).min_by(|a, b| (a - from).norm().total_cmp(&(b - from).norm()));
+        let mut lines: Vec<_> = ends(self.pivot).map(|end| [self.pivot, end]).collect();
+        // The plunger pushes on the nearest thing that the arm carries, or on an arm of its own.
+        lines.extend(
+            self.plunger
+                .map(|plunger| [nearest(plunger.at).unwrap_or(self.pivot), plunger.at]),
+        );
+        lines
+    }
+
+    fn plunger(&self) -> Option<Plunger> {
+        self.plunger
+    }
+
     fn coordinate_unit(&self) -> &'static str {
         "rad"
     }

@@ -2,8 +2,11 @@
 
 use chaindrive_geometry::{Point, Vector};
 
-use super::{Carries, Extension, Weight, require_unit};
+use super::{Carried, Carries, Extension, Weight, require_unit};
 use crate::DriveError;
+
+/// Length of its drawn rod in pitches.
+const ROD: f64 = 3.0;
 
 /// A straight slide, pushed along its travel.
 ///
@@ -17,6 +20,20 @@ pub struct Slider {
 }
 
 impl Carries for Slider {
+    fn name(&self) -> &'static str {
+        "slider"
+    }
+
+    /// A rod behind everything that it pushes, seen beyond the tips of a sprocket.
+    fn lines(&self, carried: &Carried<'_>, pitch: f64) -> Vec<[Point; 2]> {
+        let middles = carried.faces.iter();
+        let middles = middles.map(|face| (face.point_at(0.5 * face.length()), 0.0));
+        let pushed = carried.sprockets.iter().copied().chain(middles);
+        pushed
+            .map(|(end, covered)| [end - self.direction * (covered + ROD * pitch), end])
+            .collect()
+    }
+
     fn coordinate_unit(&self) -> &'static str {
         "m"
     }
