@@ -3,13 +3,15 @@
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-/// Cycles of signals, (signals, samples): range, mean and count of each, one signal after the other, (cycles, 3), and how many are of each
-/// signal.
+/// Range, mean and count of cycles, (cycles, 3), and how many are of each signal.
+type Cycles<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<usize>>);
+
+/// Cycles of signals, (signals, samples), one signal after the other.
 #[pyfunction]
 pub(crate) fn rainflow<'py>(
     py: Python<'py>,
     signals: PyReadonlyArray2<'py, f64>,
-) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<usize>>)> {
+) -> PyResult<Cycles<'py>> {
     let rows = signals.as_array();
     let counted = rows
         .outer_iter()

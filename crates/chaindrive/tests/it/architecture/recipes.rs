@@ -139,7 +139,9 @@ fn a_member_costs_the_files_that_its_recipe_says() {
         let folder = if own.is_empty() { "" } else { "its folder + " };
         let row = format!("| {family} | {folder}{} |", found.len());
         if !page.contains(&row) {
-            problems.push(format!("docs/extending.md lacks the row that begins `{row}`"));
+            problems.push(format!(
+                "docs/extending.md lacks the row that begins `{row}`"
+            ));
         }
     }
     assert!(problems.is_empty(), "{}", problems.join("\n"));
