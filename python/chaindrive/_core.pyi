@@ -39,6 +39,7 @@ __all__ = [
     "plain",
     "polygon_action",
     "presets",
+    "rainflow",
     "replay",
     "replay_selection",
     "resume",
