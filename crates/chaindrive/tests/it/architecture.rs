@@ -2,6 +2,7 @@
 
 mod arrows;
 mod circles;
+mod formulas;
 mod layers;
 mod libraries;
 mod recipes;
