@@ -326,15 +326,18 @@ fn carried_on_it_tells_of_its_choice_and_error_what_it_would_have_told() {
 fn a_complete_run_goes_on_to_a_later_end() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let short = ["--method", "verlet", "--every", "20 us", "--no-error", "-q"];
+    let short = "--method verlet --every 40us --run-in 0 --no-error -q";
     let of = |until: &'static str, more: &[&'static str]| {
         let run = ["run", "marine_two_sprockets", "--until", until];
-        [&run[..], &short, more].concat()
+        run.into_iter()
+            .chain(short.split(' '))
+            .chain(more.iter().copied())
+            .collect::<Vec<_>>()
     };
-    assert_eq!(run(at, &of("15 ms", &["-o", "whole.zarr"])).0, Some(0));
+    assert_eq!(run(at, &of("80 ms", &["-o", "whole.zarr"])).0, Some(0));
     let to = of("1 ms", &["-o", "run.zarr", "--checkpoint-every", "1 ms"]);
     assert_eq!(run(at, &to).0, Some(0));
-    let on = ["resume", "run.zarr", "-q", "--until", "15 ms"];
+    let on = ["resume", "run.zarr", "-q", "--until", "80 ms"];
     let store = at.join("run.zarr");
     let child = start(at, &on);
     wait_for("it does not go on", || status(&store) == "running");
@@ -344,9 +347,9 @@ fn a_complete_run_goes_on_to_a_later_end() {
     assert_eq!((code, err.as_str()), (Some(0), ""));
     let [whole, carried] = ["whole.zarr", "run.zarr"].map(|name| files(&at.join(name)));
     assert!(whole == carried);
-    let (code, err) = run(at, &["resume", "run.zarr", "--until", "14 ms"]);
+    let (code, err) = run(at, &["resume", "run.zarr", "--until", "70 ms"]);
     assert_eq!(code, Some(2));
-    assert!(err.contains("until = 0.014 s is past"), "{err}");
+    assert!(err.contains("until = 0.07 s is past"), "{err}");
 }
 
 #[test]
