@@ -383,7 +383,7 @@ fn logged_contacts_are_counted_and_stored() {
     let folder = folder();
     let at = folder.path();
     let short = ["run", "bicycle", "--until", "3 ms", "-o", "bicycle.zarr"];
-    let more = "--events teeth,joints --record joint_force --numerics";
+    let more = "--events teeth,joints --record joint_force --run-in 0 --numerics";
     let more: Vec<&str> = more.split(' ').collect();
     let (code, out, err) = run(at, &[&short[..], &more].concat());
     assert_eq!(code, 0, "{err}");
