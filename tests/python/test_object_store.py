@@ -104,8 +104,8 @@ from obstore.store import S3Store
 server, prefix, how = sys.argv[1:]
 store = S3Store("sweeps", prefix=prefix, endpoint=server, client_options={"allow_http": True},
                 access_key_id="nobody", secret_access_key="nothing", region="us-east-1")
-settings = {"until": 20e-3, "every": 1e-3, "record": "link_tension", "output": store}
-design = {"chain.start.speed": np.linspace(300.0, 400.0, 24)}
+settings = {"until": 60e-3, "every": 1e-3, "record": "link_tension", "output": store}
+design = {"chain.start.speed": np.linspace(300.0, 400.0, 60)}
 if __name__ == "__main__":
     if how == "threads":
         cd.sweep(cd.scenes.spinning_ring(), design=design, **settings)
@@ -155,8 +155,8 @@ def test_killed_and_resumed_no_variant_is_lost_twice_or_different(server, tmp_pa
         assert process.returncode == -signal.SIGKILL, (tmp_path / "told").read_text()
     assert process.returncode == 0
     assert killed >= 1
-    design = {"chain.start.speed": np.linspace(300.0, 400.0, 24)}
-    run = {"until": 20e-3, "every": 1e-3, "record": "link_tension"}
+    design = {"chain.start.speed": np.linspace(300.0, 400.0, 60)}
+    run = {"until": 60e-3, "every": 1e-3, "record": "link_tension"}
     assert_same(cd.open_result(store), cd.sweep(ring(), design=design, **run))
 
 
