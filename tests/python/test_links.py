@@ -182,9 +182,16 @@ def hinged_bar(links=1):
 
 
 @pytest.mark.parametrize(
-    ("method", "step"), [("rk4", 1e-3), ("rk4", 5e-4), ("generalized-alpha", 1e-3), ("auto", None)]
+    ("method", "step", "at_most"),
+    [
+        ("rk4", 1e-3, 4e-6),
+        ("rk4", 5e-4, 3e-7),
+        # Its speed is as far off. It was held to 1e-6 while it took 0.25 ms unsaid.
+        ("generalized-alpha", 1e-3, 3e-5),
+        ("auto", None, 1e-6),
+    ],
 )
-def test_the_force_on_a_hinge_is_that_of_the_place_that_is_shown(method, step):
+def test_the_force_on_a_hinge_is_that_of_the_place_that_is_shown(method, step, at_most):
     """A bar falls about its end: 5/2 m g sin φ along it, m g cos φ/4 across (energy, moments).
 
     Samples lie between steps. Defect A13: with RK4 at 1 ms the force was 4 % off: it held what
@@ -197,7 +204,7 @@ def test_the_force_on_a_hinge_is_that_of_the_place_that_is_shown(method, step):
     x, y = (run[name].values[:, 1] / 0.5 for name in ("roller_x", "roller_y"))
     force = 9.81 * np.hypot(2.5 * y, 0.25 * x)
     error = np.abs(run["joint_force"].values[:, 0] - force).max() / force.max()
-    assert error < 3e-5
+    assert error < at_most
 
 
 def test_hinged_bars_have_a_method_of_second_order_by_default():

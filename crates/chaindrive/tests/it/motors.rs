@@ -192,7 +192,7 @@ fn a_load_is_named_whatever_is_known_of_the_chain() {
     assert!(!error.contains("tensioner"), "{error}");
 }
 
-/// What speeds a free train up does not pull at the chain: of 4 and 3 kN m on equal inertias the mean is left.
+/// Torque that speeds a free train up does not pull at the chain: of 4 and 3 kN m on equal inertias the mean is left.
 #[test]
 fn what_speeds_a_drive_up_is_told_beside_its_load() {
     let motor = "inertia = 0.1\ndrive = [{ kind = 'constant', torque = '3 kN m' }]";

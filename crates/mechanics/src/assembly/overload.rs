@@ -1,4 +1,4 @@
-//! What torques ask of the chains: named where no equilibrium was found, and before one is looked for where none can be.
+//! Pulls that torques ask of chains. They are named where no equilibrium was found, and before the search where there can be none.
 
 use chaindrive_integrate::Moment;
 

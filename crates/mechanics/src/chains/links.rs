@@ -29,9 +29,6 @@ pub(crate) mod rates;
 mod reactions;
 mod resist;
 
-use crate::chains::series::Series;
-use crate::joints::{JointFindings, JointMemory};
-use crate::seam::Loads;
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Array, Moment};
 use nalgebra::Vector3;
@@ -44,12 +41,15 @@ pub(crate) use posture::{Posture, Shapes, free_part};
 
 use crate::End;
 use crate::bodies::Surroundings;
+use crate::chains::series::Series;
 use crate::contact::{Bearing, ContactMemory, Kept, LaneTally, MemoryLanes, Tally};
 use crate::energy::Flow;
 use crate::joints::{
-    Contacts, Element, JointMates, Mate, Mount, Pairs, Part, Partner, Pins, cross, touch,
+    Contacts, Element, JointFindings, JointMates, JointMemory, Mate, Mount, Pairs, Part, Partner,
+    Pins, cross, touch,
 };
 use crate::lanes::Wide;
+use crate::seam::Loads;
 
 /// A body of the chain: a link, or a free roller.
 #[derive(Clone, Copy, Debug)]
@@ -363,7 +363,7 @@ impl Linkage {
     }
 
     /// Tension of all links \[N\]: half of what stretches them from both ends, joints, teeth and given loads together.
-    fn stretches(&self, joint_state: &JointState) -> Vec<f64> {
+    fn link_tensions(&self, joint_state: &JointState) -> Vec<f64> {
         let mut stretch = vec![[Vector::zeros(); 2]; self.series.links];
         let mut load = |body: Option<usize>, joint: usize, force: Vector| {
             // Rollers have no ends.

@@ -37,7 +37,7 @@ impl ChainModel {
         }
     }
 
-    /// Whether links are springs with dampers.
+    /// True for links that are springs with dampers.
     pub fn has_springs(&self) -> bool {
         match self {
             Self::Particles | Self::Points(_) => true,

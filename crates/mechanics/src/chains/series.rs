@@ -1,8 +1,7 @@
 //! Rollers and links in a row: what every chain has, whatever it is made of.
 
-use chaindrive_integrate::Registers;
-
 use chaindrive_geometry::Point;
+use chaindrive_integrate::Registers;
 
 use super::chain::Chain;
 use super::held_end::{HeldEnd, held_ends};

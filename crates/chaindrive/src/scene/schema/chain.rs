@@ -130,7 +130,7 @@ pub(crate) struct Chain {
 }
 
 impl Chain {
-    /// Whether roller, bush and pin of every joint are points of their own.
+    /// True for chains with roller, bush and pin of every joint as points of their own.
     pub(crate) fn is_of_points(&self) -> bool {
         self.model.has_springs() && self.rollers == Some(Rollers::Free)
     }

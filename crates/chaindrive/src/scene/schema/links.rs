@@ -20,12 +20,12 @@ pub(crate) enum ChainModel {
 }
 
 impl ChainModel {
-    /// Whether links are springs with dampers.
+    /// True for links that are springs with dampers.
     pub(crate) fn has_springs(self) -> bool {
         self == Self::Particles
     }
 
-    /// Whether pins have play in their bushes.
+    /// True for pins with play in their bushes.
     pub(crate) fn has_play(self) -> bool {
         self == Self::ClearanceJoints
     }

@@ -74,7 +74,7 @@ impl Makeup for Linkage {
     }
 
     fn tensions(&self, _at: Moment<'_>, work: &Work) -> Vec<f64> {
-        self.stretches(&work.joint_state)
+        self.link_tensions(&work.joint_state)
     }
 
     fn observe(&self, at: Moment<'_>, work: &Work, out: &mut Observation) {
