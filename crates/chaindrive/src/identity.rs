@@ -17,7 +17,7 @@ pub struct Build {
     pub version: &'static str,
     /// Crates that compute, each with the hash of its sources and of the data compiled in: tokens without comments,
     /// documentation and tests.
-    pub sources: [(&'static str, &'static str); 5],
+    pub sources: [(&'static str, &'static str); 6],
     /// Libraries that compute, as `name=version` with spaces between.
     pub libraries: &'static str,
     /// The compiler, as it tells its version.
@@ -37,6 +37,7 @@ impl Build {
             let mut build = Build {
                 version: env!("CARGO_PKG_VERSION"),
                 sources: [
+                    ("quantities", chaindrive_quantities::SOURCES),
                     ("geometry", chaindrive_geometry::SOURCES),
                     ("contact", chaindrive_contact::SOURCES),
                     ("integrate", chaindrive_integrate::SOURCES),

@@ -1,21 +1,7 @@
 //! Why a law refuses one of its parameters.
 
+use chaindrive_quantities::ParameterError;
 use serde::{Deserialize, Deserializer};
-
-/// A parameter outside its range: which one, its value, and what is allowed.
-///
-/// Reads as the tail of a path, so that a caller can put the place in front:
-/// `restitution = 1.4, must be in (0, 1]`.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{parameter} = {value}, must be {allowed}")]
-pub struct ParameterError {
-    /// Name of the parameter, as its field is called.
-    pub parameter: &'static str,
-    /// The value that was refused.
-    pub value: f64,
-    /// The range it has to be in, with the unit in brackets.
-    pub allowed: &'static str,
-}
 
 /// Lets a parameter pass or names it.
 pub(crate) fn require(
@@ -28,9 +14,9 @@ pub(crate) fn require(
         Ok(())
     } else {
         Err(ParameterError {
-            parameter,
+            parameter: parameter.into(),
             value,
-            allowed,
+            allowed: allowed.into(),
         })
     }
 }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::dissipation::Action;
-use crate::elastic::{Curve, ElasticLaw, Stack};
+use crate::elastic::{Curve, Stack};
 use crate::error::{require, require_positive};
 use crate::{Dissipation, Elastic, ParameterError};
 

@@ -48,9 +48,9 @@ pub mod material;
 pub mod onset;
 pub mod restitution;
 
+pub use chaindrive_quantities::ParameterError;
 pub use dissipation::Dissipation;
 pub use elastic::Elastic;
-pub use error::ParameterError;
 pub use friction::{Friction, Rub};
 pub use law::{Approach, Law, Prepared, Response};
 pub use material::Elasticity;

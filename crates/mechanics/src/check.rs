@@ -5,7 +5,6 @@ mod shafts;
 
 use std::collections::HashSet;
 
-use chaindrive_contact::elastic::ElasticLaw;
 use chaindrive_geometry::{Point, Vector};
 
 use crate::drive::{

@@ -161,8 +161,9 @@ pub enum GuideSupport {
 }
 
 /// Which part of the chain touches a guide.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema,
+)]
 #[serde(rename_all = "kebab-case")]
 pub enum Touches {
     /// The rollers, as circles of the roller diameter.
@@ -236,8 +237,7 @@ impl Layout {
 }
 
 /// How the chain moves between the sprockets when the run begins.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SpanStart {
     /// Along itself: the polygon effect reaches the spans with the first teeth.
@@ -268,8 +268,7 @@ pub struct Fit {
 /// Where in the passing of a tooth a chain carries its pretension.
 ///
 /// The way around polygons is longer at some phases than at others, so that the same chain on the same centres is tighter there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum PretensionAt {
     /// In the mean over a tooth that passes: the phase that a run begins at makes no other drive of it.
@@ -303,8 +302,9 @@ pub enum Adjust {
 }
 
 /// How the pretension is made.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema,
+)]
 #[serde(rename_all = "kebab-case")]
 pub enum Tighten {
     /// The links are made shorter by the strain of the pretension.

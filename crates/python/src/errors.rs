@@ -68,7 +68,7 @@ impl IntoException for std::convert::Infallible {
 
 impl IntoException for ParameterError {
     fn exception(self) -> PyErr {
-        parameter(self.to_string(), self.parameter, self.allowed)
+        parameter(self.to_string(), &self.parameter, &self.allowed)
     }
 }
 

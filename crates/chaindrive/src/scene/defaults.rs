@@ -10,11 +10,13 @@
 use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use chaindrive_contact::dissipation::Hysteresis;
 use chaindrive_mechanics::{PretensionAt, SpanStart};
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 
-use super::schema::{Dissipation, Version};
+use super::expected::kind_of;
+use super::schema::Version;
 
 /// Where a default comes from.
 #[derive(Clone, Copy, Debug)]
@@ -117,14 +119,14 @@ pub(crate) static RUN_IN: Choice<&str> = Choice {
 };
 
 /// How impacts lose energy.
-pub(crate) static DISSIPATION: Choice<Dissipation> = Choice {
+pub(crate) static DISSIPATION: Choice<Hysteresis> = Choice {
     keys: &["Contact.dissipation"],
     basis: Assumed(
         "delivers the restitution that is asked for, Lankarani and Nikravesh's law of version 0.1 does not",
     ),
     values: &[
-        (Version::V0_1, Dissipation::LankaraniNikravesh),
-        (Version::V0_2, Dissipation::Exact),
+        (Version::V0_1, Hysteresis::LankaraniNikravesh),
+        (Version::V0_2, Hysteresis::Exact),
     ],
 };
 
@@ -215,6 +217,29 @@ defaults! {
     END_ANGLE = always(PI / 18.0), "rad", Assumed("10 degrees lead the chain in"), ["Face.end_angle"];
     /// Place of the first sprocket within a tooth.
     PHASE = always(0.5), "1", Assumed("symmetric"), ["Route.phase"];
+}
+
+/// The keys of a type of the schema, or of one kind of a family, that have a default in their own unit.
+pub(crate) fn of_keys(
+    schema: &'static Json,
+    of_type: &str,
+    kind: Option<&str>,
+) -> Vec<(&'static str, &'static Default)> {
+    let table = &schema["$defs"][of_type];
+    let members = table.get("oneOf").and_then(Json::as_array);
+    let of_kind = |member: &&Json| kind_of(member) == kind;
+    let table = members.map_or(Some(table), |list| list.iter().find(of_kind));
+    let unit = |key: &str| table?.get("properties")?.get(key)?.get("x-unit")?.as_str();
+    let keys = |default: &'static &Default| {
+        let names = default
+            .keys
+            .iter()
+            .filter_map(|place| place.split_once('.'));
+        let of_this =
+            names.filter(|(name, key)| *name == of_type && unit(key) == Some(default.unit));
+        of_this.map(|(_, key)| (key, *default)).collect::<Vec<_>>()
+    };
+    ALL.iter().flat_map(keys).collect()
 }
 
 /// Writes the defaults of the present version into the schema, as `x-defaults`.

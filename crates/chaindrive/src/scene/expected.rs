@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value as Json};
 
-use super::quantity::Dimension;
+use chaindrive_quantities::Dimension;
 
 /// Expectation of a schema, after references and optional wrappers.
 pub(crate) enum Expected<'s> {

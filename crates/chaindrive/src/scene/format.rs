@@ -25,8 +25,30 @@ pub fn schema() -> Value {
 
 /// The schema as derived, which the validator walks. Derived once: it takes longer than to read a scene.
 pub(crate) fn raw() -> &'static Value {
-    static RAW: LazyLock<Value> = LazyLock::new(|| schemars::schema_for!(SceneText).to_value());
+    static RAW: LazyLock<Value> = LazyLock::new(|| {
+        let mut schema = schemars::schema_for!(SceneText).to_value();
+        plain_brackets(&mut schema);
+        schema
+    });
     &RAW
+}
+
+/// Documentation of Rust writes `\[m\]` where a link is not meant.
+fn plain_brackets(schema: &mut Value) {
+    match schema {
+        Value::Object(object) => {
+            for (key, value) in object {
+                match value {
+                    Value::String(text) if key == "description" => {
+                        *text = text.replace("\\[", "[").replace("\\]", "]");
+                    }
+                    value => plain_brackets(value),
+                }
+            }
+        }
+        Value::Array(items) => items.iter_mut().for_each(plain_brackets),
+        _ => {}
+    }
 }
 
 /// Brings the schema to what the validator accepts: no `null`, and short forms allowed.

@@ -61,7 +61,6 @@ mod format;
 mod limits;
 mod path;
 mod presets;
-mod quantity;
 mod read;
 mod resolve;
 mod resolved;
@@ -69,7 +68,6 @@ mod run_in;
 mod schema;
 mod suggest;
 mod tree;
-mod unit;
 mod validate;
 
 use chaindrive_contact::Friction;
@@ -84,7 +82,7 @@ pub use presets::presets;
 pub use schema::RunDefaults;
 
 pub use accuracy::{ACCURACY, Quantity};
-pub use quantity::{read_length, read_time};
+pub use chaindrive_quantities::{read_length, read_time};
 pub use resolve::chain_named;
 pub use run_in::RunIn;
 use schema::{Contact, SceneText};

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use super::quantity::read_time;
+use chaindrive_quantities::read_time;
 
 /// Motion that is simulated before t = 0.
 ///

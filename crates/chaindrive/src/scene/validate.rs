@@ -10,12 +10,12 @@ use serde_json::{Map, Value as Json};
 use super::error::{Problem, Problems};
 use super::expected::{Expected, Reading, kind_of, request};
 use super::path::push_step;
-use super::quantity::{CONTACT_STIFFNESS, Dimension};
 use super::run_in::RunIn;
 use super::schema::Version;
 use super::suggest::{nearest, one_of};
 use super::tree::{Entry, Node, Value};
 use crate::plain::shorten;
+use chaindrive_quantities::{CONTACT_STIFFNESS, Dimension, Range};
 
 /// Checks `tree` against `schema` and normalises it: quantities become SI numbers, bare names of
 /// kinds become tables.
@@ -418,32 +418,8 @@ impl<'s> Validator<'s> {
         let Some(value) = number(node) else {
             return;
         };
-        let limit = |key: &str| schema.get(key).and_then(Json::as_f64);
-        let unit = schema
-            .get("x-unit")
-            .and_then(Json::as_str)
-            .filter(|unit| *unit != "1");
-        let unit = unit.map(|unit| format!(" [{unit}]")).unwrap_or_default();
-        let refusal = if limit("exclusiveMinimum").is_some_and(|least| value <= least) {
-            match limit("exclusiveMinimum") {
-                Some(0.0) => Some("positive".to_owned()),
-                least => Some(format!("more than {}", least.unwrap_or_default())),
-            }
-        } else if limit("minimum").is_some_and(|least| value < least) {
-            match limit("minimum") {
-                Some(0.0) => Some("not negative".to_owned()),
-                least => Some(format!("at least {}", least.unwrap_or_default())),
-            }
-        } else if limit("exclusiveMaximum").is_some_and(|most| value >= most) {
-            let most = limit("exclusiveMaximum").unwrap_or_default();
-            Some(format!("less than {most}"))
-        } else if limit("maximum").is_some_and(|most| value > most) {
-            Some(format!("at most {}", limit("maximum").unwrap_or_default()))
-        } else {
-            None
-        };
-        if let Some(allowed) = refusal {
-            let message = format!("{value}, must be {allowed}{unit}");
+        if let Some(allowed) = Range(schema).refuses(value) {
+            let message = format!("{value}, must be {allowed}");
             let problem = Problem::new(path, node.line, message);
             let remedy = schema.get("x-remedy").and_then(Json::as_str);
             self.refuse(match remedy {

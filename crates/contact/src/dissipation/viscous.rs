@@ -1,9 +1,7 @@
 //! A dashpot beside the elastic law: Kelvin and Voigt's element.
 
+use chaindrive_quantities::{Damping, JsonSchema};
 use serde::{Deserialize, Serialize};
-
-use crate::ParameterError;
-use crate::error::require;
 
 /// Viscous damping; with a linear elastic law the Kelvin–Voigt element.
 ///
@@ -16,24 +14,10 @@ use crate::error::require;
 ///
 /// # Source
 /// W. Goldsmith, *Impact: The Theory and Physical Behaviour of Colliding Solids*, Edward Arnold, 1960.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Viscous {
-    /// Damping c \[N s/m\], not negative.
+    /// Damping c \[N s/m\].
+    #[schemars(with = "Damping", extend("minimum" = 0))]
     pub damping: f64,
-}
-
-impl Viscous {
-    /// Refuses a damping outside its range.
-    ///
-    /// # Errors
-    /// Names the parameter.
-    pub fn check(self) -> Result<(), ParameterError> {
-        require(
-            self.damping >= 0.0 && self.damping.is_finite(),
-            "damping",
-            self.damping,
-            "zero or positive [N s/m]",
-        )
-    }
 }

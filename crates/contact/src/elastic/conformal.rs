@@ -2,12 +2,12 @@
 
 use std::f64::consts::{E, PI};
 
+use chaindrive_quantities::{JsonSchema, Length, Stiffness};
 use serde::{Deserialize, Serialize};
 
-use super::ElasticLaw;
 use super::lambert::minus_w_lower;
+use super::{Cylinders, Elastic, ElasticLaw, Johnson, Member, OfCylinders};
 use crate::ParameterError;
-use crate::error::require_positive;
 use crate::restitution::logarithmic_excess;
 
 /// First coefficient of the fit \[–\].
@@ -57,12 +57,14 @@ const LEAST_DEPTH: f64 = 1e-280;
 /// The fit is ours; the solution it was compared with: A. Persson, *On the Stress Distribution of Cylindrical
 /// Elastic Bodies in Contact*, Chalmers, 1964, in the form of M. Ciavarella and P. Decuzzi,
 /// *Int. J. Solids Struct.* **38**, 2001, 4507–4523.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Conformal {
-    /// Clearance ΔR \[m\], hole radius less pin radius, positive.
+    /// Clearance ΔR \[m\], hole radius less pin radius.
+    #[schemars(with = "Length", extend("exclusiveMinimum" = 0))]
     pub clearance: f64,
-    /// Composite modulus times length of the contact, E* L \[N/m\], positive.
+    /// Composite modulus times length of the contact, E* L \[N/m\].
+    #[schemars(with = "Stiffness", extend("exclusiveMinimum" = 0))]
     pub modulus_length: f64,
 }
 
@@ -76,7 +78,7 @@ impl Conformal {
     }
 
     /// Depth \[m\] at which the fit ends.
-    pub(super) fn reach(self) -> f64 {
+    fn end(self) -> f64 {
         END_DEPTH * self.clearance
     }
 
@@ -166,10 +168,24 @@ impl ElasticLaw for Conformal {
         // g = π E* L ΔR q,   k = π E* L/s
         (self.scale() * self.clearance * q, self.scale() / slope)
     }
+}
 
-    fn check(&self) -> Result<(), ParameterError> {
-        require_positive("clearance", self.clearance, "positive [m]")?;
-        require_positive("modulus_length", self.modulus_length, "positive [N/m]")
+impl Member for Conformal {
+    fn reach(&self) -> Option<f64> {
+        Some(self.end())
+    }
+}
+
+impl OfCylinders for Conformal {
+    fn between(pair: &Cylinders) -> Result<Elastic, ParameterError> {
+        if pair.curvature >= 0.0 {
+            return Johnson::between(pair);
+        }
+        Ok(Self {
+            clearance: pair.effective_radii(),
+            modulus_length: pair.modulus * pair.length,
+        }
+        .into())
     }
 }
 

@@ -1,22 +1,6 @@
 //! Elastic laws with their constants worked out, for loops.
 
-use super::logarithmic::Logarithmic;
-use super::{Elastic, ElasticLaw, Power};
-
-/// Curve of an elastic law once its member has supplied the constants.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Curve {
-    /// g = K δ
-    Linear(f64),
-    /// g = K δ √δ
-    Hertz(f64),
-    /// g = K δⁿ
-    Power(Power),
-    /// δ = p [ln(D/p) − 1]
-    Logarithmic(Logarithmic),
-    /// A law without constants to work out, asked as it is.
-    Plain(Elastic),
-}
+use super::{Curve, ElasticLaw, Power};
 
 impl Curve {
     /// A power law by its exponent.

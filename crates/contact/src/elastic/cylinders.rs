@@ -1,11 +1,7 @@
-//! Two parallel cylinders, and which law their geometry makes.
+//! Two parallel cylinders.
 
 use serde::{Deserialize, Serialize};
 
-use super::{
-    Conformal, Cylindrical, DubowskyFreudenstein, Elastic, ElasticLaw, Esdu78035, Johnson, Power,
-    Radzimovsky,
-};
 use crate::ParameterError;
 use crate::error::{require, require_positive};
 
@@ -105,108 +101,4 @@ impl Cylinders {
         require_positive("modulus", self.modulus, "positive [Pa]")?;
         require_positive("depth_cap", self.depth_cap, "positive [m]")
     }
-}
-
-/// A law of the family, to be built from the geometry of two parallel cylinders.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum CylinderLaw {
-    /// [`Johnson`], D = 4ΔR; inside, outside and flat.
-    Johnson,
-    /// [`Conformal`] inside; a flat or convex counterpart does not conform, and its law **is** Johnson's.
-    Conformal,
-    /// [`Radzimovsky`], D = e^{5/3} ΔR; inside, outside and flat.
-    Radzimovsky,
-    /// [`Esdu78035`], D = 4e² ΔR; inside, outside and flat.
-    #[serde(rename = "esdu-78035")]
-    Esdu78035,
-    /// [`DubowskyFreudenstein`], D = e² L²/R; needs no depth.
-    DubowskyFreudenstein,
-    /// [`Cylindrical`] in its range. Towards a flat it has no limit: in a hollow with more than 10 mm between
-    /// the radii, on a flat, and outside with more than 300 mm the law **is** Johnson's. Below 0.005 mm
-    /// inside and 4 mm outside it is refused.
-    Cylindrical,
-    /// [`Power::hertz`] with the reduced radius: a point contact, several times too soft for a line, as the
-    /// elastic part of Lankarani and Nikravesh is often used.
-    Hertz,
-}
-
-impl CylinderLaw {
-    /// Every law, for tests and tables.
-    pub const ALL: [Self; 7] = [
-        Self::Johnson,
-        Self::Conformal,
-        Self::Radzimovsky,
-        Self::Esdu78035,
-        Self::DubowskyFreudenstein,
-        Self::Cylindrical,
-        Self::Hertz,
-    ];
-
-    /// The law of two cylinders. Where a law hands over to Johnson's is part of its description above,
-    /// and the answer says which law it is.
-    ///
-    /// # Errors
-    /// Names a parameter of the geometry that is impossible or outside the range of the law.
-    pub fn between(self, pair: &Cylinders) -> Result<Elastic, ParameterError> {
-        pair.check()?;
-        let difference = pair.effective_radii();
-        let modulus_length = pair.modulus * pair.length;
-        let elastic = match self {
-            Self::Conformal if pair.curvature < 0.0 => Elastic::Conformal(Conformal {
-                clearance: difference,
-                modulus_length,
-            }),
-            Self::Johnson | Self::Conformal => johnson(pair),
-            Self::Radzimovsky => {
-                Elastic::Radzimovsky(Radzimovsky::of_radii(difference, pair.length, pair.modulus))
-            }
-            Self::Esdu78035 => {
-                Elastic::Esdu78035(Esdu78035::of_radii(difference, pair.length, pair.modulus))
-            }
-            Self::DubowskyFreudenstein => {
-                Elastic::DubowskyFreudenstein(DubowskyFreudenstein::of_reduced_radius(
-                    pair.reduced_radius(),
-                    pair.length,
-                    pair.modulus,
-                ))
-            }
-            Self::Cylindrical => cylindrical(pair)?,
-            Self::Hertz => Elastic::Power(Power::hertz(pair.reduced_radius(), pair.modulus)),
-        };
-        elastic.check()?;
-        Ok(elastic)
-    }
-}
-
-/// Johnson's law with the capped depth.
-fn johnson(pair: &Cylinders) -> Elastic {
-    Elastic::Johnson(Johnson {
-        // D = 4ΔR
-        length_scale: 4.0 * pair.effective_radii(),
-        modulus_length: pair.modulus * pair.length,
-    })
-}
-
-/// The enhanced law, or Johnson's towards a flat.
-fn cylindrical(pair: &Cylinders) -> Result<Elastic, ParameterError> {
-    let &Cylinders {
-        radius,
-        curvature,
-        length,
-        modulus,
-        ..
-    } = pair;
-    let law = if curvature < 0.0 {
-        if Cylindrical::is_nearly_flat_inside(pair.radii()) {
-            return Ok(johnson(pair));
-        }
-        Cylindrical::internal(-1.0 / curvature, radius, length, modulus)?
-    } else {
-        if Cylindrical::is_nearly_flat_outside(pair.radii()) {
-            return Ok(johnson(pair));
-        }
-        Cylindrical::external(radius, 1.0 / curvature, length, modulus)?
-    };
-    Ok(Elastic::Cylindrical(law))
 }

@@ -1,10 +1,11 @@
 //! The enhanced cylindrical law of Pereira, Ramalho and Ambrósio.
 
+use chaindrive_quantities::{ContactStiffness, JsonSchema, Ratio};
 use serde::{Deserialize, Serialize};
 
-use super::{ElasticLaw, Power};
+use super::{Curve, Cylinders, Elastic, ElasticLaw, Johnson, Member, OfCylinders, Power};
 use crate::ParameterError;
-use crate::error::{require, require_positive};
+use crate::error::require;
 
 /// Clearances \[mm\] at which the internal form may be used.
 const INTERNAL: [f64; 2] = [0.005, 10.0];
@@ -45,12 +46,14 @@ const ROUNDING: f64 = 1e-9;
 /// C. Pereira, A. Ramalho and J. Ambrósio, *Multibody Syst. Dyn.* **35**, 2015, 277–298,
 /// <https://doi.org/10.1007/s11044-015-9463-x>; constants as in the program *DyS* of the Ladisk laboratory, with the
 /// second branch of Y in millimetres, without which Y would jump.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Cylindrical {
-    /// Stiffness K \[N/mⁿ\], positive.
+    /// Stiffness K \[N/mⁿ\], n being the exponent.
+    #[schemars(with = "ContactStiffness", extend("exclusiveMinimum" = 0))]
     pub stiffness: f64,
-    /// Exponent n \[–\], in \[1.09, 1.45\]: what the formulas give over their range.
+    /// Exponent n \[–\].
+    #[schemars(with = "Ratio", extend("minimum" = 1.09, "maximum" = 1.45, "x-remedy" = "the formulas give no other, take power"))]
     pub exponent: f64,
 }
 
@@ -109,12 +112,12 @@ impl Cylindrical {
     }
 
     /// Whether a hollow \[m\] is too flat for the internal form.
-    pub(super) fn is_nearly_flat_inside(clearance: f64) -> bool {
+    fn is_nearly_flat_inside(clearance: f64) -> bool {
         1e3 * clearance > INTERNAL[1] * (1.0 + ROUNDING)
     }
 
     /// Whether a bulge \[m\] is too flat for the external form.
-    pub(super) fn is_nearly_flat_outside(sum: f64) -> bool {
+    fn is_nearly_flat_outside(sum: f64) -> bool {
         1e3 * sum > EXTERNAL[1] * (1.0 + ROUNDING)
     }
 
@@ -130,7 +133,7 @@ impl Cylindrical {
 
     /// The same curve as a power law.
     #[inline]
-    pub(super) fn power(self) -> Power {
+    fn power(self) -> Power {
         Power {
             stiffness: self.stiffness,
             exponent: self.exponent,
@@ -163,20 +166,42 @@ impl ElasticLaw for Cylindrical {
     fn pair(&self, penetration: f64) -> (f64, f64) {
         self.power().pair(penetration)
     }
+}
 
-    fn check(&self) -> Result<(), ParameterError> {
-        require_positive("stiffness", self.stiffness, "positive [N/mⁿ]")?;
-        require(
-            (1.09..=1.45).contains(&self.exponent),
-            "exponent",
-            self.exponent,
-            "in [1.09, 1.45], what the cylindrical law can give; take power for others",
-        )
+impl Member for Cylindrical {
+    fn curve(&self) -> Curve {
+        Curve::of_power(self.power())
+    }
+}
+
+impl OfCylinders for Cylindrical {
+    fn between(pair: &Cylinders) -> Result<Elastic, ParameterError> {
+        let &Cylinders {
+            radius,
+            curvature,
+            length,
+            modulus,
+            ..
+        } = pair;
+        let law = if curvature < 0.0 {
+            if Self::is_nearly_flat_inside(pair.radii()) {
+                return Johnson::between(pair);
+            }
+            Self::internal(-1.0 / curvature, radius, length, modulus)?
+        } else {
+            if Self::is_nearly_flat_outside(pair.radii()) {
+                return Johnson::between(pair);
+            }
+            Self::external(radius, 1.0 / curvature, length, modulus)?
+        };
+        Ok(law.into())
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use chaindrive_quantities::check;
+
     use super::*;
 
     /// The two formulas of the exponent meet where the second takes over.
@@ -202,7 +227,7 @@ mod tests {
             external(4.0),
             external(300.0),
         ] {
-            law.unwrap().check().unwrap();
+            check(&law.unwrap()).unwrap();
         }
         assert_eq!(internal(0.0049).unwrap_err().parameter, "clearance");
         assert!(internal(10.1).is_err() && external(3.9).is_err() && external(301.0).is_err());

@@ -2,9 +2,12 @@
 
 use std::f64::consts::E;
 
+use chaindrive_quantities::{JsonSchema, Length, Stiffness};
 use serde::{Deserialize, Serialize};
 
 use super::logarithmic::follows_the_logarithm;
+use super::{Cylinders, Elastic, OfCylinders};
+use crate::ParameterError;
 
 /// The law of Dubowsky and Freudenstein: the logarithm of [`Johnson`](super::Johnson) with another length.
 ///
@@ -20,12 +23,14 @@ use super::logarithmic::follows_the_logarithm;
 ///
 /// # Source
 /// S. Dubowsky and F. Freudenstein, *J. Eng. Ind.* **93**(1), 1971, 305–309.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DubowskyFreudenstein {
-    /// Length D under the logarithm \[m\], positive: e² L²/R.
+    /// Length D under the logarithm \[m\]: e² L²/R.
+    #[schemars(with = "Length", extend("exclusiveMinimum" = 0))]
     pub length_scale: f64,
-    /// Composite modulus times length of the contact, E* L \[N/m\], positive.
+    /// Composite modulus times length of the contact, E* L \[N/m\].
+    #[schemars(with = "Stiffness", extend("exclusiveMinimum" = 0))]
     pub modulus_length: f64,
 }
 
@@ -45,3 +50,9 @@ impl DubowskyFreudenstein {
 }
 
 follows_the_logarithm!(DubowskyFreudenstein);
+
+impl OfCylinders for DubowskyFreudenstein {
+    fn between(pair: &Cylinders) -> Result<Elastic, ParameterError> {
+        Ok(Self::of_reduced_radius(pair.reduced_radius(), pair.length, pair.modulus).into())
+    }
+}

@@ -2,9 +2,12 @@
 
 use std::f64::consts::E;
 
+use chaindrive_quantities::{JsonSchema, Length, Stiffness};
 use serde::{Deserialize, Serialize};
 
 use super::logarithmic::follows_the_logarithm;
+use super::{Cylinders, Elastic, OfCylinders};
+use crate::ParameterError;
 
 /// The law of ESDU 78035 for two parallel cylinders: the logarithm of [`Johnson`](super::Johnson) with another length.
 ///
@@ -21,12 +24,14 @@ use super::logarithmic::follows_the_logarithm;
 /// for normally loaded unlubricated elastic components*, item 78035, 1978; the form for a pair as in
 /// C. M. Pereira, A. L. Ramalho and J. A. Ambrósio, *Nonlinear Dyn.* **63**, 2011, 681–697,
 /// <https://doi.org/10.1007/s11071-010-9830-3>.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Esdu78035 {
-    /// Length D under the logarithm \[m\], positive: 4 e² ΔR.
+    /// Length D under the logarithm \[m\]: 4 e² ΔR.
+    #[schemars(with = "Length", extend("exclusiveMinimum" = 0))]
     pub length_scale: f64,
-    /// Composite modulus times length of the contact, E* L \[N/m\], positive.
+    /// Composite modulus times length of the contact, E* L \[N/m\].
+    #[schemars(with = "Stiffness", extend("exclusiveMinimum" = 0))]
     pub modulus_length: f64,
 }
 
@@ -46,3 +51,9 @@ impl Esdu78035 {
 }
 
 follows_the_logarithm!(Esdu78035);
+
+impl OfCylinders for Esdu78035 {
+    fn between(pair: &Cylinders) -> Result<Elastic, ParameterError> {
+        Ok(Self::of_radii(pair.effective_radii(), pair.length, pair.modulus).into())
+    }
+}

@@ -1,8 +1,11 @@
 //! Parallel cylinders after Johnson, solved explicitly for the force.
 
+use chaindrive_quantities::{JsonSchema, Length, Stiffness};
 use serde::{Deserialize, Serialize};
 
 use super::logarithmic::follows_the_logarithm;
+use super::{Cylinders, Elastic, OfCylinders};
+use crate::ParameterError;
 
 /// Johnson's law for two parallel cylinders, inside or outside one another.
 ///
@@ -27,12 +30,14 @@ use super::logarithmic::follows_the_logarithm;
 /// K. L. Johnson, *Contact Mechanics*, Cambridge University Press, 1985, section 5.6; form for a pair:
 /// C. M. Pereira, A. L. Ramalho and J. A. Ambrósio, *Nonlinear Dyn.* **63**, 2011, 681–697,
 /// <https://doi.org/10.1007/s11071-010-9830-3>.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Johnson {
-    /// Length D under the logarithm \[m\], positive: 4ΔR.
+    /// Length D under the logarithm \[m\]: 4ΔR.
+    #[schemars(with = "Length", extend("exclusiveMinimum" = 0))]
     pub length_scale: f64,
-    /// Composite modulus times length of the contact, E* L \[N/m\], positive.
+    /// Composite modulus times length of the contact, E* L \[N/m\].
+    #[schemars(with = "Stiffness", extend("exclusiveMinimum" = 0))]
     pub modulus_length: f64,
 }
 
@@ -82,3 +87,14 @@ impl Johnson {
 }
 
 follows_the_logarithm!(Johnson);
+
+impl OfCylinders for Johnson {
+    fn between(pair: &Cylinders) -> Result<Elastic, ParameterError> {
+        Ok(Self {
+            // D = 4ΔR
+            length_scale: 4.0 * pair.effective_radii(),
+            modulus_length: pair.modulus * pair.length,
+        }
+        .into())
+    }
+}

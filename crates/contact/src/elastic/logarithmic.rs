@@ -159,9 +159,8 @@ macro_rules! follows_the_logarithm {
                 $crate::elastic::logarithmic::greatest_penetration(self.length_scale)
             }
 
-            /// The curve with its constants worked out.
             #[inline]
-            pub(super) fn curve(self) -> $crate::elastic::logarithmic::Logarithmic {
+            fn logarithm(self) -> $crate::elastic::logarithmic::Logarithmic {
                 $crate::elastic::logarithmic::Logarithmic::new(
                     self.length_scale,
                     self.modulus_length,
@@ -172,29 +171,28 @@ macro_rules! follows_the_logarithm {
         impl $crate::elastic::ElasticLaw for $law {
             #[inline]
             fn force(&self, penetration: f64) -> f64 {
-                self.curve().force(penetration)
+                self.logarithm().force(penetration)
             }
 
             #[inline]
             fn stiffness(&self, penetration: f64) -> f64 {
-                self.curve().stiffness(penetration)
+                self.logarithm().stiffness(penetration)
             }
 
             #[inline]
             fn energy(&self, penetration: f64) -> f64 {
-                self.curve().energy(penetration)
+                self.logarithm().energy(penetration)
             }
 
             #[inline]
             fn pair(&self, penetration: f64) -> (f64, f64) {
-                self.curve().pair(penetration)
+                self.logarithm().pair(penetration)
             }
+        }
 
-            fn check(&self) -> Result<(), $crate::ParameterError> {
-                use $crate::error::require_positive;
-
-                require_positive("length_scale", self.length_scale, "positive [m]")?;
-                require_positive("modulus_length", self.modulus_length, "positive [N/m]")
+        impl $crate::elastic::Member for $law {
+            fn curve(&self) -> $crate::elastic::Curve {
+                $crate::elastic::Curve::Logarithmic(self.logarithm())
             }
         }
     };

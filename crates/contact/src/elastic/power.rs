@@ -1,10 +1,9 @@
 //! Force as a power of the penetration.
 
+use chaindrive_quantities::{ContactStiffness, JsonSchema, Ratio};
 use serde::{Deserialize, Serialize};
 
-use super::ElasticLaw;
-use crate::ParameterError;
-use crate::error::{require, require_positive};
+use super::{Curve, ElasticLaw, Member};
 
 /// Power law: a linear spring, Hertz's point contact, or a fitted curve.
 ///
@@ -15,12 +14,15 @@ use crate::error::{require, require_positive};
 /// n = 1 is a linear spring; n = 1.5 is exact for non-conforming surfaces that touch in a point
 /// ([`Power::hertz`]); 1.0 to 1.3 fits the line contact of pins, bushings and rollers over a decade of load, with
 /// K in the odd unit N/mⁿ. For parallel cylinders [`Johnson`](super::Johnson) needs no fit.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(inline)]
 pub struct Power {
-    /// Stiffness K \[N/mⁿ\], positive.
+    /// Stiffness K \[N/mⁿ\], n being the exponent.
+    #[schemars(with = "ContactStiffness", extend("exclusiveMinimum" = 0))]
     pub stiffness: f64,
-    /// Exponent n \[–\], in \[1, 3\]; 1 and 1.5 are computed without a general power.
+    /// Exponent n \[–\]; 1 and 1.5 are computed without a general power.
+    #[schemars(with = "Ratio", extend("minimum" = 1, "maximum" = 3))]
     pub exponent: f64,
 }
 
@@ -115,15 +117,11 @@ impl ElasticLaw for Power {
             (0.0, 0.0)
         }
     }
+}
 
-    fn check(&self) -> Result<(), ParameterError> {
-        require_positive("stiffness", self.stiffness, "positive [N/mⁿ]")?;
-        require(
-            (1.0..=3.0).contains(&self.exponent),
-            "exponent",
-            self.exponent,
-            "in [1, 3]",
-        )
+impl Member for Power {
+    fn curve(&self) -> Curve {
+        Curve::of_power(*self)
     }
 }
 

@@ -1,8 +1,11 @@
 //! Parallel cylinders after Radzimovsky.
 
+use chaindrive_quantities::{JsonSchema, Length, Stiffness};
 use serde::{Deserialize, Serialize};
 
 use super::logarithmic::follows_the_logarithm;
+use super::{Cylinders, Elastic, OfCylinders};
+use crate::ParameterError;
 
 /// Radzimovsky's law for two parallel cylinders: the logarithm of [`Johnson`](super::Johnson) with another length.
 ///
@@ -18,12 +21,14 @@ use super::logarithmic::follows_the_logarithm;
 /// # Source
 /// E. I. Radzimovsky, *Stress Distribution and Strength Condition of Two Rolling Cylinders Pressed
 /// Together*, Univ. Illinois Eng. Exp. Station Bull. 408, 1953.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Radzimovsky {
-    /// Length D under the logarithm \[m\], positive: e^{5/3} ΔR.
+    /// Length D under the logarithm \[m\]: e^{5/3} ΔR.
+    #[schemars(with = "Length", extend("exclusiveMinimum" = 0))]
     pub length_scale: f64,
-    /// Composite modulus times length of the contact, E* L \[N/m\], positive.
+    /// Composite modulus times length of the contact, E* L \[N/m\].
+    #[schemars(with = "Stiffness", extend("exclusiveMinimum" = 0))]
     pub modulus_length: f64,
 }
 
@@ -43,3 +48,9 @@ impl Radzimovsky {
 }
 
 follows_the_logarithm!(Radzimovsky);
+
+impl OfCylinders for Radzimovsky {
+    fn between(pair: &Cylinders) -> Result<Elastic, ParameterError> {
+        Ok(Self::of_radii(pair.effective_radii(), pair.length, pair.modulus).into())
+    }
+}

@@ -1,10 +1,7 @@
 //! Coulomb friction with two tolerances of slip, after Ambrósio.
 
+use chaindrive_quantities::{JsonSchema, Ratio, Speed};
 use serde::{Deserialize, Serialize};
-
-use super::coefficient;
-use crate::ParameterError;
-use crate::error::{require, require_positive};
 
 /// Coulomb friction that fades in between two slip speeds.
 ///
@@ -18,14 +15,18 @@ use crate::error::{require, require_positive};
 /// # Source
 /// J. A. C. Ambrósio, *Impact of rigid and flexible multibody systems: deformation description and contact
 /// models*, in *Virtual Nonlinear Multibody Systems*, Kluwer, 2003, 57–81.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(inline)]
 pub struct Ambrosio {
-    /// Coefficient of friction μ \[–\], not negative.
+    /// Coefficient of friction μ \[–\].
+    #[schemars(with = "Ratio", extend("minimum" = 0))]
     pub coefficient: f64,
-    /// Slip v₀ \[m/s\] up to which there is no friction, not negative.
+    /// Slip v₀ \[m/s\] up to which there is no friction.
+    #[schemars(with = "Speed", extend("minimum" = 0))]
     pub lower_speed: f64,
     /// Slip v₁ \[m/s\] from which friction is whole, above v₀.
+    #[schemars(with = "Speed", extend("exclusiveMinimum" = 0))]
     pub upper_speed: f64,
 }
 
@@ -48,26 +49,5 @@ impl Ambrosio {
         } else {
             0.0
         }
-    }
-
-    /// Refuses parameters outside their range.
-    ///
-    /// # Errors
-    /// Names the first parameter outside its range.
-    pub fn check(self) -> Result<(), ParameterError> {
-        coefficient("coefficient", self.coefficient)?;
-        require(
-            self.lower_speed >= 0.0,
-            "lower_speed",
-            self.lower_speed,
-            "zero or positive [m/s]",
-        )?;
-        require_positive("upper_speed", self.upper_speed, "positive [m/s]")?;
-        require(
-            self.upper_speed > self.lower_speed,
-            "upper_speed",
-            self.upper_speed,
-            "above lower_speed [m/s]",
-        )
     }
 }

@@ -1,10 +1,9 @@
 //! Static and kinetic friction after Bengisu and Akay.
 
+use chaindrive_quantities::{JsonSchema, Ratio, Slowness, Speed};
 use serde::{Deserialize, Serialize};
 
-use super::{coefficients, not_below_zero};
-use crate::ParameterError;
-use crate::error::require_positive;
+use super::not_below_zero;
 
 /// Friction that rises on a parabola to its static value and decays to its kinetic one.
 ///
@@ -19,16 +18,21 @@ use crate::error::require_positive;
 /// # Source
 /// M. T. Bengisu and A. Akay, *J. Sound Vib.* **171**(4), 1994, 557–570; the form as in reviews, the
 /// original was not at hand.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(inline)]
 pub struct BengisuAkay {
     /// Coefficient of static friction μ_s \[–\], at least μ_k.
+    #[schemars(with = "Ratio", extend("minimum" = 0))]
     pub static_coefficient: f64,
-    /// Coefficient of kinetic friction μ_k \[–\], not negative.
+    /// Coefficient of kinetic friction μ_k \[–\].
+    #[schemars(with = "Ratio", extend("minimum" = 0))]
     pub coefficient: f64,
-    /// Slip v₀ \[m/s\] of the greatest force, positive.
+    /// Slip v₀ \[m/s\] of the greatest force.
+    #[schemars(with = "Option<Speed>", extend("exclusiveMinimum" = 0))]
     pub slip_speed: f64,
-    /// Decay ξ \[s/m\] from static to kinetic friction, positive.
+    /// Decay ξ \[s/m\] from static to kinetic friction.
+    #[schemars(with = "Slowness", extend("exclusiveMinimum" = 0))]
     pub decay: f64,
 }
 
@@ -64,15 +68,5 @@ impl BengisuAkay {
     fn surplus(self, speed: f64) -> f64 {
         let beyond = speed - self.slip_speed;
         (self.static_coefficient - self.coefficient) * (-self.decay * beyond).exp()
-    }
-
-    /// Refuses parameters outside their range.
-    ///
-    /// # Errors
-    /// Names the first parameter outside its range.
-    pub fn check(self) -> Result<(), ParameterError> {
-        coefficients(self.static_coefficient, self.coefficient)?;
-        require_positive("slip_speed", self.slip_speed, "positive [m/s]")?;
-        require_positive("decay", self.decay, "positive [s/m]")
     }
 }

@@ -1,10 +1,9 @@
 //! Static, kinetic and viscous friction in one smooth curve, after Brown and McPhee.
 
+use chaindrive_quantities::{Damping, Force, JsonSchema, Ratio, Speed};
 use serde::{Deserialize, Serialize};
 
-use super::{coefficients, not_below_zero};
-use crate::ParameterError;
-use crate::error::{require, require_positive};
+use super::not_below_zero;
 
 /// Smooth friction with a static peak.
 ///
@@ -20,26 +19,26 @@ use crate::error::{require, require_positive};
 /// # Source
 /// P. Brown and J. McPhee, *J. Comput. Nonlinear Dyn.* **11**(5), 2016, 054502,
 /// <https://doi.org/10.1115/1.4033658>.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(inline)]
 pub struct BrownMcphee {
     /// Coefficient of static friction μ_s \[–\], at least μ_d.
+    #[schemars(with = "Ratio", extend("minimum" = 0))]
     pub static_coefficient: f64,
-    /// Coefficient of dynamic friction μ_d \[–\], not negative.
+    /// Coefficient of dynamic friction μ_d \[–\].
+    #[schemars(with = "Ratio", extend("minimum" = 0))]
     pub coefficient: f64,
-    /// Slip v_t \[m/s\] of the greatest force, positive.
+    /// Slip v_t \[m/s\] of the greatest force.
+    #[schemars(with = "Option<Speed>", extend("exclusiveMinimum" = 0))]
     pub slip_speed: f64,
-    /// Viscous friction μ_v \[N s/m\], not negative; none unless given.
+    /// Viscous friction μ_v \[N s/m\]; none unless given.
     #[serde(default)]
+    #[schemars(with = "Damping", extend("minimum" = 0))]
     pub viscosity: f64,
-    /// Normal force N_t \[N\] at which viscous friction is whole, positive; 1 N unless given.
-    #[serde(default = "one")]
+    /// Normal force N_t \[N\] at which viscous friction is whole.
+    #[schemars(with = "Option<Force>", extend("exclusiveMinimum" = 0))]
     pub transition_force: f64,
-}
-
-/// The transition force \[N\] of a law that does not name one.
-fn one() -> f64 {
-    1.0
 }
 
 impl BrownMcphee {
@@ -87,21 +86,5 @@ impl BrownMcphee {
         } else {
             0.0
         }
-    }
-
-    /// Refuses parameters outside their range.
-    ///
-    /// # Errors
-    /// Names the first parameter outside its range.
-    pub fn check(self) -> Result<(), ParameterError> {
-        coefficients(self.static_coefficient, self.coefficient)?;
-        require_positive("slip_speed", self.slip_speed, "positive [m/s]")?;
-        require(
-            self.viscosity >= 0.0 && self.viscosity.is_finite(),
-            "viscosity",
-            self.viscosity,
-            "zero or positive [N s/m]",
-        )?;
-        require_positive("transition_force", self.transition_force, "positive [N]")
     }
 }

@@ -1,9 +1,7 @@
 //! Coulomb friction, regularised.
 
+use chaindrive_quantities::{JsonSchema, Ratio, Speed};
 use serde::{Deserialize, Serialize};
-
-use crate::ParameterError;
-use crate::error::{require, require_positive};
 
 /// Coulomb friction, smooth through zero slip.
 ///
@@ -14,12 +12,15 @@ use crate::error::{require, require_positive};
 /// At a slip of v_s the force is 71 % of μN, at 5 v_s 98 %, at 10 v_s 99.5 %. There is no sticking: a
 /// tangential load T creeps at about v_s T/(μN). The slope μN/v_s at zero slip acts as
 /// a damper on the contact, and explicit methods need steps below about 2 m v_s/(μN).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(inline)]
 pub struct Coulomb {
-    /// Coefficient of friction μ \[–\], not negative.
+    /// Coefficient of friction μ \[–\].
+    #[schemars(with = "Ratio", extend("minimum" = 0))]
     pub coefficient: f64,
-    /// Slip v_s \[m/s\] over which the force reverses, positive.
+    /// Slip v_s \[m/s\] over which the force reverses.
+    #[schemars(with = "Option<Speed>", extend("exclusiveMinimum" = 0))]
     pub slip_speed: f64,
 }
 
@@ -42,19 +43,5 @@ impl Coulomb {
     /// √(v² + v_s²) \[m/s\].
     fn reach(self, slip: f64) -> f64 {
         (slip * slip + self.slip_speed * self.slip_speed).sqrt()
-    }
-
-    /// Refuses parameters outside their range.
-    ///
-    /// # Errors
-    /// Names the first parameter outside its range.
-    pub fn check(self) -> Result<(), ParameterError> {
-        require(
-            self.coefficient >= 0.0 && self.coefficient.is_finite(),
-            "coefficient",
-            self.coefficient,
-            "zero or positive",
-        )?;
-        require_positive("slip_speed", self.slip_speed, "positive [m/s]")
     }
 }

@@ -1,10 +1,9 @@
 //! Friction of bristles that bend, after Canudas de Wit and others.
 
+use chaindrive_quantities::{JsonSchema, PerLength, Ratio, Slowness, Speed};
 use serde::{Deserialize, Serialize};
 
-use super::{Rub, coefficients, not_below_zero};
-use crate::ParameterError;
-use crate::error::{require, require_positive};
+use super::{Rub, not_below_zero};
 
 /// The `LuGre` law: friction with a state, sticking included.
 ///
@@ -31,20 +30,29 @@ use crate::error::{require, require_positive};
 /// # Source
 /// C. Canudas de Wit, H. Olsson, K. J. Åström and P. Lischinsky, *IEEE Trans. Autom. Control* **40**(3),
 /// 1995, 419–425.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(inline)]
 pub struct Lugre {
     /// Coefficient of static friction μ_s \[–\], at least μ_c.
+    #[schemars(with = "Ratio", extend("minimum" = 0))]
     pub static_coefficient: f64,
-    /// Coefficient of kinetic friction μ_c \[–\], positive.
+    /// Coefficient of kinetic friction μ_c \[–\].
+    #[schemars(with = "Ratio", extend("exclusiveMinimum" = 0))]
     pub coefficient: f64,
-    /// Stribeck speed v_s \[m/s\], positive.
+    /// Stribeck speed v_s \[m/s\].
+    #[schemars(with = "Option<Speed>", extend("exclusiveMinimum" = 0))]
     pub slip_speed: f64,
-    /// Stiffness σ₀ of the bristles per normal force \[1/m\], positive.
+    /// Stiffness σ₀ of the bristles per normal force \[1/m\].
+    #[schemars(with = "PerLength", extend("exclusiveMinimum" = 0))]
     pub stiffness: f64,
-    /// Damping σ₁ of the bristles per normal force \[s/m\], not negative.
+    /// Damping σ₁ of the bristles per normal force \[s/m\].
+    #[serde(default)]
+    #[schemars(with = "Slowness", extend("minimum" = 0))]
     pub damping: f64,
-    /// Viscous friction σ₂ per normal force \[s/m\], not negative.
+    /// Viscous friction σ₂ per normal force \[s/m\].
+    #[serde(default)]
+    #[schemars(with = "Slowness", extend("minimum" = 0))]
     pub viscosity: f64,
 }
 
@@ -114,25 +122,5 @@ impl Lugre {
             ),
             state: deflection,
         }
-    }
-
-    /// Refuses parameters outside their range.
-    ///
-    /// # Errors
-    /// Names the first parameter outside its range.
-    pub fn check(self) -> Result<(), ParameterError> {
-        coefficients(self.static_coefficient, self.coefficient)?;
-        require_positive("coefficient", self.coefficient, "positive")?;
-        require_positive("slip_speed", self.slip_speed, "positive [m/s]")?;
-        require_positive("stiffness", self.stiffness, "positive [1/m]")?;
-        for (name, value) in [("damping", self.damping), ("viscosity", self.viscosity)] {
-            require(
-                value >= 0.0 && value.is_finite(),
-                name,
-                value,
-                "zero or positive [s/m]",
-            )?;
-        }
-        Ok(())
     }
 }

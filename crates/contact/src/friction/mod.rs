@@ -1,7 +1,8 @@
 //! The family of friction laws: tangential force from normal force and slip.
 //!
 //! To add a member write one file with its parameters, and enter it in `mod`, the variant, the
-//! arm of `each!` and [`specimens`](Friction::specimens).
+//! arm of `each!` and [`specimens`](Friction::specimens). Scenes know it by then: name, keys, quantities and ranges are those of the
+//! struct.
 //!
 //! | friction | `kind` | at rest | static peak |
 //! |---|---|---|---|
@@ -30,17 +31,23 @@ pub use lugre::Lugre;
 pub use spring_slider::SpringSlider;
 pub use threlfall::Threlfall;
 
+use chaindrive_quantities::{JsonSchema, check};
 use serde::{Deserialize, Serialize};
 
 use crate::ParameterError;
 use crate::error::{no_parameters, require};
 
+/// The kind of a table without `kind`.
+const PLAIN: &str = "coulomb";
+
 /// A friction law, chosen at run time.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
+#[schemars(extend("x-default-kind" = PLAIN))]
 pub enum Friction {
     /// No friction.
     #[serde(deserialize_with = "no_parameters")]
+    #[schemars(with = "()", extend("additionalProperties" = false))]
     None,
     /// Coulomb friction, smooth through zero slip.
     Coulomb(Coulomb),
@@ -137,7 +144,40 @@ impl Friction {
     /// # Errors
     /// Names the first parameter outside its range.
     pub fn check(&self) -> Result<(), ParameterError> {
-        each!(self, member => member.check(), none => Ok(()))
+        check(self)?;
+        match *self {
+            Self::Ambrosio(Ambrosio {
+                lower_speed,
+                upper_speed,
+                ..
+            }) => require(
+                upper_speed > lower_speed,
+                "upper_speed",
+                upper_speed,
+                "above lower_speed [m/s]",
+            ),
+            Self::BengisuAkay(BengisuAkay {
+                static_coefficient,
+                coefficient,
+                ..
+            })
+            | Self::BrownMcphee(BrownMcphee {
+                static_coefficient,
+                coefficient,
+                ..
+            })
+            | Self::Lugre(Lugre {
+                static_coefficient,
+                coefficient,
+                ..
+            }) => require(
+                static_coefficient >= coefficient,
+                "static_coefficient",
+                static_coefficient,
+                "at least the coefficient of sliding",
+            ),
+            Self::None | Self::Coulomb(_) | Self::Threlfall(_) | Self::SpringSlider(_) => Ok(()),
+        }
     }
 
     /// At least one law of every kind, for tests and benchmarks.
@@ -183,25 +223,4 @@ impl Friction {
 /// A slope of the friction curve, or zero where the force falls with the slip.
 fn not_below_zero(damping: f64) -> f64 {
     damping.max(0.0)
-}
-
-/// Lets a coefficient of friction pass or names it.
-fn coefficient(name: &'static str, value: f64) -> Result<(), ParameterError> {
-    require(
-        value >= 0.0 && value.is_finite(),
-        name,
-        value,
-        "zero or positive",
-    )
-}
-
-/// The same for a static and a kinetic one.
-fn coefficients(at_rest: f64, sliding: f64) -> Result<(), ParameterError> {
-    coefficient("coefficient", sliding)?;
-    require(
-        at_rest >= sliding && at_rest.is_finite(),
-        "static_coefficient",
-        at_rest,
-        "at least the coefficient of sliding",
-    )
 }

@@ -1,10 +1,9 @@
 //! Coulomb friction that holds elastically: a spring in series with a slider.
 
+use chaindrive_quantities::{JsonSchema, Ratio, Stiffness};
 use serde::{Deserialize, Serialize};
 
-use super::{Rub, coefficient};
-use crate::ParameterError;
-use crate::error::require_positive;
+use super::Rub;
 
 /// A spring and a slider in series: friction with a state, sticking included, sharp at any speed.
 ///
@@ -22,12 +21,15 @@ use crate::error::require_positive;
 /// # Source
 /// C. F. Jenkin, *Engineering* **114**, 1922, 603 (spring and slider); P. A. Cundall and O. D. L. Strack, *Géotechnique*
 /// **29**(1), 1979, 47–65 (as a law of contacts, advanced step by step).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(inline)]
 pub struct SpringSlider {
     /// Coefficient of friction μ \[–\].
+    #[schemars(with = "Ratio", extend("minimum" = 0))]
     pub coefficient: f64,
-    /// Stiffness k along the surface, until it slides \[N/m\], positive.
+    /// Stiffness k along the surface, until it slides \[N/m\].
+    #[schemars(with = "Option<Stiffness>", extend("exclusiveMinimum" = 0))]
     pub stiffness: f64,
 }
 
@@ -62,14 +64,5 @@ impl SpringSlider {
             damping: if holds { self.stiffness * dt } else { 0.0 },
             state: deflection,
         }
-    }
-
-    /// Refuses parameters outside their range.
-    ///
-    /// # Errors
-    /// Names the first parameter outside its range.
-    pub fn check(self) -> Result<(), ParameterError> {
-        coefficient("coefficient", self.coefficient)?;
-        require_positive("stiffness", self.stiffness, "positive [N/m]")
     }
 }

@@ -1,10 +1,7 @@
 //! Coulomb friction with an exponential approach, after Threlfall.
 
+use chaindrive_quantities::{JsonSchema, Ratio, Speed};
 use serde::{Deserialize, Serialize};
-
-use super::coefficient;
-use crate::ParameterError;
-use crate::error::require_positive;
 
 /// Coulomb friction approached exponentially.
 ///
@@ -17,12 +14,15 @@ use crate::error::require_positive;
 ///
 /// # Source
 /// D. C. Threlfall, *Mech. Mach. Theory* **13**(4), 1978, 475–483.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(inline)]
 pub struct Threlfall {
-    /// Coefficient of friction μ \[–\], not negative.
+    /// Coefficient of friction μ \[–\].
+    #[schemars(with = "Ratio", extend("minimum" = 0))]
     pub coefficient: f64,
-    /// Slip v_r \[m/s\] at which the force reaches 95 %, positive.
+    /// Slip v_r \[m/s\] at which the force reaches 95 %.
+    #[schemars(with = "Option<Speed>", extend("exclusiveMinimum" = 0))]
     pub slip_speed: f64,
 }
 
@@ -50,14 +50,5 @@ impl Threlfall {
         } else {
             0.0
         }
-    }
-
-    /// Refuses parameters outside their range.
-    ///
-    /// # Errors
-    /// Names the first parameter outside its range.
-    pub fn check(self) -> Result<(), ParameterError> {
-        coefficient("coefficient", self.coefficient)?;
-        require_positive("slip_speed", self.slip_speed, "positive [m/s]")
     }
 }

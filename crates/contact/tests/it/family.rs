@@ -260,7 +260,7 @@ fn laws_survive_their_file_form() {
     let law: Law = serde_json::from_str(text).unwrap();
     assert_eq!(
         law.check().unwrap_err().to_string(),
-        "restitution = 1.4, must be in [0, 1]"
+        "restitution = 1.4, must be at most 1"
     );
     let unknown = text.replace("\"exponent\"", "\"hardening\": 2, \"exponent\"");
     let message = serde_json::from_str::<Law>(&unknown)

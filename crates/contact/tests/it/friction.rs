@@ -297,12 +297,13 @@ fn parameters_out_of_range_are_named() {
             "upper_speed = 1, must be above lower_speed [m/s]",
         ),
         (
-            r#"{"kind": "brown-mcphee", "static_coefficient": 0.1, "coefficient": 0.2, "slip_speed": 1.0}"#,
+            r#"{"kind": "brown-mcphee", "static_coefficient": 0.1, "coefficient": 0.2, "slip_speed": 1.0,
+                "viscosity": 0.0, "transition_force": 1.0}"#,
             "static_coefficient = 0.1, must be at least the coefficient of sliding",
         ),
         (
             r#"{"kind": "threlfall", "coefficient": -0.1, "slip_speed": 1.0}"#,
-            "coefficient = -0.1, must be zero or positive",
+            "coefficient = -0.1, must be not negative",
         ),
     ] {
         assert_eq!(refused(text), message);

@@ -289,7 +289,7 @@ fn laws_are_continuous_through_the_flat() {
             law.between(&pair).unwrap().force(1e-6)
         };
         // The term of wide contacts is still there in the last hollow: 2e-5 at this depth.
-        let step = if law == CylinderLaw::Conformal {
+        let step = if *law == CylinderLaw::Conformal {
             1e-4
         } else {
             1e-9

@@ -55,9 +55,13 @@ impl<'a> Joints<'a> {
 
     /// Friction of pin and bush: as the chain says, or as all chains do; or the usual one where the catalogue knows the pin.
     pub(super) fn friction(&self, findings: &mut Findings<'_>) -> Option<Friction> {
-        let own = self.text.joint.as_ref().and_then(|it| it.contact.friction);
+        let own = self
+            .text
+            .joint
+            .as_ref()
+            .and_then(|it| it.contact.friction.as_ref());
         let spring = self.spring();
-        match (own, self.scene.contact.joints.friction) {
+        match (own, &self.scene.contact.joints.friction) {
             (Some(text), _) => contact::friction(text, "chain.joint.contact", spring, findings),
             (None, Some(text)) => contact::friction(text, "contact.joints", spring, findings),
             (None, None) => Some(self.usual(spring, findings)),

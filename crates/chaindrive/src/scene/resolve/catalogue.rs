@@ -6,9 +6,9 @@ use serde::Serialize;
 use super::Findings;
 use crate::catalogue::{CatalogueChain, Number, Status, catalogue};
 use crate::scene::error::Problem;
-use crate::scene::quantity::{Force, Inertia, Length, Mass, Stiffness};
 use crate::scene::schema::{self, Rollers};
 use crate::scene::suggest::{nearest, one_of};
+use chaindrive_quantities::{Force, Inertia, Length, Mass, Stiffness};
 
 /// The chain of the catalogue of a name.
 ///

@@ -1,18 +1,13 @@
 //! Contacts: what a sprocket or guide says, completed by what holds for all.
 
-use chaindrive_contact::dissipation::{
-    Exact, Flores, Gonthier, HerbertMcWhannell, HuGuo, HuntCrossley, LankaraniNikravesh, LeeWang,
-    Viscous, ZhiyingQishao,
-};
+use chaindrive_contact::dissipation::{Hysteresis, Viscous};
 use chaindrive_contact::{Dissipation, Elastic, Friction, Law};
 use chaindrive_mechanics::Surface;
-use serde::Deserialize;
-use serde_json::json;
 
 use super::Findings;
 use super::law::{Pair, elastic};
 use crate::scene::defaults::{self, Default};
-use crate::scene::schema::{self, Contact};
+use crate::scene::schema::{Contact, Written};
 
 /// Values on which a contact falls back.
 #[derive(Clone, Copy, Debug)]
@@ -74,7 +69,7 @@ impl Said<'_> {
     /// How it rubs.
     pub(super) fn friction(&self, findings: &mut Findings<'_>) -> Option<Friction> {
         let common = self.fallback.path;
-        match (self.own.friction, self.common.friction) {
+        match (&self.own.friction, &self.common.friction) {
             (Some(text), _) => friction(text, self.path, None, findings),
             (None, Some(text)) => friction(text, common, None, findings),
             (None, None) => {
@@ -124,7 +119,6 @@ impl Said<'_> {
     }
 
     fn dissipation(&self, findings: &mut Findings<'_>) -> Option<Dissipation> {
-        use schema::Dissipation as Name;
         let Self {
             own,
             path,
@@ -156,8 +150,8 @@ impl Said<'_> {
         }
         let name = said
             .dissipation
-            .or(common.dissipation.filter(|name| *name != Name::None));
-        if name == Some(Name::None) && said.restitution.is_some() {
+            .or(common.dissipation.filter(|name| *name != Hysteresis::None));
+        if name == Some(Hysteresis::None) && said.restitution.is_some() {
             twice("restitution", "dissipation = \"none\"");
             return None;
         }
@@ -167,33 +161,16 @@ impl Said<'_> {
             &defaults::DISSIPATION,
         );
         let restitution = match name {
-            Name::None => 1.0,
+            Hysteresis::None => 1.0,
             _ => findings.or_default(
                 said.restitution.or(common.restitution).map(|e| e.0),
                 &format!("{place}.restitution"),
                 fallback.restitution,
             ),
         };
-        let dissipation = match name {
-            Name::None => Dissipation::None,
-            Name::Exact => Dissipation::Exact(Exact { restitution }),
-            Name::HuntCrossley => Dissipation::HuntCrossley(HuntCrossley { restitution }),
-            Name::LankaraniNikravesh => {
-                Dissipation::LankaraniNikravesh(LankaraniNikravesh { restitution })
-            }
-            Name::LeeWang => Dissipation::LeeWang(LeeWang { restitution }),
-            Name::HerbertMcWhannell => {
-                Dissipation::HerbertMcWhannell(HerbertMcWhannell { restitution })
-            }
-            Name::Gonthier => Dissipation::Gonthier(Gonthier { restitution }),
-            Name::ZhiyingQishao => Dissipation::ZhiyingQishao(ZhiyingQishao { restitution }),
-            Name::Flores => Dissipation::Flores(Flores { restitution }),
-            Name::HuGuo => Dissipation::HuGuo(HuGuo { restitution }),
-        };
-        let sound = dissipation.check().map_err(|error| {
-            let message = format!("{}, must be {}", error.value, error.allowed);
-            findings.refuse_once(&format!("{place}.{}", error.parameter), message, "");
-        });
+        let dissipation = Dissipation::with_restitution(name, restitution);
+        let sound = dissipation.check();
+        let sound = sound.map_err(|error| findings.refuse_parameter(place, &error));
         sound.ok().map(|()| dissipation)
     }
 }
@@ -209,58 +186,23 @@ pub(super) struct Spring {
 
 /// The friction that a scene describes at `place`; a spring of unknown stiffness is that of `spring`.
 pub(super) fn friction(
-    text: schema::Friction,
+    text: &Written<Friction>,
     place: &str,
     spring: Option<Spring>,
     findings: &mut Findings<'_>,
 ) -> Option<Friction> {
-    // Kinds and parameters are called the same in a scene and in the law, in SI units here: a law of its own needs nothing else.
-    let mut parameters = json!(text);
-    // What may stay open, whichever law has it.
-    for (key, default) in [
-        ("slip_speed", &defaults::SLIP_SPEED),
-        ("transition_force", &defaults::TRANSITION_FORCE),
-    ] {
-        if let Some(value) = parameters.get_mut(key).filter(|value| value.is_null()) {
-            let path = format!("{place}.friction.{key}");
-            *value = findings.or_default(None, &path, default).into();
-        }
-    }
-    if let Some(value) = parameters
-        .get_mut("stiffness")
-        .filter(|value| value.is_null())
-    {
-        let path = format!("{place}.friction.stiffness");
+    let path = format!("{place}.friction");
+    let mut keys = findings.completed(text.keys.clone(), "Friction", &path);
+    if text.word("kind") == "spring-slider" && keys.get("stiffness").is_none() {
+        let path = format!("{path}.stiffness");
         let Some(spring) = spring else {
             let hint = "give it, such as \"50 MN/m\"; it is known in joints of links whose pins and stiffness are";
             findings.refuse_once(&path, "missing", hint);
             return None;
         };
-        *value = findings
+        keys["stiffness"] = findings
             .or_multiple(None, &path, spring.factor, spring.unit)
             .into();
     }
-    let friction = Friction::deserialize(parameters)
-        .map_err(|error| findings.refuse_once(&format!("{place}.friction"), error.to_string(), ""))
-        .ok()?;
-    let sound = friction.check().map_err(|error| {
-        let path = format!("{place}.friction.{}", error.parameter);
-        let message = format!("{}, must be {}", error.value, error.allowed);
-        findings.refuse_once(&path, message, "");
-    });
-    sound.ok().map(|()| friction)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A law that scenes cannot write, or write otherwise, would fail here.
-    #[test]
-    fn scenes_know_every_friction() {
-        for law in Friction::specimens() {
-            let text = schema::Friction::deserialize(json!(law)).unwrap();
-            assert_eq!(Friction::deserialize(json!(text)).unwrap(), law);
-        }
-    }
+    findings.read(keys, &path, Friction::check)
 }

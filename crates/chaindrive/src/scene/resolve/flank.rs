@@ -1,6 +1,6 @@
 //! Flanks of teeth, where they do not answer like the seats.
 
-use chaindrive_contact::elastic::{CylinderLaw, Cylinders};
+use chaindrive_contact::elastic::{CylinderLaw, Cylinders, Specification, Surfaces};
 use chaindrive_contact::{Elastic, Elasticity};
 use chaindrive_geometry::{Piece, ToothGap};
 use chaindrive_mechanics::Flank;
@@ -11,7 +11,6 @@ use super::Findings;
 use super::chain::Resolved;
 use super::law::{elastic, steel};
 use crate::scene::defaults;
-use crate::scene::quantity::{Length, Pressure, Ratio};
 use crate::scene::schema::{self, SceneText};
 
 /// The flank of a sprocket: its own, then the common one, then what follows from the curvature where
@@ -69,14 +68,14 @@ fn on_bulge(gap: &ToothGap, chain: &Resolved, steel: Elasticity) -> Option<(Elas
     let pair = Cylinders::on_curve(radius, curvature, length, steel.composite(steel), cap);
     // Below the least sum of radii of the fit the seat's law goes on.
     let law = CylinderLaw::Cylindrical.between(&pair).ok()?;
-    let text = schema::Elastic::Cylindrical(schema::Cylinders {
-        length: Some(Length(length)),
-        modulus: Some(Pressure(steel.modulus)),
-        poisson: Some(Ratio(steel.poisson)),
-        radius: Some(Length(radius)),
-        other_radius: other.map(Length),
+    let text = Specification::Cylindrical(Surfaces {
+        length: Some(length),
+        modulus: steel.modulus,
+        poisson: steel.poisson,
+        radius: Some(radius),
+        other_radius: other,
         clearance: None,
-        depth_cap: Some(Length(cap)),
+        depth_cap: Some(cap),
     });
     Some((law, serde_json::to_value(text).ok()?))
 }

@@ -10,8 +10,8 @@ use super::law::linear;
 use super::on_span::{self, Passing};
 use super::{Findings, Names, contact, motion, point};
 use crate::scene::defaults;
-use crate::scene::quantity::{Angle, Length};
 use crate::scene::schema::{self, Face, SceneText, TravelSide};
+use chaindrive_quantities::{Angle, Length};
 
 /// All guides, each with the chain that it belongs to.
 pub(super) fn resolve_all<'c>(

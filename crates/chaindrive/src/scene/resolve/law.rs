@@ -1,15 +1,15 @@
 //! Elastic laws: what a scene says, completed by the surfaces that touch.
 
-use chaindrive_contact::elastic::{CylinderLaw, Cylinders, Johnson, Power};
+use chaindrive_contact::elastic::{
+    CylinderLaw, Cylinders, Johnson, Power, Specification, Surfaces,
+};
 use chaindrive_contact::{Elastic, Elasticity, ParameterError};
-
-use serde::Deserialize;
+use chaindrive_quantities::check;
 use serde_json::json;
 
 use super::Findings;
 use crate::scene::defaults::{self, Default};
-use crate::scene::schema;
-use crate::scene::schema::Version;
+use crate::scene::schema::{Version, Written};
 
 /// The two surfaces of a contact, as far as the drive gives them.
 #[derive(Clone, Copy, Debug)]
@@ -63,65 +63,38 @@ pub(super) fn linear(
 
 /// The law that a scene describes at `path`.
 pub(super) fn elastic(
-    law: &schema::Elastic,
+    law: &Written<Specification>,
     pair: Pair,
     path: &str,
     findings: &mut Findings<'_>,
 ) -> Option<Elastic> {
-    let mut text = match law {
-        schema::Elastic::Linear { stiffness } => {
-            return Some(Elastic::Power(Power::linear(stiffness.0)));
-        }
-        schema::Elastic::Hertz {
-            modulus,
-            poisson,
-            radius,
-            other_radius,
-        } => {
-            let text = schema::Cylinders {
-                modulus: *modulus,
-                poisson: *poisson,
-                radius: *radius,
-                other_radius: *other_radius,
-                ..schema::Cylinders::default()
-            };
+    let keys = findings.completed(law.keys.clone(), "Elastic", path);
+    let law: Specification = findings.read(keys, path, check)?;
+    match law.curve() {
+        Ok(law) => Some(law),
+        Err((CylinderLaw::Hertz, bodies)) => {
             let Sides {
                 radius,
                 other,
                 modulus,
-            } = Sides::of(&text, pair, path, findings)?;
+            } = Sides::of(&bodies, pair, path, findings)?;
             let other = other.unwrap_or(f64::INFINITY);
-            return Some(Elastic::Power(Power::hertz_pair(radius, other, modulus)));
+            Some(Power::hertz_pair(radius, other, modulus).into())
         }
-        law => json!(law),
-    };
-    // Kinds and parameters are called the same in a scene and in the law: a law of its own needs nothing else.
-    let read = match CylinderLaw::deserialize(&text["kind"]) {
-        Ok(kind) => {
-            if let Some(text) = text.as_object_mut() {
-                text.remove("kind");
-            }
-            match schema::Cylinders::deserialize(text) {
-                Ok(text) => return cylinders(kind, &text, pair, path, findings),
-                Err(error) => Err(error),
-            }
-        }
-        Err(_) => Elastic::deserialize(text),
-    };
-    read.map_err(|error| findings.refuse_once(path, error.to_string(), ""))
-        .ok()
+        Err((kind, bodies)) => cylinders(kind, &bodies, pair, path, findings),
+    }
 }
 
 fn cylinders(
     kind: CylinderLaw,
-    text: &schema::Cylinders,
+    text: &Surfaces,
     pair: Pair,
     path: &str,
     findings: &mut Findings<'_>,
 ) -> Option<Elastic> {
     let place = format!("{path}.length");
     let length = match (text.length, pair.length) {
-        (Some(length), _) => length.0,
+        (Some(length), _) => length,
         (None, Some(length)) => {
             findings.assume(&place, length, "length of the roller or joint");
             length
@@ -138,7 +111,7 @@ fn cylinders(
     } = Sides::of(text, pair, path, findings)?;
     if kind == CylinderLaw::Johnson {
         return Some(Elastic::Johnson(match (text.clearance, other) {
-            (Some(clearance), _) => Johnson::internal(clearance.0, 0.0, length, modulus),
+            (Some(clearance), _) => Johnson::internal(clearance, 0.0, length, modulus),
             (None, None) => Johnson::flat(radius, length, modulus),
             (None, Some(other)) if other < 0.0 => {
                 Johnson::internal(-other, radius, length, modulus)
@@ -146,7 +119,7 @@ fn cylinders(
             (None, Some(other)) => Johnson::external(radius, other, length, modulus),
         }));
     }
-    let cap = text.depth_cap.map(|depth| depth.0);
+    let cap = text.depth_cap;
     let cylinders = match other {
         // D = 4 r, as Johnson's law on a flat.
         None => Cylinders::on_curve(radius, 0.0, length, modulus, cap.unwrap_or(radius)),
@@ -159,8 +132,8 @@ fn cylinders(
         Ok(law) => Some(law),
         Err(error) => {
             // The second cylinder is given by its own radius, or by the clearance.
-            let key = match error.parameter {
-                "length" | "modulus" | "radius" => error.parameter,
+            let key = match error.parameter.as_ref() {
+                key @ ("length" | "modulus" | "radius") => key,
                 _ if text.other_radius.is_some() => "other_radius",
                 _ => "clearance",
             };
@@ -179,18 +152,10 @@ struct Sides {
 }
 
 impl Sides {
-    fn of(
-        text: &schema::Cylinders,
-        pair: Pair,
-        path: &str,
-        findings: &mut Findings<'_>,
-    ) -> Option<Self> {
-        let modulus = text.modulus.map(|modulus| modulus.0);
-        let poisson = text.poisson.map(|poisson| poisson.0);
-        let (at_modulus, at_poisson) = (format!("{path}.modulus"), format!("{path}.poisson"));
+    fn of(text: &Surfaces, pair: Pair, path: &str, findings: &mut Findings<'_>) -> Option<Self> {
         let body = Elasticity {
-            modulus: findings.or_default(modulus, &at_modulus, &defaults::MODULUS),
-            poisson: findings.or_default(poisson, &at_poisson, &defaults::POISSON),
+            modulus: text.modulus,
+            poisson: text.poisson,
         };
         let modulus = body.composite(body);
         if let Some(bore) = pair.bore {
@@ -211,14 +176,11 @@ impl Sides {
                 modulus,
             });
         }
-        let radius = text.radius.map_or_else(
-            || {
-                findings.assume(&format!("{path}.radius"), pair.radius, "that of the roller");
-                pair.radius
-            },
-            |radius| radius.0,
-        );
-        let other = text.other_radius.map(|radius| radius.0);
+        let radius = text.radius.unwrap_or_else(|| {
+            findings.assume(&format!("{path}.radius"), pair.radius, "that of the roller");
+            pair.radius
+        });
+        let other = text.other_radius;
         if let Some(other) = other
             && (other == 0.0 || (other < 0.0 && -other <= radius))
         {
@@ -232,7 +194,7 @@ impl Sides {
             findings.refuse_once(&format!("{path}.clearance"), message, "keep one of them");
             return None;
         }
-        let hollow = text.clearance.map(|clearance| -(radius + clearance.0));
+        let hollow = text.clearance.map(|clearance| -(radius + clearance));
         Some(Self {
             radius,
             other: other.or(hollow),

@@ -23,6 +23,7 @@ mod stack;
 mod start;
 mod tensioner;
 mod tooth;
+mod written;
 
 use std::collections::{HashMap, HashSet};
 
@@ -36,10 +37,10 @@ use on_span::Passing;
 
 use super::defaults::{self, Choice, Default};
 use super::error::{Problem, Problems};
-use super::quantity::{Length, Ratio};
 use super::schema::{Contact, SceneText, Version};
 use super::suggest::one_of;
 use super::tree::{Node, Value};
+use chaindrive_quantities::{Length, Ratio};
 
 /// Builds the drive of a scene, or collects everything that prevents it.
 pub(crate) fn drive(scene: &SceneText, tree: &Node) -> Result<(Drive, Vec<Assumption>), Problems> {
@@ -102,6 +103,7 @@ pub(crate) fn friction(
     let mut findings = Findings::new(tree, Version::default());
     let law = contact
         .friction
+        .as_ref()
         .and_then(|text| contact::friction(text, "", None, &mut findings));
     law.ok_or(findings.problems)
 }

@@ -6,9 +6,9 @@ use chaindrive_mechanics::{Argument, DriveError, Harmonic, Motion, Order, Table,
 
 use super::Findings;
 use super::ends::Ends;
-use crate::scene::quantity::{Angle, AngularSpeed, Length, Speed};
 use crate::scene::schema::{self, SceneText};
 use crate::scene::suggest::one_of;
+use chaindrive_quantities::{Angle, AngularSpeed, Length, Speed};
 
 /// A displacement.
 pub(super) fn shift(
@@ -219,7 +219,7 @@ fn torque(
         }
         _ => None,
     };
-    let mut over = |over, arguments: Vec<f64>, torques: &[crate::scene::quantity::Torque], key| {
+    let mut over = |over, arguments: Vec<f64>, torques: &[chaindrive_quantities::Torque], key| {
         let values = torques.iter().map(|torque| torque.0).collect();
         let curve = table(arguments, values, path, key, findings)?;
         Some(Torque::Table { over, curve })

@@ -4,8 +4,8 @@ use chaindrive_mechanics::{Coupling, GearPair, Rotation, Shaft, StartSpeed};
 
 use super::ends::Ends;
 use super::{Findings, Names, motion};
-use crate::scene::quantity::{Angle, AngularSpeed};
 use crate::scene::schema::{self, SceneText};
+use chaindrive_quantities::{Angle, AngularSpeed};
 
 /// All that turns.
 #[derive(Debug)]

@@ -49,7 +49,7 @@ pub(super) fn layout(
             let velocity = |given: &Vec<_>| {
                 given
                     .iter()
-                    .map(|[x, y]: &[crate::scene::quantity::Speed; 2]| Vector::new(x.0, y.0))
+                    .map(|[x, y]: &[chaindrive_quantities::Speed; 2]| Vector::new(x.0, y.0))
                     .collect()
             };
             let velocities = velocities

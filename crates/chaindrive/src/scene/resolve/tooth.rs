@@ -8,8 +8,8 @@ use serde_json::json;
 
 use super::{Findings, point};
 use crate::scene::defaults;
-use crate::scene::quantity::Length;
 use crate::scene::schema::{self, PathPiece, TipForm, Tooth};
+use chaindrive_quantities::Length;
 
 /// The tooth form of a sprocket at `path`.
 pub(super) fn form(

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{ChainModel, Joint, Link, Motion, Roller, Rollers, Route};
-use crate::scene::quantity::{
+use chaindrive_quantities::{
     AngularSpeed, Damping, Drag, Force, Length, Mass, Power, Ratio, Speed, Stiffness,
 };
 

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Contact, Motion};
-use crate::scene::quantity::{Angle, Length, Ratio, Speed};
+use chaindrive_quantities::{Angle, Length, Ratio, Speed};
 
 /// A rail.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Contact;
-use crate::scene::quantity::{AngularDamping, Inertia, Length, Mass};
+use chaindrive_quantities::{AngularDamping, Inertia, Length, Mass};
 
 /// Model of a chain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]

@@ -6,7 +6,6 @@
 
 mod chain;
 mod contact;
-mod friction;
 mod guide;
 mod links;
 mod motion;
@@ -15,10 +14,10 @@ mod run;
 mod shaft;
 mod sprocket;
 mod tensioner;
+mod written;
 
 pub(crate) use chain::{Chain, End, NamedChain, Start};
-pub(crate) use contact::{Contact, Contacts, Cylinders, Dissipation, Elastic, Flank};
-pub(crate) use friction::Friction;
+pub(crate) use contact::{Contact, Contacts, Flank};
 pub(crate) use guide::{Face, Guide, GuideSupport, TravelSide};
 pub(crate) use links::{ChainModel, Joint, Link, Roller, Rollers};
 pub(crate) use motion::{Motion, OrderTerm, StartSpeed, Torque};
@@ -28,11 +27,12 @@ pub(crate) use run::{EVERY, Run, STEPPING_KEYS, TOLERANCE, UNTIL};
 pub(crate) use shaft::{Coupling, Gears, Shaft};
 pub(crate) use sprocket::{PathPiece, Seat, Side, Sprocket, Support, TipForm, Tooth};
 pub(crate) use tensioner::{Carrier, Oil, Push, Tensioner};
+pub(crate) use written::Written;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::quantity::Acceleration;
+use chaindrive_quantities::Acceleration;
 
 /// A chain drive: a chain, what it runs around, and how it starts.
 ///

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
-use crate::scene::quantity::{
+use chaindrive_quantities::{
     Angle, AngularDamping, AngularSpeed, Frequency, QuadraticDamping, Ratio, Time, Torque as Moment,
 };
 

@@ -4,7 +4,7 @@ use chaindrive_mechanics::{PretensionAt, SpanStart, Tighten};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::scene::quantity::{Angle, Force, Length, Ratio};
+use chaindrive_quantities::{Angle, Force, Length, Ratio};
 
 /// How a closed chain lies around its sprockets.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]

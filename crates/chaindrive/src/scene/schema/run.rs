@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::Stepping;
 use crate::scene::accuracy::Quantity;
-use crate::scene::quantity::{Length, Ratio, Time};
 use crate::scene::run_in::RunIn;
+use chaindrive_quantities::{Length, Ratio, Time};
 
 use super::Version;
 

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Motion, StartSpeed, Torque};
-use crate::scene::quantity::{Angle, AngularDamping, AngularSpeed, AngularStiffness, Inertia};
+use chaindrive_quantities::{Angle, AngularDamping, AngularSpeed, AngularStiffness, Inertia};
 
 /// A body that turns about one axis: it carries sprockets of any chains, rigidly, or none, such as a wheel behind a coupling.
 ///

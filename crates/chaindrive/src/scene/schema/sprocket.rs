@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Contact, Flank, Motion, StartSpeed, Torque};
-use crate::scene::quantity::{
+use chaindrive_quantities::{
     Angle, AngularSpeed, Damping, Inertia, Length, Mass, Speed, Stiffness,
 };
 

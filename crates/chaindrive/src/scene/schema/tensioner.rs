@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::scene::quantity::{
+use chaindrive_quantities::{
     AngularDamping, AngularStiffness, Damping, Force, Inertia, Length, Mass, Pressure, Ratio,
     Stiffness, Torque, Viscosity, Volume,
 };

@@ -11,8 +11,9 @@ use std::path::Path;
 
 use super::{arrows, root, sources};
 
-const CRATES: [&str; 10] = [
+const CRATES: [&str; 11] = [
     "identity",
+    "quantities",
     "geometry",
     "contact",
     "integrate",

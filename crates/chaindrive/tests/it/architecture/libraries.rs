@@ -6,8 +6,9 @@ use std::process::Command;
 use chaindrive::Build;
 
 /// Libraries below the forces that carry numbers about and compute none.
-const CARRIERS: &str = "aligned-vec allocator-api2 arrayvec bitflags bytemuck cfg-if downcast-rs either ena equator equivalent foldhash \
-    hashbrown log num-integer pulp-wasm-simd-flag raw-cpuid rawpointer reborrow safe_arch serde serde_core slab smallvec thiserror typenum";
+const CARRIERS: &str = "aligned-vec allocator-api2 arrayvec bitflags bytemuck cfg-if downcast-rs dyn-clone either ena equator equivalent \
+    foldhash hashbrown indexmap itoa log memchr num-integer pulp-wasm-simd-flag raw-cpuid rawpointer reborrow ref-cast safe_arch schemars serde \
+    serde_core serde_json slab smallvec thiserror typenum zmij";
 
 /// Libraries above the forces whose numbers get into results, or into the bytes of checkpoints.
 const ABOVE: [&str; 2] = ["hdrhistogram", "postcard"];

@@ -16,12 +16,10 @@ struct Recipe {
 
 const RECIPES: [Recipe; 7] = [
     Recipe {
-        family: "elastic law of cylinders",
+        family: "elastic law",
         words: &["Radzimovsky"],
         own: "",
         files: &[
-            "chaindrive/src/scene/schema/contact.rs",
-            "contact/src/elastic/cylinders.rs",
             "contact/src/elastic/mod.rs",
             "contact/src/elastic/radzimovsky.rs",
         ],
@@ -31,7 +29,6 @@ const RECIPES: [Recipe; 7] = [
         words: &["Threlfall"],
         own: "",
         files: &[
-            "chaindrive/src/scene/schema/friction.rs",
             "contact/src/friction/mod.rs",
             "contact/src/friction/threlfall.rs",
         ],
