@@ -74,6 +74,14 @@ impl DriveError {
 }
 
 impl DriveError {
+    /// A law at `path` refuses one of its parameters.
+    pub(crate) fn law(path: &str, source: ParameterError) -> Self {
+        Self::Law {
+            path: path.to_owned(),
+            source,
+        }
+    }
+
     /// Puts a path within `chain` or `route` behind that of one of several chains.
     pub(crate) fn place_in(&mut self, whole: &str) {
         match self {

@@ -17,9 +17,6 @@ pub struct Tensioner {
     pub name: String,
     /// How it moves.
     pub carrier: Carrier,
-    /// Mass of a slider \[kg\] or moment of inertia of an arm about its pivot \[kg m²\], without
-    /// the sprockets it carries; positive.
-    pub inertia: f64,
     /// Its push.
     pub push: Push,
 }
@@ -29,19 +26,15 @@ impl Tensioner {
     pub fn problems(&self) -> Vec<DriveError> {
         let place = |what: &str| format!("tensioners.{}.{what}", self.name);
         let mut problems = Vec::new();
-        if self.push != Push::Locked {
-            problems.extend(
-                DriveError::require(
-                    self.inertia > 0.0 && self.inertia.is_finite(),
-                    &place("inertia"),
-                    self.inertia,
-                    "positive [kg, or kg m² for an arm]",
-                )
-                .err(),
-            );
+        if let (key, None) = self.carrier.inertia()
+            && self.push != Push::Locked
+        {
+            problems.push(DriveError::Conflict {
+                path: place(&format!("carrier.{key}")),
+                problem: "a tensioner that is not locked needs it".into(),
+            });
         }
-        let carrier = format!("tensioners.{}", self.name);
-        problems.extend(self.carrier.check(&carrier).err());
+        problems.extend(self.carrier.check(&place("carrier")).err());
         problems.extend(self.push.check(&place("push")).err());
         problems
     }

@@ -111,6 +111,8 @@ quantities! {
     QuadraticDamping, "a quadratic rotational damping", "N m s^2", "0.1 N m s^2", [2.0, 1.0, 0.0, -2.0], false;
     /// A pressure or an elastic modulus \[Pa\].
     Pressure, "a pressure", "Pa", "207 GPa", [-1.0, 1.0, -2.0, 0.0], true;
+    /// An area \[m²\].
+    Area, "an area", "m^2", "1.1 cm^2", [2.0, 0.0, 0.0, 0.0], true;
     /// A volume \[m³\].
     Volume, "a volume", "m^3", "4 cm^3", [3.0, 0.0, 0.0, 0.0], true;
     /// A dynamic viscosity \[Pa s\].

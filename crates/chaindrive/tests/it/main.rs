@@ -28,6 +28,7 @@ mod resolved;
 mod robust_scenes;
 mod run_in;
 mod run_in_by_itself;
+mod said_once;
 mod scenes;
 mod several_chains;
 mod stack;

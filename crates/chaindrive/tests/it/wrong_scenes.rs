@@ -154,7 +154,7 @@ const CASES: &[Mistake] = &[
     ("kind = \"spring\", preload = \"2 kN\", stiffness = \"10 kN/m\"", "kind = \"hydraulic\", preload = \"2 kN\", extending = 200, relieving = 150, oil = { diameter = \"12 mm\", length = \"25 mm\", gap = \"25 µm\", viscosity = \"10 mPa s\", relief = \"3 MPa\", bulk_modulus = \"1 GPa\", volume = \"4 cm\", air = \"1 %\" }", "tensioners[0].push.oil.volume", 32, "needed is a volume"),
     ("kind = \"spring\", preload = \"2 kN\", stiffness = \"10 kN/m\"", "kind = \"hydraulic\", preload = \"2 kN\", extending = 200, relieving = 150, oil = { diameter = \"12 mm\", length = \"25 mm\", gap = \"25 µm\", viscosity = \"10 mPa s\", relief = \"3 MPa\", bulk_modulus = nan, volume = \"4 cm^3\", air = \"1 %\" }", "tensioners[0].push.oil.bulk_modulus", 32, "finite"),
     ("pretension = \"1 kN\"", "tighten = \"travel\"", "route.tighten", 35, "nothing is there to travel"),
-    ("pretension = \"1 kN\"", "adjust = { kind = \"arm\", name = \"slide\", within = \"1 deg\" }", "route.adjust.name", 35, "`slide` travels; take `kind = \"slider\"`"),
+    ("pretension = \"1 kN\"", "adjust = { kind = \"arm\", name = \"slide\", within = \"1 deg\" }", "route.adjust.name", 35, "`slide` is of the kind slider; take `kind = \"slider\"`"),
     ("end = [\"0.5 m\", \"-0.12 m\"]", "end = [\"0.2 m\", \"-0.12 m\"]", "guides[0].face", 28, "coincide"),
     ("end = [\"0.5 m\", \"-0.12 m\"]", "end = [\"0.5 m\", \"-0.12 m\"], end_angle = \"200 deg\"", "guides[0].face", 28, "must be in (0, π]"),
     ("teeth = 19\ncentre = [\"0 mm\"", "teeth = 19\ntooth = { kind = \"circular\", seat_radius = \"5 mm\" }\ncentre = [\"0 mm\"", "sprockets[0].tooth", 16, "at least the roller radius"),

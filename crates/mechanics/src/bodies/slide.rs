@@ -13,8 +13,6 @@ pub(crate) struct Slide {
     pub(crate) name: String,
     pub(crate) carrier: Carrier,
     pub(crate) push: Push,
-    /// Its own inertia \[kg or kg m²\].
-    pub(crate) own: f64,
     /// Inertia at assembly with all that it carries \[kg or kg m²\].
     pub(crate) inertia: f64,
     /// Degree of freedom; none while locked.
@@ -191,19 +189,17 @@ impl Slide {
 
     /// Inertia as it now is.
     pub(crate) fn reduced(&self, pose: Pose) -> Reduced {
-        self.carrier
-            .reduced(pose.coordinate, self.own, &self.carried)
+        self.carrier.reduced(pose.coordinate, &self.carried)
     }
 
     /// Generalised force of the weight of all that it moves.
     pub(crate) fn weight(&self, pose: Pose, gravity: Vector) -> f64 {
-        self.carrier
-            .weight(pose.coordinate, self.own, &self.carried, gravity)
+        self.carrier.weight(pose.coordinate, &self.carried, gravity)
     }
 
     /// Masses whose weight moves it, and where they are at assembly.
     pub(crate) fn weights(&self) -> impl Iterator<Item = Weight> {
-        let own = self.carrier.own_weight(self.own);
+        let own = self.carrier.own_weight();
         self.carried.iter().copied().chain(own)
     }
 }

@@ -305,8 +305,7 @@ fn slides(parts: &Parts, places: &Places) -> Vec<Slide> {
                 name: tensioner.name.clone(),
                 carrier,
                 push: tensioner.push,
-                own: tensioner.inertia,
-                inertia: carrier.reduced(0.0, tensioner.inertia, &carried).inertia,
+                inertia: carrier.reduced(0.0, &carried).inertia,
                 dof: places.slides[index],
                 // Until all are there: see `number_states`.
                 state: None,

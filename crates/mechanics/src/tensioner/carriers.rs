@@ -13,6 +13,8 @@ mod arm;
 mod slider;
 
 use chaindrive_geometry::{ArcSpline, GeometryError, Point, Vector};
+use chaindrive_quantities::{JsonSchema, check};
+use serde::{Deserialize, Serialize};
 
 pub use arm::{Arm, Plunger};
 pub use slider::Slider;
@@ -20,11 +22,12 @@ pub use slider::Slider;
 use crate::DriveError;
 
 /// How a tensioner moves. At assembly s = 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Carrier {
-    /// A straight slide; s is the travel \[m\].
+    /// A straight slide: the coordinate s is the travel \[m\].
     Slider(Slider),
-    /// An arm about a pivot; s is the angle \[rad\], counter-clockwise.
+    /// An arm about a pivot: the coordinate s is the angle \[rad\], counter-clockwise.
     Arm(Arm),
 }
 
@@ -91,16 +94,18 @@ trait Carries: Copy {
         *self
     }
 
+    /// Its own mass \[kg\] or moment of inertia \[kg m²\] that goes with s, where it is given, and the key that gives it.
+    fn inertia(&self) -> (&'static str, Option<f64>);
+
     /// The carrier's own mass and where it is when s = 0, if its weight is to count.
-    fn own_weight(&self, inertia: f64) -> Option<Weight> {
-        let _ = inertia;
+    fn own_weight(&self) -> Option<Weight> {
         None
     }
 
     /// Inertia that goes with s: the carrier's own inertia and that of the masses it carries.
-    fn reduced(&self, s: f64, own: f64, carried: &[Weight]) -> Reduced {
+    fn reduced(&self, s: f64, carried: &[Weight]) -> Reduced {
         let mut reduced = Reduced {
-            inertia: own,
+            inertia: self.inertia().1.unwrap_or(0.0),
             slope: 0.0,
         };
         for (mass, at) in carried {
@@ -113,8 +118,8 @@ trait Carries: Copy {
     }
 
     /// Generalised force of the weight of all masses.
-    fn weight(&self, s: f64, own: f64, carried: &[Weight], gravity: Vector) -> f64 {
-        let masses = carried.iter().copied().chain(self.own_weight(own));
+    fn weight(&self, s: f64, carried: &[Weight], gravity: Vector) -> f64 {
+        let masses = carried.iter().copied().chain(self.own_weight());
         // Q = Σ m g·∂x/∂s
         let pull = |(mass, at): Weight| (gravity * mass).dot(&self.carry(s, at).1);
         masses.map(pull).sum()
@@ -184,8 +189,14 @@ impl Carrier {
         ask!(self, carrier => carrier.reach())
     }
 
+    /// Its own mass \[kg\] or moment of inertia \[kg m²\] that goes with the coordinate, where it is given, and the key that gives it.
+    pub fn inertia(&self) -> (&'static str, Option<f64>) {
+        ask!(self, carrier => carrier.inertia())
+    }
+
     /// Names the first parameter out of range.
     pub(crate) fn check(&self, path: &str) -> Result<(), DriveError> {
+        check(self).map_err(|source| DriveError::law(path, source))?;
         ask!(self, carrier => carrier.check(path))
     }
 }
@@ -246,18 +257,18 @@ impl Carrier {
 /// Inertia and weight.
 impl Carrier {
     /// Inertia that goes with s: the carrier's own inertia and that of the masses it carries.
-    pub(crate) fn reduced(&self, s: f64, own: f64, carried: &[Weight]) -> Reduced {
-        ask!(self, carrier => carrier.reduced(s, own, carried))
+    pub(crate) fn reduced(&self, s: f64, carried: &[Weight]) -> Reduced {
+        ask!(self, carrier => carrier.reduced(s, carried))
     }
 
     /// Generalised force of the weight of all masses.
-    pub(crate) fn weight(&self, s: f64, own: f64, carried: &[Weight], gravity: Vector) -> f64 {
-        ask!(self, carrier => carrier.weight(s, own, carried, gravity))
+    pub(crate) fn weight(&self, s: f64, carried: &[Weight], gravity: Vector) -> f64 {
+        ask!(self, carrier => carrier.weight(s, carried, gravity))
     }
 
     /// The carrier's own mass and where it is when s = 0, if its weight is to count.
-    pub(crate) fn own_weight(&self, inertia: f64) -> Option<Weight> {
-        ask!(self, carrier => carrier.own_weight(inertia))
+    pub(crate) fn own_weight(&self) -> Option<Weight> {
+        ask!(self, carrier => carrier.own_weight())
     }
 }
 
@@ -280,12 +291,14 @@ mod tests {
         let arm = |plunger| {
             Carrier::Arm(Arm {
                 pivot: Point::new(0.3, -0.1),
+                inertia: Some(0.7),
                 plunger,
             })
         };
         vec![
             Carrier::Slider(Slider {
                 direction: Vector::new(0.6, 0.8),
+                mass: Some(0.7),
             }),
             arm(None),
             arm(Some(Plunger {
@@ -335,8 +348,7 @@ mod tests {
         let carried = [(2.0, point()), (0.5, Point::new(-0.3, 0.1))];
         for carrier in specimens() {
             for s in PLACES {
-                let [behind, here, ahead] =
-                    [s - H, s, s + H].map(|s| carrier.reduced(s, 0.7, &carried));
+                let [behind, here, ahead] = [s - H, s, s + H].map(|s| carrier.reduced(s, &carried));
                 // 2 T = I ṡ²
                 let energy = carried.iter().fold(0.7, |sum, (mass, at)| {
                     sum + mass * carrier.carry(s, *at).1.norm_squared()

@@ -5,24 +5,32 @@
 
 mod column;
 mod hydraulic;
+mod oil;
 mod spring;
 
 pub use column::OilColumn;
 pub use hydraulic::Hydraulic;
-pub use spring::Spring;
+pub use oil::Oil;
+pub use spring::{Spring, TorsionSpring};
 
+use chaindrive_quantities::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::DriveError;
 
 /// The law of the push F(x, ẋ, z), x being the extension since assembly.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Push {
-    /// The carrier stays where it was assembled.
+    /// Nothing: the carrier stays where it was assembled.
+    #[schemars(with = "()", extend("additionalProperties" = false))]
     Locked,
-    /// Spring and damper.
+    /// A spring with a damper, on a slider or a plunger.
     Spring(Spring),
-    /// One-way hydraulic plunger.
+    /// A torsion spring with a damper, on an arm without a plunger.
+    TorsionSpring(TorsionSpring),
+    /// An oil-filled plunger that follows easily and yields only through a leak. Forces are given directly (`supply`, `relief`, `leak`), or
+    /// follow from `oil`.
     Hydraulic(Hydraulic),
 }
 
@@ -32,6 +40,7 @@ macro_rules! ask {
         match $push {
             Push::Locked => Default::default(),
             Push::Spring($member) => $answer,
+            Push::TorsionSpring($member) => $answer,
             Push::Hydraulic($member) => $answer,
         }
     };
@@ -39,6 +48,9 @@ macro_rules! ask {
 
 /// Questions that a push answers; those without a state leave out the second half.
 trait Pushes: Copy {
+    /// SI unit of the push: that of a force, or of a torque on an arm without a plunger.
+    fn unit(&self) -> &'static str;
+
     /// Force at extension x and rate ẋ, with what its state z does.
     fn force(&self, x: f64, rate: f64, z: f64) -> PushForce;
 
@@ -53,6 +65,11 @@ trait Pushes: Copy {
 
     /// Names the first parameter out of range.
     fn check(&self, path: &str) -> Result<(), DriveError>;
+
+    /// Damping and stiffness of a push outward.
+    fn outward(&self) -> [f64; 2] {
+        [self.damping(), self.stiffness()]
+    }
 
     /// The state at which nothing flows at extension x; none without a state.
     fn settled(&self, x: f64) -> Option<f64> {
@@ -120,11 +137,7 @@ impl Slopes {
 impl Push {
     /// Time c/k \[s\] in which a push outward dies out against its own damping; 0 without a spring.
     pub fn relaxation(&self) -> f64 {
-        let [damping, stiffness] = match self {
-            Self::Locked => [0.0, 0.0],
-            Self::Spring(spring) => [spring.damping, spring.stiffness],
-            Self::Hydraulic(hydraulic) => [hydraulic.extending, hydraulic.stiffness],
-        };
+        let [damping, stiffness]: [f64; 2] = ask!(self, push => push.outward());
         if stiffness > 0.0 {
             damping / stiffness
         } else {
@@ -168,6 +181,7 @@ impl Push {
         match self {
             Self::Locked => self,
             Self::Spring(spring) => Self::Spring(spring.relaxed()),
+            Self::TorsionSpring(spring) => Self::TorsionSpring(spring.relaxed()),
             Self::Hydraulic(hydraulic) => Self::Hydraulic(hydraulic.relaxed()),
         }
     }
@@ -177,11 +191,17 @@ impl Push {
         ask!(self, push => push.slopes(x, z))
     }
 
+    /// SI unit of what it pushes with: that of a force or a torque; none where it is locked.
+    pub fn unit(&self) -> Option<&'static str> {
+        ask!(self, push => Some(push.unit()))
+    }
+
     /// Names the first parameter out of range.
     pub(crate) fn check(&self, path: &str) -> Result<(), DriveError> {
         match self {
             Self::Locked => Ok(()),
             Self::Spring(push) => push.check(path),
+            Self::TorsionSpring(push) => push.check(path),
             Self::Hydraulic(push) => push.check(path),
         }
     }

@@ -247,8 +247,8 @@ fn guides_on_different_supports_must_not_cross() {
             name: "slide".into(),
             carrier: Carrier::Slider(Slider {
                 direction: Vector::x(),
+                mass: Some(1.0),
             }),
-            inertia: 1.0,
             push: Push::Locked,
         });
         parts.guides[1].support = GuideSupport::Tensioner(0);
@@ -310,8 +310,8 @@ fn profiles_stand_where_the_chain_meets_them() {
         name: "slide".into(),
         carrier: Carrier::Slider(Slider {
             direction: Vector::new(-0.17, 0.98).normalize(),
+            mass: Some(60.0),
         }),
-        inertia: 60.0,
         push: Push::Spring(chaindrive_mechanics::pushes::Spring {
             preload: 20e3,
             stiffness: 1e6,
@@ -351,10 +351,10 @@ fn faces_on_arms_turn_about_the_pivot() {
         name: "arm".into(),
         carrier: Carrier::Arm(Arm {
             pivot,
+            inertia: Some(0.1),
             plunger: None,
         }),
-        inertia: 0.1,
-        push: Push::Spring(chaindrive_mechanics::pushes::Spring {
+        push: Push::TorsionSpring(chaindrive_mechanics::pushes::TorsionSpring {
             preload: 0.3,
             stiffness: 1.0,
             damping: 0.0,

@@ -24,8 +24,8 @@ fn tensioned(column: Option<OilColumn>) -> Parts {
         name: "plunger".into(),
         carrier: Carrier::Slider(Slider {
             direction: Vector::new(0.0, 1.0),
+            mass: Some(0.5),
         }),
-        inertia: 0.5,
         push: Push::Hydraulic(Hydraulic {
             preload: 100.0,
             stiffness: 2e3,

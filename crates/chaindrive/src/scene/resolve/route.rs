@@ -170,16 +170,12 @@ fn adjust(
     findings: &mut Findings<'_>,
 ) -> Option<Adjust> {
     let path = "route.adjust.name";
-    let tensioner = |name: &str, turned: bool, findings: &mut Findings<'_>| {
+    let tensioner = |name: &str, kind: &str, findings: &mut Findings<'_>| {
         let index = names.tensioner(name, path, findings)?;
-        if scene.tensioners[index].carrier.turns() != turned {
-            let (does, other) = if turned {
-                ("travels", "slider")
-            } else {
-                ("turns", "arm")
-            };
+        let other = scene.tensioners[index].carrier.word("kind");
+        if other != kind {
             let hint = format!("take `kind = \"{other}\"`");
-            findings.refuse_with(path, format!("`{name}` {does}"), hint);
+            findings.refuse_with(path, format!("`{name}` is of the kind {other}"), hint);
             return None;
         }
         Some(index)
@@ -204,11 +200,11 @@ fn adjust(
             })
         }
         Some(schema::Adjust::Slider { name, within }) => Some(Adjust::Tensioner {
-            tensioner: tensioner(name, false, findings)?,
+            tensioner: tensioner(name, "slider", findings)?,
             within: within.0,
         }),
         Some(schema::Adjust::Arm { name, within }) => Some(Adjust::Tensioner {
-            tensioner: tensioner(name, true, findings)?,
+            tensioner: tensioner(name, "arm", findings)?,
             within: within.0,
         }),
     }

@@ -10,7 +10,7 @@ use super::chain::Resolved;
 use super::law::{cylindrical, linear, steel};
 use super::{Findings, Names, contact, flank, motion, point, tooth};
 use crate::scene::defaults;
-use crate::scene::schema::{self, Push, SceneText};
+use crate::scene::schema::{self, SceneText};
 
 /// All sprockets, each with the chain that it belongs to; their shafts are found elsewhere.
 pub(super) fn resolve_all<'c>(
@@ -96,7 +96,7 @@ fn resolve(
     let support = support?;
     let moves = match &support {
         Support::Springs { .. } => true,
-        Support::Tensioner(index) => scene.tensioners[*index].push != Push::Locked,
+        Support::Tensioner(index) => scene.tensioners[*index].push.word("kind") != "locked",
         Support::Fixed | Support::Prescribed { .. } => false,
     };
     if moves && text.mass.is_none() {

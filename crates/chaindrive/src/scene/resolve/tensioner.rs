@@ -1,11 +1,13 @@
 //! Tensioners.
 
-use chaindrive_mechanics::carriers::{Arm, Plunger, Slider};
-use chaindrive_mechanics::pushes::{Hydraulic, OilColumn, Spring};
+use chaindrive_mechanics::pushes::Oil;
 use chaindrive_mechanics::{Carrier, Push, Tensioner};
+use chaindrive_quantities::{Ratio, check};
+use serde::Deserialize;
+use serde_json::{Value as Json, json};
 
-use super::{Findings, point};
-use crate::scene::schema::{self, GuideSupport, Oil, SceneText, Support};
+use super::Findings;
+use crate::scene::schema::{self, GuideSupport, SceneText, Support};
 
 pub(super) fn resolve_all(
     scene: &SceneText,
@@ -31,217 +33,120 @@ pub(super) fn resolve_all(
 }
 
 fn resolve(text: &schema::Tensioner, path: &str, findings: &mut Findings<'_>) -> Option<Tensioner> {
-    let (carrier, inertia, key) = match &text.carrier {
-        schema::Carrier::Slider { direction, mass } => {
-            let direction = findings.direction(&format!("{path}.carrier.direction"), *direction);
-            let carrier = direction.map(|direction| Carrier::Slider(Slider { direction }));
-            (carrier, mass.map(|mass| mass.0), "mass")
-        }
-        schema::Carrier::Arm {
-            pivot,
-            inertia,
-            plunger,
-        } => {
-            let plunger = match plunger {
-                None => Some(None),
-                Some(plunger) => findings
-                    .direction(
-                        &format!("{path}.carrier.plunger.direction"),
-                        plunger.direction,
-                    )
-                    .map(|direction| {
-                        Some(Plunger {
-                            at: point(plunger.at),
-                            direction,
-                        })
-                    }),
-            };
-            let pivot = point(*pivot);
-            let carrier = plunger.map(|plunger| Carrier::Arm(Arm { pivot, plunger }));
-            (carrier, inertia.map(|inertia| inertia.0), "inertia")
-        }
-    };
-    if inertia.is_none() && text.push != schema::Push::Locked {
+    let place = format!("{path}.carrier");
+    let keys = unit_vectors(text.carrier.keys.clone(), &place, findings);
+    let carrier = keys.and_then(|keys| findings.read(keys, &place, check::<Carrier>));
+    let push = push(text, carrier.as_ref(), &format!("{path}.push"), findings);
+    let (carrier, push) = (carrier?, push?);
+    if let (key, None) = carrier.inertia()
+        && push != Push::Locked
+    {
         let hint = format!("give the {key} of a tensioner that is not locked");
-        findings.refuse_with(&format!("{path}.carrier.{key}"), "missing", hint);
+        findings.refuse_with(&format!("{place}.{key}"), "missing", hint);
     }
-    let bare_arm = matches!(&text.carrier, schema::Carrier::Arm { plunger: None, .. });
-    let push = push(&text.push, bare_arm, &format!("{path}.push"), findings);
     Some(Tensioner {
         name: text.name.clone(),
-        carrier: carrier?,
-        inertia: inertia.unwrap_or(0.0),
-        push: push?,
+        carrier,
+        push,
     })
 }
 
-/// `bare_arm`: an arm without a plunger, on which only a torque can act.
+/// The keys of a carrier, each `direction` with the length of one.
+fn unit_vectors(mut keys: Json, path: &str, findings: &mut Findings<'_>) -> Option<Json> {
+    for (key, value) in keys.as_object_mut()? {
+        let place = format!("{path}.{key}");
+        if key == "direction" {
+            let given = <[Ratio; 2]>::deserialize(&*value).ok()?;
+            *value = json!(findings.direction(&place, given)?);
+        } else if value.is_object() {
+            *value = unit_vectors(value.take(), &place, findings)?;
+        }
+    }
+    Some(keys)
+}
+
+/// A push on a carrier, if that is known.
 fn push(
-    text: &schema::Push,
-    bare_arm: bool,
+    text: &schema::Tensioner,
+    carrier: Option<&Carrier>,
     path: &str,
     findings: &mut Findings<'_>,
 ) -> Option<Push> {
-    let turns = matches!(text, schema::Push::TorsionSpring { .. });
-    if bare_arm
-        && matches!(
-            text,
-            schema::Push::Spring { .. } | schema::Push::Hydraulic { .. }
-        )
+    let mut keys = text.push.keys.clone();
+    if text.push.word("kind") == "hydraulic" {
+        keys = forces_of_oil(keys, path, findings)?;
+    }
+    let push: Push = findings.read(keys, path, check)?;
+    if let Push::Hydraulic(plunger) = &push
+        && plunger.relief < plunger.supply
     {
-        let hint = "give the arm a `plunger`, or take a `torsion-spring`";
-        findings.refuse_with(path, "a force needs a place on the arm", hint);
+        let given = text.push.keys.get("oil").map_or("relief", |_| "oil.relief");
+        let message = "the relief valve opens below the supply pressure";
+        findings.refuse(&format!("{path}.{given}"), message);
         return None;
     }
-    if turns && !bare_arm {
-        let hint = "take a `spring`, or an arm without a plunger";
-        findings.refuse_with(path, "a torsion spring turns an arm and nothing else", hint);
-        return None;
-    }
-    match text {
-        schema::Push::Locked => Some(Push::Locked),
-        schema::Push::Spring {
-            preload,
-            stiffness,
-            damping,
-        } => Some(Push::Spring(Spring {
-            preload: preload.0,
-            stiffness: stiffness.0,
-            damping: damping.0,
-        })),
-        schema::Push::TorsionSpring {
-            preload,
-            stiffness,
-            damping,
-        } => Some(Push::Spring(Spring {
-            preload: preload.0,
-            stiffness: stiffness.0,
-            damping: damping.0,
-        })),
-        schema::Push::Hydraulic {
-            preload,
-            stiffness,
-            extending,
-            relieving,
-            supply,
-            relief,
-            leak,
-            oil,
-        } => {
-            let direct = (supply.map(|f| f.0), relief.map(|f| f.0), leak.map(|c| c.0));
-            let (supply, relief, leak) = match oil {
-                Some(oil) => from_oil(oil, direct, path, findings),
-                None => complete(direct, path, findings)?,
-            };
-            let column = match oil {
-                Some(oil) => column(oil, [extending.0, relieving.0], path, findings).ok()?,
-                None => None,
-            };
-            if relief < supply {
-                let key = if oil.is_some() {
-                    "oil.relief"
-                } else {
-                    "relief"
-                };
-                let message = "the relief valve opens below the supply pressure";
-                findings.refuse(&format!("{path}.{key}"), message);
-                return None;
-            }
-            Some(Push::Hydraulic(Hydraulic {
-                preload: preload.0,
-                stiffness: stiffness.0,
-                supply,
-                relief,
-                leak,
-                extending: extending.0,
-                relieving: relieving.0,
-                column,
-            }))
+    match (push.unit(), carrier?.push_unit()) {
+        (Some("N"), "N m") => {
+            let hint = "give the arm a `plunger`, or take a `torsion-spring`";
+            findings.refuse_with(path, "a force needs a place on the arm", hint);
+            None
         }
+        (Some("N m"), "N") => {
+            let hint = "take a `spring`, or an arm without a plunger";
+            let message = "a torsion spring turns an arm and nothing else";
+            findings.refuse_with(path, message, hint);
+            None
+        }
+        _ => Some(push),
     }
 }
 
-/// Supply push \[N\], relief push \[N\] and leak damping \[N s/m\] as given.
-type Direct = (Option<f64>, Option<f64>, Option<f64>);
-
-fn complete(
-    (supply, relief, leak): Direct,
-    path: &str,
-    findings: &mut Findings<'_>,
-) -> Option<(f64, f64, f64)> {
-    for (key, value) in [("supply", supply), ("relief", relief), ("leak", leak)] {
-        if value.is_none() {
+/// The keys of a plunger, with the forces that follow from its oil in place of it.
+fn forces_of_oil(mut keys: Json, path: &str, findings: &mut Findings<'_>) -> Option<Json> {
+    let direct = ["supply", "relief", "leak"];
+    let Some(oil) = keys.as_object_mut()?.shift_remove("oil") else {
+        let absent = direct.iter().filter(|key| keys.get(**key).is_none());
+        let absent: Vec<_> = absent.collect();
+        for key in &absent {
             let hint = "give `supply`, `relief` and `leak`, or `oil`, from which they follow";
             findings.refuse_with(&format!("{path}.{key}"), "missing", hint);
         }
+        return absent.is_empty().then_some(keys);
+    };
+    for key in direct.iter().filter(|key| keys.get(**key).is_some()) {
+        let hint = "keep one of them";
+        findings.refuse_with(&format!("{path}.{key}"), "`oil` is given too", hint);
     }
-    Some((supply?, relief?, leak?))
-}
-
-/// Supply push, relief push and leak damping of a plunger in oil.
-fn from_oil(
-    oil: &Oil,
-    (supply, relief, leak): Direct,
-    path: &str,
-    findings: &mut Findings<'_>,
-) -> (f64, f64, f64) {
-    for (key, value) in [("supply", supply), ("relief", relief), ("leak", leak)] {
-        if value.is_some() {
-            let hint = "keep one of them";
-            findings.refuse_with(&format!("{path}.{key}"), "`oil` is given too", hint);
-        }
-    }
-    let (diameter, area) = (oil.diameter.0, area(oil));
-    let leak = Hydraulic::leak_damping(oil.viscosity.0, oil.length.0, diameter, oil.gap.0);
+    let oil: Oil = findings.read(oil, &format!("{path}.oil"), check)?;
     // F = p A
-    (oil.supply.0 * area, oil.relief.0 * area, leak)
-}
-
-/// Cross-section of a plunger \[m²\].
-fn area(oil: &Oil) -> f64 {
-    // A = π d²/4
-    0.25 * std::f64::consts::PI * oil.diameter.0 * oil.diameter.0
-}
-
-/// Mistakes stand among the findings.
-struct Refused;
-
-/// Oil that can be compressed, if it can: it needs all that says how, and valves with a resistance.
-fn column(
-    oil: &Oil,
-    [extending, relieving]: [f64; 2],
-    path: &str,
-    findings: &mut Findings<'_>,
-) -> Result<Option<OilColumn>, Refused> {
+    keys["supply"] = (oil.supply * oil.area()).into();
+    keys["relief"] = (oil.relief * oil.area()).into();
+    keys["leak"] = oil.leak_damping().into();
     let given = [
-        ("bulk_modulus", oil.bulk_modulus.map(|modulus| modulus.0)),
-        ("volume", oil.volume.map(|volume| volume.0)),
-        ("air", oil.air.map(|air| air.0)),
+        ("bulk_modulus", oil.bulk_modulus),
+        ("volume", oil.volume),
+        ("air", oil.air),
     ];
     if given.iter().all(|(_, value)| value.is_none()) {
-        return Ok(None);
+        return Some(keys);
     }
     for (key, _) in given.iter().filter(|(_, value)| value.is_none()) {
         let hint = "oil that can be compressed needs `bulk_modulus`, `volume` and `air`";
         findings.refuse_with(&format!("{path}.oil.{key}"), "missing", hint);
     }
-    for (key, value) in [("extending", extending), ("relieving", relieving)] {
-        if value <= 0.0 {
+    let mut resists = true;
+    for key in ["extending", "relieving"] {
+        if keys
+            .get(key)
+            .and_then(Json::as_f64)
+            .is_none_or(|c| c <= 0.0)
+        {
             let hint = "give the damping by the valve, such as \"200 N s/m\"";
             let message = "oil that can be compressed needs a valve with a resistance";
             findings.refuse_with(&format!("{path}.{key}"), message, hint);
+            resists = false;
         }
     }
-    let [Some(modulus), Some(volume), Some(air)] = given.map(|(_, value)| value) else {
-        return Err(Refused);
-    };
-    if extending <= 0.0 || relieving <= 0.0 {
-        return Err(Refused);
-    }
-    Ok(Some(OilColumn {
-        area: area(oil),
-        volume,
-        bulk_modulus: modulus,
-        air,
-    }))
+    keys["column"] = json!(oil.column().filter(|_| resists)?);
+    Some(keys)
 }

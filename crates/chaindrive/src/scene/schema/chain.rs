@@ -42,7 +42,7 @@ pub(crate) struct Chain {
     #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) damping: Option<Damping>,
-    /// Damping ratio ζ of one link [–], c = 2 ζ √(k m); absent, without `damping`: 0.03.
+    /// Damping ratio ζ of one link [–], c = 2 ζ √(k m), unless `damping` is given.
     #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) damping_ratio: Option<Ratio>,
@@ -54,8 +54,7 @@ pub(crate) struct Chain {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) roller_diameter: Option<Length>,
-    /// Height of the link plates [m]: what a guide for plates touches; absent: 1.4 roller
-    /// diameters, as in the catalogues.
+    /// Height of the link plates [m]: what a guide for plates touches.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) plate_height: Option<Length>,
@@ -69,7 +68,7 @@ pub(crate) struct Chain {
     #[schemars(extend("minimum" = 1, "maximum" = 6))]
     pub(crate) strands: Option<u32>,
     /// Service factor [–], for the rating only: the power that is carried counts so many times. ISO 10823 has 1 for smooth running, 1.4 for
-    /// moderate and 1.8 for heavy shocks of the driven machine, more with those of an engine; absent: 1, none.
+    /// moderate and 1.8 for heavy shocks of the driven machine, more with those of an engine.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) service_factor: Option<Ratio>,

@@ -61,8 +61,7 @@ pub(crate) struct Contact {
     #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) series: Option<Stiffness>,
-    /// Coefficient of restitution of an impact [–]; absent, without `damping`: 0.8 on teeth, 0.5 on
-    /// guides, 0.7 in joints and rollers.
+    /// Coefficient of restitution of an impact [–], unless `damping` is given.
     #[serde(default)]
     #[schemars(extend("minimum" = 0, "maximum" = 1))]
     pub(crate) restitution: Option<Ratio>,
@@ -74,12 +73,11 @@ pub(crate) struct Contact {
     #[serde(default)]
     pub(crate) dissipation: Option<Hysteresis>,
     /// Least closing speed with which a restitution reckons [m/s]: keeps contacts that begin gently
-    /// from overdamping; absent: 0.05 m/s.
+    /// from overdamping.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) onset_floor: Option<Speed>,
-    /// Friction; absent: none, but in joints of a chain whose pin the catalogue knows: a spring and a slider, with a coefficient of
-    /// 0.1.
+    /// Friction; absent: none, but in joints of a chain whose pin the catalogue knows: a spring and a slider.
     #[serde(default)]
     pub(crate) friction: Option<Written<Friction>>,
 }

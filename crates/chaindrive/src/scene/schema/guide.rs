@@ -43,7 +43,7 @@ pub(crate) enum Face {
         #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
         end_radius: Option<Length>,
-        /// Angle of the curved ends [rad]; absent: 10°.
+        /// Angle of the curved ends [rad].
         #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
         end_angle: Option<Angle>,
@@ -91,7 +91,7 @@ pub(crate) enum Face {
         /// Share of the span at which a convex face bends the chain most, as where a shoe touches; absent: half-way from `from` to `to` [–].
         #[serde(default)]
         crest: Option<Ratio>,
-        /// How far the face pushes the chain across the straight span [m], less than zero where it keeps clear; absent: as far
+        /// How far the face pushes the chain across the straight span [m], negative where it keeps clear; absent: as far
         /// as makes the links close without stress where the first sprocket stands symmetric, for one convex face that is a stop.
         #[serde(default)]
         bow: Option<Length>,
@@ -100,7 +100,7 @@ pub(crate) enum Face {
         #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
         end_radius: Option<Length>,
-        /// Angle of the ends of a straight face [rad]; absent: 10°.
+        /// Angle of the ends of a straight face [rad].
         #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
         end_angle: Option<Angle>,

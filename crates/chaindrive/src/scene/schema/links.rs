@@ -78,7 +78,7 @@ pub(crate) struct Joint {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) length: Option<Length>,
-    /// Viscous damping [N m s/rad] against turning; absent: none.
+    /// Viscous damping [N m s] against turning; absent: none.
     #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) damping: AngularDamping,

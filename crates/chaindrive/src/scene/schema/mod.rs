@@ -26,7 +26,7 @@ pub use run::RunDefaults;
 pub(crate) use run::{EVERY, Run, STEPPING_KEYS, TOLERANCE, UNTIL};
 pub(crate) use shaft::{Coupling, Gears, Shaft};
 pub(crate) use sprocket::{PathPiece, Seat, Side, Sprocket, Support, TipForm, Tooth};
-pub(crate) use tensioner::{Carrier, Oil, Push, Tensioner};
+pub(crate) use tensioner::Tensioner;
 pub(crate) use written::Written;
 
 use schemars::JsonSchema;
@@ -54,7 +54,7 @@ pub(crate) struct SceneText {
     /// Title of the scene, in a line.
     #[serde(default)]
     pub(crate) title: String,
-    /// Acceleration of gravity (x, y) [m/s²]; absent: 9.81 m/s² downward.
+    /// Acceleration of gravity (x, y) [m/s²].
     #[serde(default)]
     pub(crate) gravity: Option<[Acceleration; 2]>,
     /// Whether the drive settles into static equilibrium under gravity and load before t = 0;

@@ -31,7 +31,7 @@ pub(crate) enum Motion<Position, Rate> {
         from: Rate,
         /// Speed after.
         to: Rate,
-        /// Time at which the change begins [s]; absent: 0.
+        /// Time at which the change begins [s].
         #[serde(default)]
         start: Time,
         /// Duration of the change [s].
@@ -40,7 +40,7 @@ pub(crate) enum Motion<Position, Rate> {
     },
     /// A mean speed with sine terms, amplitude × (sin(2π f t + phase) − sin(phase)).
     Harmonics {
-        /// Mean speed; absent: 0.
+        /// Mean speed.
         #[serde(default)]
         speed: Option<Rate>,
         /// The sine terms.
@@ -49,7 +49,7 @@ pub(crate) enum Motion<Position, Rate> {
     /// A mean speed with sine terms that repeat with the turns of a shaft,
     /// amplitude × (sin(order α + phase) − sin(phase)), α its angle at its mean speed since the simulation began.
     Orders {
-        /// Mean speed; absent: 0.
+        /// Mean speed.
         #[serde(default)]
         speed: Option<Rate>,
         /// Name of the shaft, or of a sprocket on it, whose turns count: its motion is given, with a mean speed, or gears join it with
@@ -78,7 +78,7 @@ pub(crate) struct Term<Position> {
     /// Frequency [Hz].
     #[schemars(extend("minimum" = 0))]
     pub(crate) frequency: Frequency,
-    /// Phase at t = 0, where the record begins [rad]; absent: 0.
+    /// Phase at t = 0, where the record begins [rad].
     #[serde(default)]
     pub(crate) phase: Angle,
 }
@@ -97,7 +97,7 @@ pub(crate) struct OrderTerm<Amplitude> {
     pub(crate) order: Ratio,
     /// Amplitude (an angle, a length or a torque).
     pub(crate) amplitude: Amplitude,
-    /// Phase where the simulation began, before the run-in [rad]; absent: 0.
+    /// Phase where the simulation began, before the run-in [rad].
     #[serde(default)]
     pub(crate) phase: Angle,
 }
@@ -167,7 +167,7 @@ pub(crate) enum Torque {
     Ramp {
         /// Final torque [N m].
         torque: Moment,
-        /// Time at which it begins [s]; absent: 0.
+        /// Time at which it begins [s].
         #[serde(default)]
         start: Time,
         /// Duration of the rise [s].
@@ -176,11 +176,11 @@ pub(crate) enum Torque {
     },
     /// A resistance that opposes the rotation, −linear ω − quadratic ω |ω|.
     Resistance {
-        /// Linear coefficient [N m s]; absent: 0.
+        /// Linear coefficient [N m s].
         #[serde(default)]
         #[schemars(extend("minimum" = 0))]
         linear: AngularDamping,
-        /// Quadratic coefficient [N m s²]; absent: 0.
+        /// Quadratic coefficient [N m s²].
         #[serde(default)]
         #[schemars(extend("minimum" = 0))]
         quadratic: QuadraticDamping,
@@ -192,7 +192,7 @@ pub(crate) enum Torque {
         /// Periods per turn [–].
         #[schemars(extend("examples" = [0.5, 2, 7]))]
         order: Ratio,
-        /// Phase where the simulation began, before the run-in [rad]; absent: 0.
+        /// Phase where the simulation began, before the run-in [rad].
         #[serde(default)]
         phase: Angle,
     },
@@ -216,7 +216,7 @@ pub(crate) enum Torque {
         /// Name of the shaft, or of a sprocket on it, that the angle belongs to; absent: the one that the torque acts on.
         #[serde(default)]
         of: Option<String>,
-        /// Turns after which it repeats; absent: 1.
+        /// Turns after which it repeats.
         #[serde(default)]
         turns: Turns,
         /// Angles [rad], increasing from 0 to the end of the last turn.

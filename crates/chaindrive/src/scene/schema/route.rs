@@ -14,11 +14,11 @@ pub(crate) struct Route {
     /// sprocket first; absent: all sprockets, in file order.
     #[serde(default)]
     pub(crate) stops: Option<Vec<String>>,
-    /// Where the first sprocket stands within a tooth, 0 to 1 [–]; absent: 0.5, symmetric.
+    /// Where the first sprocket stands within a tooth, 0 to 1 [–].
     #[serde(default)]
     #[schemars(extend("minimum" = 0, "maximum" = 1))]
     pub(crate) phase: Option<Ratio>,
-    /// Tension of every link before gravity and load [N]; absent: 0.
+    /// Tension of every link before gravity and load [N].
     #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) pretension: Force,

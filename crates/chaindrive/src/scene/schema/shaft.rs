@@ -49,7 +49,7 @@ pub(crate) struct Coupling {
     #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) stiffness: AngularStiffness,
-    /// Damping [N m s/rad]; absent: none.
+    /// Damping [N m s]; absent: none.
     #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) damping: AngularDamping,

@@ -63,7 +63,7 @@ pub(crate) struct Sprocket {
     /// Differences on the flanks of the teeth, instead of `contact.flanks`.
     #[serde(default)]
     pub(crate) flank: Option<Flank>,
-    /// Angle of one tooth gap [rad], for a wheel that no route passes; absent: 90°, upward.
+    /// Angle of one tooth gap [rad], for a wheel that no route passes.
     #[serde(default)]
     pub(crate) gap_angle: Option<Angle>,
 }
@@ -112,7 +112,7 @@ pub(crate) enum Tooth {
     },
     /// A circular seat with straight flanks.
     Circular {
-        /// Radius of the seat [m], at least that of the roller; absent: 0.505 roller diameters.
+        /// Radius of the seat [m], at least that of the roller.
         #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
         seat_radius: Option<Length>,
@@ -139,7 +139,7 @@ pub(crate) enum Tooth {
     Points {
         /// Points (x, y) [m].
         points: Vec<[Length; 2]>,
-        /// How far the arcs may stray from the points [m]; absent: 1/1000 of the pitch.
+        /// How far the arcs may stray from the points [m].
         #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
         tolerance: Option<Length>,

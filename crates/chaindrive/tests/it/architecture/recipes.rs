@@ -50,7 +50,6 @@ const RECIPES: [Recipe; 7] = [
         own: "",
         files: &[
             "chaindrive/src/scene/resolve/tensioner.rs",
-            "chaindrive/src/scene/schema/tensioner.rs",
             "mechanics/src/tensioner/pushes.rs",
             "mechanics/src/tensioner/pushes/hydraulic.rs",
         ],
@@ -62,9 +61,7 @@ const RECIPES: [Recipe; 7] = [
         files: &[
             // Two of them for the key `adjust` of routes, which takes up length by a slider.
             "chaindrive/src/scene/resolve/route.rs",
-            "chaindrive/src/scene/resolve/tensioner.rs",
             "chaindrive/src/scene/schema/route.rs",
-            "chaindrive/src/scene/schema/tensioner.rs",
             "mechanics/src/tensioner/carriers.rs",
             "mechanics/src/tensioner/carriers/slider.rs",
         ],

@@ -1,6 +1,8 @@
 //! An arm about a pivot.
 
 use chaindrive_geometry::{Point, Vector};
+use chaindrive_quantities::{Inertia, JsonSchema, Length, Ratio};
+use serde::{Deserialize, Serialize};
 
 use super::{Carried, Carries, Extension, require_unit};
 use crate::DriveError;
@@ -12,21 +14,31 @@ use crate::DriveError;
 /// ```
 ///
 /// Its own weight is left out: where its centre of mass lies is not known.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(inline)]
 pub struct Arm {
-    /// Pivot \[m\].
+    /// Pivot (x, y) \[m\].
+    #[schemars(with = "[Length; 2]")]
     pub pivot: Point,
-    /// Where and along which unit vector a plunger pushes; without one the push is a torque about
-    /// the pivot.
+    /// Moment of inertia about the pivot without the sprockets that it carries \[kg m²\]; needed unless locked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<Inertia>", extend("exclusiveMinimum" = 0))]
+    pub inertia: Option<f64>,
+    /// Where a plunger pushes; without one the push is a torsion spring.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub plunger: Option<Plunger>,
 }
 
-/// A plunger that pushes on an arm.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A plunger on an arm.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Plunger {
-    /// Point of the arm on which it pushes, at assembly \[m\].
+    /// Point of the arm on which it pushes (x, y), in the assembled position \[m\].
+    #[schemars(with = "[Length; 2]")]
     pub at: Point,
-    /// Direction of the push; unit vector.
+    /// Direction of the push (x, y). In a scene it may have any length, here it is a unit vector.
+    #[schemars(with = "[Ratio; 2]")]
     pub direction: Vector,
 }
 
@@ -123,6 +135,10 @@ impl Carries for Arm {
 
     fn squared_lever(&self, _: f64, at: Point) -> f64 {
         (at - self.pivot).norm_squared()
+    }
+
+    fn inertia(&self) -> (&'static str, Option<f64>) {
+        ("inertia", self.inertia)
     }
 
     fn turning(&self) -> f64 {

@@ -1,6 +1,8 @@
 //! A straight slide.
 
 use chaindrive_geometry::{Point, Vector};
+use chaindrive_quantities::{JsonSchema, Mass, Ratio};
+use serde::{Deserialize, Serialize};
 
 use super::{Carried, Carries, Extension, Weight, require_unit};
 use crate::DriveError;
@@ -13,10 +15,17 @@ const ROD: f64 = 3.0;
 /// ```text
 /// x(s) = x₀ + d s
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(inline)]
 pub struct Slider {
-    /// Direction d of travel for positive s; unit vector.
+    /// Direction d in which it is pushed (x, y). In a scene it may have any length, here it is a unit vector.
+    #[schemars(with = "[Ratio; 2]")]
     pub direction: Vector,
+    /// Mass without the sprockets that it carries \[kg\]; needed unless locked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<Mass>", extend("exclusiveMinimum" = 0))]
+    pub mass: Option<f64>,
 }
 
 impl Carries for Slider {
@@ -73,7 +82,11 @@ impl Carries for Slider {
         Point::origin()
     }
 
-    fn own_weight(&self, inertia: f64) -> Option<Weight> {
-        Some((inertia, Point::origin()))
+    fn inertia(&self) -> (&'static str, Option<f64>) {
+        ("mass", self.mass)
+    }
+
+    fn own_weight(&self) -> Option<Weight> {
+        Some((self.mass?, Point::origin()))
     }
 }

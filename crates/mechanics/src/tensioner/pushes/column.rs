@@ -1,6 +1,7 @@
 //! Oil in the chamber of a plunger, with the air in it.
 
-use crate::DriveError;
+use chaindrive_quantities::{Area, JsonSchema, Pressure, Ratio, Volume};
+use serde::{Deserialize, Serialize};
 
 /// Pressure of the air around a drive \[Pa\].
 const AMBIENT: f64 = 101_325.0;
@@ -22,21 +23,25 @@ const AMBIENT: f64 = 101_325.0;
 /// # Source
 /// N. D. Manring, *Hydraulic Control Systems*, Wiley, 2005: the bulk modulus of oil with free air, here without warming, and the
 /// balance of a chamber, ṗ = (K/V)(Σ Q − V̇).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OilColumn {
-    /// Cross-section of the plunger A \[m²\], positive.
+    /// Cross-section of the plunger A \[m²\].
+    #[schemars(with = "Area", extend("exclusiveMinimum" = 0))]
     pub area: f64,
-    /// Volume of the chamber at assembly V₀ \[m³\], positive.
+    /// Volume of the chamber at assembly V₀ \[m³\].
+    #[schemars(with = "Volume", extend("exclusiveMinimum" = 0))]
     pub volume: f64,
-    /// Bulk modulus of the oil without air K \[Pa\], positive.
+    /// Bulk modulus of the oil without air K \[Pa\].
+    #[schemars(with = "Pressure", extend("exclusiveMinimum" = 0))]
     pub bulk_modulus: f64,
-    /// Share of its volume that is free air under the pressure around α \[–\], above 0, at most 0.5.
+    /// Share of its volume that is free air under the pressure around α \[–\].
+    #[schemars(with = "Ratio", extend("exclusiveMinimum" = 0, "maximum" = 0.5))]
     pub air: f64,
 }
 
 /// The oil at one moment.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Oil {
+pub(super) struct Column {
     /// Push on the plunger against the air outside \[N\].
     pub(super) force: f64,
     /// Energy that a metre of column from the supply takes \[N\].
@@ -53,7 +58,7 @@ pub(super) struct Oil {
 
 impl OilColumn {
     /// The oil at extension x and column z; `supply` is the push of the supply pressure \[N\].
-    pub(super) fn at(&self, x: f64, z: f64, supply: f64) -> Oil {
+    pub(super) fn at(&self, x: f64, z: f64, supply: f64) -> Column {
         let Self {
             area,
             volume,
@@ -82,7 +87,7 @@ impl OilColumn {
         let modulus = |softness: f64| reference / (liquid + softness);
         let stiffness =
             [gas / (pressure * pressure), 0.0].map(|gas| area * area * modulus(gas) / oil);
-        Oil {
+        Column {
             force: area * (pressure - AMBIENT),
             effort: area * (inner + pressure * ratio - supplied),
             energy: oil * inner + area * (AMBIENT * x - supplied * z),
@@ -90,18 +95,5 @@ impl OilColumn {
             ratio,
             pressure: pressure - AMBIENT,
         }
-    }
-
-    pub(super) fn check(&self, path: &str) -> Result<(), DriveError> {
-        let positive = |name: &str, value: f64, allowed| {
-            let fine = value.is_finite() && value > 0.0;
-            DriveError::require(fine, &format!("{path}.{name}"), value, allowed)
-        };
-        positive("area", self.area, "positive [m²]")?;
-        positive("volume", self.volume, "positive [m³]")?;
-        positive("bulk_modulus", self.bulk_modulus, "positive [Pa]")?;
-        let air = self.air;
-        let fine = air > 0.0 && air <= 0.5;
-        DriveError::require(fine, &format!("{path}.air"), air, "above 0, at most 0.5")
     }
 }

@@ -1,6 +1,9 @@
 //! One-way hydraulic tensioner, reduced to a force law.
 
-use super::{OilColumn, PushForce, Pushes, Slopes};
+use chaindrive_quantities::{Damping, Force, JsonSchema, Stiffness, check};
+use serde::{Deserialize, Serialize};
+
+use super::{Oil, OilColumn, PushForce, Pushes, Slopes};
 use crate::DriveError;
 
 /// A plunger behind a check valve: it follows the chain easily and yields only through a leak.
@@ -23,36 +26,41 @@ use crate::DriveError;
 /// # Source
 /// Leakage of an annular gap is Poiseuille flow between plates; the chamber with check,
 /// leak and relief flows follows Feng et al. (2023).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(inline)]
 pub struct Hydraulic {
-    /// Spring push at x = 0, F₀ \[N\].
+    /// Push of the spring in the assembled position F₀ \[N\].
+    #[schemars(with = "Force")]
     pub preload: f64,
-    /// Spring rate k \[N/m\], not negative.
+    /// Spring rate k \[N/m\].
+    #[serde(default)]
+    #[schemars(with = "Stiffness", extend("minimum" = 0))]
     pub stiffness: f64,
-    /// Push of the supply pressure p_s A \[N\], not negative.
-    pub supply: f64,
-    /// Push at which the relief valve opens p_r A \[N\], at least the supply.
-    pub relief: f64,
-    /// Damping by the leak c_leak \[N s/m\], not negative; positive with a column.
-    pub leak: f64,
-    /// Damping by the check valve while extending c_ext \[N s/m\], not negative; positive with a column.
+    /// Damping by the check valve while it extends c_ext \[N s/m\].
+    #[serde(default)]
+    #[schemars(with = "Damping", extend("minimum" = 0))]
     pub extending: f64,
-    /// Damping by the open relief valve c_rel \[N s/m\], not negative; positive with a column.
+    /// Damping by the relief valve while it is open c_rel \[N s/m\]; 0: it holds its pressure.
+    #[serde(default)]
+    #[schemars(with = "Damping", extend("minimum" = 0))]
     pub relieving: f64,
-    /// Oil that can be compressed; without it the oil is stiff.
+    /// Push of the supply pressure p_s A \[N\]; instead of `oil`.
+    #[schemars(with = "Option<Force>", extend("minimum" = 0))]
+    pub supply: f64,
+    /// Push at which the relief valve opens p_r A \[N\]; instead of `oil`.
+    #[schemars(with = "Option<Force>", extend("minimum" = 0))]
+    pub relief: f64,
+    /// Damping by the leak while it is compressed c_leak \[N s/m\]; instead of `oil`.
+    #[schemars(with = "Option<Damping>", extend("minimum" = 0))]
+    pub leak: f64,
+    /// Plunger and oil, from which supply, relief and leak are computed. Here: oil that can be compressed; without it the oil is stiff.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(rename = "oil", with = "Option<Oil>")]
     pub column: Option<OilColumn>,
 }
 
 impl Hydraulic {
-    /// Leak damping 12 μ L A² / (π d h³) \[N s/m\] of an annular gap, A = π d²/4.
-    ///
-    /// `viscosity` μ \[Pa s\], `length` L, `diameter` d and `gap` h \[m\].
-    pub fn leak_damping(viscosity: f64, length: f64, diameter: f64, gap: f64) -> f64 {
-        let area = 0.25 * std::f64::consts::PI * diameter * diameter;
-        // c_leak = 12 μ L A² / (π d h³)
-        12.0 * viscosity * length * area * area / (std::f64::consts::PI * diameter * gap.powi(3))
-    }
-
     /// Push of stiff oil at a rate ẋ.
     fn stiff(&self, rate: f64) -> f64 {
         if rate >= 0.0 {
@@ -82,6 +90,10 @@ impl Hydraulic {
 }
 
 impl Pushes for Hydraulic {
+    fn unit(&self) -> &'static str {
+        "N"
+    }
+
     fn force(&self, x: f64, rate: f64, z: f64) -> PushForce {
         let spring = self.preload - self.stiffness * x;
         let Some(column) = &self.column else {
@@ -157,62 +169,35 @@ impl Pushes for Hydraulic {
         Some(column.at(x, z, self.supply).pressure)
     }
 
+    fn outward(&self) -> [f64; 2] {
+        [self.extending, self.stiffness]
+    }
+
     fn check(&self, path: &str) -> Result<(), DriveError> {
-        let range = |name: &str, value: f64, low: f64, allowed| {
-            DriveError::require(
-                value.is_finite() && value >= low,
-                &format!("{path}.{name}"),
-                value,
-                allowed,
-            )
+        check(self).map_err(|source| DriveError::law(path, source))?;
+        let range = |name: &str, fine: bool, value: f64, allowed| {
+            DriveError::require(fine, &format!("{path}.{name}"), value, allowed)
         };
-        range("preload", self.preload, f64::MIN, "finite [N]")?;
-        range("stiffness", self.stiffness, 0.0, "not negative [N/m]")?;
-        range("supply", self.supply, 0.0, "not negative [N]")?;
-        range(
-            "relief",
-            self.relief,
-            self.supply,
-            "at least the supply push [N]",
-        )?;
-        let (least, allowed) = match self.column {
-            None => (0.0, "not negative [N s/m]"),
-            Some(_) => (
-                f64::MIN_POSITIVE,
-                "positive [N s/m] where oil can be compressed",
-            ),
+        let opens = self.relief >= self.supply;
+        range("relief", opens, self.relief, "at least the supply push [N]")?;
+        let Some(column) = &self.column else {
+            return Ok(());
         };
-        range("leak", self.leak, least, allowed)?;
-        range("extending", self.extending, least, allowed)?;
-        range("relieving", self.relieving, least, allowed)?;
-        match &self.column {
-            None => Ok(()),
-            Some(column) => column.check(&format!("{path}.oil")),
+        let allowed = "positive [N s/m] where oil can be compressed";
+        for (name, value) in [
+            ("leak", self.leak),
+            ("extending", self.extending),
+            ("relieving", self.relieving),
+        ] {
+            range(name, value > 0.0, value, allowed)?;
         }
+        check(column).map_err(|source| DriveError::law(&format!("{path}.oil"), source))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Published example: d = 12 mm, L = 25 mm, μ = 10 mPa s give 302, 65, 15.9 and
-    /// 4.7 kN s/m at gaps of 15, 25, 40 and 60 µm (theory: annular leak flow).
-    #[test]
-    fn leak_damping_follows_the_gap_cubed() {
-        for (gap, expected) in [
-            (15e-6, 302e3),
-            (25e-6, 65e3),
-            (40e-6, 15.9e3),
-            (60e-6, 4.7e3),
-        ] {
-            let damping = Hydraulic::leak_damping(0.01, 0.025, 0.012, gap);
-            assert!(
-                (damping / expected - 1.0).abs() < 0.01,
-                "{damping} at {gap}"
-            );
-        }
-    }
 
     #[test]
     fn yields_slowly_and_follows_easily() {

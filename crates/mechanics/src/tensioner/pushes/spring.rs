@@ -1,58 +1,83 @@
 //! Spring and damper behind a tensioner.
 
+use chaindrive_quantities::{
+    AngularDamping, AngularStiffness, Damping, Force, JsonSchema, Stiffness, Torque, check,
+};
+use serde::{Deserialize, Serialize};
+
 use super::{PushForce, Pushes};
 use crate::DriveError;
 
-/// A preloaded spring with a damper.
-///
-/// ```text
-/// F = F₀ − k x − c ẋ
-/// ```
-///
-/// x is the extension since assembly: the push weakens as the tensioner moves outward.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spring {
-    /// Push at x = 0, F₀ \[N or N m\].
-    pub preload: f64,
-    /// Rate k \[N/m or N m/rad\], not negative.
-    pub stiffness: f64,
-    /// Damping c \[N s/m or N m s\], not negative.
-    pub damping: f64,
+macro_rules! springs {
+    ($($(#[$doc:meta])* $name:ident in $unit:literal: $preload:literal $force:tt, $rate:literal $stiffness:tt, $loss:literal $damping:tt;)*) => {$(
+        $(#[$doc])*
+        ///
+        /// ```text
+        /// F = F₀ − k x − c ẋ
+        /// ```
+        ///
+        /// x is the extension since assembly: the push weakens as the tensioner moves outward.
+        #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        #[schemars(inline)]
+        pub struct $name {
+            #[doc = $preload]
+            #[schemars(with = $force)]
+            pub preload: f64,
+            #[doc = $rate]
+            #[serde(default)]
+            #[schemars(with = $stiffness, extend("minimum" = 0))]
+            pub stiffness: f64,
+            #[doc = $loss]
+            #[serde(default)]
+            #[schemars(with = $damping, extend("minimum" = 0))]
+            pub damping: f64,
+        }
+
+        impl Pushes for $name {
+            fn unit(&self) -> &'static str {
+                $unit
+            }
+
+            fn force(&self, x: f64, rate: f64, _: f64) -> PushForce {
+                // F = F₀ − k x − c ẋ
+                PushForce {
+                    elastic: self.preload - self.stiffness * x,
+                    damping: -self.damping * rate,
+                    ..PushForce::default()
+                }
+            }
+
+            fn energy(&self, x: f64, _: f64) -> f64 {
+                // U = ½ k x² − F₀ x
+                (0.5 * self.stiffness * x - self.preload) * x
+            }
+
+            fn stiffness(&self) -> f64 {
+                self.stiffness
+            }
+
+            fn damping(&self) -> f64 {
+                self.damping
+            }
+
+            fn check(&self, path: &str) -> Result<(), DriveError> {
+                check(self).map_err(|source| DriveError::law(path, source))
+            }
+        }
+    )*};
 }
 
-impl Pushes for Spring {
-    fn force(&self, x: f64, rate: f64, _: f64) -> PushForce {
-        PushForce {
-            elastic: self.preload - self.stiffness * x,
-            damping: -self.damping * rate,
-            ..PushForce::default()
-        }
-    }
+springs! {
+    /// A spring with a damper, on a slider or a plunger.
+    Spring in "N":
+        "Push in the assembled position F₀ \\[N\\]." "Force",
+        "Spring rate k \\[N/m\\]; 0 is a constant push." "Stiffness",
+        "Damping c \\[N s/m\\]." "Damping";
 
-    fn energy(&self, x: f64, _: f64) -> f64 {
-        // U = ½ k x² − F₀ x
-        (0.5 * self.stiffness * x - self.preload) * x
-    }
-
-    fn stiffness(&self) -> f64 {
-        self.stiffness
-    }
-
-    fn damping(&self) -> f64 {
-        self.damping
-    }
-
-    fn check(&self, path: &str) -> Result<(), DriveError> {
-        let range = |name: &str, value: f64, low: f64, allowed| {
-            DriveError::require(
-                value.is_finite() && value >= low,
-                &format!("{path}.{name}"),
-                value,
-                allowed,
-            )
-        };
-        range("preload", self.preload, f64::MIN, "finite [N]")?;
-        range("stiffness", self.stiffness, 0.0, "not negative [N/m]")?;
-        range("damping", self.damping, 0.0, "not negative [N s/m]")
-    }
+    /// A torsion spring with a damper, on an arm without a plunger.
+    TorsionSpring in "N m":
+        "Torque in the assembled position F₀ \\[N m\\], counter-clockwise positive." "Torque",
+        "Spring rate k \\[N m/rad\\]; 0 is a constant torque." "AngularStiffness",
+        "Damping c \\[N m s\\]." "AngularDamping";
 }
