@@ -26,6 +26,7 @@ __all__ = [
     "_cli",
     "_origin",
     "adaptive_methods",
+    "biarc",
     "catalogue",
     "centre_distance_for",
     "channels",
@@ -156,6 +157,17 @@ class Profile:
     def closest(self, places: _Floats) -> tuple[_Floats, _Floats, _Floats]: ...
     def contains(self, places: _Floats) -> NDArray[np.bool_]: ...
     def outline(self, tolerance: float) -> _Floats: ...
+    @staticmethod
+    def with_bulges(corners: _Floats, bulges: _Floats) -> Profile: ...
+    def bulges(self) -> tuple[_Floats, _Floats]: ...
+    def area(self) -> tuple[float, list[float]]: ...
+
+def biarc(
+    start: _Floats,
+    leaving: _Floats,
+    end: _Floats,
+    arriving: _Floats,
+) -> tuple[list[float], list[float]] | None: ...
 
 _Outcome: TypeAlias = tuple[
     str | None,

@@ -58,7 +58,7 @@ mod core {
     #[pymodule_export]
     use crate::precision::work_precision;
     #[pymodule_export]
-    use crate::profile::Profile;
+    use crate::profile::{Profile, biarc};
     #[pymodule_export]
     use crate::replay::{replay, replay_selection};
     #[pymodule_export]
