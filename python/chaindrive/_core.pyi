@@ -24,6 +24,7 @@ __all__ = [
     "__build__",
     "__version__",
     "_cli",
+    "_drawn",
     "_origin",
     "adaptive_methods",
     "biarc",
@@ -289,6 +290,9 @@ def polygon_action(
 def links_for(teeth: Sequence[int], pitch: float, centre_distance: float) -> float: ...
 def centre_distance_for(teeth: Sequence[int], pitch: float, links: float) -> float: ...
 def _cli(arguments: Sequence[str]) -> int: ...
+def _drawn(
+    arguments: list[str],
+) -> tuple[str, str, int | None, bool, bool] | None: ...
 def layouts_of(drive: Drive) -> tuple[str, list[str]]: ...
 def layout_around(
     stops: Sequence[object],

@@ -91,6 +91,19 @@ mod core {
         module.add("_origin", origin.into_py_dict(module.py())?)
     }
 
+    /// Source, output, number of pictures, whether to overwrite and to be quiet, of the movie or report that a command line asks for.
+    #[pyfunction]
+    fn _drawn(arguments: Vec<OsString>) -> Option<(OsString, OsString, Option<usize>, bool, bool)> {
+        let it = chaindrive_cli::drawn(arguments)?;
+        Some((
+            it.source.into(),
+            it.output.into(),
+            it.frames,
+            it.overwrite,
+            it.quiet,
+        ))
+    }
+
     /// Runs the command line with its arguments, the program's name first; returns the exit code.
     #[pyfunction]
     fn _cli(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
