@@ -24,12 +24,18 @@ from chaindrive import _core  # noqa: E402
 from chaindrive.signals import hear  # noqa: E402
 
 
-def _asks_for_a_movie(arguments: list[str]) -> bool:
-    """Whether the command line asks for what matplotlib and imageio make, and the core does not."""
-    if arguments[:1] != ["replay"] or {"-h", "--help"} & set(arguments):
-        return False
-    endings = (".mp4", ".gif")
-    return any(it in ("--mp4", "--gif") or it.endswith(endings) for it in arguments[1:])
+def _draw(verb: str, source: str, output: str, frames: int | None, *how: bool) -> int:
+    """Make what matplotlib and imageio make, and the core does not."""
+    from pathlib import Path
+
+    overwrite, quiet = how
+    if verb == "report":
+        from chaindrive import reporting
+
+        return reporting.command(source, Path(output), overwrite=overwrite, quiet=quiet)
+    from chaindrive import movies
+
+    return movies.command(source, Path(output), frames=frames, overwrite=overwrite, quiet=quiet)
 
 
 def main() -> int:
@@ -38,16 +44,9 @@ def main() -> int:
         if _signal.getsignal(_signal.SIGINT) is _leave:
             _signal.signal(_signal.SIGINT, _signal.default_int_handler)
         hear()
-        arguments = sys.argv[1:]
-        if _asks_for_a_movie(arguments):
-            from chaindrive.movies import command
-
-            return command(arguments)
-        if arguments[:1] == ["report"]:
-            from chaindrive import reporting
-
-            return reporting.command(arguments)
-        return _core._cli(["chaindrive", *arguments])
+        arguments = ["chaindrive", *sys.argv[1:]]
+        drawn = _core._drawn(arguments)
+        return _core._cli(arguments) if drawn is None else _draw(arguments[1], *drawn)
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return INTERRUPTED

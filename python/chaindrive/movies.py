@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Callable
 from os import PathLike, fspath
@@ -260,32 +259,21 @@ def _line(share: float) -> None:
     print(f"\r{text}", end="", file=sys.stderr, flush=True)
 
 
-def command(arguments: list[str]) -> int:
+def command(source: str, output: Path, *, frames: int | None, overwrite: bool, quiet: bool) -> int:
     """Make the movie that a command line asks for, and return the exit code."""
     from chaindrive.results import open_result
 
-    parser = argparse.ArgumentParser("chaindrive replay", description="Makes a movie of a run.")
-    parser.add_argument("result", type=Path, help="the Zarr result of the run")
-    parser.add_argument("-o", "--output", type=Path, help="the movie (.mp4 or .gif)")
-    kind = parser.add_mutually_exclusive_group()
-    kind.add_argument("--mp4", action="store_const", const=".mp4", dest="kind")
-    kind.add_argument("--gif", action="store_const", const=".gif", dest="kind")
-    parser.add_argument("--frames", type=int, default=PICTURES, help="number of pictures")
-    parser.add_argument("--overwrite", action="store_true")
-    parser.add_argument("-q", "--quiet", action="store_true")
-    given = parser.parse_args(arguments[1:])
-    output = given.output or given.result.with_suffix(given.kind)
-    if output.exists() and not given.overwrite:
+    if output.exists() and not overwrite:
         print(f"{output}: there is already something here; pass --overwrite", file=sys.stderr)
         return 3
-    quiet = given.quiet or not sys.stderr.isatty()
+    shown = _line if sys.stderr.isatty() and not quiet else False
     try:
-        run = open_result(given.result)
-        movie(run, output, frames=given.frames, progress=False if quiet else _line)
+        run = open_result(source)
+        movie(run, output, frames=PICTURES if frames is None else frames, progress=shown)
     except (KeyError, ValueError, FileNotFoundError, ModuleNotFoundError) as error:
         message = error.args[0] if isinstance(error, KeyError) else error
-        print(f"{given.result}: {message}", file=sys.stderr)
+        print(f"{source}: {message}", file=sys.stderr)
         return 2
-    if not given.quiet:
+    if not quiet:
         print(f"{output}: {output.stat().st_size / 1e6:.2f} MB", file=sys.stderr)
     return 0

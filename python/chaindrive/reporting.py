@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import html
 import io
 import re
@@ -222,30 +221,21 @@ def _replay(run: xr.Dataset) -> str:
     )
 
 
-def command(arguments: list[str]) -> int:
+def command(source: str, output: Path, *, overwrite: bool, quiet: bool) -> int:
     """Make the report that a command line asks for, and return the exit code."""
-    parser = argparse.ArgumentParser(
-        "chaindrive report", description="Makes the report of a scene or a result: one HTML file."
-    )
-    parser.add_argument("source", help="a scene (.toml, or a preset) or a result (.zarr)")
-    parser.add_argument("-o", "--output", type=Path, help="the report (.html)")
-    parser.add_argument("--overwrite", action="store_true", help="replaces an earlier report")
-    parser.add_argument("-q", "--quiet", action="store_true")
-    given = parser.parse_args(arguments[1:])
-    output = given.output or Path(Path(given.source).stem + ".html")
     if output.suffix not in (".html", ".htm"):
         print(f"{output}: the name must end in .html", file=sys.stderr)
         return 2
-    if output.exists() and not given.overwrite:
+    if output.exists() and not overwrite:
         print(f"{output}: there is already something here; pass --overwrite", file=sys.stderr)
         return 3
     try:
-        text = report(_named(given.source))
+        text = report(_named(source))
         output.write_text(text, encoding="utf-8")
     except (ChaindriveError, ValueError, OSError, ModuleNotFoundError) as error:
-        print(f"{given.source}: {error}", file=sys.stderr)
+        print(f"{source}: {error}", file=sys.stderr)
         return 2
-    if not given.quiet:
+    if not quiet:
         print(f"{output}: {len(text.encode()) / 1e6:.2f} MB", file=sys.stderr)
     return 0
 

@@ -241,6 +241,30 @@ def test_command_makes_the_same_page_of_a_store(tmp_path):
     assert "nothing of this name" in told
 
 
+def test_movies_and_reports_are_asked_for_as_all_else_is(tmp_path):
+    def asked(*arguments):
+        return cd._core._drawn(["chaindrive", *arguments])
+
+    assert asked("replay", "a.zarr", "--mp4") == ("a.zarr", "a.mp4", None, False, False)
+    assert asked("replay", "-qo", "b.gif", "a.zarr", "--frames=9") == (
+        "a.zarr",
+        "b.gif",
+        9,
+        False,
+        True,
+    )
+    assert asked("report", "scenes/a.toml") == ("scenes/a.toml", "a.html", None, False, False)
+    # Pages, help, and what is wrong belong to the command.
+    for others in ("replay a.zarr", "replay --mp4 -h", "replay a --mp4 --gif", "run ring"):
+        assert asked(*others.split()) is None
+    code, told = command("a.zarr", "-o", "a.mp4", "--plot", "span_tension", folder=tmp_path)
+    assert code == 2
+    assert "a movie has no plots" in told
+    code, told = command("gone.zarr", "--gif", folder=tmp_path)
+    assert code == 2
+    assert "gone.zarr" in told
+
+
 def test_result_that_ended_early_is_replayed_and_says_how(tmp_path):
     path = tmp_path / "run.zarr"
     cd.simulate(cd.scenes.spinning_ring(), until=2e-3, error=False, output=str(path))

@@ -7,24 +7,20 @@
 //! | which method and step keep an error? | [`choose`], by trying them from the cheapest on |
 //! | what do methods and steps cost, and how exact are they? | [`work_precision`], against a reference that is checked |
 //!
+//! Read the files in this order: how much of a run is looked at (`window`), what is kept of it (`trace`, `short_runs`), how far two of
+//! these are apart (`compare`, `impacts`); then the answers (`horizon`; `estimate` and, in words, `judgement`; `variant` and
+//! `choice`; `work` and `table`).
+//!
 //! All of it looks at the beginning of a run, a [`Window`] of a few teeth, so that its cost does not grow
 //! with the length of the run; and nothing of it decides by a clock, so that answers are the same to the
 //! last bit wherever the binary runs on the same kind of processor.
 
-mod accuracy;
-mod attribute;
-mod candidates;
 mod choice;
 mod compare;
-mod convergence;
-mod errors;
 mod estimate;
-mod growth;
 mod horizon;
 mod impacts;
 mod judgement;
-mod report;
-mod sharper;
 mod short_runs;
 mod table;
 mod trace;
@@ -33,19 +29,16 @@ mod window;
 mod work;
 
 pub use crate::scene::{ACCURACY, Quantity};
-pub(crate) use accuracy::LEAST_LOSSES;
-pub use accuracy::{Accuracy, Promise};
-pub use attribute::Attribute;
 pub(crate) use choice::choose_with;
-pub use choice::{Choice, Trial, choose};
-pub use compare::Comparison;
-pub use errors::Errors;
+pub use choice::{Accuracy, Choice, Promise, Trial, choose};
+pub use compare::{Comparison, Errors};
 pub use estimate::{ChannelHorizon, Estimate, estimate};
 pub use horizon::{Divergence, Horizon, horizon};
 pub use impacts::ImpactErrors;
 pub use judgement::Judgement;
 pub(crate) use short_runs::ShortRuns;
 pub use table::Number;
+pub(crate) use trace::LEAST_LOSSES;
 pub use trace::{Gap, Strands};
 pub use variant::Variant;
 pub use window::Window;
@@ -53,3 +46,12 @@ pub use work::{Row, Study, Table, work_precision};
 
 /// Asked after every sample whether the user wants the calculation to stop.
 pub type Watch<'a> = &'a dyn Fn() -> bool;
+
+/// A value in the attributes of a result.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Attribute {
+    /// Text.
+    Text(String),
+    /// Finite number.
+    Number(f64),
+}

@@ -69,15 +69,8 @@ impl CsvWriter {
         self.row.clear();
         self.row.push(simulation.observation());
         let columns = self.row.columns.iter().flat_map(|column| &column.values);
-        let row: Vec<String> = self
-            .row
-            .time
-            .iter()
-            .chain(columns)
-            .copied()
-            .map(digits)
-            .collect();
-        self.samples.push(&row)?;
+        let row = self.row.time.iter().chain(columns).copied().map(digits);
+        self.samples.push(row)?;
         self.push_contacts(simulation.events())
     }
 
@@ -90,7 +83,7 @@ impl CsvWriter {
             self.contact.push(event);
             let cells = EventColumn::ALL.map(|column| match column {
                 EventColumn::Kind => self.contact.kind.concat(),
-                EventColumn::Body => quoted(&self.contact.body.concat()),
+                EventColumn::Body => self.contact.body.concat(),
                 EventColumn::Roller => self.contact.roller.iter().map(i64::to_string).collect(),
                 _ => self
                     .contact
@@ -101,7 +94,7 @@ impl CsvWriter {
                     .map(digits)
                     .collect(),
             });
-            table.push(&cells)?;
+            table.push(cells)?;
         }
         table.keep_up()
     }
@@ -149,7 +142,7 @@ struct Table {
     /// Length of the heading and the rows in the file.
     length: u64,
     /// Rows to be written.
-    pending: Vec<u8>,
+    pending: csv::Writer<Vec<u8>>,
     committed: Instant,
     ended: bool,
 }
@@ -161,31 +154,29 @@ impl Table {
             file: made.map_err(|source| failed(&claimed.path, source))?,
             claimed,
             length: 0,
-            pending: Vec::new(),
+            pending: csv::Writer::from_writer(Vec::new()),
             committed: Instant::now(),
             ended: false,
         };
-        table.add(heading);
-        table
-            .write()
-            .map_err(|source| failed(&table.claimed.path, source))?;
+        let written = table.add(heading).and_then(|()| table.write());
+        written.map_err(|source| failed(&table.claimed.path, source))?;
         table.claimed.claim.put_in_place()?;
         Ok(table)
     }
 
-    fn add(&mut self, cells: &[String]) {
-        self.pending
-            .extend_from_slice(format!("{}\n", cells.join(",")).as_bytes());
+    fn add(&mut self, cells: impl IntoIterator<Item = impl AsRef<[u8]>>) -> io::Result<()> {
+        Ok(self.pending.write_record(cells)?)
     }
 
-    fn push(&mut self, cells: &[String]) -> Result<(), Failure> {
-        self.add(cells);
+    fn push(&mut self, cells: impl IntoIterator<Item = impl AsRef<[u8]>>) -> Result<(), Failure> {
+        let added = self.add(cells);
+        added.map_err(|source| failed(&self.claimed.path, source))?;
         self.keep_up()
     }
 
     /// Writes the rows if the last time was a while ago.
     fn keep_up(&mut self) -> Result<(), Failure> {
-        if self.pending.len() < COMMIT_BYTES && self.committed.elapsed() < COMMIT_EVERY {
+        if self.pending.get_ref().len() < COMMIT_BYTES && self.committed.elapsed() < COMMIT_EVERY {
             return Ok(());
         }
         self.commit()
@@ -205,14 +196,13 @@ impl Table {
     }
 
     fn write(&mut self) -> io::Result<()> {
-        let rows = self.pending.len() as u64;
-        self.pending.extend(
-            incomplete(&Ending::None)
-                .into_iter()
-                .flat_map(String::into_bytes),
-        );
+        let empty = csv::Writer::from_writer(Vec::new());
+        let pending = std::mem::replace(&mut self.pending, empty).into_inner();
+        let mut pending = pending.map_err(csv::IntoInnerError::into_error)?;
+        let rows = pending.len() as u64;
+        pending.extend(incomplete(&Ending::None).unwrap_or_default().into_bytes());
         self.file.seek(SeekFrom::Start(self.length))?;
-        let written = self.file.write_all(&self.pending);
+        let written = self.file.write_all(&pending);
         if written.is_err() {
             // On a full disk some of the rows are there. Whole ones are kept that leave room for a closing line.
             let room = failed_line().len() as u64;
@@ -221,7 +211,7 @@ impl Table {
                 .metadata()?
                 .len()
                 .saturating_sub(self.length + room);
-            let there = &self.pending[..usize::try_from(end.min(rows)).unwrap_or(0)];
+            let there = &pending[..usize::try_from(end.min(rows)).unwrap_or(0)];
             self.length += there
                 .iter()
                 .rposition(|&b| b == b'\n')
@@ -229,7 +219,6 @@ impl Table {
         } else {
             self.length += rows;
         }
-        self.pending.clear();
         self.committed = Instant::now();
         written
     }
@@ -295,15 +284,7 @@ fn heading(simulation: &Simulation, channels: &[Channel]) -> Vec<String> {
 
 /// The heading of a column.
 pub(crate) fn named(name: &str, unit: Option<&str>) -> String {
-    quoted(&unit.map_or_else(|| name.to_owned(), |unit| format!("{name} [{unit}]")))
-}
-
-pub(crate) fn quoted(cell: &str) -> String {
-    if cell.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", cell.replace('"', "\"\""))
-    } else {
-        cell.to_owned()
-    }
+    unit.map_or_else(|| name.to_owned(), |unit| format!("{name} [{unit}]"))
 }
 
 pub(crate) fn failed(path: &Path, source: io::Error) -> Failure {

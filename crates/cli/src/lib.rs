@@ -20,6 +20,7 @@ mod suggested;
 mod terminal;
 
 use std::ffi::OsString;
+use std::path::PathBuf;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
@@ -84,6 +85,33 @@ enum Verb {
     Catalogue(lists::Catalogue),
     Completion(shell::Completion),
     Man(shell::Man),
+}
+
+/// What only the Python package draws.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drawn {
+    /// Result, or, for a report, also a scene file or the name of an embedded scene.
+    pub source: PathBuf,
+    /// The file to make.
+    pub output: PathBuf,
+    /// Number of pictures, where it is given.
+    pub frames: Option<usize>,
+    /// Whether an earlier file of this name is replaced.
+    pub overwrite: bool,
+    /// Whether only errors are told.
+    pub quiet: bool,
+}
+
+/// The movie or report that a command line asks of the Python package; none if it asks for anything else, or is wrong: [`run`] tells then.
+pub fn drawn<A>(arguments: impl IntoIterator<Item = A>) -> Option<Drawn>
+where
+    A: Into<OsString> + Clone,
+{
+    match Command::try_parse_from(arguments).ok()?.verb? {
+        Verb::Replay(arguments) => arguments.movie(),
+        Verb::Report(arguments) => Some(arguments.report()),
+        _ => None,
+    }
 }
 
 /// Runs the command with its arguments, the program's name first, and returns the exit code.

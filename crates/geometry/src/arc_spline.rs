@@ -11,7 +11,7 @@ use crate::{BoundingBox, GeometryError, Piece, Point, Vector};
 const TANGENT: f64 = 1e-6;
 
 /// Joints may gape by this fraction of the size of the curve.
-const GAP: f64 = 1e-9;
+pub(crate) const GAP: f64 = 1e-9;
 
 /// A chain of arcs and segments with the material on the left of travel.
 ///

@@ -14,6 +14,18 @@ pub struct AreaMoments {
 }
 
 impl AreaMoments {
+    /// Of the area that pieces enclose which come back to where they begin; negative where they run clockwise.
+    pub fn of(pieces: &[Piece]) -> Self {
+        pieces.iter().fold(Self::default(), |sum, piece| {
+            let chord = Self::triangle(piece.start().coords, piece.end().coords);
+            let sum = sum.plus(chord);
+            match piece {
+                Piece::Segment(_) => sum,
+                Piece::Arc(arc) => sum.plus(Self::circular_segment(arc)),
+            }
+        })
+    }
+
     fn plus(self, other: Self) -> Self {
         Self {
             area: self.area + other.area,
@@ -67,19 +79,11 @@ impl AreaMoments {
 impl ArcSpline {
     /// Area of the solid inside a closed curve and its moments; zero for an open one.
     pub fn area_moments(&self) -> AreaMoments {
-        if !self.is_closed() {
-            return AreaMoments::default();
+        if self.is_closed() {
+            AreaMoments::of(self.pieces())
+        } else {
+            AreaMoments::default()
         }
-        self.pieces()
-            .iter()
-            .fold(AreaMoments::default(), |sum, piece| {
-                let chord = AreaMoments::triangle(piece.start().coords, piece.end().coords);
-                let sum = sum.plus(chord);
-                match piece {
-                    Piece::Segment(_) => sum,
-                    Piece::Arc(arc) => sum.plus(AreaMoments::circular_segment(arc)),
-                }
-            })
     }
 
     /// Signed area inside a closed curve \[m²\].

@@ -126,8 +126,9 @@ fn reflected(tangent: Vector, chord: Vector) -> Vector {
     (along * (2.0 * tangent.dot(&along)) - tangent).normalize()
 }
 
-/// Two tangent arcs from a point and direction to another, with equal tangent lengths.
-fn biarc(a: Point, ta: Vector, b: Point, tb: Vector) -> Option<[Piece; 2]> {
+/// Two tangent arcs from a point and unit direction to another, with equal tangent lengths; none where one would turn by more than
+/// half a turn.
+pub fn biarc(a: Point, ta: Vector, b: Point, tb: Vector) -> Option<[Piece; 2]> {
     // Corners of the control polygon lie d ahead of a and d behind b, and 2 d apart:
     //   d = v² / (v·t + √((v·t)² + 2 (1 − ta·tb) v²)),   v = b − a,   t = ta + tb
     let v = b - a;

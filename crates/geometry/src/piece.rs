@@ -133,6 +133,14 @@ impl Piece {
         }
     }
 
+    /// Bulge \[–\], as CAD polylines store it, zero on a segment; see [`Arc::with_bulge`].
+    pub fn bulge(&self) -> f64 {
+        match self {
+            Self::Segment(_) => 0.0,
+            Self::Arc(arc) => (0.25 * arc.sweep).tan(),
+        }
+    }
+
     /// Fraction of the length of the foot of the perpendicular from `p`, if strictly inside.
     ///
     /// For an arc this is the near one of the two perpendiculars; none when `p` faces the part of

@@ -58,7 +58,7 @@ mod core {
     #[pymodule_export]
     use crate::precision::work_precision;
     #[pymodule_export]
-    use crate::profile::Profile;
+    use crate::profile::{Profile, biarc};
     #[pymodule_export]
     use crate::replay::{replay, replay_selection};
     #[pymodule_export]
@@ -89,6 +89,19 @@ mod core {
         ];
         module.add("__build__", &build.id)?;
         module.add("_origin", origin.into_py_dict(module.py())?)
+    }
+
+    /// Source, output, number of pictures, whether to overwrite and to be quiet, of the movie or report that a command line asks for.
+    #[pyfunction]
+    fn _drawn(arguments: Vec<OsString>) -> Option<(OsString, OsString, Option<usize>, bool, bool)> {
+        let it = chaindrive_cli::drawn(arguments)?;
+        Some((
+            it.source.into(),
+            it.output.into(),
+            it.frames,
+            it.overwrite,
+            it.quiet,
+        ))
     }
 
     /// Runs the command line with its arguments, the program's name first; returns the exit code.

@@ -1,8 +1,10 @@
 //! Whole profiles of bodies, asked about points.
 
-use chaindrive_geometry::{ArcSpline, Foot, Point};
+use chaindrive_geometry::{
+    ArcSpline, AreaMoments, Foot, Piece, Point, Vector, biarc as tangent_arcs,
+};
 use numpy::ndarray::ArrayView2;
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::drawing::points;
@@ -20,8 +22,50 @@ type Closest<'py> = (
     Bound<'py, PyArray1<f64>>,
 );
 
+/// Corners and bulges.
+type Cornered<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>);
+
+/// Where two arcs meet that leave a place and arrive at another in unit directions, and their bulges; none where there are none.
+#[pyfunction]
+pub(crate) fn biarc(
+    start: [f64; 2],
+    leaving: [f64; 2],
+    end: [f64; 2],
+    arriving: [f64; 2],
+) -> Option<([f64; 2], [f64; 2])> {
+    let [a, b] = [start, end].map(Point::from);
+    let [ta, tb] = [leaving, arriving].map(Vector::from);
+    let pair = tangent_arcs(a, ta, b, tb)?;
+    let joint = pair[0].end();
+    Some(([joint.x, joint.y], pair.map(|piece: Piece| piece.bulge())))
+}
+
 #[pymethods]
 impl Profile {
+    /// The open curve through corners (n, 2) with bulges; back to the first corner where there are as many.
+    #[staticmethod]
+    fn with_bulges(
+        corners: PyReadonlyArray2<'_, f64>,
+        bulges: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<Self> {
+        let corners: Vec<Point> = rows(&corners.as_array()).collect();
+        let bulges = bulges.as_array().to_vec();
+        Ok(Self(ArcSpline::with_bulges(&corners, &bulges).or_raise()?))
+    }
+
+    /// Corners (n, 2) and bulges.
+    fn bulges<'py>(&self, py: Python<'py>) -> PyResult<Cornered<'py>> {
+        let (corners, bulges) = self.0.bulges();
+        Ok((points(py, &corners)?, bulges.into_pyarray(py)))
+    }
+
+    /// Area that pieces enclose which come back to where they begin, and its centre.
+    fn area(&self) -> (f64, [f64; 2]) {
+        let moments = AreaMoments::of(self.0.pieces());
+        let centre = moments.centroid();
+        (moments.area, [centre.x, centre.y])
+    }
+
     /// Whether it is the border of a solid.
     #[getter]
     fn closed(&self) -> bool {

@@ -12,6 +12,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from chaindrive import _core
 from chaindrive.errors import ParameterError
 from chaindrive.exchange.curve import Curve
 
@@ -92,25 +93,10 @@ def _fit(
 def _pair(start: _Vector, begin: _Vector, end: _Vector, arrive: _Vector) -> Curve | None:
     """Return two arcs with given ends and directions, equally far to where they meet."""
     lengths = np.hypot(*begin), np.hypot(*arrive)
-    chord = end - start
-    if min(lengths) == 0.0 or not chord.any():
+    if min(lengths) == 0.0:
         return None
-    t0, t1 = begin / lengths[0], arrive / lengths[1]
-    # 2 (1 − t₀·t₁) d² + 2 v·(t₀ + t₁) d − v·v = 0
-    a, b, c = 2.0 * (1.0 - t0 @ t1), 2.0 * chord @ (t0 + t1), -(chord @ chord)
-    root = np.sqrt(b * b - 4.0 * a * c)
-    # This form of the solution stands parallel directions, where a vanishes.
-    if b + root <= 0.0:
+    found = _core.biarc(start, begin / lengths[0], end, arrive / lengths[1])
+    if found is None:
         return None
-    d = -2.0 * c / (b + root)
-    middle = 0.5 * (start + d * t0 + end - d * t1)
-    first, second = _bulge(t0, middle - start), -_bulge(-t1, middle - end)
-    return Curve(np.array([start, middle, end]), np.array([first, second]), False)
-
-
-def _bulge(direction: _Vector, chord: _Vector) -> float:
-    """Return the bulge of the arc that leaves in a direction, over a chord."""
-    # θ = 2 α, where α is the angle from direction to chord, and b = tan(θ / 4).
-    across = direction[0] * chord[1] - direction[1] * chord[0]
-    bulge = float(np.tan(0.5 * np.arctan2(across, direction @ chord)))
-    return bulge if abs(bulge) > 1e-9 else 0.0
+    joint, bulges = found
+    return Curve(np.array([start, joint, end]), np.array(bulges), False)

@@ -146,8 +146,9 @@ def _sound(curve: Curve) -> None:
     """Refuse a curve of which nothing can be made."""
     if len(curve.points) < 2:
         raise ParameterError("the curve is empty", "curve", "two points at least")
-    with np.errstate(invalid="ignore", over="ignore"):
-        numbers = [*curve.points.flat, *curve.bulges, curve.length]
+    with np.errstate(over="ignore"):
+        # Radii go with the square of a bulge.
+        numbers = [*curve.points.flat, *curve.bulges**2]
     if not np.isfinite(numbers).all():
         message = "the curve has a place, a bulge or a length that is not finite"
         raise ParameterError(message, "curve", "finite numbers, places in m")

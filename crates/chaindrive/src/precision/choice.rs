@@ -5,20 +5,67 @@ use std::fmt;
 use chaindrive_mechanics::Assembled;
 use serde::{Deserialize, Serialize};
 
-use super::Watch;
-use super::accuracy::{Accuracy, Promise};
-use super::attribute::Attribute;
-use super::candidates::{Candidate, Candidates, Entry, work};
-use super::compare::{Account, distances, rms};
+use super::compare::{Pair, rms};
 use super::horizon::Horizon;
-use super::impacts::ImpactErrors;
-use super::sharper::{pinned, sharper};
 use super::short_runs::{Beginning, ShortRuns};
 use super::trace::{Gap, Strands, Trace};
-use super::window::Window;
+use super::variant::{CAUTION, Candidates, Entry, Variant};
+use super::window::{Window, automatic, pinned, sharper};
+use super::{Attribute, Watch};
 use crate::figure::{Measure, duration, percent};
 use crate::scene::Quantity;
 use crate::{Run, SimulationError, Stepping};
+
+/// An accuracy that is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// Relative error \[–\].
+    pub value: f64,
+    /// Of what.
+    pub of: Quantity,
+}
+
+impl From<f64> for Accuracy {
+    fn from(value: f64) -> Self {
+        let of = Quantity::default();
+        Self { value, of }
+    }
+}
+
+impl From<(f64, Quantity)> for Accuracy {
+    fn from((value, of): (f64, Quantity)) -> Self {
+        Self { value, of }
+    }
+}
+
+/// Quantity that is kept within the accuracy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Promise {
+    /// The tension of the tight span, or of the tightest link where [`Choice::gap`] leaves a span without a
+    /// tension, at every moment of the window, root mean square.
+    Waveform,
+    /// Mean and root mean square of the tension of every span or link, or no more than chance makes of them: the
+    /// run goes on beyond its chaos horizon.
+    Statistics,
+    /// The energy lost, as it is without what chance makes of it, and what is unaccounted for beside it.
+    Losses,
+    /// Median and 99th percentile of the forces of impacts and median of their impulses, on the sprocket that differs most, or no more than
+    /// chance makes of them.
+    Impacts,
+    /// Nothing: the chain carries no tension that could be compared, loses nothing, or strikes nothing.
+    Nothing,
+}
+
+impl Promise {
+    /// Quantity of the accuracy behind the promise.
+    pub(crate) fn quantity(self) -> Quantity {
+        match self {
+            Self::Waveform | Self::Statistics | Self::Nothing => Quantity::Tension,
+            Self::Losses => Quantity::Losses,
+            Self::Impacts => Quantity::Impacts,
+        }
+    }
+}
 
 /// A candidate that was tried.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -65,18 +112,18 @@ struct Trials<'a> {
     window: Window,
     watch: Watch<'a>,
     short_runs: &'a mut ShortRuns,
-    failed: Vec<Candidate>,
+    failed: Vec<Variant>,
 }
 
 impl Trials<'_> {
-    fn take(&mut self, from: Beginning, of: Candidate) -> Result<usize, SimulationError> {
+    fn take(&mut self, from: Beginning, of: Variant) -> Result<usize, SimulationError> {
         let run = of.run(self.run);
         self.short_runs
             .take(self.start, from, &run, &self.window, self.watch)
     }
 
     /// Place of the trace of a candidate; none if it fails.
-    fn place(&mut self, of: Candidate) -> Result<Option<usize>, SimulationError> {
+    fn place(&mut self, of: Variant) -> Result<Option<usize>, SimulationError> {
         if self.failed.contains(&of) {
             return Ok(None);
         }
@@ -101,11 +148,7 @@ impl Trials<'_> {
     }
 
     /// Which promise the drive allows, and by how much the statistics of equal runs differ.
-    fn promise(
-        &mut self,
-        first: Candidate,
-        of: Quantity,
-    ) -> Result<(Promise, f64), SimulationError> {
+    fn promise(&mut self, first: Variant, of: Quantity) -> Result<(Promise, f64), SimulationError> {
         let Some(base) = self.place(first)? else {
             return Ok((Promise::Waveform, 0.0));
         };
@@ -114,14 +157,15 @@ impl Trials<'_> {
         }
         let twin = self.take(Beginning::Apart, first)?;
         let [base, twin] = [base, twin].map(|at| self.short_runs.trace(at));
+        let strands = Strands::of([base, twin]);
+        let apart = Pair::of(twin, base, strands);
         if of == Quantity::Losses {
-            return Ok((Promise::Losses, losses_apart(twin, base)));
+            return Ok((Promise::Losses, apart.losses()));
         }
         if of == Quantity::Impacts {
             let names = self.start.system.sprocket_names();
-            return Ok((Promise::Impacts, impacts_apart(twin, base, &names, 1.0)));
+            return Ok((Promise::Impacts, apart.impacts(&names, 1.0)));
         }
-        let strands = Strands::of([base, twin]);
         let horizon = Horizon::of(base, twin, strands);
         let parted = [horizon.all, horizon.tight].map(|of| of.time());
         let within = |at: &f64| *at < self.run.until;
@@ -130,7 +174,7 @@ impl Trials<'_> {
         } else {
             Promise::Waveform
         };
-        Ok((promise, statistics(twin, base)))
+        Ok((promise, apart.statistics()))
     }
 }
 
@@ -218,12 +262,10 @@ pub(crate) fn choose_with(
     while let Some(entry) = candidates.get(place) {
         let found = trials.pair(entry)?;
         let found = found.map(|[candidate, judge]| Found::of(candidate, judge, entry, &names));
-        let keeps = |promise| {
-            let error = found
-                .as_ref()
-                .map(|found| found.error(promise, 0.0, accuracy));
-            error.is_some_and(|error| error <= accuracy)
-        };
+        let found = found.as_ref();
+        let error_of =
+            |promise, spread| found.map_or(f64::INFINITY, |it| it.error(promise, spread, accuracy));
+        let keeps = |promise| error_of(promise, 0.0) <= accuracy;
         let whatever =
             of == Quantity::Tension && keeps(Promise::Waveform) && keeps(Promise::Statistics);
         if spread.is_none() && !whatever {
@@ -234,44 +276,31 @@ pub(crate) fn choose_with(
         if choice.promise == Promise::Nothing {
             break;
         }
-        let error =
-            |found: &Found| found.error(choice.promise, spread.unwrap_or_default(), accuracy);
-        let error = found.as_ref().map_or(f64::INFINITY, error);
+        let error = error_of(choice.promise, spread.unwrap_or_default());
         let candidate = entry.candidate;
         choice.trials.push(Trial {
             stepping: candidate.stepping,
-            step: candidate.step,
+            // Every candidate has one.
+            step: candidate.step.unwrap_or(f64::NAN),
             onset_depth: candidate.onset_depth,
             error,
-            work: found.as_ref().map_or(f64::NAN, |found| found.work),
+            work: found.map_or(f64::NAN, |it| it.work),
         });
         // NaN is no error to be content with.
         if error < choice.error {
             choice.error = error;
             choice.run = candidate.run(run);
-            choice.gap = found.as_ref().and_then(|found| found.gap.clone());
+            choice.gap = found.and_then(|it| it.gap.clone());
         }
         if error <= accuracy {
             choice.kept = true;
             break;
         }
-        let feeds_itself = found
-            .as_ref()
-            .is_some_and(|found| found.fed(accuracy) > accuracy);
+        let feeds_itself = found.is_some_and(|it| it.fed(accuracy) > accuracy);
         place = candidates.after(place, error, accuracy, feeds_itself);
     }
     choice.evaluations = short_runs.evaluations() - before;
     Ok(choice)
-}
-
-/// The run without the method that is to be chosen.
-fn automatic(run: &Run) -> Run {
-    Run {
-        stepping: Stepping::Auto,
-        step: None,
-        onset_depth: None,
-        ..run.clone()
-    }
 }
 
 /// The window over which candidates are compared.
@@ -295,8 +324,6 @@ struct Found {
     losses: f64,
     /// Of the impacts, with the caution already \[–\].
     impacts: f64,
-    /// Error over the difference.
-    caution: f64,
     /// Energy unaccounted for over the losses \[–\].
     unaccounted: f64,
     /// The same over what was moved \[–\].
@@ -309,35 +336,33 @@ struct Found {
 
 impl Found {
     fn of(candidate: &Trace, judge: &Trace, entry: &Entry, names: &[String]) -> Self {
-        let strands = Strands::of([candidate, judge]);
-        let distances = distances(candidate, judge, strands);
+        let pair = Pair::of(candidate, judge, Strands::of([candidate, judge]));
+        let waveform = pair.distances().into_iter().map(|distance| distance.tight);
         Self {
-            waveform: rms(distances.iter().map(|distance| distance.tight)),
-            statistics: statistics(candidate, judge),
-            losses: losses_apart(candidate, judge),
-            impacts: impacts_apart(candidate, judge, names, entry.caution()),
-            caution: entry.caution(),
+            waveform: rms(waveform),
+            statistics: pair.statistics(),
+            losses: pair.losses(),
+            impacts: pair.impacts(names, CAUTION),
             unaccounted: candidate.energy.residual / judge.energy.scale(),
             open: candidate.energy.open(),
             implicit: entry.candidate.stepping == Stepping::ImplicitDamping,
-            work: work(candidate),
+            work: candidate.work(),
             gap: candidate.gap.as_ref().or(judge.gap.as_ref()).cloned(),
         }
     }
 
     /// Bound of the error of what is promised, where equal runs differ by a spread; NaN where nothing can be compared.
     fn error(&self, promise: Promise, spread: f64, accuracy: f64) -> f64 {
-        let apart = match promise {
-            Promise::Statistics => beyond(self.statistics, spread),
-            Promise::Losses => beyond(self.losses, spread),
-            Promise::Impacts => beyond(self.impacts, spread) / self.caution,
-            Promise::Waveform | Promise::Nothing => self.waveform,
+        let bound = match promise {
+            Promise::Statistics => CAUTION * beyond(self.statistics, spread),
+            Promise::Losses => CAUTION * beyond(self.losses, spread),
+            Promise::Impacts => beyond(self.impacts, spread),
+            Promise::Waveform | Promise::Nothing => CAUTION * self.waveform,
         };
         let energy = match promise {
             Promise::Losses => self.unaccounted,
             _ => self.fed(accuracy),
         };
-        let bound = apart * self.caution;
         // `f64::max` forgets what is not a number.
         if bound.is_nan() {
             bound
@@ -365,26 +390,6 @@ fn beyond(difference: f64, spread: f64) -> f64 {
     } else {
         f64::INFINITY
     }
-}
-
-/// Largest relative difference of the impacts on a sprocket; infinite where one run lacks them.
-fn impacts_apart(of: &Trace, from: &Trace, names: &[String], factor: f64) -> f64 {
-    let found = ImpactErrors::of(of, from, names, factor);
-    let largest = found.iter().map(ImpactErrors::largest);
-    largest.reduce(f64::max).unwrap_or(f64::INFINITY)
-}
-
-/// Relative difference of the energies lost.
-fn losses_apart(of: &Trace, from: &Trace) -> f64 {
-    (of.energy.losses - from.energy.losses).abs() / from.energy.scale()
-}
-
-/// Largest relative difference of means and root mean squares of the tensions.
-fn statistics(of: &Trace, from: &Trace) -> f64 {
-    let strands = Strands::of([of, from]);
-    let account = |trace: &Trace| Account::of(trace, usize::MAX, strands);
-    let (of, from) = (account(of), account(from));
-    of.mean_apart(&from).max(of.rms_apart(&from))
 }
 
 impl Choice {
@@ -421,19 +426,20 @@ impl Choice {
             (_, false) => "not reached",
         };
         let mut list = vec![
-            ("accuracy".to_owned(), Attribute::Number(self.accuracy)),
-            ("accuracy_kept".to_owned(), Attribute::Text(kept.to_owned())),
-            ("choice".to_owned(), Attribute::Text(self.reason())),
+            ("accuracy", Attribute::Number(self.accuracy)),
+            ("accuracy_kept", Attribute::Text(kept.to_owned())),
+            ("choice", Attribute::Text(self.reason())),
             (
-                "accuracy_evaluations".to_owned(),
+                "accuracy_evaluations",
                 Attribute::Number(self.evaluations as f64),
             ),
         ];
         if self.error.is_finite() {
-            let error = Attribute::Number(self.error);
-            list.push(("accuracy_error".to_owned(), error));
+            list.push(("accuracy_error", Attribute::Number(self.error)));
         }
-        list
+        list.into_iter()
+            .map(|(name, value)| (name.to_owned(), value))
+            .collect()
     }
 
     /// The choice and its reason, in a sentence.
@@ -463,23 +469,20 @@ impl Choice {
                 self.trials.len()
             );
         };
-        let name = self.run.stepping.name();
         let depth = self
             .run
             .onset_depth
             .map_or_else(String::new, |depth| format!(", onset depth {depth:.0e} m"));
-        let error = percent(self.error);
+        let step = Measure::Time.told(step);
+        let method = format!("{}, step {step}{depth}", self.run.stepping.name());
+        let (error, tried) = (percent(self.error), self.trials.len());
         if self.kept {
             format!(
-                "{name}, step {}{depth}: the cheapest that keeps {what} within {asked} over {window}; found {error}, {} tried",
-                Measure::Time.told(step),
-                self.trials.len()
+                "{method}: the cheapest that keeps {what} within {asked} over {window}; found {error}, {tried} tried"
             )
         } else {
             format!(
-                "{name}, step {}{depth}: the best of {} tried; {what} errs by {error} over {window}, {asked} is not reached",
-                Measure::Time.told(step),
-                self.trials.len()
+                "{method}: the best of {tried} tried; {what} errs by {error} over {window}, {asked} is not reached"
             )
         }
     }

@@ -3,15 +3,13 @@
 use chaindrive_mechanics::Assembled;
 
 use super::Watch;
-use super::accuracy::Promise;
-use super::compare::{Account, Comparison, Distance, Scatter, distances, distances_over, rms};
-use super::convergence::factor;
+use super::choice::Promise;
+use super::compare::{Comparison, Distance, Pair, rms};
 use super::horizon::{Divergence, Horizon, LIMIT};
 use super::impacts::ImpactErrors;
-use super::sharper::{pinned, sharper};
 use super::short_runs::{Beginning, ShortRuns};
-use super::trace::{Gap, Strands};
-use super::window::Window;
+use super::trace::{Gap, Strands, Trace};
+use super::window::{Window, pinned, sharper};
 use crate::{Channel, Run, SimulationError};
 
 /// How exact a run is.
@@ -85,6 +83,9 @@ const SHADOWS: f64 = 0.5;
 /// Share over which the second is followed, which costs as much as all others, and tells the factor: farther on, chaos would.
 const EARLY: f64 = 0.25;
 
+/// The largest factor: three runs that hardly come closer to each other say no more than that.
+const LARGEST: f64 = 3.0;
+
 /// Estimates the error of a run from its beginning.
 ///
 /// Costs some 10 000 evaluations for most runs with the step of a choice, and the more the shorter the step, whatever the
@@ -129,31 +130,26 @@ pub(crate) fn estimate_with(
     let found = |strands: Strands| {
         let early = window.first(EARLY).samples();
         let factor = factor([base, shadow, second], strands, early, expected);
-        let near = distances(shadow, base, strands).into_iter();
+        let near = Pair::of(shadow, base, strands).distances().into_iter();
         // Of one scale, though the tension may rise behind the last sample of the second.
         let scale = base.tensions(strands).mean_of_first(shadow.len());
-        let further = distances_over(second, shadow, strands, scale).into_iter();
+        let further = Pair::of(second, shadow, strands)
+            .distances_over(scale)
+            .into_iter();
         let beyond = std::iter::repeat(Distance::default());
         let errors: Vec<[f64; 2]> = near
             .zip(further.chain(beyond))
             .map(|(near, further)| {
-                let error = |d: f64, d2: f64| (factor * d).max(d + d2);
-                [
-                    error(near.all, further.all),
-                    error(near.tight, further.tight),
-                ]
+                let [near, further] = [near, further].map(|it| [it.all, it.tight]);
+                [0, 1].map(|k| (factor * near[k]).max(near[k] + further[k]))
             })
             .collect();
         let horizon = Horizon::of(base, twin, strands);
-        let all = errors.iter().map(|[all, _]| *all);
+        let all: Vec<f64> = errors.iter().map(|[all, _]| *all).collect();
         let over = window
             .period
-            .map_or(1, |period| samples_within(period, window.every));
-        let waveform = waveform(
-            &base.time,
-            &moving(&all.collect::<Vec<_>>(), over),
-            &horizon,
-        );
+            .map_or(1, |period| window.samples_of(period).max(1));
+        let waveform = waveform(&base.time, &moving(&all, over), &horizon);
         (factor, errors, horizon, waveform)
     };
     let (factor, errors, horizon, waveform) = found(strands);
@@ -167,15 +163,9 @@ pub(crate) fn estimate_with(
         let pairs = errors.iter().zip(&base.time);
         pairs.filter(|(_, time)| **time <= within).map(|(e, _)| e)
     };
-    let of = |trace| Account::of(trace, shadow.len(), strands);
-    let (run_account, twin_account, better_account) = (of(base), of(twin), of(shadow));
-    let scatter = |trace| Scatter::of(trace, shadow.len(), strands);
-    let own = scatter(base);
-    let [shadowed, by_chance] = [shadow, twin].map(|it| scatter(it).apart(&own));
-    let compared = |apart: &dyn Fn(&Account) -> f64| Comparison {
-        difference: apart(&better_account),
-        spread: apart(&twin_account),
-    };
+    let [by_step, by_chance] =
+        [shadow, twin].map(|other| Pair::of(other, base, strands).first(shadow.len()));
+    let [mean, rms_of_tension] = compared(by_step.moments(), by_chance.moments());
     Ok(Estimate {
         window: shadow.time.last().copied().unwrap_or(0.0),
         period: window.period,
@@ -185,13 +175,10 @@ pub(crate) fn estimate_with(
         factor,
         tension: rms(inside().map(|[all, _]| *all)),
         tight_tension: rms(inside().map(|[_, tight]| *tight)),
-        mean: compared(&|other| other.mean_apart(&run_account)),
-        rms: compared(&|other| other.rms_apart(&run_account)),
-        scatter: [0, 1, 2].map(|k| Comparison {
-            difference: shadowed[k],
-            spread: by_chance[k],
-        }),
-        force: [0, 1, 2].map(|k| compared(&|other| other.force_apart(&run_account)[k])),
+        mean,
+        rms: rms_of_tension,
+        scatter: compared(by_step.scatter(), by_chance.scatter()),
+        force: compared(by_step.percentiles(), by_chance.percentiles()),
         impacts: ImpactErrors::of(base, shadow, &start.system.sprocket_names(), of_order),
         horizon,
         waveform,
@@ -207,10 +194,7 @@ impl Estimate {
         match promise {
             Promise::Waveform => Some(self.tight_tension),
             Promise::Statistics => Some(self.statistics()),
-            Promise::Impacts => {
-                let errors = self.impacts.iter().map(ImpactErrors::largest);
-                errors.reduce(f64::max)
-            }
+            Promise::Impacts => ImpactErrors::largest_of(&self.impacts),
             Promise::Losses | Promise::Nothing => None,
         }
     }
@@ -220,6 +204,47 @@ impl Estimate {
         let beyond = |it: &Comparison| (it.difference - it.spread).max(0.0);
         beyond(&self.mean).max(beyond(&self.rms))
     }
+
+    /// When the waveforms of the tensions compared cease to mean anything \[s\], if that is within the run.
+    pub fn waveform_ends_within(&self) -> Option<f64> {
+        self.waveform.filter(|time| *time < self.until)
+    }
+
+    /// Whether the comparison with the shadow reached the end of the run.
+    pub fn examined_throughout(&self) -> bool {
+        // Samples are counted, their times multiplied.
+        self.window >= self.until * (1.0 - 1e-9)
+    }
+
+    /// The channel whose tensions were compared.
+    pub fn compared_channel(&self) -> Channel {
+        match self.strands {
+            Strands::Spans => Channel::SpanTension,
+            Strands::Links => Channel::LinkTension,
+        }
+    }
+
+    /// When the waveform of a channel ceases to mean anything, if that is within the run.
+    ///
+    /// Span tensions have the horizon that was found on them. All other channels have that of the link tensions, the
+    /// worst that is examined: forces of single contacts may err sooner.
+    pub fn horizon_of(&self, channel: Channel) -> Option<ChannelHorizon> {
+        let (at, found_on) = if channel == Channel::SpanTension {
+            (self.waveform, self.compared_channel())
+        } else {
+            (self.link_waveform, Channel::LinkTension)
+        };
+        let at = at.filter(|at| *at < self.until)?;
+        Some(ChannelHorizon { at, found_on })
+    }
+}
+
+/// Differences of statistics beside those of equal runs.
+fn compared<const N: usize>(difference: [f64; N], spread: [f64; N]) -> [Comparison; N] {
+    std::array::from_fn(|k| Comparison {
+        difference: difference[k],
+        spread: spread[k],
+    })
 }
 
 /// Ratio of the differences of three runs, each sharper than the one before, where the method shows its order.
@@ -234,17 +259,6 @@ fn expected_ratio(start: &Assembled, run: &Run) -> f64 {
     } else {
         f64::from(2_u32.pow(method.order()))
     }
-}
-
-/// Samples of some time \[s\], one at least.
-fn samples_within(time: f64, every: f64) -> usize {
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a window has thousands of samples"
-    )]
-    let samples = (time / every) as usize;
-    samples.max(1)
 }
 
 /// Root mean square of every value and those before it, `over` of them where there are as many.
@@ -278,37 +292,49 @@ fn waveform(time: &[f64], errors: &[f64], horizon: &Horizon) -> Option<f64> {
     }
 }
 
-impl Estimate {
-    /// When the waveforms of the tensions compared cease to mean anything \[s\], if that is within the run.
-    pub fn waveform_ends_within(&self) -> Option<f64> {
-        self.waveform.filter(|time| *time < self.until)
+/// Error of a run over its difference from a sharper one, by a third that is sharper still.
+///
+/// ```text
+/// r = |u₁ − u₂| / |u₂ − u₃|,   e₁ = |u₁ − u| = |u₁ − u₂| (1 + 1/r + 1/r² + …) = |u₁ − u₂| / (1 − 1/r)
+/// ```
+///
+/// r is that of the first samples, and `expected` where the method shows its order. It is hardly ever larger, and never believed to be: differences
+/// of different sign can cancel.
+fn factor(
+    [first, second, third]: [&Trace; 3],
+    strands: Strands,
+    samples: usize,
+    expected: f64,
+) -> f64 {
+    let apart = |of, from| Pair::of(of, from, strands).first(samples).tension();
+    let ratio = apart(second, first) / apart(third, second);
+    extrapolated(ratio, expected)
+}
+
+/// 1/(1 − 1/r) with r between what the order promises and what is too close to 1 to be extrapolated.
+fn extrapolated(ratio: f64, expected: f64) -> f64 {
+    let least = LARGEST / (LARGEST - 1.0);
+    if ratio.is_nan() {
+        // Nothing moves, or nothing is a number: no error to be multiplied.
+        return 1.0 / (1.0 - 1.0 / expected);
+    }
+    1.0 / (1.0 - 1.0 / ratio.min(expected).max(least))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn close(a: f64, b: f64) -> bool {
+        (a - b).abs() < 1e-12
     }
 
-    /// Whether the comparison with the shadow reached the end of the run.
-    pub fn examined_throughout(&self) -> bool {
-        // Samples are counted, their times multiplied.
-        self.window >= self.until * (1.0 - 1e-9)
-    }
-
-    /// The channel whose tensions were compared.
-    pub fn compared_channel(&self) -> Channel {
-        match self.strands {
-            Strands::Spans => Channel::SpanTension,
-            Strands::Links => Channel::LinkTension,
-        }
-    }
-
-    /// When the waveform of a channel ceases to mean anything, if that is within the run.
-    ///
-    /// Span tensions have the horizon that was found on them. All other channels have that of the link tensions, the
-    /// worst that is examined: forces of single contacts may err sooner.
-    pub fn horizon_of(&self, channel: Channel) -> Option<ChannelHorizon> {
-        let (at, found_on) = if channel == Channel::SpanTension {
-            (self.waveform, self.compared_channel())
-        } else {
-            (self.link_waveform, Channel::LinkTension)
-        };
-        let at = at.filter(|at| *at < self.until)?;
-        Some(ChannelHorizon { at, found_on })
+    #[test]
+    fn the_factor_is_that_of_the_order_seen() {
+        assert!(close(extrapolated(4.0, 4.0), 4.0 / 3.0));
+        assert!(close(extrapolated(2.0, 4.0), 2.0));
+        assert!(close(extrapolated(9.0, 4.0), 4.0 / 3.0), "cancelled");
+        assert!(close(extrapolated(0.5, 4.0), LARGEST), "not converging");
+        assert!(close(extrapolated(f64::NAN, 2.0), 2.0));
     }
 }

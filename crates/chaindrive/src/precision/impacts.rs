@@ -63,9 +63,10 @@ impl ImpactErrors {
         ]
     }
 
-    /// The largest of force and impulse.
-    pub(super) fn largest(&self) -> f64 {
-        self.p50.max(self.p99).max(self.impulse)
+    /// The largest of forces and impulses, of some sprockets.
+    pub(super) fn largest_of(errors: &[Self]) -> Option<f64> {
+        let largest = errors.iter().map(|it| it.p50.max(it.p99).max(it.impulse));
+        largest.reduce(f64::max)
     }
 }
 

@@ -130,8 +130,7 @@ impl Row {
             description,
             value,
         });
-        let errors = self.errors.columns();
-        let errors = ERRORS.iter().zip(errors);
+        let errors = ERRORS.iter().zip(self.errors.columns());
         let errors = errors.map(|((name, description), (_, value))| Number {
             name,
             unit: "1",

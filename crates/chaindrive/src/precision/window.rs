@@ -1,4 +1,4 @@
-//! How much of a run is looked at: long enough for a few teeth, short enough to cost little.
+//! How much of a run is looked at, long enough for a few teeth and short enough to cost little, and with which step.
 
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 use chaindrive_mechanics::{Assembled, EventKinds, Observation};
@@ -75,13 +75,18 @@ impl Window {
 
     /// Number of its samples, the one at its beginning included.
     pub(super) fn samples(&self) -> usize {
+        self.samples_of(self.until) + 1
+    }
+
+    /// Number of whole intervals between samples in some time \[s\].
+    pub(super) fn samples_of(&self, time: f64) -> usize {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "a few thousand"
         )]
-        let behind = (self.until / self.every) as usize;
-        behind + 1
+        let samples = (time / self.every) as usize;
+        samples
     }
 
     /// Another end \[s\], with as many samples.
@@ -112,7 +117,7 @@ impl Window {
 }
 
 /// The step that a run will take \[s\]; under error control, that of the stiffest mode.
-pub(super) fn typical_step(start: &Assembled, run: &Run) -> f64 {
+fn typical_step(start: &Assembled, run: &Run) -> f64 {
     let method = run.method(&start.system);
     if method.is_adaptive() {
         method.step().min(start.system.time_scale())
@@ -123,12 +128,7 @@ pub(super) fn typical_step(start: &Assembled, run: &Run) -> f64 {
 
 /// The step that a run takes where nobody asks for another \[s\].
 fn default_step(start: &Assembled, run: &Run) -> f64 {
-    let default = Run {
-        stepping: Stepping::Auto,
-        step: None,
-        ..run.clone()
-    };
-    typical_step(start, &default)
+    typical_step(start, &automatic(run))
 }
 
 /// p/v at the start \[s\]; none without spans, or for a chain at rest.
@@ -152,4 +152,43 @@ fn period(start: &Assembled) -> Option<f64> {
     let speed = speeds.sum::<f64>() / observation.roller_vx.len() as f64;
     let period = system.pitch() / speed;
     (!system.span_names().is_empty() && period.is_finite()).then_some(period)
+}
+
+/// The run without the method that is to be chosen.
+pub(super) fn automatic(run: &Run) -> Run {
+    Run {
+        stepping: Stepping::Auto,
+        step: None,
+        onset_depth: None,
+        ..run.clone()
+    }
+}
+
+/// The run with the step that it would choose for itself, so that other samples do not change it.
+pub(super) fn pinned(start: &Assembled, run: &Run) -> Run {
+    Run {
+        step: Some(run.method(&start.system).step()),
+        ..run.clone()
+    }
+}
+
+/// The same run, sharper, and in what.
+pub(super) fn sharper(start: &Assembled, run: &Run) -> (Run, &'static str) {
+    let mut better = run.clone();
+    better.onset_depth = run.onset_depth.map(|depth| 0.1 * depth);
+    let words = if run.method(&start.system).is_adaptive() {
+        better.tolerance = 0.1 * run.tolerance;
+        [
+            "a tenth of the tolerance",
+            "a tenth of the tolerance and of the onset depth",
+        ]
+    } else {
+        better.step = run.step.map(|step| 0.5 * step);
+        [
+            "half the step",
+            "half the step and a tenth of the onset depth",
+        ]
+    };
+    let words = words[usize::from(run.onset_depth.is_some())];
+    (better, words)
 }

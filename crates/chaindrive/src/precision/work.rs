@@ -6,14 +6,13 @@ use chaindrive_integrate::Statistics;
 use chaindrive_mechanics::Assembled;
 
 use super::Watch;
-use super::errors::Errors;
+use super::compare::Errors;
 use super::horizon::Horizon;
-use super::sharper::pinned;
 use super::short_runs::APART;
 use super::trace::{Gap, Strands, Trace};
 use super::variant::{Variant, references, usual};
-use super::window::Window;
-use crate::{RanIn, Run, SimulationError, Stepping, run_in};
+use super::window::{Window, automatic, pinned};
+use crate::{RanIn, Run, SimulationError, run_in};
 
 /// Settings of a work-precision study.
 #[derive(Clone, Debug, PartialEq)]
@@ -196,13 +195,7 @@ fn window(start: &Assembled, run: &Run, study: &Study) -> Result<Window, Simulat
     if study.replicates == 0 {
         return Err(setting("replicates", 0.0, "at least 1"));
     }
-    let automatic = Run {
-        stepping: Stepping::Auto,
-        step: None,
-        onset_depth: None,
-        ..run.clone()
-    };
-    let usual = Window::of(start, &pinned(start, &automatic)).first_half();
+    let usual = Window::of(start, &pinned(start, &automatic(run))).first_half();
     match study.until {
         None => Ok(usual),
         Some(until) if until > 0.0 && until.is_finite() => Ok(usual.with_end(until)),

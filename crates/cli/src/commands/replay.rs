@@ -8,6 +8,7 @@ use chaindrive::record::Recorded;
 use chaindrive_replay::{FilmError, MOST_FRAMES, Selection, film, page};
 use clap::Args;
 
+use crate::Drawn;
 use crate::failure::Failure;
 use crate::terminal::say;
 
@@ -37,9 +38,9 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "CHANNELS", value_delimiter = ',')]
     plot: Option<Vec<String>>,
 
-    /// Largest number of frames; of more samples every n-th is taken
-    #[arg(long, value_name = "NUMBER", default_value_t = MOST_FRAMES, value_parser = some_frames)]
-    frames: usize,
+    /// Largest number of frames, 5001 unless given; of more samples every n-th is taken
+    #[arg(long, value_name = "NUMBER", value_parser = some_frames)]
+    frames: Option<usize>,
 
     #[command(flatten)]
     movie: Movie,
@@ -57,11 +58,11 @@ pub(crate) struct Arguments {
 #[derive(Clone, Copy, Debug, Args)]
 struct Movie {
     /// Makes a movie instead (.mp4), by the command of the Python package
-    #[arg(long, conflicts_with = "gif")]
+    #[arg(long, conflicts_with_all = ["gif", "plot"])]
     mp4: bool,
 
     /// Makes a movie instead (.gif), by the command of the Python package
-    #[arg(long)]
+    #[arg(long, conflicts_with = "plot")]
     gif: bool,
 }
 
@@ -72,19 +73,43 @@ fn some_frames(text: &str) -> Result<usize, String> {
     }
 }
 
+impl Arguments {
+    /// The file to make.
+    fn output(&self) -> PathBuf {
+        let kind = match (self.movie.mp4, self.movie.gif) {
+            (true, _) => "mp4",
+            (_, true) => "gif",
+            _ => "html",
+        };
+        let given = self.output.clone();
+        given.unwrap_or_else(|| self.result.with_extension(kind))
+    }
+
+    /// The movie that is asked for, if it is one.
+    pub(crate) fn movie(self) -> Option<Drawn> {
+        let output = self.output();
+        let wanted = self.movie.mp4 || self.movie.gif || is_movie(&output);
+        (wanted && self.plot.is_none()).then_some(Drawn {
+            source: self.result,
+            output,
+            frames: self.frames,
+            overwrite: self.overwrite,
+            quiet: self.quiet,
+        })
+    }
+}
+
 pub(crate) fn replay(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
-    let kind = match (arguments.movie.mp4, arguments.movie.gif) {
-        (true, _) => "mp4",
-        (_, true) => "gif",
-        _ => "html",
-    };
-    let output = match &arguments.output {
-        Some(output) => output.clone(),
-        None => arguments.result.with_extension(kind),
-    };
+    let output = arguments.output();
+    if is_movie(&output) && arguments.plot.is_some() {
+        let name = output.display();
+        return Err(Failure::Argument(format!(
+            "{name}: a movie has no plots, leave --plot out"
+        )));
+    }
     check_output(&output, arguments.overwrite)?;
     let selection = Selection {
-        frames: arguments.frames,
+        frames: arguments.frames.unwrap_or(MOST_FRAMES),
         plots: arguments.plot.clone(),
     };
     let wanted = |channel: &str| selection.wants(channel);
@@ -108,12 +133,18 @@ pub(crate) fn replay(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> R
     Ok(())
 }
 
+fn is_movie(output: &Path) -> bool {
+    output
+        .extension()
+        .is_some_and(|it| it == "mp4" || it == "gif")
+}
+
 /// Refuses a name that is not that of a page, or is taken.
 fn check_output(output: &Path, overwrite: bool) -> Result<(), Failure> {
     let name = output.display();
     match output.extension().and_then(|extension| extension.to_str()) {
         Some("html" | "htm") => {}
-        Some("mp4" | "gif") => {
+        _ if is_movie(output) => {
             return Err(Failure::Argument(format!(
                 "{name}: this program makes pages (.html); movies are made by the command of the Python package: \
                  pip install 'chaindrive[movie]'"

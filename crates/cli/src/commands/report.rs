@@ -1,9 +1,10 @@
 //! `chaindrive report`: the report of a run, which the Python package makes.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use crate::Drawn;
 use crate::failure::Failure;
 
 /// Makes the report of a scene or a result, one HTML file that prints well, by the command of the Python package.
@@ -24,6 +25,21 @@ pub(crate) struct Arguments {
     /// Prints errors only
     #[arg(short, long)]
     quiet: bool,
+}
+
+impl Arguments {
+    /// What the Python package is to make.
+    pub(crate) fn report(self) -> Drawn {
+        let named = || Path::new(&self.source).with_extension("html");
+        let beside = || named().file_name().map_or_else(named, PathBuf::from);
+        Drawn {
+            output: self.output.clone().unwrap_or_else(beside),
+            source: self.source.into(),
+            frames: None,
+            overwrite: self.overwrite,
+            quiet: self.quiet,
+        }
+    }
 }
 
 pub(crate) fn report(arguments: &Arguments) -> Result<(), Failure> {

@@ -1,14 +1,14 @@
 //! Where a sweep goes that is held in memory: nowhere, or a table with a row a variant.
 
 use std::fs::{File, OpenOptions};
-use std::io::{self, BufWriter, IntoInnerError, Seek, SeekFrom, Write};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 use chaindrive::record::{Ending, Existing};
 use chaindrive::sweep::{Outcome, Progress, Stacked, Sweep};
 
-use crate::csv::{Claimed, VARIANT, claim, failed, incomplete, named, quoted};
+use crate::csv::{Claimed, VARIANT, claim, failed, incomplete, named};
 use crate::failure::Failure;
 
 /// Wall time between two writes while the sweep goes on.
@@ -139,7 +139,7 @@ impl Drop for Table {
 }
 
 fn fill(file: File, sweep: &Sweep, stacked: &Stacked, ending: &Ending) -> io::Result<()> {
-    let mut file = BufWriter::new(file);
+    let mut table = csv::Writer::from_writer(file);
     let mut heading = vec![VARIANT.to_owned()];
     let swept = sweep.dimensions().iter();
     heading.extend(swept.map(|it| named(&it.name, it.unit)));
@@ -158,22 +158,23 @@ fn fill(file: File, sweep: &Sweep, stacked: &Stacked, ending: &Ending) -> io::Re
         }
     }
     heading.extend(stacked.texts.iter().map(|it| it.name.to_owned()));
-    writeln!(file, "{}", heading.join(","))?;
+    table.write_record(heading)?;
     for index in 0..sweep.len() {
         let mut row = vec![index.to_string()];
         let places = sweep.dimensions().iter().zip(sweep.indices(index));
-        row.extend(places.map(|(dimension, at)| quoted(&dimension.values.text(at))));
+        row.extend(places.map(|(dimension, at)| dimension.values.text(at)));
         for it in &stacked.quantities {
             let width = it.values.len() / sweep.len();
             let values = &it.values[index * width..][..width];
             // The shortest digits that read back to the same number.
             row.extend(values.iter().map(|value| format!("{value:?}")));
         }
-        row.extend(stacked.texts.iter().map(|it| quoted(&it.texts[index])));
-        writeln!(file, "{}", row.join(","))?;
+        row.extend(stacked.texts.iter().map(|it| it.texts[index].clone()));
+        table.write_record(row)?;
     }
+    let mut file = table
+        .into_inner()
+        .map_err(csv::IntoInnerError::into_error)?;
     write!(file, "{}", incomplete(ending).unwrap_or_default())?;
-    file.into_inner()
-        .map_err(IntoInnerError::into_error)?
-        .sync_all()
+    file.sync_all()
 }
