@@ -10,6 +10,7 @@
 //! | roller, bush and pin as points | [`ChainModel::Points`] | 6 per roller |
 //! | rigid links, ideal joints or clearance | [`ChainModel::Rigid`] | 3 per link |
 //! | free rollers on them | [`RollerModel::Free`] | 3 per roller |
+//! | bush chain of several strands | [`ChainModel::Strands`] | 2 per joint |
 //! | shaft, free to turn, with its sprockets | [`Shaft`] | 1 |
 //! | sprocket centre on springs | [`Support::Springs`] | 2 |
 //! | tensioner: slider or arm | [`Tensioner`] | 1 |
@@ -59,9 +60,7 @@ pub use articulation::Articulation;
 pub use assembly::{Assembled, Fitting, FreeTrain, Gap, RollerLayout, Statics};
 pub use bodies::Input;
 pub use chains::chain::{Chain, End, Ends};
-pub use chains::links::model::{Joint, LinkBody, RigidLinks, RollerModel};
-pub use chains::model::ChainModel;
-pub use chains::points::PointJoints;
+pub use chains::model::*;
 pub use contact::{Impact, Impacts};
 pub use coupling::Coupling;
 pub use drive::{

@@ -31,6 +31,7 @@ mod run_in_by_itself;
 mod scenes;
 mod several_chains;
 mod stack;
+mod strands;
 mod sweep;
 mod tooth_gaps;
 mod validation_contact;
