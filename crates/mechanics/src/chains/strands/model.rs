@@ -18,6 +18,24 @@ use crate::DriveError;
 ///
 /// There are no rollers. The bushes meet teeth and guides in the middle of the joint, and turn with their inner link: they rub where
 /// a roller would roll.
+///
+/// # Example
+///
+/// A new strand beside one that is worn by 0.1 mm, both of 20 kN/mm, under 3 kN:
+///
+/// ```
+/// use chaindrive_mechanics::BushStrands;
+///
+/// let lengths = [12.7e-3, 12.8e-3];
+/// let (strands, [together, stiffness]) = BushStrands::together(&lengths, &[20e6, 20e6]);
+/// assert!((together - 12.75e-3).abs() < 1e-15);
+/// assert_eq!(stiffness, 40e6);
+/// // ℓ = p + T/k,   T_s = κ_s k (ℓ − λ_s p)
+/// let length = together + 3e3 / stiffness;
+/// let tension = |s: usize| strands[s].stiffness * stiffness * (length - strands[s].length * together);
+/// assert!((tension(0) - 2500.0).abs() < 1e-6);
+/// assert!((tension(1) - 500.0).abs() < 1e-6);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct BushStrands {
     /// The strands, at least one.
