@@ -106,10 +106,8 @@ pub(super) fn as_one(text: &schema::Chain, of_type: Option<&CatalogueChain>) -> 
         own.0 *= stiffness;
     }
     text.damping = text.damping.map(|own| Damping(stiffness * own.0));
-    // Only where it changes something: 1 + ε − 1 is not ε.
-    if length != 1.0 {
-        text.elongation = Ratio((1.0 + text.elongation.0) * length - 1.0);
-    }
+    // (1 + ε) λ − 1, such that λ = 1 leaves ε to the last bit.
+    text.elongation = Ratio(text.elongation.0 * length + (length - 1.0));
     let given = text.roller.as_ref().and_then(|roller| roller.length);
     let long = given.or_else(|| of_type.and_then(catalogue::roller_length).map(Length));
     if let Some(long) = long {
