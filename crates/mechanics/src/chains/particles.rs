@@ -87,6 +87,7 @@ impl Particles {
 
     /// Place and velocity of one roller; the index behind the last link of a closed chain means its
     /// first roller.
+    #[inline(always)]
     pub(super) fn pin(&self, at: Moment<'_>, roller: usize) -> (Point, Vector) {
         let velocity = Vector::new(at.v[roller], at.v[self.series.stride + roller]);
         (self.place(at.q, roller), velocity)
@@ -116,6 +117,7 @@ impl Particles {
     }
 
     /// The ends of a link, with their velocities.
+    #[inline(always)]
     pub(super) fn pins(&self, at: Moment<'_>, link: usize) -> [(Point, Vector); 2] {
         [self.pin(at, link), self.pin(at, link + 1)]
     }
@@ -229,10 +231,11 @@ impl Makeup for Particles {
     }
 
     fn tensions(&self, at: Moment<'_>, _work: &Work) -> Vec<f64> {
-        let links = 0..self.links.count;
-        links
-            .map(|link| self.links.tension(link, self.pins(at, link)))
-            .collect()
+        let links = (0..self.links.count).map(|link| {
+            let pins = [self.pin(at, link), self.pin(at, link + 1)];
+            self.links.tension(link, pins)
+        });
+        links.collect()
     }
 
     fn observe(&self, at: Moment<'_>, _work: &Work, out: &mut Observation) {

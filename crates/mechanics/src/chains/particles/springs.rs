@@ -100,7 +100,8 @@ impl Links {
         gravity: [f64; 2],
         turning: &mut Turning,
     ) -> f64 {
-        let law = Springs(w.lanes(&self.stiffness));
+        // As long as the other rows, so that no index is checked in the loop.
+        let law = Springs(w.lanes(&self.stiffness[..self.rest.len()]));
         self.act_by::<S, ARTICULATED>(w, &law, rollers, gravity, turning)
     }
 
@@ -180,7 +181,8 @@ impl Links {
         loss.sum()
     }
 
-    /// Tension of one link between two pins with their velocities \[N\].
+    /// Tension of one link between two pins with their velocities \[N\]. Asked for all links at every step.
+    #[inline(always)]
     pub(crate) fn tension(&self, link: usize, pins: [(Point, Vector); 2]) -> f64 {
         let d = pins[1].0 - pins[0].0;
         let u = pins[1].1 - pins[0].1;
