@@ -46,12 +46,14 @@ Target: TypeAlias = Literal["tension", "losses", "impacts"]
 ContactPlace: TypeAlias = Literal["teeth", "guides", "joints"]
 """Contacts that a run can log."""
 
-ChainModel: TypeAlias = Literal["particles", "ideal-joints", "clearance-joints"]
+ChainModel: TypeAlias = Literal["particles", "bush-strands", "ideal-joints", "clearance-joints"]
 """Models of a chain, ``chain.model`` of a scene."""
 
 ChannelName: TypeAlias = Literal[
     "span_tension",
     "link_tension",
+    "strand_tension_max",
+    "strand_tension_min",
     "link_angle",
     "joint_force",
     "joint_force_x",

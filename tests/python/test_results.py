@@ -42,8 +42,8 @@ def test_every_method_keeps_the_ring_turning(method):
 
 
 def test_every_channel_is_recorded_with_its_dimensions_and_unit(marine):
-    of_joints = ("joint_", "bush_", "link_angle")
-    absent = {name for name in cd.channels() if name.startswith(of_joints)}
+    of_joints_and_strands = ("joint_", "bush_", "link_angle", "strand_")
+    absent = {name for name in cd.channels() if name.startswith(of_joints_and_strands)}
     # Shafts have channels of their own where they have names, and couplings join them.
     absent |= {"shaft_angle", "shaft_speed", "coupling_torque"}
     for name in set(cd.channels()) - absent:

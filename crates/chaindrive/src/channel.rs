@@ -116,6 +116,8 @@ macro_rules! channels {
 channels! {
     SpanTension, "span_tension", "N", Span, "mean tension of the links between two sprockets";
     LinkTension, "link_tension", "N", Link, "tension of every link, damping included";
+    StrandTensionMax, "strand_tension_max", "N", Link, "greatest tension of the strands of every link, damping included";
+    StrandTensionMin, "strand_tension_min", "N", Link, "least tension of the strands of every link, damping included";
     LinkAngle, "link_angle", "rad", Link, "direction of every rigid link";
     JointForce, "joint_force", "N", Joint, "force on the pin";
     JointForceX, "joint_force_x", "N", Joint, "force on the pin, x";
@@ -270,12 +272,16 @@ impl Channel {
     }
 
     /// Whether a system has what the channel records: joints and directions of links belong to rigid
-    /// links, shafts and couplings are those that a scene names.
+    /// links, tensions of strands to chains that have some, shafts and couplings are those that a scene names.
     pub fn is_of(self, system: &System) -> bool {
         match self.axis() {
             Axis::Joint if self.is_of_bushes() => system.has_free_rollers(),
             Axis::Joint => system.joints() > 0,
-            Axis::Link if self == Self::LinkAngle => system.joints() > 0,
+            Axis::Link => match self {
+                Self::LinkAngle => system.joints() > 0,
+                Self::StrandTensionMax | Self::StrandTensionMin => system.has_strands(),
+                _ => true,
+            },
             Axis::Shaft => !system.shaft_names().is_empty(),
             Axis::Coupling => !system.coupling_names().is_empty(),
             _ => true,
@@ -335,6 +341,8 @@ impl Channel {
         match self {
             Self::SpanTension => to.extend(&sample.span_tension),
             Self::LinkTension => to.extend(&sample.link_tension),
+            Self::StrandTensionMax => to.extend(&sample.strand_tension_max),
+            Self::StrandTensionMin => to.extend(&sample.strand_tension_min),
             Self::LinkAngle => to.extend(&sample.link_angle),
             Self::JointForce => to.extend(&sample.joint_force),
             Self::JointForceX => to.extend(&sample.joint_force_x),

@@ -14,6 +14,7 @@ pub(crate) mod model;
 pub(crate) mod particles;
 pub(crate) mod points;
 mod series;
+pub(crate) mod strands;
 
 use std::ops::Range;
 
@@ -30,6 +31,7 @@ use model::ChainModel;
 use particles::Particles;
 use points::Points;
 use series::Series;
+use strands::Strands;
 
 use crate::MemoryError;
 use crate::bodies::{BodyContacts, GroupBodies, Surroundings};
@@ -47,6 +49,8 @@ pub(crate) enum Chain {
     Points(Box<Points>),
     /// Rigid links.
     Links(Box<Linkage>),
+    /// Strands side by side.
+    Strands(Box<Strands>),
 }
 
 /// Memory of a chain beside its contacts with bodies: contacts in its joints, and the friction that resists beside them.
@@ -63,6 +67,7 @@ pub(crate) struct Record {
     particles: particles::Work,
     points: points::Work,
     links: links::Work,
+    strands: strands::Work,
 }
 
 impl Record {
@@ -120,6 +125,7 @@ macro_rules! ask {
             Chain::Particles($member) => $answer,
             Chain::Points($member) => $answer,
             Chain::Links($member) => $answer,
+            Chain::Strands($member) => $answer,
         }
     };
     ($chain:expr, $record:expr, ($member:ident, $work:ident) => $answer:expr) => {
@@ -132,6 +138,7 @@ macro_rules! ask {
             ) => $answer,
             (Chain::Points($member), Record { points: $work, .. }) => $answer,
             (Chain::Links($member), Record { links: $work, .. }) => $answer,
+            (Chain::Strands($member), Record { strands: $work, .. }) => $answer,
         }
     };
 }
@@ -156,10 +163,19 @@ macro_rules! hand_on_with_record {
 
 /// How it comes to be.
 impl Chain {
-    /// Every chain is laid and settled as particles first; returns its coordinates too.
+    /// A chain as it is laid and settled, and its coordinates: of particles, or of strands, whose joints are particles too.
     pub(crate) fn laid(chain: &crate::Chain, places: &[Point]) -> (Self, Vec<f64>) {
         let (particles, q) = Particles::lay(chain, places);
-        (Self::Particles(Box::new(particles)), q)
+        let laid = match &chain.model {
+            ChainModel::Strands(model) => {
+                let radius = 0.5 * chain.roller_diameter;
+                Self::Strands(Box::new(Strands::new(particles, model, radius)))
+            }
+            ChainModel::Particles | ChainModel::Points(_) | ChainModel::Rigid(_) => {
+                Self::Particles(Box::new(particles))
+            }
+        };
+        (laid, q)
     }
 
     /// What a chain is made of, in the place of the particles that it was laid as; `at` is the whole state, with the particles at
@@ -175,7 +191,7 @@ impl Chain {
             return None;
         };
         match &laid.chain.model {
-            ChainModel::Particles => None,
+            ChainModel::Particles | ChainModel::Strands(_) => None,
             ChainModel::Points(joints) => {
                 let own = Moment {
                     t: at.t,
@@ -276,6 +292,7 @@ impl Chain {
         fn joints(&self) -> usize;
         fn bearing_laws(&self) -> [Option<Prepared>; 2];
         fn has_springs(&self) -> bool;
+        fn strands(&self) -> usize;
         fn elongation(&self) -> f64;
     }
 
@@ -330,6 +347,10 @@ impl Chain {
                 let Record { loads, links, .. } = record;
                 chain.evaluate(around, at, a, rates, loads, links);
             }
+            Self::Strands(chain) => {
+                let Record { loads, strands, .. } = record;
+                chain.evaluate(around, at, a, rates, loads, strands);
+            }
         }
     }
 
@@ -348,6 +369,7 @@ impl Chain {
             Self::Particles(chain) => chain.rates(around, &record.loads, &mut record.particles),
             Self::Points(chain) => chain.rates(around, &record.loads, &mut record.points),
             Self::Links(chain) => chain.rates(around, &record.loads, &mut record.links),
+            Self::Strands(chain) => chain.rates(around, &record.loads, &mut record.strands),
         }
     }
 
@@ -357,6 +379,7 @@ impl Chain {
             Self::Particles(_) => Particles::READS_FACES,
             Self::Points(_) => Points::READS_FACES,
             Self::Links(_) => Linkage::READS_FACES,
+            Self::Strands(_) => Strands::READS_FACES,
         }
     }
 
@@ -366,6 +389,7 @@ impl Chain {
             Self::Particles(_) => Particles::SOLVES,
             Self::Points(_) => Points::SOLVES,
             Self::Links(_) => Linkage::SOLVES,
+            Self::Strands(_) => Strands::SOLVES,
         }
     }
 

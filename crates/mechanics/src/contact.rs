@@ -118,8 +118,8 @@ pub(crate) struct Contacts {
     pub(crate) memory: Box<Touch>,
     /// When that was \[s\].
     pub(crate) accepted: f64,
-    /// Whether the circles belong to rigid links. Faces are then written down for implicit steps, and no lane rests: a link that is
-    /// struck at its other end moves at once.
+    /// Whether the chain reads the faces that its circles press on: rigid links for implicit steps, strands for the friction that turns
+    /// their bushes. No lane rests then: a link that is struck at its other end moves at once.
     pub(crate) writes_faces: bool,
     spare: Option<Box<Spare>>,
 }
@@ -134,7 +134,7 @@ pub(crate) struct Touch {
     pub(crate) state: ContactMemory,
     /// Until when \[s\] nothing can touch in the lane that begins with this slot.
     pub(crate) wake: Vec<f64>,
-    /// Stiffness and damping for implicit steps; kept for chains that solve equations only, and valid where a contact is closed.
+    /// Faces with stiffness, damping and friction; kept for chains that read them only, and valid where a contact is closed.
     pub(crate) faces: Faces,
 }
 

@@ -31,6 +31,25 @@ pub struct Harmonic {
 ///
 /// Times are those of the record: x(0) = 0, and a drive that is assembled before t = 0 stands where the function has it then. What
 /// repeats with the turns of a shaft counts them from where the drive was assembled, as torques over an angle do.
+///
+/// # Example
+///
+/// A crank at 100 rad/s whose speed ripples by ± 2 rad/s twice a turn:
+///
+/// ```
+/// use std::f64::consts::{FRAC_PI_2, TAU};
+///
+/// use chaindrive_mechanics::{Harmonic, Motion};
+///
+/// let frequency = 2.0 * 100.0 / TAU;
+/// let ripple = Harmonic { amplitude: 2.0 / (TAU * frequency), frequency, phase: -FRAC_PI_2 };
+/// let crank = Motion::Harmonics { rate: 100.0, terms: vec![ripple] };
+/// // A quarter of a period on, the sine has its greatest slope.
+/// let fastest = crank.at(0.25 / frequency);
+/// assert!((fastest.rate - 102.0).abs() < 1e-9);
+/// assert!(fastest.acceleration.abs() < 1e-9);
+/// assert_eq!(crank.at(0.0).position, 0.0);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
     /// x = 0: held where it was assembled.

@@ -151,9 +151,13 @@ impl System {
         self.evaluate(at, &mut a, &mut rates, record);
         out.time = at.t;
         out.clear_chains();
+        let mut links = 0;
         for (member, record) in self.chains.iter().zip(&mut record.chains) {
             member.chain.show_reactions(member.own(at), record);
             member.chain.observe(member.own(at), record, out);
+            links += member.chain.links();
+            out.strand_tension_max.resize(links, f64::NAN);
+            out.strand_tension_min.resize(links, f64::NAN);
         }
         self.observe_forces(at, record, out);
         self.blend_forces(at.t, out);

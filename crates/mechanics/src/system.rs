@@ -137,6 +137,11 @@ impl System {
         chains.any(|member| member.chain.bearing_laws()[1].is_some())
     }
 
+    /// Whether a chain has strands that share its tension.
+    pub fn has_strands(&self) -> bool {
+        self.chains.iter().any(|member| member.chain.strands() > 0)
+    }
+
     /// Whether something pushes a body onto a chain.
     pub(crate) fn is_tensioned(&self) -> bool {
         !self.bodies.slides.is_empty()

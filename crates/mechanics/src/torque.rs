@@ -7,6 +7,24 @@ use crate::motion::Table;
 use crate::order::Order;
 
 /// A torque on a free shaft \[N m\], counter-clockwise positive; several add up.
+///
+/// # Example
+///
+/// Four cams on a shaft, 8 N m each way four times a turn, and oil that resists with the speed:
+///
+/// ```
+/// use std::f64::consts::FRAC_PI_8;
+///
+/// use chaindrive_mechanics::{Order, Torque};
+///
+/// let lobes = Order { order: 4.0, amplitude: 8.0, phase: 0.0 };
+/// let cams = Torque::Orders { of: None, terms: vec![lobes] };
+/// let oil = Torque::Resistance { linear: 0.02, quadratic: 0.0 };
+/// let (angle, speed) = (FRAC_PI_8, 50.0);
+/// let torque = cams.at(0.0, angle, speed) + oil.at(0.0, angle, speed);
+/// // 8 N m sin(4 π/8) − 0.02 N m s · 50 rad/s
+/// assert!((torque - 7.0).abs() < 1e-12);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum Torque {
     /// M = M₀.

@@ -12,6 +12,8 @@ pub struct LinkFacts {
     pub model: &'static str,
     /// Rollers, where they are told apart: lumped, free or none.
     pub rollers: Option<&'static str>,
+    /// Strands that share the tension of the links; 0 where the model does not tell them apart.
+    pub strands: usize,
     /// Joints between links, and between links and supports.
     pub joints: usize,
     /// Radial clearance of the pins \[m\].
@@ -46,6 +48,7 @@ impl LinkFacts {
         Self {
             model,
             rollers,
+            strands: chain.model.strands().len(),
             joints: if rollers.is_some() {
                 chain.rollers()
             } else {

@@ -330,6 +330,10 @@ impl fmt::Display for LinkFacts {
                 ("none", _) => write!(f, ", no rollers")?,
                 _ => write!(f, ", rollers lumped with their bushes")?,
             }
+        } else if self.strands > 0 {
+            let strands = counted(self.strands, "strand");
+            let made = "point masses at the pins, links as springs side by side";
+            write!(f, "{}: {made}, {strands}, no rollers", self.model)?;
         } else {
             let made = "point masses at the rollers, links as springs";
             write!(f, "{}: {made}", self.model)?;

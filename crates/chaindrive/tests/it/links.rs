@@ -294,8 +294,10 @@ fn joints_are_recorded_where_there_are_any() {
         .copied()
         .filter(|channel| !channels.contains(channel))
         .collect();
-    // This bicycle has neither free rollers nor shafts of their own names nor couplings.
+    // This bicycle has neither strands, free rollers, shafts of their own names, nor couplings.
     let absent = [
+        Channel::StrandTensionMax,
+        Channel::StrandTensionMin,
         Channel::BushForce,
         Channel::BushForceX,
         Channel::BushForceY,

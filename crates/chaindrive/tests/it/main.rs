@@ -32,6 +32,7 @@ mod said_once;
 mod scenes;
 mod several_chains;
 mod stack;
+mod strands;
 mod sweep;
 mod tooth_gaps;
 mod validation_contact;

@@ -72,7 +72,7 @@ const CASES: &[Mistake] = &[
     (", inertia = \"1.64e-7 kg m^2\" }", " }", "chain.outer.inertia", 9, "missing; give the moment of inertia of an outer link"),
     ("outer = { mass = \"3.8 g\"", "outer = { mass = \"0 g\"", "chain.outer.mass", 9, "0, must be positive [kg]"),
     // Models.
-    ("model = \"clearance-joints\"", "model = \"ideal\"", "chain.model", 5, "known are particles, ideal-joints, clearance-joints"),
+    ("model = \"clearance-joints\"", "model = \"ideal\"", "chain.model", 5, "known are particles, bush-strands, ideal-joints"),
     ("model = \"clearance-joints\"\nrollers = \"free\"", "model = \"particles\"\nrollers = \"lumped\"", "chain.joint.clearance", 12, "only pins with clearance have one; take `model = \"clearance-joints\"`"),
     ("model = \"clearance-joints\"\nrollers = \"free\"", "model = \"particles\"\nrollers = \"lumped\"", "chain.rollers", 6, "the particle chain has none"),
     ("model = \"clearance-joints\"", "model = \"ideal-joints\"", "chain.joint.length", 13, "only pins with clearance have one"),

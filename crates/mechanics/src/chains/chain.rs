@@ -180,12 +180,17 @@ impl Chain {
         }
         problems.extend(self.model.problems());
         problems.extend(self.strength.problems());
+        let conflict = |path: &str, problem: &str| DriveError::Conflict {
+            path: path.into(),
+            problem: problem.into(),
+        };
+        let odd = self.is_closed() && !self.links().is_multiple_of(2);
+        if odd && matches!(self.model, ChainModel::Strands(_)) {
+            let problem = "inner and outer links alternate: a closed chain has an even number";
+            problems.push(conflict("chain.links", problem));
+        }
         if let ChainModel::Points(points) = &self.model {
-            let conflict = |path: &str, problem: &str| DriveError::Conflict {
-                path: path.into(),
-                problem: problem.into(),
-            };
-            if !self.is_closed() || !self.links().is_multiple_of(2) {
+            if !self.is_closed() || odd {
                 let problem = "rollers, bushes and pins are points in closed chains of an even number of links only";
                 problems.push(conflict("chain.links", problem));
             }

@@ -82,6 +82,11 @@ pub(crate) trait Makeup: Statics {
         true
     }
 
+    /// Strands side by side that share the tension of its links; none where they are not told apart.
+    fn strands(&self) -> usize {
+        0
+    }
+
     /// Laws of pins in bushes with clearance, and of bushes in free rollers.
     fn bearing_laws(&self) -> [Option<Prepared>; 2] {
         [None, None]

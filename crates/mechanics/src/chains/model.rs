@@ -1,7 +1,9 @@
 //! Models of a chain, as a drive describes them.
 
-use super::links::model::{Joint, RigidLinks, RollerModel};
-use super::points::PointJoints;
+pub use super::links::model::{Joint, LinkBody, RigidLinks, RollerModel};
+pub use super::points::PointJoints;
+pub use super::strands::model::{BushStrands, Strand};
+
 use crate::DriveError;
 use crate::joints::{Clearance, FreeRoller};
 
@@ -14,6 +16,8 @@ pub enum ChainModel {
     Points(PointJoints),
     /// Rigid links with joints: three coordinates a link, three more for every free roller.
     Rigid(RigidLinks),
+    /// Bush links of several strands on common pins: two coordinates a link.
+    Strands(BushStrands),
 }
 
 impl ChainModel {
@@ -34,13 +38,14 @@ impl ChainModel {
                 };
                 (joints, Some(rollers))
             }
+            Self::Strands(_) => ("bush-strands", None),
         }
     }
 
     /// True for links that are springs with dampers.
     pub fn has_springs(&self) -> bool {
         match self {
-            Self::Particles | Self::Points(_) => true,
+            Self::Particles | Self::Points(_) | Self::Strands(_) => true,
             Self::Rigid(_) => false,
         }
     }
@@ -55,20 +60,21 @@ impl ChainModel {
                 let lumped = matches!(links.rollers, RollerModel::Lumped { .. });
                 [lumped, links.joint == Joint::Ideal && !free]
             }
+            Self::Strands(_) => [false, true],
         }
     }
 
     /// Whether links give when they are pulled, by themselves or at their joints.
     pub(crate) fn stretches(&self) -> bool {
         match self {
-            Self::Particles | Self::Points(_) => true,
+            Self::Particles | Self::Points(_) | Self::Strands(_) => true,
             Self::Rigid(links) => links.joint != Joint::Ideal,
         }
     }
 
     /// Whether joints move by themselves beside the rollers: then offsets in them can be recorded.
     pub(crate) fn has_joints(&self) -> bool {
-        !matches!(self, Self::Particles)
+        !matches!(self, Self::Particles | Self::Strands(_))
     }
 
     /// Whether the first link is an outer one.
@@ -77,6 +83,7 @@ impl ChainModel {
             Self::Particles => false,
             Self::Points(points) => points.outer_first,
             Self::Rigid(links) => links.outer_first,
+            Self::Strands(chain) => chain.outer_first,
         }
     }
 
@@ -88,7 +95,7 @@ impl ChainModel {
                 joint: Joint::Clearance(joint),
                 ..
             }) => Some(joint),
-            Self::Particles | Self::Rigid(_) => None,
+            Self::Particles | Self::Rigid(_) | Self::Strands(_) => None,
         }
     }
 
@@ -100,7 +107,7 @@ impl ChainModel {
                 rollers: RollerModel::Free(roller),
                 ..
             }) => Some(roller),
-            Self::Particles | Self::Rigid(_) => None,
+            Self::Particles | Self::Rigid(_) | Self::Strands(_) => None,
         }
     }
 
@@ -109,12 +116,21 @@ impl ChainModel {
         matches!(self, Self::Rigid(links) if matches!(links.joint, Joint::Clearance(_)))
     }
 
+    /// Strands side by side that share the tension, none where the model does not tell them apart.
+    pub fn strands(&self) -> &[Strand] {
+        match self {
+            Self::Strands(chain) => &chain.strands,
+            Self::Particles | Self::Points(_) | Self::Rigid(_) => &[],
+        }
+    }
+
     /// Names every parameter out of range.
     pub(crate) fn problems(&self) -> Vec<DriveError> {
         match self {
             Self::Particles => Vec::new(),
             Self::Points(points) => points.problems(),
             Self::Rigid(links) => links.problems(),
+            Self::Strands(chain) => chain.problems(),
         }
     }
 }

@@ -27,11 +27,10 @@ use crate::chains::makeup::{Makeup, Statics};
 use crate::chains::series::Series;
 use crate::contact::Rollers;
 use crate::energy::{Energy, Store};
-use crate::joints::JointFindings;
+use crate::joints::{JointFindings, Resistance};
 use crate::seam::{Loads, Observation, Pose, Rates};
 
-pub(super) use springs::Links;
-pub(super) use springs::Turning;
+pub(super) use springs::{Links, Pulls, Turning};
 
 /// Rollers as point masses, links as spring-dampers.
 #[derive(Clone, Debug)]
@@ -88,9 +87,91 @@ impl Particles {
 
     /// Place and velocity of one roller; the index behind the last link of a closed chain means its
     /// first roller.
+    #[inline(always)]
     pub(super) fn pin(&self, at: Moment<'_>, roller: usize) -> (Point, Vector) {
         let velocity = Vector::new(at.v[roller], at.v[self.series.stride + roller]);
         (self.place(at.q, roller), velocity)
+    }
+
+    /// Adds kinetic energy, weight, and what joints store.
+    pub(super) fn add_energies(
+        &self,
+        at: Moment<'_>,
+        gravity: Vector,
+        resistance: &Resistance,
+        out: &mut Energy,
+    ) {
+        let mut add = |store: Store, value: f64| out.stores[store as usize] += value;
+        for roller in 0..self.series.rollers {
+            let mass = self.masses[roller];
+            let (place, velocity) = self.pin(at, roller);
+            add(Store::Chain, 0.5 * mass * velocity.norm_squared());
+            add(Store::Gravity, -mass * gravity.dot(&place.coords));
+        }
+        out.hold_in_joints(resistance.stored);
+    }
+
+    /// Distance of the ends of a link \[m\].
+    pub(super) fn length(&self, at: Moment<'_>, link: usize) -> f64 {
+        (self.place(at.q, link + 1) - self.place(at.q, link)).norm()
+    }
+
+    /// The ends of a link, with their velocities.
+    #[inline(always)]
+    pub(super) fn pins(&self, at: Moment<'_>, link: usize) -> [(Point, Vector); 2] {
+        [self.pin(at, link), self.pin(at, link + 1)]
+    }
+
+    /// ω² and D as estimated from the links, the deepest contact and the damping.
+    ///
+    /// ```text
+    /// ω_s = D + √(D² + ω²),   ω² = max Σ k/m + max k_c/m,   D = Σ d/m
+    /// ```
+    ///
+    /// The damping rate enters because Verlet's predicted velocity limits h D to 1; that of teeth and guides along their normals does not, where
+    /// it is taken at the end of the step.
+    ///
+    /// `across`: the mobility of what rubs on bodies, in that of the rollers.
+    pub(super) fn stiffest_mode(
+        &self,
+        around: Surroundings<'_>,
+        loads: &Loads,
+        resistance: &Resistance,
+        across: f64,
+    ) -> Rates {
+        let Surroundings {
+            bodies, contacts, ..
+        } = around;
+        let [mut squared, mut damping] = self.link_rates;
+        // Across the links, where these have no stiffness of their own: the stiffer of both counts.
+        let [bending, drag] = self.joint_rates(resistance);
+        squared = squared.max(bending);
+        let dragged = self.drag.as_ref();
+        let dragged = dragged.map_or(0.0, |it| it.rate(&self.links, self.lightest));
+        damping = damping.max(drag + dragged);
+        let (mut contact, mut drag, mut predicted) = (0.0_f64, 0.0_f64, 0.0_f64);
+        for (on, wrench) in contacts.teeth.iter().zip(&loads.wheel_wrenches) {
+            let stiffness = on.contacts.surface.stiffness(wrench.depth);
+            let mobility = bodies.wheels[on.wheel].mobility;
+            let shared = mobility * on.contacts.candidates as f64;
+            contact = contact.max(stiffness * (self.lightest + shared));
+            let rubbing = across * self.lightest + shared;
+            drag = drag.max(wrench.damping * rubbing);
+            predicted = predicted.max(wrench.across * rubbing);
+        }
+        for (on, wrench) in contacts.rails.iter().zip(&loads.rail_wrenches) {
+            let stiffness = on.contact.surface().stiffness(wrench.depth);
+            contact = contact.max(stiffness * self.lightest);
+            let rubbing = across * self.lightest;
+            drag = drag.max(wrench.damping * rubbing);
+            predicted = predicted.max(wrench.across * rubbing);
+        }
+        Rates {
+            squared: squared + contact,
+            damping: damping + drag,
+            predicted: damping + predicted,
+            carried: squared + contact,
+        }
     }
 }
 
@@ -145,47 +226,8 @@ impl Makeup for Particles {
         self.accelerate(around, at, a, rates, (loads, work));
     }
 
-    /// ω² and D as estimated from the links, the deepest contact and the damping.
-    ///
-    /// ```text
-    /// ω_s = D + √(D² + ω²),   ω² = max Σ k/m + max k_c/m,   D = Σ d/m
-    /// ```
-    ///
-    /// The damping rate enters because Verlet's predicted velocity limits h D to 1; that of teeth and guides along their normals does not, where
-    /// it is taken at the end of the step.
     fn rates(&self, around: Surroundings<'_>, loads: &Loads, work: &mut Work) -> Rates {
-        let Surroundings {
-            bodies, contacts, ..
-        } = around;
-        let [mut squared, mut damping] = self.link_rates;
-        // Across the links, where these have no stiffness of their own: the stiffer of both counts.
-        let [across, drag] = self.joint_rates(&work.joints.resistance);
-        squared = squared.max(across);
-        let dragged = self.drag.as_ref();
-        let dragged = dragged.map_or(0.0, |it| it.rate(&self.links, self.lightest));
-        damping = damping.max(drag + dragged);
-        let (mut contact, mut drag, mut predicted) = (0.0_f64, 0.0_f64, 0.0_f64);
-        for (on, wrench) in contacts.teeth.iter().zip(&loads.wheel_wrenches) {
-            let stiffness = on.contacts.surface.stiffness(wrench.depth);
-            let mobility = bodies.wheels[on.wheel].mobility;
-            let shared = mobility * on.contacts.candidates as f64;
-            contact = contact.max(stiffness * (self.lightest + shared));
-            drag = drag.max(wrench.damping * (self.lightest + shared));
-            predicted = predicted.max(wrench.across * (self.lightest + shared));
-        }
-        for (on, wrench) in contacts.rails.iter().zip(&loads.rail_wrenches) {
-            let stiffness = on.contact.surface().stiffness(wrench.depth);
-            contact = contact.max(stiffness * self.lightest);
-            let damped = wrench.damping * self.lightest;
-            drag = drag.max(damped);
-            predicted = predicted.max(wrench.across * self.lightest);
-        }
-        Rates {
-            squared: squared + contact,
-            damping: damping + drag,
-            predicted: damping + predicted,
-            carried: squared + contact,
-        }
+        self.stiffest_mode(around, loads, &work.joints.resistance, 1.0)
     }
 
     fn tensions(&self, at: Moment<'_>, _work: &Work) -> Vec<f64> {
@@ -201,22 +243,10 @@ impl Makeup for Particles {
     }
 
     fn energies(&self, at: Moment<'_>, gravity: Vector, work: &Work, out: &mut Energy) {
-        let mut none = vec![0.0; self.coordinates()];
-        let rollers = self.view(at, None, &mut none);
-        let mut add = |store: Store, value: f64| out.stores[store as usize] += value;
-        for i in 0..self.series.rollers {
-            let mass = self.masses[i];
-            add(
-                Store::Chain,
-                0.5 * mass * rollers.velocity(i).norm_squared(),
-            );
-            add(
-                Store::Gravity,
-                -mass * gravity.dot(&rollers.place(i).coords),
-            );
-        }
-        add(Store::Links, self.links.stored(&rollers));
-        out.hold_in_joints(work.joints.resistance.stored);
+        self.add_energies(at, gravity, &work.joints.resistance, out);
+        let links =
+            (0..self.links.count).map(|link| self.links.stored(link, self.length(at, link)));
+        out.stores[Store::Links as usize] += links.sum::<f64>();
     }
 
     fn drive_ends(&self, t: f64, q: &mut [f64], v: &mut [f64]) {

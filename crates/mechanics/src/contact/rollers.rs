@@ -1,7 +1,5 @@
 //! Rollers as contacts see them, whatever they belong to.
 
-use chaindrive_geometry::{Point, Vector};
-
 /// The rollers' part of a state, and of its accelerations.
 #[derive(Debug)]
 pub(crate) struct Rollers<'a> {
@@ -34,15 +32,5 @@ impl Rollers<'_> {
             spin: self.spin,
             half_step: self.half_step,
         }
-    }
-
-    #[inline(always)]
-    pub(crate) fn place(&self, roller: usize) -> Point {
-        Point::new(self.x[roller], self.y[roller])
-    }
-
-    #[inline(always)]
-    pub(crate) fn velocity(&self, roller: usize) -> Vector {
-        Vector::new(self.vx[roller], self.vy[roller])
     }
 }

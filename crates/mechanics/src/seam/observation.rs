@@ -50,6 +50,10 @@ pub struct Observation {
     pub bush_depth: Vec<f64>,
     /// Tension of every link, damping included \[N\], (links,).
     pub link_tension: Vec<f64>,
+    /// Greatest tension of the strands of every link \[N\], (links,); NaN in chains that do not tell them apart.
+    pub strand_tension_max: Vec<f64>,
+    /// Least tension of the strands of every link \[N\], (links,).
+    pub strand_tension_min: Vec<f64>,
     /// Mean tension of the links between consecutive sprockets of the route \[N\], (spans,).
     pub span_tension: Vec<f64>,
     /// Normal force between every roller and the teeth \[N\], (rollers,).
@@ -116,6 +120,8 @@ impl Observation {
             &mut self.bush_offset_x,
             &mut self.bush_offset_y,
             &mut self.bush_depth,
+            &mut self.strand_tension_max,
+            &mut self.strand_tension_min,
         ] {
             values.clear();
         }

@@ -41,9 +41,10 @@ impl Member {
     pub(crate) fn new(
         chain: Chain,
         first: usize,
-        contacts: BodyContacts,
+        mut contacts: BodyContacts,
         route: Vec<usize>,
     ) -> Self {
+        contacts.write_faces(chain.reads_faces());
         Self {
             name: None,
             entries: first..first + chain.coordinates(),

@@ -4,10 +4,10 @@ use std::hint::black_box;
 
 use allocation_counter::measure;
 use chaindrive_contact::Friction;
-use chaindrive_contact::friction::{Lugre, SpringSlider};
+use chaindrive_contact::friction::{Coulomb, Lugre, SpringSlider};
 use chaindrive_integrate::Method;
 use chaindrive_mechanics::{
-    Articulation, ChainModel, FreeRoller, Joint, Parts, PointJoints, Support,
+    Articulation, BushStrands, ChainModel, FreeRoller, Joint, Parts, PointJoints, Support,
 };
 
 use crate::several_chains::{EVEN, assembled, chain, driven, pair, parts, with_play};
@@ -66,6 +66,23 @@ fn bristles(parts: &mut Parts) {
     rubbing_by(parts, Friction::Lugre(lugre));
 }
 
+/// Two strands whose bushes and joints rub.
+fn stranded(parts: &mut Parts) {
+    rubbing(parts);
+    for sprocket in &mut parts.sprockets {
+        sprocket.surface.friction = Friction::Coulomb(Coulomb {
+            coefficient: 0.1,
+            slip_speed: 0.01,
+        });
+    }
+    let (strands, _) = BushStrands::together(&[1.0, 1.001], &[1.0, 0.9]);
+    parts.chains[0].chain.model = ChainModel::Strands(BushStrands {
+        strands,
+        clearance: 20e-6,
+        outer_first: false,
+    });
+}
+
 /// Rollers, bushes and pins as points, around a wheel on springs: bodies have equations of their own then.
 fn pointed(parts: &mut Parts) {
     with_play(&mut parts.chains[0]);
@@ -103,10 +120,11 @@ const STEPS: [usize; 2] = [1200, 1000];
 fn steps_allocate_nothing() {
     let counted = measure(|| drop(black_box(vec![0.0; STEPS[0]])));
     assert_eq!(counted.count_total, 1, "allocations are counted");
-    let chains: [(&str, Parts, usize, f64); 7] = [
+    let chains: [(&str, Parts, usize, f64); 8] = [
         ("particles", drive(|_| {}), 3, 1e-6),
         ("particles that rub", drive(rubbing), 3, 1e-6),
         ("particles with bristles", drive(bristles), 3, 1e-6),
+        ("bush strands", drive(stranded), 3, 1e-6),
         ("points", drive(pointed), 4, 2e-7),
         ("ideal joints", drive(ideal), 5, 1e-6),
         (

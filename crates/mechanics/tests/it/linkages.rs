@@ -9,7 +9,7 @@ use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
 use chaindrive_integrate::{InstructionSet, Moment, Registers, SecondOrderSystem, Weights};
 use chaindrive_mechanics::inside::{chain, teeth};
 use chaindrive_mechanics::{
-    Adjust, Assembled, Chain, ChainModel, Clearance, Drive, End, Ends, Fit, Flank, Flow,
+    Adjust, Assembled, Chain, ChainModel, Clearance, Coupling, Drive, End, Ends, Fit, Flank, Flow,
     FreeRoller, Joint, Layout, LinkBody, Motion, Observation, Parts, PlacedChain, PretensionAt,
     Record, RigidLinks, RollerModel, Rotation, Shaft, SpanStart, Sprocket, StartSpeed, Stop,
     Strength, Support, Surface, System, Tighten, Torque,
@@ -499,5 +499,68 @@ fn impulses_agree_with_the_equations_of_the_bodies() {
         // And it is not the undamped answer.
         let change = fitting.iter().zip(&b).map(|(x, b)| (x - b).abs());
         assert!(change.fold(0.0, f64::max) > 1e-3 * size, "{kind}");
+    }
+}
+
+/// Rows of contacts have room for 19 unknowns of wheels and shafts (`MOST_WHEELS`); with more of them the blocks of the bodies answer. On
+/// both sides of the bound a step has the solution of the whole system, dense and with pivots.
+#[test]
+fn wheels_beyond_the_room_of_the_rows_change_no_answer() {
+    let mut lumped = bicycle(links(clearance(), RollerModel::Lumped { mass: 0.453e-3 }));
+    for sprocket in &mut lumped.sprockets {
+        sprocket.support = Support::Springs {
+            stiffness: [1e7; 2],
+            damping: [1e3; 2],
+        };
+    }
+    // Two centres and the shaft of the second one are five unknowns; the others are shafts in a row behind it.
+    for unknowns in [19, 20] {
+        let mut parts = lumped.clone();
+        for behind in 1..unknowns - 4 {
+            parts.shafts.push(Shaft {
+                name: Some(format!("shaft {behind}")),
+                rotation: Rotation::Free {
+                    drive: Vec::new(),
+                    load: Vec::new(),
+                    start: StartSpeed::Joined,
+                },
+                inertia: 0.01,
+            });
+            parts.couplings.push(Coupling {
+                name: format!("coupling {behind}"),
+                shafts: [behind, behind + 1],
+                stiffness: 400.0 * behind as f64,
+                damping: 0.05,
+            });
+        }
+        let Start {
+            system,
+            mut record,
+            a: b,
+            ..
+        } = Start::of(parts);
+        assert_eq!(b.len() - 3 * 104, unknowns);
+        let weights = Weights {
+            damping: 2e-6,
+            stiffness: 1e-12,
+            once: true,
+        };
+        let inside = chain(&system, &mut record);
+        // Without the conditions of ideal joints, which stand behind.
+        let (matrix, right) = inside.equations(weights, &b);
+        let matrix = matrix.view((0, 0), (b.len(), b.len())).into_owned();
+        let right = right.rows(0, b.len()).into_owned();
+        let exact = matrix.lu().solve(&right).expect("a solution");
+        assert_eq!(inside.by_impulses(weights, &b).is_some(), unknowns == 19);
+        let mut found = b.clone();
+        assert!(system.solve(weights, &mut record, &mut found));
+        let size = exact.amax();
+        let mut change = 0.0_f64;
+        for (i, (found, exact)) in found.iter().zip(&exact).enumerate() {
+            let error = (found - exact).abs() / size;
+            assert!(error < 1e-12, "{unknowns}, {i}: {found} {exact}");
+            change = change.max((found - b[i]).abs() / size);
+        }
+        assert!(change > 1e-3, "{unknowns}: {change}");
     }
 }

@@ -13,3 +13,4 @@ mod oil;
 mod plucked;
 mod points;
 mod several_chains;
+mod strands;

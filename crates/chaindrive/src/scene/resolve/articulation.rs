@@ -203,7 +203,10 @@ pub(super) fn refuse_play(text: &schema::Chain, findings: &mut Findings<'_>) {
     };
     let contact = &joint.contact;
     let given = [
-        ("clearance", joint.clearance.is_some()),
+        (
+            "clearance",
+            joint.clearance.is_some() && !text.model.has_strands(),
+        ),
         ("length", joint.length.is_some()),
         ("contact.law", contact.law.is_some()),
         ("contact.series", contact.series.is_some()),

@@ -8,7 +8,7 @@ use super::chains::Described;
 use super::law::Pair;
 use super::scatter::Normal;
 use super::stack::Behind;
-use super::{Findings, catalogue, count, links, motion};
+use super::{Findings, catalogue, count, links, motion, strands};
 use crate::catalogue::CatalogueChain;
 use crate::scene::defaults;
 use crate::scene::schema::{self, SceneText};
@@ -56,6 +56,7 @@ pub(super) fn resolve(
     let touched = !(described.sprockets.is_empty() && described.guides.is_empty());
     let of_type = written.of_type.as_ref();
     let of_type = of_type.map(|name| catalogue::named(name, findings));
+    strands::refuse(written, findings);
     if written.model.has_springs() {
         links::refuse_on_particles(written, findings);
     }
@@ -66,6 +67,7 @@ pub(super) fn resolve(
         Some(chain) => catalogue::completed(written, chain, findings),
         None => written.clone(),
     };
+    let text = &strands::as_one(text, of_type);
     let Some(pitch) = text.pitch.map(|pitch| pitch.0) else {
         findings.refuse_with("chain.pitch", "missing", "give the nominal pitch");
         return None;
@@ -185,13 +187,14 @@ fn body(
     if !text.model.has_springs() {
         return links::resolve(all, text, links, roller_diameter, roller_length, findings);
     }
-    let body = particles(text, links, findings);
-    if !text.is_of_points() {
-        return body;
-    }
-    let model = links::points(all, text, roller_diameter, roller_length, findings);
-    let (body, model) = body.zip(model)?;
-    Some(Body { model, ..body })
+    let body = springs(text, links, findings);
+    let model = links::of_springs(all, text, roller_diameter, roller_length, findings);
+    let ([masses, stiffness], model) = body.zip(model)?;
+    Some(Body {
+        masses,
+        stiffness,
+        model,
+    })
 }
 
 /// Damping of every link \[N s/m\].
@@ -219,7 +222,12 @@ fn damping(
         .collect()
 }
 
-fn particles(text: &schema::Chain, links: usize, findings: &mut Findings<'_>) -> Option<Body> {
+/// Masses at the joints \[kg\] and stiffness of the links \[N/m\].
+fn springs(
+    text: &schema::Chain,
+    links: usize,
+    findings: &mut Findings<'_>,
+) -> Option<[Vec<f64>; 2]> {
     let rollers = links + usize::from(text.ends.is_some());
     let given = text
         .masses
@@ -242,11 +250,7 @@ fn particles(text: &schema::Chain, links: usize, findings: &mut Findings<'_>) ->
         let message = "`damping` is given too";
         findings.refuse_with("chain.damping_ratio", message, "keep one of them");
     }
-    Some(Body {
-        masses: masses?,
-        stiffness: stiffness?,
-        model: links::particles(),
-    })
+    Some([masses?, stiffness?])
 }
 
 fn lengths(
@@ -276,10 +280,7 @@ fn lengths(
     }
     let inner = text.inner_pitch.map_or(pitch, |length| length.0);
     let outer = text.outer_pitch.map_or(pitch, |length| length.0);
-    let alternating = !text.model.has_springs()
-        || text.is_of_points()
-        || text.inner_pitch.is_some()
-        || text.outer_pitch.is_some();
+    let alternating = text.alternates() || text.inner_pitch.is_some() || text.outer_pitch.is_some();
     if alternating && text.ends.is_none() && links % 2 == 1 {
         let message = format!("{links} links, but inner and outer links alternate");
         let hint = "a closed chain of both needs an even number";

@@ -16,17 +16,32 @@ use super::articulation::Joints;
 use super::body::Body;
 use super::law::{Pair, cylindrical, elastic, steel};
 use super::pressed::{PRESSED, stiffness_under_pretension};
-use super::{Findings, contact};
+use super::{Findings, contact, strands};
 use crate::scene::defaults;
 use crate::scene::schema::{self, Rollers, Route, SceneText};
 
-/// Point masses at the rollers.
-pub(super) fn particles() -> ChainModel {
-    ChainModel::Particles
+/// Model of links that are springs. `text` is the chain completed from the catalogue.
+pub(super) fn of_springs(
+    all: (&SceneText, Option<&Route>),
+    text: &schema::Chain,
+    roller_diameter: f64,
+    roller_length: Option<f64>,
+    findings: &mut Findings<'_>,
+) -> Option<ChainModel> {
+    if text.model.has_strands() {
+        strands::model(text).map(ChainModel::Strands)
+    } else if text.is_of_points() {
+        points(all, text, roller_diameter, roller_length, findings)
+    } else {
+        Some(ChainModel::Particles)
+    }
 }
 
 /// Keys of rigid links have no meaning for particles.
 pub(super) fn refuse_on_particles(text: &schema::Chain, findings: &mut Findings<'_>) {
+    if text.model.has_strands() {
+        return;
+    }
     if text.is_of_points() {
         let inertia = |link: Option<schema::Link>| link.is_some_and(|it| it.inertia.is_some());
         let given = [
@@ -163,7 +178,7 @@ pub(super) fn resolve(
 }
 
 /// Rollers, bushes and pins of a particle chain as points of their own. `text` is the chain completed from the catalogue.
-pub(super) fn points(
+fn points(
     (scene, route): (&SceneText, Option<&Route>),
     text: &schema::Chain,
     roller_diameter: f64,

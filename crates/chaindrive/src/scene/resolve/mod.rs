@@ -21,6 +21,7 @@ mod shafts;
 mod sprocket;
 mod stack;
 mod start;
+mod strands;
 mod tensioner;
 mod tooth;
 mod written;

@@ -73,6 +73,8 @@ fn compliance(
         let length = length.or_else(|| chain.joint_length())?;
         compliance += yields([0.5 * pin, play, length], load, findings)?;
     }
+    // Strands side by side yield together.
+    compliance /= model.strands().len().max(1) as f64;
     (compliance > 0.0).then_some(compliance)
 }
 

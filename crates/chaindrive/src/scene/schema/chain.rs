@@ -18,7 +18,7 @@ pub(crate) struct Chain {
     #[serde(default, rename = "type")]
     pub(crate) of_type: Option<String>,
     /// Model of the chain; absent: particles. The keys from `rollers` to `roller`, but for friction and damping in `joint`, are for
-    /// rigid links and free rollers only.
+    /// rigid links and free rollers only; bush strands know `outer_first`, `joint.clearance` and `roller.length` too.
     #[serde(default)]
     pub(crate) model: ChainModel,
     /// Nominal pitch [m]: what the sprockets are cut for.
@@ -62,11 +62,19 @@ pub(crate) struct Chain {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) breaking_load: Option<Force>,
-    /// Strands side by side, for the rating only: the factor of its power is 1, 1.7, 2.5, 3.3, 3.9 or 4.6. The motion is that of one chain:
-    /// mass, stiffness and breaking load are those written, and from the catalogue those of a single strand. Absent: 1.
+    /// Strands side by side: the factor of its power in the rating is 1, 1.7, 2.5, 3.3, 3.9 or 4.6. Bush strands share loads in motion, and
+    /// mass, stiffness, damping and breaking load are then those of one of them. The motion of other models is that of one chain: the values
+    /// are those written, and from the catalogue those of a single strand. Absent: 1.
     #[serde(default)]
     #[schemars(extend("minimum" = 1, "maximum" = 6))]
     pub(crate) strands: Option<u32>,
+    /// By how much the links of every strand are longer than those of the chain as written [–], one value for each; for bush strands. Absent:
+    /// all are alike.
+    #[serde(default)]
+    pub(crate) strand_elongations: Option<Vec<Ratio>>,
+    /// Stiffness of every strand, in that which is written [–], one value for each; for bush strands. Absent: 1 for all.
+    #[serde(default)]
+    pub(crate) strand_stiffnesses: Option<Vec<Ratio>>,
     /// Service factor [–], for the rating only: the power that is carried counts so many times. ISO 10823 has 1 for smooth running, 1.4 for
     /// moderate and 1.8 for heavy shocks of the driven machine, more with those of an engine.
     #[serde(default)]
@@ -129,6 +137,11 @@ pub(crate) struct Chain {
 }
 
 impl Chain {
+    /// True for chains whose inner and outer links are not alike.
+    pub(crate) fn alternates(&self) -> bool {
+        !self.model.has_springs() || self.model.has_strands() || self.is_of_points()
+    }
+
     /// True for chains with roller, bush and pin of every joint as points of their own.
     pub(crate) fn is_of_points(&self) -> bool {
         self.model.has_springs() && self.rollers == Some(Rollers::Free)

@@ -13,6 +13,9 @@ pub(crate) enum ChainModel {
     /// Point masses at the rollers, joined by links that are springs with dampers.
     #[default]
     Particles,
+    /// Bush chains of several strands: point masses at the joints, links of springs side by side that share the load, bushes that turn
+    /// with their inner link.
+    BushStrands,
     /// Rigid inner and outer links, joined by ideal hinges.
     IdealJoints,
     /// Rigid inner and outer links, joined by pins that have play in their bushes.
@@ -22,7 +25,12 @@ pub(crate) enum ChainModel {
 impl ChainModel {
     /// True for links that are springs with dampers.
     pub(crate) fn has_springs(self) -> bool {
-        self == Self::Particles
+        matches!(self, Self::Particles | Self::BushStrands)
+    }
+
+    /// True for strands side by side that share the load.
+    pub(crate) fn has_strands(self) -> bool {
+        self == Self::BushStrands
     }
 
     /// True for pins with play in their bushes.
@@ -70,7 +78,8 @@ pub(crate) struct Joint {
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) pin_diameter: Option<Length>,
     /// Radial clearance [m]: radius of the bore less radius of the pin; for clearance joints. At 0 pins have no play, and
-    /// the link beside them yields: with `contact.series`, or with the stiffness of the link.
+    /// the link beside them yields: with `contact.series`, or with the stiffness of the link. Between bush strands it is the play in
+    /// which a strand of an inner link hangs loose; absent there: 0, and strands push as they pull.
     #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) clearance: Option<Length>,

@@ -75,7 +75,6 @@ const RECIPES: [Recipe; 7] = [
             "chaindrive/src/scene/schema/links.rs",
             "mechanics/src/chains.rs",
             "mechanics/src/chains/model.rs",
-            "mechanics/src/lib.rs",
         ],
     },
     Recipe {

@@ -48,6 +48,8 @@ impl Linkage {
             let share = hinges.share(weights);
             return self.solve_held(bodies, weights, joint_state, x, Prescribed::Kept(share));
         }
+        // Columns of the rows are counted when they are compiled, and stand in registers. A drive of more bodies than there is room for is
+        // solved by the blocks, whose border grows with it: the same answer to rounding.
         let few = x.len() - self.coordinates() <= MOST_WHEELS;
         if weights.once && few {
             return self.step(bodies, weights, joint_state, impulses, x);

@@ -43,7 +43,8 @@ pub(crate) struct Impulses {
     local: Local,
 }
 
-/// Unknowns of wheels and tensioners that this elimination has room for.
+/// Unknowns of wheels, shafts and tensioners that this elimination has room for: 24 columns less two joints of two rows and the
+/// right-hand side. Beyond, [`Linkage::implicit_step`] asks the blocks of the bodies.
 pub(super) const MOST_WHEELS: usize = 19;
 
 impl Linkage {

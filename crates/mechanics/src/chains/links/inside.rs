@@ -49,14 +49,16 @@ impl<'a> Inside<'a> {
     pub fn equations(&self, weights: Weights, b: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
         let (linkage, joint_state) = (self.linkage, &*self.joint_state);
         let mut equations = Equations::default();
-        let mut sum = Sum::new(linkage, &mut equations, linkage.series.links, b);
+        let (links, chain) = (linkage.series.links, linkage.coordinates());
+        // The last link of a closed chain touches both ends of the row, and stands in the border.
+        let row = links - usize::from(linkage.series.is_closed());
+        let mut sum = Sum::new(linkage, &mut equations, row, b);
         sum.add_masses(self.bodies, weights, b);
         linkage.each_element(joint_state, |element| {
             sum.add(element, &joint_state.mounts, weights, b);
         });
         sum.add_hinge_turns(joint_state, weights.stiffness);
         let Equations { blocks, loose } = equations;
-        let (links, chain) = (linkage.series.links, linkage.coordinates());
         let size = b.len() + 2 * linkage.joints.len();
         let mut matrix = DMatrix::zeros(size, size);
         let mut right = DVector::zeros(size);
@@ -67,31 +69,43 @@ impl<'a> Inside<'a> {
             }
         };
         let border = blocks.right_border.len();
-        for i in 0..links {
+        let last = 3 * (links - row);
+        let place = |j: usize| {
+            if j < last {
+                3 * row + j
+            } else {
+                chain + j - last
+            }
+        };
+        for i in 0..row {
             for k in 0..3 {
                 right[3 * i + k] = blocks.right[i][k];
                 (0..=k).for_each(|l| set(3 * i + k, 3 * i + l, blocks.diagonal[i][(k, l)]));
+                if i > 0 {
+                    let before = &blocks.below[i - 1];
+                    (0..3).for_each(|l| set(3 * i + k, 3 * (i - 1) + l, before[(k, l)]));
+                }
                 for j in 0..border {
-                    set(chain + j, 3 * i + k, blocks.beside[i * border + j][k]);
+                    set(place(j), 3 * i + k, blocks.beside[i * border + j][k]);
                 }
             }
         }
         for (i, roller) in loose.iter().enumerate() {
             for k in 0..3 {
-                let row = 3 * (links + i) + k;
-                right[row] = roller.right[k];
-                (0..=k).for_each(|l| set(row, 3 * (links + i) + l, roller.own[(k, l)]));
+                let own = 3 * (links + i) + k;
+                right[own] = roller.right[k];
+                (0..=k).for_each(|l| set(own, 3 * (links + i) + l, roller.own[(k, l)]));
                 if let Some(link) = roller.link {
-                    (0..3).for_each(|l| set(row, 3 * link + l, roller.coupling[(l, k)]));
+                    (0..3).for_each(|l| set(own, 3 * link + l, roller.coupling[(l, k)]));
                 }
                 for (j, beside) in &roller.beside {
-                    set(chain + j, row, beside[k]);
+                    set(place(*j), own, beside[k]);
                 }
             }
         }
         for j in 0..border {
-            right[chain + j] = blocks.right_border[j];
-            (0..=j).for_each(|k| set(chain + j, chain + k, blocks.corner[(j, k)]));
+            right[place(j)] = blocks.right_border[j];
+            (0..=j).for_each(|k| set(place(j), place(k), blocks.corner[(j, k)]));
         }
         for (joint, mates) in linkage.joints.iter().enumerate() {
             let rows = b.len() + 2 * joint;

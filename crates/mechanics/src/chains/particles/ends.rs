@@ -1,6 +1,6 @@
 //! The ends of a strand of particles: held, driven or pulled.
 
-use chaindrive_geometry::Vector;
+use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 
 use super::{Particles, Turning};
@@ -25,7 +25,7 @@ impl Particles {
         }
     }
 
-    /// Accelerations of the end rollers whose motion or load is given.
+    /// Accelerations of the end rollers whose motion or load is given; links pull as `pull` says \[N\].
     pub(super) fn hold_ends(
         &self,
         gravity: Vector,
@@ -33,6 +33,7 @@ impl Particles {
         a: &mut [f64],
         rates: &mut [f64],
         joints: (&Turning, &Resistance),
+        pull: impl Fn(usize, [(Point, Vector); 2]) -> f64,
     ) {
         let n = self.series.stride;
         for held in &self.series.ends {
@@ -49,7 +50,8 @@ impl Particles {
                     a[n + i] = y.acceleration;
                     // F = m (a − g) − T − what turns and drags
                     let over = Vector::new(x.acceleration, y.acceleration) - gravity;
-                    let needed = self.end_force(at, held, over) - self.beside(at, held, joints);
+                    let needed =
+                        self.end_force(at, held, over, &pull) - self.beside(at, held, joints);
                     rates[Flow::Motions as usize] += needed.x * x.rate + needed.y * y.rate;
                 }
                 End::Pulled { force } => {
@@ -88,15 +90,20 @@ impl Particles {
     }
 
     /// Force that a support exerts on an end roller which is accelerated by `over` more than its weight does \[N\].
-    fn end_force(&self, at: Moment<'_>, held: &HeldEnd, over: Vector) -> Vector {
+    fn end_force(
+        &self,
+        at: Moment<'_>,
+        held: &HeldEnd,
+        over: Vector,
+        pull: &impl Fn(usize, [(Point, Vector); 2]) -> f64,
+    ) -> Vector {
         let (link, inward) = if held.roller == 0 {
             (0, 1.0)
         } else {
             (held.roller - 1, -1.0)
         };
-        let pins = [self.pin(at, link), self.pin(at, link + 1)];
+        let pins = self.pins(at, link);
         let along = (pins[1].0 - pins[0].0).normalize() * inward;
-        let pull = along * self.links.tension(link, pins);
-        over * self.masses[held.roller] - pull
+        over * self.masses[held.roller] - along * pull(link, pins)
     }
 }

@@ -1,5 +1,6 @@
 //! One evaluation of the particle chain: links, teeth, guides, ends.
 
+use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 use pulp::{Simd, WithSimd};
 
@@ -35,6 +36,21 @@ impl Particles {
             rates: &mut *rates,
             found: (loads, &mut *turning, &mut *resistance),
         });
+        let pull = |link, pins| self.links.tension(link, pins);
+        let gravity = around.bodies.gravity;
+        self.finish(gravity, at, a, rates, (turning, resistance), pull);
+    }
+
+    /// Lets copies follow the first rollers of a closed chain, and holds the ends of another, whose links pull as `pull` says \[N\].
+    pub(in crate::chains) fn finish(
+        &self,
+        gravity: Vector,
+        at: Moment<'_>,
+        a: &mut [f64],
+        rates: &mut [f64],
+        joints: (&Turning, &Resistance),
+        pull: impl Fn(usize, [(Point, Vector); 2]) -> f64,
+    ) {
         let n = self.series.stride;
         if self.links.closed {
             // A ghost behind the first turn copies one of the turn before.
@@ -43,8 +59,7 @@ impl Particles {
                 a[n + ghost] = a[n + ghost - self.series.rollers];
             }
         } else {
-            let joints = (&*turning, &*resistance);
-            self.hold_ends(around.bodies.gravity, at, a, rates, joints);
+            self.hold_ends(gravity, at, a, rates, joints, pull);
             a[self.series.rollers..n].fill(0.0);
             a[n + self.series.rollers..2 * n].fill(0.0);
         }
@@ -73,20 +88,35 @@ impl Particles {
             links.act::<S, false>(w, &mut rollers, gravity, turning)
         };
         rates[Flow::LinkLoss as usize] += loss;
+        self.meet(w, around, at.t, &mut rollers, rates, loads);
+    }
+
+    /// Adds the forces of what is around the chain: oil or air, and bodies.
+    #[inline(always)]
+    pub(in crate::chains) fn meet<S: Simd>(
+        &self,
+        w: Wide<S>,
+        around: Surroundings<'_>,
+        t: f64,
+        rollers: &mut Rollers<'_>,
+        rates: &mut [f64],
+        loads: &mut Loads,
+    ) {
+        let links = &self.links;
         if let Some(drag) = &self.drag {
-            rates[Flow::DragLoss as usize] += drag.act(w, links, &mut rollers);
+            rates[Flow::DragLoss as usize] += drag.act(w, links, rollers);
         }
-        touch_bodies(w, around, at.t, &mut rollers, rates, loads);
+        touch_bodies(w, around, t, rollers, rates, loads);
         if links.closed {
             // The roller behind the last link is the first one again, and has to be where plates push it.
             let count = links.count;
             let before = [rollers.ax[0], rollers.ay[0]];
             [rollers.ax[count], rollers.ay[count]] = before;
-            plate_forces(w, around, at.t, &mut rollers, rates, loads);
+            plate_forces(w, around, t, rollers, rates, loads);
             rollers.ax[0] += rollers.ax[count] - before[0];
             rollers.ay[0] += rollers.ay[count] - before[1];
         } else {
-            plate_forces(w, around, at.t, &mut rollers, rates, loads);
+            plate_forces(w, around, t, rollers, rates, loads);
         }
     }
 }

@@ -6,7 +6,7 @@ use pulp::Simd;
 
 use crate::Chain;
 use crate::contact::Rollers;
-use crate::lanes::{LANES, Wide, padded};
+use crate::lanes::{LANES, Lane, Lanes, Wide, padded};
 
 /// The links in flat arrays, padded to whole lanes with links of no stiffness.
 #[derive(Clone, Debug)]
@@ -21,6 +21,23 @@ pub(crate) struct Links {
     pub(crate) stiffness: Array,
     /// Damping \[N s/m\].
     pub(crate) damping: Array,
+}
+
+/// The law by which links pull, on lanes.
+pub(in crate::chains) trait Pulls<S: Simd> {
+    /// Tension \[N\] of a lane of links that are longer than without load by `stretch` \[m\], with the force of their dampers \[N\].
+    fn tension(&self, w: Wide<S>, lane: usize, stretch: Lane<S>, drag: Lane<S>) -> Lane<S>;
+}
+
+/// Stiffness of the links \[N/m\].
+struct Springs<'a, S: Simd>(Lanes<'a, S>);
+
+impl<S: Simd> Pulls<S> for Springs<'_, S> {
+    #[inline(always)]
+    fn tension(&self, _w: Wide<S>, lane: usize, stretch: Lane<S>, drag: Lane<S>) -> Lane<S> {
+        // T = k (ℓ − p) + d ℓ̇
+        drag.plus(self.0.get(lane), stretch)
+    }
 }
 
 /// How links turn and pull: work space, filled anew by every evaluation.
@@ -83,14 +100,24 @@ impl Links {
         gravity: [f64; 2],
         turning: &mut Turning,
     ) -> f64 {
+        // As long as the other rows, so that no index is checked in the loop.
+        let law = Springs(w.lanes(&self.stiffness[..self.rest.len()]));
+        self.act_by::<S, ARTICULATED>(w, &law, rollers, gravity, turning)
+    }
+
+    /// The same with a law of their own.
+    #[inline(always)]
+    pub(in crate::chains) fn act_by<S: Simd, const ARTICULATED: bool>(
+        &self,
+        w: Wide<S>,
+        law: &impl Pulls<S>,
+        rollers: &mut Rollers<'_>,
+        gravity: [f64; 2],
+        turning: &mut Turning,
+    ) -> f64 {
         let n = self.rest.len();
-        let [rest, stiffness, damping, inverse_mass] = [
-            &self.rest,
-            &self.stiffness,
-            &self.damping,
-            rollers.inverse_mass,
-        ]
-        .map(|values| w.lanes(&values[..n]));
+        let [rest, damping, inverse_mass] =
+            [&self.rest, &self.damping, rollers.inverse_mass].map(|values| w.lanes(&values[..n]));
         let columns = [rollers.x, rollers.y, rollers.vx, rollers.vy];
         let [x, y, vx, vy] = columns.map(|values| w.lanes(&values[..n]));
         let [x_next, y_next, vx_next, vy_next] = columns.map(|values| w.lanes(&values[1..=n]));
@@ -127,8 +154,7 @@ impl Links {
             // ℓ̇ = d·u/ℓ
             let rate = (dx * ux).plus(dy, uy) * inverse;
             let drag = damping.get(i) * rate;
-            // T = k (ℓ − p) + d ℓ̇
-            let tension = drag.plus(stiffness.get(i), length - rest.get(i));
+            let tension = law.tension(w, i, length - rest.get(i), drag);
             let scale = tension * inverse;
             let pull = [scale * dx, scale * dy];
             loss = loss.plus(drag, rate);
@@ -155,7 +181,8 @@ impl Links {
         loss.sum()
     }
 
-    /// Tension of one link between two pins with their velocities \[N\].
+    /// Tension of one link between two pins with their velocities \[N\]. Asked for all links at every step.
+    #[inline(always)]
     pub(crate) fn tension(&self, link: usize, pins: [(Point, Vector); 2]) -> f64 {
         let d = pins[1].0 - pins[0].0;
         let u = pins[1].1 - pins[0].1;
@@ -164,15 +191,10 @@ impl Links {
         self.stiffness[link] * (length - self.rest[link]) + self.damping[link] * d.dot(&u) / length
     }
 
-    /// Elastic energy of all links \[J\].
-    pub(crate) fn stored(&self, rollers: &Rollers<'_>) -> f64 {
-        (0..self.count)
-            .map(|link| {
-                let stretch =
-                    (rollers.place(link + 1) - rollers.place(link)).norm() - self.rest[link];
-                // U = ½ k (ℓ − p)²
-                0.5 * self.stiffness[link] * stretch * stretch
-            })
-            .sum()
+    /// Elastic energy of a link of some length \[J\].
+    pub(crate) fn stored(&self, link: usize, length: f64) -> f64 {
+        let stretch = length - self.rest[link];
+        // U = ½ k (ℓ − p)²
+        0.5 * self.stiffness[link] * stretch * stretch
     }
 }

@@ -7,6 +7,57 @@ use crate::End;
 use crate::chains::makeup::Statics;
 use crate::seam::{Load, Moving, Sum, Unknown};
 
+impl Particles {
+    /// Adds E = Σ U(ℓ) − Σ m g·x − Σ F·x for links whose tension T = U′ and stiffness k = U″ at a length `law` says \[N, N/m\].
+    pub(in crate::chains) fn add_balance_of(
+        &self,
+        q: &[f64],
+        gravity: Vector,
+        load: Load,
+        sum: &mut Sum<'_>,
+        law: impl Fn(usize, f64) -> [f64; 2],
+    ) {
+        let n = self.series.stride;
+        let place = |i: usize| -> Point { self.place(q, i) };
+        for link in 0..self.links.count {
+            let (a, b) = (link, (link + 1) % self.series.rollers);
+            let d = place(b) - place(a);
+            let length = d.norm();
+            let u = d / length;
+            let [tension, stiffness] = law(link, length);
+            sum.balance.tensions.push(tension);
+            let (ends, signs) = ([[a, n + a], [b, n + b]], [-1.0, 1.0]);
+            for (end, sign) in ends.iter().zip(signs) {
+                for (axis, &entry) in end.iter().enumerate() {
+                    sum.force(entry, sign * tension * u[axis]);
+                }
+            }
+            // K = k u uᵀ + (T/ℓ) (1 − u uᵀ)
+            for i in 0..2 {
+                for j in 0..2 {
+                    let unit = if i == j { 1.0 } else { 0.0 };
+                    let value = stiffness * u[i] * u[j] + tension / length * (unit - u[i] * u[j]);
+                    for (first, s) in ends.iter().zip(signs) {
+                        for (second, t) in ends.iter().zip(signs) {
+                            sum.stiffen(first[i], second[j], s * t * value);
+                        }
+                    }
+                }
+            }
+        }
+        for i in 0..self.series.rollers {
+            sum.force(i, -load.gravity * self.masses[i] * gravity.x);
+            sum.force(n + i, -load.gravity * self.masses[i] * gravity.y);
+        }
+        for held in &self.series.ends {
+            if let End::Pulled { force } = &held.end {
+                sum.force(held.roller, -load.torque * force.x);
+                sum.force(n + held.roller, -load.torque * force.y);
+            }
+        }
+    }
+}
+
 impl Statics for Particles {
     /// Rollers that are not held; the ring is folded (0, N−1, 1, N−2, …) so that the Hessian becomes a band.
     fn unknowns(&self) -> Vec<Unknown> {
@@ -52,45 +103,11 @@ impl Statics for Particles {
 
     /// Adds E = Σ ½ k (ℓ − p)² − Σ m g·x − Σ F·x.
     fn add_balance(&self, q: &[f64], gravity: Vector, load: Load, sum: &mut Sum<'_>) {
-        let n = self.series.stride;
-        let place = |i: usize| -> Point { self.place(q, i) };
-        for link in 0..self.links.count {
-            let (a, b) = (link, (link + 1) % self.series.rollers);
-            let d = place(b) - place(a);
-            let length = d.norm();
-            let u = d / length;
+        let law = |link: usize, length: f64| {
             let stiffness = self.links.stiffness[link];
-            let tension = stiffness * (length - self.links.rest[link]);
-            sum.balance.tensions.push(tension);
-            let (ends, signs) = ([[a, n + a], [b, n + b]], [-1.0, 1.0]);
-            for (end, sign) in ends.iter().zip(signs) {
-                for (axis, &entry) in end.iter().enumerate() {
-                    sum.force(entry, sign * tension * u[axis]);
-                }
-            }
-            // K = k u uᵀ + (T/ℓ) (1 − u uᵀ)
-            for i in 0..2 {
-                for j in 0..2 {
-                    let unit = if i == j { 1.0 } else { 0.0 };
-                    let value = stiffness * u[i] * u[j] + tension / length * (unit - u[i] * u[j]);
-                    for (first, s) in ends.iter().zip(signs) {
-                        for (second, t) in ends.iter().zip(signs) {
-                            sum.stiffen(first[i], second[j], s * t * value);
-                        }
-                    }
-                }
-            }
-        }
-        for i in 0..self.series.rollers {
-            sum.force(i, -load.gravity * self.masses[i] * gravity.x);
-            sum.force(n + i, -load.gravity * self.masses[i] * gravity.y);
-        }
-        for held in &self.series.ends {
-            if let End::Pulled { force } = &held.end {
-                sum.force(held.roller, -load.torque * force.x);
-                sum.force(n + held.roller, -load.torque * force.y);
-            }
-        }
+            [stiffness * (length - self.links.rest[link]), stiffness]
+        };
+        self.add_balance_of(q, gravity, load, sum, law);
     }
 
     /// Makes every link longer by `change` \[m\].

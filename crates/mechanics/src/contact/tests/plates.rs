@@ -12,6 +12,16 @@ use crate::lanes::padded;
 use crate::profile::RailFace;
 use crate::surface::Surface;
 
+impl Rollers<'_> {
+    fn place(&self, roller: usize) -> Point {
+        Point::new(self.x[roller], self.y[roller])
+    }
+
+    fn velocity(&self, roller: usize) -> Vector {
+        Vector::new(self.vx[roller], self.vy[roller])
+    }
+}
+
 const PITCH: f64 = 0.01;
 const HALF_HEIGHT: f64 = 0.004;
 const FRICTION: Coulomb = Coulomb {
