@@ -9,6 +9,8 @@ use crate::{Run, Stepping};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Candidate {
     pub(super) stepping: Stepping,
+    /// Step over the time scale that limits the method.
+    pub(super) factor: f64,
     /// Step \[s\].
     pub(super) step: f64,
     /// Deepest first penetration \[m\], where steps are rejected for it.
@@ -51,6 +53,7 @@ impl Candidates {
         let system = &start.system;
         let of = |stepping: Stepping, factor: f64, onset_depth: Option<f64>| Candidate {
             stepping,
+            factor,
             step: factor * stepping.time_scale(system),
             onset_depth,
         };

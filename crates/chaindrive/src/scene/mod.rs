@@ -84,6 +84,7 @@ pub use presets::presets;
 pub use schema::RunDefaults;
 
 pub use accuracy::{ACCURACY, Quantity};
+pub(crate) use quantity::is_number;
 pub use quantity::{read_length, read_time};
 pub use resolve::chain_named;
 pub use run_in::RunIn;
