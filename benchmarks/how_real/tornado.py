@@ -26,7 +26,7 @@ NAMES = {
 def statistics(case: Case, values: dict[str, Any], phases: tuple[float, ...]) -> np.ndarray:
     """Return responses (phase, response) of a preset with some values."""
     drive = getattr(cd.scenes, case.preset)().replace({"run.run_in": case.run_in, **values})
-    runs = cd.sweep(drive, {"route.phase": list(phases)}, until=case.until)
+    runs = cd.sweep(drive, {"route.phase": list(phases)}, until=case.until, method="auto")
     failed = [text for text in runs["error"].values if text]
     if failed:
         raise RuntimeError(f"{case.preset} with {values}: {failed[0]}")

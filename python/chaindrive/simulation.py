@@ -91,8 +91,8 @@ def simulate(
     accuracy
         Largest relative error of the tension [–], such as 0.01: method, step and onset depth are
         chosen for it by short trials at the beginning of the run, the same ones every time. 0.01
-        when neither the scene nor the caller gives one of them or a tolerance: unlike `sweep`,
-        which chooses only where it is asked to. Not together with these.
+        when neither the scene nor the caller gives one of them or a tolerance. Not together with
+        these.
     accuracy_of
         Quantity to which the accuracy applies: ``"tension"``, the default; ``"losses"``, and with
         them the efficiency; or ``"impacts"``, forces and impulses of rollers that come to a

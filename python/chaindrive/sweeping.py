@@ -67,10 +67,10 @@ def sweep(
     The variants are every combination of the values in `vary`, or the rows of the table `design`.
 
     Every variant is computed by one thread: the numbers do not depend on `jobs` or `executor`, to
-    the last bit. They are those of `simulate` with the same method. Where neither names one the
-    two differ: `simulate` chooses method and step for an accuracy of 1 %, a sweep takes
-    ``method="auto"`` with its default step, for the trials in every variant would double the cost
-    of short ones. `accuracy` has each variant choose for itself.
+    the last bit. They are those of `simulate` with the same method and step. Method and step are
+    chosen for an accuracy as in `simulate`, but once for up to 32 variants that differ in numbers
+    only: each takes the same multiple of its own time scale. ``method="auto"`` takes the default
+    step instead, which is shorter than most drives need.
 
     The interpreter is free for other threads meanwhile, and Ctrl-C stops the sweep: what is
     finished is the `result` of the ``KeyboardInterrupt``.
@@ -101,8 +101,9 @@ def sweep(
         Names of channels to keep, see `channels`. None unless asked for: they take the memory of a
         run times the number of variants.
     accuracy
-        Largest relative error of the tension [–], such as 0.01 or ``"1 %"``: every variant begins
-        with the trials of ``simulate(…, accuracy=…)``, and gives its bits. The same as
+        Largest relative error of the tension [–], such as 0.01 or ``"1 %"``, by the trials of
+        ``simulate(…, accuracy=…)`` on the first variant of each block. 0.01 when neither the scene
+        nor the caller gives one, or a method, step, tolerance or onset depth. The same as
         ``run.accuracy`` in the scene.
     method, step, tolerance, onset_depth, accuracy_of, events
         As `simulate` takes them, for every variant; they go before what the scene says. Any of them
@@ -142,7 +143,8 @@ def sweep(
           ``impact_impulse`` [N s], ``impact_speed`` [m/s] (…, sprocket), see the summary of a run,
           ``energy_dissipated_total``, ``energy_residual_max`` [J],
           ``steps``; those of contacts by kind where the scene logs them; ``accuracy_error`` and
-          ``accuracy_kept`` (1 or 0) where an accuracy was asked for. ``stepping_time`` and
+          ``accuracy_kept`` (1 or 0), found on one variant of the block, and ``step_chosen`` [s],
+          where method and step were chosen. ``stepping_time`` and
           ``real_time_factor`` are measured, all others are the same with every sweep;
         - channels, (…, time) or (…, time, labels), NaN where a variant has fewer samples or labels
           than others;

@@ -44,9 +44,9 @@ def assert_same_bits(one, other):
 
 def test_a_variant_is_the_run_of_its_drive(built_in):
     drive = marine().replace({SPEED: -11.0, PRETENSION: 15e3})
-    # A method is named, as a run without one chooses its step for an accuracy.
-    run = cd.simulate(drive, method="verlet", **SETTINGS)
     variant = built_in.sel(speed=-11.0, torque=5e3, pretension=15e3)
+    step = float(variant["step_chosen"])
+    run = cd.simulate(drive, method="verlet", step=step, error=False, **SETTINGS)
     assert variant["error"] == ""
     for name in SETTINGS["record"]:
         np.testing.assert_array_equal(variant[name], run[name])
@@ -67,30 +67,47 @@ def test_a_variant_is_the_run_of_its_drive(built_in):
 
 
 @pytest.mark.parametrize("asked", ["argument", "scene"])
-def test_with_an_accuracy_every_variant_chooses_as_its_run_does(asked):
-    """The default step is the answer for neither variant, and the answers are different ones."""
-    settings = {"until": 4e-3, "every": 4e-4}
-    speeds = {SPEED: [-8.0, -60.0]}
+def test_one_choice_serves_the_variants_that_are_alike(asked):
+    """The first variant is the run that chooses, and the other has its step beside its own scale.
+
+    The default step of Verlet is one half of the time scale, whatever the drive.
+    """
+    settings = {"until": 4e-3, "every": 4e-4, "record": "link_tension"}
+    stiffnesses, path = [2e8, 8e8], "chain.stiffness"
     if asked == "argument":
-        result = cd.sweep(marine(), speeds, **settings, record="link_tension", accuracy=1e-3)
+        result = cd.sweep(marine(), {path: stiffnesses}, **settings, accuracy=1e-3)
     else:
         drive = marine().replace({"run.accuracy": "0.1 %"})
-        result = cd.sweep(drive, speeds, **settings, record="link_tension")
-    plain = cd.sweep(marine(), speeds, **settings)
+        result = cd.sweep(drive, {path: stiffnesses}, **settings)
+    assert (result["error"] == "").all()
+    drive = marine().replace({path: stiffnesses[0]})
+    run = cd.simulate(drive, **settings, accuracy=1e-3, error=False)
+    first = result.isel(stiffness=0)
+    assert first["link_tension"].to_numpy().tobytes() == run["link_tension"].to_numpy().tobytes()
+    assert first["step_chosen"] == run.attrs["step"]
+    assert (result["accuracy_error"] == run.attrs["accuracy_error"]).all()
+    assert (result["accuracy_kept"] == (run.attrs["accuracy_kept"] == "kept")).all()
+    plain = cd.sweep(marine(), {path: stiffnesses}, **settings, method="auto")
     assert "accuracy_kept" not in plain
-    assert len(np.unique(result["steps"])) == 2
-    for speed in [-8.0, -60.0]:
-        drive = marine().replace({SPEED: speed})
-        run = cd.simulate(drive, **settings, record="link_tension", accuracy=1e-3, error=False)
-        variant = result.sel(speed=speed)
-        assert variant["error"] == ""
-        assert (
-            variant["link_tension"].to_numpy().tobytes() == run["link_tension"].to_numpy().tobytes()
-        )
-        assert variant["steps"] == run.attrs["steps"]
-        assert variant["steps"] != plain["steps"].sel(speed=speed)
-        assert variant["accuracy_error"] == run.attrs["accuracy_error"]
-        assert bool(variant["accuracy_kept"] == 1) == (run.attrs["accuracy_kept"] == "kept")
+    scales = [
+        2.0 * cd.simulate(drive, until=1e-5, method="auto", error=False).attrs["step"]
+        for drive in (marine().replace({path: value}) for value in stiffnesses)
+    ]
+    assert scales[0] > 1.5 * scales[1]
+    factors = result["step_chosen"].to_numpy() / scales
+    np.testing.assert_allclose(factors, factors[0], rtol=1e-12)
+
+
+def test_what_is_no_number_is_chosen_for_apart():
+    """Particles are stepped by Verlet and rigid links by implicit damping, each by its own trials."""
+    vary = {"chain.model": ["particles", "clearance-joints"], "chain.mass": [8e-3, 9e-3]}
+    drive = cd.scenes.bicycle()
+    result = cd.sweep(drive, vary, until=1e-4, every=1e-4, run_in=0, accuracy=0.05)
+    assert (result["error"] == "").all()
+    assert set(result.attrs["method"].split(", ")) == {"verlet", "implicit-damping"}
+    errors = result["accuracy_error"].to_numpy()
+    assert (errors[:, 0] == errors[:, 1]).all()
+    assert errors[0, 0] != errors[1, 0]
 
 
 def test_an_accuracy_that_is_not_reached_is_told():

@@ -119,7 +119,25 @@ pub fn execute<S: Sink>(
     sink: &mut S,
     onlooker: &dyn Onlooker,
 ) -> Result<Report, RunError<S::Error>> {
-    let chosen = choose(request, onlooker)?;
+    execute_by(None, request, sink, onlooker)
+}
+
+/// The choice of method and step that a request begins with, where it asks for an accuracy.
+pub(crate) fn choice(
+    request: &Request,
+    onlooker: &dyn Onlooker,
+) -> Result<Option<Choice>, RunError<Infallible>> {
+    Ok(choose(request, None, onlooker)?.provenance.choice)
+}
+
+/// Carries out a request by a choice that was made for a drive like this one, if there is one.
+pub(crate) fn execute_by<S: Sink>(
+    known: Option<&Choice>,
+    request: &Request,
+    sink: &mut S,
+    onlooker: &dyn Onlooker,
+) -> Result<Report, RunError<S::Error>> {
+    let chosen = choose(request, known, onlooker)?;
     let mut waiting = None;
     if chosen.provenance.run.run_in != RunIn::None {
         let simulation = chosen.simulation().map_err(not_begun)?;
@@ -404,7 +422,7 @@ impl Simulation {
         if request.run.run_in == RunIn::Usual {
             request.run.run_in = RunIn::None;
         }
-        let begun = set_off(&request, choose(&request, onlooker)?, onlooker)?;
+        let begun = set_off(&request, choose(&request, None, onlooker)?, onlooker)?;
         if !begun.simulation.has_samples_ahead() {
             return Ok(begun.simulation);
         }

@@ -4,6 +4,8 @@
 //! those of a run on its own, bit for bit, whatever the number of threads.
 
 mod account;
+mod blocks;
+mod choices;
 mod columns;
 mod design;
 mod dimension;
@@ -16,10 +18,14 @@ mod tally;
 mod texts;
 mod threads;
 
+use std::convert::Infallible;
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, OnceLock};
 
 pub use account::{Account, Entry, Quantity, Statistic};
+use blocks::Blocks;
+use choices::{Choices, Shared};
 pub use design::Recipe;
 pub use dimension::{Arrangement, Coordinate, Dimension, Setting};
 pub use report::Report;
@@ -121,8 +127,8 @@ pub enum SweepError {
     Intervals { path: String },
 
     /// The system refuses threads.
-    #[error("the threads cannot be started: {reason}; ask for fewer")]
-    Threads { reason: String },
+    #[error("the threads cannot be started: {0}; ask for fewer")]
+    Threads(#[from] std::io::Error),
 }
 
 /// How a variant ended.
@@ -185,6 +191,9 @@ pub struct Sweep {
     len: usize,
     /// Samples of the longest run among those that were looked at; 0 when no channel is kept.
     most_samples: usize,
+    /// Filled when somebody asks.
+    blocks: OnceLock<Arc<Blocks>>,
+    choices: Arc<Choices>,
 }
 
 /// Variants at most: at a second each they would take a week and a half.
@@ -297,11 +306,34 @@ impl Sweep {
         }
     }
 
+    fn blocks(&self) -> &Blocks {
+        self.blocks.get_or_init(|| Arc::new(Blocks::of(self)))
+    }
+
+    /// The choice of a variant's block, made if need be; none if that is stopped.
+    fn shared(&self, index: usize, stop: &AtomicBool) -> Option<Shared> {
+        let block = self.blocks().block(index);
+        let Ok(made) = self
+            .choices
+            .get(block, || Ok::<_, Infallible>(self.choose(block, stop)));
+        made
+    }
+
     /// Runs one variant on the calling thread, until it ends or `stop` is set.
     pub fn carry_out(&self, index: usize, stop: &AtomicBool) -> Outcome {
+        let made = self.shared(index, stop);
+        made.map_or(Outcome::Open, |shared| {
+            self.carry_out_by(&shared, index, stop)
+        })
+    }
+
+    /// The same by a choice.
+    fn carry_out_by(&self, shared: &Shared, index: usize, stop: &AtomicBool) -> Outcome {
         account::outcome(|| {
             let scene = self.variant(index).map_err(|error| error.to_string())?;
-            Account::attempt(&scene, &self.record, stop)
+            let request =
+                account::request(&scene, &self.record).map_err(|error| error.to_string())?;
+            Account::attempt(&request, shared.as_deref(), stop)
         })
     }
 
@@ -335,7 +367,7 @@ impl Sweep {
         let mut outcomes = vec![Outcome::Open; indices.len()];
         let (mut finished, mut go) = (0, Go::On);
         let carry_out = |index, stop: &AtomicBool| self.carry_out(index, stop);
-        let ended = on_threads(&indices, jobs, carry_out, |ended| {
+        on_threads(&indices, jobs, carry_out, |ended| {
             if let Some((index, outcome)) = ended {
                 finished += usize::from(outcome != Outcome::Open);
                 outcomes[index - first] = outcome;
@@ -347,9 +379,6 @@ impl Sweep {
                 });
             }
             go
-        });
-        ended.map_err(|error| SweepError::Threads {
-            reason: error.to_string(),
         })?;
         Ok(outcomes)
     }

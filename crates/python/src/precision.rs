@@ -27,6 +27,7 @@ pub(crate) fn work_precision<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let variant = |(method, step, tolerance, onset_depth): Wanted| {
         Ok(Variant {
+            factor: None,
             stepping: stepping(&method)?,
             step,
             tolerance,

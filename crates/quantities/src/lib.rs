@@ -27,7 +27,7 @@ mod unit;
 
 pub use quantity::*;
 pub use range::{ParameterError, Range, check};
-pub use reading::{CONTACT_STIFFNESS, Complaint, read_length, read_time};
+pub use reading::{CONTACT_STIFFNESS, Complaint, is_number, read_length, read_time};
 pub use schemars::JsonSchema;
 
 /// Hash of the sources of this crate, a part of the identity of a build.

@@ -42,6 +42,13 @@ pub fn read_length(text: &str) -> Result<f64, String> {
     read.map_err(|complaint| format!("{}; {}", complaint.message, complaint.hint))
 }
 
+/// Whether a text is a number, with a unit that a scene knows or without.
+pub fn is_number(text: &str) -> bool {
+    let text = text.trim();
+    let mut dimensions = DIMENSIONS.iter();
+    text.parse::<f64>().is_ok() || dimensions.any(|it| it.read(text, None).is_ok())
+}
+
 /// The dimension of an SI unit.
 fn in_unit(unit: &str) -> &'static Dimension {
     let found = DIMENSIONS.iter().find(|dimension| dimension.unit == unit);

@@ -49,9 +49,11 @@ impl Chosen {
     }
 }
 
-/// Assembles the drive, and chooses method and step where an accuracy is asked for.
+/// Assembles the drive, and chooses method and step where an accuracy is asked for: by what is known of a drive like this one, or by
+/// trials.
 pub(super) fn choose<E: std::error::Error>(
     request: &Request,
+    known: Option<&Choice>,
     onlooker: &dyn Onlooker,
 ) -> Result<Chosen, RunError<E>> {
     let watch = &|| onlooker.stop();
@@ -61,9 +63,14 @@ pub(super) fn choose<E: std::error::Error>(
     let start = assemble(&drive, watch).map_err(not_begun)?;
     let mut short_runs = ShortRuns::default();
     if let Some(accuracy) = request.accuracy {
-        let accuracy = (accuracy, request.accuracy_of);
-        let choice = choose_with(&mut short_runs, &start, &request.run, accuracy, watch);
-        let choice = choice.map_err(not_begun)?;
+        let choice = match known {
+            Some(known) => known.carried_over(&start, &request.run),
+            None => {
+                let accuracy = (accuracy, request.accuracy_of);
+                choose_with(&mut short_runs, &start, &request.run, accuracy, watch)
+                    .map_err(not_begun)?
+            }
+        };
         provenance.run = choice.run.clone();
         provenance.choice = Some(choice);
     }

@@ -87,6 +87,8 @@ pub struct Trial {
 pub struct Choice {
     /// The run with method, step and onset depth.
     pub run: Run,
+    /// Step over the time scale that limits the method; none where the method takes its own step.
+    pub factor: Option<f64>,
     /// Accuracy asked for \[–\].
     pub accuracy: f64,
     /// Bound of the error of the run chosen \[–\].
@@ -246,6 +248,7 @@ pub(crate) fn choose_with(
     };
     let mut choice = Choice {
         run: automatic,
+        factor: None,
         accuracy,
         error: f64::INFINITY,
         kept: false,
@@ -290,6 +293,7 @@ pub(crate) fn choose_with(
         if error < choice.error {
             choice.error = error;
             choice.run = candidate.run(run);
+            choice.factor = candidate.factor;
             choice.gap = found.and_then(|it| it.gap.clone());
         }
         if error <= accuracy {
@@ -393,6 +397,26 @@ fn beyond(difference: f64, spread: f64) -> f64 {
 }
 
 impl Choice {
+    /// The choice for another drive like the one that it was made for: the same method, and as long a step beside the time scale of this
+    /// drive. Its error is that found on the other.
+    pub(crate) fn carried_over(&self, start: &Assembled, run: &Run) -> Self {
+        let Run {
+            stepping,
+            onset_depth,
+            ..
+        } = self.run;
+        let step = |factor: f64| factor * stepping.time_scale(&start.system);
+        Self {
+            run: Run {
+                stepping,
+                step: self.factor.map(step),
+                onset_depth,
+                ..run.clone()
+            },
+            ..self.clone()
+        }
+    }
+
     /// The short runs that were left to the estimate of the run, taken again: a run that is carried on tells what it
     /// would have told.
     ///

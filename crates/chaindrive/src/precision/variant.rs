@@ -13,6 +13,8 @@ pub struct Variant {
     pub stepping: Stepping,
     /// Step, or longest step of a method with error control \[s\].
     pub step: Option<f64>,
+    /// A fixed step over the time scale that limits the method \[–\].
+    pub factor: Option<f64>,
     /// Relative tolerance of a method with error control \[–\].
     pub tolerance: Option<f64>,
     /// Deepest first penetration \[m\], where steps are rejected for it.
@@ -66,6 +68,7 @@ fn fixed(start: &Assembled, stepping: Stepping, factor: f64, onset_depth: Option
     Variant {
         stepping,
         step: Some(factor * scale),
+        factor: Some(factor),
         tolerance: None,
         onset_depth,
     }
@@ -76,6 +79,7 @@ fn adaptive(start: &Assembled, tolerance: f64, onset_depth: f64) -> Variant {
         stepping: Stepping::DormandPrince,
         // Longer steps would run over contacts before the error control sees them.
         step: Some(start.system.time_scale()),
+        factor: None,
         tolerance: Some(tolerance),
         onset_depth: Some(onset_depth),
     }

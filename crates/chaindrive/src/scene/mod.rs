@@ -82,6 +82,7 @@ pub use presets::presets;
 pub use schema::RunDefaults;
 
 pub use accuracy::{ACCURACY, Quantity};
+pub(crate) use chaindrive_quantities::is_number;
 pub use chaindrive_quantities::{read_length, read_time};
 pub use resolve::chain_named;
 pub use run_in::RunIn;

@@ -8,13 +8,14 @@ use chaindrive_mechanics::EventKinds;
 use super::Outcome;
 use crate::channel::labels;
 use crate::event::EventTable;
+use crate::execute::execute_by;
 use crate::precision::{Choice, Promise};
 use crate::record::Provenance;
 use crate::summary::{ContactStatistics, ImpactStatistics, SpanStatistics, Steadiness};
 use crate::verdict::WrittenVerdict;
 use crate::{
-    Channel, End, Recording, Report, Request, RunError, Scene, Settings, Simulation,
-    SimulationError, Sink, Stepping, Stop, Summary, execute,
+    Channel, End, Recording, Report, Request, RequestError, RunError, Scene, Settings, Simulation,
+    SimulationError, Sink, Stepping, Stop, Summary,
 };
 
 macro_rules! statistics {
@@ -86,8 +87,9 @@ statistics! {
     ContactPeakMean, "contact_peak_mean", "N", Some(KIND), "mean of the largest forces of the contacts logged";
     ContactPeakMax, "contact_peak_max", "N", Some(KIND), "largest force of the contacts logged";
     ContactDuration, "contact_duration", "s", Some(KIND), "sum of the durations of the contacts logged";
-    AccuracyError, "accuracy_error", "1", None, "bound of the error found while method and step were chosen for an accuracy";
+    AccuracyError, "accuracy_error", "1", None, "bound of the error found when method and step were chosen for an accuracy, on one of up to 32 variants that are alike";
     AccuracyKept, "accuracy_kept", "1", None, "1 where the accuracy asked for is kept, 0 where no method on the list keeps it";
+    StepChosen, "step_chosen", "s", None, "step that was chosen for an accuracy; NaN where the method takes its own";
     Samples, "samples", "1", None, "number of samples";
     Steps, "steps", "1", None, "number of steps";
     Rejections, "rejections", "1", None, "number of steps that were rejected";
@@ -111,7 +113,10 @@ impl Statistic {
 
     /// Whether it belongs to an accuracy that has to be asked for.
     pub fn is_of_a_choice(self) -> bool {
-        matches!(self, Self::AccuracyError | Self::AccuracyKept)
+        matches!(
+            self,
+            Self::AccuracyError | Self::AccuracyKept | Self::StepChosen
+        )
     }
 
     /// Whether it is a measurement of the machine: all others are the same with every run.
@@ -169,6 +174,7 @@ impl Statistic {
                 Some(choice) if choice.promise != Promise::Nothing => f64::from(choice.kept),
                 _ => f64::NAN,
             },
+            Self::StepChosen => choice.and_then(|it| it.run.step).unwrap_or(f64::NAN),
             Self::Samples => summary.samples as f64,
             Self::Steps => counts.steps as f64,
             Self::Rejections => {
@@ -322,36 +328,63 @@ pub(super) fn outcome(attempt: impl FnOnce() -> Result<Option<Account>, String>)
     }
 }
 
+/// A scene as it suggests to be run, with channels of these names.
+pub(super) fn request(scene: &Scene, record: &[String]) -> Result<Request, RequestError> {
+    let request = Request::new(scene, &Settings::default())?.without_estimate();
+    Ok(Request {
+        record: record.to_vec(),
+        ..request
+    })
+}
+
+/// Whether a run failed for its method or step, so that others might have carried it through.
+fn is_of_the_step(error: &RunError<SimulationError>) -> bool {
+    let (RunError::Start(error) | RunError::Sink(error)) = error else {
+        return false;
+    };
+    matches!(
+        error,
+        SimulationError::Integration(_)
+            | SimulationError::NotFinite { .. }
+            | SimulationError::Implicit { .. }
+            | SimulationError::Setting { .. }
+    )
+}
+
 impl Account {
-    /// Runs a scene as it suggests: the account, with the channels of these names, `None` if it was told to
-    /// stop, or what went wrong.
+    /// Carries out a request by the choice of its block: the account, `None` if it was told to stop, or what went wrong. A variant
+    /// that refuses the choice makes its own.
     pub(super) fn attempt(
-        scene: &Scene,
-        record: &[String],
+        request: &Request,
+        shared: Option<&Choice>,
         stop: &AtomicBool,
     ) -> Result<Option<Self>, String> {
-        // Trials only where they are asked for: in every variant they would double the cost of short ones.
-        let request = Request::new(scene, &Settings::default())
-            .map_err(|error| error.to_string())?
-            .with_default_step()
-            .without_estimate();
-        let request = Request {
-            record: record.to_vec(),
-            ..request
-        };
+        let mut tried = Self::run(request, shared, stop);
+        if shared.is_some() && tried.as_ref().is_err_and(is_of_the_step) {
+            tried = Self::run(request, None, stop);
+        }
+        match tried {
+            Ok(account) => Ok(Some(account)),
+            Err(RunError::Interrupted) => Ok(None),
+            Err(error) => Err(error.to_string()),
+        }
+    }
+
+    fn run(
+        request: &Request,
+        shared: Option<&Choice>,
+        stop: &AtomicBool,
+    ) -> Result<Self, RunError<SimulationError>> {
         let mut memory = Kept {
-            wanted: !record.is_empty(),
+            wanted: !request.record.is_empty(),
             ..Kept::default()
         };
         let stopped = || stop.load(Ordering::Relaxed);
-        match execute(&request, &mut memory, &stopped) {
-            Ok(report) => match &report.stop {
-                Stop::End => Ok(Some(Self::close(&report, memory.recording))),
-                Stop::Interrupted => Ok(None),
-                Stop::Failed(error) => Err(error.to_string()),
-            },
-            Err(RunError::Interrupted) => Ok(None),
-            Err(error) => Err(error.to_string()),
+        let report = execute_by(shared, request, &mut memory, &stopped)?;
+        match report.stop {
+            Stop::End => Ok(Self::close(&report, memory.recording)),
+            Stop::Interrupted => Err(RunError::Interrupted),
+            Stop::Failed(error) => Err(RunError::Start(error)),
         }
     }
 
@@ -411,6 +444,38 @@ impl Account {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::execute::choice;
+
+    /// A step a thousand times too long is refused at the start, and the variant is as if nobody had chosen for it.
+    #[test]
+    fn a_variant_that_refuses_a_choice_makes_its_own() {
+        let scene = Scene::preset("marine_two_sprockets").unwrap();
+        let short = [("run.until", "1 ms"), ("run.run_in", "0 s")];
+        let scene = short.iter().fold(scene, |scene, (path, value)| {
+            scene.replace(path, value).unwrap()
+        });
+        let request = request(&scene, &["link_tension".to_owned()]).unwrap();
+        let never = AtomicBool::new(false);
+        let own = Account::attempt(&request, None, &never).unwrap().unwrap();
+        let mut choice = choice(&request, &|| false).unwrap().unwrap();
+        choice.factor = choice.factor.map(|factor| 1e3 * factor);
+        let refused = Account::run(&request, Some(&choice), &never).unwrap_err();
+        assert!(is_of_the_step(&refused), "{refused}");
+        let again = Account::attempt(&request, Some(&choice), &never)
+            .unwrap()
+            .unwrap();
+        let measured = |it: &&Entry| matches!(it.quantity, Quantity::Statistic(statistic) if statistic.is_measured());
+        for (one, other) in own.entries.iter().zip(&again.entries) {
+            let bits = |entry: &Entry| {
+                entry
+                    .values
+                    .iter()
+                    .map(|it| it.to_bits())
+                    .collect::<Vec<_>>()
+            };
+            assert!(measured(&one) || bits(one) == bits(other), "{one:?}");
+        }
+    }
 
     #[test]
     fn a_panic_is_an_outcome() {

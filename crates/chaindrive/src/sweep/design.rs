@@ -1,6 +1,7 @@
 //! The points of a sweep: combinations of values, or rows of a table.
 
 use std::collections::HashMap;
+use std::sync::{Arc, OnceLock};
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
@@ -139,6 +140,8 @@ impl Sweep {
             record: record.to_vec(),
             len,
             most_samples,
+            blocks: OnceLock::new(),
+            choices: Arc::default(),
         };
         sweep.check_some()?;
         Ok(sweep)
@@ -202,6 +205,8 @@ impl Sweep {
             record: recipe.record,
             len,
             most_samples: 0,
+            blocks: OnceLock::new(),
+            choices: Arc::default(),
         })
     }
 

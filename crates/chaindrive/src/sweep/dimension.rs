@@ -8,7 +8,7 @@ use super::texts::TEXTS;
 use super::{MOST, Quantity, Statistic, SweepError, VARIANT};
 use crate::Axis;
 use crate::Channel;
-use crate::scene::{Datum, Scene, SceneError};
+use crate::scene::{Datum, Scene, SceneError, is_number};
 
 /// How the values of several paths become variants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -99,8 +99,17 @@ impl Setting {
         }
     }
 
+    /// Whether it is a number, with a unit or without.
+    pub(super) fn is_number(&self) -> bool {
+        match self {
+            Self::Json(Json::Number(_)) => true,
+            Self::Text(text) | Self::Json(Json::String(text)) => is_number(text),
+            Self::Json(_) => false,
+        }
+    }
+
     /// As it was written.
-    fn text(&self) -> String {
+    pub(super) fn text(&self) -> String {
         match self {
             Self::Text(text) | Self::Json(Json::String(text)) => text.trim().to_owned(),
             Self::Json(json) => json.to_string(),

@@ -1,8 +1,9 @@
 //! A timed sample of variants: how many of them make a task.
 
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use super::threads::cores;
+use super::threads::{cores, on_threads};
 use super::{Account, Go, Outcome, Sweep, SweepError};
 
 /// Wall time of a task: 0.5 to 5 s are short beside a sweep, and long beside the writing of some forty files.
@@ -61,27 +62,36 @@ impl Sweep {
         let (mut timed, mut spent) = (0_u32, Duration::ZERO);
         for number in 0..count {
             let index = number * self.len() / count;
-            let begin = Instant::now();
-            let outcome = self.run_some(index..index + 1, Some(1), |_| {
-                if watch() == Go::NoFurther {
-                    sample.stopped = true;
-                }
-                if sample.stopped || begin.elapsed() > PATIENCE {
+            let mut look = |most: Duration, begin: Instant| {
+                sample.stopped |= watch() == Go::NoFurther;
+                if sample.stopped || begin.elapsed() > most {
                     Go::NoFurther
                 } else {
                     Go::On
                 }
+            };
+            // Outside of the time that is taken: it serves all variants of its block.
+            let begin = Instant::now();
+            let choose = |index, stop: &AtomicBool| drop(self.shared(index, stop));
+            let go = on_threads(&[index], Some(1), choose, |_| look(Duration::MAX, begin))?;
+            if go == Go::NoFurther {
+                break;
+            }
+            let begin = Instant::now();
+            let carry_out = |index, stop: &AtomicBool| self.carry_out(index, stop);
+            on_threads(&[index], Some(1), carry_out, |ended| {
+                if let (0, Some((_, outcome))) = (number, ended) {
+                    sample.first = outcome;
+                }
+                look(PATIENCE, begin)
             })?;
             timed += 1;
             spent += begin.elapsed();
-            if number == 0 {
-                sample.first = outcome.into_iter().next().unwrap_or_default();
-            }
             if sample.stopped || spent > ENOUGH {
                 break;
             }
         }
-        let each = (spent / timed).as_secs_f64().max(1e-6);
+        let each = (spent / timed.max(1)).as_secs_f64().max(1e-6);
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,

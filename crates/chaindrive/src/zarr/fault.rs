@@ -4,6 +4,8 @@ use zarrs::array::{ArrayCreateError, ArrayError};
 use zarrs::group::GroupCreateError;
 use zarrs::storage::{StorageError, StoreKeyError};
 
+use crate::seal::SealError;
+
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Fault {
     #[error(transparent)]
@@ -22,4 +24,6 @@ pub(crate) enum Fault {
     Io(#[from] std::io::Error),
     #[error(transparent)]
     Json(#[from] serde_json::Error),
+    #[error(transparent)]
+    Seal(#[from] SealError),
 }

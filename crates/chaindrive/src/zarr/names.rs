@@ -21,5 +21,8 @@ pub(crate) const LAYOUT: &str = "layout.json";
 /// Lock of the layout.
 const LOCK: &str = "layout.lock";
 
-/// Files of a sweep beside its arrays.
-pub(crate) const OF_SWEEPS: [&str; 3] = [RECIPE, LAYOUT, LOCK];
+/// Folder of the choices of method and step that a sweep has made.
+pub(crate) const CHOICES: &str = "choices";
+
+/// Files of a sweep beside its arrays, and a folder of them.
+pub(crate) const OF_SWEEPS: [&str; 4] = [RECIPE, LAYOUT, LOCK, CHOICES];

@@ -61,9 +61,9 @@ pub(crate) fn clear(
     if is_ours && !names.contains(GROUP) {
         // Begun, and not laid out: nobody has listed the arrays, but they look like arrays.
         let part = |key: &String| {
-            let rest = key.split_once('/').map_or("", |(_, rest)| rest);
+            let (name, rest) = key.split_once('/').unwrap_or((key, ""));
             key == IDENTITY
-                || OF_SWEEPS.contains(&key.as_str())
+                || OF_SWEEPS.contains(&name)
                 || rest == GROUP
                 || rest == "c"
                 || rest.starts_with("c/")

@@ -31,10 +31,10 @@ Values of --vary:
   Commas and dots in quotes or brackets belong to a value: --vary \"gravity=[0, 0],[0, -9.81]\"
 
 Method and step:
-  Without a named method `chaindrive run` chooses its step for an accuracy of 1%.
-  There a sweep takes the default step: trials in every variant would double the cost of short ones.
-  With --accuracy 1% every variant chooses for itself, as its run would; accuracy_error and
-  accuracy_kept in the result say what came of it.
+  Without a named method they are chosen for an accuracy, as in a run: of 1% unless --accuracy says otherwise.
+  Steps are tried once for up to 32 variants that differ in numbers only; each takes the step that suits its own
+  time scale. accuracy_error, accuracy_kept and step_chosen in the result say what came of it.
+  --method auto takes the default step instead.
 
 Results in a store:
   Every task of about a second writes its part of the store. A sweep that was stopped or killed goes on
@@ -47,15 +47,9 @@ Exit codes:
   3    the result could not be written
   130  interrupted; the result keeps the variants that were finished and says so";
 
-/// Unlike a run, a sweep has none unless it is asked for.
-const ACCURACY: &str = "\
-Largest relative error of the tension, such as 1%: every variant chooses method, step and onset depth for it, as its \
-run would. None unless given here or in the scene: then every variant takes the method and step of the scene, or the \
-default ones";
-
 /// Simulates variants of a scene on all cores; keeps statistics of each, and channels where asked for.
 #[derive(Debug, Args)]
-#[command(after_help = VALUES, mut_arg("accuracy", |it| it.help(ACCURACY)))]
+#[command(after_help = VALUES)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,

@@ -94,6 +94,12 @@ impl SweepStore {
         let attributes = attributes(sweep, &layout, open, &Ending::None);
         store.tell(attributes, arrays.clone(), &Ending::None)?;
         let worker = Worker::on(store.storage().clone(), store.path())?;
+        // What the sample had to choose serves the sweep.
+        let kept = sweep.choices.made().into_iter();
+        let kept: Result<(), Fault> = kept
+            .map(|(block, choice)| worker.keep(block, &choice))
+            .collect();
+        kept.map_err(|fault| store.fault(fault))?;
         let mut begun = Self {
             store,
             sweep: sweep.clone(),

@@ -10,10 +10,13 @@ use serde_json::Map;
 use zarrs::storage::{Bytes, StoreKey};
 
 use super::{Arrays, MARK, Storage, blank, every_chunk, texts_before_the_mark};
+use crate::precision::Choice;
+use crate::seal::{opened, sealed};
+use crate::sweep::choices::Shared;
 use crate::sweep::layout::{Layout, Region};
 use crate::sweep::{Account, Entry, OPEN, Outcome, Quantity, Recipe, Sweep, TEXTS, fill, texts};
 use crate::verdict::WrittenVerdict;
-use crate::zarr::{self, Fault, Folder, Ground, LAYOUT, Objects, RECIPE, WriteError};
+use crate::zarr::{self, CHOICES, Fault, Folder, Ground, LAYOUT, Objects, RECIPE, WriteError};
 
 /// Counts of a task that is stored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -120,7 +123,10 @@ impl Worker {
         }
         let mut outcomes = Vec::new();
         for (variant, _) in layout.region(task).variants {
-            let outcome = self.sweep.carry_out(variant, stop);
+            let Some(shared) = self.choice(variant, stop).map_err(named)? else {
+                return Ok(None);
+            };
+            let outcome = self.sweep.carry_out_by(&shared, variant, stop);
             if outcome == Outcome::Open {
                 return Ok(None);
             }
@@ -128,6 +134,30 @@ impl Worker {
         }
         self.store(task, &outcomes)?;
         Ok(Some(count(outcomes.iter())))
+    }
+
+    /// The choice of a variant's block, from the store or by trials whose result goes there; none if they are stopped. Workers
+    /// that make the same choice at the same time put the same bytes.
+    fn choice(&self, variant: usize, stop: &AtomicBool) -> Result<Option<Shared>, Fault> {
+        let block = self.sweep.blocks().block(variant);
+        self.sweep.choices.get(block, || {
+            if let Some(bytes) = self.storage.read(&key_of(block)?)? {
+                return Ok(Some(Some(Arc::new(opened(&bytes)?))));
+            }
+            let made = self.sweep.choose(block, stop);
+            if let Some(Some(choice)) = &made {
+                self.keep(block, choice)?;
+            }
+            Ok(made)
+        })
+    }
+
+    /// Puts a choice into the store, unless another one has taken the place.
+    pub(super) fn keep(&self, block: usize, choice: &Choice) -> Result<(), Fault> {
+        match self.storage.missing() {
+            None => Ok(self.storage.put(&key_of(block)?, &sealed(choice))?),
+            Some(_) => Err(std::io::Error::from(std::io::ErrorKind::NotFound).into()),
+        }
     }
 
     /// Stores the outcomes of all variants of a task, in their order.
@@ -364,6 +394,11 @@ fn count<'a>(outcomes: impl Iterator<Item = &'a Outcome>) -> Finished {
         }
     }
     finished
+}
+
+/// Name of the file with the choice of a block.
+fn key_of(block: usize) -> Result<StoreKey, Fault> {
+    Ok(StoreKey::new(format!("{CHOICES}/{block}"))?)
 }
 
 /// A file of the store, if it is there.
