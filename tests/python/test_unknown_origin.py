@@ -282,5 +282,5 @@ def test_thousands_of_damaged_files(tmp_path: Path) -> None:
 
 def test_a_tiny_restitution_is_refused() -> None:
     """A contact that returns nothing is stiffer than any step: runs did not come back from it."""
-    with pytest.raises(cd.SceneError, match=r"\[1e-6, 1\]"):
+    with pytest.raises(cd.SceneError, match="at least 1e-6"):
         cd.scenes.industrial_16b().replace({"contact.teeth.restitution": 8e-13})

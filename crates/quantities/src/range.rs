@@ -36,18 +36,18 @@ impl Range<'_> {
             if least == 0.0 {
                 "positive".to_owned()
             } else {
-                format!("more than {least}")
+                format!("more than {}", plain(least))
             }
         } else if let Some(least) = limit("minimum").filter(|least| value < *least) {
             if least == 0.0 {
                 "not negative".to_owned()
             } else {
-                format!("at least {least}")
+                format!("at least {}", plain(least))
             }
         } else if let Some(most) = limit("exclusiveMaximum").filter(|most| value >= *most) {
-            format!("less than {most}")
+            format!("less than {}", plain(most))
         } else if let Some(most) = limit("maximum").filter(|most| value > *most) {
-            format!("at most {most}")
+            format!("at most {}", plain(most))
         } else if value.is_finite() {
             return None;
         } else {
@@ -56,6 +56,15 @@ impl Range<'_> {
         let unit = self.0.get("x-unit").and_then(Value::as_str);
         let unit = unit.filter(|unit| *unit != "1");
         Some(unit.map_or(words.clone(), |unit| format!("{words} [{unit}]")))
+    }
+}
+
+/// A limit in few digits: 1e-6, not 0.000001.
+fn plain(limit: f64) -> String {
+    if limit.abs() < 1e-3 && limit != 0.0 {
+        format!("{limit:e}")
+    } else {
+        limit.to_string()
     }
 }
 

@@ -72,6 +72,9 @@ impl Dimension {
     }
 
     /// Reads a number and a unit into SI; `exponent` is the n of a power law, where known.
+    ///
+    /// # Errors
+    /// What is wrong with the text, and what to write.
     pub fn read(&self, text: &str, exponent: Option<f64>) -> Result<f64, Complaint> {
         let text = text.trim();
         let complain = |message: String, hint: String| Complaint { message, hint };
@@ -99,7 +102,12 @@ impl Dimension {
                     format!("{}, or the bare number {number} [{}]", such_as(), self.unit),
                 ));
             }
-            unit::parse("").expect("no unit at all is a pure number")
+            // No unit at all is a pure number.
+            Unit {
+                decade: 0,
+                factor: 1.0,
+                powers: Powers::default(),
+            }
         } else {
             unit::parse(rest).or_else(|problem| {
                 let ways = self.meant(rest, &problem, exponent);

@@ -41,7 +41,7 @@ pub use johnson::Johnson;
 use logarithmic::Logarithmic;
 pub use power::Power;
 pub use radzimovsky::Radzimovsky;
-pub use specification::{Linear, Spheres, Surfaces};
+pub use specification::{Given, Linear, Spheres, Surfaces};
 pub(crate) use stack::Stack;
 
 use chaindrive_quantities::{JsonSchema, check};
@@ -157,12 +157,12 @@ macro_rules! family {
 
         impl Specification {
             /// The law where its own curve is specified, otherwise which law of which bodies.
-            pub fn curve(self) -> Result<Elastic, (CylinderLaw, Surfaces)> {
+            pub fn given(self) -> Given {
                 match self {
-                    Self::Linear(Linear { stiffness }) => Ok(Power::linear(stiffness).into()),
-                    $(Self::$curve(law) => Ok(law.into()),)*
-                    Self::Hertz(bodies) => Err((CylinderLaw::Hertz, bodies.into())),
-                    $(Self::$law(bodies) => Err((CylinderLaw::$law, bodies)),)*
+                    Self::Linear(Linear { stiffness }) => Given::Curve(Power::linear(stiffness).into()),
+                    $(Self::$curve(law) => Given::Curve(law.into()),)*
+                    Self::Hertz(bodies) => Given::Bodies(CylinderLaw::Hertz, bodies.into()),
+                    $(Self::$law(bodies) => Given::Bodies(CylinderLaw::$law, bodies),)*
                 }
             }
         }

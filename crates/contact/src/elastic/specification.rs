@@ -3,6 +3,17 @@
 use chaindrive_quantities::{JsonSchema, Length, Pressure, Ratio, Stiffness};
 use serde::{Deserialize, Serialize};
 
+use super::{CylinderLaw, Elastic};
+
+/// What a specification gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Given {
+    /// A law by its own parameters.
+    Curve(Elastic),
+    /// Bodies that touch, and the law that they are to make.
+    Bodies(CylinderLaw, Surfaces),
+}
+
 /// A spring.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

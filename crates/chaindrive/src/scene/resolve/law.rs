@@ -1,7 +1,7 @@
 //! Elastic laws: what a scene says, completed by the surfaces that touch.
 
 use chaindrive_contact::elastic::{
-    CylinderLaw, Cylinders, Johnson, Power, Specification, Surfaces,
+    CylinderLaw, Cylinders, Given, Johnson, Power, Specification, Surfaces,
 };
 use chaindrive_contact::{Elastic, Elasticity, ParameterError};
 use chaindrive_quantities::check;
@@ -70,9 +70,9 @@ pub(super) fn elastic(
 ) -> Option<Elastic> {
     let keys = findings.completed(law.keys.clone(), "Elastic", path);
     let law: Specification = findings.read(keys, path, check)?;
-    match law.curve() {
-        Ok(law) => Some(law),
-        Err((CylinderLaw::Hertz, bodies)) => {
+    match law.given() {
+        Given::Curve(law) => Some(law),
+        Given::Bodies(CylinderLaw::Hertz, bodies) => {
             let Sides {
                 radius,
                 other,
@@ -81,7 +81,7 @@ pub(super) fn elastic(
             let other = other.unwrap_or(f64::INFINITY);
             Some(Power::hertz_pair(radius, other, modulus).into())
         }
-        Err((kind, bodies)) => cylinders(kind, &bodies, pair, path, findings),
+        Given::Bodies(kind, bodies) => cylinders(kind, &bodies, pair, path, findings),
     }
 }
 
