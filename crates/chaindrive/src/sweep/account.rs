@@ -89,7 +89,7 @@ statistics! {
     ContactDuration, "contact_duration", "s", Some(KIND), "sum of the durations of the contacts logged";
     AccuracyError, "accuracy_error", "1", None, "bound of the error found when method and step were chosen for an accuracy, on one of up to 32 variants that are alike";
     AccuracyKept, "accuracy_kept", "1", None, "1 where the accuracy asked for is kept, 0 where no method on the list keeps it";
-    StepChosen, "step_chosen", "s", None, "step that was chosen for an accuracy; NaN where the method takes its own";
+    StepChosen, "step_chosen", "s", None, "step of the method that was chosen for an accuracy";
     Samples, "samples", "1", None, "number of samples";
     Steps, "steps", "1", None, "number of steps";
     Rejections, "rejections", "1", None, "number of steps that were rejected";
@@ -174,7 +174,7 @@ impl Statistic {
                 Some(choice) if choice.promise != Promise::Nothing => f64::from(choice.kept),
                 _ => f64::NAN,
             },
-            Self::StepChosen => choice.and_then(|it| it.run.step).unwrap_or(f64::NAN),
+            Self::StepChosen => simulation.method().step(),
             Self::Samples => summary.samples as f64,
             Self::Steps => counts.steps as f64,
             Self::Rejections => {
@@ -446,7 +446,7 @@ mod tests {
     use super::*;
     use crate::execute::choice;
 
-    /// A step a thousand times too long is refused at the start, and the variant is as if nobody had chosen for it.
+    /// Particles solve no equations of an implicit step: the variant is as if nobody had chosen for it.
     #[test]
     fn a_variant_that_refuses_a_choice_makes_its_own() {
         let scene = Scene::preset("marine_two_sprockets").unwrap();
@@ -458,7 +458,7 @@ mod tests {
         let never = AtomicBool::new(false);
         let own = Account::attempt(&request, None, &never).unwrap().unwrap();
         let mut choice = choice(&request, &|| false).unwrap().unwrap();
-        choice.factor = choice.factor.map(|factor| 1e3 * factor);
+        choice.run.stepping = Stepping::GeneralizedAlpha;
         let refused = Account::run(&request, Some(&choice), &never).unwrap_err();
         assert!(is_of_the_step(&refused), "{refused}");
         let again = Account::attempt(&request, Some(&choice), &never)

@@ -202,7 +202,7 @@ fn a_variant_that_fails_leaves_a_message_and_the_others() -> Checked {
     assert_eq!(texts("verdict"), ["caution", "", "", ""]);
     assert_eq!(
         texts("reasons"),
-        ["statistics-unknown not-estimated", "", "", ""]
+        ["too-short statistics-unknown not-estimated", "", "", ""]
     );
     for it in &stacked.quantities {
         let mut blocks = it.values.chunks(it.values.len() / 4);

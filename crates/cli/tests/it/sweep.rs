@@ -258,13 +258,13 @@ fn a_named_method_goes_before_the_accuracy_of_the_scene() {
 }
 
 #[test]
-fn the_help_says_that_a_sweep_has_no_accuracy_of_its_own() {
+fn the_help_says_that_a_choice_serves_many_variants() {
     let (code, out, _) = sweep(Path::new("."), &["--help"]);
     assert_eq!(code, 0);
     let out = out.split_whitespace().collect::<Vec<_>>().join(" ");
     for words in [
-        "There a sweep takes the default step",
-        "None unless given here",
+        "tried once for up to 32 variants",
+        "--method auto takes the default step",
     ] {
         assert!(out.contains(words), "{words}: {out}");
     }
