@@ -99,7 +99,7 @@ def test_one_choice_serves_the_variants_that_are_alike(asked):
 
 
 def test_what_is_no_number_is_chosen_for_apart():
-    """Particles are stepped by Verlet and rigid links by implicit damping, each by its own trials."""
+    """Particles are stepped by Verlet, rigid links by implicit damping, each by its own trials."""
     vary = {"chain.model": ["particles", "clearance-joints"], "route.phase": [0.4, 0.5]}
     drive = cd.scenes.bicycle()
     result = cd.sweep(drive, vary, until=1e-4, every=1e-4, run_in=0, accuracy=0.05)

@@ -63,13 +63,12 @@ pub(super) fn choose<E: std::error::Error>(
     let start = assemble(&drive, watch).map_err(not_begun)?;
     let mut short_runs = ShortRuns::default();
     if let Some(accuracy) = request.accuracy {
-        let choice = match known {
-            Some(known) => known.carried_over(&start, &request.run),
-            None => {
-                let accuracy = (accuracy, request.accuracy_of);
-                choose_with(&mut short_runs, &start, &request.run, accuracy, watch)
-                    .map_err(not_begun)?
-            }
+        let choice = if let Some(known) = known {
+            known.carried_over(&start, &request.run)
+        } else {
+            let accuracy = (accuracy, request.accuracy_of);
+            let made = choose_with(&mut short_runs, &start, &request.run, accuracy, watch);
+            made.map_err(not_begun)?
         };
         provenance.run = choice.run.clone();
         provenance.choice = Some(choice);

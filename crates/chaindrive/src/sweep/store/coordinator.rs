@@ -95,10 +95,8 @@ impl SweepStore {
         store.tell(attributes, arrays.clone(), &Ending::None)?;
         let worker = Worker::on(store.storage().clone(), store.path())?;
         // What the sample had to choose serves the sweep.
-        let kept = sweep.choices.made().into_iter();
-        let kept: Result<(), Fault> = kept
-            .map(|(block, choice)| worker.keep(block, &choice))
-            .collect();
+        let mut made = sweep.choices.made().into_iter();
+        let kept = made.try_for_each(|(block, choice)| worker.keep(block, &choice));
         kept.map_err(|fault| store.fault(fault))?;
         let mut begun = Self {
             store,
