@@ -48,7 +48,7 @@ impl Johnson {
     /// D = 4 (R_hole − R_pin)
     /// ```
     ///
-    /// A pin without clearance gives D ≤ 0, which [`check`](super::ElasticLaw::check) refuses.
+    /// A pin without clearance gives D ≤ 0, which [`check`](super::Elastic::check) refuses.
     pub fn internal(hole: f64, pin: f64, length: f64, composite_modulus: f64) -> Self {
         Self {
             // D = 4 (R_hole − R_pin)
