@@ -7,6 +7,7 @@
 
 pub(crate) mod chain;
 mod held_end;
+mod kernel;
 mod laid;
 pub(crate) mod links;
 mod makeup;

@@ -1,6 +1,6 @@
 //! A bush chain of strands side by side: point masses at common pins, plates that share the load, bushes that turn with their links.
 //!
-//! Where the pins are and what meets them is as in the particle chain, which stands inside with all strands together as its links.
+//! A particle chain stands inside. It has the pins and their contacts, and all strands together as its links.
 
 mod bushes;
 pub(crate) mod model;
@@ -9,9 +9,10 @@ mod statics;
 
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Array, Moment};
-use pulp::{Simd, WithSimd};
+use pulp::Simd;
 use serde::{Deserialize, Serialize};
 
+use super::kernel::Kernel;
 use super::makeup::Makeup;
 use super::particles::{Particles, Turning, articulation};
 use super::series::Series;
@@ -56,38 +57,6 @@ impl Strands {
             across: (1.0 + lever) * (1.0 + lever) + lever * lever,
             chain,
         }
-    }
-
-    #[inline(always)]
-    fn forces<S: Simd>(
-        &self,
-        w: Wide<S>,
-        around: Surroundings<'_>,
-        at: Moment<'_>,
-        a: &mut [f64],
-        rates: &mut [f64],
-        (loads, work): (&mut Loads, &mut Work),
-    ) {
-        let Self { chain, pack, .. } = self;
-        let Work {
-            joints,
-            turning,
-            spin,
-        } = work;
-        let links = &chain.links;
-        let gravity = [around.bodies.gravity.x, around.bodies.gravity.y];
-        let mut bushes = chain.view(at, around.prediction, a);
-        rates[Flow::LinkLoss as usize] +=
-            links.act_by::<S, true>(w, pack, &mut bushes, gravity, turning);
-        self.spin(turning, around.contacts, loads, spin);
-        if let Some(resisting) = &chain.series.joints {
-            let found = (&mut *turning, &mut joints.resistance);
-            rates[Flow::ArticulationLoss as usize] +=
-                articulation::act(resisting, w, at.t, links, found, &mut bushes);
-        }
-        bushes.spin = spin;
-        chain.meet(w, around, at.t, &mut bushes, rates, loads);
-        self.turn(turning, around.contacts, loads, a);
     }
 
     /// Tensions of all strands of a link \[N\].
@@ -140,14 +109,7 @@ impl Makeup for Strands {
         loads: &mut Loads,
         work: &mut Work,
     ) {
-        self.chain.series.registers.dispatch(Forces {
-            chain: self,
-            around,
-            at,
-            a: &mut *a,
-            rates: &mut *rates,
-            found: (loads, &mut *work),
-        });
+        self.dispatch(around, at, a, rates, (loads, work));
         let pull = |link, pins| self.pack.tension(&self.chain.links, link, pins);
         let joints = (&work.turning, &work.joints.resistance);
         let gravity = around.bodies.gravity;
@@ -199,30 +161,36 @@ impl Makeup for Strands {
     }
 }
 
-/// The kernels as one call, compiled for every kind of processor.
-struct Forces<'a> {
-    chain: &'a Strands,
-    around: Surroundings<'a>,
-    at: Moment<'a>,
-    a: &'a mut [f64],
-    rates: &'a mut [f64],
-    found: (&'a mut Loads, &'a mut Work),
-}
-
-impl WithSimd for Forces<'_> {
-    type Output = ();
-
-    // A call that is not inlined would be compiled for the oldest processor only.
+impl Kernel for Strands {
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Self {
-            chain,
-            around,
-            at,
-            a,
-            rates,
-            found,
-        } = self;
-        chain.forces(Wide(simd), around, at, a, rates, found);
+    fn forces<S: Simd>(
+        &self,
+        w: Wide<S>,
+        around: Surroundings<'_>,
+        at: Moment<'_>,
+        a: &mut [f64],
+        rates: &mut [f64],
+        (loads, work): (&mut Loads, &mut Work),
+    ) {
+        let Self { chain, pack, .. } = self;
+        let Work {
+            joints,
+            turning,
+            spin,
+        } = work;
+        let links = &chain.links;
+        let gravity = [around.bodies.gravity.x, around.bodies.gravity.y];
+        let mut bushes = chain.view(at, around.prediction, a);
+        rates[Flow::LinkLoss as usize] +=
+            links.act_by::<S, true>(w, pack, &mut bushes, gravity, turning);
+        self.spin(turning, around.contacts, loads, spin);
+        if let Some(resisting) = &chain.series.joints {
+            let found = (&mut *turning, &mut joints.resistance);
+            rates[Flow::ArticulationLoss as usize] +=
+                articulation::act(resisting, w, at.t, links, found, &mut bushes);
+        }
+        bushes.spin = spin;
+        chain.meet(w, around, at.t, &mut bushes, rates, loads);
+        self.turn(turning, around.contacts, loads, a);
     }
 }

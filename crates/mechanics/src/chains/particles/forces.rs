@@ -2,20 +2,18 @@
 
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
-use pulp::{Simd, WithSimd};
+use pulp::Simd;
 
 use super::springs::Turning;
 use super::{Particles, articulation};
 use crate::bodies::{RailContact, Surroundings};
+use crate::chains::kernel::Kernel;
 use crate::chains::particles::Work;
 use crate::contact::{Drawn, OfPins, PlatePins, Pressing, Rollers};
 use crate::energy::Flow;
 use crate::joints::Resistance;
 use crate::lanes::Wide;
 use crate::seam::Loads;
-
-/// What bodies feel, how links turn, and what resists in the joints.
-type Found<'a> = (&'a mut Loads, &'a mut Turning, &'a mut Resistance);
 
 impl Particles {
     pub(super) fn accelerate(
@@ -26,19 +24,11 @@ impl Particles {
         rates: &mut [f64],
         (loads, work): (&mut Loads, &mut Work),
     ) {
-        let Work { joints, turning } = work;
-        let resistance = &mut joints.resistance;
-        self.series.registers.dispatch(Forces {
-            chain: self,
-            around,
-            at,
-            a: &mut *a,
-            rates: &mut *rates,
-            found: (loads, &mut *turning, &mut *resistance),
-        });
+        self.dispatch(around, at, a, rates, (loads, &mut *work));
         let pull = |link, pins| self.links.tension(link, pins);
         let gravity = around.bodies.gravity;
-        self.finish(gravity, at, a, rates, (turning, resistance), pull);
+        let joints = (&work.turning, &work.joints.resistance);
+        self.finish(gravity, at, a, rates, joints, pull);
     }
 
     /// Lets copies follow the first rollers of a closed chain, and holds the ends of another, whose links pull as `pull` says \[N\].
@@ -63,32 +53,6 @@ impl Particles {
             a[self.series.rollers..n].fill(0.0);
             a[n + self.series.rollers..2 * n].fill(0.0);
         }
-    }
-
-    #[inline(always)]
-    fn forces<S: Simd>(
-        &self,
-        w: Wide<S>,
-        around: Surroundings<'_>,
-        at: Moment<'_>,
-        a: &mut [f64],
-        rates: &mut [f64],
-        (loads, turning, found): Found<'_>,
-    ) {
-        let mut rollers = self.view(at, around.prediction, a);
-        let gravity = [around.bodies.gravity.x, around.bodies.gravity.y];
-        let links = &self.links;
-        let loss = if let Some(joints) = &self.series.joints {
-            let loss = links.act::<S, true>(w, &mut rollers, gravity, turning);
-            let found = (turning, found);
-            rates[Flow::ArticulationLoss as usize] +=
-                articulation::act(joints, w, at.t, links, found, &mut rollers);
-            loss
-        } else {
-            links.act::<S, false>(w, &mut rollers, gravity, turning)
-        };
-        rates[Flow::LinkLoss as usize] += loss;
-        self.meet(w, around, at.t, &mut rollers, rates, loads);
     }
 
     /// Adds the forces of what is around the chain: oil or air, and bodies.
@@ -237,30 +201,34 @@ fn between<S: Simd>(w: Wide<S>, [x, y]: [&[f64]; 2], link: usize) -> OfPins<S> {
     ]
 }
 
-/// The kernels as one call, compiled for every kind of processor.
-struct Forces<'a> {
-    chain: &'a Particles,
-    around: Surroundings<'a>,
-    at: Moment<'a>,
-    a: &'a mut [f64],
-    rates: &'a mut [f64],
-    found: Found<'a>,
-}
-
-impl WithSimd for Forces<'_> {
-    type Output = ();
-
-    // A call that is not inlined would be compiled for the oldest processor only.
+impl Kernel for Particles {
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Self {
-            chain,
-            around,
-            at,
-            a,
-            rates,
-            found,
-        } = self;
-        chain.forces(Wide(simd), around, at, a, rates, found);
+    fn forces<S: Simd>(
+        &self,
+        w: Wide<S>,
+        around: Surroundings<'_>,
+        at: Moment<'_>,
+        a: &mut [f64],
+        rates: &mut [f64],
+        (loads, work): (&mut Loads, &mut Work),
+    ) {
+        let Work {
+            joints: found,
+            turning,
+        } = work;
+        let mut rollers = self.view(at, around.prediction, a);
+        let gravity = [around.bodies.gravity.x, around.bodies.gravity.y];
+        let links = &self.links;
+        let loss = if let Some(joints) = &self.series.joints {
+            let loss = links.act::<S, true>(w, &mut rollers, gravity, turning);
+            let found = (turning, &mut found.resistance);
+            rates[Flow::ArticulationLoss as usize] +=
+                articulation::act(joints, w, at.t, links, found, &mut rollers);
+            loss
+        } else {
+            links.act::<S, false>(w, &mut rollers, gravity, turning)
+        };
+        rates[Flow::LinkLoss as usize] += loss;
+        self.meet(w, around, at.t, &mut rollers, rates, loads);
     }
 }

@@ -1,10 +1,11 @@
 //! One evaluation of a chain of points: links, joints, teeth, guides.
 
 use chaindrive_integrate::Moment;
-use pulp::{Simd, WithSimd};
+use pulp::Simd;
 
 use super::{AFTER, BEFORE, Ends, Held, Points, ROLLERS};
 use crate::bodies::{RailContact, Surroundings};
+use crate::chains::kernel::Kernel;
 use crate::chains::makeup::Statics;
 use crate::chains::particles::articulation;
 use crate::chains::particles::forces::{plate_forces, touch_bodies};
@@ -28,75 +29,9 @@ impl Points {
         (loads, work): (&mut Loads, &mut Work),
     ) {
         work.joints.memory.time = at.t;
-        self.series.registers.dispatch(Forces {
-            chain: self,
-            around,
-            at,
-            a: &mut *a,
-            rates: &mut *rates,
-            found: (&mut *loads, &mut *work),
-        });
+        self.dispatch(around, at, a, rates, (&mut *loads, &mut *work));
         self.list_touching(around, at, loads, work);
         self.copy_ghosts(a);
-    }
-
-    #[inline(always)]
-    fn forces<S: Simd>(
-        &self,
-        w: Wide<S>,
-        around: Surroundings<'_>,
-        at: Moment<'_>,
-        a: &mut [f64],
-        rates: &mut [f64],
-        (loads, work): (&mut Loads, &mut Work),
-    ) {
-        let gravity = [around.bodies.gravity.x, around.bodies.gravity.y];
-        rates[Flow::LinkLoss as usize] += self.pull(w, at, a, gravity, &mut work.turning);
-        if let Some(joints) = &self.series.joints {
-            let Work {
-                turning,
-                joints: found,
-                ..
-            } = &mut *work;
-            let resistance = &mut found.resistance;
-            let power = articulation::torques(joints, w, at.t, &self.links, turning, resistance);
-            rates[Flow::ArticulationLoss as usize] += power;
-            self.turn(w, a, &resistance.torque, turning);
-        }
-        let tallies = self.bear(w, at, a, work);
-        rates[Flow::JointLoss as usize] += tallies[0].normal_loss;
-        rates[Flow::RollerLoss as usize] += tallies[1].normal_loss;
-        work.joints.tallies = tallies;
-        let n = self.series.stride;
-        let (ax, rest) = a.split_at_mut(n);
-        let mut rollers = Rollers {
-            x: &at.q[..n],
-            y: &at.q[n..2 * n],
-            vx: &at.v[..n],
-            vy: &at.v[n..2 * n],
-            ax,
-            ay: &mut rest[..n],
-            inverse_mass: &self.inverse_masses[ROLLERS],
-            spin: &[],
-            half_step: 0.0,
-        };
-        touch_bodies(w, around, at.t, &mut rollers, rates, loads);
-        // The joint behind the last link is the first one again, and has to be where plates push it.
-        let behind = [2 * BEFORE, 2 * BEFORE + 1].map(|column| column * n);
-        let before = behind.map(|column| a[column]);
-        for (column, before) in behind.into_iter().zip(before) {
-            a[column + self.links.count] = before;
-        }
-        let mut ends = Ends {
-            chain: self,
-            q: at.q,
-            v: at.v,
-            a: &mut *a,
-        };
-        plate_forces(w, around, at.t, &mut ends, rates, loads);
-        for (column, before) in behind.into_iter().zip(before) {
-            a[column] += a[column + self.links.count] - before;
-        }
     }
 
     /// One coordinate of a block.
@@ -476,31 +411,64 @@ impl<'a, S: Simd> Grips<'a, S> {
     }
 }
 
-/// The kernels as one call, compiled for every kind of processor.
-struct Forces<'a> {
-    chain: &'a Points,
-    around: Surroundings<'a>,
-    at: Moment<'a>,
-    a: &'a mut [f64],
-    rates: &'a mut [f64],
-    found: (&'a mut Loads, &'a mut Work),
-}
-
-impl WithSimd for Forces<'_> {
-    type Output = ();
-
-    // A call that is not inlined would be compiled for the oldest processor only.
+impl Kernel for Points {
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Self {
-            chain,
-            around,
-            at,
-            a,
-            rates,
-            found,
-        } = self;
-        chain.forces(Wide(simd), around, at, a, rates, found);
+    fn forces<S: Simd>(
+        &self,
+        w: Wide<S>,
+        around: Surroundings<'_>,
+        at: Moment<'_>,
+        a: &mut [f64],
+        rates: &mut [f64],
+        (loads, work): (&mut Loads, &mut Work),
+    ) {
+        let gravity = [around.bodies.gravity.x, around.bodies.gravity.y];
+        rates[Flow::LinkLoss as usize] += self.pull(w, at, a, gravity, &mut work.turning);
+        if let Some(joints) = &self.series.joints {
+            let Work {
+                turning,
+                joints: found,
+                ..
+            } = &mut *work;
+            let resistance = &mut found.resistance;
+            let power = articulation::torques(joints, w, at.t, &self.links, turning, resistance);
+            rates[Flow::ArticulationLoss as usize] += power;
+            self.turn(w, a, &resistance.torque, turning);
+        }
+        let tallies = self.bear(w, at, a, work);
+        rates[Flow::JointLoss as usize] += tallies[0].normal_loss;
+        rates[Flow::RollerLoss as usize] += tallies[1].normal_loss;
+        work.joints.tallies = tallies;
+        let n = self.series.stride;
+        let (ax, rest) = a.split_at_mut(n);
+        let mut rollers = Rollers {
+            x: &at.q[..n],
+            y: &at.q[n..2 * n],
+            vx: &at.v[..n],
+            vy: &at.v[n..2 * n],
+            ax,
+            ay: &mut rest[..n],
+            inverse_mass: &self.inverse_masses[ROLLERS],
+            spin: &[],
+            half_step: 0.0,
+        };
+        touch_bodies(w, around, at.t, &mut rollers, rates, loads);
+        // The joint behind the last link is the first one again, and has to be where plates push it.
+        let behind = [2 * BEFORE, 2 * BEFORE + 1].map(|column| column * n);
+        let before = behind.map(|column| a[column]);
+        for (column, before) in behind.into_iter().zip(before) {
+            a[column + self.links.count] = before;
+        }
+        let mut ends = Ends {
+            chain: self,
+            q: at.q,
+            v: at.v,
+            a: &mut *a,
+        };
+        plate_forces(w, around, at.t, &mut ends, rates, loads);
+        for (column, before) in behind.into_iter().zip(before) {
+            a[column] += a[column + self.links.count] - before;
+        }
     }
 }
 
