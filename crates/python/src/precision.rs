@@ -27,7 +27,6 @@ pub(crate) fn work_precision<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let variant = |(method, step, tolerance, onset_depth): Wanted| {
         Ok(Variant {
-            factor: None,
             stepping: stepping(&method)?,
             step,
             tolerance,

@@ -293,7 +293,7 @@ pub(crate) fn choose_with(
         if error < choice.error {
             choice.error = error;
             choice.run = candidate.run(run);
-            choice.factor = candidate.factor;
+            choice.factor = Some(entry.factor);
             choice.gap = found.and_then(|it| it.gap.clone());
         }
         if error <= accuracy {

@@ -1,11 +1,11 @@
-//! How far two traces of one drive are apart: at every moment, in their statistics, in losses and impacts.
+//! Differences of two traces of one drive: at every moment, in statistics, losses and impacts.
 
 use super::impacts::ImpactErrors;
 use super::trace::{Strands, Trace};
 
 /// Two traces of one drive: whoever compares runs asks here.
 ///
-/// What is relative, is so to the second trace.
+/// Relative differences are relative to the second trace.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pair<'a> {
     of: &'a Trace,
@@ -261,7 +261,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Whether the difference is no larger than what chance makes of equal runs.
+    /// A difference within the spread of equal runs.
     pub fn within_spread(&self) -> bool {
         self.difference <= self.spread
     }

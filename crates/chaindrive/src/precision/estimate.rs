@@ -205,12 +205,12 @@ impl Estimate {
         beyond(&self.mean).max(beyond(&self.rms))
     }
 
-    /// When the waveforms of the tensions compared cease to mean anything \[s\], if that is within the run.
+    /// End of the meaning of the waveforms compared \[s\], if it is within the run.
     pub fn waveform_ends_within(&self) -> Option<f64> {
         self.waveform.filter(|time| *time < self.until)
     }
 
-    /// Whether the comparison with the shadow reached the end of the run.
+    /// A comparison with the shadow up to the end of the run.
     pub fn examined_throughout(&self) -> bool {
         // Samples are counted, their times multiplied.
         self.window >= self.until * (1.0 - 1e-9)

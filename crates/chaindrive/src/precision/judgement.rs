@@ -162,7 +162,7 @@ impl Estimate {
         list
     }
 
-    /// How far waveforms can be followed, and how far anybody looked.
+    /// Reach of the waveforms, and of the examination.
     fn waveform_note(&self) -> String {
         let ends = |at: f64| {
             let at = duration(at);

@@ -13,8 +13,6 @@ pub struct Variant {
     pub stepping: Stepping,
     /// Step, or longest step of a method with error control \[s\].
     pub step: Option<f64>,
-    /// A fixed step over the time scale that limits the method \[–\].
-    pub factor: Option<f64>,
     /// Relative tolerance of a method with error control \[–\].
     pub tolerance: Option<f64>,
     /// Deepest first penetration \[m\], where steps are rejected for it.
@@ -68,7 +66,6 @@ fn fixed(start: &Assembled, stepping: Stepping, factor: f64, onset_depth: Option
     Variant {
         stepping,
         step: Some(factor * scale),
-        factor: Some(factor),
         tolerance: None,
         onset_depth,
     }
@@ -79,7 +76,6 @@ fn adaptive(start: &Assembled, tolerance: f64, onset_depth: f64) -> Variant {
         stepping: Stepping::DormandPrince,
         // Longer steps would run over contacts before the error control sees them.
         step: Some(start.system.time_scale()),
-        factor: None,
         tolerance: Some(tolerance),
         onset_depth: Some(onset_depth),
     }
@@ -150,6 +146,8 @@ const RK4_LADDER: [(f64, f64); 4] = [(0.5, 1e-5), (0.25, 1e-6), (0.125, 1e-7), (
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Entry {
+    /// Step of the candidate over the time scale that limits its method \[–\].
+    pub(super) factor: f64,
     pub(super) candidate: Variant,
     /// The same method with half the step.
     pub(super) judge: Variant,
@@ -169,11 +167,11 @@ pub(super) struct Candidates(Vec<Entry>);
 impl Candidates {
     pub(super) fn of(start: &Assembled) -> Self {
         let stepping = Stepping::Auto.suited(&start.system);
-        let rungs = (0..RUNGS + TO_JUDGE).map(|place| fixed(start, stepping, rung(place), None));
+        let of = |stepping, factor, onset| (factor, fixed(start, stepping, factor, onset));
+        let rungs = (0..RUNGS + TO_JUDGE).map(|place| of(stepping, rung(place), None));
         let mut entries = judged(&rungs.collect::<Vec<_>>(), TO_JUDGE);
         if stepping == Stepping::Verlet {
-            let rk4 =
-                RK4_LADDER.map(|(factor, depth)| fixed(start, Stepping::Rk4, factor, Some(depth)));
+            let rk4 = RK4_LADDER.map(|(factor, depth)| of(Stepping::Rk4, factor, Some(depth)));
             entries.extend(judged(&rk4, 1));
         }
         Self(entries)
@@ -248,11 +246,15 @@ fn rung(place: usize) -> f64 {
 }
 
 /// Every candidate with the one so many places further as its judge.
-fn judged(list: &[Variant], further: usize) -> Vec<Entry> {
+fn judged(list: &[(f64, Variant)], further: usize) -> Vec<Entry> {
     let judges = list.iter().skip(further);
     list.iter()
         .zip(judges)
-        .map(|(&candidate, &judge)| Entry { candidate, judge })
+        .map(|(&(factor, candidate), &(_, judge))| Entry {
+            factor,
+            candidate,
+            judge,
+        })
         .collect()
 }
 

@@ -1,4 +1,4 @@
-//! How much of a run is looked at, long enough for a few teeth and short enough to cost little, and with which step.
+//! The window of a run that is examined, and its step: long enough for a few teeth, short enough to cost little.
 
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 use chaindrive_mechanics::{Assembled, EventKinds, Observation};

@@ -13,7 +13,6 @@ fn start(scene: &str) -> Assembled {
 
 fn variant(stepping: Stepping, step: f64) -> Variant {
     Variant {
-        factor: None,
         stepping,
         step: Some(step),
         tolerance: None,

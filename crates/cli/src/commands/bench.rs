@@ -195,7 +195,6 @@ fn variants(arguments: &Arguments, scene: &Scene) -> Result<Vec<Variant>, Failur
     for stepping in methods {
         let adaptive = stepping.is_adaptive();
         let of = |value: Option<f64>| Variant {
-            factor: None,
             stepping,
             step: value.filter(|_| !adaptive),
             tolerance: value.filter(|_| adaptive),
