@@ -87,7 +87,7 @@ enum Verb {
     Man(shell::Man),
 }
 
-/// What only the Python package draws.
+/// A movie or report: the Python package draws it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawn {
     /// Result, or, for a report, also a scene file or the name of an embedded scene.

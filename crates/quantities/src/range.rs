@@ -29,7 +29,7 @@ pub struct ParameterError {
 pub struct Range<'s>(pub &'s Value);
 
 impl Range<'_> {
-    /// What is allowed instead of this value, in words with the unit; nothing where the value is in the range.
+    /// The allowed range in words with its unit; nothing where the value is in it.
     pub fn refuses(self, value: f64) -> Option<String> {
         let limit = |key: &str| self.0.get(key).and_then(Value::as_f64);
         let words = if let Some(least) = limit("exclusiveMinimum").filter(|least| value <= *least) {
@@ -70,8 +70,8 @@ fn plain(limit: f64) -> String {
 
 /// Refuses parameters outside the ranges that stand above the fields of their struct.
 ///
-/// What is absent is left out when the struct is serialised. A number that is none, NaN, is refused. Ranges that depend on another parameter
-/// are the struct's own business.
+/// Parameters that are left out when the struct is serialised are not looked at. NaN and infinity are refused, and both are told as NaN: JSON has
+/// neither. Ranges that depend on another parameter are the struct's own business.
 ///
 /// # Errors
 /// Names the first parameter outside its range.

@@ -337,7 +337,7 @@ pub(super) fn request(scene: &Scene, record: &[String]) -> Result<Request, Reque
     })
 }
 
-/// Whether a run failed for its method or step, so that others might have carried it through.
+/// A failure of method or step: others might have carried the run through.
 fn is_of_the_step(error: &RunError<SimulationError>) -> bool {
     let (RunError::Start(error) | RunError::Sink(error)) = error else {
         return false;

@@ -254,7 +254,7 @@ const CASES: &[Mistake] = &[
     ("strands = 2\n", "", "chain.strands", 2, "give the number of strands"),
     ("[0, 0.1e-2]", "[0]", "chain.strand_elongations", 5, "1 values, needed are 2"),
     ("[1, 0.9]", "[1, 0.9, 1]", "chain.strand_stiffnesses", 6, "3 values, needed are 2"),
-    ("[0, 0.1e-2]", "[0, 0.6]", "chain.strand_elongations[1]", 5, "must be in (−0.5, 0.5]"),
+    ("[0, 0.1e-2]", "[0, 0.6]", "chain.strand_elongations[1]", 5, "must be at most 0.5"),
     ("[1, 0.9]", "[1, 0]", "chain.strand_stiffnesses[1]", 6, "must be positive"),
     ("\"bush-strands\"", "\"particles\"", "chain.strand_elongations", 5, "only bush strands share loads"),
     ("links = 60", "links = 61", "chain.links", 8, "inner and outer links alternate"),

@@ -88,7 +88,7 @@ pub(crate) enum Curve {
     Plain(Elastic),
 }
 
-/// What the family asks of a member beside its curve.
+/// A member of the family.
 pub(crate) trait Member: ElasticLaw + Into<Elastic> {
     /// The law with its constants worked out, for loops. A law without any is asked as it is.
     fn curve(&self) -> Curve {

@@ -1,11 +1,11 @@
-//! What an engineer gives of a contact in place of the parameters of a curve: a stiffness, or the bodies that touch.
+//! Elastic laws by their data on a drawing: a stiffness, or the bodies that touch.
 
 use chaindrive_quantities::{JsonSchema, Length, Pressure, Ratio, Stiffness};
 use serde::{Deserialize, Serialize};
 
 use super::{CylinderLaw, Elastic};
 
-/// What a specification gives.
+/// The law, or the bodies, of a specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Given {
     /// A law by its own parameters.

@@ -7,36 +7,41 @@ use crate::catalogue::CatalogueChain;
 use crate::scene::schema::{self, Rollers};
 use chaindrive_quantities::{Damping, Force, Length, Mass, Ratio, Stiffness};
 
-/// Elongations of a strand that a scene may have.
-fn is_elongation(value: f64) -> bool {
-    value > -0.5 && value <= 0.5
+/// One value for each of so many strands, `default` where none are written; nothing where their number is another.
+fn listed<T: Copy + Into<f64>>(
+    given: Option<&Vec<T>>,
+    count: usize,
+    default: f64,
+) -> Option<Vec<f64>> {
+    let values = given.map_or(vec![default; count], |all| {
+        all.iter().map(|value| (*value).into()).collect()
+    });
+    (values.len() == count).then_some(values)
 }
 
-/// Lengths and stiffnesses of the strands in those that are written \[–\]; none where some are missing or out of range.
+/// Lengths and stiffnesses of the strands in those that are written \[–\]; none where some are missing.
 fn each(text: &schema::Chain) -> Option<[Vec<f64>; 2]> {
     let count = text.strands? as usize;
-    let list = |given: &Option<Vec<Ratio>>, default: f64| -> Option<Vec<f64>> {
-        let values = given.as_ref().map_or(vec![default; count], |all| {
-            all.iter().map(|value| value.0).collect()
-        });
-        (values.len() == count).then_some(values)
-    };
-    let elongations = list(&text.strand_elongations, 0.0)?;
-    let stiffnesses = list(&text.strand_stiffnesses, 1.0)?;
-    let fine = elongations.iter().all(|it| is_elongation(*it))
-        && stiffnesses.iter().all(|it| *it > 0.0 && it.is_finite());
+    let elongations = listed(text.strand_elongations.as_ref(), count, 0.0)?;
+    let stiffnesses = listed(text.strand_stiffnesses.as_ref(), count, 1.0)?;
     let lengths = elongations.iter().map(|elongation| 1.0 + elongation);
-    fine.then(|| [lengths.collect(), stiffnesses])
+    Some([lengths.collect(), stiffnesses])
 }
 
 /// Names what a chain cannot have with its strands, or without any.
 pub(super) fn refuse(text: &schema::Chain, findings: &mut Findings<'_>) {
     let lists = [
-        ("strand_elongations", &text.strand_elongations),
-        ("strand_stiffnesses", &text.strand_stiffnesses),
+        (
+            "strand_elongations",
+            text.strand_elongations.as_ref().map(Vec::len),
+        ),
+        (
+            "strand_stiffnesses",
+            text.strand_stiffnesses.as_ref().map(Vec::len),
+        ),
     ];
     if !text.model.has_strands() {
-        for (key, _) in lists.iter().filter(|(_, list)| list.is_some()) {
+        for (key, _) in lists.iter().filter(|(_, length)| length.is_some()) {
             let hint = "take `model = \"bush-strands\"`, or leave it out";
             let message = "only bush strands share loads";
             findings.refuse_with(&format!("chain.{key}"), message, hint);
@@ -48,21 +53,10 @@ pub(super) fn refuse(text: &schema::Chain, findings: &mut Findings<'_>) {
         findings.refuse_with("chain.strands", "missing", hint);
         return;
     };
-    for (key, list) in lists {
-        let Some(list) = list else { continue };
-        if list.len() != count as usize {
-            let message = format!("{} values, needed are {count}, one a strand", list.len());
+    for (key, length) in lists {
+        if let Some(length) = length.filter(|length| *length != count as usize) {
+            let message = format!("{length} values, needed are {count}, one a strand");
             findings.refuse(&format!("chain.{key}"), message);
-        }
-        let (inside, allowed): (fn(f64) -> bool, _) = match key {
-            "strand_elongations" => (is_elongation, "in (−0.5, 0.5]"),
-            _ => (|value| value > 0.0 && value.is_finite(), "positive"),
-        };
-        for (index, value) in list.iter().enumerate() {
-            if !inside(value.0) {
-                let message = format!("{}, must be {allowed}", value.0);
-                findings.refuse(&format!("chain.{key}[{index}]"), message);
-            }
         }
     }
     let roller = text.roller.clone().unwrap_or_default();
@@ -136,7 +130,7 @@ fn breaking_load(text: &schema::Chain, lengths: &[f64], stiffnesses: &[f64]) -> 
     breaks.reduce(f64::min)
 }
 
-/// How the strands of a chain share its load.
+/// Load sharing of the strands of a chain.
 pub(super) fn model(text: &schema::Chain) -> Option<BushStrands> {
     let [lengths, stiffnesses] = each(text)?;
     let joint = text.joint.as_ref();

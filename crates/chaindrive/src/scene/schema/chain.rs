@@ -71,10 +71,10 @@ pub(crate) struct Chain {
     /// By how much the links of every strand are longer than those of the chain as written [–], one value for each; for bush strands. Absent:
     /// all are alike.
     #[serde(default)]
-    pub(crate) strand_elongations: Option<Vec<Ratio>>,
+    pub(crate) strand_elongations: Option<Vec<Elongation>>,
     /// Stiffness of every strand, in that which is written [–], one value for each; for bush strands. Absent: 1 for all.
     #[serde(default)]
-    pub(crate) strand_stiffnesses: Option<Vec<Ratio>>,
+    pub(crate) strand_stiffnesses: Option<Vec<Share>>,
     /// Service factor [–], for the rating only: the power that is carried counts so many times. ISO 10823 has 1 for smooth running, 1.4 for
     /// moderate and 1.8 for heavy shocks of the driven machine, more with those of an engine.
     #[serde(default)]
@@ -244,4 +244,28 @@ pub(crate) enum Start {
         #[serde(default)]
         velocities: Option<Vec<[Speed; 2]>>,
     },
+}
+
+/// Elongation of a strand [–].
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(transparent)]
+#[schemars(inline, extend("exclusiveMinimum" = -0.5, "maximum" = 0.5))]
+pub(crate) struct Elongation(Ratio);
+
+impl From<Elongation> for f64 {
+    fn from(value: Elongation) -> Self {
+        value.0.0
+    }
+}
+
+/// Stiffness of a strand, in that which is written [–].
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(transparent)]
+#[schemars(inline, extend("exclusiveMinimum" = 0))]
+pub(crate) struct Share(Ratio);
+
+impl From<Share> for f64 {
+    fn from(value: Share) -> Self {
+        value.0.0
+    }
 }

@@ -7,7 +7,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value as Json;
 
-/// What a scene writes of a `T`: its keys in SI units, those that have a default perhaps absent.
+/// The keys of a `T` in a scene, in SI units; those with a default may be absent.
 ///
 /// The struct of a law has name, quantity, range and sentence of every parameter, and the schema of scenes is made from it. Only defaults are a
 /// scene's own: they are filled in when the scene is resolved.

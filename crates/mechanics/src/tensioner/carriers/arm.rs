@@ -37,8 +37,11 @@ pub struct Plunger {
     /// Point of the arm on which it pushes (x, y), in the assembled position \[m\].
     #[schemars(with = "[Length; 2]")]
     pub at: Point,
-    /// Direction of the push (x, y). In a scene it may have any length, here it is a unit vector.
-    #[schemars(with = "[Ratio; 2]")]
+    /// Direction of the push; unit vector.
+    #[schemars(
+        with = "[Ratio; 2]",
+        description = "Direction of the push (x, y), of any length."
+    )]
     pub direction: Vector,
 }
 

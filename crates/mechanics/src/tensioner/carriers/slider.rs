@@ -19,8 +19,11 @@ const ROD: f64 = 3.0;
 #[serde(deny_unknown_fields)]
 #[schemars(inline)]
 pub struct Slider {
-    /// Direction d in which it is pushed (x, y). In a scene it may have any length, here it is a unit vector.
-    #[schemars(with = "[Ratio; 2]")]
+    /// Direction d of the push and of positive s; unit vector.
+    #[schemars(
+        with = "[Ratio; 2]",
+        description = "Direction of the push (x, y), of any length."
+    )]
     pub direction: Vector,
     /// Mass without the sprockets that it carries \[kg\]; needed unless locked.
     #[serde(skip_serializing_if = "Option::is_none")]

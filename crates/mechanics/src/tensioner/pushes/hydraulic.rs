@@ -54,9 +54,13 @@ pub struct Hydraulic {
     /// Damping by the leak while it is compressed c_leak \[N s/m\]; instead of `oil`.
     #[schemars(with = "Option<Damping>", extend("minimum" = 0))]
     pub leak: f64,
-    /// Plunger and oil, from which supply, relief and leak are computed. Here: oil that can be compressed; without it the oil is stiff.
+    /// Oil that can be compressed; without it the oil is stiff.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(rename = "oil", with = "Option<Oil>")]
+    #[schemars(
+        rename = "oil",
+        with = "Option<Oil>",
+        description = "Plunger and oil, from which supply, relief and leak are computed."
+    )]
     pub column: Option<OilColumn>,
 }
 
