@@ -1,0 +1,319 @@
+//! Tasks of a sweep: who hands them out, and who carries them out. Without the interpreter's lock, stopped by Ctrl-C.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+use chaindrive::record::{Existing, Objects, WriteError};
+use chaindrive::sweep::{
+    Answer, Coordinator, Go, Progress, SweepError, SweepMemory, SweepStore, Watch, Worker,
+};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+
+use super::objects::InPython;
+use super::{Sweep, fill};
+use crate::errors::{OrRaise, parameter};
+use crate::signals::{PATIENCE, look};
+
+/// Hands out the tasks of a sweep. A store is claimed by this process until it is closed.
+#[pyclass(frozen, module = "chaindrive._core")]
+pub(crate) struct SweepCoordinator {
+    inner: Mutex<Option<Box<dyn Coordinator + Send>>>,
+    /// Number of the open file that holds the claim, for processes that are forked; None where there is none.
+    #[pyo3(get)]
+    descriptor: Option<i32>,
+    /// What a worker opens.
+    #[pyo3(get)]
+    place: Py<PyAny>,
+}
+
+/// A sweep opened to carry out tasks.
+#[pyclass(frozen, module = "chaindrive._core")]
+#[derive(Debug)]
+pub(crate) struct SweepWorker(Worker);
+
+/// Where outcomes go: to a path, into an object store that `chaindrive.objects` has made one of, or back, by a recipe as JSON
+/// and the number of variants in a task.
+#[derive(FromPyObject)]
+pub(crate) enum Place {
+    Disk(PathBuf),
+    Memory(String, usize),
+    Objects(Py<PyAny>),
+}
+
+fn objects(object: Py<PyAny>) -> Arc<dyn Objects> {
+    Arc::new(InPython(object))
+}
+
+#[pymethods]
+impl SweepCoordinator {
+    /// Begins a sweep whose outcomes come back, with tasks of about so many variants.
+    #[staticmethod]
+    fn in_memory(py: Python<'_>, sweep: &Sweep, variants_per_task: usize) -> PyResult<Self> {
+        let recipe = serde_json::to_string(&sweep.0.recipe());
+        let recipe = recipe.map_err(|error| PyValueError::new_err(error.to_string()))?;
+        Ok(Self {
+            inner: Mutex::new(Some(Box::new(SweepMemory::new(
+                &sweep.0,
+                variants_per_task,
+            )))),
+            descriptor: None,
+            place: (recipe, variants_per_task)
+                .into_pyobject(py)?
+                .unbind()
+                .into_any(),
+        })
+    }
+
+    /// Begins the store of a sweep, once some variants have been timed for so many workers.
+    #[staticmethod]
+    fn begin(
+        py: Python<'_>,
+        place: Place,
+        sweep: &Sweep,
+        overwrite: bool,
+        workers: Option<usize>,
+    ) -> PyResult<Self> {
+        let existing = if overwrite {
+            Existing::Replace
+        } else {
+            Existing::Keep
+        };
+        let mut raised = None;
+        let sample = py.detach(|| {
+            let go = || heard(&mut raised, None, 0.0);
+            sweep.0.time_sample(workers, go)
+        });
+        let sample = sample.or_raise()?;
+        raised.map_or(Ok(()), Err)?;
+        Self::of(
+            py,
+            place,
+            |path| SweepStore::begin(path, &sweep.0, &sample, existing),
+            |objects| SweepStore::begin_in(objects, &sweep.0, &sample, existing),
+        )
+    }
+
+    /// Goes on with a store that was left.
+    #[staticmethod]
+    fn go_on(py: Python<'_>, place: Place, sweep: &Sweep) -> PyResult<Self> {
+        Self::of(
+            py,
+            place,
+            |path| SweepStore::go_on(path, &sweep.0),
+            |objects| SweepStore::go_on_in(objects, &sweep.0),
+        )
+    }
+
+    /// Numbers of the tasks that are still to be carried out.
+    fn open_tasks(&self, py: Python<'_>) -> PyResult<Vec<usize>> {
+        py.detach(|| self.with(|it| it.open_tasks().or_raise()))
+    }
+
+    /// Takes the answer of a worker to a task.
+    fn take(&self, py: Python<'_>, answer: &[u8]) -> PyResult<()> {
+        let answer = Answer::from_bytes(answer).or_raise()?;
+        py.detach(|| self.with(|it| it.take(answer).or_raise()))
+    }
+
+    /// Hears that a task was lost.
+    fn lose(&self, py: Python<'_>, task: usize, reason: &str) -> PyResult<()> {
+        py.detach(|| {
+            self.with(|it| {
+                it.lose(task, reason);
+                Ok(())
+            })
+        })
+    }
+
+    /// Share of the variants that have ended.
+    fn share(&self, py: Python<'_>) -> PyResult<f64> {
+        py.detach(|| self.with(|it| Ok(share(it.progress()))))
+    }
+
+    /// Whether the result is in its place.
+    fn is_public(&self, py: Python<'_>) -> PyResult<bool> {
+        py.detach(|| self.with(|it| Ok(it.is_public())))
+    }
+
+    /// Makes ready for workers elsewhere; what Python raised meanwhile is the answer.
+    fn start<'py>(
+        &self,
+        py: Python<'py>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.watched(py, progress, |it, watch| it.start(watch))
+    }
+
+    /// Carries out all open tasks on threads; what Python raised meanwhile is the answer.
+    fn run<'py>(
+        &self,
+        py: Python<'py>,
+        jobs: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.watched(py, progress, |it, watch| it.run(jobs, watch))
+    }
+
+    /// Ends the sweep, and tells what came of it; of a sweep in memory with its arrays.
+    fn finish<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (tally, summary) = py.detach(|| self.with(|it| it.finish().or_raise()))?;
+        self.with(|it| {
+            let (sweep, outcomes) = (it.sweep(), it.progress().outcomes);
+            let answer = PyDict::new(py);
+            if !outcomes.is_empty() {
+                let stacked = sweep.stack(outcomes);
+                let (counts, ending) = (tally.counts(), tally.ending());
+                let attributes = sweep.attributes(&stacked.methods, counts, &ending);
+                let attributes = serde_json::Value::Object(attributes);
+                answer.set_item("attributes", attributes.to_string())?;
+                fill(&answer, sweep, stacked)?;
+            }
+            answer.set_item("finished", tally.finished)?;
+            answer.set_item("open", tally.open)?;
+            answer.set_item("summary", summary)?;
+            answer.set_item("warning", tally.warning(sweep))?;
+            Ok(answer)
+        })
+    }
+
+    /// Gives the claim back.
+    fn close(&self, py: Python<'_>) {
+        // Last words may have to go through the interpreter, on any thread.
+        py.detach(|| drop(self.inner().take()));
+    }
+}
+
+impl Drop for SweepCoordinator {
+    /// Last words may have to go through the interpreter, on another thread.
+    fn drop(&mut self) {
+        Python::attach(|py| py.detach(|| drop(self.inner().take())));
+    }
+}
+
+impl SweepCoordinator {
+    /// A store on a disk or in an object store.
+    fn of(
+        py: Python<'_>,
+        place: Place,
+        on_disk: impl FnOnce(&PathBuf) -> Result<SweepStore, WriteError> + Send,
+        in_objects: impl FnOnce(&Arc<dyn Objects>) -> Result<SweepStore, WriteError> + Send,
+    ) -> PyResult<Self> {
+        let (store, place) = match place {
+            Place::Disk(path) => {
+                let store = py.detach(|| on_disk(&path)).or_raise()?;
+                let place = store
+                    .place()
+                    .as_os_str()
+                    .into_pyobject(py)?
+                    .unbind()
+                    .into_any();
+                (store, place)
+            }
+            Place::Objects(object) => {
+                let objects = objects(object.clone_ref(py));
+                (py.detach(|| in_objects(&objects)).or_raise()?, object)
+            }
+            Place::Memory(..) => {
+                return Err(parameter(
+                    "a sweep in memory has no store".into(),
+                    "place",
+                    "a store",
+                ));
+            }
+        };
+        Ok(Self {
+            #[cfg(unix)]
+            descriptor: store.descriptor(),
+            #[cfg(not(unix))]
+            descriptor: None,
+            inner: Mutex::new(Some(Box::new(store))),
+            place,
+        })
+    }
+
+    fn inner(&self) -> MutexGuard<'_, Option<Box<dyn Coordinator + Send>>> {
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Lets `act` work while Python is told how far the sweep is; what it raised meanwhile is the answer.
+    fn watched<'py>(
+        &self,
+        py: Python<'py>,
+        progress: Option<Py<PyAny>>,
+        act: impl FnOnce(&mut dyn Coordinator, &mut Watch<'_>) -> Result<Go, SweepError> + Send,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let mut raised = None;
+        let mut looked = Instant::now();
+        let mut watch = |state: Progress<'_>| {
+            if state.finished < state.variants && looked.elapsed() < PATIENCE {
+                return Go::On;
+            }
+            looked = Instant::now();
+            heard(&mut raised, progress.as_ref(), share(state))
+        };
+        py.detach(|| self.with(|it| act(it, &mut watch).or_raise()))?;
+        Ok(raised.map(|error| error.into_value(py).into_bound(py).into_any()))
+    }
+
+    fn with<T>(
+        &self,
+        act: impl FnOnce(&mut (dyn Coordinator + Send)) -> PyResult<T>,
+    ) -> PyResult<T> {
+        match self.inner().as_mut() {
+            Some(inner) => act(inner.as_mut()),
+            None => Err(PyValueError::new_err("the sweep is closed")),
+        }
+    }
+}
+
+/// Whether to go on, as Python's signals and whoever is told have it; what they raised is kept.
+fn heard(raised: &mut Option<PyErr>, progress: Option<&Py<PyAny>>, share: f64) -> Go {
+    match look(progress, share) {
+        Ok(()) => Go::On,
+        Err(error) => {
+            raised.get_or_insert(error);
+            Go::NoFurther
+        }
+    }
+}
+
+fn share(state: Progress<'_>) -> f64 {
+    state.finished as f64 / state.variants as f64
+}
+
+#[pymethods]
+impl SweepWorker {
+    /// Opens a sweep by the place of a coordinator.
+    #[new]
+    fn new(py: Python<'_>, place: Place) -> PyResult<Self> {
+        let worker = match place {
+            Place::Disk(path) => py.detach(|| Worker::open(&path)).or_raise(),
+            Place::Objects(object) => {
+                let objects = objects(object);
+                py.detach(|| Worker::open_in(&objects)).or_raise()
+            }
+            Place::Memory(recipe, variants_per_task) => {
+                let recipe = serde_json::from_str(&recipe);
+                let recipe = recipe.map_err(|error| PyValueError::new_err(error.to_string()))?;
+                py.detach(|| Worker::in_memory(recipe, variants_per_task))
+                    .or_raise()
+            }
+        };
+        Ok(Self(worker?))
+    }
+
+    /// Computes the variants of a task, and returns an answer for the coordinator; Ctrl-C is heard meanwhile.
+    fn carry_out<'py>(&self, py: Python<'py>, task: usize) -> PyResult<Bound<'py, PyBytes>> {
+        let mut raised = None;
+        let answer = py.detach(|| {
+            let go = || heard(&mut raised, None, 0.0);
+            self.0.carry_out_watched(task, go)
+        });
+        raised.map_or(Ok(()), Err)?;
+        let answer = answer.or_raise()?;
+        Ok(PyBytes::new(py, &answer.unwrap_or_default().to_bytes()))
+    }
+}
