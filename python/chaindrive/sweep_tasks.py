@@ -10,9 +10,8 @@ from typing import Any
 from uuid import uuid4
 
 from chaindrive import _core
-from chaindrive.errors import WriteError
 from chaindrive.extras import extra
-from chaindrive.objects import Objects, Place
+from chaindrive.objects import Place
 
 __all__ = ["begun", "carry_out"]
 
@@ -47,7 +46,7 @@ def begun(
         coordinator = _core.SweepCoordinator.in_memory(core, size)
     else:
         extra("zarr", "stores on disk")
-        coordinator = _in_store(core, place, overwrite, jobs)
+        coordinator = _core.SweepCoordinator.in_store(place, core, overwrite, jobs)
     descriptor = coordinator.descriptor
     if descriptor is not None:
         _claims.add(descriptor)
@@ -56,25 +55,6 @@ def begun(
     finally:
         _claims.discard(descriptor or -1)
         coordinator.close()
-
-
-def _in_store(
-    core: _core.Sweep, place: Place, overwrite: bool, jobs: int | None
-) -> _core.SweepCoordinator:
-    if overwrite or not _is_there(place):
-        try:
-            return _core.SweepCoordinator.begin(place, core, overwrite, jobs)
-        except WriteError:
-            # The same sweep may have been begun by somebody else while some variants were timed.
-            if overwrite or not _is_there(place):
-                raise
-    return _core.SweepCoordinator.go_on(place, core)
-
-
-def _is_there(place: Place) -> bool:
-    if isinstance(place, Objects):
-        return place.size("zarr.json") is not None
-    return os.path.lexists(place)
 
 
 def carry_out(

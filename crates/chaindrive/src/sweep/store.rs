@@ -18,6 +18,7 @@
 //! renaming it), so a chunk is there or not. A task whose worker died is carried out again and gives the same bits.
 
 mod coordinator;
+mod place;
 mod sink;
 
 use std::sync::Arc;
@@ -32,6 +33,7 @@ use super::layout::Layout;
 use super::texts::{MARK, blank};
 use crate::zarr::{Fault, Storage, StoredArray, ZSTD_LEVEL};
 pub use coordinator::SweepStore;
+pub use place::Place;
 pub(super) use sink::StoreSink;
 
 /// Arrays of the store by a layout.

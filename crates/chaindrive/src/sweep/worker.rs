@@ -1,57 +1,15 @@
 //! Who computes the variants of a task, on whatever thread, process or machine, and gives the outcomes to a sink.
 
-use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use super::choices::Shared;
 use super::layout::Layout;
-use super::store::StoreSink;
+use super::sink::{Sink, Task};
+use super::store::{Place, StoreSink};
 use super::threads::on_threads;
-use super::{Answer, Finished, Go, Outcome, Recipe, Sweep, SweepError};
-use crate::precision::Choice;
-use crate::record::{Objects, WriteError};
-
-/// A task, as a sink has it.
-pub(super) enum Task {
-    /// To be carried out: its variants, in their order.
-    Open(Vec<usize>),
-    /// Carried out, with these counts.
-    Ended(Finished),
-}
-
-/// Where the outcomes of tasks go: back with the answer, or into a region of a store. It also knows how the sweep is cut into tasks.
-pub(super) trait Sink: Send + Sync {
-    /// What is to be done for a task.
-    fn task(&self, task: usize) -> Result<Task, WriteError>;
-
-    /// Takes the outcomes of all variants of a task, in their order.
-    fn put(&self, task: usize, outcomes: Vec<Outcome>) -> Result<Answer, WriteError>;
-
-    /// The choice of a block that another worker has made.
-    fn choice(&self, _block: usize) -> Result<Option<Choice>, WriteError> {
-        Ok(None)
-    }
-
-    /// Keeps a choice for other workers.
-    fn keep(&self, _block: usize, _choice: &Choice) -> Result<(), WriteError> {
-        Ok(())
-    }
-}
-
-/// Outcomes in memory come back with the answer: all that there is to know is how the sweep is cut.
-impl Sink for Layout {
-    fn task(&self, task: usize) -> Result<Task, WriteError> {
-        Ok(Task::Open(self.region(task).variants().collect()))
-    }
-
-    fn put(&self, task: usize, outcomes: Vec<Outcome>) -> Result<Answer, WriteError> {
-        Ok(Answer {
-            finished: Finished::of(&outcomes),
-            outcomes: self.region(task).variants().zip(outcomes).collect(),
-        })
-    }
-}
+use super::{Answer, Go, Outcome, Recipe, Sweep, SweepError};
+use crate::record::WriteError;
 
 /// A sweep and a sink, opened to carry out tasks.
 #[derive(Clone)]
@@ -85,17 +43,8 @@ impl Worker {
     ///
     /// # Errors
     /// [`WriteError`] where there is none, or one of another build of the program or another instruction set.
-    pub fn open(path: impl AsRef<Path>) -> Result<Self, WriteError> {
-        let sink = StoreSink::open(path.as_ref())?;
-        Ok(Self::of(&sink.sweep()?, sink))
-    }
-
-    /// Opens the store of a sweep that was begun in an object store.
-    ///
-    /// # Errors
-    /// As [`open`](Self::open).
-    pub fn open_in(objects: &Arc<dyn Objects>) -> Result<Self, WriteError> {
-        let sink = StoreSink::open_in(objects)?;
+    pub fn open(place: impl Into<Place>) -> Result<Self, WriteError> {
+        let sink = StoreSink::open(&place.into())?;
         Ok(Self::of(&sink.sweep()?, sink))
     }
 

@@ -167,7 +167,7 @@ fn files(root: &Path) -> io::Result<BTreeMap<String, Vec<u8>>> {
 fn whole(sweep: &Sweep) -> Result<Arc<InMemory>, Box<dyn Error>> {
     let memory = InMemory::new();
     let objects: Arc<dyn Objects> = memory.clone();
-    let mut store = SweepStore::begin_in(&objects, sweep, &sample(sweep), Existing::Keep)?;
+    let mut store = SweepStore::begin(&objects, sweep, &sample(sweep), Existing::Keep)?;
     store.run(Some(2), &mut |_| Go::On)?;
     store.finish()?;
     Ok(memory)
@@ -184,7 +184,7 @@ fn objects_hold_what_a_disk_holds() -> Checked {
     store.finish()?;
     let memory = InMemory::new();
     let objects: Arc<dyn Objects> = memory.clone();
-    let mut store = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep)?;
+    let mut store = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Keep)?;
     store.run(Some(1), &mut |_| Go::On)?;
     let (tally, _) = store.finish()?;
     assert_eq!(tally.finished, 12);
@@ -206,14 +206,14 @@ fn workers_grow_the_layout_together() -> Checked {
     let sweep = sweep()?;
     let memory = InMemory::new();
     let objects: Arc<dyn Objects> = memory.clone();
-    let mut store = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep)?;
+    let mut store = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Keep)?;
     let open = store.open_tasks()?;
     assert_eq!(open, (1..12).collect::<Vec<_>>());
     let answers = thread::scope(|scope| {
         let workers = (0..6).map(|first| {
             let (objects, open) = (&objects, &open);
             scope.spawn(move || -> Result<Vec<Answer>, WriteError> {
-                let worker = Worker::open_in(objects)?;
+                let worker = Worker::open(objects)?;
                 let tasks = open.iter().skip(first).step_by(6);
                 let never = AtomicBool::new(false);
                 let answers = tasks.map(|task| worker.carry_out(*task, &never));
@@ -249,7 +249,7 @@ fn a_sweep_that_was_broken_off_goes_on() -> Checked {
         let memory = InMemory::new();
         let objects: Arc<dyn Objects> = memory.clone();
         memory.room.store(room, Ordering::SeqCst);
-        let begun = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep);
+        let begun = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Keep);
         let broken = begun.map_err(SweepError::from).and_then(|mut store| {
             store.run(Some(2), &mut |_| Go::On)?;
             Ok(store.finish()?)
@@ -257,12 +257,12 @@ fn a_sweep_that_was_broken_off_goes_on() -> Checked {
         assert!(broken.is_err(), "{room} puts are enough for everything");
         assert_ne!(memory.attribute("status"), Some("complete".into()));
         memory.room.store(usize::MAX, Ordering::SeqCst);
-        let mut store = match SweepStore::go_on_in(&objects, &sweep) {
+        let mut store = match SweepStore::go_on(&objects, &sweep) {
             Ok(store) => store,
             // It had not been laid out: the place is free again.
             Err(WriteError::Foreign { .. }) => {
                 assert!(objects.list("")?.is_empty());
-                SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep)?
+                SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Keep)?
             }
             Err(other) => return Err(other.into()),
         };
@@ -283,8 +283,8 @@ fn two_calls_at_once_store_the_same() -> Checked {
     let sweep = sweep()?;
     let memory = InMemory::new();
     let objects: Arc<dyn Objects> = memory.clone();
-    let first = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep)?;
-    let second = SweepStore::go_on_in(&objects, &sweep)?;
+    let first = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Keep)?;
+    let second = SweepStore::go_on(&objects, &sweep)?;
     thread::scope(|scope| -> Checked {
         let both = [first, second].map(|mut store| {
             scope.spawn(move || {
@@ -312,10 +312,10 @@ fn a_worker_of_an_earlier_sweep_writes_no_more() -> Checked {
     let sweep = sweep()?;
     let memory = InMemory::new();
     let objects: Arc<dyn Objects> = memory.clone();
-    let mut first = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep)?;
-    let worker = Worker::open_in(&objects)?;
+    let mut first = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Keep)?;
+    let worker = Worker::open(&objects)?;
     let never = AtomicBool::new(false);
-    let refused = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep);
+    let refused = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Keep);
     assert!(
         matches!(refused, Err(WriteError::Exists { .. })),
         "{refused:?}"
@@ -327,7 +327,7 @@ fn a_worker_of_an_earlier_sweep_writes_no_more() -> Checked {
             .to_vec(),
     )];
     let other = Sweep::new(&Scene::preset("spinning_ring")?, &vary, &[])?;
-    let second = SweepStore::begin_in(&objects, &other, &sample(&other), Existing::Replace)?;
+    let second = SweepStore::begin(&objects, &other, &sample(&other), Existing::Replace)?;
     let before = memory.contents();
     let outcome = sweep.carry_out(5, &never);
     let refused = worker.put(5, vec![outcome]);
@@ -353,12 +353,12 @@ fn what_was_begun_and_not_laid_out_is_replaced_on_demand() -> Checked {
     let memory = whole(&sweep)?;
     let objects: Arc<dyn Objects> = memory.clone();
     objects.erase(&["zarr.json".to_owned()])?;
-    let again = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep);
+    let again = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Keep);
     assert!(
         matches!(again, Err(WriteError::HalfBegun { .. })),
         "{again:?}"
     );
-    let mut again = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Replace)?;
+    let mut again = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Replace)?;
     again.run(Some(2), &mut |_| Go::On)?;
     let (tally, _) = again.finish()?;
     assert_eq!(tally.finished, 12);
@@ -378,7 +378,7 @@ fn a_sweep_that_was_copied_from_a_disk_goes_on() -> Checked {
         objects.put(&key, &bytes)?;
     }
     objects.put("zarr.json", &std::fs::read(path.join("zarr.json"))?)?;
-    let mut store = SweepStore::go_on_in(&objects, &sweep)?;
+    let mut store = SweepStore::go_on(&objects, &sweep)?;
     assert_eq!(store.open_tasks()?.len(), 11);
     store.run(Some(2), &mut |_| Go::On)?;
     let (tally, _) = store.finish()?;
@@ -394,23 +394,23 @@ fn what_is_not_a_sweep_of_chaindrive_stays() -> Checked {
     let objects: Arc<dyn Objects> = memory.clone();
     objects.put("thesis.tex", b"years of work")?;
     for existing in [Existing::Keep, Existing::Replace] {
-        let refused = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), existing);
+        let refused = SweepStore::begin(&objects, &sweep, &sample(&sweep), existing);
         assert!(refused.is_err());
     }
     objects.erase(&["zarr.json".to_owned()])?;
-    let refused = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Replace);
+    let refused = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Replace);
     assert!(
         matches!(refused, Err(WriteError::Foreign { .. })),
         "{refused:?}"
     );
     objects.put("identity", b"of somebody else")?;
-    let refused = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Replace);
+    let refused = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Replace);
     assert!(
         matches!(refused, Err(WriteError::Foreign { .. })),
         "{refused:?}"
     );
     objects.erase(&["identity".to_owned()])?;
-    let refused = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Replace);
+    let refused = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Replace);
     assert!(
         matches!(refused, Err(WriteError::Foreign { .. })),
         "{refused:?}"

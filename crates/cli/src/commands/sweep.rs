@@ -4,12 +4,11 @@ mod design;
 mod output;
 mod vary;
 
-use std::fs;
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use chaindrive::Request;
-use chaindrive::record::{Existing, WriteError, take_over};
+use chaindrive::record::{Existing, take_over};
 use chaindrive::sweep::{Coordinator, Go, Sweep, SweepMemory, SweepStore, Tally};
 use clap::Args;
 
@@ -124,7 +123,13 @@ pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
     let mut progress = Progress::new(arguments.quiet);
     let mut table = None;
     let mut coordinator: Box<dyn Coordinator> = match target {
-        Target::Zarr(path) => Box::new(open(&path, &sweep, existing, jobs, interrupted)?),
+        Target::Zarr(path) => {
+            let go = || {
+                if interrupted() { Go::NoFurther } else { Go::On }
+            };
+            let store = SweepStore::open(&path, &sweep, existing, jobs, go)?;
+            Box::new(store.ok_or(Failure::Interrupted)?)
+        }
         Target::Csv(path) => {
             table = Some(Table::begin(&path, &sweep, existing)?);
             Box::new(SweepMemory::new(&sweep, 1))
@@ -152,32 +157,6 @@ pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
         table.write(&sweep, coordinator.progress().outcomes, &tally.ending())?;
     }
     conclude(arguments, &sweep, &tally, report)
-}
-
-/// Begins a store, or goes on with one of the same sweep that was stopped or killed.
-fn open(
-    path: &Path,
-    sweep: &Sweep,
-    existing: Existing,
-    jobs: Option<usize>,
-    interrupted: &dyn Fn() -> bool,
-) -> Result<SweepStore, Failure> {
-    if existing == Existing::Keep && fs::symlink_metadata(path).is_ok() {
-        let store = SweepStore::go_on(path, sweep)?;
-        if store.open_tasks()?.is_empty() {
-            let path = path.to_owned();
-            return Err(WriteError::Exists { path }.into());
-        }
-        return Ok(store);
-    }
-    let go = || {
-        if interrupted() { Go::NoFurther } else { Go::On }
-    };
-    let sample = sweep.time_sample(jobs, go)?;
-    if sample.stopped {
-        return Err(Failure::Interrupted);
-    }
-    Ok(SweepStore::begin(path, sweep, &sample, existing)?)
 }
 
 /// Says what came of a sweep.

@@ -4,17 +4,17 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use chaindrive::record::{Existing, Objects, WriteError};
+use chaindrive::record::Existing;
 use chaindrive::sweep::{
-    Answer, Coordinator, Go, Progress, SweepError, SweepMemory, SweepStore, Watch, Worker,
+    Answer, Coordinator, Go, Place, Progress, SweepError, SweepMemory, SweepStore, Watch, Worker,
 };
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use super::objects::InPython;
 use super::{Sweep, fill};
-use crate::errors::{OrRaise, parameter};
+use crate::errors::OrRaise;
 use crate::signals::{PATIENCE, look};
 
 /// Hands out the tasks of a sweep. A store is claimed by this process until it is closed.
@@ -34,17 +34,27 @@ pub(crate) struct SweepCoordinator {
 #[derive(Debug)]
 pub(crate) struct SweepWorker(Worker);
 
-/// Where outcomes go: to a path, into an object store that `chaindrive.objects` has made one of, or back, by a recipe as JSON
-/// and the number of variants in a task.
+/// A store: a path, or an object store that `chaindrive.objects` has made one of.
 #[derive(FromPyObject)]
-pub(crate) enum Place {
+pub(crate) enum Store {
     Disk(PathBuf),
-    Memory(String, usize),
     Objects(Py<PyAny>),
 }
 
-fn objects(object: Py<PyAny>) -> Arc<dyn Objects> {
-    Arc::new(InPython(object))
+/// What a worker opens: a store, or a recipe as JSON with the number of variants in a task.
+#[derive(FromPyObject)]
+pub(crate) enum Work {
+    InMemory(String, usize),
+    InStore(Store),
+}
+
+impl From<Store> for Place {
+    fn from(store: Store) -> Self {
+        match store {
+            Store::Disk(path) => Self::Disk(path),
+            Store::Objects(object) => Self::Objects(Arc::new(InPython(object))),
+        }
+    }
 }
 
 #[pymethods]
@@ -67,11 +77,11 @@ impl SweepCoordinator {
         })
     }
 
-    /// Begins the store of a sweep, once some variants have been timed for so many workers.
+    /// Begins a sweep in a store, once some variants have been timed for so many workers, or goes on with it there.
     #[staticmethod]
-    fn begin(
+    fn in_store(
         py: Python<'_>,
-        place: Place,
+        store: Store,
         sweep: &Sweep,
         overwrite: bool,
         workers: Option<usize>,
@@ -81,30 +91,37 @@ impl SweepCoordinator {
         } else {
             Existing::Keep
         };
+        let objects = match &store {
+            Store::Disk(_) => None,
+            Store::Objects(object) => Some(object.clone_ref(py)),
+        };
         let mut raised = None;
-        let sample = py.detach(|| {
+        let store = py.detach(|| {
             let go = || heard(&mut raised, None, 0.0);
-            sweep.0.time_sample(workers, go)
+            SweepStore::open(Place::from(store), &sweep.0, existing, workers, go)
         });
-        let sample = sample.or_raise()?;
         raised.map_or(Ok(()), Err)?;
-        Self::of(
-            py,
+        let store = store
+            .or_raise()?
+            .ok_or_else(|| PyKeyboardInterrupt::new_err(()))?;
+        let place = match objects {
+            Some(objects) => objects,
+            None => store
+                .place()
+                .as_os_str()
+                .into_pyobject(py)?
+                .unbind()
+                .into_any(),
+        };
+        #[cfg(unix)]
+        let descriptor = store.descriptor();
+        #[cfg(not(unix))]
+        let descriptor = None;
+        Ok(Self {
+            inner: Mutex::new(Some(Box::new(store))),
+            descriptor,
             place,
-            |path| SweepStore::begin(path, &sweep.0, &sample, existing),
-            |objects| SweepStore::begin_in(objects, &sweep.0, &sample, existing),
-        )
-    }
-
-    /// Goes on with a store that was left.
-    #[staticmethod]
-    fn go_on(py: Python<'_>, place: Place, sweep: &Sweep) -> PyResult<Self> {
-        Self::of(
-            py,
-            place,
-            |path| SweepStore::go_on(path, &sweep.0),
-            |objects| SweepStore::go_on_in(objects, &sweep.0),
-        )
+        })
     }
 
     /// Numbers of the tasks that are still to be carried out.
@@ -194,46 +211,6 @@ impl Drop for SweepCoordinator {
 }
 
 impl SweepCoordinator {
-    /// A store on a disk or in an object store.
-    fn of(
-        py: Python<'_>,
-        place: Place,
-        on_disk: impl FnOnce(&PathBuf) -> Result<SweepStore, WriteError> + Send,
-        in_objects: impl FnOnce(&Arc<dyn Objects>) -> Result<SweepStore, WriteError> + Send,
-    ) -> PyResult<Self> {
-        let (store, place) = match place {
-            Place::Disk(path) => {
-                let store = py.detach(|| on_disk(&path)).or_raise()?;
-                let place = store
-                    .place()
-                    .as_os_str()
-                    .into_pyobject(py)?
-                    .unbind()
-                    .into_any();
-                (store, place)
-            }
-            Place::Objects(object) => {
-                let objects = objects(object.clone_ref(py));
-                (py.detach(|| in_objects(&objects)).or_raise()?, object)
-            }
-            Place::Memory(..) => {
-                return Err(parameter(
-                    "a sweep in memory has no store".into(),
-                    "place",
-                    "a store",
-                ));
-            }
-        };
-        Ok(Self {
-            #[cfg(unix)]
-            descriptor: store.descriptor(),
-            #[cfg(not(unix))]
-            descriptor: None,
-            inner: Mutex::new(Some(Box::new(store))),
-            place,
-        })
-    }
-
     fn inner(&self) -> MutexGuard<'_, Option<Box<dyn Coordinator + Send>>> {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -286,16 +263,12 @@ fn share(state: Progress<'_>) -> f64 {
 
 #[pymethods]
 impl SweepWorker {
-    /// Opens a sweep by the place of a coordinator.
+    /// Opens what a coordinator has as its place.
     #[new]
-    fn new(py: Python<'_>, place: Place) -> PyResult<Self> {
-        let worker = match place {
-            Place::Disk(path) => py.detach(|| Worker::open(&path)).or_raise(),
-            Place::Objects(object) => {
-                let objects = objects(object);
-                py.detach(|| Worker::open_in(&objects)).or_raise()
-            }
-            Place::Memory(recipe, variants_per_task) => {
+    fn new(py: Python<'_>, work: Work) -> PyResult<Self> {
+        let worker = match work {
+            Work::InStore(store) => py.detach(|| Worker::open(Place::from(store))).or_raise(),
+            Work::InMemory(recipe, variants_per_task) => {
                 let recipe = serde_json::from_str(&recipe);
                 let recipe = recipe.map_err(|error| PyValueError::new_err(error.to_string()))?;
                 py.detach(|| Worker::in_memory(recipe, variants_per_task))

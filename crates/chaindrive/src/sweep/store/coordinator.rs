@@ -1,22 +1,21 @@
 //! Who begins a sweep in a store, hands out its tasks, and says in the store how far it is.
 
 use std::path::Path;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use serde_json::{Map, Value};
 use zarrs::array::{CodecOptions, data_type};
 
-use super::{Arrays, StoreSink, every_chunk};
+use super::{Arrays, Place, StoreSink, every_chunk};
 use crate::sweep::coordinator::{Coordinator, Watch, carry_out};
 use crate::sweep::layout::Layout;
-use crate::sweep::worker::Sink;
+use crate::sweep::sink::Sink;
 use crate::sweep::{
     Answer, Coordinate, Finished, Go, Outcome, Progress, Quantity, Recipe, Sample, Sweep,
     SweepError, TEXTS, Tally, Worker,
 };
 use crate::zarr::{
-    Ending, Existing, Fault, LAYOUT, Objects, RECIPE, Store, StoredArray, Story, WriteError, about,
+    Ending, Existing, Fault, LAYOUT, RECIPE, Store, StoredArray, Story, WriteError, about,
     metadata, store_metadata,
 };
 
@@ -51,31 +50,50 @@ impl std::fmt::Debug for SweepStore {
 }
 
 impl SweepStore {
+    /// Goes on with a sweep where its store is, and begins it elsewhere once some variants have been timed for so many workers; as
+    /// many as there are cores if absent. None where the watch stopped that.
+    ///
+    /// # Errors
+    /// Those of [`begin`](Self::begin) and [`go_on`](Self::go_on), and of [`Sweep::time_sample`].
+    pub fn open(
+        place: impl Into<Place>,
+        sweep: &Sweep,
+        existing: Existing,
+        workers: Option<usize>,
+        watch: impl FnMut() -> Go,
+    ) -> Result<Option<Self>, SweepError> {
+        let place = place.into();
+        let goes_on = || Ok::<_, WriteError>(existing == Existing::Keep && place.is_taken()?);
+        if !goes_on()? {
+            let sample = sweep.time_sample(workers, watch)?;
+            if sample.stopped {
+                return Ok(None);
+            }
+            match Self::begin(&place, sweep, &sample, existing) {
+                // The same sweep may have been begun by somebody else meanwhile.
+                Err(_) if goes_on()? => {}
+                begun => return Ok(Some(begun?)),
+            }
+        }
+        Ok(Some(Self::go_on(&place, sweep)?))
+    }
+
     /// Begins a sweep, with tasks of the size that a sample suggests. Where it replaces an earlier result, that one stays until a
-    /// task is stored, see [`start`](Self::start).
+    /// task is stored, see [`start`](Coordinator::start); in an object store it is removed at once.
     ///
     /// # Errors
     /// [`WriteError`] when the place is taken or cannot be written.
     pub fn begin(
-        path: impl AsRef<Path>,
+        place: impl Into<Place>,
         sweep: &Sweep,
         sample: &Sample,
         existing: Existing,
     ) -> Result<Self, WriteError> {
-        Self::begin_on(Store::begin(path.as_ref(), existing)?, sweep, sample)
-    }
-
-    /// Begins a sweep in an object store, where an earlier result is removed at once.
-    ///
-    /// # Errors
-    /// [`WriteError`] when the place is taken or cannot be written.
-    pub fn begin_in(
-        objects: &Arc<dyn Objects>,
-        sweep: &Sweep,
-        sample: &Sample,
-        existing: Existing,
-    ) -> Result<Self, WriteError> {
-        Self::begin_on(Store::begin_in(objects, existing)?, sweep, sample)
+        let store = match place.into() {
+            Place::Disk(path) => Store::begin(&path, existing)?,
+            Place::Objects(objects) => Store::begin_in(&objects, existing)?,
+        };
+        Self::begin_on(store, sweep, sample)
     }
 
     fn begin_on(mut store: Store, sweep: &Sweep, sample: &Sample) -> Result<Self, WriteError> {
@@ -136,19 +154,11 @@ impl SweepStore {
     ///
     /// # Errors
     /// [`WriteError::OtherSweep`] where it is another one, [`WriteError::Exists`] where it is another result, and all others.
-    pub fn go_on(path: impl AsRef<Path>, sweep: &Sweep) -> Result<Self, WriteError> {
-        Self::go_on_with(Store::reopen_shared(path.as_ref())?, sweep)
-    }
-
-    /// Goes on with a sweep in an object store.
-    ///
-    /// # Errors
-    /// As [`go_on`](Self::go_on).
-    pub fn go_on_in(objects: &Arc<dyn Objects>, sweep: &Sweep) -> Result<Self, WriteError> {
-        Self::go_on_with(Store::reopen_in(objects)?, sweep)
-    }
-
-    fn go_on_with(mut store: Store, sweep: &Sweep) -> Result<Self, WriteError> {
+    pub fn go_on(place: impl Into<Place>, sweep: &Sweep) -> Result<Self, WriteError> {
+        let mut store = match place.into() {
+            Place::Disk(path) => Store::reopen_shared(&path)?,
+            Place::Objects(objects) => Store::reopen_in(&objects)?,
+        };
         let recipe = store.read(RECIPE).map_err(|fault| store.fault(fault))?;
         let Some(recipe) = recipe else {
             return Err(WriteError::Exists {

@@ -8,16 +8,16 @@ use serde::de::DeserializeOwned;
 use serde_json::Map;
 use zarrs::storage::{Bytes, StoreKey};
 
-use super::{Arrays, MARK, Storage, every_chunk};
+use super::{Arrays, MARK, Place, Storage, every_chunk};
 use crate::precision::Choice;
 use crate::seal::{opened, sealed};
 use crate::sweep::layout::Layout;
-use crate::sweep::worker::{Sink, Task};
+use crate::sweep::sink::{Sink, Task};
 use crate::sweep::{
     Account, Answer, Entry, Finished, OPEN, Outcome, Quantity, Recipe, Sweep, TEXTS, chunks,
 };
 use crate::verdict::WrittenVerdict;
-use crate::zarr::{self, CHOICES, Fault, Folder, Ground, LAYOUT, Objects, RECIPE, WriteError};
+use crate::zarr::{self, CHOICES, Fault, Folder, Ground, LAYOUT, RECIPE, WriteError};
 
 /// The files of a sweep, to put the outcomes of tasks there and to read them back.
 #[derive(Clone)]
@@ -28,21 +28,22 @@ pub(crate) struct StoreSink {
 
 impl StoreSink {
     /// The store of a sweep that was begun.
-    pub(crate) fn open(path: &Path) -> Result<Self, WriteError> {
-        let io = |source| WriteError::Io {
-            path: path.to_owned(),
-            source,
-        };
-        let root = path.canonicalize().map_err(io)?;
-        let folder = Folder::shared(&root).map_err(io)?;
-        Ok(Self::on(Ground::of(Arc::new(folder)), path))
-    }
-
-    /// The same in an object store.
-    pub(crate) fn open_in(objects: &Arc<dyn Objects>) -> Result<Self, WriteError> {
-        let path = PathBuf::from(objects.name());
-        let bucket = zarr::bucket(&path, objects)?;
-        Ok(Self::on(Ground::of(Arc::new(bucket)), &path))
+    pub(crate) fn open(place: &Place) -> Result<Self, WriteError> {
+        match place {
+            Place::Disk(path) => {
+                let folder = path.canonicalize().and_then(|root| Folder::shared(&root));
+                let folder = folder.map_err(|source| WriteError::Io {
+                    path: path.clone(),
+                    source,
+                })?;
+                Ok(Self::on(Ground::of(Arc::new(folder)), path))
+            }
+            Place::Objects(objects) => {
+                let path = PathBuf::from(objects.name());
+                let bucket = zarr::bucket(&path, objects)?;
+                Ok(Self::on(Ground::of(Arc::new(bucket)), &path))
+            }
+        }
     }
 
     pub(super) fn on(storage: Storage, path: &Path) -> Self {
