@@ -160,14 +160,14 @@ def sweep(
         given as an argument too, or that an accuracy chooses; columns of a table are not equally
         long.
     SimulationError
-        The executor lost every variant; with `output`, the executor lost a task. What is stored
-        stays there, and the same call goes on with it.
+        The executor lost tasks, and no variant reached its end; with `output`, the executor lost a
+        task. What is stored stays there, and the same call goes on with it.
     WriteError
         The output holds another sweep or another result, or cannot be written.
     KeyboardInterrupt
         Ctrl-C. Its attribute `result` is the dataset as it would have been returned, with the
         variants that were finished; ``error`` of the others says that they were not carried out.
-        Of an executor the chunks count that had come back. With `output` the same call goes on.
+        Of an executor the tasks count that had come back. With `output` the same call goes on.
 
     Warns
     -----

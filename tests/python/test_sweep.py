@@ -3,6 +3,7 @@
 import inspect
 import multiprocessing
 import os
+import re
 import signal
 import threading
 import time
@@ -129,6 +130,16 @@ def test_settings_of_a_run_are_arguments_of_a_sweep():
     assert result["steps"].item() == run.attrs["steps"]
     assert result["contact_count"].dims == ("pretension", "contact_kind")
     assert "accuracy_kept" not in result
+
+
+def test_the_command_has_the_options_of_the_function(capfd):
+    """But for what is Python's own, and for what a drive and `take_over` are for in Python."""
+    assert cd._core._cli(["chaindrive", "sweep", "--help"]) == 0
+    listed = re.findall(r"^ +(?:-., )?--([a-z-]+)", capfd.readouterr().out, re.MULTILINE)
+    command = {option.replace("-", "_") for option in listed}
+    function = set(inspect.signature(cd.sweep).parameters)
+    assert function - command == {"drive", "executor", "progress"}
+    assert command - function == {"set", "take_over", "quiet", "help"}
 
 
 def test_dimensions_are_named_and_have_units(built_in):

@@ -178,7 +178,7 @@ fn objects_hold_what_a_disk_holds() -> Checked {
     let sweep = sweep()?;
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("sweep.zarr");
-    let mut store = SweepStore::begin(&path, &sweep, &sample(&sweep), Existing::Keep)?;
+    let mut store = SweepStore::begin(path.as_path(), &sweep, &sample(&sweep), Existing::Keep)?;
     // One after the other, so that the layout grows the same way.
     store.run(Some(1), &mut |_| Go::On)?;
     store.finish()?;
@@ -370,7 +370,7 @@ fn a_sweep_that_was_copied_from_a_disk_goes_on() -> Checked {
     let sweep = sweep()?;
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("sweep.zarr");
-    let store = SweepStore::begin(&path, &sweep, &sample(&sweep), Existing::Keep)?;
+    let store = SweepStore::begin(path.as_path(), &sweep, &sample(&sweep), Existing::Keep)?;
     drop(store);
     let memory = InMemory::new();
     let objects: Arc<dyn Objects> = memory.clone();
@@ -423,7 +423,7 @@ fn what_is_not_a_sweep_of_chaindrive_stays() -> Checked {
 fn addresses_are_no_folders() -> Checked {
     let sweep = sweep()?;
     let refused = SweepStore::begin(
-        "s3://bucket/sweep.zarr",
+        Path::new("s3://bucket/sweep.zarr"),
         &sweep,
         &sample(&sweep),
         Existing::Keep,

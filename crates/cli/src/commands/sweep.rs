@@ -103,12 +103,11 @@ pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
     // A scene suggests channels for a run; times the number of variants they are only kept on demand.
     let asked = arguments.run.asks_for_channels();
     let record = if asked { record } else { Vec::new() };
-    let sweep = match &arguments.design {
-        Some(table) => Sweep::of_table(&scene, &design::read(table)?, &record)?,
-        None => {
-            let varied = arguments.vary.iter().map(|text| vary::read(&scene, text));
-            Sweep::new(&scene, &varied.collect::<Result<Vec<_>, _>>()?, &record)?
-        }
+    let sweep = if let Some(table) = &arguments.design {
+        Sweep::of_table(&scene, &design::read(table)?, &record)?
+    } else {
+        let varied = arguments.vary.iter().map(|text| vary::read(&scene, text));
+        Sweep::new(&scene, &varied.collect::<Result<Vec<_>, _>>()?, &record)?
     };
     sweep.check_given(&[arguments.run.given(), arguments.scene.given()].concat())?;
     let existing = if arguments.overwrite {
@@ -127,7 +126,7 @@ pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
             let go = || {
                 if interrupted() { Go::NoFurther } else { Go::On }
             };
-            let store = SweepStore::open(&path, &sweep, existing, jobs, go)?;
+            let store = SweepStore::open(path.as_path(), &sweep, existing, jobs, go)?;
             Box::new(store.ok_or(Failure::Interrupted)?)
         }
         Target::Csv(path) => {

@@ -126,33 +126,28 @@ impl SweepCoordinator {
 
     /// Numbers of the tasks that are still to be carried out.
     fn open_tasks(&self, py: Python<'_>) -> PyResult<Vec<usize>> {
-        py.detach(|| self.with(|it| it.open_tasks().or_raise()))
+        py.detach(|| self.with(|it| it.open_tasks()))?.or_raise()
     }
 
     /// Takes the answer of a worker to a task.
     fn take(&self, py: Python<'_>, answer: &[u8]) -> PyResult<()> {
         let answer = Answer::from_bytes(answer).or_raise()?;
-        py.detach(|| self.with(|it| it.take(answer).or_raise()))
+        py.detach(|| self.with(|it| it.take(answer)))?.or_raise()
     }
 
     /// Hears that a task was lost.
     fn lose(&self, py: Python<'_>, task: usize, reason: &str) -> PyResult<()> {
-        py.detach(|| {
-            self.with(|it| {
-                it.lose(task, reason);
-                Ok(())
-            })
-        })
+        py.detach(|| self.with(|it| it.lose(task, reason)))
     }
 
     /// Share of the variants that have ended.
     fn share(&self, py: Python<'_>) -> PyResult<f64> {
-        py.detach(|| self.with(|it| Ok(share(it.progress()))))
+        py.detach(|| self.with(|it| share(it.progress())))
     }
 
     /// Whether the result is in its place.
     fn is_public(&self, py: Python<'_>) -> PyResult<bool> {
-        py.detach(|| self.with(|it| Ok(it.is_public())))
+        py.detach(|| self.with(|it| it.is_public()))
     }
 
     /// Makes ready for workers elsewhere; what Python raised meanwhile is the answer.
@@ -176,7 +171,7 @@ impl SweepCoordinator {
 
     /// Ends the sweep, and tells what came of it; of a sweep in memory with its arrays.
     fn finish<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let (tally, summary) = py.detach(|| self.with(|it| it.finish().or_raise()))?;
+        let (tally, summary) = py.detach(|| self.with(|it| it.finish()))?.or_raise()?;
         self.with(|it| {
             let (sweep, outcomes) = (it.sweep(), it.progress().outcomes);
             let answer = PyDict::new(py);
@@ -193,7 +188,7 @@ impl SweepCoordinator {
             answer.set_item("summary", summary)?;
             answer.set_item("warning", tally.warning(sweep))?;
             Ok(answer)
-        })
+        })?
     }
 
     /// Gives the claim back.
@@ -231,18 +226,15 @@ impl SweepCoordinator {
             looked = Instant::now();
             heard(&mut raised, progress.as_ref(), share(state))
         };
-        py.detach(|| self.with(|it| act(it, &mut watch).or_raise()))?;
+        py.detach(|| self.with(|it| act(it, &mut watch)))?
+            .or_raise()?;
         Ok(raised.map(|error| error.into_value(py).into_bound(py).into_any()))
     }
 
-    fn with<T>(
-        &self,
-        act: impl FnOnce(&mut (dyn Coordinator + Send)) -> PyResult<T>,
-    ) -> PyResult<T> {
-        match self.inner().as_mut() {
-            Some(inner) => act(inner.as_mut()),
-            None => Err(PyValueError::new_err("the sweep is closed")),
-        }
+    fn with<T>(&self, act: impl FnOnce(&mut (dyn Coordinator + Send)) -> T) -> PyResult<T> {
+        let mut inner = self.inner();
+        let open = inner.as_mut().map(|inner| act(inner.as_mut()));
+        open.ok_or_else(|| PyValueError::new_err("the sweep is closed"))
     }
 }
 

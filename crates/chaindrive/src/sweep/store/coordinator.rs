@@ -4,7 +4,8 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use serde_json::{Map, Value};
-use zarrs::array::{CodecOptions, data_type};
+use zarrs::array::builder::ArrayBuilderFillValue;
+use zarrs::array::{DataType, data_type};
 
 use super::{Arrays, Place, StoreSink, every_chunk};
 use crate::sweep::coordinator::{Coordinator, Watch, carry_out};
@@ -69,13 +70,13 @@ impl SweepStore {
             if sample.stopped {
                 return Ok(None);
             }
-            match Self::begin(&place, sweep, &sample, existing) {
+            match Self::begin(place.clone(), sweep, &sample, existing) {
                 // The same sweep may have been begun by somebody else meanwhile.
                 Err(_) if goes_on()? => {}
                 begun => return Ok(Some(begun?)),
             }
         }
-        Ok(Some(Self::go_on(&place, sweep)?))
+        Ok(Some(Self::go_on(place, sweep)?))
     }
 
     /// Begins a sweep, with tasks of the size that a sample suggests. Where it replaces an earlier result, that one stays until a
@@ -93,42 +94,19 @@ impl SweepStore {
             Place::Disk(path) => Store::begin(&path, existing)?,
             Place::Objects(objects) => Store::begin_in(&objects, existing)?,
         };
-        Self::begin_on(store, sweep, sample)
-    }
-
-    fn begin_on(mut store: Store, sweep: &Sweep, sample: &Sample) -> Result<Self, WriteError> {
         let layout = Layout::new(sweep, sample.variants_per_task, sample.account());
-        let recipe = sweep.recipe();
-        let begun = [
-            (RECIPE, serde_json::to_vec(&recipe)),
+        let files = [
+            (RECIPE, serde_json::to_vec(&sweep.recipe())),
             (LAYOUT, serde_json::to_vec(&layout)),
-        ]
-        .into_iter()
-        .try_for_each(|(name, bytes)| store.put(name, &bytes?))
-        .and_then(|()| put_coordinates(&store, sweep, &layout))
-        .and_then(|mut arrays| {
-            arrays.extend(lay(&store, sweep, &layout)?);
-            Ok(arrays)
-        });
-        let arrays = begun.map_err(|fault| store.fault(fault))?;
-        let open = Finished::default();
-        let attributes = attributes(sweep, &layout, open, &Ending::None);
-        store.tell(attributes, arrays.clone(), &Ending::None)?;
-        let sink = StoreSink::on(store.storage().clone(), store.path());
+        ];
+        let mut files = files.into_iter();
+        let put = files.try_for_each(|(name, bytes)| store.put(name, &bytes?));
+        put.map_err(|fault| store.fault(fault))?;
+        let mut begun = Self::on(store, sweep, false)?;
+        begun.tell(&Ending::None)?;
         // What the sample had to choose serves the sweep.
         let mut made = sweep.choices.made().into_iter();
-        made.try_for_each(|(block, choice)| sink.keep(block, &choice))?;
-        let mut begun = Self {
-            store,
-            sweep: sweep.clone(),
-            sink,
-            tasks: layout.tasks(),
-            told: layout,
-            arrays,
-            finished: open,
-            last_told: Instant::now(),
-            is_public: false,
-        };
+        made.try_for_each(|(block, choice)| begun.sink.keep(block, &choice))?;
         // A variant that is a task on its own need not be computed again.
         if begun.told.block() == 1 && sample.first != Outcome::Open {
             let answer = begun.sink.put(0, vec![sample.first.clone()])?;
@@ -174,27 +152,31 @@ impl SweepStore {
             });
         }
         store.go_on()?;
-        let sink = StoreSink::on(store.storage().clone(), store.path());
-        let layout = sink.layout().map_err(|fault| store.fault(fault))?;
-        let arrays = put_coordinates(&store, sweep, &layout).and_then(|mut arrays| {
-            arrays.extend(lay(&store, sweep, &layout)?);
-            Ok(arrays)
-        });
-        let arrays = arrays.map_err(|fault| store.fault(fault))?;
-        let mut left = Self {
-            store,
-            sweep: sweep.clone(),
-            sink,
-            tasks: layout.tasks(),
-            told: layout,
-            arrays,
-            finished: Finished::default(),
-            last_told: Instant::now(),
-            is_public: true,
-        };
+        let mut left = Self::on(store, sweep, true)?;
         left.finished = left.read(|_, _| {})?.counts();
         left.tell(&Ending::None)?;
         Ok(left)
+    }
+
+    /// A store whose recipe and layout are there. The first that it tells are the arrays of the layout.
+    fn on(store: Store, sweep: &Sweep, is_public: bool) -> Result<Self, WriteError> {
+        let sink = StoreSink::on(store.storage().clone(), store.path());
+        let read = sink.layout().and_then(|layout| {
+            let arrays = put_coordinates(&store, sweep, &layout)?;
+            Ok((layout.tasks(), arrays))
+        });
+        let (tasks, arrays) = read.map_err(|fault| store.fault(fault))?;
+        Ok(Self {
+            store,
+            sweep: sweep.clone(),
+            sink,
+            told: Layout::default(),
+            arrays,
+            finished: Finished::default(),
+            tasks,
+            last_told: Instant::now(),
+            is_public,
+        })
     }
 
     /// Where the store is, symbolic links followed: the path for workers.
@@ -384,41 +366,34 @@ fn put_coordinate(
     about: Map<String, Value>,
 ) -> Result<Value, Fault> {
     let (dims, shape, chunk) = ([along], [values.len()], [cut]);
-    let options = every_chunk();
+    let array = |kind: DataType, fill: ArrayBuilderFillValue| {
+        arrays.array(name, &dims, &shape, &chunk, &kind, fill, about)
+    };
     let array = match values {
-        Coordinate::Numbers(numbers) => {
-            let kind = data_type::float64();
-            let array = arrays.array(name, &dims, &shape, &chunk, &kind, f64::NAN, about)?;
-            put_whole(&array, numbers.as_slice(), &options)?;
-            array
-        }
+        Coordinate::Numbers(numbers) => put_whole(
+            array(data_type::float64(), f64::NAN.into())?,
+            numbers.as_slice(),
+        ),
         Coordinate::Whole(numbers) => {
-            let kind = data_type::int64();
-            let array = arrays.array(name, &dims, &shape, &chunk, &kind, 0_i64, about)?;
-            put_whole(&array, numbers.as_slice(), &options)?;
-            array
+            put_whole(array(data_type::int64(), 0_i64.into())?, numbers.as_slice())
         }
         Coordinate::Texts(texts) => {
-            let kind = data_type::string();
-            let array = arrays.array(name, &dims, &shape, &chunk, &kind, "", about)?;
-            put_whole(&array, texts.clone(), &options)?;
-            array
+            put_whole(array(data_type::string(), "".into())?, texts.clone())
         }
-    };
+    }?;
     store_metadata(&array)?;
     metadata(&array)
 }
 
 /// Writes an array of one dimension.
 fn put_whole<'a>(
-    array: &StoredArray,
+    array: StoredArray,
     values: impl zarrs::array::IntoArrayBytes<'a>,
-    options: &CodecOptions,
-) -> Result<(), Fault> {
+) -> Result<StoredArray, Fault> {
     if array.shape()[0] > 0 {
-        array.store_array_subset_opt(&array.subset_all(), values, options)?;
+        array.store_array_subset_opt(&array.subset_all(), values, &every_chunk())?;
     }
-    Ok(())
+    Ok(array)
 }
 
 /// Writes what a layout says of all arrays but the coordinates of the variants.

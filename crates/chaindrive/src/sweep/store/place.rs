@@ -36,26 +36,8 @@ impl From<&Path> for Place {
     }
 }
 
-impl From<&PathBuf> for Place {
-    fn from(path: &PathBuf) -> Self {
-        Self::Disk(path.clone())
-    }
-}
-
-impl From<&str> for Place {
-    fn from(path: &str) -> Self {
-        Self::Disk(path.into())
-    }
-}
-
 impl From<&Arc<dyn Objects>> for Place {
     fn from(objects: &Arc<dyn Objects>) -> Self {
         Self::Objects(Arc::clone(objects))
-    }
-}
-
-impl From<&Self> for Place {
-    fn from(place: &Self) -> Self {
-        place.clone()
     }
 }
