@@ -332,7 +332,8 @@ def test_ctrl_c_leaves_a_store_that_says_what_it_holds_and_goes_on(in_memory, tm
 def test_asked_to_end_it_says_so_before_it_does(tmp_path, how):
     script, store = tmp_path / "script.py", tmp_path / "s.zarr"
     script.write_text(textwrap.dedent(SCRIPT))
-    process = subprocess.Popen([sys.executable, str(script), str(store), how, "240", "0.1"])
+    arguments = [sys.executable, str(script), str(store), how, "240", "0.1"]
+    process = subprocess.Popen(arguments, stdout=subprocess.DEVNULL)
     while not stored(store):
         assert process.poll() is None
         time.sleep(0.01)
@@ -356,6 +357,7 @@ import chaindrive as cd
 store, how, count, until = sys.argv[1], sys.argv[2], int(sys.argv[3]), float(sys.argv[4])
 design = {"chain.start.speed": np.linspace(300.0, 400.0, count)}
 settings = {"until": until, "every": 1e-3, "record": "link_tension", "output": store}
+settings["progress"] = lambda share: print(share, flush=True)
 if __name__ == "__main__":
     if how == "threads":
         cd.sweep(cd.scenes.spinning_ring(), design=design, **settings)
@@ -383,18 +385,18 @@ def kill_and_resume(folder, killed, kills, *, count, until, random):
     """Begin a sweep again and again, and kill workers and coordinators, until it is complete."""
     script, store = folder / "script.py", folder / "killed.zarr"
     script.write_text(textwrap.dedent(SCRIPT))
-    begun = {}
+    begun, reached = {}, 0.0
     # Workers outlive a coordinator that was killed, and wait for it: the next one does not mind.
     orphans = []
     while True:
         how = "threads" if random.random() < 0.3 else "processes"
         arguments = [sys.executable, str(script), str(store), how, str(count), str(until)]
         # Not a pipe: workers that outlive a coordinator would hold it open.
-        with (folder / "told").open("w") as told:
-            process = subprocess.Popen(arguments, stderr=told)
-        before = len(stored(store))
+        with (folder / "told").open("w") as told, (folder / "shares").open("w") as shares:
+            process = subprocess.Popen(arguments, stdout=shares, stderr=told)
+        enough = len(stored(store)) + random.integers(1, 4)
         while process.poll() is None and (
-            len(stored(store)) < before + 1 or (how == "processes" and not children(process.pid))
+            len(stored(store)) < enough or (how == "processes" and not children(process.pid))
         ):
             time.sleep(0.005)
         time.sleep(random.uniform(0.0, 0.05))
@@ -407,10 +409,14 @@ def kill_and_resume(folder, killed, kills, *, count, until, random):
         process.wait()
         orphans += left
         told = (folder / "told").read_text()
+        shares = [float(line) for line in (folder / "shares").read_text().split("\n")[:-1]]
+        assert [reached, *shares] == sorted([reached, *shares]), "progress goes on where it was"
+        reached = max([reached, *shares])
         for chunk in stored(store):
             contents = (store / chunk).read_bytes()
             assert begun.setdefault(chunk, contents) == contents, "stored twice"
         if process.returncode == 0:
+            assert not shares or shares[-1] == 1.0
             for orphan in orphans:
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(orphan, signal.SIGKILL)
