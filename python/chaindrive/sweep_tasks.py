@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 from uuid import uuid4
 
@@ -22,6 +22,9 @@ _AHEAD = 1024
 _TASKS = 128
 # The outcomes of a task are sent back as a whole, and lost as a whole.
 _LARGEST_TASK = 32
+
+# Tasks in a store take about a second, and a pool has one or two more of them than workers [s].
+_SOON = 4.0
 
 # The worker of the sweep whose tasks this process carries out.
 _opened: dict[str, _core.SweepWorker] = {}
@@ -68,7 +71,8 @@ def carry_out(
     Returns
     -------
     stop
-        What stopped it, such as Ctrl-C. Of an executor the answers count that had come back.
+        What stopped it, such as Ctrl-C. Of an executor the answers count that have come back, or
+        soon do.
     lost
         Reasons why the executor lost tasks, one a task.
     """
@@ -111,10 +115,22 @@ def carry_out(
                 if tell is not None:
                     tell(coordinator.share())
     except KeyboardInterrupt as interrupt:
+        with suppress(KeyboardInterrupt):
+            _take_what_is_under_way(coordinator, pending)
         return interrupt, lost
     finally:
         for future in pending:
             future.cancel()
+
+
+def _take_what_is_under_way(
+    coordinator: _core.SweepCoordinator, pending: Iterable[Future[bytes]]
+) -> None:
+    """Wait a little for tasks that nobody can stop: a store is to say what it holds."""
+    running = [future for future in pending if not future.cancel()]
+    for future in wait(running, timeout=_SOON).done:
+        if future.exception() is None:
+            coordinator.take(future.result())
 
 
 def _task(place: Any, sweep: str, task: int) -> bytes:

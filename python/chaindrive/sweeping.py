@@ -167,7 +167,8 @@ def sweep(
     KeyboardInterrupt
         Ctrl-C. Its attribute `result` is the dataset as it would have been returned, with the
         variants that were finished; ``error`` of the others says that they were not carried out.
-        Of an executor the tasks count that had come back. With `output` the same call goes on.
+        Of an executor the tasks count that have come back, or do within some seconds. With
+        `output` the same call goes on.
 
     Warns
     -----

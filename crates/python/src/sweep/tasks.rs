@@ -21,6 +21,8 @@ use crate::signals::{PATIENCE, look};
 #[pyclass(frozen, module = "chaindrive._core")]
 pub(crate) struct SweepCoordinator {
     inner: Mutex<Option<Box<dyn Coordinator + Send>>>,
+    /// Ctrl-C that came while the sweep was begun: nothing is carried out, and the end is told as of any other.
+    stopped: Mutex<Option<PyErr>>,
     /// Number of the open file that holds the claim, for processes that are forked; None where there is none.
     #[pyo3(get)]
     descriptor: Option<i32>,
@@ -69,6 +71,7 @@ impl SweepCoordinator {
                 &sweep.0,
                 variants_per_task,
             )))),
+            stopped: Mutex::default(),
             descriptor: None,
             place: (recipe, variants_per_task)
                 .into_pyobject(py)?
@@ -119,6 +122,7 @@ impl SweepCoordinator {
         let descriptor = None;
         Ok(Self {
             inner: Mutex::new(Some(Box::new(store))),
+            stopped: Mutex::new(py.check_signals().err()),
             descriptor,
             place,
         })
@@ -217,7 +221,17 @@ impl SweepCoordinator {
         progress: Option<Py<PyAny>>,
         act: impl FnOnce(&mut dyn Coordinator, &mut Watch<'_>) -> Result<Go, SweepError> + Send,
     ) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let mut raised = None;
+        let stopped = || {
+            self.stopped
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .take()
+        };
+        let mut raised = py.detach(stopped);
+        let told = |raised: PyErr| raised.into_value(py).into_bound(py).into_any();
+        if raised.is_some() {
+            return Ok(raised.map(told));
+        }
         let mut looked = Instant::now();
         let mut watch = |state: Progress<'_>| {
             if state.finished < state.variants && looked.elapsed() < PATIENCE {
@@ -228,7 +242,7 @@ impl SweepCoordinator {
         };
         py.detach(|| self.with(|it| act(it, &mut watch)))?
             .or_raise()?;
-        Ok(raised.map(|error| error.into_value(py).into_bound(py).into_any()))
+        Ok(raised.map(told))
     }
 
     fn with<T>(&self, act: impl FnOnce(&mut (dyn Coordinator + Send)) -> T) -> PyResult<T> {
