@@ -48,7 +48,7 @@ impl Worker {
         Ok(Self::of(&sink.sweep()?, sink))
     }
 
-    /// A worker of a sweep in memory, see [`SweepMemory::new`]: all outcomes come back with the answers.
+    /// A worker of a sweep in memory, see [`SweepMemory::new`](super::SweepMemory::new): all outcomes come back with the answers.
     ///
     /// # Errors
     /// [`SweepError::Origin`] where the recipe is of another build of the program or another instruction set.
