@@ -151,13 +151,13 @@ class RunSettings(TypedDict, total=False):
     until: Quantity
     run_in: Quantity
     every: Quantity
-    record: Recorded | Iterable[Recorded]
     method: MethodName
     step: Quantity
     tolerance: Quantity
     onset_depth: Quantity
     accuracy: Quantity
     accuracy_of: Target
+    record: Recorded | Iterable[Recorded]
     events: ContactPlace | Iterable[ContactPlace]
 
 

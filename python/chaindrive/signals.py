@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 
@@ -40,12 +41,27 @@ def heard() -> Iterator[None]:
         raise KeyboardInterrupt
 
     numbers = _unheard()
+    _kept.update(numbers)
     for number in numbers:
         signal.signal(number, stop)
     try:
         yield
     finally:
-        for number in numbers:
-            signal.signal(number, signal.SIG_DFL)
+        _let_go(numbers)
         if caught:
             signal.raise_signal(caught[0])
+
+
+# Signals that take effect after what goes on.
+_kept: set[signal.Signals] = set()
+
+
+def _let_go(numbers: Iterable[signal.Signals]) -> None:
+    for number in numbers:
+        signal.signal(number, signal.SIG_DFL)
+    _kept.difference_update(numbers)
+
+
+# A worker that is forked meanwhile has no result to end: whoever ends it interrupts nobody else.
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=lambda: _let_go(tuple(_kept)))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import nullcontext
 from os import PathLike, fspath
 from typing import Any
@@ -25,7 +25,14 @@ from chaindrive.errors import (
 from chaindrive.extras import extra
 from chaindrive.page import show_verdicts
 from chaindrive.progress import told
-from chaindrive.settings import ContactPlace, MethodName, Quantity, Recorded, Target
+from chaindrive.settings import (
+    ContactPlace,
+    MethodName,
+    Quantity,
+    Recorded,
+    RunSettings,
+    Target,
+)
 from chaindrive.signals import heard
 
 __all__ = ["resume", "simulate"]
@@ -191,30 +198,18 @@ def simulate(
     >>> run["link_tension"].shape
     (3, 20)
     """
+    settings = _given(locals())
     _needed(drive)
     if output is not None:
         extra("zarr", "stores on disk")
     elif checkpoint_every is not None:
         message = "checkpoint_every: nothing is written; give `output`, a Zarr store"
         raise ParameterError(message, "checkpoint_every", "give `output`")
-    given: dict[str, Any] = {
-        "until": until,
-        "run_in": run_in,
-        "every": every,
-        "method": method,
-        "step": step,
-        "tolerance": tolerance,
-        "onset_depth": onset_depth,
-        "accuracy": accuracy,
-        "accuracy_of": accuracy_of,
-        "record": None if record is None else _listed(record),
-        "events": None if events is None else _listed(events),
-    }
     # What is in memory only is lost with the program anyway.
     with told(progress, "run") as tell, nullcontext() if output is None else heard():
         result = _core.simulate(
             drive._inner,
-            [(key, value) for key, value in given.items() if value is not None],
+            settings,
             output=None if output is None else fspath(output),
             overwrite=overwrite,
             checkpoint_every=checkpoint_every,
@@ -277,6 +272,16 @@ def resume(
     with told(progress, "run") as tell, heard():
         result = _core.resume(fspath(path), until=until, progress=tell)
     return _concluded(result, path)
+
+
+def _given(arguments: Mapping[str, Any]) -> list[tuple[str, Any]]:
+    """Return the settings of a run among the arguments of a function, as far as they are given."""
+    given = ((key, arguments[key]) for key in RunSettings.__annotations__)
+    return [
+        (key, _listed(value) if key in ("record", "events") else value)
+        for key, value in given
+        if value is not None
+    ]
 
 
 def _concluded(result: Any, output: str | PathLike[str] | None) -> xr.Dataset:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import time
 import warnings
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Executor
-from functools import lru_cache
+from contextlib import nullcontext
 from os import PathLike
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
@@ -16,28 +17,18 @@ import xarray as xr
 from chaindrive import _core
 from chaindrive.drive import Drive, _json, _needed
 from chaindrive.errors import DistrustedResultWarning, ParameterError, SimulationError
-from chaindrive.executors import ORIGIN, same_origin, spread
 from chaindrive.objects import place_of
 from chaindrive.progress import told
+from chaindrive.results import _open
 from chaindrive.settings import ContactPlace, MethodName, Quantity, Recorded, Target
-from chaindrive.simulation import _listed
-from chaindrive.sweep_store import into_store
+from chaindrive.signals import heard
+from chaindrive.simulation import _given, _listed
+from chaindrive.sweep_tasks import begun, carry_out
 
 if TYPE_CHECKING:
     from obstore.store import ObjectStore
 
 __all__ = ["sweep"]
-
-_Recipe: TypeAlias = tuple[str, str, tuple[tuple[str, tuple[str, ...]], ...], tuple[str, ...], bool]
-"""Parts of a sweep: text and name of the scene, values as JSON by path, channels, table or not."""
-
-_Chunk: TypeAlias = tuple[str, _Recipe, int, int]
-"""What an executor gets: the origin of this process, the recipe, the first variant and the end."""
-
-# An executor gets so many chunks that its workers end at about the same time.
-_CHUNKS = 128
-# A chunk is sent back as a whole, and lost as a whole.
-_LARGEST_CHUNK = 32
 
 
 def sweep(
@@ -169,14 +160,15 @@ def sweep(
         given as an argument too, or that an accuracy chooses; columns of a table are not equally
         long.
     SimulationError
-        The executor lost every variant; with `output`, the executor lost a task. What is stored
-        stays there, and the same call goes on with it.
+        The executor lost tasks, and no variant reached its end; with `output`, the executor lost a
+        task. What is stored stays there, and the same call goes on with it.
     WriteError
         The output holds another sweep or another result, or cannot be written.
     KeyboardInterrupt
         Ctrl-C. Its attribute `result` is the dataset as it would have been returned, with the
         variants that were finished; ``error`` of the others says that they were not carried out.
-        Of an executor the chunks count that had come back. With `output` the same call goes on.
+        Of an executor the tasks count that have come back, or do within some seconds. With
+        `output` the same call goes on.
 
     Warns
     -----
@@ -200,6 +192,7 @@ def sweep(
     >>> bool((result["error"] == "").all())
     True
     """
+    settings = [(key, value) for key, value in _given(locals()) if key != "record"]
     _needed(drive)
     columns = _columns(vary, design)
     if executor is not None and jobs is not None:
@@ -207,59 +200,45 @@ def sweep(
         raise ParameterError(message, "jobs", "leave it out, or give it to the executor")
     if jobs is not None and jobs < 1:
         raise ParameterError(f"jobs = {jobs}, must be at least 1", "jobs", "at least 1")
-    given: dict[str, Any] = {
-        "until": until,
-        "run_in": run_in,
-        "every": every,
-        "method": method,
-        "step": step,
-        "tolerance": tolerance,
-        "onset_depth": onset_depth,
-        "accuracy": accuracy,
-        "accuracy_of": accuracy_of,
-        "events": None if events is None else _listed(events),
-    }
-    settings = [(key, value) for key, value in given.items() if value is not None]
-    varied = tuple((path, _values(values, path)) for path, values in columns.items())
-    parts = (varied, tuple(_listed(record)), design is not None)
-    core = _core.Sweep(drive.text, drive.name, *parts, settings)
-    recipe = (core.text, drive.name, *parts)
-    start = time.perf_counter()
-    if output is not None:
-        with told(progress, "sweep") as tell:
-            return into_store(core, place_of(output), overwrite, jobs, executor, tell)
-    with told(progress, "sweep") as tell:
-        if executor is None:
-            result = core.run(jobs, tell)
-        else:
-            outcomes, interrupt = _spread(recipe, len(core), executor, tell)
-            result = core.stack(outcomes) | {"stop": interrupt}
-    stop: Any = result["stop"]
-    attributes = {
-        "title": drive.title,
-        "format": "chaindrive",
-        **_core._origin,
-        "scene_name": drive.name,
-        "scene": core.text,
-        "method": ", ".join(result["methods"]) or method or drive.run_defaults["method"],
-        "swept": [path for path, _ in varied],
-        "variants": len(core),
-        "finished": result["finished"],
-        "failed": result["failed"],
-        "distrusted": result["distrusted"],
-        **_status(stop, result["failed"], len(core)),
-        "wall_time": time.perf_counter() - start,
-        "summary": result["summary"],
-    }
-    dataset = _dataset(result, attributes)
+    varied = [(path, _values(values, path)) for path, values in columns.items()]
+    asked = (_listed(record), design is not None, settings)
+    core = _core.Sweep(drive.text, drive.name, varied, *asked)
+    begin = time.perf_counter()
+    place = None if output is None else place_of(output)
+    # What is in memory only is lost with the program anyway.
+    with (
+        told(progress, "sweep") as tell,
+        nullcontext() if place is None else heard(),
+        begun(core, place, overwrite, jobs, executor) as coordinator,
+    ):
+        stop, lost = carry_out(coordinator, executor, jobs, tell)
+        if stop is not None and not coordinator.is_public():
+            stop.add_note(f"{place} holds the earlier result: of this sweep nothing was stored")
+            raise stop
+        result = coordinator.finish()
+    if stop is not None and not isinstance(stop, KeyboardInterrupt):
+        raise stop
+    if place is None:
+        dataset = _dataset(result)
+        done = f"{result['finished']} of {len(core)} variants are done"
+        note = f"{done}: `except KeyboardInterrupt as stop` finds them in `stop.result`"
+    else:
+        dataset = _open(place)
+        done = f"{len(core) - result['open']} of {len(core)} variants"
+        note = f"{place} holds {done}: the same call goes on"
+    dataset.attrs["wall_time"] = time.perf_counter() - begin
+    dataset.attrs["summary"] = result["summary"]
     if result["warning"]:
         warnings.warn(result["warning"], DistrustedResultWarning, stacklevel=2)
     if stop is not None:
         # The very exception, for a class of its own would change the exit code of a script.
-        stop.result = dataset
-        done = f"{result['finished']} of {len(core)} variants are done"
-        stop.add_note(f"{done}: `except KeyboardInterrupt as stop` finds them in `stop.result`")
+        vars(stop)["result"] = dataset
+        stop.add_note(note)
         raise stop
+    if lost and (result["open"] or not result["finished"]):
+        tasks = f"the executor lost {len(lost)} tasks, the first by {type(lost[0]).__name__}"
+        message = f"{tasks}: {lost[0]}" + ("" if place is None else f"; {note}")
+        raise SimulationError(message, "executor") from lost[0]
     return dataset
 
 
@@ -296,19 +275,6 @@ def _column(values: Any) -> Any:
     return values
 
 
-def _status(stop: KeyboardInterrupt | None, failed: int, variants: int) -> dict[str, Any]:
-    """Return how a sweep ended, as a store says it."""
-    if stop is not None:
-        return {"status": "interrupted", "complete": 0}
-    if failed:
-        return {
-            "status": "failed",
-            "complete": 0,
-            "failure": f"{failed} of {variants} variants failed",
-        }
-    return {"status": "complete", "complete": 1}
-
-
 def _values(values: Any, path: str) -> tuple[str, ...]:
     """Return every value at a path as JSON."""
     if isinstance(values, np.ndarray | np.generic | xr.DataArray):
@@ -324,54 +290,7 @@ def _counted(value: Any) -> Any:
     return int(value) if whole and str(float(value)) != "-0.0" else value
 
 
-def _spread(
-    recipe: _Recipe, count: int, executor: Executor, tell: Callable[[float], object] | None
-) -> tuple[list[Any], KeyboardInterrupt | None]:
-    """Have an executor compute all variants, and return their outcomes in their order.
-
-    After Ctrl-C, which is returned too, None stands for those that had not come back.
-    """
-    size = min(max(count // _CHUNKS, 1), _LARGEST_CHUNK)
-    outcomes: list[Any] = [None] * count
-    finished = missing = 0
-
-    def take(task: _Chunk, part: list[Any]) -> None:
-        nonlocal finished
-        *_, first, end = task
-        outcomes[first:end] = part
-        finished += end - first
-        if tell is not None:
-            tell(finished / count)
-
-    def lose(task: _Chunk, error: Exception) -> None:
-        nonlocal missing
-        *_, first, end = task
-        missing += end - first
-        message = f"the executor lost this variant: {type(error).__name__}: {error}"
-        nothing: Any = (message, "", np.empty(0), [], [], ("", "", ""))
-        take(task, [nothing] * (end - first))
-
-    chunks = range(0, count, size)
-    tasks = [(ORIGIN, recipe, first, min(first + size, count)) for first in chunks]
-    stop, lost = spread(executor, _part, tasks, take, lose)
-    if stop is None and missing == count:
-        message = f"the executor lost every variant: {type(lost[0]).__name__}: {lost[0]}"
-        raise SimulationError(message, "executor") from lost[0]
-    return outcomes, stop
-
-
-def _part(origin: str, recipe: _Recipe, first: int, end: int) -> list[Any]:
-    """Compute some variants; called by an executor, in whatever process it likes."""
-    same_origin(origin)
-    return _made(recipe).part(first, end)
-
-
-@lru_cache(maxsize=1)
-def _made(recipe: _Recipe) -> _core.Sweep:
-    return _core.Sweep(*recipe)
-
-
-def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:
+def _dataset(result: Mapping[str, Any]) -> xr.Dataset:
     import chaindrive.analysis.accessor  # noqa: F401  registers `run.drive`
 
     coordinates: dict[str, Any] = {}
@@ -393,7 +312,7 @@ def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:
     for name, texts, text in result["texts"]:
         entries = np.asarray(texts, dtype=np.str_).reshape(shape)
         variables[name] = (swept, entries, {"long_name": text})
-    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
+    return xr.Dataset(variables, coords=coordinates, attrs=json.loads(result["attributes"]))
 
 
 def _labels(values: Any) -> Any:

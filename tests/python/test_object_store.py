@@ -104,8 +104,8 @@ from obstore.store import S3Store
 server, prefix, how = sys.argv[1:]
 store = S3Store("sweeps", prefix=prefix, endpoint=server, client_options={"allow_http": True},
                 access_key_id="nobody", secret_access_key="nothing", region="us-east-1")
-settings = {"until": 60e-3, "every": 1e-3, "record": "link_tension", "output": store}
-design = {"chain.start.speed": np.linspace(300.0, 400.0, 60)}
+settings = {"until": 0.1, "every": 1e-3, "record": "link_tension", "output": store}
+design = {"chain.start.speed": np.linspace(300.0, 400.0, 6)}
 if __name__ == "__main__":
     if how == "threads":
         cd.sweep(cd.scenes.spinning_ring(), design=design, **settings)
@@ -120,44 +120,47 @@ if __name__ == "__main__":
 
 
 def chunks(store):
-    """What tasks have stored, by the array that they write last."""
-    found = [entry["path"] for entries in store.list("error/c/") for entry in entries]
-    return {path: bytes(store.get(path).bytes()) for path in found}
+    """Names of the chunks of the array that tasks write last.
+
+    The server answers one request after the other, some milliseconds each: those of a test are
+    what the sweep waits for.
+    """
+    return {entry["path"] for entries in store.list("error/c/") for entry in entries}
 
 
-@pytest.mark.parametrize("how", ["threads", pytest.param("spawn", marks=pytest.mark.slow)])
-def test_killed_and_resumed_no_variant_is_lost_twice_or_different(server, tmp_path, how):
+@pytest.mark.parametrize(
+    ("how", "kills"), [("threads", 1), pytest.param("spawn", 3, marks=pytest.mark.slow)]
+)
+def test_killed_and_resumed_no_variant_is_lost_twice_or_different(server, tmp_path, how, kills):
+    """Resumed in this process: to start one and import what it needs takes seconds."""
     script = tmp_path / "script.py"
     script.write_text(textwrap.dedent(SCRIPT))
     prefix = f"killed-{how}.zarr"
     store, begun = bucket(server, prefix), {}
     killed = 0
-    for _ in range(20):
+    for _ in range(kills):
         arguments = [sys.executable, str(script), server, prefix, how]
-        with (tmp_path / "told").open("w") as told:
-            process = subprocess.Popen(arguments, stderr=told)
         before = len(chunks(store))
-        while process.poll() is None and len(chunks(store)) < before + 1:
-            time.sleep(0.01)
-        if killed < 2 and process.poll() is None:
+        with subprocess.Popen(arguments) as process:
+            while process.poll() is None and len(chunks(store)) < before + 1:
+                time.sleep(0.03)
             # Workers outlive a coordinator that was killed, and wait for it.
             orphans = children(process.pid)
-            process.send_signal(signal.SIGKILL)
+            killed += process.poll() is None
+            process.kill()
             for orphan in orphans:
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(orphan, signal.SIGKILL)
-            killed += 1
-        process.wait(timeout=120)
-        for path, contents in chunks(store).items():
+        for path in chunks(store):
+            contents = bytes(store.get(path).bytes())
             assert begun.setdefault(path, contents) == contents, "stored twice"
-        if process.returncode == 0:
-            break
-        assert process.returncode == -signal.SIGKILL, (tmp_path / "told").read_text()
-    assert process.returncode == 0
     assert killed >= 1
-    design = {"chain.start.speed": np.linspace(300.0, 400.0, 60)}
-    run = {"until": 60e-3, "every": 1e-3, "record": "link_tension"}
-    assert_same(cd.open_result(store), cd.sweep(ring(), design=design, **run))
+    design = {"chain.start.speed": np.linspace(300.0, 400.0, 6)}
+    run = {"until": 0.1, "every": 1e-3, "record": "link_tension"}
+    resumed = cd.sweep(ring(), design=design, **run, output=store)
+    for path, contents in begun.items():
+        assert bytes(store.get(path).bytes()) == contents, "stored twice"
+    assert_same(resumed, cd.sweep(ring(), design=design, **run))
 
 
 def test_ctrl_c_leaves_a_store_that_says_so(server, tmp_path):
@@ -175,7 +178,7 @@ def test_ctrl_c_leaves_a_store_that_says_so(server, tmp_path):
     assert "KeyboardInterrupt" in told
     assert "the same call goes on" in told
     with pytest.warns(cd.ResultWarning, match="interrupted"):
-        assert 1 <= cd.open_result(store).attrs["finished"] < 120
+        assert 1 <= cd.open_result(store).attrs["finished"] < 6
 
 
 def test_workers_that_were_forked_are_told_of(server, tmp_path):

@@ -3,6 +3,7 @@
 import inspect
 import multiprocessing
 import os
+import re
 import signal
 import threading
 import time
@@ -131,6 +132,16 @@ def test_settings_of_a_run_are_arguments_of_a_sweep():
     assert "accuracy_kept" not in result
 
 
+def test_the_command_has_the_options_of_the_function(capfd):
+    """But for what is Python's own, and for what a drive and `take_over` are for in Python."""
+    assert cd._core._cli(["chaindrive", "sweep", "--help"]) == 0
+    listed = re.findall(r"^ +(?:-., )?--([a-z-]+)", capfd.readouterr().out, re.MULTILINE)
+    command = {option.replace("-", "_") for option in listed}
+    function = set(inspect.signature(cd.sweep).parameters)
+    assert function - command == {"drive", "executor", "progress"}
+    assert command - function == {"set", "take_over", "quiet", "help"}
+
+
 def test_dimensions_are_named_and_have_units(built_in):
     assert built_in["span_tension"].dims == ("speed", "torque", "pretension", "time", "span")
     assert built_in["span_tension_mean"].dims == ("speed", "torque", "pretension", "span")
@@ -192,7 +203,7 @@ def test_a_worker_that_is_lost_is_the_failure_of_its_variants():
     class Careless(ThreadPoolExecutor):
         def submit(self, task, /, *arguments):
             future = super().submit(task, *arguments)
-            if arguments[-2] == 1:
+            if arguments[-1] == 1:
                 future = Future()
                 future.set_exception(OSError("the second machine was switched off"))
             return future
@@ -208,7 +219,7 @@ def test_a_worker_that_is_lost_is_the_failure_of_its_variants():
 def test_a_pool_that_breaks_is_the_failure_of_the_variants_that_it_did_not_take():
     class Broken(ThreadPoolExecutor):
         def submit(self, task, /, *arguments):
-            if arguments[-2] == 1:
+            if arguments[-1] == 1:
                 raise OSError("a worker was killed")
             return super().submit(task, *arguments)
 
@@ -221,10 +232,26 @@ def test_a_pool_that_breaks_is_the_failure_of_the_variants_that_it_did_not_take(
 def test_an_executor_that_loses_everything_is_an_error():
     class Broken(Executor):
         def submit(self, task, /, *arguments):
-            return ThreadPoolExecutor(1).submit(task, "another version", *arguments[1:])
+            raise OSError("a worker was killed")
 
-    with pytest.raises(cd.SimulationError, match="instead of another version"):
+    with pytest.raises(cd.SimulationError, match="lost 2 tasks, the first by OSError: a worker"):
         cd.sweep(marine(), {PRETENSION: [10e3, 12e3]}, until=1e-3, executor=Broken())
+
+
+@pytest.mark.parametrize("where", ["memory", "store"])
+def test_workers_of_another_origin_are_refused(where, tmp_path, monkeypatch):
+    """They would compute other bits."""
+    known = cd._core._origin["instruction_set"]
+    monkeypatch.setenv("CHAINDRIVE_INSTRUCTION_SET", "avx2" if known == "sse2" else "sse2")
+    output = None if where == "memory" else tmp_path / "s.zarr"
+    fresh = multiprocessing.get_context("spawn")
+    words = f"it is of the instruction set {known}.*CHAINDRIVE_INSTRUCTION_SET={known}"
+    settings = {"until": 1e-3, "output": output}
+    with (
+        ProcessPoolExecutor(1, mp_context=fresh) as executor,
+        pytest.raises(cd.SimulationError, match=words),
+    ):
+        cd.sweep(marine(), {PRETENSION: [10e3, 12e3]}, **settings, executor=executor)
 
 
 def test_values_may_be_anything_that_a_scene_takes():
@@ -339,7 +366,7 @@ def test_an_interrupted_executor_keeps_the_chunks_that_came_back():
         """Never ends the second variant."""
 
         def submit(self, task, /, *arguments):
-            return Future() if arguments[-2] == 1 else super().submit(task, *arguments)
+            return Future() if arguments[-1] == 1 else super().submit(task, *arguments)
 
     returned = threading.Event()
     thread = interrupt_after(returned.wait)

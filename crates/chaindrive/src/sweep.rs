@@ -4,39 +4,47 @@
 //! those of a run on its own, bit for bit, whatever the number of threads.
 
 mod account;
+mod answer;
+mod attributes;
 mod blocks;
 mod choices;
+mod chunks;
 mod columns;
+mod coordinator;
 mod design;
 mod dimension;
 mod layout;
 mod report;
 mod sample;
+mod sink;
 mod stack;
 mod store;
 mod tally;
 mod texts;
 mod threads;
+mod worker;
 
-use std::convert::Infallible;
-use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, OnceLock};
 
+use serde::{Deserialize, Serialize};
+
 pub use account::{Account, Entry, Quantity, Statistic};
+pub use answer::{Answer, Finished};
 use blocks::Blocks;
 use choices::{Choices, Shared};
+pub use coordinator::{Coordinator, SweepMemory, Watch};
 pub use design::Recipe;
 pub use dimension::{Arrangement, Coordinate, Dimension, Setting};
 pub use report::Report;
 pub use sample::Sample;
 pub use stack::{Stacked, StackedQuantity, StackedText};
-pub(crate) use stack::{fill, texts};
-pub use store::{Finished, SweepStore, Worker};
+pub use store::{Place, SweepStore};
 pub use tally::Tally;
 pub(crate) use texts::{OPEN, TEXTS};
-use threads::on_threads;
+pub use worker::Worker;
 
+use crate::record::WriteError;
 use crate::scene::SceneError;
 use crate::{Scene, SimulationError};
 
@@ -129,10 +137,18 @@ pub enum SweepError {
     /// The system refuses threads.
     #[error("the threads cannot be started: {0}; ask for fewer")]
     Threads(#[from] std::io::Error),
+
+    /// A worker of another build, or on another instruction set.
+    #[error("a worker cannot take part in the sweep: {refusal}")]
+    Origin { refusal: String },
+
+    /// The store of the sweep.
+    #[error(transparent)]
+    Write(#[from] WriteError),
 }
 
 /// How a variant ended.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Outcome {
     /// Not yet, or not at all because the sweep was stopped.
     #[default]
@@ -146,10 +162,12 @@ pub enum Outcome {
 /// A sweep in progress.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress<'a> {
-    /// One outcome a variant that is run.
+    /// One outcome a variant; none where a store keeps them.
     pub outcomes: &'a [Outcome],
     /// Variants that are no longer open.
     pub finished: usize,
+    /// All variants.
+    pub variants: usize,
 }
 
 /// Whether to go on.
@@ -186,13 +204,13 @@ pub enum Go {
 pub struct Sweep {
     scene: Scene,
     arrangement: Arrangement,
-    dimensions: Vec<Dimension>,
+    dimensions: Arc<[Dimension]>,
     record: Vec<String>,
     len: usize,
     /// Samples of the longest run among those that were looked at; 0 when no channel is kept.
     most_samples: usize,
     /// Filled when somebody asks.
-    blocks: OnceLock<Arc<Blocks>>,
+    blocks: Arc<OnceLock<Blocks>>,
     choices: Arc<Choices>,
 }
 
@@ -307,24 +325,14 @@ impl Sweep {
     }
 
     fn blocks(&self) -> &Blocks {
-        self.blocks.get_or_init(|| Arc::new(Blocks::of(self)))
-    }
-
-    /// The choice of a variant's block, made if need be; none if that is stopped.
-    fn shared(&self, index: usize, stop: &AtomicBool) -> Option<Shared> {
-        let block = self.blocks().block(index);
-        let Ok(made) = self
-            .choices
-            .get(block, || Ok::<_, Infallible>(self.choose(block, stop)));
-        made
+        self.blocks.get_or_init(|| Blocks::of(self))
     }
 
     /// Runs one variant on the calling thread, until it ends or `stop` is set.
     pub fn carry_out(&self, index: usize, stop: &AtomicBool) -> Outcome {
-        let made = self.shared(index, stop);
-        made.map_or(Outcome::Open, |shared| {
-            self.carry_out_by(&shared, index, stop)
-        })
+        let answer = Worker::alone(self).carry_out(index, stop).ok().flatten();
+        let outcome = answer.and_then(|answer| answer.outcomes.into_iter().next());
+        outcome.map_or(Outcome::Open, |(_, outcome)| outcome)
     }
 
     /// The same by a choice.
@@ -347,40 +355,11 @@ impl Sweep {
     pub fn run(
         &self,
         jobs: Option<usize>,
-        watch: impl FnMut(Progress<'_>) -> Go,
-    ) -> Result<Vec<Outcome>, SweepError> {
-        self.run_some(0..self.len, jobs, watch)
-    }
-
-    /// Runs some of the variants, see [`Sweep::run`]; what is beyond the last one is left out.
-    ///
-    /// # Errors
-    /// As [`Sweep::run`].
-    pub fn run_some(
-        &self,
-        variants: Range<usize>,
-        jobs: Option<usize>,
         mut watch: impl FnMut(Progress<'_>) -> Go,
     ) -> Result<Vec<Outcome>, SweepError> {
-        let first = variants.start;
-        let indices: Vec<usize> = (first..variants.end.min(self.len)).collect();
-        let mut outcomes = vec![Outcome::Open; indices.len()];
-        let (mut finished, mut go) = (0, Go::On);
-        let carry_out = |index, stop: &AtomicBool| self.carry_out(index, stop);
-        on_threads(&indices, jobs, carry_out, |ended| {
-            if let Some((index, outcome)) = ended {
-                finished += usize::from(outcome != Outcome::Open);
-                outcomes[index - first] = outcome;
-            }
-            if go == Go::On {
-                go = watch(Progress {
-                    outcomes: &outcomes,
-                    finished,
-                });
-            }
-            go
-        })?;
-        Ok(outcomes)
+        let mut memory = SweepMemory::new(self, 1);
+        memory.run(jobs, &mut watch)?;
+        Ok(memory.into_outcomes())
     }
 }
 

@@ -14,6 +14,8 @@ mod rules;
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use crate::precision::{Attribute, Choice, Estimate, Judgement, LEAST_LOSSES, Promise};
 use crate::summary::{Ledger, Steadiness, Summary};
 use crate::{Channel, RanIn, Simulation};
@@ -55,7 +57,7 @@ pub struct Verdict {
 }
 
 /// A verdict in the words of results.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WrittenVerdict {
     /// The attribute `verdict`: trusted, caution or distrusted; empty where there is no result.
     pub verdict: String,

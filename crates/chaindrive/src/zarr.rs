@@ -21,7 +21,7 @@ pub(crate) use fault::Fault;
 pub(crate) use files::{Ground, Storage};
 pub(crate) use folder::Folder;
 pub(crate) use inspect::inspect;
-pub(crate) use names::{CHECKPOINT, CHOICES, LAYOUT, RECIPE};
+pub(crate) use names::{CHECKPOINT, CHOICES, GROUP, LAYOUT, RECIPE};
 pub(crate) use store::Store;
 pub use story::Ending;
 pub(crate) use story::Story;

@@ -39,7 +39,7 @@ pub(crate) enum Failure {
 
     /// The values to vary are wrong, or the machine refuses threads.
     #[error(transparent)]
-    Sweep(#[from] SweepError),
+    Sweep(SweepError),
 
     /// The sweep is through, but without some variants; their messages are out.
     #[error("{failed} of {variants} variants failed")]
@@ -79,6 +79,15 @@ pub(crate) enum Failure {
     /// The user stopped the run.
     #[error("interrupted")]
     Interrupted,
+}
+
+impl From<SweepError> for Failure {
+    fn from(error: SweepError) -> Self {
+        match error {
+            SweepError::Write(error) => Self::Write(error),
+            other => Self::Sweep(other),
+        }
+    }
 }
 
 impl From<ResumeError> for Failure {

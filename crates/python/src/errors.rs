@@ -226,6 +226,8 @@ impl IntoException for SweepError {
         match self {
             Self::Scene(error) => error.exception(),
             Self::Channel(error) => error.exception(),
+            Self::Write(error) => error.exception(),
+            Self::Origin { .. } => python::SimulationError::new_err((message, "executor")),
             Self::Nothing | Self::TooMany { .. } => {
                 python::ParameterError::new_err((message, "vary"))
             }

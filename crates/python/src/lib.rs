@@ -68,7 +68,7 @@ mod core {
     };
 
     #[pymodule_export]
-    use crate::sweep::{Sweep, SweepStore, SweepWorker};
+    use crate::sweep::{Sweep, SweepCoordinator, SweepWorker};
 
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "the name that Python expects")]

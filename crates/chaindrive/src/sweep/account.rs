@@ -4,6 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use chaindrive_mechanics::EventKinds;
+use serde::{Deserialize, Serialize};
 
 use super::Outcome;
 use crate::channel::labels;
@@ -190,7 +191,8 @@ impl Statistic {
 }
 
 /// A statistic or a channel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
 pub enum Quantity {
     /// One account of the whole run.
     Statistic(Statistic),
@@ -246,8 +248,22 @@ impl Quantity {
     }
 }
 
+impl From<Quantity> for String {
+    fn from(quantity: Quantity) -> Self {
+        quantity.name().to_owned()
+    }
+}
+
+impl TryFrom<String> for Quantity {
+    type Error = String;
+
+    fn try_from(name: String) -> Result<Self, String> {
+        Self::from_name(&name).ok_or_else(|| format!("no quantity is named `{name}`"))
+    }
+}
+
 /// Account of a run that reached its end.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Account {
     /// Method of time stepping, as chosen.
     pub method: String,
@@ -262,7 +278,7 @@ pub struct Account {
 }
 
 /// A quantity of one variant.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
     /// Which.
     pub quantity: Quantity,

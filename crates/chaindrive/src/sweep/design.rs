@@ -1,7 +1,7 @@
 //! The points of a sweep: combinations of values, or rows of a table.
 
 use std::collections::HashMap;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
@@ -136,11 +136,11 @@ impl Sweep {
         let sweep = Self {
             scene: scene.clone(),
             arrangement,
-            dimensions,
+            dimensions: dimensions.into(),
             record: record.to_vec(),
             len,
             most_samples,
-            blocks: OnceLock::new(),
+            blocks: Arc::default(),
             choices: Arc::default(),
         };
         sweep.check_some()?;
@@ -205,7 +205,7 @@ impl Sweep {
             record: recipe.record,
             len,
             most_samples: 0,
-            blocks: OnceLock::new(),
+            blocks: Arc::default(),
             choices: Arc::default(),
         })
     }

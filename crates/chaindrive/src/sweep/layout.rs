@@ -58,6 +58,13 @@ pub(super) struct Region {
     pub(super) variants: Vec<(usize, usize)>,
 }
 
+impl Region {
+    /// The variants, in their order.
+    pub(super) fn variants(&self) -> impl Iterator<Item = usize> {
+        self.variants.iter().map(|&(variant, _)| variant)
+    }
+}
+
 impl LabelledAxis {
     /// Its labels, or numbers where they are numbered.
     pub(super) fn coordinate(&self) -> Coordinate {
@@ -85,10 +92,15 @@ impl Layout {
         }
     }
 
-    /// The layout of arrays that hold these outcomes.
-    pub(super) fn of(sweep: &Sweep, outcomes: &[Outcome]) -> Self {
+    /// The layout of arrays that hold these outcomes, each in one chunk.
+    pub(super) fn whole(sweep: &Sweep, outcomes: &[Outcome]) -> Self {
         let mut layout = Self::bare(sweep);
         layout.make_room_for(outcomes);
+        layout.cuts.clone_from(&layout.shape);
+        layout.samples = layout.time.len();
+        for axis in &mut layout.axes {
+            axis.cut = axis.labels.len();
+        }
         layout
     }
 

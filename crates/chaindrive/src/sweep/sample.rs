@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use super::threads::{cores, on_threads};
-use super::{Account, Go, Outcome, Sweep, SweepError};
+use super::{Account, Go, Outcome, Sweep, SweepError, Worker};
 
 /// Wall time of a task: 0.5 to 5 s are short beside a sweep, and long beside the writing of some forty files.
 const TASK: Duration = Duration::from_secs(1);
@@ -58,6 +58,7 @@ impl Sweep {
     ) -> Result<Sample, SweepError> {
         let workers = workers.unwrap_or_else(cores).max(1);
         let count = (self.len() / ONE_IN).clamp(1, MOST);
+        let worker = Worker::alone(self);
         let mut sample = Sample::default();
         let (mut timed, mut spent) = (0_u32, Duration::ZERO);
         for number in 0..count {
@@ -72,7 +73,7 @@ impl Sweep {
             };
             // Outside of the time that is taken: it serves all variants of its block.
             let begin = Instant::now();
-            let choose = |index, stop: &AtomicBool| drop(self.shared(index, stop));
+            let choose = |index, stop: &AtomicBool| drop(worker.choice(index, stop));
             let go = on_threads(&[index], Some(1), choose, |_| look(Duration::MAX, begin))?;
             if go == Go::NoFurther {
                 break;

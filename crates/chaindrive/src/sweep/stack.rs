@@ -1,8 +1,8 @@
 //! Stacks the accounts of all variants: one array a quantity, the swept dimensions first.
 
 use super::layout::Layout;
-use super::texts::{OPEN, TEXTS};
-use super::{Account, Coordinate, Entry, Outcome, Quantity, Sweep};
+use super::texts::TEXTS;
+use super::{Coordinate, Outcome, Quantity, Sweep, chunks};
 
 /// One text of all variants.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,7 +51,8 @@ impl Sweep {
     /// Stacks the outcomes of all variants, in their order. Runs that sample longer than others, or have
     /// more links, decide about the size of the arrays; what the others do not have is NaN.
     pub fn stack(&self, outcomes: &[Outcome]) -> Stacked {
-        let layout = Layout::of(self, outcomes);
+        let layout = Layout::whole(self, outcomes);
+        let region = layout.region(0);
         let stack = |(name, units): &(String, Vec<String>)| {
             let quantity = Quantity::from_name(name)?;
             let (mut dims, mut shape) = (self.dims(), layout.shape.clone());
@@ -59,14 +60,8 @@ impl Sweep {
                 dims.push(beside.name);
                 shape.push(beside.len);
             }
-            let labels = layout.axis(quantity).map(|axis| axis.labels.as_slice());
-            let mut values = vec![f64::NAN; shape.iter().product()];
-            let block = shape[layout.shape.len()..].iter().product::<usize>().max(1);
-            for (outcome, to) in outcomes.iter().zip(values.chunks_mut(block)) {
-                if let Outcome::Done(account) = outcome {
-                    fill(account, quantity, labels, to);
-                }
-            }
+            let chunk = chunks::numbers(&layout, &region, quantity, outcomes).pop();
+            let values = chunk.map_or_else(Vec::new, |(_, values)| values);
             Some(StackedQuantity {
                 quantity,
                 unit: units.join(" or "),
@@ -85,63 +80,19 @@ impl Sweep {
             }
         }
         let sampled = quantities.iter().any(|it| it.quantity.is_sampled());
-        let of_variants = outcomes.iter().map(texts);
-        let texts = TEXTS.iter().enumerate();
-        let texts = texts.map(|(index, &(name, description))| StackedText {
+        let texts = TEXTS.iter().map(|&(name, description)| StackedText {
             name,
             description,
-            texts: of_variants.clone().map(|of| of[index].to_owned()).collect(),
+            texts: chunks::texts(&layout, &region, name, outcomes),
         });
+        let texts = texts.collect();
         Stacked {
             shape: layout.shape,
             time: sampled.then_some(layout.time),
             labels,
             quantities,
-            texts: texts.collect(),
+            texts,
             methods: layout.methods,
-        }
-    }
-}
-
-/// The texts of one variant, in the order of [`TEXTS`].
-pub(crate) fn texts(outcome: &Outcome) -> [&str; TEXTS.len()] {
-    match outcome {
-        Outcome::Done(Account { verdict, .. }) => {
-            [&verdict.verdict, &verdict.reasons, &verdict.note, ""]
-        }
-        Outcome::Failed(message) => ["", "", "", message],
-        Outcome::Open => ["", "", "", OPEN],
-    }
-}
-
-/// Puts the entries of one account where their labels are in the stack.
-pub(crate) fn fill(
-    account: &Account,
-    quantity: Quantity,
-    width: Option<&[String]>,
-    to: &mut [f64],
-) {
-    let mut entries = account.entries.iter();
-    let Some(Entry { values, .. }) = entries.find(|entry| entry.quantity == quantity) else {
-        return;
-    };
-    let (Some(along), Some(labels)) = (quantity.along(), width) else {
-        to[..values.len()].copy_from_slice(values);
-        return;
-    };
-    let own = account.labels_along(along).unwrap_or_default();
-    if own.is_empty() {
-        return;
-    }
-    let places: Vec<Option<usize>> = own
-        .iter()
-        .map(|label| labels.iter().position(|known| known == label))
-        .collect();
-    for (row, to) in values.chunks(own.len()).zip(to.chunks_mut(labels.len())) {
-        for (value, place) in row.iter().zip(&places) {
-            if let Some(place) = place {
-                to[*place] = *value;
-            }
         }
     }
 }

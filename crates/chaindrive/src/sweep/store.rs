@@ -18,7 +18,8 @@
 //! renaming it), so a chunk is there or not. A task whose worker died is carried out again and gives the same bits.
 
 mod coordinator;
-mod worker;
+mod place;
+mod sink;
 
 use std::sync::Arc;
 
@@ -27,14 +28,13 @@ use zarrs::array::builder::ArrayBuilderFillValue;
 use zarrs::array::codec::ZstdCodec;
 use zarrs::array::{ArrayBuilder, CodecOptions, DataType, data_type};
 
+use super::Quantity;
 use super::layout::Layout;
-use super::{OPEN, Quantity, TEXTS};
+use super::texts::{MARK, blank};
 use crate::zarr::{Fault, Storage, StoredArray, ZSTD_LEVEL};
 pub use coordinator::SweepStore;
-pub use worker::{Finished, Worker};
-
-/// The text whose chunk is the last of a task: why variants failed; of those not carried out, that they were not.
-const MARK: &str = "error";
+pub use place::Place;
+pub(super) use sink::StoreSink;
 
 /// Arrays of the store by a layout.
 struct Arrays<'a> {
@@ -104,17 +104,6 @@ impl Arrays<'_> {
             .build(self.storage.clone(), &format!("/{name}"))?;
         Ok(array)
     }
-}
-
-/// The text of a variant for which nothing is stored.
-fn blank(name: &str) -> &'static str {
-    if name == MARK { OPEN } else { "" }
-}
-
-/// Names of all texts but the mark.
-fn texts_before_the_mark() -> impl Iterator<Item = (usize, &'static str)> {
-    let names = TEXTS.iter().map(|(name, _)| *name).enumerate();
-    names.filter(|(_, name)| *name != MARK)
 }
 
 /// Chunks of nothing but NaN are written as well: what is there was computed.

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::columns::{COLUMNS, short};
-use super::{Account, Outcome, Sweep};
+use super::{Account, Finished, Outcome, Sweep};
 use crate::zarr::Ending;
 
 /// Failures that are told.
@@ -41,6 +41,15 @@ impl Tally {
             tally.push(index, outcome);
         }
         tally
+    }
+
+    /// The counts of variants that have ended.
+    pub fn counts(&self) -> Finished {
+        Finished {
+            done: self.finished,
+            failed: self.failed,
+            distrusted: self.distrusted,
+        }
     }
 
     /// How a sweep ended that goes on no more; variants that failed count as a failure of the sweep.

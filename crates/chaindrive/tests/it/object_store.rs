@@ -10,7 +10,9 @@ use std::thread;
 
 use chaindrive::Scene;
 use chaindrive::record::{Existing, Object, Objects, WriteError};
-use chaindrive::sweep::{Finished, Go, Sample, Setting, Sweep, SweepStore, Worker};
+use chaindrive::sweep::{
+    Answer, Coordinator, Go, Sample, Setting, Sweep, SweepError, SweepStore, Worker,
+};
 
 type Checked = Result<(), Box<dyn Error>>;
 
@@ -165,8 +167,8 @@ fn files(root: &Path) -> io::Result<BTreeMap<String, Vec<u8>>> {
 fn whole(sweep: &Sweep) -> Result<Arc<InMemory>, Box<dyn Error>> {
     let memory = InMemory::new();
     let objects: Arc<dyn Objects> = memory.clone();
-    let mut store = SweepStore::begin_in(&objects, sweep, &sample(sweep), Existing::Keep)?;
-    store.run(Some(2), |_| Go::On)?;
+    let mut store = SweepStore::begin(&objects, sweep, &sample(sweep), Existing::Keep)?;
+    store.run(Some(2), &mut |_| Go::On)?;
     store.finish()?;
     Ok(memory)
 }
@@ -176,14 +178,14 @@ fn objects_hold_what_a_disk_holds() -> Checked {
     let sweep = sweep()?;
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("sweep.zarr");
-    let mut store = SweepStore::begin(&path, &sweep, &sample(&sweep), Existing::Keep)?;
+    let mut store = SweepStore::begin(path.as_path(), &sweep, &sample(&sweep), Existing::Keep)?;
     // One after the other, so that the layout grows the same way.
-    store.run(Some(1), |_| Go::On)?;
+    store.run(Some(1), &mut |_| Go::On)?;
     store.finish()?;
     let memory = InMemory::new();
     let objects: Arc<dyn Objects> = memory.clone();
-    let mut store = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep)?;
-    store.run(Some(1), |_| Go::On)?;
+    let mut store = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Keep)?;
+    store.run(Some(1), &mut |_| Go::On)?;
     let (tally, _) = store.finish()?;
     assert_eq!(tally.finished, 12);
     assert_eq!(memory.attribute("status"), Some("complete".into()));
@@ -204,26 +206,26 @@ fn workers_grow_the_layout_together() -> Checked {
     let sweep = sweep()?;
     let memory = InMemory::new();
     let objects: Arc<dyn Objects> = memory.clone();
-    let mut store = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep)?;
+    let mut store = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Keep)?;
     let open = store.open_tasks()?;
     assert_eq!(open, (1..12).collect::<Vec<_>>());
-    let finished = thread::scope(|scope| {
+    let answers = thread::scope(|scope| {
         let workers = (0..6).map(|first| {
             let (objects, open) = (&objects, &open);
-            scope.spawn(move || -> Result<Vec<Finished>, WriteError> {
-                let worker = Worker::open_in(objects)?;
+            scope.spawn(move || -> Result<Vec<Answer>, WriteError> {
+                let worker = Worker::open(objects)?;
                 let tasks = open.iter().skip(first).step_by(6);
                 let never = AtomicBool::new(false);
-                let finished = tasks.map(|task| worker.carry_out(*task, &never));
-                finished.map(|it| Ok(it?.unwrap_or_default())).collect()
+                let answers = tasks.map(|task| worker.carry_out(*task, &never));
+                answers.map(|it| Ok(it?.unwrap_or_default())).collect()
             })
         });
         let workers: Vec<_> = workers.collect();
         let joined = workers.into_iter().map(thread::ScopedJoinHandle::join);
         joined.collect::<Result<Vec<_>, _>>()
     });
-    for finished in finished.map_err(|_| "a worker panicked")? {
-        finished?.into_iter().try_for_each(|it| store.count(it))?;
+    for answers in answers.map_err(|_| "a worker panicked")? {
+        answers?.into_iter().try_for_each(|it| store.take(it))?;
     }
     store.finish()?;
     assert_eq!(memory.attribute("status"), Some("complete".into()));
@@ -247,24 +249,24 @@ fn a_sweep_that_was_broken_off_goes_on() -> Checked {
         let memory = InMemory::new();
         let objects: Arc<dyn Objects> = memory.clone();
         memory.room.store(room, Ordering::SeqCst);
-        let begun = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep);
-        let broken = begun.and_then(|mut store| {
-            store.run(Some(2), |_| Go::On)?;
-            store.finish().map(drop)
+        let begun = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Keep);
+        let broken = begun.map_err(SweepError::from).and_then(|mut store| {
+            store.run(Some(2), &mut |_| Go::On)?;
+            Ok(store.finish()?)
         });
         assert!(broken.is_err(), "{room} puts are enough for everything");
         assert_ne!(memory.attribute("status"), Some("complete".into()));
         memory.room.store(usize::MAX, Ordering::SeqCst);
-        let mut store = match SweepStore::go_on_in(&objects, &sweep) {
+        let mut store = match SweepStore::go_on(&objects, &sweep) {
             Ok(store) => store,
             // It had not been laid out: the place is free again.
             Err(WriteError::Foreign { .. }) => {
                 assert!(objects.list("")?.is_empty());
-                SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep)?
+                SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Keep)?
             }
             Err(other) => return Err(other.into()),
         };
-        store.run(Some(1), |_| Go::On)?;
+        store.run(Some(1), &mut |_| Go::On)?;
         let (tally, _) = store.finish()?;
         assert_eq!((tally.finished, tally.open), (12, 0));
         let found = memory.contents();
@@ -281,13 +283,14 @@ fn two_calls_at_once_store_the_same() -> Checked {
     let sweep = sweep()?;
     let memory = InMemory::new();
     let objects: Arc<dyn Objects> = memory.clone();
-    let first = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep)?;
-    let second = SweepStore::go_on_in(&objects, &sweep)?;
+    let first = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Keep)?;
+    let second = SweepStore::go_on(&objects, &sweep)?;
     thread::scope(|scope| -> Checked {
         let both = [first, second].map(|mut store| {
             scope.spawn(move || {
-                store.run(Some(2), |_| Go::On)?;
-                store.finish().map(|(tally, _)| tally.finished)
+                store.run(Some(2), &mut |_| Go::On)?;
+                let (tally, _) = store.finish()?;
+                Ok::<_, SweepError>(tally.finished)
             })
         });
         for call in both {
@@ -309,10 +312,10 @@ fn a_worker_of_an_earlier_sweep_writes_no_more() -> Checked {
     let sweep = sweep()?;
     let memory = InMemory::new();
     let objects: Arc<dyn Objects> = memory.clone();
-    let mut first = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep)?;
-    let worker = Worker::open_in(&objects)?;
+    let mut first = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Keep)?;
+    let worker = Worker::open(&objects)?;
     let never = AtomicBool::new(false);
-    let refused = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep);
+    let refused = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Keep);
     assert!(
         matches!(refused, Err(WriteError::Exists { .. })),
         "{refused:?}"
@@ -324,10 +327,10 @@ fn a_worker_of_an_earlier_sweep_writes_no_more() -> Checked {
             .to_vec(),
     )];
     let other = Sweep::new(&Scene::preset("spinning_ring")?, &vary, &[])?;
-    let second = SweepStore::begin_in(&objects, &other, &sample(&other), Existing::Replace)?;
+    let second = SweepStore::begin(&objects, &other, &sample(&other), Existing::Replace)?;
     let before = memory.contents();
     let outcome = sweep.carry_out(5, &never);
-    let refused = worker.store(5, &[outcome]);
+    let refused = worker.put(5, vec![outcome]);
     assert!(
         matches!(refused, Err(WriteError::Vanished { .. })),
         "{refused:?}"
@@ -350,13 +353,13 @@ fn what_was_begun_and_not_laid_out_is_replaced_on_demand() -> Checked {
     let memory = whole(&sweep)?;
     let objects: Arc<dyn Objects> = memory.clone();
     objects.erase(&["zarr.json".to_owned()])?;
-    let again = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Keep);
+    let again = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Keep);
     assert!(
         matches!(again, Err(WriteError::HalfBegun { .. })),
         "{again:?}"
     );
-    let mut again = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Replace)?;
-    again.run(Some(2), |_| Go::On)?;
+    let mut again = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Replace)?;
+    again.run(Some(2), &mut |_| Go::On)?;
     let (tally, _) = again.finish()?;
     assert_eq!(tally.finished, 12);
     Ok(())
@@ -367,7 +370,7 @@ fn a_sweep_that_was_copied_from_a_disk_goes_on() -> Checked {
     let sweep = sweep()?;
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("sweep.zarr");
-    let store = SweepStore::begin(&path, &sweep, &sample(&sweep), Existing::Keep)?;
+    let store = SweepStore::begin(path.as_path(), &sweep, &sample(&sweep), Existing::Keep)?;
     drop(store);
     let memory = InMemory::new();
     let objects: Arc<dyn Objects> = memory.clone();
@@ -375,9 +378,9 @@ fn a_sweep_that_was_copied_from_a_disk_goes_on() -> Checked {
         objects.put(&key, &bytes)?;
     }
     objects.put("zarr.json", &std::fs::read(path.join("zarr.json"))?)?;
-    let mut store = SweepStore::go_on_in(&objects, &sweep)?;
+    let mut store = SweepStore::go_on(&objects, &sweep)?;
     assert_eq!(store.open_tasks()?.len(), 11);
-    store.run(Some(2), |_| Go::On)?;
+    store.run(Some(2), &mut |_| Go::On)?;
     let (tally, _) = store.finish()?;
     assert_eq!(tally.finished, 12);
     assert_eq!(memory.attribute("status"), Some("complete".into()));
@@ -391,23 +394,23 @@ fn what_is_not_a_sweep_of_chaindrive_stays() -> Checked {
     let objects: Arc<dyn Objects> = memory.clone();
     objects.put("thesis.tex", b"years of work")?;
     for existing in [Existing::Keep, Existing::Replace] {
-        let refused = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), existing);
+        let refused = SweepStore::begin(&objects, &sweep, &sample(&sweep), existing);
         assert!(refused.is_err());
     }
     objects.erase(&["zarr.json".to_owned()])?;
-    let refused = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Replace);
+    let refused = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Replace);
     assert!(
         matches!(refused, Err(WriteError::Foreign { .. })),
         "{refused:?}"
     );
     objects.put("identity", b"of somebody else")?;
-    let refused = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Replace);
+    let refused = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Replace);
     assert!(
         matches!(refused, Err(WriteError::Foreign { .. })),
         "{refused:?}"
     );
     objects.erase(&["identity".to_owned()])?;
-    let refused = SweepStore::begin_in(&objects, &sweep, &sample(&sweep), Existing::Replace);
+    let refused = SweepStore::begin(&objects, &sweep, &sample(&sweep), Existing::Replace);
     assert!(
         matches!(refused, Err(WriteError::Foreign { .. })),
         "{refused:?}"
@@ -420,7 +423,7 @@ fn what_is_not_a_sweep_of_chaindrive_stays() -> Checked {
 fn addresses_are_no_folders() -> Checked {
     let sweep = sweep()?;
     let refused = SweepStore::begin(
-        "s3://bucket/sweep.zarr",
+        Path::new("s3://bucket/sweep.zarr"),
         &sweep,
         &sample(&sweep),
         Existing::Keep,

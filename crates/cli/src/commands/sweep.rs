@@ -1,15 +1,15 @@
 //! `chaindrive sweep`: simulate variants of a scene on all cores, write what sums them up.
 
+mod design;
 mod output;
 mod vary;
 
-use std::fs;
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use chaindrive::Request;
-use chaindrive::record::{Existing, WriteError, take_over};
-use chaindrive::sweep::{Go, Outcome, Sweep, SweepStore, Tally};
+use chaindrive::record::{Existing, take_over};
+use chaindrive::sweep::{Coordinator, Go, Sweep, SweepMemory, SweepStore, Tally};
 use clap::Args;
 
 use super::output::Target;
@@ -17,7 +17,7 @@ use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::request::{RunArguments, SceneArguments};
 use crate::terminal::{print, say};
-use output::Output;
+use output::Table;
 
 const VALUES: &str = "\
 Values of --vary:
@@ -29,6 +29,12 @@ Values of --vary:
     --vary \"sprockets.crank.motion.speed=-80 rpm..-140 rpm/20\"
     --vary sprockets.camshaft.teeth=40..48/5
   Commas and dots in quotes or brackets belong to a value: --vary \"gravity=[0, 0],[0, -9.81]\"
+
+Table of --design:
+  A row a variant and a column a path, written as the values of --vary:
+    route.pretension,sprockets.crank.motion.speed
+    10 kN,-80 rpm
+    15 kN,-120 rpm
 
 Method and step:
   Without a named method they are chosen for an accuracy, as in a run: of 1% unless --accuracy says otherwise.
@@ -55,8 +61,17 @@ pub(crate) struct Arguments {
     scene: SceneArguments,
 
     /// Values for a place in the scene, such as "route.pretension=10 kN,20 kN"; may be repeated
-    #[arg(long, value_name = "PATH=VALUES", required = true)]
+    #[arg(
+        long,
+        value_name = "PATH=VALUES",
+        required_unless_present = "design",
+        conflicts_with = "design"
+    )]
     vary: Vec<String>,
+
+    /// A table instead (.csv): paths in its first line, and a variant in each of the others
+    #[arg(long, value_name = "TABLE")]
+    design: Option<PathBuf>,
 
     #[command(flatten)]
     run: RunArguments,
@@ -88,9 +103,12 @@ pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
     // A scene suggests channels for a run; times the number of variants they are only kept on demand.
     let asked = arguments.run.asks_for_channels();
     let record = if asked { record } else { Vec::new() };
-    let varied = arguments.vary.iter().map(|text| vary::read(&scene, text));
-    let varied = varied.collect::<Result<Vec<_>, _>>()?;
-    let sweep = Sweep::new(&scene, &varied, &record)?;
+    let sweep = if let Some(table) = &arguments.design {
+        Sweep::of_table(&scene, &design::read(table)?, &record)?
+    } else {
+        let varied = arguments.vary.iter().map(|text| vary::read(&scene, text));
+        Sweep::new(&scene, &varied.collect::<Result<Vec<_>, _>>()?, &record)?
+    };
     sweep.check_given(&[arguments.run.given(), arguments.scene.given()].concat())?;
     let existing = if arguments.overwrite {
         Existing::Replace
@@ -100,28 +118,28 @@ pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
     if let Some(path) = arguments.output.as_ref().filter(|_| arguments.take_over) {
         take_over(path)?;
     }
-    match target {
-        Target::Zarr(path) => in_store(arguments, &path, &sweep, interrupted),
-        Target::Csv(path) => in_memory(arguments, Some(&path), &sweep, existing, interrupted),
-        Target::Nowhere => in_memory(arguments, None, &sweep, existing, interrupted),
-    }
-}
-
-fn in_memory(
-    arguments: &Arguments,
-    table: Option<&Path>,
-    sweep: &Sweep,
-    existing: Existing,
-    interrupted: &dyn Fn() -> bool,
-) -> Result<(), Failure> {
-    let mut output = Output::begin(table, sweep, existing)?;
+    let jobs = arguments.jobs.map(NonZeroUsize::get);
     let mut progress = Progress::new(arguments.quiet);
-    let mut refused = None;
-    let mut stopped = false;
-    let outcomes = sweep.run(arguments.jobs.map(NonZeroUsize::get), |state| {
-        progress.count(state.finished, sweep.len());
-        if let Err(error) = output.keep(sweep, state) {
-            refused = Some(error);
+    let mut table = None;
+    let mut coordinator: Box<dyn Coordinator> = match target {
+        Target::Zarr(path) => {
+            let go = || {
+                if interrupted() { Go::NoFurther } else { Go::On }
+            };
+            let store = SweepStore::open(path.as_path(), &sweep, existing, jobs, go)?;
+            Box::new(store.ok_or(Failure::Interrupted)?)
+        }
+        Target::Csv(path) => {
+            table = Some(Table::begin(&path, &sweep, existing)?);
+            Box::new(SweepMemory::new(&sweep, 1))
+        }
+        Target::Nowhere => Box::new(SweepMemory::new(&sweep, 1)),
+    };
+    let (mut refused, mut stopped) = (None, false);
+    coordinator.run(jobs, &mut |state| {
+        progress.count(state.finished, state.variants);
+        if let Some(table) = &mut table {
+            refused = table.keep(&sweep, state).err();
         }
         stopped = stopped || interrupted();
         if stopped || refused.is_some() {
@@ -131,59 +149,13 @@ fn in_memory(
         }
     })?;
     drop(progress);
-    if let Some(error) = refused {
-        return Err(error);
-    }
-    let tally = Tally::of(&outcomes);
+    refused.map_or(Ok(()), Err)?;
+    let (tally, report) = coordinator.finish()?;
     // With nothing to put in its place, an earlier table stays.
-    if outcomes.iter().any(|outcome| *outcome != Outcome::Open) {
-        output.write(sweep, &outcomes, &tally.ending())?;
+    if let Some(table) = table.as_mut().filter(|_| tally.open < sweep.len()) {
+        table.write(&sweep, coordinator.progress().outcomes, &tally.ending())?;
     }
-    let report = sweep.report(&outcomes).to_string();
-    conclude(arguments, sweep, &tally, report)
-}
-
-/// Begins a store, or goes on with one of the same sweep that was stopped or killed.
-fn in_store(
-    arguments: &Arguments,
-    path: &Path,
-    sweep: &Sweep,
-    interrupted: &dyn Fn() -> bool,
-) -> Result<(), Failure> {
-    let jobs = arguments.jobs.map(NonZeroUsize::get);
-    let mut progress = Progress::new(arguments.quiet);
-    let exists = fs::symlink_metadata(path).is_ok();
-    let mut store = if exists && !arguments.overwrite {
-        let store = SweepStore::go_on(path, sweep)?;
-        if store.open_tasks()?.is_empty() {
-            let path = path.to_owned();
-            return Err(WriteError::Exists { path }.into());
-        }
-        store
-    } else {
-        let existing = if arguments.overwrite {
-            Existing::Replace
-        } else {
-            Existing::Keep
-        };
-        let go = || {
-            if interrupted() { Go::NoFurther } else { Go::On }
-        };
-        let sample = sweep.time_sample(jobs, go)?;
-        if sample.stopped {
-            return Err(Failure::Interrupted);
-        }
-        SweepStore::begin(path, sweep, &sample, existing)?
-    };
-    let mut stopped = false;
-    store.run(jobs, |stored| {
-        progress.count(stored, sweep.len());
-        stopped = stopped || interrupted();
-        if stopped { Go::NoFurther } else { Go::On }
-    })?;
-    drop(progress);
-    let (tally, report) = store.finish()?;
-    conclude(arguments, sweep, &tally, report)
+    conclude(arguments, &sweep, &tally, report)
 }
 
 /// Says what came of a sweep.

@@ -68,11 +68,54 @@ fn speeds_and_pretensions_of_the_marine_engine() {
     assert_eq!(array["shape"], serde_json::json!([3, 2, 6, 4]));
     assert_eq!(array["dimension_names"][0], "speed");
 
-    let (code, _, err) = sweep(at, &arguments);
+    // Nothing is left to be done.
+    assert_eq!(sweep(at, &arguments), (0, out, String::new()));
+    let other = [&arguments[..], &["--set", "gravity=[0, 0]"]].concat();
+    let (code, _, err) = sweep(at, &other);
     assert_eq!(code, 3);
-    assert!(err.contains("already a result"), "{err}");
+    assert!(err.contains("another sweep here"), "{err}");
     let again: Vec<&str> = arguments.into_iter().chain(["--overwrite", "-q"]).collect();
     assert_eq!(sweep(at, &again), (0, String::new(), String::new()));
+}
+
+/// A cell is read as a value of `--vary` is.
+#[test]
+fn the_rows_of_a_table_are_variants() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let table = "chain.start.speed, chain.mass\n300 rad/s, 8 g\n400, 0.009\n300, 8 g\n";
+    fs::write(at.join("points.csv"), table).unwrap();
+    let table = [
+        "spinning_ring",
+        "--until",
+        "1 ms",
+        "-o",
+        "ring.csv",
+        "--design",
+    ];
+    let design = |name, more: &[&str]| sweep(at, &[&table[..], &[name], more].concat());
+    let (code, out, err) = design("points.csv", &[]);
+    assert_eq!((code, err.as_str()), (0, ""), "{out}");
+    let rows = fs::read_to_string(at.join("ring.csv")).unwrap();
+    let first = |row: &str| row.split(',').take(3).collect::<Vec<_>>().join(",");
+    let rows: Vec<String> = rows.lines().map(first).collect();
+    assert_eq!(rows[0], "variant,speed [rad/s],mass [kg]");
+    assert_eq!(
+        rows[1..],
+        ["0,300.0,0.008", "1,400.0,0.009", "2,300.0,0.008"]
+    );
+    for (text, words) in [
+        ("chain.mass\n8 g,9 g\n", "found record with 2 fields"),
+        ("chain.mass\n", "no values"),
+        ("chain.mas\n8 g\n", "mass"),
+    ] {
+        fs::write(at.join("points.csv"), text).unwrap();
+        let (code, _, err) = design("points.csv", &[]);
+        assert!(code == 2 && err.contains(words), "{code}: {err}");
+    }
+    assert_eq!(design("points.csv", &["--vary", "chain.mass=8 g"]).0, 2);
+    let (code, _, err) = design("nowhere.csv", &[]);
+    assert!(code == 2 && err.contains("nowhere.csv"), "{code}: {err}");
 }
 
 #[test]
@@ -339,6 +382,59 @@ fn interrupted_it_keeps_what_is_finished() {
             let table = fs::read_to_string(path).unwrap();
             assert_eq!(table.lines().last(), Some("# incomplete: interrupted"));
             assert_eq!(table.matches("not carried out").count(), 3, "{table}");
+        }
+    }
+}
+
+/// Interrupted at moments drawn by lot, the store says how many variants it holds, and the same command goes on to the bytes of a
+/// sweep that nobody interrupted.
+#[cfg(unix)]
+#[test]
+fn interrupted_it_says_what_it_is_and_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let common = ["spinning_ring", "--vary", "chain.start.speed=300..400/40"];
+    let run = ["--until", "20 ms", "--every", "1 ms", "-q", "-j", "2", "-o"];
+    let arguments = |out| [&common[..], &run[..], &[out]].concat();
+    let begin = Instant::now();
+    assert_eq!(sweep(folder.path(), &arguments("whole.zarr")).0, 0);
+    let took = begin.elapsed();
+    let path = folder.path().join("broken.zarr");
+    for share in [0.5, 0.3, 0.1, 0.6] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
+        command.current_dir(folder.path()).arg("sweep");
+        let mut child = command.args(arguments("broken.zarr")).spawn().unwrap();
+        sleep(took.mul_f64(share));
+        let sent = Command::new("kill")
+            .args(["-INT", &child.id().to_string()])
+            .status();
+        assert!(sent.is_ok());
+        let code = child.wait().unwrap().code();
+        if !path.exists() {
+            assert_eq!(code, Some(130));
+            continue;
+        }
+        let about = attributes(&path);
+        let chunks = fs::read_dir(path.join("error/c")).map_or(0, Iterator::count) as u64;
+        let stored = (chunks * about["variants_per_task"].as_u64().unwrap()).min(40);
+        assert_eq!(about["finished"].as_u64(), Some(stored));
+        let (status, expected) = if stored < 40 {
+            ("interrupted", 130)
+        } else {
+            ("complete", 0)
+        };
+        assert_eq!(
+            (about["status"].as_str(), code),
+            (Some(status), Some(expected))
+        );
+    }
+    assert_eq!(sweep(folder.path(), &arguments("broken.zarr")).0, 0);
+    assert_eq!(attributes(&path)["status"], "complete");
+    for array in ["energy_residual_max", "steps", "error"] {
+        for chunk in fs::read_dir(folder.path().join("whole.zarr").join(array).join("c")).unwrap() {
+            let chunk = chunk.unwrap();
+            let other = path.join(array).join("c").join(chunk.file_name());
+            let bytes = [chunk.path(), other.clone()].map(|it| fs::read(it).unwrap());
+            assert_eq!(bytes[0], bytes[1], "{}", other.display());
         }
     }
 }

@@ -1,19 +1,22 @@
 //! Who begins a sweep in a store, hands out its tasks, and says in the store how far it is.
 
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use serde_json::{Map, Value};
-use zarrs::array::{CodecOptions, data_type};
+use zarrs::array::builder::ArrayBuilderFillValue;
+use zarrs::array::{DataType, data_type};
 
-use super::{Arrays, Finished, Worker, every_chunk};
+use super::{Arrays, Place, StoreSink, every_chunk};
+use crate::sweep::coordinator::{Coordinator, Watch, carry_out};
 use crate::sweep::layout::Layout;
-use crate::sweep::threads::on_threads;
-use crate::sweep::{Coordinate, Go, Outcome, Quantity, Recipe, Sample, Sweep, TEXTS, Tally};
+use crate::sweep::sink::Sink;
+use crate::sweep::{
+    Answer, Coordinate, Finished, Go, Outcome, Progress, Quantity, Recipe, Sample, Sweep,
+    SweepError, TEXTS, Tally, Worker,
+};
 use crate::zarr::{
-    Ending, Existing, Fault, LAYOUT, Objects, RECIPE, Store, StoredArray, Story, WriteError, about,
+    Ending, Existing, Fault, LAYOUT, RECIPE, Store, StoredArray, Story, WriteError, about,
     metadata, store_metadata,
 };
 
@@ -27,7 +30,7 @@ const TASKS_AT_A_TIME: usize = 64;
 pub struct SweepStore {
     store: Store,
     sweep: Sweep,
-    worker: Worker,
+    sink: StoreSink,
     /// Layout by which the metadata of all arrays were written last, and these.
     told: Layout,
     arrays: Map<String, Value>,
@@ -48,72 +51,66 @@ impl std::fmt::Debug for SweepStore {
 }
 
 impl SweepStore {
+    /// Goes on with a sweep where its store is, and begins it elsewhere once some variants have been timed for so many workers; as
+    /// many as there are cores if absent. None where the watch stopped that.
+    ///
+    /// # Errors
+    /// Those of [`begin`](Self::begin) and [`go_on`](Self::go_on), and of [`Sweep::time_sample`].
+    pub fn open(
+        place: impl Into<Place>,
+        sweep: &Sweep,
+        existing: Existing,
+        workers: Option<usize>,
+        watch: impl FnMut() -> Go,
+    ) -> Result<Option<Self>, SweepError> {
+        let place = place.into();
+        let goes_on = || Ok::<_, WriteError>(existing == Existing::Keep && place.is_taken()?);
+        if !goes_on()? {
+            let sample = sweep.time_sample(workers, watch)?;
+            if sample.stopped {
+                return Ok(None);
+            }
+            match Self::begin(place.clone(), sweep, &sample, existing) {
+                // The same sweep may have been begun by somebody else meanwhile.
+                Err(_) if goes_on()? => {}
+                begun => return Ok(Some(begun?)),
+            }
+        }
+        Ok(Some(Self::go_on(place, sweep)?))
+    }
+
     /// Begins a sweep, with tasks of the size that a sample suggests. Where it replaces an earlier result, that one stays until a
-    /// task is stored, see [`start`](Self::start).
+    /// task is stored, see [`start`](Coordinator::start); in an object store it is removed at once.
     ///
     /// # Errors
     /// [`WriteError`] when the place is taken or cannot be written.
     pub fn begin(
-        path: impl AsRef<Path>,
+        place: impl Into<Place>,
         sweep: &Sweep,
         sample: &Sample,
         existing: Existing,
     ) -> Result<Self, WriteError> {
-        Self::begin_on(Store::begin(path.as_ref(), existing)?, sweep, sample)
-    }
-
-    /// Begins a sweep in an object store, where an earlier result is removed at once.
-    ///
-    /// # Errors
-    /// [`WriteError`] when the place is taken or cannot be written.
-    pub fn begin_in(
-        objects: &Arc<dyn Objects>,
-        sweep: &Sweep,
-        sample: &Sample,
-        existing: Existing,
-    ) -> Result<Self, WriteError> {
-        Self::begin_on(Store::begin_in(objects, existing)?, sweep, sample)
-    }
-
-    fn begin_on(mut store: Store, sweep: &Sweep, sample: &Sample) -> Result<Self, WriteError> {
+        let store = match place.into() {
+            Place::Disk(path) => Store::begin(&path, existing)?,
+            Place::Objects(objects) => Store::begin_in(&objects, existing)?,
+        };
         let layout = Layout::new(sweep, sample.variants_per_task, sample.account());
-        let recipe = sweep.recipe();
-        let begun = [
-            (RECIPE, serde_json::to_vec(&recipe)),
+        let files = [
+            (RECIPE, serde_json::to_vec(&sweep.recipe())),
             (LAYOUT, serde_json::to_vec(&layout)),
-        ]
-        .into_iter()
-        .try_for_each(|(name, bytes)| store.put(name, &bytes?))
-        .and_then(|()| put_coordinates(&store, sweep, &layout))
-        .and_then(|mut arrays| {
-            arrays.extend(lay(&store, sweep, &layout)?);
-            Ok(arrays)
-        });
-        let arrays = begun.map_err(|fault| store.fault(fault))?;
-        let open = Finished::default();
-        let attributes = attributes(sweep, &layout, open, &Ending::None);
-        store.tell(attributes, arrays.clone(), &Ending::None)?;
-        let worker = Worker::on(store.storage().clone(), store.path())?;
+        ];
+        let mut files = files.into_iter();
+        let put = files.try_for_each(|(name, bytes)| store.put(name, &bytes?));
+        put.map_err(|fault| store.fault(fault))?;
+        let mut begun = Self::on(store, sweep, false)?;
+        begun.tell(&Ending::None)?;
         // What the sample had to choose serves the sweep.
         let mut made = sweep.choices.made().into_iter();
-        let kept = made.try_for_each(|(block, choice)| worker.keep(block, &choice));
-        kept.map_err(|fault| store.fault(fault))?;
-        let mut begun = Self {
-            store,
-            sweep: sweep.clone(),
-            worker,
-            tasks: layout.tasks(),
-            told: layout,
-            arrays,
-            finished: open,
-            last_told: Instant::now(),
-            is_public: false,
-        };
+        made.try_for_each(|(block, choice)| begun.sink.keep(block, &choice))?;
         // A variant that is a task on its own need not be computed again.
         if begun.told.block() == 1 && sample.first != Outcome::Open {
-            begun.worker.store(0, std::slice::from_ref(&sample.first))?;
-            let first = begun.worker.carry_out(0, &AtomicBool::new(false))?;
-            begun.count(first.unwrap_or_default())?;
+            let answer = begun.sink.put(0, vec![sample.first.clone()])?;
+            begun.take(answer)?;
         }
         begun.publish()?;
         Ok(begun)
@@ -121,11 +118,11 @@ impl SweepStore {
 
     /// Puts the store in its place once it has something, or nothing is there. Nobody may write in it meanwhile.
     fn publish(&mut self) -> Result<(), WriteError> {
-        let has_something = self.stored() > 0 || !self.store.place().exists();
+        let has_something = self.finished.ended() > 0 || !self.store.place().exists();
         if !self.is_public && has_something {
             self.store.publish()?;
             self.store.share()?;
-            self.worker = Worker::on(self.store.storage().clone(), self.store.path())?;
+            self.sink = StoreSink::on(self.store.storage().clone(), self.store.path());
             self.is_public = true;
         }
         Ok(())
@@ -135,19 +132,11 @@ impl SweepStore {
     ///
     /// # Errors
     /// [`WriteError::OtherSweep`] where it is another one, [`WriteError::Exists`] where it is another result, and all others.
-    pub fn go_on(path: impl AsRef<Path>, sweep: &Sweep) -> Result<Self, WriteError> {
-        Self::go_on_with(Store::reopen_shared(path.as_ref())?, sweep)
-    }
-
-    /// Goes on with a sweep in an object store.
-    ///
-    /// # Errors
-    /// As [`go_on`](Self::go_on).
-    pub fn go_on_in(objects: &Arc<dyn Objects>, sweep: &Sweep) -> Result<Self, WriteError> {
-        Self::go_on_with(Store::reopen_in(objects)?, sweep)
-    }
-
-    fn go_on_with(mut store: Store, sweep: &Sweep) -> Result<Self, WriteError> {
+    pub fn go_on(place: impl Into<Place>, sweep: &Sweep) -> Result<Self, WriteError> {
+        let mut store = match place.into() {
+            Place::Disk(path) => Store::reopen_shared(&path)?,
+            Place::Objects(objects) => Store::reopen_in(&objects)?,
+        };
         let recipe = store.read(RECIPE).map_err(|fault| store.fault(fault))?;
         let Some(recipe) = recipe else {
             return Err(WriteError::Exists {
@@ -163,37 +152,31 @@ impl SweepStore {
             });
         }
         store.go_on()?;
-        let worker = Worker::on(store.storage().clone(), store.path())?;
-        let layout = worker.layout().map_err(|fault| store.fault(fault))?;
-        let arrays = put_coordinates(&store, sweep, &layout).and_then(|mut arrays| {
-            arrays.extend(lay(&store, sweep, &layout)?);
-            Ok(arrays)
-        });
-        let arrays = arrays.map_err(|fault| store.fault(fault))?;
-        let mut left = Self {
-            store,
-            sweep: sweep.clone(),
-            worker,
-            tasks: layout.tasks(),
-            told: layout,
-            arrays,
-            finished: Finished::default(),
-            last_told: Instant::now(),
-            is_public: true,
-        };
-        left.finished = counts(&left.read(|_, _| {})?);
+        let mut left = Self::on(store, sweep, true)?;
+        left.finished = left.read(|_, _| {})?.counts();
         left.tell(&Ending::None)?;
         Ok(left)
     }
 
-    /// The sweep.
-    pub fn sweep(&self) -> &Sweep {
-        &self.sweep
-    }
-
-    /// Whether the store is in its place, where workers find it.
-    pub fn is_public(&self) -> bool {
-        self.is_public
+    /// A store whose recipe and layout are there. The first that it tells are the arrays of the layout.
+    fn on(store: Store, sweep: &Sweep, is_public: bool) -> Result<Self, WriteError> {
+        let sink = StoreSink::on(store.storage().clone(), store.path());
+        let read = sink.layout().and_then(|layout| {
+            let arrays = put_coordinates(&store, sweep, &layout)?;
+            Ok((layout.tasks(), arrays))
+        });
+        let (tasks, arrays) = read.map_err(|fault| store.fault(fault))?;
+        Ok(Self {
+            store,
+            sweep: sweep.clone(),
+            sink,
+            told: Layout::default(),
+            arrays,
+            finished: Finished::default(),
+            tasks,
+            last_told: Instant::now(),
+            is_public,
+        })
     }
 
     /// Where the store is, symbolic links followed: the path for workers.
@@ -208,109 +191,11 @@ impl SweepStore {
         self.store.descriptor()
     }
 
-    /// Numbers of the tasks that are still to be carried out.
-    ///
-    /// # Errors
-    /// [`WriteError`] when the store cannot be read.
-    pub fn open_tasks(&self) -> Result<Vec<usize>, WriteError> {
-        let stored = self.worker.stored(&self.told);
-        let stored = stored.map_err(|fault| self.store.fault(fault))?;
-        let tasks = 0..self.tasks;
-        Ok(tasks.filter(|task| !stored.contains(task)).collect())
-    }
-
-    /// Variants that are stored so far, as far as they were counted.
-    pub fn stored(&self) -> usize {
-        self.finished.done + self.finished.failed
-    }
-
-    /// Takes the counts of a task that was carried out, and says so in the store if it is time.
-    ///
-    /// # Errors
-    /// [`WriteError`] when the store refuses.
-    pub fn count(&mut self, task: Finished) -> Result<(), WriteError> {
-        let first = self.stored() == 0;
-        self.finished.done += task.done;
-        self.finished.failed += task.failed;
-        self.finished.distrusted += task.distrusted;
-        if first || self.last_told.elapsed() >= TELL_EVERY {
-            self.tell(&Ending::None)?;
-        }
-        Ok(())
-    }
-
-    /// Puts the store in its place. Where that replaces an earlier result, the first task is carried out before.
-    ///
-    /// `watch` is called as by [`run`](Self::run); its last answer is returned.
-    ///
-    /// # Errors
-    /// [`WriteError`] when the store or the system refuses.
-    pub fn start(&mut self, watch: impl FnMut(usize) -> Go) -> Result<Go, WriteError> {
-        if self.is_public {
-            return Ok(Go::On);
-        }
-        let first: Vec<usize> = self.open_tasks()?.into_iter().take(1).collect();
-        let go = self.carry_out(&first, Some(1), watch)?;
-        self.publish()?;
-        Ok(go)
-    }
-
-    /// Carries out all open tasks on threads of this process, as many as there are cores if absent.
-    ///
-    /// `watch` is called with the number of variants stored whenever a task has ended, and every 50 ms.
-    ///
-    /// # Errors
-    /// [`WriteError`] when the store or the system refuses.
-    pub fn run(
-        &mut self,
-        jobs: Option<usize>,
-        mut watch: impl FnMut(usize) -> Go,
-    ) -> Result<(), WriteError> {
-        if self.start(&mut watch)? == Go::NoFurther {
-            return Ok(());
-        }
-        let open = self.open_tasks()?;
-        self.carry_out(&open, jobs, watch).map(drop)
-    }
-
-    /// Carries out tasks on threads of this process; [`Go::NoFurther`] where the watch stopped it.
-    fn carry_out(
-        &mut self,
-        open: &[usize],
-        jobs: Option<usize>,
-        mut watch: impl FnMut(usize) -> Go,
-    ) -> Result<Go, WriteError> {
-        let worker = Worker::on(self.store.storage().clone(), self.store.path())?;
-        let (mut refused, mut go) = (None, Go::On);
-        let carry_out = |task, stop: &AtomicBool| worker.carry_out(task, stop);
-        let ended = on_threads(open, jobs, carry_out, |ended| {
-            let counted = match ended {
-                Some((_, finished)) => {
-                    finished.and_then(|finished| self.count(finished.unwrap_or_default()))
-                }
-                None => Ok(()),
-            };
-            if let Err(error) = counted {
-                refused.get_or_insert(error);
-                go = Go::NoFurther;
-            }
-            if go == Go::On {
-                go = watch(self.stored());
-            }
-            go
-        });
-        refused.map_or(Ok(()), Err)?;
-        ended.map_err(|source| WriteError::Io {
-            path: self.store.path().to_owned(),
-            source,
-        })
-    }
-
     fn read(&self, mut take: impl FnMut(usize, Outcome)) -> Result<Tally, WriteError> {
         let mut tally = Tally::default();
-        let layout = self.worker.layout();
+        let layout = self.sink.layout();
         let read = layout.and_then(|layout| {
-            let stored = self.worker.stored(&layout)?;
+            let stored = self.sink.stored(&layout)?;
             let mut take = |variant, outcome| {
                 tally.push(variant, &outcome);
                 take(variant, outcome);
@@ -322,7 +207,7 @@ impl SweepStore {
             // Some at a time, so that memory stays flat.
             let stored: Vec<usize> = stored.into_iter().collect();
             for tasks in stored.chunks(TASKS_AT_A_TIME) {
-                let read = |task: &usize| self.worker.read_back(&layout, *task);
+                let read = |task: &usize| self.sink.read_back(&layout, *task);
                 let outcomes = self.store.storage().on_each(tasks, read)?;
                 for (variant, outcome) in outcomes.into_iter().flatten() {
                     take(variant, outcome);
@@ -334,37 +219,13 @@ impl SweepStore {
         Ok(tally)
     }
 
-    /// Ends the sweep, and says in the store how: complete, failed where variants failed, or interrupted where some are open.
-    ///
-    /// Returns the tally of all variants, read from the store task by task, and the short account of them.
-    ///
-    /// # Errors
-    /// [`WriteError`] when the store refuses.
-    pub fn finish(&mut self) -> Result<(Tally, String), WriteError> {
-        let few = self.sweep.has_a_line_each();
-        let mut outcomes = vec![Outcome::Open; if few { self.sweep.len() } else { 0 }];
-        let tally = self.read(|variant, outcome| {
-            if let Some(place) = outcomes.get_mut(variant) {
-                *place = outcome;
-            }
-        })?;
-        self.finished = counts(&tally);
-        self.tell(&tally.ending())?;
-        let report = if few {
-            self.sweep.report(&outcomes).to_string()
-        } else {
-            tally.summary(&self.sweep)
-        };
-        Ok((tally, report))
-    }
-
     fn tell(&mut self, ending: &Ending) -> Result<(), WriteError> {
         // In another's store nothing is laid.
         if let Some(what) = self.store.storage().missing() {
             let path = self.store.path().to_owned();
             return Err(WriteError::Vanished { path, what });
         }
-        let layout = self.worker.layout();
+        let layout = self.sink.layout();
         let layout = layout.map_err(|fault| self.store.fault(fault))?;
         if layout != self.told {
             let arrays = lay(&self.store, &self.sweep, &layout);
@@ -379,11 +240,75 @@ impl SweepStore {
     }
 }
 
-fn counts(tally: &Tally) -> Finished {
-    Finished {
-        done: tally.finished,
-        failed: tally.failed,
-        distrusted: tally.distrusted,
+/// Ends by saying in the store how: complete, failed where variants failed, or interrupted where some are open. The tally is read
+/// from the store task by task.
+impl Coordinator for SweepStore {
+    fn sweep(&self) -> &Sweep {
+        &self.sweep
+    }
+
+    fn worker(&self) -> Worker {
+        Worker::of(&self.sweep, self.sink.clone())
+    }
+
+    fn open_tasks(&self) -> Result<Vec<usize>, WriteError> {
+        let stored = self.sink.stored(&self.told);
+        let stored = stored.map_err(|fault| self.store.fault(fault))?;
+        let tasks = 0..self.tasks;
+        Ok(tasks.filter(|task| !stored.contains(task)).collect())
+    }
+
+    /// Says in the store how far the sweep is, if it is time.
+    fn take(&mut self, answer: Answer) -> Result<(), WriteError> {
+        let first = self.finished.ended() == 0;
+        self.finished += answer.finished;
+        if first || self.last_told.elapsed() >= TELL_EVERY {
+            self.tell(&Ending::None)?;
+        }
+        Ok(())
+    }
+
+    fn lose(&mut self, _task: usize, _reason: &str) {}
+
+    fn progress(&self) -> Progress<'_> {
+        Progress {
+            outcomes: &[],
+            finished: self.finished.ended(),
+            variants: self.sweep.len(),
+        }
+    }
+
+    fn is_public(&self) -> bool {
+        self.is_public
+    }
+
+    /// Puts the store in its place. Where that replaces an earlier result, the first task is carried out before.
+    fn start(&mut self, watch: &mut Watch<'_>) -> Result<Go, SweepError> {
+        if self.is_public {
+            return Ok(Go::On);
+        }
+        let first: Vec<usize> = self.open_tasks()?.into_iter().take(1).collect();
+        let go = carry_out(self, &first, Some(1), watch)?;
+        self.publish()?;
+        Ok(go)
+    }
+
+    fn finish(&mut self) -> Result<(Tally, String), WriteError> {
+        let few = self.sweep.has_a_line_each();
+        let mut outcomes = vec![Outcome::Open; if few { self.sweep.len() } else { 0 }];
+        let tally = self.read(|variant, outcome| {
+            if let Some(place) = outcomes.get_mut(variant) {
+                *place = outcome;
+            }
+        })?;
+        self.finished = tally.counts();
+        self.tell(&tally.ending())?;
+        let report = if few {
+            self.sweep.report(&outcomes).to_string()
+        } else {
+            tally.summary(&self.sweep)
+        };
+        Ok((tally, report))
     }
 }
 
@@ -441,41 +366,34 @@ fn put_coordinate(
     about: Map<String, Value>,
 ) -> Result<Value, Fault> {
     let (dims, shape, chunk) = ([along], [values.len()], [cut]);
-    let options = every_chunk();
+    let array = |kind: DataType, fill: ArrayBuilderFillValue| {
+        arrays.array(name, &dims, &shape, &chunk, &kind, fill, about)
+    };
     let array = match values {
-        Coordinate::Numbers(numbers) => {
-            let kind = data_type::float64();
-            let array = arrays.array(name, &dims, &shape, &chunk, &kind, f64::NAN, about)?;
-            put_whole(&array, numbers.as_slice(), &options)?;
-            array
-        }
+        Coordinate::Numbers(numbers) => put_whole(
+            array(data_type::float64(), f64::NAN.into())?,
+            numbers.as_slice(),
+        ),
         Coordinate::Whole(numbers) => {
-            let kind = data_type::int64();
-            let array = arrays.array(name, &dims, &shape, &chunk, &kind, 0_i64, about)?;
-            put_whole(&array, numbers.as_slice(), &options)?;
-            array
+            put_whole(array(data_type::int64(), 0_i64.into())?, numbers.as_slice())
         }
         Coordinate::Texts(texts) => {
-            let kind = data_type::string();
-            let array = arrays.array(name, &dims, &shape, &chunk, &kind, "", about)?;
-            put_whole(&array, texts.clone(), &options)?;
-            array
+            put_whole(array(data_type::string(), "".into())?, texts.clone())
         }
-    };
+    }?;
     store_metadata(&array)?;
     metadata(&array)
 }
 
 /// Writes an array of one dimension.
 fn put_whole<'a>(
-    array: &StoredArray,
+    array: StoredArray,
     values: impl zarrs::array::IntoArrayBytes<'a>,
-    options: &CodecOptions,
-) -> Result<(), Fault> {
+) -> Result<StoredArray, Fault> {
     if array.shape()[0] > 0 {
-        array.store_array_subset_opt(&array.subset_all(), values, options)?;
+        array.store_array_subset_opt(&array.subset_all(), values, &every_chunk())?;
     }
-    Ok(())
+    Ok(array)
 }
 
 /// Writes what a layout says of all arrays but the coordinates of the variants.
@@ -517,18 +435,14 @@ fn lay(store: &Store, sweep: &Sweep, layout: &Layout) -> Result<Map<String, Valu
     Ok(written)
 }
 
+/// Attributes of the store: those of the sweep, and how the arrays are to be read.
 fn attributes(
     sweep: &Sweep,
     layout: &Layout,
     finished: Finished,
     ending: &Ending,
 ) -> Map<String, Value> {
-    let scene = sweep.scene();
-    let mut story = Story::of(scene.title(), ending);
-    story.text("scene_name", scene.name());
-    story.text("scene", scene.text());
-    story.text("method", &layout.methods.join(", "));
-    story.list("swept", sweep.dimensions().iter().map(|d| d.path.as_str()));
+    let mut story = Story(sweep.attributes(&layout.methods, finished, ending));
     // Readers take the columns of a table for coordinates.
     let columns = sweep.dimensions().iter().map(|d| d.name.as_str());
     let columns: Vec<&str> = columns
@@ -537,10 +451,6 @@ fn attributes(
     if !columns.is_empty() {
         story.text("coordinates", &columns.join(" "));
     }
-    story.count("variants", sweep.len() as u64);
-    story.count("finished", finished.done as u64);
-    story.count("failed", finished.failed as u64);
-    story.count("distrusted", finished.distrusted as u64);
     story.count("variants_per_task", layout.block() as u64);
     story.0
 }

@@ -1,4 +1,4 @@
-//! Where a sweep goes that is held in memory: nowhere, or a table with a row a variant.
+//! The table of a sweep in memory, with a row a variant.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Seek, SeekFrom, Write};
@@ -17,53 +17,31 @@ const WRITE_EVERY: Duration = Duration::from_secs(5);
 /// Writing takes at most this share of the time, however large the result grows.
 const SHARE: u32 = 20;
 
-/// A result in the making.
+/// A table in the making, which is written anew as a whole.
 #[derive(Debug)]
-pub(super) struct Output {
-    place: Place,
-    /// Variants that were finished when the result was last written.
+pub(super) struct Table {
+    claimed: Claimed,
+    /// Whether it says in its place that the sweep goes on.
+    running: bool,
+    /// Variants that were finished when it was last written.
     known: usize,
     written: Instant,
     /// Time that writing took.
     took: Duration,
 }
 
-#[derive(Debug)]
-enum Place {
-    Nowhere,
-    Csv(Box<Table>),
-}
-
-/// The place of a table that is written anew as a whole.
-#[derive(Debug)]
-struct Table {
-    claimed: Claimed,
-    /// Whether it says there that the sweep goes on.
-    running: bool,
-}
-
-impl Output {
-    /// Begins the result.
-    pub(super) fn begin(
-        table: Option<&Path>,
-        sweep: &Sweep,
-        existing: Existing,
-    ) -> Result<Self, Failure> {
-        let place = match table {
-            None => Place::Nowhere,
-            Some(path) if sweep.record().is_empty() => Place::Csv(Box::new(Table {
-                claimed: claim(path, existing)?,
-                running: false,
-            })),
-            Some(path) => {
-                return Err(Failure::Argument(format!(
-                    "{}: a table has no place for the channels of --record; take a .zarr store",
-                    path.display()
-                )));
-            }
-        };
+impl Table {
+    /// Claims the place of a table.
+    pub(super) fn begin(path: &Path, sweep: &Sweep, existing: Existing) -> Result<Self, Failure> {
+        if !sweep.record().is_empty() {
+            return Err(Failure::Argument(format!(
+                "{}: a table has no place for the channels of --record; take a .zarr store",
+                path.display()
+            )));
+        }
         Ok(Self {
-            place,
+            claimed: claim(path, existing)?,
+            running: false,
             known: 0,
             written: Instant::now(),
             took: Duration::ZERO,
@@ -89,26 +67,17 @@ impl Output {
         Ok(())
     }
 
-    /// Writes what is known of all variants, and how the sweep ended.
+    /// Writes what is known of all variants, and how the sweep ended: beside its place, and moves it there, so that it is whole at
+    /// any time.
     pub(super) fn write(
         &mut self,
         sweep: &Sweep,
         outcomes: &[Outcome],
         ending: &Ending,
     ) -> Result<(), Failure> {
-        match &mut self.place {
-            Place::Nowhere => Ok(()),
-            Place::Csv(table) => table.write(sweep, &sweep.stack(outcomes), ending),
-        }
-    }
-}
-
-impl Table {
-    /// Writes the table beside its place and moves it there: it is whole at any time.
-    fn write(&mut self, sweep: &Sweep, stacked: &Stacked, ending: &Ending) -> Result<(), Failure> {
-        let claim = &self.claimed.claim;
+        let (claim, stacked) = (&self.claimed.claim, sweep.stack(outcomes));
         let made =
-            File::create(claim.workshop()).and_then(|file| fill(file, sweep, stacked, ending));
+            File::create(claim.workshop()).and_then(|file| fill(file, sweep, &stacked, ending));
         made.map_err(|source| failed(&self.claimed.path, source))?;
         claim.put_in_place()?;
         self.running = *ending == Ending::None;
