@@ -15,6 +15,6 @@ pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     if let Some(choice) = report.choice {
         writeln!(out, "{}", choice.reason())?;
     }
-    writeln!(out, "{} steps", report.simulation.statistics().accepted)?;
+    writeln!(out, "{} steps", report.simulation.statistics().steps)?;
     Ok(())
 }

@@ -77,7 +77,7 @@ pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
         Stop::Failed(error) => error.to_string(),
     };
     let mut out = std::io::stdout();
-    writeln!(out, "{told}, {}", report.verdict.written().status)?;
+    writeln!(out, "{told}, {}", report.verdict.written().verdict)?;
     for span in &report.summary.spans {
         writeln!(
             out,
