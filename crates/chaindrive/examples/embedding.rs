@@ -30,7 +30,8 @@ impl Conveyor {
                 {"name": "belt", "teeth": self.teeth[1], "centre": ["0.75 m", 0], "inertia": "0.5 kg m^2",
                     "load": [{"kind": "constant", "torque": -self.load}]},
             ],
-            "route": {"adjust": {"sprocket": "belt"}, "pretension": "500 N"},
+            "route": {"pretension": "500 N",
+                "adjust": {"kind": "sprocket", "name": "belt", "direction": [1, 0], "within": "20 mm"}},
         })
     }
 }

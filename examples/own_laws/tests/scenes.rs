@@ -4,8 +4,9 @@ use std::process::Command;
 use std::sync::Once;
 
 use chaindrive::laws::pushes::PushLaw;
+use chaindrive::record::Existing;
 use chaindrive::scene::schema;
-use chaindrive::sweep::{Setting, Sweep, SweepStore, Worker};
+use chaindrive::sweep::{Go, Setting, Sweep, SweepStore, Worker};
 use chaindrive::{Build, Description, Run, Scene, Simulation, Snapshot};
 use own_laws::{GasSpring, Winkler};
 
@@ -168,8 +169,9 @@ fn mistakes_are_told_in_the_usual_words() {
 fn a_program_without_the_laws_does_not_go_on() -> Outcome {
     let folder = std::env::temp_dir().join(format!("own-laws-{}", std::process::id()));
     std::fs::create_dir_all(&folder)?;
-    let scene =
-        scene("marine_two_sprockets", &[(RUBBING, STRIBECK)])?.replace("run.until", "1 ms")?;
+    let scene = scene("marine_two_sprockets", &[(RUBBING, STRIBECK)])?
+        .replace("run.until", "1 ms")?
+        .replace("run.run_in", "0 s")?;
     assert!(Build::here().id.contains("+friction:stribeck=1"));
     std::fs::write(
         folder.join("snapshot"),
@@ -181,7 +183,9 @@ fn a_program_without_the_laws_does_not_go_on() -> Outcome {
         &[("sprockets.crank.motion.speed".into(), speeds.to_vec())],
         &[],
     )?;
-    SweepStore::begin(folder.join("sweep.zarr"), &sweep)?;
+    let sample = sweep.time_sample(Some(1), || Go::On)?;
+    SweepStore::begin(folder.join("sweep.zarr"), &sweep, &sample, Existing::Keep)?
+        .run(Some(1), |_| Go::On)?;
     let child = Command::new(std::env::current_exe()?)
         .args(["--ignored", "--exact", "without_the_laws"])
         .env("OWN_LAWS_FOLDER", &folder)
