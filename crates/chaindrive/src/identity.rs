@@ -62,7 +62,8 @@ impl Build {
             build.id = format!("{}-{whole:016x}", build.version);
             build.laws = laws::revisions();
             for law in &build.laws {
-                build.id += &format!("{LAW}{law}");
+                build.id.push(LAW);
+                build.id.push_str(law);
             }
             build
         });

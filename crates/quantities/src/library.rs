@@ -187,9 +187,9 @@ impl<L: ?Sized + Send + Sync + 'static> Library<L> {
     /// Adds its members to the schema of the family. Closes the library.
     pub fn put_into(&self, family: &mut Value) {
         let shelf = self.closed();
-        let own = family.get_mut("oneOf").and_then(Value::as_array_mut);
-        let schemas = shelf.members.iter().map(|member| member.schema.clone());
-        own.into_iter().for_each(|own| own.extend(schemas.clone()));
+        if let Some(kinds) = family.get_mut("oneOf").and_then(Value::as_array_mut) {
+            kinds.extend(shelf.members.iter().map(|member| member.schema.clone()));
+        }
     }
 
     /// The law that keys describe; none where their `kind` is no name of it. Closes the library.
@@ -378,8 +378,7 @@ mod tests {
         Registered(Handle<dyn Law>),
     }
 
-    static LAWS: Library<dyn Law> =
-        Library::new("law", || schemars::schema_for!(Laws), |law| law.check());
+    static LAWS: Library<dyn Law> = Library::new("law", || schemars::schema_for!(Laws), Law::check);
 
     takes_registered! {
         Laws: LAWS;
@@ -420,7 +419,7 @@ mod tests {
     }
 
     fn library() -> Library<dyn Law> {
-        Library::new("law", || schemars::schema_for!(Laws), |law| law.check())
+        Library::new("law", || schemars::schema_for!(Laws), Law::check)
     }
 
     /// Registered and own members are read, written, compared and asked alike; the library then takes no more.

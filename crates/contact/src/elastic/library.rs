@@ -10,7 +10,7 @@ use super::{Elastic, ElasticLaw, Member, Specification};
 static LIBRARY: Library<dyn ElasticLaw> = Library::new(
     "elastic law",
     || schemars::schema_for!(Specification),
-    |law| law.check(),
+    ElasticLaw::check,
 );
 
 /// The registered elastic laws.

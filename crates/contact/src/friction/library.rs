@@ -32,7 +32,7 @@ pub trait FrictionLaw: Debug + Send + Sync + 'static {
 static LIBRARY: Library<dyn FrictionLaw> = Library::new(
     "friction",
     || schemars::schema_for!(Friction),
-    |law| law.check(),
+    FrictionLaw::check,
 );
 
 /// The registered friction laws.

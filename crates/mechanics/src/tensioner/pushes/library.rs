@@ -8,7 +8,7 @@ use super::{Push, PushLaw};
 
 /// The registered pushes.
 static LIBRARY: Library<dyn PushLaw> =
-    Library::new("push", || schemars::schema_for!(Push), |law| law.check());
+    Library::new("push", || schemars::schema_for!(Push), PushLaw::check);
 
 /// The registered pushes.
 pub fn library() -> &'static Library<dyn PushLaw> {
