@@ -6,7 +6,7 @@ use std::io::Write;
 use chaindrive::page::Page;
 use chaindrive::{Run, Scene, Simulation, Summary, Verdict};
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     let name = std::env::args().nth(1);
     let scene = Scene::preset(name.as_deref().unwrap_or("marine_engine"))?;
     let run = Run::suggested(&scene.run_defaults());

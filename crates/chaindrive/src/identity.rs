@@ -1,7 +1,7 @@
-//! Origin of a result: the build of the program, and the instruction set in use.
+//! Origin of a result: the build of the program with the laws that are registered in it, and the instruction set in use.
 //!
 //! Two results are equal to the last bit where both agree and the scene is the same. Stores of sweeps, their workers, snapshots
-//! and checkpoints are continued by nobody else.
+//! and checkpoints are continued by nobody else. More laws than a result has are no hindrance: its scene names none of them.
 
 use std::fmt;
 use std::sync::LazyLock;
@@ -9,6 +9,11 @@ use std::sync::LazyLock;
 use chaindrive_integrate::{InstructionSet, Registers};
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_64;
+
+use crate::laws;
+
+/// Stands before each law of an identity.
+const LAW: char = '+';
 
 /// Everything of a build that decides about bits, but for the instruction set, which is a matter of the process.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,12 +31,14 @@ pub struct Build {
     pub target: &'static str,
     /// Features of the processor that the compiler may use everywhere, with commas between.
     pub features: &'static str,
-    /// The identity: version and a hash of all that stands above, such as `0.2.0-5f3a9c01d2e47b66`.
+    /// Laws of other crates with their revisions, such as `friction:stribeck=1`.
+    pub laws: Vec<String>,
+    /// The identity: version, a hash of all that stands above, and the laws, such as `0.2.0-5f3a9c01d2e47b66+friction:stribeck=1`.
     pub id: String,
 }
 
 impl Build {
-    /// The build that runs here.
+    /// The build that runs here. No law can be registered afterwards.
     pub fn here() -> &'static Self {
         static HERE: LazyLock<Build> = LazyLock::new(|| {
             let mut build = Build {
@@ -48,10 +55,16 @@ impl Build {
                 compiler: env!("CHAINDRIVE_COMPILER"),
                 target: env!("CHAINDRIVE_TARGET"),
                 features: env!("CHAINDRIVE_FEATURES"),
+                laws: Vec::new(),
                 id: String::new(),
             };
             let whole = xxh3_64(build.to_string().as_bytes());
             build.id = format!("{}-{whole:016x}", build.version);
+            build.laws = laws::revisions();
+            for law in &build.laws {
+                build.id.push(LAW);
+                build.id.push_str(law);
+            }
             build
         });
         &HERE
@@ -73,7 +86,11 @@ impl fmt::Display for Build {
         }
         writeln!(f, "compiler      {}", self.compiler)?;
         writeln!(f, "target        {}", self.target)?;
-        write!(f, "features      {}", self.features)
+        write!(f, "features      {}", self.features)?;
+        for law in &self.laws {
+            write!(f, "\nlaw           {law}")?;
+        }
+        Ok(())
     }
 }
 
@@ -95,14 +112,29 @@ impl Origin {
         }
     }
 
+    /// The build without laws, and these.
+    fn parts(&self) -> (&str, Vec<&str>) {
+        let mut parts = self.build.split(LAW);
+        (parts.next().unwrap_or_default(), parts.collect())
+    }
+
     /// Why this process does not go on with what is of this origin, and what to do; none where it may.
     pub fn refusal(&self) -> Option<String> {
         let here = Self::here();
-        if self.build != here.build {
+        let [(build, laws), (own, known)] = [self, &here].map(Self::parts);
+        if build != own {
             return Some(format!(
                 "it is of chaindrive {}, and here is {}: another build computes other bits; go on with the build that \
                  began it, or begin anew",
                 self.build, here.build
+            ));
+        }
+        if let Some(law) = laws.iter().find(|law| !known.contains(law)) {
+            let name = law.split('=').next();
+            let other = known.iter().find(|own| own.split('=').next() == name);
+            let other = other.map_or("no law of that name".to_owned(), |own| format!("`{own}`"));
+            return Some(format!(
+                "it has the law `{law}`, and here is {other}: go on with a program that registers `{law}`, or begin anew"
             ));
         }
         if self.instruction_set == here.instruction_set {
@@ -171,6 +203,16 @@ mod tests {
                 .refusal()
                 .unwrap()
                 .contains("chaindrive 0.1.0,")
+        );
+        let law = "friction:stribeck=2";
+        let other = Origin {
+            build: format!("{}+{law}", here.build),
+            ..here.clone()
+        };
+        let told = other.refusal().unwrap();
+        assert!(
+            told.contains(&format!("`{law}`, and here is no law of that name")),
+            "{told}"
         );
         for set in InstructionSet::available().filter(|set| set.name() != here.instruction_set) {
             let other = Origin {

@@ -28,6 +28,7 @@ mod event;
 mod execute;
 pub mod figure;
 mod identity;
+pub mod laws;
 pub mod page;
 mod patience;
 mod plain;

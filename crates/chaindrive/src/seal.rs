@@ -47,7 +47,7 @@ pub enum SealError {
 /// Never: the values are plain data, and the memory takes them.
 pub(crate) fn sealed<T: Sealed>(value: &T) -> Vec<u8> {
     let content = postcard::to_stdvec(value).expect("plain data has a length known beforehand");
-    let mut bytes = heading::<T>(&content).into_bytes();
+    let mut bytes = heading::<T>(&Origin::here(), &content).into_bytes();
     bytes.extend(content);
     bytes
 }
@@ -81,18 +81,18 @@ pub(crate) fn opened<T: Sealed>(bytes: &[u8]) -> Result<T, SealError> {
     if let Some(refusal) = origin.refusal() {
         return Err(SealError::Origin { kind, refusal });
     }
-    if format!("{line}\n") != heading::<T>(content) {
+    if format!("{line}\n") != heading::<T>(&origin, content) {
         return Err(SealError::Damaged { kind });
     }
     postcard::from_bytes(content).map_err(|_| SealError::Damaged { kind })
 }
 
-fn heading<T: Sealed>(content: &[u8]) -> String {
+fn heading<T: Sealed>(origin: &Origin, content: &[u8]) -> String {
     let (kind, checksum) = (T::KIND, crc32fast::hash(content));
     let Origin {
         build,
         instruction_set,
-    } = Origin::here();
+    } = origin;
     format!(
         "chaindrive {kind}, {BUILD}{build}, {INSTRUCTION_SET}{instruction_set}, checksum {checksum:08x}\n"
     )

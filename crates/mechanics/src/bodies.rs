@@ -282,7 +282,7 @@ impl Bodies {
             let state = pushes.get(i).copied().unwrap_or_default();
             visit(
                 dof,
-                slide.push.stiffness() * squared + state.within(weights.damping),
+                slide.push.stiffness(0.0) * squared + state.within(weights.damping),
                 slide.push.damping() * squared,
             );
         }

@@ -35,7 +35,11 @@ impl Tensioner {
             });
         }
         problems.extend(self.carrier.check(&place("carrier")).err());
-        problems.extend(self.push.check(&place("push")).err());
+        let push = self.push.check();
+        problems.extend(
+            push.err()
+                .map(|source| DriveError::law(&place("push"), source)),
+        );
         problems
     }
 }

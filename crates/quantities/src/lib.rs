@@ -20,11 +20,13 @@
 //! assert_eq!(refused.to_string(), "stiffness = -1, must be positive [N/m]");
 //! ```
 
+mod library;
 mod quantity;
 mod range;
 mod reading;
 mod unit;
 
+pub use library::{Handle, Library, RegistrationError};
 pub use quantity::*;
 pub use range::{ParameterError, Range, check};
 pub use reading::{CONTACT_STIFFNESS, Complaint, is_number, read_length, read_time};

@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 
 use super::defaults;
 use super::schema::SceneText;
+use crate::laws;
 
 /// JSON Schema of the scene format (draft 2020-12), for editors and front ends.
 ///
@@ -27,6 +28,7 @@ pub fn schema() -> Value {
 pub(crate) fn raw() -> &'static Value {
     static RAW: LazyLock<Value> = LazyLock::new(|| {
         let mut schema = schemars::schema_for!(SceneText).to_value();
+        laws::put_into(&mut schema);
         plain_brackets(&mut schema);
         schema
     });

@@ -8,6 +8,7 @@ mod describe;
 mod duty;
 mod dynamics;
 mod energy;
+mod examples;
 mod horizons;
 mod impacts;
 mod joints;

@@ -168,13 +168,13 @@ impl ElasticLaw for Conformal {
         // g = π E* L ΔR q,   k = π E* L/s
         (self.scale() * self.clearance * q, self.scale() / slope)
     }
-}
 
-impl Member for Conformal {
     fn reach(&self) -> Option<f64> {
         Some(self.end())
     }
 }
+
+impl Member for Conformal {}
 
 impl OfCylinders for Conformal {
     fn between(pair: &Cylinders) -> Result<Elastic, ParameterError> {

@@ -16,7 +16,7 @@
 //! | [`Cylindrical`] | `cylindrical` | a power fitted to Johnson | ΔR 0.005–10 mm inside, 4–300 mm outside |
 //!
 //! [`CylinderLaw::between`] builds those of cylinders from radii and lengths. What they cost and how far they
-//! are from one another is in `docs/contact-laws.md`.
+//! are from one another is in `docs/contact-laws.md`. Other programs [register] theirs.
 
 mod conformal;
 mod curve;
@@ -26,6 +26,7 @@ mod dubowsky_freudenstein;
 mod esdu_78035;
 mod johnson;
 mod lambert;
+mod library;
 mod logarithmic;
 mod power;
 mod radzimovsky;
@@ -38,26 +39,29 @@ pub use cylindrical::Cylindrical;
 pub use dubowsky_freudenstein::DubowskyFreudenstein;
 pub use esdu_78035::Esdu78035;
 pub use johnson::Johnson;
+pub use library::{library, register};
 use logarithmic::Logarithmic;
 pub use power::Power;
 pub use radzimovsky::Radzimovsky;
 pub use specification::{Given, Linear, Spheres, Surfaces};
 pub(crate) use stack::Stack;
 
-use chaindrive_quantities::{JsonSchema, check};
+use std::fmt::Debug;
+
+use chaindrive_quantities::{Handle, JsonSchema, check};
 use serde::{Deserialize, Serialize};
 
 use crate::ParameterError;
 
-/// Questions that every elastic law answers; kernels that fix the law outside their loop are generic over it.
+/// Questions that every elastic law answers, be it a member of the family or [registered](register).
 ///
 /// All functions are zero for δ ≤ 0 and consistent with each other:
 ///
 /// ```text
 /// g = dU/dδ,   k = dg/dδ
 /// ```
-pub trait ElasticLaw: Copy {
-    /// Force g \[N\] at the penetration δ \[m\], compressive; grows with δ.
+pub trait ElasticLaw: Debug + Send + Sync + 'static {
+    /// Force g \[N\] at the penetration δ \[m\], compressive; grows with δ, in equal steps or ever faster.
     fn force(&self, penetration: f64) -> f64;
 
     /// Tangent stiffness k = dg/dδ \[N/m\] at the penetration δ \[m\].
@@ -70,6 +74,19 @@ pub trait ElasticLaw: Copy {
     #[inline]
     fn pair(&self, penetration: f64) -> (f64, f64) {
         (self.force(penetration), self.stiffness(penetration))
+    }
+
+    /// Depth \[m\] from which on the law goes on as its own tangent; none where it holds at any depth.
+    fn reach(&self) -> Option<f64> {
+        None
+    }
+
+    /// Refuses parameters that do not go together; each by itself is held to the range above its field.
+    ///
+    /// # Errors
+    /// Names the first of them.
+    fn check(&self) -> Result<(), ParameterError> {
+        Ok(())
     }
 }
 
@@ -88,16 +105,11 @@ pub(crate) enum Curve {
     Plain(Elastic),
 }
 
-/// A member of the family.
-pub(crate) trait Member: ElasticLaw + Into<Elastic> {
+/// A member of the family, beside its curve.
+pub(crate) trait Member: Copy + Into<Elastic> {
     /// The law with its constants worked out, for loops. A law without any is asked as it is.
     fn curve(&self) -> Curve {
         Curve::Plain((*self).into())
-    }
-
-    /// Depth \[m\] from which on a law that is asked as it is goes on as its own tangent.
-    fn reach(&self) -> Option<f64> {
-        None
     }
 }
 
@@ -114,10 +126,13 @@ macro_rules! family {
     ) => {
         /// An elastic law, chosen at run time.
         #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-        #[serde(tag = "kind", rename_all = "kebab-case")]
+        #[serde(tag = "kind", rename_all = "kebab-case", remote = "Self")]
         pub enum Elastic {
             $($(#[$curve_doc])* $curve($curve),)*
             $($(#[$doc])* $law($law),)*
+            /// A law of another program.
+            #[serde(skip)]
+            Registered(Handle<dyn ElasticLaw>),
         }
 
         /// A law of the family, to be built from the geometry of two parallel cylinders.
@@ -132,7 +147,7 @@ macro_rules! family {
 
         /// An elastic law as an engineer specifies it: by its curve, or by the bodies that touch.
         #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-        #[serde(tag = "kind", rename_all = "kebab-case")]
+        #[serde(tag = "kind", rename_all = "kebab-case", remote = "Self")]
         #[schemars(rename = "Elastic")]
         pub enum Specification {
             /// A spring.
@@ -141,6 +156,9 @@ macro_rules! family {
             /// Hertz's point contact of two bodies of one material. Too soft for cylinders.
             Hertz(Spheres),
             $($(#[$doc])* $law(Surfaces),)*
+            /// A law of another program.
+            #[serde(skip)]
+            Registered(Handle<dyn ElasticLaw>),
         }
 
         impl CylinderLaw {
@@ -163,6 +181,18 @@ macro_rules! family {
                     $(Self::$curve(law) => Given::Curve(law.into()),)*
                     Self::Hertz(bodies) => Given::Bodies(CylinderLaw::Hertz, bodies.into()),
                     $(Self::$law(bodies) => Given::Bodies(CylinderLaw::$law, bodies),)*
+                    Self::Registered(law) => Given::Curve(law.into()),
+                }
+            }
+
+            /// Refuses parameters outside the range of the law or the bodies.
+            ///
+            /// # Errors
+            /// Names the first parameter outside its range.
+            pub fn check(&self) -> Result<(), ParameterError> {
+                match self {
+                    Self::Registered(law) => law.check(),
+                    own => check(own),
                 }
             }
         }
@@ -188,6 +218,7 @@ macro_rules! family {
                 match $elastic {
                     $(Elastic::$curve($member) => $answer,)*
                     $(Elastic::$law($member) => $answer,)*
+                    Elastic::Registered($member) => $answer,
                 }
             };
         }
@@ -237,14 +268,13 @@ impl ElasticLaw for Elastic {
     fn pair(&self, penetration: f64) -> (f64, f64) {
         each!(self, law, law.pair(penetration))
     }
-}
 
-impl Elastic {
-    /// Depth \[m\] from which on a law that is asked as it is goes on as its own tangent.
     fn reach(&self) -> Option<f64> {
         each!(self, law, law.reach())
     }
+}
 
+impl Elastic {
     /// The law with its constants worked out.
     pub(crate) fn curve(&self) -> Curve {
         each!(self, law, law.curve())
@@ -255,7 +285,10 @@ impl Elastic {
     /// # Errors
     /// Names the first parameter outside its range.
     pub fn check(&self) -> Result<(), ParameterError> {
-        check(self)
+        match self {
+            Self::Registered(law) => law.check(),
+            own => check(own),
+        }
     }
 
     /// At least one law of every kind, with parameters of real chains, for tests and benchmarks.

@@ -14,11 +14,14 @@
 //! | [`BrownMcphee`] | `brown-mcphee` | creeps, slope above 4 μ_d N/v_t | yes |
 //! | [`Lugre`] | `lugre` | sticks, a spring σ₀ N | yes |
 //! | [`SpringSlider`] | `spring-slider` | sticks, a spring k | no |
+//!
+//! Other programs [register] theirs.
 
 mod ambrosio;
 mod bengisu_akay;
 mod brown_mcphee;
 mod coulomb;
+mod library;
 mod lugre;
 mod spring_slider;
 mod threlfall;
@@ -27,11 +30,12 @@ pub use ambrosio::Ambrosio;
 pub use bengisu_akay::BengisuAkay;
 pub use brown_mcphee::BrownMcphee;
 pub use coulomb::Coulomb;
+pub use library::{FrictionLaw, library, register};
 pub use lugre::Lugre;
 pub use spring_slider::SpringSlider;
 pub use threlfall::Threlfall;
 
-use chaindrive_quantities::{JsonSchema, check};
+use chaindrive_quantities::{Handle, JsonSchema, check};
 use serde::{Deserialize, Serialize};
 
 use crate::ParameterError;
@@ -42,7 +46,7 @@ const PLAIN: &str = "coulomb";
 
 /// A friction law, chosen at run time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
+#[serde(tag = "kind", rename_all = "kebab-case", remote = "Self")]
 #[schemars(extend("x-default-kind" = PLAIN))]
 pub enum Friction {
     /// No friction.
@@ -63,6 +67,9 @@ pub enum Friction {
     Lugre(Lugre),
     /// Coulomb friction that holds elastically: with a state.
     SpringSlider(SpringSlider),
+    /// A law of another program.
+    #[serde(skip)]
+    Registered(Handle<dyn FrictionLaw>),
 }
 
 /// Force and state of a rubbing contact over a step.
@@ -88,6 +95,7 @@ macro_rules! each {
             Friction::BrownMcphee($member) => $answer,
             Friction::Lugre($member) => $answer,
             Friction::SpringSlider($member) => $answer,
+            Friction::Registered($member) => $answer,
         }
     };
 }
@@ -176,6 +184,7 @@ impl Friction {
                 static_coefficient,
                 "at least the coefficient of sliding",
             ),
+            Self::Registered(law) => law.check(),
             Self::None | Self::Coulomb(_) | Self::Threlfall(_) | Self::SpringSlider(_) => Ok(()),
         }
     }

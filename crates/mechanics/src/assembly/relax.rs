@@ -467,7 +467,11 @@ impl Newton<'_> {
             let [behind, ahead] = [s - h, s + h].map(|s| slide.carrier.extension(s).lever);
             let bend = (ahead - behind) / (2.0 * h);
             sum.force(dof, -force * lever);
-            sum.stiffen(dof, dof, push.stiffness() * lever * lever - force * bend);
+            sum.stiffen(
+                dof,
+                dof,
+                push.stiffness(length) * lever * lever - force * bend,
+            );
             let pose = slide.pose(q, &still);
             for (mass, at_rest) in slide.weights() {
                 let weight = bodies.gravity * (mass * load.gravity);

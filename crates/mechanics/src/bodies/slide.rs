@@ -164,9 +164,9 @@ impl Slide {
         lever * lever / self.inertia
     }
 
-    /// ω² of the push's spring alone.
+    /// ω² of the push's spring alone, where it is assembled.
     pub(crate) fn own_rate(&self) -> f64 {
-        self.push.stiffness() * self.lightness()
+        self.push.stiffness(0.0) * self.lightness()
     }
 
     /// Damping rate of the push at a rate: its law is made of straight lines.

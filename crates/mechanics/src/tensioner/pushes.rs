@@ -5,18 +5,20 @@
 
 mod column;
 mod hydraulic;
+mod library;
 mod oil;
 mod spring;
 
 pub use column::OilColumn;
 pub use hydraulic::Hydraulic;
+pub use library::{library, register};
 pub use oil::Oil;
 pub use spring::{Spring, TorsionSpring};
 
-use chaindrive_quantities::JsonSchema;
-use serde::{Deserialize, Serialize};
+use std::fmt::Debug;
 
-use crate::DriveError;
+use chaindrive_quantities::{Handle, JsonSchema, ParameterError, check};
+use serde::{Deserialize, Serialize};
 
 /// The law of the push F(x, ẋ, z), x being the extension since assembly.
 ///
@@ -36,7 +38,7 @@ use crate::DriveError;
 /// assert!((push.energy(0.0, 0.0) - push.energy(2e-3, 0.0) - 380.0 * 2e-3).abs() < 1e-12);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
+#[serde(tag = "kind", rename_all = "kebab-case", remote = "Self")]
 pub enum Push {
     /// Nothing: the carrier stays where it was assembled.
     #[schemars(with = "()", extend("additionalProperties" = false))]
@@ -48,6 +50,9 @@ pub enum Push {
     /// An oil-filled plunger that follows easily and yields only through a leak. Forces are given directly (`supply`, `relief`, `leak`), or
     /// follow from `oil`.
     Hydraulic(Hydraulic),
+    /// A push of another program.
+    #[serde(skip)]
+    Registered(Handle<dyn PushLaw>),
 }
 
 /// Asks the member; a locked push has nothing.
@@ -58,33 +63,41 @@ macro_rules! ask {
             Push::Spring($member) => $answer,
             Push::TorsionSpring($member) => $answer,
             Push::Hydraulic($member) => $answer,
+            Push::Registered($member) => $answer,
         }
     };
 }
 
-/// Questions that a push answers; those without a state leave out the second half.
-trait Pushes: Copy {
-    /// SI unit of the push: that of a force, or of a torque on an arm without a plunger.
+/// Questions that a push answers, be it a member of the family or [registered](register); those without a state leave out the second half.
+///
+/// Above each field of its struct stand quantity and range.
+pub trait PushLaw: Debug + Send + Sync + 'static {
+    /// SI unit of the push: that of a force, `N`, or on an arm without a plunger of a torque, `N m`.
     fn unit(&self) -> &'static str;
 
-    /// Force at extension x and rate ẋ, with what its state z does.
+    /// Force at extension x \[m or rad\] and rate ẋ, with what its state z does.
     fn force(&self, x: f64, rate: f64, z: f64) -> PushForce;
 
     /// Stored energy \[J\] relative to x = 0 with z settled there.
     fn energy(&self, x: f64, z: f64) -> f64;
 
-    /// Stiffness −∂F/∂x of what has no state \[N/m or N m/rad\].
-    fn stiffness(&self) -> f64;
+    /// Stiffness −∂F/∂x at extension x of what has no state \[N/m or N m/rad\].
+    fn stiffness(&self, x: f64) -> f64;
 
     /// Largest damping −∂F/∂ẋ \[N s/m or N m s\].
     fn damping(&self) -> f64;
 
-    /// Names the first parameter out of range.
-    fn check(&self, path: &str) -> Result<(), DriveError>;
+    /// Refuses parameters that do not go together; each by itself is held to the range above its field.
+    ///
+    /// # Errors
+    /// Names the first of them.
+    fn check(&self) -> Result<(), ParameterError> {
+        Ok(())
+    }
 
     /// Damping and stiffness of a push outward.
     fn outward(&self) -> [f64; 2] {
-        [self.damping(), self.stiffness()]
+        [self.damping(), self.stiffness(0.0)]
     }
 
     /// The state at which nothing flows at extension x; none without a state.
@@ -93,9 +106,9 @@ trait Pushes: Copy {
         None
     }
 
-    /// The same push with its state settled at every moment.
-    fn relaxed(&self) -> Self {
-        *self
+    /// The push with its state settled at every moment; none where that is the push itself.
+    fn relaxed(&self) -> Option<Push> {
+        None
     }
 
     /// Share of the state in the derivatives.
@@ -126,17 +139,17 @@ pub struct PushForce {
 
 /// Derivatives of a push with a state, beside those without.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Slopes {
-    /// −∂F/∂x with the state held.
-    pub(crate) stiffness: f64,
+pub struct Slopes {
+    /// −∂F/∂x with the state held \[N/m or N m/rad\].
+    pub stiffness: f64,
     /// ∂F/∂z
-    pub(crate) by_state: f64,
+    pub by_state: f64,
     /// ∂ż/∂x
-    pub(crate) flow: f64,
-    /// −∂ż/∂z
-    pub(crate) settling: f64,
+    pub flow: f64,
+    /// −∂ż/∂z \[1/s\]
+    pub settling: f64,
     /// The largest that the stiffness, and the settling, can become without warning.
-    pub(crate) largest: [f64; 2],
+    pub largest: [f64; 2],
 }
 
 impl Slopes {
@@ -171,9 +184,9 @@ impl Push {
         ask!(self, push => push.energy(x, z))
     }
 
-    /// Stiffness −∂F/∂x of the elastic part, without that of a state \[N/m or N m/rad\].
-    pub fn stiffness(&self) -> f64 {
-        ask!(self, push => push.stiffness())
+    /// Stiffness −∂F/∂x of the elastic part at extension x, without that of a state \[N/m or N m/rad\].
+    pub fn stiffness(&self, x: f64) -> f64 {
+        ask!(self, push => push.stiffness(x))
     }
 
     /// Largest damping −∂F/∂ẋ \[N s/m or N m s\].
@@ -194,12 +207,8 @@ impl Push {
     /// The same push with its state settled at every moment: what statics looks at.
     #[must_use]
     pub(crate) fn relaxed(self) -> Self {
-        match self {
-            Self::Locked => self,
-            Self::Spring(spring) => Self::Spring(spring.relaxed()),
-            Self::TorsionSpring(spring) => Self::TorsionSpring(spring.relaxed()),
-            Self::Hydraulic(hydraulic) => Self::Hydraulic(hydraulic.relaxed()),
-        }
+        let relaxed: Option<Self> = ask!(self, push => push.relaxed());
+        relaxed.unwrap_or(self)
     }
 
     /// Share of its state in the derivatives.
@@ -212,14 +221,14 @@ impl Push {
         ask!(self, push => Some(push.unit()))
     }
 
-    /// Names the first parameter out of range.
-    pub(crate) fn check(&self, path: &str) -> Result<(), DriveError> {
-        match self {
-            Self::Locked => Ok(()),
-            Self::Spring(push) => push.check(path),
-            Self::TorsionSpring(push) => push.check(path),
-            Self::Hydraulic(push) => push.check(path),
-        }
+    /// Refuses parameters outside the range of the member.
+    ///
+    /// # Errors
+    /// Names the first parameter outside its range.
+    pub fn check(&self) -> Result<(), ParameterError> {
+        check(self)?;
+        let refused: Option<ParameterError> = ask!(self, push => push.check().err());
+        refused.map_or(Ok(()), Err)
     }
 }
 

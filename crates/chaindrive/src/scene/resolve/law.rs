@@ -4,7 +4,6 @@ use chaindrive_contact::elastic::{
     CylinderLaw, Cylinders, Given, Johnson, Power, Specification, Surfaces,
 };
 use chaindrive_contact::{Elastic, Elasticity, ParameterError};
-use chaindrive_quantities::check;
 use serde_json::json;
 
 use super::Findings;
@@ -69,7 +68,7 @@ pub(super) fn elastic(
     findings: &mut Findings<'_>,
 ) -> Option<Elastic> {
     let keys = findings.completed(law.keys.clone(), "Elastic", path);
-    let law: Specification = findings.read(keys, path, check)?;
+    let law: Specification = findings.read(keys, path, Specification::check)?;
     match law.given() {
         Given::Curve(law) => Some(law),
         Given::Bodies(CylinderLaw::Hertz, bodies) => {

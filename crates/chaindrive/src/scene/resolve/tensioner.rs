@@ -76,7 +76,10 @@ fn push(
     if text.push.word("kind") == "hydraulic" {
         keys = forces_of_oil(keys, path, findings)?;
     }
-    let push: Push = findings.read(keys, path, check)?;
+    let push: Push = findings.read(keys, path, |push| match push {
+        Push::Registered(law) => law.check(),
+        own => check(own),
+    })?;
     if let Push::Hydraulic(plunger) = &push
         && plunger.relief < plunger.supply
     {

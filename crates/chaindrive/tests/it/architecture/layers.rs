@@ -45,7 +45,8 @@ const CRATES: [Storeys; 4] = [
     Storeys {
         folder: "chaindrive",
         layers: &[
-            &["figure", "identity", "plain", "rainflow", "stepping"],
+            &["figure", "laws", "plain", "rainflow", "stepping"],
+            &["identity"],
             &["catalogue", "design", "draw", "rating", "seal"],
             &["error", "scene"],
             &["channel", "patience"],

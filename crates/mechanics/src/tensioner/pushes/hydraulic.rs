@@ -1,10 +1,9 @@
 //! One-way hydraulic tensioner, reduced to a force law.
 
-use chaindrive_quantities::{Damping, Force, JsonSchema, Stiffness, check};
+use chaindrive_quantities::{Damping, Force, JsonSchema, ParameterError, Stiffness, check};
 use serde::{Deserialize, Serialize};
 
-use super::{Oil, OilColumn, PushForce, Pushes, Slopes};
-use crate::DriveError;
+use super::{Oil, OilColumn, Push, PushForce, PushLaw, Slopes};
 
 /// A plunger behind a check valve: it follows the chain easily and yields only through a leak.
 ///
@@ -93,7 +92,7 @@ impl Hydraulic {
     }
 }
 
-impl Pushes for Hydraulic {
+impl PushLaw for Hydraulic {
     fn unit(&self) -> &'static str {
         "N"
     }
@@ -127,7 +126,7 @@ impl Pushes for Hydraulic {
         spring + column.at(x, z, self.supply).energy
     }
 
-    fn stiffness(&self) -> f64 {
+    fn stiffness(&self, _: f64) -> f64 {
         self.stiffness
     }
 
@@ -143,11 +142,11 @@ impl Pushes for Hydraulic {
         self.column.map(|_| x)
     }
 
-    fn relaxed(&self) -> Self {
-        Self {
+    fn relaxed(&self) -> Option<Push> {
+        Some(Push::Hydraulic(Self {
             column: None,
             ..*self
-        }
+        }))
     }
 
     fn slopes(&self, x: f64, z: f64) -> Slopes {
@@ -177,13 +176,17 @@ impl Pushes for Hydraulic {
         [self.extending, self.stiffness]
     }
 
-    fn check(&self, path: &str) -> Result<(), DriveError> {
-        check(self).map_err(|source| DriveError::law(path, source))?;
-        let range = |name: &str, fine: bool, value: f64, allowed| {
-            DriveError::require(fine, &format!("{path}.{name}"), value, allowed)
+    fn check(&self) -> Result<(), ParameterError> {
+        let require = |fine: bool, parameter: &'static str, value: f64, allowed: &'static str| {
+            let refused = ParameterError {
+                parameter: parameter.into(),
+                value,
+                allowed: allowed.into(),
+            };
+            if fine { Ok(()) } else { Err(refused) }
         };
         let opens = self.relief >= self.supply;
-        range("relief", opens, self.relief, "at least the supply push [N]")?;
+        require(opens, "relief", self.relief, "at least the supply push [N]")?;
         let Some(column) = &self.column else {
             return Ok(());
         };
@@ -193,9 +196,12 @@ impl Pushes for Hydraulic {
             ("extending", self.extending),
             ("relieving", self.relieving),
         ] {
-            range(name, value > 0.0, value, allowed)?;
+            require(value > 0.0, name, value, allowed)?;
         }
-        check(column).map_err(|source| DriveError::law(&format!("{path}.oil"), source))
+        check(column).map_err(|mut refused| {
+            refused.parameter = format!("oil.{}", refused.parameter).into();
+            refused
+        })
     }
 }
 

@@ -1,12 +1,11 @@
 //! Spring and damper behind a tensioner.
 
 use chaindrive_quantities::{
-    AngularDamping, AngularStiffness, Damping, Force, JsonSchema, Stiffness, Torque, check,
+    AngularDamping, AngularStiffness, Damping, Force, JsonSchema, Stiffness, Torque,
 };
 use serde::{Deserialize, Serialize};
 
-use super::{PushForce, Pushes};
-use crate::DriveError;
+use super::{PushForce, PushLaw};
 
 macro_rules! springs {
     ($($(#[$doc:meta])* $name:ident in $unit:literal: $preload:literal $force:tt, $rate:literal $stiffness:tt, $loss:literal $damping:tt;)*) => {$(
@@ -34,7 +33,7 @@ macro_rules! springs {
             pub damping: f64,
         }
 
-        impl Pushes for $name {
+        impl PushLaw for $name {
             fn unit(&self) -> &'static str {
                 $unit
             }
@@ -53,16 +52,12 @@ macro_rules! springs {
                 (0.5 * self.stiffness * x - self.preload) * x
             }
 
-            fn stiffness(&self) -> f64 {
+            fn stiffness(&self, _: f64) -> f64 {
                 self.stiffness
             }
 
             fn damping(&self) -> f64 {
                 self.damping
-            }
-
-            fn check(&self, path: &str) -> Result<(), DriveError> {
-                check(self).map_err(|source| DriveError::law(path, source))
             }
         }
     )*};

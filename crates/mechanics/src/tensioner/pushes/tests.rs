@@ -104,7 +104,7 @@ impl SecondOrderSystem for Plunger {
         let own = 1.0 + c * slopes.settling;
         x[1] /= own;
         x[0] += c * slopes.by_state * x[1] / mass;
-        x[0] /= 1.0 + k * (self.push.stiffness() + slopes.within(c)) / mass;
+        x[0] /= 1.0 + k * (self.push.stiffness(0.0) + slopes.within(c)) / mass;
         x[1] += k * slopes.flow * x[0] / own;
         true
     }
@@ -351,7 +351,7 @@ fn slopes_and_energy_belong_to_the_force() {
         };
         let by = |f: &dyn Fn(f64) -> f64| (f(h) - f(-h)) / (2.0 * h);
         near(
-            push.stiffness() + slopes.stiffness,
+            push.stiffness(x) + slopes.stiffness,
             -by(&|d| force(d, 0.0).elastic),
             "stiffness",
         );
@@ -465,24 +465,19 @@ fn what_makes_no_oil_is_named() {
         let mut column = real().column.expect("there is one");
         change(&mut push, &mut column);
         push.column = Some(column);
-        let error = Push::Hydraulic(push)
-            .check("push")
-            .expect_err("it is wrong");
-        error.to_string()
+        let refused = Push::Hydraulic(push).check().expect_err("it is wrong");
+        refused.to_string()
     };
     let cases: [(Change, &str); 9] = [
-        (
-            |_, oil| oil.bulk_modulus = f64::NAN,
-            "push.oil.bulk_modulus",
-        ),
-        (|_, oil| oil.bulk_modulus = 0.0, "push.oil.bulk_modulus"),
-        (|_, oil| oil.volume = f64::INFINITY, "push.oil.volume"),
-        (|_, oil| oil.area = -1.0, "push.oil.area"),
-        (|_, oil| oil.air = 0.0, "push.oil.air"),
-        (|_, oil| oil.air = f64::NAN, "push.oil.air"),
-        (|push, _| push.leak = 0.0, "push.leak"),
-        (|push, _| push.extending = 0.0, "push.extending"),
-        (|push, _| push.relieving = f64::NAN, "push.relieving"),
+        (|_, oil| oil.bulk_modulus = f64::NAN, "oil.bulk_modulus"),
+        (|_, oil| oil.bulk_modulus = 0.0, "oil.bulk_modulus"),
+        (|_, oil| oil.volume = f64::INFINITY, "oil.volume"),
+        (|_, oil| oil.area = -1.0, "oil.area"),
+        (|_, oil| oil.air = 0.0, "oil.air"),
+        (|_, oil| oil.air = f64::NAN, "oil.air"),
+        (|push, _| push.leak = 0.0, "leak"),
+        (|push, _| push.extending = 0.0, "extending"),
+        (|push, _| push.relieving = f64::NAN, "relieving"),
     ];
     for (change, place) in cases {
         let message = refused(change);
