@@ -77,11 +77,16 @@ impl Contacts {
             dy,
             spin,
         };
+        // From the centre of the teeth.
+        let [sx, sy] = [
+            dx - w.splat(frame.eccentric.x),
+            dy - w.splat(frame.eccentric.y),
+        ];
         let mut near = slot.valid;
         let place = match &self.shape {
             Shape::Teeth(teeth) => {
-                let reach = teeth.tip_radius + self.radius;
-                let away = (dx * dx - w.splat(reach * reach)).plus(dy, dy);
+                let reach = teeth.tip_radius + self.largest;
+                let away = (sx * sx - w.splat(reach * reach)).plus(sy, sy);
                 near = w.splat(0.0).greater(away) & near;
                 if !near.any() && self.writes_faces {
                     slots.leave_open(w, slot.lane, 0.0);
@@ -95,11 +100,18 @@ impl Contacts {
                     slots.leave_open(w, slot.lane, self.accepted + dt + rest);
                     return false;
                 }
-                Place::in_gap(w, teeth, frame, slots.axis(slot.axis), [dx, dy])
+                let turns = match &slots.uneven {
+                    Some(uneven) => Some(uneven.turns(slot.axis)),
+                    None => None,
+                };
+                Place::in_gap(w, teeth, frame, slots.axis(slot.axis), [sx, sy], turns)
             }
             Shape::Rail { reference, .. } => Place::at_rail(w, *reference, frame, [dx, dy]),
         };
-        let faced = view.faced(w, &place, self.radius, self.law.flank.is_some());
+        let mut faced = view.faced(w, &place, self.radius, self.law.flank.is_some());
+        if let Some(uneven) = &slots.uneven {
+            faced.gap = faced.gap - uneven.larger(slot.axis);
+        }
         let Some(closing) =
             self.respond::<S, LONG>(w, dt, &motion, &faced, near, slot, rollers, slots, sums)
         else {
