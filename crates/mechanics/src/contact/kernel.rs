@@ -77,16 +77,11 @@ impl Contacts {
             dy,
             spin,
         };
-        // From the centre of the teeth.
-        let [sx, sy] = [
-            dx - w.splat(frame.eccentric.x),
-            dy - w.splat(frame.eccentric.y),
-        ];
         let mut near = slot.valid;
         let place = match &self.shape {
             Shape::Teeth(teeth) => {
                 let reach = teeth.tip_radius + self.largest;
-                let away = (sx * sx - w.splat(reach * reach)).plus(sy, sy);
+                let away = (dx * dx - w.splat(reach * reach)).plus(dy, dy);
                 near = w.splat(0.0).greater(away) & near;
                 if !near.any() && self.writes_faces {
                     slots.leave_open(w, slot.lane, 0.0);
@@ -104,7 +99,7 @@ impl Contacts {
                     Some(uneven) => Some(uneven.turns(slot.axis)),
                     None => None,
                 };
-                Place::in_gap(w, teeth, frame, slots.axis(slot.axis), [sx, sy], turns)
+                Place::in_gap(w, teeth, frame, slots.axis(slot.axis), [dx, dy], turns)
             }
             Shape::Rail { reference, .. } => Place::at_rail(w, *reference, frame, [dx, dy]),
         };
@@ -273,7 +268,8 @@ impl Touching<'_, '_> {
         let mut sums = Sums::new(w);
         let mut touching = false;
         // A copy: what may change while slots are written is read from memory again for every lane.
-        let frame = *frame;
+        let eccentric = frame.eccentric;
+        let frame = frame.at_centre();
         for side in 0..contacts.sides() {
             let view = contacts.view(side);
             for (eight, run) in contacts.runs.iter().enumerate() {
@@ -299,7 +295,13 @@ impl Touching<'_, '_> {
             }
         }
         if touching {
-            sums.total(contacts.law.friction.acts())
+            let wrench = sums.total(contacts.law.friction.acts());
+            // About the axis: M = M_c + e × F
+            let [fx, fy] = wrench.force;
+            Wrench {
+                moment: wrench.moment + (eccentric.x * fy - eccentric.y * fx),
+                ..wrench
+            }
         } else {
             Wrench {
                 first_share: 1.0,

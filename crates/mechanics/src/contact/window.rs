@@ -223,6 +223,19 @@ impl Frame {
         self.origin + self.eccentric
     }
 
+    /// The same body, seen from the centre of its teeth.
+    #[inline(always)]
+    pub(super) fn at_centre(&self) -> Self {
+        let e = self.eccentric;
+        Self {
+            origin: self.centre(),
+            eccentric: Vector::zeros(),
+            // v_c = v + ω ẑ × e
+            velocity: self.velocity + Vector::new(-e.y, e.x) * self.spin,
+            ..*self
+        }
+    }
+
     /// Position in the frame's coordinates, relative to `reference`.
     pub(crate) fn local(&self, at: Point, reference: Point) -> Point {
         let d = at - self.origin;
