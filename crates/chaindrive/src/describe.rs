@@ -9,11 +9,12 @@ mod links;
 mod polygon;
 mod route;
 mod text;
+mod tolerance;
 
 use chaindrive_geometry::mesh_frequency;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 use chaindrive_mechanics::{
-    Adjust, Assembled, Capacity, Clash, Drive, Fight, Fitting, Flow, GuideSupport, Layout,
+    Adjust, Assembled, Capacity, Chain, Clash, Drive, Fight, Fitting, Flow, GuideSupport, Layout,
     Observation, PlacedChain, Rotation, Statics, Unrated,
 };
 use serde::ser::SerializeMap;
@@ -24,6 +25,7 @@ pub use free_train::FreeTrainFacts;
 pub use links::{ContactFacts, LinkFacts, left_out};
 pub use polygon::PolygonPair;
 pub use route::{SpanAtRest, StopFacts, spans_at_rest};
+pub use tolerance::ToleranceFacts;
 
 use crate::{Run, SimulationError, rating};
 
@@ -39,6 +41,8 @@ pub struct Description {
     pub spans: Vec<SpanAtRest>,
     /// Shafts with a name of their own.
     pub shafts: Vec<ShaftFacts>,
+    /// Sprockets that are not as drawn.
+    pub tolerances: Vec<ToleranceFacts>,
     /// Shafts that torques turn, and no motion.
     pub free_trains: Vec<FreeTrainFacts>,
     /// The static states on the way to the start.
@@ -64,6 +68,8 @@ pub struct ChainFacts {
     pub links: usize,
     /// Nominal pitch \[m\].
     pub pitch: f64,
+    /// Least and greatest roller diameter \[m\].
+    pub roller_diameters: [f64; 2],
     /// Mass per length \[kg/m\].
     pub mass_per_length: f64,
     /// Its links, joints and rollers.
@@ -234,6 +240,7 @@ impl Description {
         Ok(Self {
             chains,
             shafts: shafts(drive, &start),
+            tolerances: tolerance::of(drive),
             free_trains: free_train::of(assembled),
             stops: route::stops(drive, assembled, &start),
             statics: static_stages(drive, assembled),
@@ -444,6 +451,7 @@ fn chain_facts(
         rated_power,
         links: chain.links(),
         pitch: chain.pitch,
+        roller_diameters: roller_diameters(chain),
         mass_per_length,
         bodies: LinkFacts::of(chain),
         link_stiffness: stiffness,
@@ -455,6 +463,15 @@ fn chain_facts(
             .zip(most)
             .map(|(a, b)| [a, b].map(|tension| (tension / mass_per_length).sqrt())),
     }
+}
+
+/// Least and greatest roller diameter of a chain.
+fn roller_diameters(chain: &Chain) -> [f64; 2] {
+    let deviations = &chain.roller_deviations;
+    let [least, most] = deviations.iter().fold([0.0_f64; 2], |[least, most], it| {
+        [least.min(*it), most.max(*it)]
+    });
+    [least, most].map(|it| chain.roller_diameter + it)
 }
 
 fn model(drive: &Drive, assembled: &Assembled) -> Model {

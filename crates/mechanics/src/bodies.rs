@@ -68,6 +68,8 @@ pub(crate) struct Wheel {
     pub(crate) teeth: u32,
     pub(crate) pitch_radius: f64,
     pub(crate) pitch: f64,
+    /// Centre of the teeth from the axis, in the frame of the teeth \[m\].
+    pub(crate) eccentricity: Vector,
     /// +1 where the chain turns counter-clockwise around the wheel.
     pub(crate) sense: f64,
 }
@@ -113,9 +115,11 @@ impl Bodies {
         let wheel = &self.wheels[wheel];
         let kinematics = wheel.kinematics(at.t, at.q, at.v);
         let (origin, velocity, _) = wheel.centre_kinematics(at.t, at.q, at.v, &self.slides);
+        let turn = anchor.turn(kinematics.position);
         Frame {
             origin,
-            turn: anchor.turn(kinematics.position),
+            eccentric: wheel.eccentric(turn),
+            turn,
             velocity,
             spin: kinematics.rate,
         }
@@ -321,6 +325,13 @@ impl Wheel {
         self.turn.kinematics(t, q, v)
     }
 
+    /// Centre of the teeth from the axis \[m\], where the frame of the teeth has this cosine and sine.
+    #[inline(always)]
+    pub(crate) fn eccentric(&self, [c, s]: [f64; 2]) -> Vector {
+        let [x, y] = [self.eccentricity.x, self.eccentricity.y];
+        Vector::new(c * x - s * y, s * x + c * y)
+    }
+
     /// The tensioner that carries it.
     pub(crate) fn carried(&self) -> Option<usize> {
         match self.support {
@@ -424,6 +435,7 @@ impl Rail {
                 let angle = turning * pose.coordinate;
                 Frame {
                     origin,
+                    eccentric: Vector::zeros(),
                     turn: [angle.cos(), angle.sin()],
                     velocity,
                     spin: turning * pose.rate,

@@ -113,6 +113,11 @@ fn sprocket_problems(sprocket: &Sprocket, tensioners: usize) -> Vec<DriveError> 
         sprocket.gap_angle,
         "finite [rad]",
     );
+    let gap = &sprocket.gap;
+    found.extend(sprocket.tolerance.problems(&place, gap.teeth, gap.pitch));
+    let mut need = |ok: bool, what: &str, value: f64, allowed: &'static str| {
+        found.extend(DriveError::require(ok, &format!("{place}.{what}"), value, allowed).err());
+    };
     if let Support::Springs { stiffness, damping } = &sprocket.support {
         for (axis, (k, c)) in ["x", "y"].iter().zip(stiffness.iter().zip(damping)) {
             need(

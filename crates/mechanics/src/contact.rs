@@ -24,6 +24,7 @@ mod slots;
 mod stacked;
 #[cfg(test)]
 mod tests;
+mod uneven;
 mod window;
 mod windows;
 mod wrench;
@@ -47,6 +48,8 @@ pub(crate) use window::{Places, Run, Spare};
 pub(crate) use windows::{PlateMemory, Windows};
 pub(crate) use wrench::{Begun, LaneTally, Wrench};
 
+use uneven::Uneven;
+
 use crate::profile::{GapFace, RailFace};
 use crate::surface::{Flank, Surface};
 
@@ -56,8 +59,10 @@ const LEAST_DEPTH: f64 = 1e-30;
 /// The position and motion of the frame in which a profile is given.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Frame {
-    /// Origin: wheel centre, pivot of an arm, or displaced origin of a rail \[m\].
+    /// Origin: axis of a wheel, pivot of an arm, or displaced origin of a rail \[m\].
     pub(crate) origin: Point,
+    /// Centre of the teeth, from there: that of a wheel that runs out lies beside its axis \[m\].
+    pub(crate) eccentric: Vector,
     /// Cosine and sine of the rotation.
     pub(crate) turn: [f64; 2],
     /// Velocity of the origin \[m/s\].
@@ -69,7 +74,7 @@ pub(crate) struct Frame {
 /// Shape of the profile.
 #[derive(Clone, Debug)]
 pub(crate) enum Shape {
-    /// z equal gaps around a wheel; the frame's origin is the wheel centre.
+    /// z gaps around a wheel.
     Teeth(Teeth),
     /// The face of a guide, given about the frame's reference origin.
     Rail {
@@ -92,6 +97,8 @@ pub(crate) struct Teeth {
     pub(crate) pitch_turn: [f64; 2],
     /// Tip radius \[m\].
     pub(crate) tip_radius: f64,
+    /// Angles by which the gaps stand from their places \[rad\], counter-clockwise; none where all are in place.
+    pub(crate) errors: Vec<f64>,
 }
 
 /// All contacts of the chain's rollers with one body.
@@ -105,6 +112,10 @@ pub(crate) struct Contacts {
     law: SurfaceLaw,
     /// Radius of the touching circles \[m\].
     pub(crate) radius: f64,
+    /// Radius of the largest of them \[m\].
+    largest: f64,
+    /// What differs from one to the other, and from gap to gap.
+    uneven: Option<Box<Uneven>>,
     /// Runs of rollers that can touch.
     pub(crate) runs: Vec<Run>,
     /// Number of rollers in them.
@@ -202,6 +213,8 @@ impl Contacts {
             flank,
             law: SurfaceLaw::new(&surface, flank),
             radius,
+            largest: radius,
+            uneven: None,
             runs: Vec::new(),
             candidates: 0,
             slots: 0,

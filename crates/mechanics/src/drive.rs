@@ -3,7 +3,7 @@
 use chaindrive_geometry::{ArcSpline, Point, Side, ToothGap, Vector};
 use serde::{Deserialize, Serialize};
 
-use crate::{Chain, Coupling, Flank, Motion, Surface, Tensioner, Torque};
+use crate::{Chain, Coupling, Flank, Motion, Surface, Tensioner, Tolerance, Torque};
 
 /// A toothed wheel.
 #[derive(Clone, Debug)]
@@ -31,6 +31,8 @@ pub struct Sprocket {
     /// Angle of one gap axis at assembly \[rad\] for wheels that no route passes over; along a
     /// route the closing of the chain decides.
     pub gap_angle: f64,
+    /// How it differs from its drawing.
+    pub tolerance: Tolerance,
 }
 
 /// A body that turns: it carries sprockets of any chains, rigidly, or none.

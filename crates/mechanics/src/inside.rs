@@ -44,7 +44,7 @@ pub fn teeth(system: &System, record: &Record, at: Moment<'_>) -> Vec<Tooth> {
         };
         contacts.for_each_slot(|slot, roller| {
             let place = member.chain.roller_moving(at.q, roller).place;
-            let Some(probe) = contacts.probes(&frame, place).pop() else {
+            let Some(probe) = contacts.probes(&frame, roller, place).pop() else {
                 return;
             };
             let kept = |what| touch.state.get(what, slot);

@@ -40,6 +40,7 @@
 //!     damping: vec![0.0; 2],
 //!     masses: vec![mass; 3],
 //!     roller_diameter: 7.75e-3,
+//!     roller_deviations: Vec::new(),
 //!     plate_height: 9.6e-3,
 //!     articulation: None,
 //!     drag: 0.0,
@@ -131,6 +132,7 @@ mod struck;
 mod surface;
 mod system;
 mod tensioner;
+mod tolerance;
 mod torque;
 mod trains;
 
@@ -163,6 +165,7 @@ pub use struck::Struck;
 pub use surface::{Flank, Surface};
 pub use system::{Record, System, SystemMemory};
 pub use tensioner::{Carrier, Push, PushForce, Tensioner, carriers, pushes};
+pub use tolerance::Tolerance;
 pub use torque::{Argument, Torque};
 
 /// Hash of the sources of this crate, a part of the identity of a build.

@@ -108,7 +108,7 @@ pub(super) fn contacts(drive: &Drive) -> Vec<ContactFacts> {
     found
 }
 
-/// Effects that the model of a drive leaves out, in words: friction where parts touch, damping of the links, gravity.
+/// Effects that the model of a drive leaves out, in words: friction where parts touch, damping of the links, errors of sprockets, gravity.
 pub fn left_out(drive: &Drive) -> Vec<&'static str> {
     let contacts = contacts(drive);
     let facts: Vec<LinkFacts> = drive
@@ -128,12 +128,15 @@ pub fn left_out(drive: &Drive) -> Vec<&'static str> {
         let springs = placed.chain.model.has_springs();
         springs && placed.chain.damping.iter().all(|d| *d <= 0.0)
     });
+    let mut sprockets = drive.sprockets.iter().peekable();
+    let exact = sprockets.peek().is_some() && sprockets.all(|it| it.tolerance.is_none());
     let lacks = [
         (slips("teeth"), "friction on teeth"),
         (slips("guides"), "friction on guides"),
         (slips("rollers"), "friction of rollers on their bushes"),
         (idle, "friction of pins in their bushes"),
         (undamped, "damping of the links"),
+        (exact, "run-out and pitch errors of sprockets"),
         (drive.gravity.norm() <= 0.0, "gravity"),
     ];
     let found = lacks.into_iter().filter(|(lacking, _)| *lacking);

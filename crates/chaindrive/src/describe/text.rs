@@ -17,6 +17,9 @@ impl fmt::Display for Description {
             self.route(chain, f)?;
         }
         self.shafts(f)?;
+        for unlike in &self.tolerances {
+            row(f, "not as drawn", &unlike.to_string())?;
+        }
         for train in &self.free_trains {
             row(f, "turned by torques", &train.to_string())?;
         }
@@ -43,6 +46,14 @@ impl fmt::Display for ChainFacts {
             &format!("{} of {:.4} mm", chain.links, chain.pitch * 1e3),
         )?;
         row(f, "model", &chain.bodies.to_string())?;
+        let [least, most] = chain.roller_diameters.map(|it| it * 1e3);
+        if least < most {
+            row(
+                f,
+                "roller diameters",
+                &format!("{least:.4} to {most:.4} mm"),
+            )?;
+        }
         row(
             f,
             "mass per length",

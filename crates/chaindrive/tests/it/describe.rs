@@ -87,9 +87,12 @@ fn a_page_tells_what_the_model_leaves_out() {
     for (changes, left_out) in [
         (
             &[][..],
-            "friction on teeth, friction on guides, damping of the links",
+            "friction on teeth, friction on guides, damping of the links, run-out and pitch errors of sprockets",
         ),
-        (&[rubs][..], "friction on teeth, damping of the links"),
+        (
+            &[rubs][..],
+            "friction on teeth, damping of the links, run-out and pitch errors of sprockets",
+        ),
     ] {
         let scene = preset("marine_engine", changes);
         let run = run(1e-4, 2.0);

@@ -35,6 +35,7 @@ mod several_chains;
 mod stack;
 mod strands;
 mod sweep;
+mod tolerances;
 mod tooth_gaps;
 mod validation_contact;
 mod validation_dynamics_free_chain;

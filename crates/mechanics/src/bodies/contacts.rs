@@ -134,7 +134,8 @@ impl BodyContacts {
             let wheel = &bodies.wheels[on.wheel];
             let rate = wheel.kinematics(at.t, at.q, at.v).rate;
             let frame = bodies.wheel_frame(on.wheel, &on.anchor, at);
-            let rim = rate.abs() * wheel.pitch_radius + frame.velocity.norm();
+            let rim_radius = wheel.pitch_radius + wheel.eccentricity.norm();
+            let rim = rate.abs() * rim_radius + frame.velocity.norm();
             speed = speed.max(fastest + rim);
             on.contacts.renew(&frame, places, margin);
             on.arrivals.look_around(&on.contacts);

@@ -66,6 +66,8 @@ pub struct Chain {
     pub masses: Vec<f64>,
     /// Roller diameter \[m\], positive.
     pub roller_diameter: f64,
+    /// By how much the diameter of every roller exceeds that \[m\], (rollers,); empty where all are alike.
+    pub roller_deviations: Vec<f64>,
     /// Height of the link plates \[m\], positive: what a guide for plates touches.
     pub plate_height: f64,
     /// Resistance of the joints, if there is any. Joints with clearance have their friction in the contact of pin and bush.
@@ -161,6 +163,21 @@ impl Chain {
                 "one value for every link (stiffness, damping) or roller (masses)",
             );
         }
+        let deviations = &self.roller_deviations;
+        need(
+            deviations.is_empty() || deviations.len() == self.rollers(),
+            "chain.roller_deviations".into(),
+            deviations.len() as f64,
+            "one value for every roller, or none",
+        );
+        let widest = 0.5 * self.roller_diameter;
+        let bad = deviations.iter().find(|it| !(it.abs() < widest));
+        need(
+            bad.is_none(),
+            "chain.roller_deviations".into(),
+            bad.copied().unwrap_or_default(),
+            "less than half of the roller diameter [m]",
+        );
         let arrays: [(&str, &[f64], Range, &'static str); 4] = [
             ("lengths", &self.lengths, |v| v > 0.0, "positive [m]"),
             ("stiffness", &self.stiffness, |v| v > 0.0, "positive [N/m]"),

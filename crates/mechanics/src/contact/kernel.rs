@@ -80,7 +80,7 @@ impl Contacts {
         let mut near = slot.valid;
         let place = match &self.shape {
             Shape::Teeth(teeth) => {
-                let reach = teeth.tip_radius + self.radius;
+                let reach = teeth.tip_radius + self.largest;
                 let away = (dx * dx - w.splat(reach * reach)).plus(dy, dy);
                 near = w.splat(0.0).greater(away) & near;
                 if !near.any() && self.writes_faces {
@@ -95,11 +95,18 @@ impl Contacts {
                     slots.leave_open(w, slot.lane, self.accepted + dt + rest);
                     return false;
                 }
-                Place::in_gap(w, teeth, frame, slots.axis(slot.axis), [dx, dy])
+                let turns = match &slots.uneven {
+                    Some(uneven) => Some(uneven.turns(slot.axis)),
+                    None => None,
+                };
+                Place::in_gap(w, teeth, frame, slots.axis(slot.axis), [dx, dy], turns)
             }
             Shape::Rail { reference, .. } => Place::at_rail(w, *reference, frame, [dx, dy]),
         };
-        let faced = view.faced(w, &place, self.radius, self.law.flank.is_some());
+        let mut faced = view.faced(w, &place, self.radius, self.law.flank.is_some());
+        if let Some(uneven) = &slots.uneven {
+            faced.gap = faced.gap - uneven.larger(slot.axis);
+        }
         let Some(closing) =
             self.respond::<S, LONG>(w, dt, &motion, &faced, near, slot, rollers, slots, sums)
         else {
@@ -261,7 +268,8 @@ impl Touching<'_, '_> {
         let mut sums = Sums::new(w);
         let mut touching = false;
         // A copy: what may change while slots are written is read from memory again for every lane.
-        let frame = *frame;
+        let eccentric = frame.eccentric;
+        let frame = frame.at_centre();
         for side in 0..contacts.sides() {
             let view = contacts.view(side);
             for (eight, run) in contacts.runs.iter().enumerate() {
@@ -287,7 +295,13 @@ impl Touching<'_, '_> {
             }
         }
         if touching {
-            sums.total(contacts.law.friction.acts())
+            let wrench = sums.total(contacts.law.friction.acts());
+            // About the axis: M = M_c + e × F
+            let [fx, fy] = wrench.force;
+            Wrench {
+                moment: wrench.moment + (eccentric.x * fy - eccentric.y * fx),
+                ..wrench
+            }
         } else {
             Wrench {
                 first_share: 1.0,

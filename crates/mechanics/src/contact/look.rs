@@ -49,7 +49,8 @@ pub(super) struct FacedSurface<S: Simd> {
 }
 
 impl<S: Simd> Place<S> {
-    /// In the frames of the gaps that rollers at d from the wheel's centre are nearest to.
+    /// In the frames of the gaps that rollers at d from the centre of the teeth are nearest to; `turns` to the gaps beside them, where
+    /// these do not stand one pitch away.
     #[inline(always)]
     pub(super) fn in_gap(
         w: Wide<S>,
@@ -57,6 +58,7 @@ impl<S: Simd> Place<S> {
         frame: &Frame,
         [ex, ey]: [Lane<S>; 2],
         [dx, dy]: [Lane<S>; 2],
+        turns: Option<[Lane<S>; 4]>,
     ) -> Self {
         let (c, s) = (w.splat(frame.turn[0]), w.splat(frame.turn[1]));
         // a = R(θ) e,   x = d × a,   y = d · a. Rounded alike on every processor: a last place of d is one of the gap.
@@ -73,12 +75,19 @@ impl<S: Simd> Place<S> {
                 over: None,
             };
         }
-        // Beyond the middle of a tooth the next gap is meant: turn the axis by one pitch.
+        // Beyond the middle of a tooth the next gap is meant: turn the axis there.
         let (one, zero) = (w.splat(1.0), w.splat(0.0));
         let to_the_right = x.greater(zero);
         let sign = to_the_right.select(one, -one);
-        let cp = beyond.select(w.splat(teeth.pitch_turn[0]), one);
-        let sp = beyond.select(sign * w.splat(teeth.pitch_turn[1]), zero);
+        let [cosine, sine] = match turns {
+            Some([right_c, right_s, left_c, left_s]) => [
+                to_the_right.select(right_c, left_c),
+                to_the_right.select(right_s, left_s),
+            ],
+            None => teeth.pitch_turn.map(|it| w.splat(it)),
+        };
+        let cp = beyond.select(cosine, one);
+        let sp = beyond.select(sign * sine, zero);
         let ax2 = cp * ax + sp * ay;
         let ay2 = cp * ay - sp * ax;
         Self {
@@ -350,25 +359,27 @@ impl Contacts {
         }
     }
 
-    /// The surfaces that a circle at `at` faces, one for every side, with normals in the world: one lane of one.
-    pub(crate) fn probes(&self, frame: &Frame, at: Point) -> Vec<Probe> {
+    /// The surfaces that a roller at `at` faces, one for every side, with normals in the world: one lane of one.
+    pub(crate) fn probes(&self, frame: &Frame, roller: usize, at: Point) -> Vec<Probe> {
         let w = Wide(pulp::Scalar);
-        let d = at - frame.origin;
+        let d = at - frame.centre();
         let lanes = [w.splat(d.x), w.splat(d.y)];
         let place = match &self.shape {
             Shape::Rail { reference, .. } => Place::at_rail(w, *reference, frame, lanes),
             Shape::Teeth(teeth) => {
-                let reach = teeth.tip_radius + self.radius;
+                let reach = teeth.tip_radius + self.largest;
                 if d.norm_squared() > reach * reach {
                     return Vec::new();
                 }
-                let axis = teeth.gap_axis(frame.turn, d, None).map(|e| w.splat(e));
-                Place::in_gap(w, teeth, frame, axis, lanes)
+                let axis = teeth.gap_axis(frame.turn, d, None);
+                let turns = Some(teeth.turns(axis).map(|it| w.splat(it)));
+                Place::in_gap(w, teeth, frame, axis.map(|e| w.splat(e)), lanes, turns)
             }
         };
         let sides = 0..self.sides();
         let probe = |side| {
-            let faced = self.view(side).faced(w, &place, self.radius, true);
+            let mut faced = self.view(side).faced(w, &place, self.radius, true);
+            faced.gap = faced.gap - w.splat(self.larger(roller));
             Probe::of(faced.lanes())
         };
         sides.map(probe).collect()

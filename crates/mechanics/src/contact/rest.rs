@@ -163,7 +163,7 @@ mod tests {
             contacts.accepted = t;
             for i in 0..count {
                 let slot = contacts.slot_of(i);
-                let faces = contacts.probes(&here, Point::new(x[i], y[i]));
+                let faces = contacts.probes(&here, i, Point::new(x[i], y[i]));
                 let inside = faces.iter().any(|face| face.gap < 0.0);
                 let closed = |slot| contacts.memory.state.closed(slot).is_some();
                 let seen = slot.is_some_and(closed);
@@ -204,9 +204,17 @@ mod tests {
         assert!(touched > 1000, "{touched}");
     }
 
-    /// Rollers fly over a turning wheel, faster than its rim, and fall on its teeth.
+    /// Rollers fly over a turning wheel, faster than its rim, and fall on its teeth: as drawn, and with errors of wheel and rollers.
     #[test]
     fn no_contact_with_teeth_begins_unseen() {
+        fall(&[], Vector::zeros(), &[]);
+        let wave = |k: f64| 2e-4 * (1.7 * k).sin();
+        let errors: Vec<f64> = (0..40).map(|gap| 0.1 * wave(f64::from(gap))).collect();
+        let deviations: Vec<f64> = (0..24).map(|i| wave(f64::from(i))).collect();
+        fall(&errors, Vector::new(3e-4, -2e-4), &deviations);
+    }
+
+    fn fall(errors: &[f64], eccentricity: Vector, deviations: &[f64]) {
         let (pitch, count) = (0.03, 40);
         let form = ToothForm::Iso606 {
             gap: 0.5,
@@ -221,14 +229,22 @@ mod tests {
             tan_half: (0.5 * step).tan(),
             pitch_turn: [step.cos(), step.sin()],
             tip_radius: gap.tip_radius,
-        }));
+            errors: errors.to_vec(),
+        }))
+        .with_rollers(deviations);
         let (centre, rim) = (Point::new(0.0, -gap.pitch_radius), 6.0);
         let spin = rim / gap.pitch_radius;
-        let frame = |t: f64| Frame {
-            origin: centre,
-            turn: [(spin * t).cos(), (spin * t).sin()],
-            velocity: Vector::zeros(),
-            spin,
+        let frame = |t: f64| {
+            let turned = Frame {
+                origin: centre,
+                turn: [(spin * t).cos(), (spin * t).sin()],
+                spin,
+                ..Frame::fixed()
+            };
+            Frame {
+                eccentric: turned.outward(eccentricity),
+                ..turned
+            }
         };
         let path = |i: usize, t: f64| {
             let i = i as f64;

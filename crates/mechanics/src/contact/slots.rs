@@ -4,6 +4,7 @@ use pulp::Simd;
 
 use super::memory::FAR;
 use super::memory::MemoryLanes;
+use super::uneven::UnevenLanes;
 use super::{Contacts, Touch};
 use crate::lanes::{Lane, Lanes, LanesMut, Wide};
 
@@ -13,6 +14,8 @@ pub(super) struct Slots<'a, S: Simd> {
     /// Where rigid links roll.
     pub(super) faces: Option<FacesNow<'a, S>>,
     axis: [Lanes<'a, S>; 2],
+    /// What differs from slot to slot, if anything does.
+    pub(super) uneven: Option<UnevenLanes<'a, S>>,
     wake: &'a [f64],
     until: &'a mut [f64],
     lanes: usize,
@@ -56,6 +59,7 @@ impl<'a, S: Simd> Slots<'a, S> {
             faces,
             memory: MemoryLanes::new(w, &before.state, &mut touch.state, n),
             axis: [&contacts.axis_x, &contacts.axis_y].map(|axis| w.lanes(&axis[..slots])),
+            uneven: contacts.uneven.as_ref().map(|it| it.lanes(w, slots)),
             wake: &before.wake[..n],
             until: &mut touch.wake[..n],
             lanes: slots / Wide::<S>::COUNT,

@@ -62,7 +62,7 @@ impl Contacts {
             // By how many stretches the gap of the roller has moved on.
             let mut over = 0;
             if let Shape::Teeth(teeth) = &self.shape {
-                let d = Point::new(places.x[roller], places.y[roller]) - frame.origin;
+                let d = Point::new(places.x[roller], places.y[roller]) - frame.centre();
                 let here = teeth.gap_axis(frame.turn, d, axis);
                 over = axis.map_or(0, |axis| sides_over(axis, here, sides));
                 [next.axis_x[slot], next.axis_y[slot]] = here;
@@ -81,6 +81,7 @@ impl Contacts {
         swap(&mut self.axis_x, &mut next.axis_x);
         swap(&mut self.axis_y, &mut next.axis_y);
         self.spare = Some(next);
+        self.renew_uneven();
     }
 
     /// Rollers that are near, and follow each other.
@@ -91,18 +92,19 @@ impl Contacts {
         margin: f64,
     ) -> impl Iterator<Item = Run> {
         let [c, s] = frame.turn;
+        let centre = frame.centre();
         let near = move |roller: usize| {
             let (x, y) = (places.x[roller], places.y[roller]);
-            let (dx, dy) = (x - frame.origin.x, y - frame.origin.y);
+            let (dx, dy) = (x - centre.x, y - centre.y);
             match &self.shape {
                 Shape::Teeth(teeth) => {
-                    let reach = teeth.tip_radius + self.radius + margin;
+                    let reach = teeth.tip_radius + self.largest + margin;
                     dx * dx + dy * dy < reach * reach
                 }
                 Shape::Rail {
                     reference, bounds, ..
                 } => {
-                    let reach = self.radius + margin;
+                    let reach = self.largest + margin;
                     let local = [c * dx + s * dy + reference.x, c * dy - s * dx + reference.y];
                     (0..2).all(|axis| {
                         local[axis] > bounds[0][axis] - reach
@@ -168,7 +170,7 @@ impl Contacts {
     }
 }
 
-fn for_each_slot(runs: &[Run], mut visit: impl FnMut(usize, usize)) {
+pub(super) fn for_each_slot(runs: &[Run], mut visit: impl FnMut(usize, usize)) {
     for (lane, run) in runs.iter().enumerate() {
         for k in 0..run.count {
             visit(lane * LANES + k, run.start + k);
@@ -189,7 +191,7 @@ fn sides_over(from: [f64; 2], to: [f64; 2], sides: usize) -> usize {
 }
 
 impl Teeth {
-    /// Axis, in the wheel frame, of the gap nearest to the roller at `d` from the centre.
+    /// Axis, in the wheel frame, of the gap nearest to the roller at `d` from the centre of the teeth.
     pub(super) fn gap_axis(&self, turn: [f64; 2], d: Vector, start: Option<[f64; 2]>) -> [f64; 2] {
         let [c, s] = turn;
         let w = [c * d.x + s * d.y, c * d.y - s * d.x];
@@ -199,9 +201,7 @@ impl Teeth {
                 return e;
             }
         }
-        let pitch = std::f64::consts::TAU / f64::from(self.count);
-        let angle = (w[1].atan2(w[0]) / pitch).round() * pitch;
-        [angle.cos(), angle.sin()]
+        self.axis(self.gap_at(w))
     }
 }
 
@@ -210,9 +210,29 @@ impl Frame {
     pub(crate) fn fixed() -> Self {
         Self {
             origin: Point::origin(),
+            eccentric: Vector::zeros(),
             turn: [1.0, 0.0],
             velocity: Vector::zeros(),
             spin: 0.0,
+        }
+    }
+
+    /// Centre of the teeth \[m\].
+    #[inline(always)]
+    pub(crate) fn centre(&self) -> Point {
+        self.origin + self.eccentric
+    }
+
+    /// The same body, seen from the centre of its teeth.
+    #[inline(always)]
+    pub(super) fn at_centre(&self) -> Self {
+        let e = self.eccentric;
+        Self {
+            origin: self.centre(),
+            eccentric: Vector::zeros(),
+            // v_c = v + ω ẑ × e
+            velocity: self.velocity + Vector::new(-e.y, e.x) * self.spin,
+            ..*self
         }
     }
 

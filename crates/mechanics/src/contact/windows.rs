@@ -54,6 +54,7 @@ impl Contacts {
         [self.axis_x, self.axis_y] = windows.axes;
         self.memory = windows.memory;
         self.accepted = windows.accepted;
+        self.renew_uneven();
         Ok(())
     }
 }

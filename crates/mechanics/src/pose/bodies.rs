@@ -14,6 +14,9 @@ pub(super) fn of(parts: &Parts) -> Result<Vec<Body>, GeometryError> {
     let pitch = pitches.fold(0.0, f64::max);
     let mut bodies = Vec::new();
     for sprocket in &parts.sprockets {
+        // The first gap of the outline lies on its y axis, that of the tolerance on its x axis.
+        let [x, y] = sprocket.tolerance.eccentricity().into();
+        let outline = sprocket.gap.outline()?;
         bodies.push(Body {
             name: sprocket.name.clone(),
             kind: BodyKind::Sprocket {
@@ -21,7 +24,7 @@ pub(super) fn of(parts: &Parts) -> Result<Vec<Body>, GeometryError> {
                 pitch_radius: sprocket.gap.pitch_radius,
                 tip_radius: sprocket.gap.tip_radius,
             },
-            outlines: vec![sprocket.gap.outline()?],
+            outlines: vec![seen_from(&outline, Point::new(y, -x))?],
             backing: Vec::new(),
         });
     }
@@ -66,14 +69,20 @@ pub(super) fn of(parts: &Parts) -> Result<Vec<Body>, GeometryError> {
     Ok(bodies)
 }
 
-/// A face seen from a point of its body.
+/// A line seen from a point of its body.
 fn seen_from(face: &ArcSpline, reference: Point) -> Result<ArcSpline, GeometryError> {
     if reference.coords == Vector::zeros() {
         return Ok(face.clone());
     }
     let pieces = face.pieces().iter();
-    let pieces = pieces.map(|piece| piece.translated(-reference.coords));
-    ArcSpline::open(&pieces.collect::<Vec<_>>())
+    let pieces: Vec<_> = pieces
+        .map(|piece| piece.translated(-reference.coords))
+        .collect();
+    if face.is_closed() {
+        ArcSpline::closed(&pieces)
+    } else {
+        ArcSpline::open(&pieces)
+    }
 }
 
 /// A straight line; none between points in one place.

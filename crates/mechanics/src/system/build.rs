@@ -344,6 +344,7 @@ fn wheel(sprocket: &Sprocket, angle: f64, turn: Turn, centre: Option<usize>) -> 
         teeth: gap.teeth,
         pitch_radius: gap.pitch_radius,
         pitch: gap.pitch,
+        eccentricity: sprocket.tolerance.eccentricity(),
         sense: sprocket.side.sense(),
     }
 }
@@ -385,13 +386,11 @@ fn teeth(sprocket: &Sprocket, chain: &Chain) -> Contacts {
         tan_half: (0.5 * pitch_angle).tan(),
         pitch_turn: [pitch_angle.cos(), pitch_angle.sin()],
         tip_radius: gap.tip_radius,
+        errors: sprocket.tolerance.gap_angles(gap.pitch_radius),
     };
-    Contacts::new(
-        Shape::Teeth(teeth),
-        sprocket.surface,
-        sprocket.flank,
-        radius,
-    )
+    let shape = Shape::Teeth(teeth);
+    Contacts::new(shape, sprocket.surface, sprocket.flank, radius)
+        .with_rollers(&chain.roller_deviations)
 }
 
 /// Contacts of a chain with a guide.
@@ -416,7 +415,10 @@ fn face(guide: &Guide, chain: &Chain, parts: &Parts) -> Result<RailContact, Asse
         bounds,
     };
     let contacts = Contacts::new(shape, guide.surface, None, radius);
-    Ok(RailContact::Circles(contacts))
+    Ok(RailContact::Circles(match guide.touches {
+        Touches::Rollers => contacts.with_rollers(&chain.roller_deviations),
+        Touches::Eyes | Touches::Plates => contacts,
+    }))
 }
 
 fn bounds(guide: &Guide) -> [Point; 2] {

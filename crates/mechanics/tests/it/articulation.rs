@@ -80,6 +80,7 @@ fn chain(
         damping: vec![0.0; links],
         masses: vec![MASS; rollers],
         roller_diameter: 0.05,
+        roller_deviations: Vec::new(),
         plate_height: 0.08,
         strength: Strength::default(),
         articulation,

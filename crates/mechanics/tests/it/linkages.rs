@@ -12,7 +12,7 @@ use chaindrive_mechanics::{
     Adjust, Assembled, Chain, ChainModel, Clearance, Coupling, Drive, End, Ends, Fit, Flank, Flow,
     FreeRoller, Joint, Layout, LinkBody, Motion, Observation, Parts, PlacedChain, PretensionAt,
     Record, RigidLinks, RollerModel, Rotation, Shaft, SpanStart, Sprocket, StartSpeed, Stop,
-    Strength, Support, Surface, System, Tighten, Torque,
+    Strength, Support, Surface, System, Tighten, Tolerance, Torque,
 };
 use nalgebra::DVector;
 
@@ -56,6 +56,7 @@ fn bicycle(model: ChainModel) -> Parts {
         surface: surface(3.982e-3, 3.875e-3, 3.3e-3),
         flank: None,
         gap_angle: 0.0,
+        tolerance: Tolerance::default(),
     };
     let driven = Rotation::Free {
         drive: Vec::new(),
@@ -73,6 +74,7 @@ fn bicycle(model: ChainModel) -> Parts {
                 damping: vec![25.6; links],
                 masses: vec![3.81e-3; links],
                 roller_diameter,
+                roller_deviations: Vec::new(),
                 plate_height: 9.6e-3,
                 strength: Strength::default(),
                 articulation: None,

@@ -70,6 +70,7 @@ fn alone(
         damping: vec![0.0; count],
         masses,
         roller_diameter: 7.75e-3,
+        roller_deviations: Vec::new(),
         plate_height: 9.6e-3,
         strength: Strength::default(),
         articulation: None,

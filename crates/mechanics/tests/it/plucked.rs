@@ -139,6 +139,7 @@ impl Span {
             damping: vec![0.0; n],
             masses,
             roller_diameter: 2.0 * ROLLER,
+            roller_deviations: Vec::new(),
             plate_height: 0.08,
             strength: Strength::default(),
             articulation: self.articulation,

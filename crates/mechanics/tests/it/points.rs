@@ -8,7 +8,7 @@ use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Weights};
 use chaindrive_mechanics::{
     Assembled, Chain, ChainModel, Clearance, Drive, Ends, FreeRoller, Joint, Layout, LinkBody,
     Motion, Observation, Parts, PlacedChain, PointJoints, RigidLinks, RollerModel, Rotation, Shaft,
-    Sprocket, Strength, Support, Surface, System,
+    Sprocket, Strength, Support, Surface, System, Tolerance,
 };
 
 /// A chain 56B-1 of the catalogue, and joints with next to no play.
@@ -101,6 +101,7 @@ fn chain(model: ChainModel, links: usize) -> Chain {
         damping: vec![0.0; links],
         masses: vec![ROLLER + 0.5 * (INNER + OUTER); links],
         roller_diameter: ROLLER_DIAMETER,
+        roller_deviations: Vec::new(),
         plate_height: 77.8e-3,
         articulation: None,
         strength: Strength::default(),
@@ -178,6 +179,7 @@ fn leaf(model: ChainModel, speed: f64) -> Assembled {
         surface: steel(Elastic::Johnson(seat), 0.8, None),
         flank: None,
         gap_angle: 0.0,
+        tolerance: Tolerance::default(),
     };
     let velocities = vec![Vector::new(-speed, 0.0); 4];
     assembled(

@@ -8,7 +8,7 @@ use chaindrive_mechanics::{
     Adjust, Assembled, Chain, ChainModel, Clearance, Coupling, Drive, Ends, Fit, GearPair, Joint,
     Layout, LinkBody, Motion, Observation, Parts, PlacedChain, PretensionAt, RigidLinks,
     RollerModel, Rotation, Shaft, SpanStart, Sprocket, StartSpeed, Stop, Strength, Support,
-    Surface, System, Tighten, Torque,
+    Surface, System, Tighten, Tolerance, Torque,
 };
 
 const PITCH: f64 = 0.0127;
@@ -43,6 +43,7 @@ fn sprocket(name: &str, teeth: u32, centre: [f64; 2], rotation: Rotation) -> Tur
         },
         flank: None,
         gap_angle: 0.0,
+        tolerance: Tolerance::default(),
     };
     (sprocket, rotation)
 }
@@ -58,6 +59,7 @@ pub(crate) fn chain(links: usize, stops: [usize; 2]) -> PlacedChain {
             damping: vec![20.0; links],
             masses: vec![3.81e-3; links],
             roller_diameter: ROLLER,
+            roller_deviations: Vec::new(),
             plate_height: 9.6e-3,
             strength: Strength::default(),
             articulation: None,

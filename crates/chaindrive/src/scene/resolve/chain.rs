@@ -112,6 +112,9 @@ pub(super) fn resolve(
     } = body?;
     let masses = vary(masses, scatter.mass.0, 1, None);
     let stiffness = vary(stiffness, scatter.stiffness.0, 2, None);
+    let deviation = scatter.roller_diameter.0;
+    let alike = vec![0.0; if deviation > 0.0 { masses.len() } else { 0 }];
+    let roller_deviations = vary(alike, deviation, 3, Some(roller_diameter));
     let mean = stiffness.iter().sum::<f64>() / stiffness.len() as f64;
     let joints = Joints::new(scene, text, model.has_springs().then_some(mean));
     let articulation = joints.articulation(findings);
@@ -124,6 +127,7 @@ pub(super) fn resolve(
         damping,
         masses,
         roller_diameter,
+        roller_deviations,
         plate_height: findings.or_multiple(
             text.plate_height.map(|height| height.0),
             "chain.plate_height",

@@ -2,12 +2,13 @@
 
 use chaindrive_contact::Elastic;
 use chaindrive_geometry::{Side, ToothGap};
-use chaindrive_mechanics::{Sprocket, Support};
+use chaindrive_mechanics::{Sprocket, Support, Tolerance};
 
 use serde_json::json;
 
 use super::chain::Resolved;
 use super::law::{cylindrical, linear, steel};
+use super::scatter::Normal;
 use super::{Findings, Names, contact, flank, motion, point, tooth};
 use crate::scene::defaults;
 use crate::scene::schema::{self, SceneText};
@@ -93,6 +94,7 @@ fn resolve(
     let flank = gap
         .as_ref()
         .and_then(|gap| flank::resolve(text, path, scene, gap, chain, findings));
+    let tolerance = tolerance(text, path, findings);
     let support = support?;
     let moves = match &support {
         Support::Springs { .. } => true,
@@ -122,6 +124,48 @@ fn resolve(
             &format!("{path}.gap_angle"),
             &defaults::GAP_ANGLE,
         ),
+        tolerance: tolerance?,
+    })
+}
+
+/// How a sprocket differs from its drawing.
+fn tolerance(
+    text: &schema::Sprocket,
+    path: &str,
+    findings: &mut Findings<'_>,
+) -> Option<Tolerance> {
+    let teeth = text.teeth;
+    let gap_displacements = match &text.gap_errors {
+        None => Vec::new(),
+        Some(schema::GapErrors::List { displacements }) => {
+            let count = displacements.len();
+            if count != teeth as usize {
+                let problem = format!("{count} values for {teeth} gaps");
+                let hint = "give one displacement for every gap";
+                findings.refuse_with(&format!("{path}.gap_errors.displacements"), problem, hint);
+                return None;
+            }
+            displacements.iter().map(|it| it.0).collect()
+        }
+        Some(schema::GapErrors::Orders { waves }) => (0..teeth)
+            .map(|gap| {
+                let around = std::f64::consts::TAU * f64::from(gap) / f64::from(teeth);
+                // Δᵢ = Σ a cos(n 2π i/z − φ)
+                let wave = |it: &schema::GapWave| {
+                    it.amplitude.0 * libm::cos(f64::from(it.order) * around - it.phase.0)
+                };
+                waves.iter().map(wave).sum()
+            })
+            .collect(),
+        Some(schema::GapErrors::Random { deviation, seed }) => {
+            let mut normal = Normal::new(*seed, 4);
+            (0..teeth).map(|_| deviation.0 * normal.next()).collect()
+        }
+    };
+    Some(Tolerance {
+        eccentricity: text.eccentricity.0,
+        eccentricity_angle: text.eccentricity_angle.0,
+        gap_displacements,
     })
 }
 

@@ -179,6 +179,10 @@ pub(crate) struct Scatter {
     #[serde(default)]
     #[schemars(extend("minimum" = 0, "maximum" = 0.2))]
     pub(crate) stiffness: Ratio,
+    /// Standard deviation of the roller diameter over its mean [–].
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0, "maximum" = 0.05))]
+    pub(crate) roller_diameter: Ratio,
     /// Which of the possible chains it is.
     #[serde(default)]
     #[schemars(extend("minimum" = 0))]

@@ -25,7 +25,9 @@ pub(crate) use route::{Adjust, Route};
 pub use run::RunDefaults;
 pub(crate) use run::{EVERY, Run, STEPPING_KEYS, TOLERANCE, UNTIL};
 pub(crate) use shaft::{Coupling, Gears, Shaft};
-pub(crate) use sprocket::{PathPiece, Seat, Side, Sprocket, Support, TipForm, Tooth};
+pub(crate) use sprocket::{
+    GapErrors, GapWave, PathPiece, Seat, Side, Sprocket, Support, TipForm, Tooth,
+};
 pub(crate) use tensioner::Tensioner;
 pub(crate) use written::Written;
 

@@ -63,9 +63,61 @@ pub(crate) struct Sprocket {
     /// Differences on the flanks of the teeth, instead of `contact.flanks`.
     #[serde(default)]
     pub(crate) flank: Option<Flank>,
+    /// Distance of the centre of the teeth from the axis [m]: half of the run-out that a dial shows. Absent: none.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0))]
+    pub(crate) eccentricity: Length,
+    /// Direction of the centre of the teeth from the axis [rad], counter-clockwise from the axis of the first gap: along a route, the gap of the
+    /// first roller that the wheel takes up.
+    #[serde(default)]
+    pub(crate) eccentricity_angle: Angle,
+    /// How far the tooth gaps are out of their places; absent: not at all.
+    #[serde(default)]
+    pub(crate) gap_errors: Option<GapErrors>,
     /// Angle of one tooth gap [rad], for a wheel that no route passes.
     #[serde(default)]
     pub(crate) gap_angle: Option<Angle>,
+}
+
+/// How far tooth gaps are out of their places, along the pitch circle and counter-clockwise. The first gap is that of `eccentricity_angle`,
+/// and the others follow counter-clockwise.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub(crate) enum GapErrors {
+    /// One value for every gap.
+    List {
+        /// Displacement of every gap [m].
+        displacements: Vec<Length>,
+    },
+    /// Waves around the sprocket: Δᵢ = Σ a cos(n 2π i/z − φ).
+    Orders {
+        /// The waves.
+        waves: Vec<GapWave>,
+    },
+    /// Normally distributed, every gap by itself.
+    Random {
+        /// Standard deviation [m].
+        #[schemars(extend("minimum" = 0))]
+        deviation: Length,
+        /// Which of the possible sprockets it is.
+        #[serde(default)]
+        #[schemars(extend("minimum" = 0))]
+        seed: u32,
+    },
+}
+
+/// One wave of the places of tooth gaps around a sprocket.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct GapWave {
+    /// Periods n per turn.
+    #[schemars(extend("minimum" = 1, "maximum" = 300))]
+    pub(crate) order: u32,
+    /// Amplitude a [m].
+    pub(crate) amplitude: Length,
+    /// Phase φ [rad].
+    #[serde(default)]
+    pub(crate) phase: Angle,
 }
 
 /// Side of the travelling chain.

@@ -63,6 +63,7 @@ impl Strand {
             damping: vec![0.0; links],
             masses: vec![0.01; rollers],
             roller_diameter: self.roller_diameter,
+            roller_deviations: Vec::new(),
             plate_height: self.roller_diameter,
             strength: Strength::default(),
             articulation: None,

@@ -47,9 +47,11 @@ pub(super) fn add_contacts(system: &System, q: &[f64], sum: &mut Sum<'_>) {
 fn wheel_mount(bodies: &Bodies, wheel: &Wheel, at: Moment<'_>) -> (Frame, Mount) {
     let kinematics = wheel.kinematics(at.t, at.q, at.v);
     let (origin, _, _) = wheel.centre_kinematics(at.t, at.q, at.v, &bodies.slides);
+    let turn = [kinematics.position.cos(), kinematics.position.sin()];
     let frame = Frame {
         origin,
-        turn: [kinematics.position.cos(), kinematics.position.sin()],
+        eccentric: wheel.eccentric(turn),
+        turn,
         velocity: Vector::zeros(),
         spin: 0.0,
     };
@@ -96,7 +98,7 @@ fn add_circles(
     contacts.for_each_slot(|_, roller| {
         let moving = member.chain.roller_moving(own, roller);
         let circle = moving.behind(member.entries.start);
-        for probe in contacts.probes(frame, circle.place) {
+        for probe in contacts.probes(frame, roller, circle.place) {
             if probe.gap < 0.0 {
                 closed += 1;
                 let law = &contacts.surface.law;

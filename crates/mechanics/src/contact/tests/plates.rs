@@ -175,6 +175,7 @@ fn lanes_of_plates_press_as_plates_one_by_one() {
                 turn: [angle.cos(), angle.sin()],
                 velocity: Vector::new(dice.between(-1.0, 1.0), dice.between(-1.0, 1.0)),
                 spin: dice.between(-5.0, 5.0),
+                ..Frame::fixed()
             };
             let length = face.length();
             for roller in 0..padded(links + 1) + LANES {

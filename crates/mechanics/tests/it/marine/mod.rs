@@ -4,7 +4,7 @@ use chaindrive_contact::{Friction, Law};
 use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
 use chaindrive_mechanics::{
     Adjust, Chain, Ends, Fit, Layout, Motion, Parts, PlacedChain, PretensionAt, Rotation, Shaft,
-    SpanStart, Sprocket, StartSpeed, Stop, Strength, Support, Surface, Tighten, Torque,
+    SpanStart, Sprocket, StartSpeed, Stop, Strength, Support, Surface, Tighten, Tolerance, Torque,
 };
 
 /// Pitch, link mass and stiffness as published; the rest is a reconstruction that closes exactly.
@@ -57,6 +57,7 @@ pub(crate) fn parts(law: Law) -> Parts {
         },
         flank: None,
         gap_angle: 0.0,
+        tolerance: Tolerance::default(),
     });
     Parts {
         chains: vec![PlacedChain {
@@ -68,6 +69,7 @@ pub(crate) fn parts(law: Law) -> Parts {
                 damping: vec![2.97e3; links],
                 masses: vec![mass; links],
                 roller_diameter,
+                roller_deviations: Vec::new(),
                 plate_height: 0.0778,
                 strength: Strength::default(),
                 articulation: None,
