@@ -294,7 +294,7 @@ fn means_that_are_not_those_of_a_steady_state_are_a_caution() {
         verdict(&bare, &run)
     };
     let [unknown, wide, known] = [0.02, 0.07, 1.0].map(of);
-    tells_apart("not-steady", &growing, &known);
+    tells_apart("not-steady", &growing, &wide);
     tells_apart("statistics-unknown", &unknown, &wide);
     tells_apart("means-uncertain", &wide, &known);
     assert!(unknown.note().contains("--until \"30 ms\""), "{unknown}");

@@ -25,6 +25,7 @@ const CRATES: [Storeys; 4] = [
                 "strength",
                 "surface",
                 "tensioner",
+                "tolerance",
             ],
             &["contact", "torque"],
             &["seam"],
