@@ -213,7 +213,8 @@ mod tests {
                     };
                     assert!((after.gap - (before.gap - larger)).abs() < 1e-15);
                     let normal = along.outward(before.normal);
-                    assert!((after.normal - normal).norm() < 1e-12);
+                    // Beside the centre of its seat, 1e-16 m turn the normal of a roller by 1e-12.
+                    assert!((after.normal - normal).norm() < 1e-10);
                 }
             }
         }
