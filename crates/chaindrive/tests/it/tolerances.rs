@@ -1,5 +1,4 @@
 //! Sprockets and rollers that are not as drawn: run-out, places of tooth gaps, diameters of rollers.
-#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use std::f64::consts::TAU;
 

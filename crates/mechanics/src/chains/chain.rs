@@ -112,9 +112,26 @@ impl Chain {
         self.ends == Ends::Closed
     }
 
+    /// What is wrong with the deviations of rollers.
+    fn roller_problems(&self) -> Option<DriveError> {
+        let deviations = &self.roller_deviations;
+        let path = "chain.roller_deviations";
+        let count = deviations.len();
+        if count > 0 && count != self.rollers() {
+            let allowed = "one value for every roller, or none";
+            return DriveError::require(false, path, count as f64, allowed).err();
+        }
+        let widest = 0.5 * self.roller_diameter;
+        let fits = |it: &f64| it.abs() < widest;
+        let bad = deviations.iter().position(|it| !fits(it))?;
+        let allowed = "less than half of the roller diameter [m]";
+        let path = format!("{path}[{bad}]");
+        DriveError::require(false, &path, deviations[bad], allowed).err()
+    }
+
     /// Names every parameter out of range.
     pub fn problems(&self) -> Vec<DriveError> {
-        let mut problems = Vec::new();
+        let mut problems = Vec::from_iter(self.roller_problems());
         let mut need = |ok: bool, path: String, value: f64, allowed: &'static str| {
             problems.extend(DriveError::require(ok, &path, value, allowed).err());
         };
@@ -163,21 +180,6 @@ impl Chain {
                 "one value for every link (stiffness, damping) or roller (masses)",
             );
         }
-        let deviations = &self.roller_deviations;
-        need(
-            deviations.is_empty() || deviations.len() == self.rollers(),
-            "chain.roller_deviations".into(),
-            deviations.len() as f64,
-            "one value for every roller, or none",
-        );
-        let widest = 0.5 * self.roller_diameter;
-        let bad = deviations.iter().find(|it| !(it.abs() < widest));
-        need(
-            bad.is_none(),
-            "chain.roller_deviations".into(),
-            bad.copied().unwrap_or_default(),
-            "less than half of the roller diameter [m]",
-        );
         let arrays: [(&str, &[f64], Range, &'static str); 4] = [
             ("lengths", &self.lengths, |v| v > 0.0, "positive [m]"),
             ("stiffness", &self.stiffness, |v| v > 0.0, "positive [N/m]"),

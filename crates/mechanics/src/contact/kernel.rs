@@ -95,10 +95,10 @@ impl Contacts {
                     slots.leave_open(w, slot.lane, self.accepted + dt + rest);
                     return false;
                 }
-                let turns = match &slots.uneven {
-                    Some(uneven) => Some(uneven.turns(slot.axis)),
-                    None => None,
-                };
+                let mut turns = teeth.pitch_turns(w);
+                if let Some(uneven) = &slots.uneven {
+                    turns = uneven.turns(slot.axis);
+                }
                 Place::in_gap(w, teeth, frame, slots.axis(slot.axis), [dx, dy], turns)
             }
             Shape::Rail { reference, .. } => Place::at_rail(w, *reference, frame, [dx, dy]),

@@ -49,8 +49,8 @@ pub(super) struct FacedSurface<S: Simd> {
 }
 
 impl<S: Simd> Place<S> {
-    /// In the frames of the gaps that rollers at d from the centre of the teeth are nearest to; `turns` to the gaps beside them, where
-    /// these do not stand one pitch away.
+    /// In the frames of the gaps that rollers at d from the centre of the teeth are nearest to; with cos and sin of the turns to the gaps on their
+    /// right and on their left.
     #[inline(always)]
     pub(super) fn in_gap(
         w: Wide<S>,
@@ -58,7 +58,7 @@ impl<S: Simd> Place<S> {
         frame: &Frame,
         [ex, ey]: [Lane<S>; 2],
         [dx, dy]: [Lane<S>; 2],
-        turns: Option<[Lane<S>; 4]>,
+        [right_c, right_s, left_c, left_s]: [Lane<S>; 4],
     ) -> Self {
         let (c, s) = (w.splat(frame.turn[0]), w.splat(frame.turn[1]));
         // a = R(θ) e,   x = d × a,   y = d · a. Rounded alike on every processor: a last place of d is one of the gap.
@@ -79,13 +79,8 @@ impl<S: Simd> Place<S> {
         let (one, zero) = (w.splat(1.0), w.splat(0.0));
         let to_the_right = x.greater(zero);
         let sign = to_the_right.select(one, -one);
-        let [cosine, sine] = match turns {
-            Some([right_c, right_s, left_c, left_s]) => [
-                to_the_right.select(right_c, left_c),
-                to_the_right.select(right_s, left_s),
-            ],
-            None => teeth.pitch_turn.map(|it| w.splat(it)),
-        };
+        let cosine = to_the_right.select(right_c, left_c);
+        let sine = to_the_right.select(right_s, left_s);
         let cp = beyond.select(cosine, one);
         let sp = beyond.select(sign * sine, zero);
         let ax2 = cp * ax + sp * ay;
@@ -372,7 +367,7 @@ impl Contacts {
                     return Vec::new();
                 }
                 let axis = teeth.gap_axis(frame.turn, d, None);
-                let turns = Some(teeth.turns(axis).map(|it| w.splat(it)));
+                let turns = teeth.turns(axis).map(|it| w.splat(it));
                 Place::in_gap(w, teeth, frame, axis.map(|e| w.splat(e)), lanes, turns)
             }
         };

@@ -124,8 +124,20 @@ impl Teeth {
 
     /// Angle by which a gap stands from its place \[rad\].
     fn error(&self, gap: f64) -> f64 {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a whole number, not negative"
+        )]
         let place = gap.rem_euclid(f64::from(self.count)) as usize;
         self.errors.get(place).copied().unwrap_or(0.0)
+    }
+
+    /// cos and sin of the turn by a pitch, for gaps that are in place.
+    #[inline(always)]
+    pub(super) fn pitch_turns<S: Simd>(&self, w: Wide<S>) -> [Lane<S>; 4] {
+        let [c, s] = self.pitch_turn.map(|it| w.splat(it));
+        [c, s, c, s]
     }
 
     /// cos and sin of the turns from a gap to the one on its right, which is clockwise, and to the one on its left.
