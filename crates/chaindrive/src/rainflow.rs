@@ -13,6 +13,10 @@ pub struct Cycle {
 
 /// Counts the cycles of a signal, in the order in which they close; halves of what stays open follow.
 ///
+/// ```text
+/// |c − b| ≥ |b − a|:   a cycle of the range |b − a|, or half of one where a begins the signal;   a, b, c turning points that follow each other
+/// ```
+///
 /// # Source
 /// ASTM E1049-85 (2017), *Standard Practices for Cycle Counting in Fatigue Analysis*, §5.4.4.
 ///

@@ -5,13 +5,14 @@
 //! which serves the mean, the standard deviation and quantiles alike:
 //!
 //! ```text
-//! yᵢ = g θ − (g − 1) θ₍ᵢ₎,   s² = Σ (yᵢ − ȳ)²/(g − 1),   half width² = (κ t s)² τ/g + Δ² + (grain)² + (least)²
+//! yᵢ = g θ − (g − 1) θ₍ᵢ₎,   s² = Σ (yᵢ − ȳ)²/(g − 1),   half width² = (κ t s)² τ/g + Δ² + (grain)² + (start)² + (least)²
 //! τ = (1 + ρ)/(1 − ρ),   ρ: correlation of neighbours yᵢ, yᵢ₊₁, less its bias of −1/g
 //! ```
 //!
 //! t is Student's of (g − 1)/√τ degrees of freedom. What repeats makes all blocks alike, whatever part of a period the record ends with. κ is 1, and
 //! 1.5 for quantiles, whose few blocks scatter less than they err. Δ is the drift of yᵢ from one half of the record to the other: what dies out goes
-//! on by about as much behind it. The grain is what one sample more or less makes of a quantile. The least is a share of the scale.
+//! on by about as much behind it. The grain is what one sample more or less makes of a quantile. The start, of the mean alone, is what it
+//! moves by when the start of the run is cut off. The least is a share of the scale.
 //!
 //! A block or two may hold all that lies beyond a quantile. To leave one of a few blocks out then moves the quantile far, g − 1 times as far its yᵢ, and
 //! t is 4 for three blocks and up to 13 for what is correlated: the interval would be wider than all samples lie apart. It tells nothing then, and the
