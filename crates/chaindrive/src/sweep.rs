@@ -330,6 +330,7 @@ impl Sweep {
 
     /// Runs one variant on the calling thread, until it ends or `stop` is set.
     pub fn carry_out(&self, index: usize, stop: &AtomicBool) -> Outcome {
+        // In memory nothing refuses.
         let answer = Worker::alone(self).carry_out(index, stop).ok().flatten();
         let outcome = answer.and_then(|answer| answer.outcomes.into_iter().next());
         outcome.map_or(Outcome::Open, |(_, outcome)| outcome)

@@ -114,7 +114,7 @@ pub(crate) struct Contacts {
     pub(crate) radius: f64,
     /// Radius of the largest of them \[m\].
     largest: f64,
-    /// What differs from one to the other, and from gap to gap.
+    /// Differences between them, and between gaps.
     uneven: Option<Box<Uneven>>,
     /// Runs of rollers that can touch.
     pub(crate) runs: Vec<Run>,

@@ -31,7 +31,7 @@ pub struct Sprocket {
     /// Angle of one gap axis at assembly \[rad\] for wheels that no route passes over; along a
     /// route the closing of the chain decides.
     pub gap_angle: f64,
-    /// How it differs from its drawing.
+    /// Deviations from its drawing.
     pub tolerance: Tolerance,
 }
 

@@ -1,4 +1,4 @@
-//! How sprockets differ from their drawings.
+//! Deviations of sprockets from their drawings.
 
 use chaindrive_geometry::Vector;
 
@@ -23,7 +23,7 @@ pub struct Tolerance {
     pub gap_displacements: Vec<f64>,
 }
 
-/// Share of a pitch that a gap may be out of place.
+/// Largest eccentricity or displacement, as a share of the pitch. *Assumed*: more is a mistake of units.
 const FARTHEST: f64 = 0.1;
 
 impl Tolerance {

@@ -1,4 +1,4 @@
-//! What comes back from a task: counts, and the outcomes where no store keeps them.
+//! Answers of tasks: counts, and the outcomes where no store keeps them.
 
 use serde::{Deserialize, Serialize};
 

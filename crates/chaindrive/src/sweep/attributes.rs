@@ -7,7 +7,7 @@ use crate::record::Ending;
 use crate::zarr::Story;
 
 impl Sweep {
-    /// What the result says about itself: the scene, what is varied, the methods that were used, and how far the sweep is.
+    /// Attributes of the result: scene, varied paths, methods, progress.
     pub fn attributes(
         &self,
         methods: &[String],

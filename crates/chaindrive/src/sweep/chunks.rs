@@ -6,7 +6,7 @@ use super::{Account, Entry, Outcome, Quantity};
 
 /// The chunks of a quantity in a region, each with its place: one, or several where the array is cut along time or labels.
 ///
-/// What no variant has is NaN, and stretches of time that no variant has are left out.
+/// Missing values are NaN. Stretches of time without any value are left out.
 pub(super) fn numbers(
     layout: &Layout,
     region: &Region,

@@ -1,4 +1,4 @@
-//! Who computes the variants of a task, on whatever thread, process or machine, and gives the outcomes to a sink.
+//! Workers: they compute the variants of a task, on any thread, process or machine, and give the outcomes to a sink.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;

@@ -231,7 +231,7 @@ mod tests {
             tip_radius: gap.tip_radius,
             errors: errors.to_vec(),
         }))
-        .with_rollers(deviations);
+        .with_errors(deviations);
         let (centre, rim) = (Point::new(0.0, -gap.pitch_radius), 6.0);
         let spin = rim / gap.pitch_radius;
         let frame = |t: f64| {

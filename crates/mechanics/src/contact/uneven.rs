@@ -1,4 +1,4 @@
-//! Rollers and tooth gaps that are not all alike.
+//! Differences between rollers, and between tooth gaps.
 
 use chaindrive_integrate::Array;
 use pulp::Simd;
@@ -7,7 +7,7 @@ use super::window::for_each_slot;
 use super::{Contacts, Run, Shape, Teeth};
 use crate::lanes::{LANES, Lane, Lanes, Wide};
 
-/// What differs from roller to roller and from gap to gap.
+/// Differences between rollers, and between gaps.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Uneven {
     /// By how much the radius of every roller exceeds that of the contacts \[m\]; none where all are alike.
@@ -69,8 +69,9 @@ impl Uneven {
 }
 
 impl Contacts {
-    /// With rollers whose diameters exceed that of the contacts by this much \[m\], one value for each, or none where all are alike.
-    pub(crate) fn with_rollers(mut self, deviations: &[f64]) -> Self {
+    /// With the errors of the gaps, and with deviations of the roller diameters from that of the contacts \[m\]: one value a roller, or none where
+    /// all are alike.
+    pub(crate) fn with_errors(mut self, deviations: &[f64]) -> Self {
         let gaps_differ = matches!(&self.shape, Shape::Teeth(teeth) if !teeth.errors.is_empty());
         if !deviations.is_empty() || gaps_differ {
             let rollers: Vec<f64> = deviations.iter().map(|it| 0.5 * it).collect();
@@ -191,7 +192,7 @@ mod tests {
             },
             friction: Friction::None,
         };
-        Contacts::new(shape, surface, None, RADIUS).with_rollers(deviations)
+        Contacts::new(shape, surface, None, RADIUS).with_errors(deviations)
     }
 
     /// A gap that is turned, around a centre that is shifted, holds a roller that moves with it as before; a larger roller is nearer.

@@ -390,7 +390,7 @@ fn teeth(sprocket: &Sprocket, chain: &Chain) -> Contacts {
     };
     let shape = Shape::Teeth(teeth);
     Contacts::new(shape, sprocket.surface, sprocket.flank, radius)
-        .with_rollers(&chain.roller_deviations)
+        .with_errors(&chain.roller_deviations)
 }
 
 /// Contacts of a chain with a guide.
@@ -416,7 +416,7 @@ fn face(guide: &Guide, chain: &Chain, parts: &Parts) -> Result<RailContact, Asse
     };
     let contacts = Contacts::new(shape, guide.surface, None, radius);
     Ok(RailContact::Circles(match guide.touches {
-        Touches::Rollers => contacts.with_rollers(&chain.roller_deviations),
+        Touches::Rollers => contacts.with_errors(&chain.roller_deviations),
         Touches::Eyes | Touches::Plates => contacts,
     }))
 }

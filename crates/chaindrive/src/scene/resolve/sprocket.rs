@@ -128,7 +128,7 @@ fn resolve(
     })
 }
 
-/// How a sprocket differs from its drawing.
+/// Deviations of a sprocket from its drawing.
 fn tolerance(
     text: &schema::Sprocket,
     path: &str,

@@ -71,7 +71,7 @@ pub(crate) struct Sprocket {
     /// first roller that the wheel takes up.
     #[serde(default)]
     pub(crate) eccentricity_angle: Angle,
-    /// How far the tooth gaps are out of their places; absent: not at all.
+    /// Errors of the places of the tooth gaps; absent: none.
     #[serde(default)]
     pub(crate) gap_errors: Option<GapErrors>,
     /// Angle of one tooth gap [rad], for a wheel that no route passes.
@@ -79,7 +79,7 @@ pub(crate) struct Sprocket {
     pub(crate) gap_angle: Option<Angle>,
 }
 
-/// How far tooth gaps are out of their places, along the pitch circle and counter-clockwise. The first gap is that of `eccentricity_angle`,
+/// Errors of the places of the tooth gaps, along the pitch circle, counter-clockwise. The first gap is that of `eccentricity_angle`,
 /// and the others follow counter-clockwise.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
