@@ -6,7 +6,7 @@ use std::sync::Once;
 use chaindrive::laws::pushes::PushLaw;
 use chaindrive::record::Existing;
 use chaindrive::scene::schema;
-use chaindrive::sweep::{Go, Setting, Sweep, SweepStore, Worker};
+use chaindrive::sweep::{Coordinator as _, Go, Setting, Sweep, SweepStore, Worker};
 use chaindrive::{Build, Description, Run, Scene, Simulation, Snapshot};
 use own_laws::{GasSpring, Winkler};
 
@@ -184,8 +184,9 @@ fn a_program_without_the_laws_does_not_go_on() -> Outcome {
         &[],
     )?;
     let sample = sweep.time_sample(Some(1), || Go::On)?;
-    SweepStore::begin(folder.join("sweep.zarr"), &sweep, &sample, Existing::Keep)?
-        .run(Some(1), |_| Go::On)?;
+    let store = folder.join("sweep.zarr");
+    SweepStore::begin(store.as_path(), &sweep, &sample, Existing::Keep)?
+        .run(Some(1), &mut |_| Go::On)?;
     let child = Command::new(std::env::current_exe()?)
         .args(["--ignored", "--exact", "without_the_laws"])
         .env("OWN_LAWS_FOLDER", &folder)
@@ -204,7 +205,7 @@ fn a_program_without_the_laws_does_not_go_on() -> Outcome {
 fn without_the_laws() -> Outcome {
     let folder = std::path::PathBuf::from(std::env::var("OWN_LAWS_FOLDER")?);
     let snapshot = Snapshot::from_bytes(&std::fs::read(folder.join("snapshot"))?);
-    let worker = Worker::open(folder.join("sweep.zarr"));
+    let worker = Worker::open(folder.join("sweep.zarr").as_path());
     for told in [
         snapshot.expect_err("its law is missing").to_string(),
         worker.expect_err("its law is missing").to_string(),
