@@ -101,7 +101,9 @@ def friction(kind: FrictionKind, **parameters: Quantity) -> Friction:
         ``slip_speed``, ``viscosity`` [N s/m] and ``transition_force`` [N];
         ``"lugre"`` with ``static_coefficient``, ``coefficient``, ``stiffness`` [1/m], and if
         wanted ``slip_speed``, ``damping`` [s/m] and ``viscosity`` [s/m], per normal force;
-        ``"spring-slider"`` with ``coefficient`` and ``stiffness`` [N/m].
+        ``"spring-slider"`` with ``coefficient`` and ``stiffness`` [N/m];
+        ``"stribeck"`` with ``coefficient``, ``viscosity`` [Pa s], ``length`` [m],
+        ``relative_clearance`` [–] and ``stiffness`` [N/m], and if wanted ``transition`` [–].
     **parameters
         Those of the law, as numbers in SI units or texts with a unit.
 

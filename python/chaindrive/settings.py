@@ -141,6 +141,7 @@ FrictionKind: TypeAlias = Literal[
     "brown-mcphee",
     "lugre",
     "spring-slider",
+    "stribeck",
 ]
 """Friction laws, see `friction`."""
 

@@ -46,6 +46,8 @@ FAULTS: list[tuple[str, str, dict[str, Any], dict[str, Any]]] = [
     # Loads with the wrong sign.
     ("load-drives", TWO, {f"{CAM}.load": load("-5 kN m")}, STEADY),
     ("load-drives", "industrial_16b", {"sprockets.driven.load": load("400 N m")}, STEADY),
+    # Sprockets out of line.
+    ("out-of-line", "industrial_16b", {"sprockets.driven.lateral": "5 mm"}, STEADY),
     # Samples that alias the mesh.
     ("samples-rare", TWO, {}, {"until": 1.0, "every": 8e-3}),
     ("samples-rare", "industrial_16b", {}, {"until": 0.5, "every": 8e-3}),

@@ -3,6 +3,7 @@
 //! Everything is read off the assembled drive or follows from geometry alone; only the cost is
 //! measured, by a few hundred steps. Front ends print a [`Description`] as text or as JSON.
 
+mod alignment;
 mod cost;
 mod free_train;
 mod links;
@@ -20,6 +21,7 @@ use chaindrive_mechanics::{
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
+pub use alignment::AlignmentFacts;
 pub use cost::Cost;
 pub use free_train::FreeTrainFacts;
 pub use links::{ContactFacts, LinkFacts, left_out};
@@ -43,6 +45,8 @@ pub struct Description {
     pub shafts: Vec<ShaftFacts>,
     /// Sprockets that are not as drawn.
     pub tolerances: Vec<ToleranceFacts>,
+    /// Spans whose sprockets are not in one plane.
+    pub out_of_line: Vec<AlignmentFacts>,
     /// Shafts that torques turn, and no motion.
     pub free_trains: Vec<FreeTrainFacts>,
     /// The static states on the way to the start.
@@ -241,6 +245,7 @@ impl Description {
             chains,
             shafts: shafts(drive, &start),
             tolerances: tolerance::of(drive),
+            out_of_line: alignment::of(drive),
             free_trains: free_train::of(assembled),
             stops: route::stops(drive, assembled, &start),
             statics: static_stages(drive, assembled),

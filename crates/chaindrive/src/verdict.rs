@@ -20,6 +20,7 @@ use crate::precision::{Attribute, Choice, Estimate, Judgement, LEAST_LOSSES, Pro
 use crate::summary::{Ledger, Steadiness, Summary};
 use crate::{Channel, RanIn, Simulation};
 
+pub(crate) use duty::{ALIGNED, ALIGNED_FAST};
 pub use reason::Reason;
 pub use rules::Rule;
 

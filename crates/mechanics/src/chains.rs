@@ -227,6 +227,10 @@ impl Chain {
         self.series().rollers
     }
 
+    pub(crate) fn is_closed(&self) -> bool {
+        self.series().is_closed()
+    }
+
     pub(crate) fn links(&self) -> usize {
         self.series().links
     }
@@ -254,6 +258,13 @@ impl Chain {
     /// Says when the memory of joints and free rollers is of.
     pub(crate) fn set_clock(&mut self, t: f64) {
         self.series_mut().set_clock(t);
+    }
+
+    /// Says how much the plates at every joint rub sideways, over the normal force \[m\].
+    pub(crate) fn press_sideways(&mut self, of: impl Fn(usize) -> f64) {
+        if let Some(joints) = &mut self.series_mut().joints {
+            joints.press_sideways(of);
+        }
     }
 
     /// Computes on other registers from now on.

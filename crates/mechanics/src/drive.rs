@@ -33,6 +33,8 @@ pub struct Sprocket {
     pub gap_angle: f64,
     /// Deviations from its drawing.
     pub tolerance: Tolerance,
+    /// Place of the middle of its teeth along its shaft \[m\]: where that of two sprockets differs, the chain runs out of line.
+    pub lateral: f64,
 }
 
 /// A body that turns: it carries sprockets of any chains, rigidly, or none.

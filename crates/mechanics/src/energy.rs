@@ -49,6 +49,10 @@ pub enum Flow {
     RollerLoss,
     /// Loss by friction of bushes in free rollers.
     RollerFriction,
+    /// Loss by seals of joints.
+    SealLoss,
+    /// Loss by plates that rub where the chain runs out of line.
+    OffsetLoss,
     /// Loss in roller-tooth impacts.
     ToothLoss,
     /// Loss by friction on teeth.
@@ -78,6 +82,10 @@ pub enum Place {
     Joints,
     /// Free rollers on their bushes.
     Rollers,
+    /// Seals of joints.
+    Seals,
+    /// Plates on teeth and on each other, where the chain runs out of line.
+    Offset,
     /// Rollers on teeth.
     Teeth,
     /// Chain on guides.
@@ -92,9 +100,11 @@ pub enum Place {
 
 impl Place {
     /// All places, in the order of [`Energy::losses`].
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::Joints,
         Self::Rollers,
+        Self::Seals,
+        Self::Offset,
         Self::Teeth,
         Self::Guides,
         Self::Spans,
@@ -107,6 +117,8 @@ impl Place {
         match self {
             Self::Joints => "joints",
             Self::Rollers => "rollers",
+            Self::Seals => "seals",
+            Self::Offset => "offset",
             Self::Teeth => "teeth",
             Self::Guides => "guides",
             Self::Spans => "spans",
@@ -155,13 +167,15 @@ impl Store {
 
 impl Flow {
     /// All flows, in the order of [`Energy::flows`].
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 18] = [
         Self::LinkLoss,
         Self::DragLoss,
         Self::JointLoss,
         Self::ArticulationLoss,
         Self::RollerLoss,
         Self::RollerFriction,
+        Self::SealLoss,
+        Self::OffsetLoss,
         Self::ToothLoss,
         Self::ToothFriction,
         Self::GuideLoss,
@@ -184,6 +198,8 @@ impl Flow {
         match self {
             Self::JointLoss | Self::ArticulationLoss => Some(Place::Joints),
             Self::RollerLoss | Self::RollerFriction => Some(Place::Rollers),
+            Self::SealLoss => Some(Place::Seals),
+            Self::OffsetLoss => Some(Place::Offset),
             Self::ToothLoss | Self::ToothFriction => Some(Place::Teeth),
             Self::GuideLoss | Self::GuideFriction => Some(Place::Guides),
             Self::LinkLoss | Self::DragLoss => Some(Place::Spans),
@@ -202,6 +218,8 @@ impl Flow {
             Self::ArticulationLoss => "articulation_dissipated",
             Self::RollerLoss => "rollers_dissipated",
             Self::RollerFriction => "rollers_friction_dissipated",
+            Self::SealLoss => "seals_dissipated",
+            Self::OffsetLoss => "offset_dissipated",
             Self::ToothLoss => "teeth_dissipated",
             Self::ToothFriction => "teeth_friction_dissipated",
             Self::GuideLoss => "guides_dissipated",

@@ -17,5 +17,5 @@ pub(crate) use memory::{JointFindings, JointMemory};
 pub(crate) use mount::{Mount, rail_mount, wheel_mount};
 pub(crate) use pin::{add_joint, touch};
 pub(crate) use pins::{Contacts, Pairs, Pins};
-pub(crate) use resistance::{Joints, Resistance, Stick, Turns, remember};
+pub(crate) use resistance::{JointLosses, Joints, Resistance, Stick, Turns, remember};
 pub(crate) use side::{JointMates, Mate, Part, Sides, Tip};

@@ -98,6 +98,7 @@
 //! # }
 //! ```
 
+mod alignment;
 mod applied;
 mod articulation;
 mod assembly;
@@ -136,7 +137,8 @@ mod tolerance;
 mod torque;
 mod trains;
 
-pub use articulation::Articulation;
+pub use alignment::Alignment;
+pub use articulation::{Articulation, LateralRub};
 pub use assembly::{Assembled, Fitting, FreeTrain, Gap, RollerLayout, Statics};
 pub use bodies::Input;
 pub use chains::chain::{Chain, End, Ends};

@@ -10,6 +10,7 @@ mod group;
 mod inputs;
 mod member;
 mod memory;
+mod sideways;
 mod solve;
 
 use chaindrive_geometry::Point;

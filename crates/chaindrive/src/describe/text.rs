@@ -20,6 +20,9 @@ impl fmt::Display for Description {
         for unlike in &self.tolerances {
             row(f, "not as drawn", &unlike.to_string())?;
         }
+        for span in &self.out_of_line {
+            row(f, "out of line", &span.to_string())?;
+        }
         for train in &self.free_trains {
             row(f, "turned by torques", &train.to_string())?;
         }

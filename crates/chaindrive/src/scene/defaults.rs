@@ -185,6 +185,14 @@ defaults! {
     JOINTS_SPRING = always(0.1), "link stiffnesses times the pitch over the radius of the pin, squared", Assumed("explicit steps stay those of the links, and a strand slides when its joints have turned by some 1e-5"), ["Friction.stiffness"];
     /// The same where pins have play, and the spring resists motion as well as rotation.
     PLAY_SPRING = always(0.82), "link stiffnesses", Source("2(1 − ν)/(2 − ν) with ν = 0.3: how much a contact resists across of what it resists along (R. D. Mindlin, J. Appl. Mech. 16, 1949, 259–268); assumed that pins and plates behind it do alike"), ["Friction.stiffness"];
+    /// Hersey number at which metal bears a share 1/e.
+    TRANSITION = always(1e-6), "1", Assumed("journals run in oil alone from η ω/P of some 0.5e-6 (McKee's 30 cP rpm/psi) to 11e-6 (what designers keep to) on"), ["Friction.transition"];
+    /// Friction of plates where a chain runs out of line.
+    LATERAL_FRICTION = always(0.1), "1", Assumed("steel on oiled steel with boundary lubrication, 0.1 to 0.15"), ["Lateral.friction"];
+    /// Lever of plates that rub.
+    LATERAL_LEVER = always(0.5), "plate heights", Assumed("they rub at their edges, where the side of a tooth ends; 0.4 to 0.7 of them"), ["Lateral.lever"];
+    /// Lateral play of a chain.
+    LATERAL_PLAY = always(0.0), "m", Assumed("none, so that the loss is rather too great"), ["Lateral.play"];
     /// Restitution of bushes in free rollers.
     ROLLERS_RESTITUTION = always(0.7), "1", Assumed("steel in an oiled roller"), ["Contact.restitution"];
     /// Least closing speed that a restitution reckons with.

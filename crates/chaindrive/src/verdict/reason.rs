@@ -177,6 +177,13 @@ pub enum Reason {
         /// Greatest for which the restitution is meant \[m/s\].
         limit: f64,
     },
+    /// Sprockets are out of line by more than makers allow.
+    OutOfLine {
+        /// The span between them.
+        span: String,
+        /// Distance of their planes over that of their shafts \[–\].
+        of_centres: f64,
+    },
     /// Loads put energy in.
     LoadDrives {
         /// How much \[J\].
@@ -231,6 +238,7 @@ impl Reason {
             | Self::AboveRating { .. }
             | Self::DeepContact { .. }
             | Self::FastImpact { .. }
+            | Self::OutOfLine { .. }
             | Self::LoadDrives { .. }
             | Self::SamplesRare { .. }
             | Self::NotEstimated { .. } => Trust::Caution,
@@ -269,6 +277,7 @@ impl Reason {
             Self::NotRated { .. } => "not-rated",
             Self::DeepContact { .. } => "deep-contact",
             Self::FastImpact { .. } => "fast-impact",
+            Self::OutOfLine { .. } => "out-of-line",
             Self::LoadDrives { .. } => "load-drives",
             Self::SamplesRare { .. } => "samples-rare",
             Self::MotionsFight(_) => "motions-fight",
@@ -509,6 +518,11 @@ impl fmt::Display for Reason {
             } => write!(
                 f,
                 "{place}: struck at {speed:.1} m/s, and one restitution stands for impacts up to {limit} m/s: give that of such impacts, --set \"contact.….restitution=…\""
+            ),
+            Self::OutOfLine { span, of_centres } => write!(
+                f,
+                "the sprockets of span {span} are out of line by {} of the distance of their shafts: align them, or take it for a drive that is meant so",
+                percent(*of_centres)
             ),
             Self::LoadDrives { work } => write!(
                 f,

@@ -135,6 +135,15 @@ impl Verdict {
             "that of the restitution",
         ),
         caution(
+            "out-of-line",
+            format!(
+                "the planes of two sprockets are apart by more than {} of the distance of their shafts; in fast drives {} are allowed",
+                p(duty::ALIGNED),
+                p(duty::ALIGNED_FAST)
+            ),
+            "SEDIS, Transmission chains",
+        ),
+        caution(
             "load-drives",
             format!(
                 "loads put in more than {} of the energy that they exchange, and more than {} of what is moved",

@@ -274,6 +274,10 @@ fn specimens() -> Vec<Reason> {
             speed: 4.0,
             limit: 3.0,
         },
+        Reason::OutOfLine {
+            span: "ring-cog".into(),
+            of_centres: 0.03,
+        },
         Reason::LoadDrives { work: 12.0 },
         Reason::SamplesRare {
             samples: 1.0,

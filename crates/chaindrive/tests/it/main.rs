@@ -11,6 +11,7 @@ mod energy;
 mod examples;
 mod horizons;
 mod impacts;
+mod joint_losses;
 mod joints;
 mod judged;
 mod linkage;

@@ -14,6 +14,7 @@
 //! | [`BrownMcphee`] | `brown-mcphee` | creeps, slope above 4 μ_d N/v_t | yes |
 //! | [`Lugre`] | `lugre` | sticks, a spring σ₀ N | yes |
 //! | [`SpringSlider`] | `spring-slider` | sticks, a spring k | no |
+//! | [`Stribeck`] | `stribeck` | sticks, a spring k | yes |
 //!
 //! Other programs [register] theirs.
 
@@ -24,6 +25,7 @@ mod coulomb;
 mod library;
 mod lugre;
 mod spring_slider;
+mod stribeck;
 mod threlfall;
 
 pub use ambrosio::Ambrosio;
@@ -33,6 +35,7 @@ pub use coulomb::Coulomb;
 pub use library::{FrictionLaw, library, register};
 pub use lugre::Lugre;
 pub use spring_slider::SpringSlider;
+pub use stribeck::Stribeck;
 pub use threlfall::Threlfall;
 
 use chaindrive_quantities::{Handle, JsonSchema, check};
@@ -67,6 +70,8 @@ pub enum Friction {
     Lugre(Lugre),
     /// Coulomb friction that holds elastically: with a state.
     SpringSlider(SpringSlider),
+    /// A lubricated journal over its Hersey number: with a state.
+    Stribeck(Stribeck),
     /// A law of another program.
     #[serde(skip)]
     Registered(Handle<dyn FrictionLaw>),
@@ -95,6 +100,7 @@ macro_rules! each {
             Friction::BrownMcphee($member) => $answer,
             Friction::Lugre($member) => $answer,
             Friction::SpringSlider($member) => $answer,
+            Friction::Stribeck($member) => $answer,
             Friction::Registered($member) => $answer,
         }
     };
@@ -119,12 +125,14 @@ impl Friction {
     /// Force, damping and state after rubbing for dt \[s\] at constant normal force \[N\] and slip \[m/s\].
     ///
     /// `state` is that of the last accepted step, zero for a new contact. Laws without memory ignore
-    /// it and hand back zero; see [`Lugre`] and [`SpringSlider`] for those that have it.
+    /// it and hand back zero; see [`Lugre`], [`SpringSlider`] and [`Stribeck`] for those
+    /// that have it.
     #[inline]
     pub fn rub(&self, normal: f64, slip: f64, state: f64, dt: f64) -> Rub {
         match self {
             Self::Lugre(member) => member.rub(normal, slip, state, dt),
             Self::SpringSlider(member) => member.rub(normal, slip, state, dt),
+            Self::Stribeck(member) => member.rub(normal, slip, state, dt),
             _ => Rub {
                 force: self.force(normal, slip),
                 damping: self.damping(normal, slip),
@@ -138,13 +146,61 @@ impl Friction {
         match self {
             Self::Lugre(member) => member.stiffness * normal,
             Self::SpringSlider(member) => member.stiffness,
+            Self::Stribeck(member) => member.stiffness,
             _ => 0.0,
         }
     }
 
+    /// The law of a surface whose pressures sum to `factor` times the force that they balance: f(κ N, v).
+    ///
+    /// A line of contact has κ = 1; pins in bushes that have worn in have more, see `chain.joint.pressure_factor` of scenes.
+    ///
+    /// # Errors
+    /// A law of another program that is to have another factor than 1: its parameters are its own.
+    pub fn pressed(self, factor: f64) -> Result<Self, ParameterError> {
+        let mut law = self;
+        match &mut law {
+            Self::None => {}
+            Self::Coulomb(Coulomb { coefficient, .. })
+            | Self::Ambrosio(Ambrosio { coefficient, .. })
+            | Self::Threlfall(Threlfall { coefficient, .. })
+            | Self::SpringSlider(SpringSlider { coefficient, .. }) => *coefficient *= factor,
+            Self::BengisuAkay(member) => {
+                member.static_coefficient *= factor;
+                member.coefficient *= factor;
+            }
+            Self::BrownMcphee(member) => {
+                member.static_coefficient *= factor;
+                member.coefficient *= factor;
+                member.transition_force /= factor;
+            }
+            Self::Lugre(member) => {
+                member.static_coefficient *= factor;
+                member.coefficient *= factor;
+                member.stiffness *= factor;
+                member.damping *= factor;
+                member.viscosity *= factor;
+            }
+            Self::Stribeck(member) => {
+                member.coefficient *= factor;
+                member.transition *= factor;
+            }
+            Self::Registered(_) => require(
+                (factor - 1.0).abs() < f64::EPSILON,
+                "pressure_factor",
+                factor,
+                "1 with a law of another program, whose own parameters can contain it",
+            )?,
+        }
+        Ok(law)
+    }
+
     /// Whether the law has a state to be kept between steps.
     pub fn has_state(&self) -> bool {
-        matches!(self, Self::Lugre(_) | Self::SpringSlider(_))
+        matches!(
+            self,
+            Self::Lugre(_) | Self::SpringSlider(_) | Self::Stribeck(_)
+        )
     }
 
     /// Refuses parameters outside the range of the member.
@@ -185,7 +241,11 @@ impl Friction {
                 "at least the coefficient of sliding",
             ),
             Self::Registered(law) => law.check(),
-            Self::None | Self::Coulomb(_) | Self::Threlfall(_) | Self::SpringSlider(_) => Ok(()),
+            Self::None
+            | Self::Coulomb(_)
+            | Self::Threlfall(_)
+            | Self::SpringSlider(_)
+            | Self::Stribeck(_) => Ok(()),
         }
     }
 
@@ -223,6 +283,14 @@ impl Friction {
             }),
             Self::SpringSlider(SpringSlider {
                 coefficient: 0.1,
+                stiffness: 1e8,
+            }),
+            Self::Stribeck(Stribeck {
+                coefficient: 0.1,
+                transition: 1e-6,
+                viscosity: 0.05,
+                length: 0.02,
+                relative_clearance: 0.01,
                 stiffness: 1e8,
             }),
         ]

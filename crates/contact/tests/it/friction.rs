@@ -2,7 +2,7 @@
 
 use chaindrive_contact::Friction;
 use chaindrive_contact::friction::{
-    Ambrosio, BengisuAkay, BrownMcphee, Coulomb, Lugre, SpringSlider, Threlfall,
+    Ambrosio, BengisuAkay, BrownMcphee, Coulomb, Lugre, SpringSlider, Stribeck, Threlfall,
 };
 
 const NORMAL: f64 = 1e3;
@@ -28,7 +28,12 @@ fn opposes_slip_and_is_bounded() {
             assert!(force.abs() <= 120.0, "{friction:?} is bounded by μ_s N");
             let mirrored = friction.force(NORMAL, -slip);
             assert!((force + mirrored).abs() < 1e-12, "{friction:?} is odd");
-            assert!(friction.force(0.0, slip).abs() < f64::MIN_POSITIVE);
+            // Oil needs no load.
+            let oil = match friction {
+                Friction::Stribeck(law) => law.oil() * slip.abs(),
+                _ => 0.0,
+            };
+            assert!(friction.force(0.0, slip).abs() <= oil + f64::MIN_POSITIVE);
         }
         assert!(friction.force(NORMAL, 0.0).abs() < f64::MIN_POSITIVE);
     }
@@ -40,7 +45,10 @@ fn only_a_static_peak_falls() {
     for friction in Friction::specimens() {
         let peaked = matches!(
             friction,
-            Friction::BengisuAkay(_) | Friction::BrownMcphee(_) | Friction::Lugre(_)
+            Friction::BengisuAkay(_)
+                | Friction::BrownMcphee(_)
+                | Friction::Lugre(_)
+                | Friction::Stribeck(_)
         );
         let forces: Vec<f64> = slips().map(|slip| friction.force(NORMAL, slip)).collect();
         let monotone = forces.windows(2).all(|pair| pair[1] <= pair[0] + 1e-12);
@@ -160,6 +168,8 @@ fn coulombs_limit() {
             Friction::None => 0.0,
             Friction::Coulomb(Coulomb { coefficient, .. }) => coefficient * NORMAL,
             Friction::Threlfall(_) => 95.0,
+            // Oil bears all.
+            Friction::Stribeck(law) => 10.0 * law.oil(),
             _ => 100.0,
         };
         assert!((force - expected).abs() < 1e-3, "{friction:?}: {force}");
@@ -271,6 +281,98 @@ fn damping_of_a_step_is_the_slope_of_its_force() {
     let rest = friction.rub(NORMAL, 0.0, 5e-7, 1e-6).damping;
     let sides = [-1e-12, 1e-12].map(|slip| friction.rub(NORMAL, slip, 5e-7, 1e-6).damping);
     assert!((rest / (0.5 * (sides[0] + sides[1])) - 1.0).abs() < 1e-6);
+}
+
+/// Boundary: Coulomb's coefficient. Hydrodynamic: Petroff's torque, M = 2 π η ω r³ L/c, at any load. Mixed: the friction is least where
+/// dμ/dS = 0, that is μ/S_t exp(−S/S_t) = π/ψ.
+#[test]
+fn a_lubricated_journal_has_three_branches() {
+    let law = Stribeck {
+        coefficient: 0.12,
+        transition: 2e-6,
+        viscosity: 0.08,
+        length: 0.025,
+        relative_clearance: 0.004,
+        stiffness: 1e8,
+    };
+    let (radius, load) = (0.007, 3e3);
+    let friction = Friction::Stribeck(law);
+    // Slip at a Hersey number η ω/P with P = N/(2 r L).
+    let slip = |hersey: f64, load: f64| {
+        hersey * load / (2.0 * radius * law.length) / law.viscosity * radius
+    };
+    let coefficient = |hersey: f64| -friction.force(load, slip(hersey, load)) / load;
+    assert!((coefficient(1e-12) / 0.12 - 1.0).abs() < 1e-5);
+
+    for load in [1.0, load, 2e4] {
+        let hersey = 60.0 * law.transition;
+        let speed = slip(hersey, load) / radius;
+        let clearance = law.relative_clearance * radius;
+        let petroff =
+            2.0 * std::f64::consts::PI * law.viscosity * speed * radius.powi(3) * law.length
+                / clearance;
+        let torque = -radius * friction.force(load, radius * speed);
+        assert!((torque / petroff - 1.0).abs() < 1e-12, "{torque} {petroff}");
+    }
+
+    let steepness = std::f64::consts::PI * law.transition / (law.relative_clearance * 0.12);
+    let least = -law.transition * steepness.ln();
+    let at = coefficient(least);
+    assert!(at < coefficient(0.99 * least) && at < coefficient(1.01 * least));
+    let expected = 0.12 * steepness + std::f64::consts::PI * least / law.relative_clearance;
+    assert!((at / expected - 1.0).abs() < 1e-12);
+    assert!(friction.damping(load, slip(0.9 * least, load)) <= 0.0);
+    assert!(friction.damping(load, slip(1.1 * least, load)) > 0.0);
+}
+
+/// It holds as a spring and slides as its curve says.
+#[test]
+fn a_lubricated_journal_holds_and_slides() {
+    let Some(friction) = Friction::specimens()
+        .into_iter()
+        .find(|law| matches!(law, Friction::Stribeck(_)))
+    else {
+        panic!("no specimen");
+    };
+    let held = friction.rub(NORMAL, 1e-4, 0.0, 1e-4);
+    let (spring, oil) = (
+        1e8 * 1e-8,
+        2.0 * std::f64::consts::PI * 0.05 * 0.02 / 0.01 * 1e-4,
+    );
+    assert!((-held.force / (spring + oil) - 1.0).abs() < 1e-12);
+    for slip in [-0.3, 1e-3, 0.7] {
+        let sliding = friction.rub(NORMAL, slip, 0.0, 1.0);
+        let steady = friction.force(NORMAL, slip);
+        assert!((sliding.force / steady - 1.0).abs() < 1e-12);
+    }
+    let loose = friction.rub(0.0, 1.0, 1e-7, 1e-6);
+    assert!(loose.state.abs() <= 0.0 && loose.force < 0.0);
+}
+
+/// f(κ N, v), of every law with and without a state.
+#[test]
+fn pressures_that_sum_to_more_than_the_force_rub_more() {
+    for friction in Friction::specimens() {
+        for factor in [1.0, 4.0 / std::f64::consts::PI, std::f64::consts::FRAC_PI_2] {
+            let pressed = friction.pressed(factor).unwrap();
+            for slip in [-0.2, -1e-3, 3e-4, 0.05] {
+                for state in [0.0, 3e-7] {
+                    let all = friction.rub(factor * NORMAL, slip, state, 1e-4);
+                    let found = pressed.rub(NORMAL, slip, state, 1e-4);
+                    for (found, expected) in [
+                        (found.force, all.force),
+                        (found.damping, all.damping),
+                        (found.state, all.state),
+                    ] {
+                        assert!(
+                            (found - expected).abs() <= 1e-12 * expected.abs(),
+                            "{friction:?} {factor} {slip}: {found} {expected}"
+                        );
+                    }
+                }
+            }
+        }
+    }
 }
 
 #[test]

@@ -1,7 +1,5 @@
 //! The particle chain: point masses at the rollers, joined by spring-damper links.
 
-use chaindrive_contact::Friction;
-
 use super::model::ChainModel;
 use crate::{Articulation, DriveError, Strength};
 
@@ -223,7 +221,7 @@ impl Chain {
             }
         }
         problems.extend(self.articulation.iter().flat_map(Articulation::problems));
-        let rubs = |it: &Articulation| it.friction != Friction::None;
+        let rubs = |it: &Articulation| it.rubs();
         if self.model.rubs_in_bushes() && self.articulation.as_ref().is_some_and(rubs) {
             problems.push(DriveError::Conflict {
                 path: "chain.joint.contact.friction".into(),

@@ -186,8 +186,7 @@ impl Kernel for Strands {
         self.spin(turning, around.contacts, loads, spin);
         if let Some(resisting) = &chain.series.joints {
             let found = (&mut *turning, &mut joints.resistance);
-            rates[Flow::ArticulationLoss as usize] +=
-                articulation::act(resisting, w, at.t, links, found, &mut bushes);
+            articulation::act(resisting, w, at.t, links, found, &mut bushes).add_to(rates);
         }
         bushes.spin = spin;
         chain.meet(w, around, at.t, &mut bushes, rates, loads);

@@ -4,20 +4,10 @@ use chaindrive_contact::{Friction, Rub};
 use pulp::Simd;
 
 use super::bristles::Bristles;
+use super::holding::{Holding as _, LaneSpring};
+use super::journal::LaneJournal;
 use super::rubbing::Rubbing;
 use crate::lanes::{LANES, Lane, Wide};
-
-/// A slip \[m/s\] that no force is divided by less than.
-const LEAST_SLIP: f64 = 1e-30;
-
-/// A spring and a slider, prepared.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct LaneSpring {
-    /// k \[N/m\]
-    pub(crate) stiffness: f64,
-    /// μ/k \[m/N\]
-    coefficient_by_stiffness: f64,
-}
 
 /// A friction law on lanes.
 #[derive(Clone, Copy, Debug)]
@@ -35,52 +25,10 @@ pub(crate) enum LaneFriction {
     SpringSlider(LaneSpring),
     /// Bristles that bend.
     Bristles(Bristles),
+    /// A lubricated journal.
+    Journal(LaneJournal),
     /// Any other law, one lane after the other.
     General(Friction),
-}
-
-/// Share of its stiffness that a step of one solution carries while a spring holds: h²/4 k as of every other contact, where the slope
-/// times the step is h² k.
-const HELD: f64 = 0.25;
-/// Share of |R/slip| while the spring slides. *Assumed*: with all of it friction holds back more than it can, and the bicycle errs by half as
-/// much again at 8 to 16 µs; with none the slip is turned around from step to step, which brings energy in.
-const SLIDING: f64 = 0.5;
-
-impl LaneSpring {
-    /// Friction, and the deflection of the spring.
-    ///
-    /// ```text
-    /// z′ = z + v h, drawn back to |z′| ≤ μ N/k;   f = −k z′,   −∂f/∂v = k h while it holds
-    /// ```
-    #[inline(always)]
-    pub(crate) fn rub<S: Simd>(
-        &self,
-        w: Wide<S>,
-        dt: f64,
-        normal: Lane<S>,
-        slip: Lane<S>,
-        before: Lane<S>,
-    ) -> (Rubbing<S>, Lane<S>) {
-        let stiffness = w.splat(self.stiffness);
-        let limit = w.splat(self.coefficient_by_stiffness) * normal;
-        let tried = before.plus(slip, w.splat(dt));
-        let stick = tried.max(-limit).min(limit);
-        let holds = limit.greater(tried.abs());
-        let spring = stiffness * w.splat(dt);
-        let drag = holds.select(spring, w.splat(0.0));
-        // |f/v| ≤ k h
-        let sliding = stiffness * limit * slip.abs().max(w.splat(LEAST_SLIP)).recip();
-        let rubbing = Rubbing {
-            force: -(stiffness * stick),
-            drag,
-            secant: holds.select(
-                w.splat(HELD) * spring,
-                w.splat(SLIDING) * spring.min(sliding),
-            ),
-            steepest: drag,
-        };
-        (rubbing, stick)
-    }
 }
 
 impl LaneFriction {
@@ -92,11 +40,11 @@ impl LaneFriction {
                 slip_speed_squared: coulomb.slip_speed * coulomb.slip_speed,
                 slope: coulomb.coefficient / coulomb.slip_speed,
             },
-            Friction::SpringSlider(spring) => Self::SpringSlider(LaneSpring {
-                stiffness: spring.stiffness,
-                coefficient_by_stiffness: spring.coefficient / spring.stiffness,
-            }),
+            Friction::SpringSlider(spring) => {
+                Self::SpringSlider(LaneSpring::new(spring.coefficient, spring.stiffness))
+            }
             Friction::Lugre(law) => Self::Bristles(Bristles::new(law)),
+            Friction::Stribeck(law) => Self::Journal(LaneJournal::new(law)),
             other => Self::General(other),
         }
     }
@@ -108,6 +56,7 @@ impl LaneFriction {
             Self::None | Self::SpringSlider(_) => w.splat(0.0),
             Self::Coulomb { slope, .. } => w.splat(*slope) * force,
             Self::Bristles(bristles) => bristles.at_rest(w, force),
+            Self::Journal(journal) => w.splat(journal.oil()),
             Self::General(friction) => force.one_by_one(|force| friction.damping(force, 0.0)),
         }
     }
@@ -144,28 +93,41 @@ impl LaneFriction {
                 };
                 (rubbing, zero)
             }
-            Self::SpringSlider(spring) => spring.rub(w, dt, normal, slip, before),
+            Self::SpringSlider(spring) => {
+                spring.slide(w, dt, spring.limit(w, normal, slip), slip, before)
+            }
             // As with elastic laws.
             _ if !LONG => (Rubbing::unknown(w), zero),
             Self::Bristles(bristles) => bristles.rub(w, dt, [touching, normal], slip, before),
+            Self::Journal(journal) => journal.rub(w, dt, [touching, normal], slip, before),
             Self::General(friction) => one_by_one(w, friction, [touching, normal], slip),
         }
     }
 
     /// Whether the law is long: see [`SurfaceLaw::is_long`](super::SurfaceLaw::is_long).
     pub(crate) fn is_long(&self) -> bool {
-        matches!(self, Self::Bristles(_) | Self::General(_))
+        matches!(
+            self,
+            Self::Bristles(_) | Self::Journal(_) | Self::General(_)
+        )
     }
 
-    /// Whether nothing but a spring holds what sticks.
-    pub(crate) fn is_elastic(&self) -> bool {
-        matches!(self, Self::SpringSlider(_))
+    /// Dashpot \[N s/m\] beside the spring that alone holds what sticks; none for other laws.
+    pub(crate) fn beside_spring(&self) -> Option<f64> {
+        match self {
+            Self::SpringSlider(_) => Some(0.0),
+            Self::Journal(journal) => Some(journal.oil()),
+            _ => None,
+        }
     }
 
     /// Whether it has a state.
     #[inline(always)]
     pub(super) fn remembers(&self) -> bool {
-        matches!(self, Self::SpringSlider(_) | Self::Bristles(_))
+        matches!(
+            self,
+            Self::SpringSlider(_) | Self::Bristles(_) | Self::Journal(_)
+        )
     }
 
     /// Stiffness along the surface of what sticks under a normal force \[N/m\].
@@ -173,6 +135,7 @@ impl LaneFriction {
         match self {
             Self::None | Self::Coulomb { .. } | Self::General(_) => 0.0,
             Self::SpringSlider(spring) => spring.stiffness,
+            Self::Journal(journal) => journal.spring().stiffness,
             Self::Bristles(bristles) => bristles.stiffness * normal,
         }
     }

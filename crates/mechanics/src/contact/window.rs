@@ -84,6 +84,11 @@ impl Contacts {
         self.renew_uneven();
     }
 
+    /// Rollers that are near, in their order.
+    pub(crate) fn runs(&self) -> &[Run] {
+        &self.runs
+    }
+
     /// Rollers that are near, and follow each other.
     fn near_runs(
         &self,

@@ -5,7 +5,15 @@
 //! ```
 //!
 //! Joint i lies between the links i − 1 and i. What the turning ω and the normal force N are, the member says. Joints
-//! with clearance have their friction in the contact of pin and bush, and only c here.
+//! with clearance have their friction in the contact of pin and bush, and the rest here.
+//!
+//! Seals, and plates that are pressed sideways, hold and slide with the pin: they add to the limit of its spring,
+//!
+//! ```text
+//! r |f| ≤ r μ N + M_seal + m N,   m = μ_s h tan γ
+//! ```
+//!
+//! and what is lost is shared out as they share the limit.
 
 use chaindrive_contact::Friction;
 use chaindrive_integrate::Array;
@@ -14,8 +22,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::MemoryError;
 use crate::articulation::Articulation;
-use crate::contact::{LaneFriction, LaneSpring, Sweep};
+use crate::contact::{Holding, LaneFriction, Sweep};
+use crate::energy::Flow;
 use crate::lanes::{Lane, Wide, padded};
+
+/// A deflection \[m\] that no power is divided by less than.
+const LEAST_LIMIT: f64 = 1e-30;
 
 /// The joints in flat arrays, and what their friction remembers.
 #[derive(Clone, Debug)]
@@ -27,7 +39,35 @@ pub(crate) struct Joints {
     damping: Array,
     /// Largest r² \[m²\] and c \[N m s/rad\].
     largest: [f64; 2],
+    /// What holds beside the pin; none where nothing does.
+    beside: Option<Beside>,
     pub(crate) memory: Stick,
+}
+
+/// What holds beside the pin.
+#[derive(Clone, Debug)]
+struct Beside {
+    /// Force of the seal on the surface of the pin, M_seal/r \[N\].
+    seal: f64,
+    /// Friction of plates over the normal force, on the surface of the pin, m/r \[–\], whole lanes.
+    plates: Array,
+}
+
+/// Powers that go into the joints \[W\].
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct JointLosses {
+    pins: f64,
+    seals: f64,
+    plates: f64,
+}
+
+impl JointLosses {
+    /// Adds them to the powers of the drive.
+    pub(crate) fn add_to(self, rates: &mut [f64]) {
+        rates[Flow::ArticulationLoss as usize] += self.pins;
+        rates[Flow::SealLoss as usize] += self.seals;
+        rates[Flow::OffsetLoss as usize] += self.plates;
+    }
 }
 
 /// State of the friction in all joints at an accepted moment.
@@ -68,6 +108,8 @@ impl Joints {
             friction,
             radius,
             damping,
+            seal,
+            lateral,
         } = articulation?;
         let meet = |joint: usize| joint < links && (joint > 0 || closed);
         let at_joints = |value: f64| {
@@ -80,6 +122,10 @@ impl Joints {
             radius: at_joints(radius),
             damping: at_joints(damping),
             largest: [radius * radius, damping],
+            beside: (seal > 0.0 || lateral.is_some()).then(|| Beside {
+                seal: seal / radius,
+                plates: Array::zeros(entries),
+            }),
             memory: Stick {
                 time: 0.0,
                 state: Array::zeros(entries),
@@ -103,6 +149,21 @@ impl Joints {
         self.friction.acts()
     }
 
+    /// Says how much the plates at every joint of the chain rub, m \[m\].
+    pub(crate) fn press_sideways(&mut self, of: impl Fn(usize) -> f64) {
+        let Some(beside) = &mut self.beside else {
+            return;
+        };
+        let each = beside.plates.iter_mut().zip(self.radius.iter());
+        for (joint, (plates, radius)) in each.enumerate() {
+            *plates = if *radius > 0.0 {
+                of(joint) / radius
+            } else {
+                0.0
+            };
+        }
+    }
+
     /// Takes the accepted state of the friction.
     pub(crate) fn commit(&mut self, found: &mut Resistance) {
         std::mem::swap(&mut self.memory, &mut found.stick);
@@ -116,7 +177,7 @@ impl Joints {
         Ok(())
     }
 
-    /// Finds the torques; returns the power \[W\] that goes into the joints.
+    /// Finds the torques; returns the powers that go into the joints.
     #[inline(always)]
     pub(crate) fn resist<S: Simd>(
         &self,
@@ -124,7 +185,7 @@ impl Joints {
         t: f64,
         found: &mut Resistance,
         turns: &impl Turns<S>,
-    ) -> f64 {
+    ) -> JointLosses {
         let n = self.radius.len();
         let dt = t - self.memory.time;
         found.stick.time = t;
@@ -135,12 +196,10 @@ impl Joints {
             found.torque.resize(padded(n + 1), 0.0);
         }
         // The law that most have gets a loop of its own.
-        if let LaneFriction::SpringSlider(spring) = &self.friction {
-            let sums = self.sweep::<S, true, false>(w, dt, found, turns, *spring);
-            // What the spring resists within a step is in its stiffness already.
-            found.slopes = [self.largest[0] * spring.stiffness, self.largest[1]];
-            found.stored = 0.5 * spring.stiffness * sums.squares.sum();
-            return sums.power.sum();
+        match &self.friction {
+            LaneFriction::SpringSlider(spring) => return self.slide(w, dt, found, turns, *spring),
+            LaneFriction::Journal(journal) => return self.slide(w, dt, found, turns, *journal),
+            _ => {}
         }
         if let LaneFriction::Bristles(law) = &self.friction {
             let [power, largest] = self.gather(w, found, turns);
@@ -158,17 +217,111 @@ impl Joints {
             });
             found.slopes = [self.largest[0] * self.friction.stiffness(largest), steepest];
             found.stored = held;
-            return power + lost;
+            return JointLosses {
+                pins: power + lost,
+                ..JointLosses::default()
+            };
         }
-        let spring = LaneSpring::default();
-        let sums = if self.friction.is_long() {
-            self.sweep::<S, false, true>(w, dt, found, turns, spring)
+        let [power, steepest] = if self.friction.is_long() {
+            self.sweep::<S, true>(w, dt, found, turns)
         } else {
-            self.sweep::<S, false, false>(w, dt, found, turns, spring)
+            self.sweep::<S, false>(w, dt, found, turns)
         };
-        found.slopes = [0.0, sums.steepest.largest()];
+        found.slopes = [0.0, steepest.largest()];
         found.stored = 0.0;
-        sums.power.sum()
+        JointLosses {
+            pins: power.sum(),
+            ..JointLosses::default()
+        }
+    }
+
+    /// Laws of springs that slide.
+    #[inline(always)]
+    fn slide<S: Simd, L: Holding>(
+        &self,
+        w: Wide<S>,
+        dt: f64,
+        found: &mut Resistance,
+        turns: &impl Turns<S>,
+        law: L,
+    ) -> JointLosses {
+        let stiffness = law.spring().stiffness;
+        // What the spring resists within a step is in its stiffness already.
+        found.slopes = [
+            self.largest[0] * stiffness,
+            self.largest[1] + self.largest[0] * law.oil(),
+        ];
+        let [power, squares, seals, plates] = if let Some(beside) = &self.beside {
+            self.hold::<S, L, true>(w, dt, found, turns, law, beside.seal, &beside.plates)
+        } else {
+            self.hold::<S, L, false>(w, dt, found, turns, law, 0.0, &self.radius)
+        };
+        found.stored = 0.5 * stiffness * squares.sum();
+        let [seals, plates] = [seals.sum(), plates.sum()];
+        JointLosses {
+            pins: power.sum() - seals - plates,
+            seals,
+            plates,
+        }
+    }
+
+    /// All joints once, where springs hold: the power, the squares of the deflections \[m²\], and what of the power goes into seals and
+    /// plates. Without closures, since those that are not inlined are compiled for the oldest processor.
+    #[inline(always)]
+    #[expect(clippy::too_many_arguments)]
+    fn hold<S: Simd, L: Holding, const BESIDE: bool>(
+        &self,
+        w: Wide<S>,
+        dt: f64,
+        found: &mut Resistance,
+        turns: &impl Turns<S>,
+        law: L,
+        seal: f64,
+        plates: &[f64],
+    ) -> [Lane<S>; 4] {
+        let n = self.radius.len();
+        let zero = w.splat(0.0);
+        let spring = law.spring();
+        let [compliance, seal, oil] = [1.0 / spring.stiffness, seal, law.oil()].map(|x| w.splat(x));
+        let radius = w.lanes(&self.radius);
+        let damping = w.lanes(&self.damping);
+        let plates = w.lanes(plates);
+        let before = w.lanes(&self.memory.state);
+        let mut now = Wide::<S>::lanes_mut(&mut found.stick.state);
+        let mut moments = Wide::<S>::lanes_mut(&mut found.torque[..n]);
+        let [mut power, mut squares, mut into_seals, mut into_plates] = [zero; 4];
+        for i in 0..n / Wide::<S>::COUNT {
+            let (r, c) = (radius.get(i), damping.get(i));
+            let [rate, normal] = turns.at(w, i);
+            let meets = r.greater(zero);
+            let normal = meets.select(normal, zero);
+            let slip = r * rate;
+            let mut limit = law.limit(w, normal, slip);
+            let [mut of_seal, mut of_plates] = [zero; 2];
+            if BESIDE {
+                of_seal = meets.select(seal * compliance, zero);
+                of_plates = plates.get(i) * normal * compliance;
+                limit = limit + of_seal + of_plates;
+            }
+            let (metal, state) = spring.slide(w, dt, limit, slip, before.get(i));
+            now.set(i, state);
+            squares = squares.plus(state, state);
+            let mut force = metal.force;
+            if L::OILED {
+                force = force.minus(oil, slip);
+            }
+            // M = r f − c ω
+            let drag = c * rate;
+            moments.set(i, (-drag).plus(r, force));
+            power = power.plus(drag, rate).minus(force, slip);
+            if BESIDE {
+                let whole = limit.max(w.splat(LEAST_LIMIT));
+                let share = -(metal.force * slip) * whole.recip();
+                into_seals = into_seals.plus(share, of_seal);
+                into_plates = into_plates.plus(share, of_plates);
+            }
+        }
+        [power, squares, into_seals, into_plates]
     }
 
     /// Writes down normal forces, slips, and the torques of what is viscous; the power that goes into these, and the largest normal
@@ -205,52 +358,37 @@ impl Joints {
         [power.sum(), largest.largest()]
     }
 
-    /// All joints once; without closures, since those that are not inlined are compiled for the oldest processor.
+    /// All joints once, by laws without a state: the power \[W\] that goes into them, and the steepest −∂M/∂ω \[N m s/rad\].
     #[inline(always)]
-    fn sweep<S: Simd, const SPRING: bool, const LONG: bool>(
+    fn sweep<S: Simd, const LONG: bool>(
         &self,
         w: Wide<S>,
         dt: f64,
         found: &mut Resistance,
         turns: &impl Turns<S>,
-        spring: LaneSpring,
-    ) -> Sums<S> {
+    ) -> [Lane<S>; 2] {
         let n = self.radius.len();
         let zero = w.splat(0.0);
         let radius = w.lanes(&self.radius);
         let damping = w.lanes(&self.damping);
-        let before = w.lanes(&self.memory.state);
-        let mut now = Wide::<S>::lanes_mut(&mut found.stick.state);
         let mut moments = Wide::<S>::lanes_mut(&mut found.torque[..n]);
-        let mut sums = Sums {
-            power: zero,
-            squares: zero,
-            steepest: zero,
-        };
+        let [mut power, mut steepest] = [zero; 2];
         for i in 0..n / Wide::<S>::COUNT {
             let (r, c) = (radius.get(i), damping.get(i));
             let [rate, normal] = turns.at(w, i);
             let normal = r.greater(zero).select(normal, zero);
             let slip = r * rate;
-            let rubbing = if SPRING {
-                let (rubbing, state) = spring.rub(w, dt, normal, slip, before.get(i));
-                now.set(i, state);
-                sums.squares = sums.squares.plus(state, state);
-                rubbing
-            } else {
-                // The laws that have a state went other ways.
-                let (rubbing, _) =
-                    self.friction
-                        .rub::<S, LONG>(w, dt, [normal, normal], slip, zero);
-                sums.steepest = sums.steepest.max(r * r * rubbing.steepest + c);
-                rubbing
-            };
+            // The laws that have a state went other ways.
+            let (rubbing, _) = self
+                .friction
+                .rub::<S, LONG>(w, dt, [normal, normal], slip, zero);
+            steepest = steepest.max(r * r * rubbing.steepest + c);
             // M = r f − c ω
             let drag = c * rate;
             moments.set(i, (-drag).plus(r, rubbing.force));
-            sums.power = sums.power.plus(drag, rate).minus(rubbing.force, slip);
+            power = power.plus(drag, rate).minus(rubbing.force, slip);
         }
-        sums
+        [power, steepest]
     }
 }
 
@@ -258,16 +396,6 @@ impl Joints {
 pub(crate) trait Turns<S: Simd> {
     /// ω \[rad/s\] and N \[N\] of a lane of joints.
     fn at(&self, w: Wide<S>, lane: usize) -> [Lane<S>; 2];
-}
-
-/// Sums of a sweep over the joints.
-struct Sums<S: Simd> {
-    /// Power that goes into the joints \[W\].
-    power: Lane<S>,
-    /// Squares of the deflections of springs \[m²\].
-    squares: Lane<S>,
-    /// Steepest −∂M/∂ω \[N m s/rad\], of laws without a spring.
-    steepest: Lane<S>,
 }
 
 /// Goes on from what the joints of another chain remembered; there must be some in both or in none.

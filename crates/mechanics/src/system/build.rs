@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use chaindrive_geometry::Point;
 
+use super::sideways::Sideways;
 use super::{Group, Member, System};
 use crate::bodies::{
     Anchor, Bodies, BodyContacts, Inputs, OnRail, OnWheel, Rail, RailContact, RailSupport, Shaft,
@@ -54,6 +55,7 @@ impl System {
             let contacts = contacts(laid, placed, &mut touched)?;
             let mut member = Member::new(built, q.len(), contacts, lies.route.clone());
             member.name.clone_from(&placed.name);
+            member.sideways = Sideways::new(parts, placed, &lies.route);
             chains.push(member);
             q.extend(own);
         }

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use chaindrive_integrate::{Moment, Prediction};
 
+use super::sideways::Sideways;
 use crate::bodies::Surroundings;
 use crate::bodies::{Bodies, BodyContacts, Wheel};
 use crate::chains::{Chain, Record};
@@ -23,6 +24,8 @@ pub(crate) struct Member {
     pub(crate) contacts: BodyContacts,
     /// Sprockets in path order, for the naming of spans.
     pub(crate) route: Vec<usize>,
+    /// Its spans out of line, if it has any.
+    pub(super) sideways: Option<Sideways>,
     /// When the windows are renewed: latest time, and accepted steps to go.
     pub(super) renew: (f64, u32),
     /// ω² and damping rate of the stiffest mode.
@@ -52,6 +55,7 @@ impl Member {
             chain,
             contacts,
             route,
+            sideways: None,
             renew: (0.0, 0),
             rates: Rates::default(),
             joint_impacts: Default::default(),
@@ -145,6 +149,17 @@ impl Member {
             at.t + 0.5 * margin / speed.max(f64::MIN_POSITIVE),
             STEPS_PER_WINDOW,
         );
+        self.press_sideways();
+    }
+
+    /// Tells the joints which of them are pressed sideways.
+    pub(super) fn press_sideways(&mut self) {
+        if let Some(sideways) = &mut self.sideways {
+            sideways.look(&self.route, &self.contacts.teeth, self.chain.rollers());
+            let closed = self.chain.is_closed();
+            self.chain
+                .press_sideways(|joint| sideways.at(joint, closed));
+        }
     }
 
     /// The counts of the chain, in one order.

@@ -156,6 +156,7 @@ impl Member {
         for (own, then) in self.impacts_mut().zip(memory.impacts) {
             *own = then;
         }
+        self.press_sideways();
         Ok(())
     }
 }

@@ -43,6 +43,8 @@ fn rubbing_by(parts: &mut Parts, friction: Friction) {
         friction,
         radius: 2e-3,
         damping: 1e-5,
+        seal: 0.0,
+        lateral: None,
     });
 }
 

@@ -36,6 +36,8 @@ fn articulation(friction: Friction, damping: f64) -> Articulation {
         friction,
         radius: RADIUS,
         damping,
+        seal: 0.0,
+        lateral: None,
     }
 }
 

@@ -57,6 +57,7 @@ fn bicycle(model: ChainModel) -> Parts {
         flank: None,
         gap_angle: 0.0,
         tolerance: Tolerance::default(),
+        lateral: 0.0,
     };
     let driven = Rotation::Free {
         drive: Vec::new(),

@@ -325,6 +325,8 @@ fn rubbing(model: ChainModel, links: usize) -> Span {
         friction: span.friction(0.005),
         radius: RADIUS,
         damping: 0.0,
+        seal: 0.0,
+        lateral: None,
     });
     Span {
         model,
@@ -446,6 +448,8 @@ fn viscous_joints_damp_a_strand_as_their_closed_form_says() {
                 friction: Friction::None,
                 radius: RADIUS,
                 damping,
+                seal: 0.0,
+                lateral: None,
             }),
             ..particles(16)
         };
@@ -520,6 +524,8 @@ fn driven_ends_pay_for_friction_and_drag() {
                 friction: Friction::None,
                 radius: RADIUS,
                 damping: 300.0,
+                seal: 0.0,
+                lateral: None,
             });
         }
         let shake = |frequency: f64| End::Driven {

@@ -180,6 +180,7 @@ fn leaf(model: ChainModel, speed: f64) -> Assembled {
         flank: None,
         gap_angle: 0.0,
         tolerance: Tolerance::default(),
+        lateral: 0.0,
     };
     let velocities = vec![Vector::new(-speed, 0.0); 4];
     assembled(

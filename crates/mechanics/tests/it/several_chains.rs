@@ -44,6 +44,7 @@ fn sprocket(name: &str, teeth: u32, centre: [f64; 2], rotation: Rotation) -> Tur
         flank: None,
         gap_angle: 0.0,
         tolerance: Tolerance::default(),
+        lateral: 0.0,
     };
     (sprocket, rotation)
 }

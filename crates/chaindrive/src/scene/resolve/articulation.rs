@@ -1,11 +1,11 @@
 //! Resistance of the joints of any chain: friction of pin and bush, and viscous damping.
 
 use chaindrive_contact::friction::SpringSlider;
-use chaindrive_contact::{Friction, Law};
-use chaindrive_mechanics::Articulation;
+use chaindrive_contact::{Friction, Law, ParameterError};
+use chaindrive_mechanics::{Articulation, LateralRub};
 use serde_json::json;
 
-use super::contact::Spring;
+use super::contact::{Journal, Spring};
 use super::pressed::stiffness_under_pretension;
 use super::{Findings, contact};
 use crate::catalogue::{CatalogueChain, Number};
@@ -60,12 +60,41 @@ impl<'a> Joints<'a> {
             .joint
             .as_ref()
             .and_then(|it| it.contact.friction.as_ref());
-        let spring = self.spring();
-        match (own, &self.scene.contact.joints.friction) {
-            (Some(text), _) => contact::friction(text, "chain.joint.contact", spring, findings),
-            (None, Some(text)) => contact::friction(text, "contact.joints", spring, findings),
-            (None, None) => Some(self.usual(spring, findings)),
-        }
+        let journal = Journal {
+            spring: self.spring(),
+            length: self.length(),
+            relative_clearance: self.relative_clearance(),
+        };
+        let friction = match (own, &self.scene.contact.joints.friction) {
+            (Some(text), _) => contact::friction(text, "chain.joint.contact", journal, findings),
+            (None, Some(text)) => contact::friction(text, "contact.joints", journal, findings),
+            (None, None) => Some(self.usual(journal.spring, findings)),
+        };
+        let factor = self
+            .text
+            .joint
+            .as_ref()
+            .map_or(1.0, |it| it.pressure_factor.0);
+        let pressed = friction?.pressed(factor);
+        let refused = |error: ParameterError| findings.refuse_parameter("chain.joint", &error);
+        pressed.map_err(refused).ok()
+    }
+
+    /// Length on which pin and bush touch \[m\]: as given, or that of the catalogue.
+    fn length(&self) -> Option<f64> {
+        let given = self.text.joint.as_ref().and_then(|it| it.length);
+        given
+            .map(|length| length.0)
+            .or_else(|| self.of_type?.joint_length())
+    }
+
+    /// Radial clearance of the pin over its radius \[–\]: as given, or that of the catalogue.
+    fn relative_clearance(&self) -> Option<f64> {
+        let given = self.text.joint.as_ref().and_then(|it| it.clearance);
+        let clearance = given
+            .map(|clearance| clearance.0)
+            .or_else(|| self.of_type?.joint_clearance());
+        Some(clearance? / self.pin()?).filter(|it| *it > 0.0)
     }
 
     /// The spring of friction in the joints, if the stiffness of a link is known.
@@ -77,11 +106,59 @@ impl<'a> Joints<'a> {
                 factor: &defaults::PLAY_SPRING,
             });
         }
+        self.turning_spring(link)
+    }
+
+    /// The spring of what holds where links of a stiffness \[N/m\] turn, if the pin is known.
+    fn turning_spring(&self, link: f64) -> Option<Spring> {
         // k = 0.1 k_link (p/r)² on the surface is σ = 0.1 k_link p² in the joint.
         let lever = self.text.pitch?.0 / self.pin()?;
         Some(Spring {
             unit: link * lever * lever,
             factor: &defaults::JOINTS_SPRING,
+        })
+    }
+
+    /// A spring without friction of its own, for seals and plates, where nothing else holds.
+    fn bare_spring(&self, findings: &mut Findings<'_>) -> Option<Friction> {
+        let given = || self.text.stiffness.map(|stiffness| stiffness.0);
+        let link = self.link_stiffness.or_else(given);
+        let Some(spring) = link.and_then(|link| self.turning_spring(link)) else {
+            let hint = "give `stiffness` and `joint.pin_diameter`: seals and plates hold in proportion to the links";
+            findings.refuse_with("chain.stiffness", "missing", hint);
+            return None;
+        };
+        Some(Friction::SpringSlider(SpringSlider {
+            coefficient: 0.0,
+            stiffness: spring.factor.value(findings.version) * spring.unit,
+        }))
+    }
+
+    /// How plates rub sideways, where sprockets are out of line.
+    fn lateral(&self, plate_height: f64, findings: &mut Findings<'_>) -> Option<LateralRub> {
+        let mut places = self.scene.sprockets.iter().map(|it| it.lateral.0);
+        let first = places.next()?;
+        if places.all(|place| (place - first).abs() <= 0.0) {
+            return None;
+        }
+        let text = &self.text.lateral;
+        let at = |key: &str| format!("chain.lateral.{key}");
+        let friction = text.friction.map(|it| it.0);
+        let lever = text.lever.map(|it| it.0);
+        let play = text.play.map(|it| it.0);
+        Some(LateralRub {
+            coefficient: findings.or_default(
+                friction,
+                &at("friction"),
+                &defaults::LATERAL_FRICTION,
+            ),
+            lever: findings.or_multiple(
+                lever,
+                &at("lever"),
+                &defaults::LATERAL_LEVER,
+                plate_height,
+            ),
+            play: findings.or_default(play, &at("play"), &defaults::LATERAL_PLAY),
         })
     }
 
@@ -157,14 +234,25 @@ impl<'a> Joints<'a> {
     }
 
     /// The resistance; none where nothing resists. Pins with clearance rub in the contact with their bushes.
-    pub(super) fn articulation(&self, findings: &mut Findings<'_>) -> Option<Articulation> {
+    pub(super) fn articulation(
+        &self,
+        plate_height: f64,
+        findings: &mut Findings<'_>,
+    ) -> Option<Articulation> {
         let joint = self.text.joint.as_ref();
         let damping = joint.map_or(0.0, |joint| joint.damping.0);
         let play = self.text.model.has_play();
+        let seal = joint.map_or(0.0, |joint| joint.seal_torque.0);
+        let lateral = self.lateral(plate_height, findings);
         let friction = if play {
             Friction::None
         } else {
             self.friction(findings)?
+        };
+        let friction = if friction == Friction::None && (seal > 0.0 || lateral.is_some()) {
+            self.bare_spring(findings)?
+        } else {
+            friction
         };
         let rubs = friction != Friction::None;
         if !rubs && damping == 0.0 {
@@ -192,6 +280,8 @@ impl<'a> Joints<'a> {
             // Where nothing slides any radius will do.
             radius: pin.unwrap_or(0.5 * self.text.pitch?.0),
             damping,
+            seal,
+            lateral,
         })
     }
 }

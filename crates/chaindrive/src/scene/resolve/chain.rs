@@ -117,7 +117,13 @@ pub(super) fn resolve(
     let roller_deviations = vary(alike, deviation, 3, Some(roller_diameter));
     let mean = stiffness.iter().sum::<f64>() / stiffness.len() as f64;
     let joints = Joints::new(scene, text, model.has_springs().then_some(mean));
-    let articulation = joints.articulation(findings);
+    let plate_height = findings.or_multiple(
+        text.plate_height.map(|height| height.0),
+        "chain.plate_height",
+        &defaults::PLATE_HEIGHT,
+        roller_diameter,
+    );
+    let articulation = joints.articulation(plate_height, findings);
     let damping = damping(text, &stiffness, &masses, &model, findings);
     let behind_teeth = Behind::new(text, &model, findings);
     let chain = Chain {
@@ -128,12 +134,7 @@ pub(super) fn resolve(
         masses,
         roller_diameter,
         roller_deviations,
-        plate_height: findings.or_multiple(
-            text.plate_height.map(|height| height.0),
-            "chain.plate_height",
-            &defaults::PLATE_HEIGHT,
-            roller_diameter,
-        ),
+        plate_height,
         articulation,
         drag: text.drag.map_or(0.0, |drag| drag.0),
         ends: ends?,

@@ -70,8 +70,8 @@ impl Said<'_> {
     pub(super) fn friction(&self, findings: &mut Findings<'_>) -> Option<Friction> {
         let common = self.fallback.path;
         match (&self.own.friction, &self.common.friction) {
-            (Some(text), _) => friction(text, self.path, None, findings),
-            (None, Some(text)) => friction(text, common, None, findings),
+            (Some(text), _) => friction(text, self.path, Journal::default(), findings),
+            (None, Some(text)) => friction(text, common, Journal::default(), findings),
             (None, None) => {
                 findings.assume_kind(&format!("{common}.friction"), "none");
                 Some(Friction::None)
@@ -184,18 +184,49 @@ pub(super) struct Spring {
     pub(super) factor: &'static Default,
 }
 
-/// The friction that a scene describes at `place`; a spring of unknown stiffness is that of `spring`.
+/// What is known of a pin in its bush, for friction that says nothing of it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Journal {
+    pub(super) spring: Option<Spring>,
+    /// Length \[m\].
+    pub(super) length: Option<f64>,
+    /// Radial clearance over the radius \[–\].
+    pub(super) relative_clearance: Option<f64>,
+}
+
+/// The friction that a scene describes at `place`; what it leaves open of a pin in its bush is that of `journal`.
 pub(super) fn friction(
     text: &Written<Friction>,
     place: &str,
-    spring: Option<Spring>,
+    journal: Journal,
     findings: &mut Findings<'_>,
 ) -> Option<Friction> {
     let path = format!("{place}.friction");
     let mut keys = findings.completed(text.keys.clone(), "Friction", &path);
-    if text.word("kind") == "spring-slider" && keys.get("stiffness").is_none() {
+    let kind = text.word("kind");
+    let lubricated = kind == "stribeck";
+    let known = [
+        ("length", journal.length, "give it, such as \"12 mm\""),
+        (
+            "relative_clearance",
+            journal.relative_clearance,
+            "give the radial clearance over the radius, such as 0.01",
+        ),
+    ];
+    for (key, value, hint) in known {
+        if lubricated && keys.get(key).is_none() {
+            let path = format!("{path}.{key}");
+            let Some(value) = value else {
+                findings.refuse_once(&path, "missing", hint);
+                return None;
+            };
+            findings.assume(&path, value, "that of the pin in its bush");
+            keys[key] = value.into();
+        }
+    }
+    if (lubricated || kind == "spring-slider") && keys.get("stiffness").is_none() {
         let path = format!("{path}.stiffness");
-        let Some(spring) = spring else {
+        let Some(spring) = journal.spring else {
             let hint = "give it, such as \"50 MN/m\"; it is known in joints of links whose pins and stiffness are";
             findings.refuse_once(&path, "missing", hint);
             return None;

@@ -105,7 +105,7 @@ pub(crate) fn friction(
     let law = contact
         .friction
         .as_ref()
-        .and_then(|text| contact::friction(text, "", None, &mut findings));
+        .and_then(|text| contact::friction(text, "", contact::Journal::default(), &mut findings));
     law.ok_or(findings.problems)
 }
 

@@ -125,6 +125,7 @@ fn resolve(
             &defaults::GAP_ANGLE,
         ),
         tolerance: tolerance?,
+        lateral: text.lateral.0,
     })
 }
 

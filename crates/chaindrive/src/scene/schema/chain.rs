@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{ChainModel, Joint, Link, Motion, Roller, Rollers, Route};
+use super::{ChainModel, Joint, Lateral, Link, Motion, Roller, Rollers, Route};
 use chaindrive_quantities::{
     AngularSpeed, Damping, Drag, Force, Length, Mass, Power, Ratio, Speed, Stiffness,
 };
@@ -125,6 +125,9 @@ pub(crate) struct Chain {
     /// Pins in their bushes.
     #[serde(default)]
     pub(crate) joint: Option<Joint>,
+    /// Plates that rub where the chain runs out of line.
+    #[serde(default)]
+    pub(crate) lateral: Lateral,
     /// Rollers on their bushes.
     #[serde(default)]
     pub(crate) roller: Option<Roller>,

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Contact;
-use chaindrive_quantities::{AngularDamping, Inertia, Length, Mass};
+use chaindrive_quantities::{AngularDamping, Inertia, Length, Mass, Ratio, Torque};
 
 /// Model of a chain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
@@ -91,10 +91,71 @@ pub(crate) struct Joint {
     #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) damping: AngularDamping,
+    /// Sum of the pressures of a pin on its bush over the force that they balance, κ [–], for the friction f(κ N, v): "line" (1) where they
+    /// touch along a line, "cosine" (4/π) and "uniform" (π/2) where the pin has worn in and bears on half of its circumference. A coefficient
+    /// that was found with one of them is of no use with another. Absent: line.
+    #[serde(default)]
+    pub(crate) pressure_factor: PressureFactor,
+    /// Torque with which the seal of every joint resists [N m], an O-ring or X-ring between inner and outer plate; absent: none.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0))]
+    pub(crate) seal_torque: Torque,
     /// Contact of pin and bush, where it differs from `contact.joints`; joints without clearance have nothing of it but the
     /// friction.
     #[serde(default)]
     pub(crate) contact: Contact,
+}
+
+/// Sum of pressures over the force that they balance.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(transparent)]
+pub(crate) struct PressureFactor(pub(crate) f64);
+
+impl Default for PressureFactor {
+    fn default() -> Self {
+        Self(1.0)
+    }
+}
+
+impl JsonSchema for PressureFactor {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "PressureFactor".into()
+    }
+
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        // A pressure over half of a circumference: ∫ p dφ / ∫ p cos φ dφ of p = cos φ and of p = 1.
+        schemars::json_schema!({
+            "type": ["number", "string"],
+            "x-dimension": "a pure number",
+            "x-unit": "1",
+            "x-words": {"line": 1.0, "cosine": 4.0 / std::f64::consts::PI, "uniform": std::f64::consts::FRAC_PI_2},
+            "examples": ["uniform"],
+            "minimum": 1,
+            "maximum": 2,
+        })
+    }
+}
+
+/// Plates that rub where the chain runs out of line: between sprockets whose `lateral` places differ.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Lateral {
+    /// Coefficient of friction of plates on teeth and on each other [–].
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0))]
+    pub(crate) friction: Option<Ratio>,
+    /// Lever from the pin to where they rub [m].
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) lever: Option<Length>,
+    /// Lateral play of the chain on its sprockets [m]: an offset within it costs nothing.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0))]
+    pub(crate) play: Option<Length>,
 }
 
 /// Rollers on their bushes.

@@ -19,7 +19,7 @@ mod written;
 pub(crate) use chain::{Chain, End, NamedChain, Start};
 pub(crate) use contact::{Contact, Contacts, Flank};
 pub(crate) use guide::{Face, Guide, GuideSupport, TravelSide};
-pub(crate) use links::{ChainModel, Joint, Link, Roller, Rollers};
+pub(crate) use links::{ChainModel, Joint, Lateral, Link, Roller, Rollers};
 pub(crate) use motion::{Motion, OrderTerm, StartSpeed, Torque};
 pub(crate) use route::{Adjust, Route};
 pub use run::RunDefaults;

@@ -71,6 +71,10 @@ pub(crate) struct Sprocket {
     /// first roller that the wheel takes up.
     #[serde(default)]
     pub(crate) eccentricity_angle: Angle,
+    /// Place of the middle of the teeth along the shaft [m]: where that of two sprockets differs, the chain between them runs out of line, see
+    /// `chain.lateral`. It moves in the plane all the same.
+    #[serde(default)]
+    pub(crate) lateral: Length,
     /// Errors of the places of the tooth gaps; absent: none.
     #[serde(default)]
     pub(crate) gap_errors: Option<GapErrors>,

@@ -112,7 +112,7 @@ impl Linkage {
     fn sticks(&self) -> bool {
         match &self.joining {
             Joining::Hinges(_) => false,
-            Joining::Clearance(bearing) => bearing.lanes.friction.is_elastic(),
+            Joining::Clearance(bearing) => bearing.lanes.friction.beside_spring().is_some(),
         }
     }
 
@@ -174,10 +174,12 @@ impl Linkage {
         for joint in 0..self.joints.len() {
             let stiffness = pins.stiffness[joint];
             // What a spring resists within the step is in its stiffness already.
-            let (drag, spring) = if friction.is_elastic() {
-                (0.0, friction.stiffness(pins.force[joint]))
-            } else {
-                (pins.drag[joint], 0.0)
+            let (drag, spring) = match friction.beside_spring() {
+                Some(dashpot) if stiffness > 0.0 => {
+                    (dashpot, friction.stiffness(pins.force[joint]))
+                }
+                Some(_) => (0.0, 0.0),
+                None => (pins.drag[joint], 0.0),
             };
             if stiffness <= 0.0 && drag <= 0.0 {
                 continue;

@@ -6,8 +6,7 @@ use pulp::{Simd, WithSimd};
 use super::hinge::Hinges;
 use super::posture::Posture;
 use super::{Joining, JointState, Linkage};
-use crate::energy::Flow;
-use crate::joints::{Joints, Resistance, Turns};
+use crate::joints::{JointLosses, Joints, Resistance, Turns};
 use crate::lanes::{Lane, Lanes, Wide, padded};
 
 impl Linkage {
@@ -23,17 +22,24 @@ impl Linkage {
         // Behind the joints whole lanes; pins with clearance rub in their bushes.
         joint_state.normal.clear();
         joint_state.normal.resize(padded(self.joints.len()), 0.0);
-        if let (Joining::Hinges(hinges), true) = (&self.joining, joints.rub()) {
-            self.press(hinges, at, joint_state);
+        match &self.joining {
+            Joining::Hinges(hinges) if joints.rub() => self.press(hinges, at, joint_state),
+            // What rubs beside the pin is pressed as the pin is.
+            Joining::Clearance(_) if joints.rub() => {
+                let JointState { normal, pins, .. } = joint_state;
+                let count = normal.len().min(pins.force.len());
+                normal[..count].copy_from_slice(&pins.force[..count]);
+            }
+            Joining::Hinges(_) | Joining::Clearance(_) => {}
         }
-        let power = self.series.registers.dispatch(Torques {
+        let losses = self.series.registers.dispatch(Torques {
             joints,
             posture: &joint_state.posture,
             normal: &joint_state.normal,
             t: at.t,
             found: &mut *found,
         });
-        rates[Flow::ArticulationLoss as usize] += power;
+        losses.add_to(rates);
         let torque = &mut found.torque;
         if self.series.is_closed() {
             // Behind the last link is the first joint again.
@@ -81,11 +87,10 @@ struct Torques<'a> {
 }
 
 impl WithSimd for Torques<'_> {
-    /// Power that goes into the joints.
-    type Output = f64;
+    type Output = JointLosses;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+    fn with_simd<S: Simd>(self, simd: S) -> JointLosses {
         let w = Wide(simd);
         let n = self.normal.len();
         let Posture { before, after, .. } = self.posture;

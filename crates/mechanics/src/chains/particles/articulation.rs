@@ -16,10 +16,10 @@ use pulp::Simd;
 use super::Particles;
 use super::springs::{Links, Turning};
 use crate::contact::Rollers;
-use crate::joints::{Joints, Resistance, Turns};
+use crate::joints::{JointLosses, Joints, Resistance, Turns};
 use crate::lanes::{LANES, Lane, Lanes, Wide};
 
-/// Adds what the joints do to the rollers, and returns the power \[W\] that goes into them.
+/// Adds what the joints do to the rollers, and returns the powers that go into them.
 #[inline(always)]
 pub(in crate::chains) fn act<S: Simd>(
     joints: &Joints,
@@ -28,7 +28,7 @@ pub(in crate::chains) fn act<S: Simd>(
     links: &Links,
     (turning, found): (&mut Turning, &mut Resistance),
     rollers: &mut Rollers<'_>,
-) -> f64 {
+) -> JointLosses {
     let count = links.count;
     let power = torques(joints, w, t, links, turning, found);
     let behind = [rollers.ax[count], rollers.ay[count]];
@@ -41,7 +41,7 @@ pub(in crate::chains) fn act<S: Simd>(
     power
 }
 
-/// Finds the torques of all joints from how the links turn; returns the power \[W\] that goes into the joints.
+/// Finds the torques of all joints from how the links turn; returns the powers that go into the joints.
 #[inline(always)]
 pub(in crate::chains) fn torques<S: Simd>(
     joints: &Joints,
@@ -50,7 +50,7 @@ pub(in crate::chains) fn torques<S: Simd>(
     links: &Links,
     turning: &mut Turning,
     found: &mut Resistance,
-) -> f64 {
+) -> JointLosses {
     let n = links.rest.len();
     let count = links.count;
     let Turning {

@@ -222,8 +222,7 @@ impl Kernel for Particles {
         let loss = if let Some(joints) = &self.series.joints {
             let loss = links.act::<S, true>(w, &mut rollers, gravity, turning);
             let found = (turning, &mut found.resistance);
-            rates[Flow::ArticulationLoss as usize] +=
-                articulation::act(joints, w, at.t, links, found, &mut rollers);
+            articulation::act(joints, w, at.t, links, found, &mut rollers).add_to(rates);
             loss
         } else {
             links.act::<S, false>(w, &mut rollers, gravity, turning)

@@ -431,8 +431,7 @@ impl Kernel for Points {
                 ..
             } = &mut *work;
             let resistance = &mut found.resistance;
-            let power = articulation::torques(joints, w, at.t, &self.links, turning, resistance);
-            rates[Flow::ArticulationLoss as usize] += power;
+            articulation::torques(joints, w, at.t, &self.links, turning, resistance).add_to(rates);
             self.turn(w, a, &resistance.torque, turning);
         }
         let tallies = self.bear(w, at, a, work);

@@ -58,6 +58,7 @@ pub(crate) fn parts(law: Law) -> Parts {
         flank: None,
         gap_angle: 0.0,
         tolerance: Tolerance::default(),
+        lateral: 0.0,
     });
     Parts {
         chains: vec![PlacedChain {
