@@ -60,7 +60,7 @@ pub struct LateralRub {
 
 impl Articulation {
     /// Whether pins rub in their bushes: a spring without friction serves seals and plates alone.
-    pub(crate) fn rubs(&self) -> bool {
+    pub fn rubs(&self) -> bool {
         match self.friction {
             Friction::None => false,
             Friction::SpringSlider(spring) => spring.coefficient > 0.0,

@@ -149,7 +149,8 @@ def _slips(chain: ChainParts, steps: _Floats, load: _Floats) -> _Floats:
         return np.abs(steps)
     law = chain.joint_friction
     # The elastic part: σ z holds what does not slide, |σ z| ≤ μ N.
-    bristle = friction / float(law["stiffness"]) if law.get("kind") == "spring-slider" else 0.0
+    holds = law.get("kind") in ("spring-slider", "stribeck")
+    bristle = friction / float(law["stiffness"]) if holds else 0.0
     # A pin with play rolls up its bush before it slides, as far as friction carries it: c atan μ.
     rolling = chain.clearance * math.atan(friction)
     reach = bristle * load + rolling

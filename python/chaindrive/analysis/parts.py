@@ -118,8 +118,12 @@ class ChainParts:
         return own or self.joints.get("friction", {})
 
     def friction(self) -> float:
-        """Return the coefficient of friction of pins in bushes [–], zero without friction."""
-        return float(self.joint_friction.get("coefficient", 0.0))
+        """Return friction over force of pins in bushes [–], zero without friction.
+
+        Of a lubricated pin it is that of boundary friction.
+        """
+        factor = float(self.scene.get("joint", {}).get("pressure_factor", 1.0))
+        return factor * float(self.joint_friction.get("coefficient", 0.0))
 
     @property
     def clearance(self) -> float:

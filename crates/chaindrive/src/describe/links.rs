@@ -26,12 +26,16 @@ pub struct LinkFacts {
     pub pin_diameter: Option<f64>,
     /// Viscous damping of the joints \[N m s/rad\].
     pub joint_damping: f64,
+    /// Torque of their seals \[N m\].
+    pub seal_torque: f64,
 }
 
 impl LinkFacts {
     pub(super) fn of(chain: &Chain) -> Self {
         let resisting = chain.articulation.as_ref();
-        let mut rubbing = resisting.map(|it| (it.friction, it.radius));
+        let mut rubbing = resisting
+            .filter(|it| it.rubs())
+            .map(|it| (it.friction, it.radius));
         if let (true, Some(joint)) = (chain.model.rubs_in_bushes(), chain.model.clearance()) {
             rubbing = Some((joint.surface.friction, joint.pin_radius));
         }
@@ -59,6 +63,7 @@ impl LinkFacts {
             joint_friction,
             pin_diameter,
             joint_damping,
+            seal_torque: resisting.map_or(0.0, |it| it.seal),
         }
     }
 }

@@ -358,6 +358,9 @@ impl fmt::Display for LinkFacts {
         if self.joint_damping > 0.0 {
             write!(f, "; joints damp with {} N m s/rad", self.joint_damping)?;
         }
+        if self.seal_torque > 0.0 {
+            write!(f, "; seals hold {} N m", self.seal_torque)?;
+        }
         Ok(())
     }
 }

@@ -213,7 +213,8 @@ fn lubricated_pins_follow_their_curve() {
 /// What a drive has of it is described.
 #[test]
 fn spans_out_of_line_are_described() {
-    let text = drive("", RUBS, "lateral = \"4 mm\"");
+    let joint = format!("{RUBS}\nseal_torque = \"0.1 N m\"");
+    let text = drive("", &joint, "lateral = \"4 mm\"");
     let drive = Scene::from_text(&text, "case.toml")
         .unwrap()
         .drive()
@@ -222,7 +223,7 @@ fn spans_out_of_line_are_described() {
         .unwrap()
         .to_string();
     let span = "span driver-driven: 4.00 mm out of line on 764.9 mm, 0.52 % of the centre distance";
-    assert!(told.contains(span), "{told}");
+    assert!(told.contains(span) && told.contains("seals hold 0.1 N m"), "{told}");
 }
 
 /// Every mistake is found where it stands.
