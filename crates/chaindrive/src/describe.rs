@@ -6,6 +6,7 @@
 mod cost;
 mod free_train;
 mod links;
+mod oil;
 mod polygon;
 mod route;
 mod text;
@@ -23,6 +24,7 @@ use serde::{Serialize, Serializer};
 pub use cost::Cost;
 pub use free_train::FreeTrainFacts;
 pub use links::{ContactFacts, LinkFacts, left_out};
+pub use oil::OilFacts;
 pub use polygon::PolygonPair;
 pub use route::{SpanAtRest, StopFacts, spans_at_rest};
 pub use tolerance::ToleranceFacts;
@@ -43,6 +45,9 @@ pub struct Description {
     pub shafts: Vec<ShaftFacts>,
     /// Sprockets that are not as drawn.
     pub tolerances: Vec<ToleranceFacts>,
+    /// The oil; absent where the scene describes none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub oil: Option<OilFacts>,
     /// Shafts that torques turn, and no motion.
     pub free_trains: Vec<FreeTrainFacts>,
     /// The static states on the way to the start.
@@ -241,6 +246,7 @@ impl Description {
             chains,
             shafts: shafts(drive, &start),
             tolerances: tolerance::of(drive),
+            oil: oil::of(drive),
             free_trains: free_train::of(assembled),
             stops: route::stops(drive, assembled, &start),
             statics: static_stages(drive, assembled),

@@ -1,9 +1,10 @@
 //! A drive: everything that stays constant during a run, valid by construction.
 
+use chaindrive_contact::Lubricant;
 use chaindrive_geometry::{ArcSpline, Point, Side, ToothGap, Vector};
 use serde::{Deserialize, Serialize};
 
-use crate::{Chain, Coupling, Flank, Motion, Surface, Tensioner, Tolerance, Torque};
+use crate::{Chain, Coupling, Flank, Motion, ShaftLoss, Surface, Tensioner, Tolerance, Torque};
 
 /// A toothed wheel.
 #[derive(Clone, Debug)]
@@ -33,6 +34,8 @@ pub struct Sprocket {
     pub gap_angle: f64,
     /// Deviations from its drawing.
     pub tolerance: Tolerance,
+    /// Losses of the shaft at the sprocket; the bearings there carry what the chain pulls with, and the weight of the sprocket.
+    pub loss: ShaftLoss,
 }
 
 /// A body that turns: it carries sprockets of any chains, rigidly, or none.
@@ -44,6 +47,8 @@ pub struct Shaft {
     pub rotation: Rotation,
     /// Moment of inertia \[kg m²\] beside those of its sprockets, not negative.
     pub inertia: f64,
+    /// Losses beside those at its sprockets; its bearing has a stated torque, since nothing says what it carries.
+    pub loss: ShaftLoss,
 }
 
 impl Shaft {
@@ -53,6 +58,7 @@ impl Shaft {
             name: None,
             rotation,
             inertia: 0.0,
+            loss: ShaftLoss::default(),
         }
     }
 
@@ -369,6 +375,17 @@ pub struct Parts {
     pub settle: bool,
     /// Gravity \[m/s²\], (x, y).
     pub gravity: Vector,
+    /// The oil, where one is described.
+    pub oil: Option<OilSupply>,
+}
+
+/// The oil of a drive. The parameters that follow from it are with the parts: nothing else reads it in motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OilSupply {
+    /// Its properties.
+    pub lubricant: Lubricant,
+    /// Places of the parameters that follow from it.
+    pub used_by: Vec<String>,
 }
 
 impl Parts {

@@ -20,6 +20,9 @@ impl fmt::Display for Description {
         for unlike in &self.tolerances {
             row(f, "not as drawn", &unlike.to_string())?;
         }
+        if let Some(oil) = &self.oil {
+            row(f, "oil", &oil.to_string())?;
+        }
         for train in &self.free_trains {
             row(f, "turned by torques", &train.to_string())?;
         }

@@ -2,6 +2,7 @@
 
 mod against_reference;
 mod architecture;
+mod bearings;
 mod choice;
 mod choice_statistics;
 mod describe;

@@ -57,6 +57,7 @@ fn bicycle(model: ChainModel) -> Parts {
         flank: None,
         gap_angle: 0.0,
         tolerance: Tolerance::default(),
+        loss: chaindrive_mechanics::ShaftLoss::default(),
     };
     let driven = Rotation::Free {
         drive: Vec::new(),
@@ -109,6 +110,7 @@ fn bicycle(model: ChainModel) -> Parts {
         gears: Vec::new(),
         settle: true,
         gravity: Vector::new(0.0, -9.81),
+        oil: None,
     }
 }
 
@@ -527,6 +529,7 @@ fn wheels_beyond_the_room_of_the_rows_change_no_answer() {
                     start: StartSpeed::Joined,
                 },
                 inertia: 0.01,
+                loss: chaindrive_mechanics::ShaftLoss::default(),
             });
             parts.couplings.push(Coupling {
                 name: format!("coupling {behind}"),

@@ -137,6 +137,7 @@ fn assembled(
         gears: Vec::new(),
         settle: false,
         gravity: Vector::zeros(),
+        oil: None,
     };
     let drive = Drive::new(parts).expect("the parts are valid");
     drive.assemble().expect("nothing has to close")
@@ -180,6 +181,7 @@ fn leaf(model: ChainModel, speed: f64) -> Assembled {
         flank: None,
         gap_angle: 0.0,
         tolerance: Tolerance::default(),
+        loss: chaindrive_mechanics::ShaftLoss::default(),
     };
     let velocities = vec![Vector::new(-speed, 0.0); 4];
     assembled(

@@ -44,6 +44,7 @@ fn sprocket(name: &str, teeth: u32, centre: [f64; 2], rotation: Rotation) -> Tur
         flank: None,
         gap_angle: 0.0,
         tolerance: Tolerance::default(),
+        loss: chaindrive_mechanics::ShaftLoss::default(),
     };
     (sprocket, rotation)
 }
@@ -131,6 +132,7 @@ pub(crate) fn parts(chains: Vec<PlacedChain>, turning: Vec<Turning>) -> Parts {
         gears: Vec::new(),
         settle: true,
         gravity: Vector::new(0.0, -9.81),
+        oil: None,
     }
 }
 

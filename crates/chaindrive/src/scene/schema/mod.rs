@@ -8,6 +8,7 @@ mod chain;
 mod contact;
 mod guide;
 mod links;
+mod loss;
 mod motion;
 mod route;
 mod run;
@@ -20,6 +21,7 @@ pub(crate) use chain::{Chain, End, NamedChain, Start};
 pub(crate) use contact::{Contact, Contacts, Flank};
 pub(crate) use guide::{Face, Guide, GuideSupport, TravelSide};
 pub(crate) use links::{ChainModel, Joint, Link, Roller, Rollers};
+pub(crate) use loss::{Bearing, BearingFeed, Lubricant, ShaftDrag};
 pub(crate) use motion::{Motion, OrderTerm, StartSpeed, Torque};
 pub(crate) use route::{Adjust, Route};
 pub use run::RunDefaults;
@@ -97,6 +99,9 @@ pub(crate) struct SceneText {
     #[serde(default)]
     #[schemars(extend("maxItems" = 1000))]
     pub(crate) gears: Vec<Gears>,
+    /// The oil; absent: parts that need a viscosity give their own.
+    #[serde(default)]
+    pub(crate) lubricant: Option<Lubricant>,
     /// How a closed chain lies around its sprockets; absent: around all sprockets, in file order.
     #[serde(default)]
     pub(crate) route: Option<Route>,

@@ -58,6 +58,7 @@ pub(crate) fn parts(law: Law) -> Parts {
         flank: None,
         gap_angle: 0.0,
         tolerance: Tolerance::default(),
+        loss: chaindrive_mechanics::ShaftLoss::default(),
     });
     Parts {
         chains: vec![PlacedChain {
@@ -101,5 +102,6 @@ pub(crate) fn parts(law: Law) -> Parts {
         gears: Vec::new(),
         settle: true,
         gravity: Vector::new(0.0, -9.81),
+        oil: None,
     }
 }
