@@ -313,7 +313,8 @@ fn bearings_take_the_viscosity_of_the_oil() {
     let idle = described(&scene([""; 2], SPEED, oil)).to_string();
     assert!(idle.contains("no part of the drive asks for it"), "{idle}");
     let resolved = Scene::from_text(&scene([bearing, ""], SPEED, oil), "t.toml").unwrap();
-    let resolved = resolved.resolved().unwrap().to_toml();
+    let resolved = resolved.resolved().unwrap();
+    let resolved = resolved.text();
     assert!(
         resolved.contains("of the lubricant at its temperature"),
         "{resolved}"
