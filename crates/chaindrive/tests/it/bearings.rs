@@ -33,6 +33,7 @@ fn scene([driver, driven]: [&str; 2], speed: f64, more: &str) -> String {
         load = [{{ kind = "constant", torque = "-20 N m" }}]
         {driven}
         [route]
+        stops = ["driver", "driven"]
         pretension = "100 N"
         adjust = {{ kind = "sprocket", name = "driven", direction = [1, 0], within = "20 mm" }}
         [run]
@@ -298,10 +299,10 @@ fn bearings_take_the_viscosity_of_the_oil() {
     };
     let with = described(&scene([bearing, ""], SPEED, oil));
     let facts = with.oil.clone().unwrap();
-    assert_eq!(facts.used_by, ["sprockets.driver.bearing.viscosity"]);
+    assert_eq!(facts.used_by, ["sprockets[0].bearing.viscosity"]);
     assert!(
         with.to_string()
-            .contains("kg/m³ at 60 °C; for sprockets.driver.bearing.viscosity")
+            .contains("kg/m³ at 60 °C; for sprockets[0].bearing.viscosity")
     );
     assert!(
         !with
@@ -337,36 +338,36 @@ fn bad_losses_are_named() {
         (
             r#"bearing = { kind = "torque", torque = "-1 N m" }"#.to_owned(),
             "",
-            ["sprockets.driver.bearing.torque", "not negative [N m]"],
+            ["sprockets[0].bearing.torque", "not negative [N m]"],
         ),
         (
             r#"bearing = { kind = "coefficient", coefficient = "needle", diameter = "3 cm" }"#
                 .to_owned(),
             "",
-            ["sprockets.driver.bearing.coefficient", "deep-groove"],
+            ["sprockets[0].bearing.coefficient", "deep-groove"],
         ),
         (
             skf(r#"series = "65", outside_diameter = "52 mm", viscosity = "30 mm^2/s""#),
             "",
-            ["sprockets.driver.bearing.series", "`65`"],
+            ["sprockets[0].bearing.series", "`65`"],
         ),
         (
             skf(r#"series = "62", outside_diameter = "20 mm", viscosity = "30 mm^2/s""#),
             "",
             [
-                "sprockets.driver.bearing.outside_diameter",
+                "sprockets[0].bearing.outside_diameter",
                 "more than the bore",
             ],
         ),
         (
             skf(r#"series = "62", outside_diameter = "52 mm""#),
             "",
-            ["sprockets.driver.bearing.viscosity", "`lubricant`"],
+            ["sprockets[0].bearing.viscosity", "`lubricant`"],
         ),
         (
             r#"drag = { torque = "1 N m", speed = "10 rad/s", exponent = 4 }"#.to_owned(),
             "",
-            ["sprockets.driver.drag.exponent", "at most 3"],
+            ["sprockets[0].drag.exponent", "at most 3"],
         ),
         (
             String::new(),
@@ -391,7 +392,7 @@ fn bad_losses_are_named() {
         (
             String::new(),
             "[[shafts]]\nname = \"s\"\ninertia = 1\nbearing = { kind = \"coefficient\", coefficient = 0.001, diameter = 0.1 }\n",
-            ["shafts.s.bearing", "stated torque"],
+            ["shafts[0].bearing", "stated torque"],
         ),
     ] {
         let text = refused(&keys, more);
