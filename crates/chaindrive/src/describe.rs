@@ -121,6 +121,9 @@ pub struct Closing {
     pub unit: &'static str,
     /// Name of the sprocket or tensioner that was adjusted, if one was.
     pub adjusted: Option<String>,
+    /// Growth of the housing against chain and sprockets since then \[–\]; absent where there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub growth: Option<f64>,
 }
 
 /// Power that a chain is rated for where the run starts.
@@ -367,9 +370,9 @@ fn shafts(drive: &Drive, start: &Observation) -> Vec<ShaftFacts> {
 }
 
 fn closing(drive: &Drive, placed: &PlacedChain, fitting: &Fitting) -> Closing {
-    let adjust = match &placed.layout {
-        Layout::Route { fit, .. } => &fit.adjust,
-        Layout::Points { .. } => &Adjust::Nothing,
+    let (adjust, growth) = match &placed.layout {
+        Layout::Route { fit, .. } => (&fit.adjust, Some(fit.growth)),
+        Layout::Points { .. } => (&Adjust::Nothing, None),
     };
     let (adjusted, unit) = match adjust {
         Adjust::Nothing => (None, "m"),
@@ -384,6 +387,7 @@ fn closing(drive: &Drive, placed: &PlacedChain, fitting: &Fitting) -> Closing {
         travel: fitting.travel,
         unit,
         adjusted: adjusted.cloned(),
+        growth: growth.filter(|it| *it != 0.0),
     }
 }
 

@@ -235,6 +235,14 @@ impl Layout {
         }
     }
 
+    /// Growth of the frame after the chain was fitted \[–\].
+    pub(crate) fn growth(&self) -> f64 {
+        match self {
+            Self::Route { fit, .. } => fit.growth,
+            Self::Points { .. } => 0.0,
+        }
+    }
+
     /// Tension that the chain is laid with \[N\].
     pub(crate) fn pretension(&self) -> f64 {
         match self {
@@ -266,6 +274,9 @@ pub struct Fit {
     pub tighten: Tighten,
     /// Where the chain carries the pretension.
     pub at: PretensionAt,
+    /// Growth of the frame against chain and sprockets since they were fitted, such as that of a warm housing of aluminium \[–\]: a pretension, sag or
+    /// slack is that before it. Spans grow as the frame does, and wraps do not; links are made shorter by as much instead.
+    pub growth: f64,
     /// Sag of the slack span \[m\], made by the body that is moved; none: no more slack than the closing leaves.
     pub sag: Option<f64>,
     /// The span that takes what the chain is longer than its way, by the stop that it leaves. None: the last one, unless a guide lies along it;

@@ -371,6 +371,10 @@ impl fmt::Display for Closing {
                 write!(f, "{name} turned by {:.3}°", self.travel.to_degrees())
             }
             (Some(name), _) => write!(f, "{name} moved by {:.3} mm", self.travel * 1e3),
+        }?;
+        match self.growth {
+            Some(growth) => write!(f, "; the housing then grew by {}", strained(growth)),
+            None => Ok(()),
         }
     }
 }

@@ -11,6 +11,7 @@ mod dynamics;
 mod energy;
 mod examples;
 mod horizons;
+mod housing;
 mod impacts;
 mod joints;
 mod judged;

@@ -88,6 +88,7 @@ fn bicycle(model: ChainModel) -> Parts {
                 phase: 0.5,
                 start: SpanStart::Polygon,
                 fit: Fit {
+                    growth: 0.0,
                     sag: None,
                     slack: None,
                     adjust: Adjust::Nothing,

@@ -73,6 +73,7 @@ pub(crate) fn chain(links: usize, stops: [usize; 2]) -> PlacedChain {
             phase: 0.5,
             start: SpanStart::Polygon,
             fit: Fit {
+                growth: 0.0,
                 sag: None,
                 slack: None,
                 adjust: Adjust::Nothing,

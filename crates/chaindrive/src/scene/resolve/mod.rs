@@ -10,6 +10,7 @@ mod count;
 mod ends;
 mod flank;
 mod guide;
+mod housing;
 mod law;
 mod links;
 mod loss;

@@ -83,6 +83,7 @@ pub(crate) fn parts(law: Law) -> Parts {
                 phase: 0.5,
                 start: SpanStart::Polygon,
                 fit: Fit {
+                    growth: 0.0,
                     sag: None,
                     slack: None,
                     adjust: Adjust::Nothing,
