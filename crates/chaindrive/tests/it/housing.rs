@@ -86,10 +86,10 @@ fn other_chains_are_stretched_as_well() {
     };
     let springs = grown("particles");
     assert!(springs > 50.0, "{springs}");
-    let play = grown("clearance-links");
+    let play = grown("clearance-joints");
     assert!((play / springs - 1.0).abs() < 0.2, "{play} {springs}");
     // The teeth alone yield.
-    let ideal = grown("ideal-links");
+    let ideal = grown("ideal-joints");
     assert!(ideal > springs, "{ideal} {springs}");
 }
 
