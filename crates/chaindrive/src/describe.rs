@@ -7,6 +7,7 @@ mod alignment;
 mod cost;
 mod free_train;
 mod links;
+mod oil;
 mod polygon;
 mod route;
 mod text;
@@ -25,6 +26,7 @@ pub use alignment::AlignmentFacts;
 pub use cost::Cost;
 pub use free_train::FreeTrainFacts;
 pub use links::{ContactFacts, LinkFacts, left_out};
+pub use oil::OilFacts;
 pub use polygon::PolygonPair;
 pub use route::{SpanAtRest, StopFacts, spans_at_rest};
 pub use tolerance::ToleranceFacts;
@@ -47,6 +49,9 @@ pub struct Description {
     pub tolerances: Vec<ToleranceFacts>,
     /// Spans whose sprockets are not in one plane.
     pub out_of_line: Vec<AlignmentFacts>,
+    /// The oil; absent where the scene describes none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub oil: Option<OilFacts>,
     /// Shafts that torques turn, and no motion.
     pub free_trains: Vec<FreeTrainFacts>,
     /// The static states on the way to the start.
@@ -120,6 +125,9 @@ pub struct Closing {
     pub unit: &'static str,
     /// Name of the sprocket or tensioner that was adjusted, if one was.
     pub adjusted: Option<String>,
+    /// Growth of the housing against chain and sprockets since then \[–\]; absent where there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub growth: Option<f64>,
 }
 
 /// Power that a chain is rated for where the run starts.
@@ -246,6 +254,7 @@ impl Description {
             shafts: shafts(drive, &start),
             tolerances: tolerance::of(drive),
             out_of_line: alignment::of(drive),
+            oil: oil::of(drive),
             free_trains: free_train::of(assembled),
             stops: route::stops(drive, assembled, &start),
             statics: static_stages(drive, assembled),
@@ -366,9 +375,9 @@ fn shafts(drive: &Drive, start: &Observation) -> Vec<ShaftFacts> {
 }
 
 fn closing(drive: &Drive, placed: &PlacedChain, fitting: &Fitting) -> Closing {
-    let adjust = match &placed.layout {
-        Layout::Route { fit, .. } => &fit.adjust,
-        Layout::Points { .. } => &Adjust::Nothing,
+    let (adjust, growth) = match &placed.layout {
+        Layout::Route { fit, .. } => (&fit.adjust, Some(fit.growth)),
+        Layout::Points { .. } => (&Adjust::Nothing, None),
     };
     let (adjusted, unit) = match adjust {
         Adjust::Nothing => (None, "m"),
@@ -383,6 +392,7 @@ fn closing(drive: &Drive, placed: &PlacedChain, fitting: &Fitting) -> Closing {
         travel: fitting.travel,
         unit,
         adjusted: adjusted.cloned(),
+        growth: growth.filter(|it| *it != 0.0),
     }
 }
 

@@ -44,6 +44,7 @@ pub mod elastic;
 mod error;
 pub mod friction;
 mod law;
+pub mod lubricant;
 pub mod material;
 pub mod onset;
 pub mod restitution;
@@ -53,6 +54,7 @@ pub use dissipation::Dissipation;
 pub use elastic::Elastic;
 pub use friction::{Friction, Rub};
 pub use law::{Approach, Law, Prepared, Response};
+pub use lubricant::Lubricant;
 pub use material::Elasticity;
 pub use onset::interpolated_onset;
 

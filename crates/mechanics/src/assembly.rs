@@ -303,8 +303,9 @@ impl Drive {
                 // tight that is. They carry what the lumped ones do at this phase.
                 let free = placed.chain.model.free_roller().is_some()
                     && of_layout.1 == PretensionAt::MeanPhase;
+                // What a frame that has grown adds to the pretension is known from the lumped ones alone.
                 let as_lumped = carried(statics, hard::links_of(&parts.chains, index))
-                    .filter(|_| free)
+                    .filter(|_| free || placed.layout.growth() != 0.0)
                     .map(|tension| (tension, PretensionAt::Phase));
                 let (pretension, at) = as_lumped.unwrap_or(of_layout);
                 Tightening {

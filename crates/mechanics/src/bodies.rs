@@ -25,7 +25,7 @@ use crate::contact::Frame;
 use crate::motion::Kinematics;
 use crate::seam::Rates;
 use crate::tensioner::Slopes;
-use crate::{Coupling, Motion};
+use crate::{Coupling, Motion, ShaftLoss};
 
 /// Bodies that chains touch.
 #[derive(Clone, Debug)]
@@ -72,6 +72,8 @@ pub(crate) struct Wheel {
     pub(crate) eccentricity: Vector,
     /// +1 where the chain turns counter-clockwise around the wheel.
     pub(crate) sense: f64,
+    /// Losses of its shaft that its load has to do with.
+    pub(crate) loss: ShaftLoss,
 }
 
 /// Support of a wheel's centre.
@@ -136,10 +138,17 @@ impl Bodies {
         centre
     }
 
-    /// ω² and damping rate of every body by itself, the largest of each; `pushes` of every tensioner at the last evaluation.
-    pub(crate) fn own_rates(&self, pushes: &[Slopes]) -> Rates {
+    /// ω² and damping rate of every body by itself, the largest of each; `pushes` of every tensioner and damping of
+    /// every loss at the last evaluation.
+    pub(crate) fn own_rates(&self, pushes: &[Slopes], resisting: &[f64]) -> Rates {
         let [mut squared, predicted] = self.rates;
         let mut damping = predicted;
+        for (turn, resists) in self.resisted().zip(resisting) {
+            if let Some((dof, ratio)) = turn.turned_by() {
+                damping = damping.max(ratio * ratio * resists / self.inertia(dof));
+            }
+        }
+        let predicted = damping;
         for (slide, state) in self.slides.iter().zip(pushes) {
             damping = damping.max(slide.own_damping());
             if slide.state.is_some() {
@@ -249,11 +258,12 @@ impl Bodies {
     }
 
     /// Bearings, tensioners and shafts: visits (entry of the state, c C + k K) of what they have of their own, with the slopes of the
-    /// pushes at the last evaluation.
+    /// pushes and the damping of the losses at the last evaluation.
     pub(crate) fn each_support(
         &self,
         weights: Weights,
         pushes: &[Slopes],
+        resisting: &[f64],
         mut visit: impl FnMut(usize, f64),
     ) {
         let mut visit = |dof: usize, stiffness: f64, damping: f64| {
@@ -265,6 +275,11 @@ impl Bodies {
         for shaft in &self.shafts {
             if let Some((dof, ratio)) = shaft.turn.turned_by() {
                 visit(dof, 0.0, ratio * ratio * shaft.drag());
+            }
+        }
+        for (turn, resists) in self.resisted().zip(resisting) {
+            if let (Some((dof, ratio)), true) = (turn.turned_by(), *resists > 0.0) {
+                visit(dof, 0.0, ratio * ratio * resists);
             }
         }
         for wheel in &self.wheels {

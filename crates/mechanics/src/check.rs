@@ -114,6 +114,7 @@ fn sprocket_problems(sprocket: &Sprocket, tensioners: usize) -> Vec<DriveError> 
         "finite [rad]",
     );
     let gap = &sprocket.gap;
+    found.extend(sprocket.loss.problems(&place));
     found.extend(sprocket.tolerance.problems(&place, gap.teeth, gap.pitch));
     let mut need = |ok: bool, what: &str, value: f64, allowed: &'static str| {
         found.extend(DriveError::require(ok, &format!("{place}.{what}"), value, allowed).err());
@@ -299,6 +300,9 @@ fn plane_problems(placed: &PlacedChain, parts: &Parts) -> Vec<DriveError> {
     found
 }
 
+/// Largest growth of a frame. *Assumed*: aluminium grows by as much against steel over more than 1000 K.
+const MOST_GROWTH: f64 = 0.02;
+
 fn fit_problems(fit: &Fit, parts: &Parts) -> Vec<DriveError> {
     let mut found = Vec::new();
     found.extend(
@@ -310,6 +314,9 @@ fn fit_problems(fit: &Fit, parts: &Parts) -> Vec<DriveError> {
         )
         .err(),
     );
+    let grows = fit.growth.abs() <= MOST_GROWTH;
+    let allowed = "between -0.02 and 0.02, as metals grow";
+    found.extend(DriveError::require(grows, "route.growth", fit.growth, allowed).err());
     let within = match fit.adjust {
         Adjust::Nothing => 1.0,
         Adjust::Sprocket {

@@ -1,9 +1,10 @@
 //! A drive: everything that stays constant during a run, valid by construction.
 
+use chaindrive_contact::Lubricant;
 use chaindrive_geometry::{ArcSpline, Point, Side, ToothGap, Vector};
 use serde::{Deserialize, Serialize};
 
-use crate::{Chain, Coupling, Flank, Motion, Surface, Tensioner, Tolerance, Torque};
+use crate::{Chain, Coupling, Flank, Motion, ShaftLoss, Surface, Tensioner, Tolerance, Torque};
 
 /// A toothed wheel.
 #[derive(Clone, Debug)]
@@ -35,6 +36,8 @@ pub struct Sprocket {
     pub tolerance: Tolerance,
     /// Place of the middle of its teeth along its shaft \[m\]: where that of two sprockets differs, the chain runs out of line.
     pub lateral: f64,
+    /// Losses of the shaft at the sprocket; the bearings there carry what the chain pulls with, and the weight of the sprocket.
+    pub loss: ShaftLoss,
 }
 
 /// A body that turns: it carries sprockets of any chains, rigidly, or none.
@@ -46,6 +49,8 @@ pub struct Shaft {
     pub rotation: Rotation,
     /// Moment of inertia \[kg m²\] beside those of its sprockets, not negative.
     pub inertia: f64,
+    /// Losses beside those at its sprockets; its bearing has a stated torque, since nothing says what it carries.
+    pub loss: ShaftLoss,
 }
 
 impl Shaft {
@@ -55,6 +60,7 @@ impl Shaft {
             name: None,
             rotation,
             inertia: 0.0,
+            loss: ShaftLoss::default(),
         }
     }
 
@@ -231,6 +237,14 @@ impl Layout {
         }
     }
 
+    /// Growth of the frame after the chain was fitted \[–\].
+    pub(crate) fn growth(&self) -> f64 {
+        match self {
+            Self::Route { fit, .. } => fit.growth,
+            Self::Points { .. } => 0.0,
+        }
+    }
+
     /// Tension that the chain is laid with \[N\].
     pub(crate) fn pretension(&self) -> f64 {
         match self {
@@ -262,6 +276,9 @@ pub struct Fit {
     pub tighten: Tighten,
     /// Where the chain carries the pretension.
     pub at: PretensionAt,
+    /// Growth of the frame against chain and sprockets since they were fitted, such as that of a warm housing of aluminium \[–\]: a pretension, sag or
+    /// slack is that before it. Spans grow as the frame does, and wraps do not; links are made shorter by as much instead.
+    pub growth: f64,
     /// Sag of the slack span \[m\], made by the body that is moved; none: no more slack than the closing leaves.
     pub sag: Option<f64>,
     /// The span that takes what the chain is longer than its way, by the stop that it leaves. None: the last one, unless a guide lies along it;
@@ -371,6 +388,17 @@ pub struct Parts {
     pub settle: bool,
     /// Gravity \[m/s²\], (x, y).
     pub gravity: Vector,
+    /// The oil, where one is described.
+    pub oil: Option<OilSupply>,
+}
+
+/// The oil of a drive. The parameters that follow from it are with the parts: nothing else reads it in motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OilSupply {
+    /// Its properties.
+    pub lubricant: Lubricant,
+    /// Places of the parameters that follow from it.
+    pub used_by: Vec<String>,
 }
 
 impl Parts {

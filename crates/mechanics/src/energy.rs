@@ -73,6 +73,10 @@ pub enum Flow {
     DriveTorque,
     /// Work of load torques, negative while they resist.
     Load,
+    /// Loss by friction in the bearings of shafts.
+    BearingLoss,
+    /// Loss by drag of oil and air on shafts.
+    ShaftDragLoss,
 }
 
 /// Places where a drive loses energy.
@@ -94,13 +98,17 @@ pub enum Place {
     Spans,
     /// Tensioners.
     Tensioners,
-    /// Bearings on springs, and couplings.
+    /// Dampers of bearings on springs, and couplings.
     Supports,
+    /// Friction in the bearings of shafts.
+    Bearings,
+    /// Oil and air around shafts.
+    Shafts,
 }
 
 impl Place {
     /// All places, in the order of [`Energy::losses`].
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 11] = [
         Self::Joints,
         Self::Rollers,
         Self::Seals,
@@ -110,6 +118,8 @@ impl Place {
         Self::Spans,
         Self::Tensioners,
         Self::Supports,
+        Self::Bearings,
+        Self::Shafts,
     ];
 
     /// Name in results.
@@ -124,6 +134,8 @@ impl Place {
             Self::Spans => "spans",
             Self::Tensioners => "tensioners",
             Self::Supports => "supports",
+            Self::Bearings => "bearings",
+            Self::Shafts => "shafts",
         }
     }
 }
@@ -167,7 +179,7 @@ impl Store {
 
 impl Flow {
     /// All flows, in the order of [`Energy::flows`].
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 20] = [
         Self::LinkLoss,
         Self::DragLoss,
         Self::JointLoss,
@@ -186,6 +198,8 @@ impl Flow {
         Self::Motions,
         Self::DriveTorque,
         Self::Load,
+        Self::BearingLoss,
+        Self::ShaftDragLoss,
     ];
 
     /// Whether the flow takes energy away.
@@ -205,6 +219,8 @@ impl Flow {
             Self::LinkLoss | Self::DragLoss => Some(Place::Spans),
             Self::TensionerLoss => Some(Place::Tensioners),
             Self::SupportLoss => Some(Place::Supports),
+            Self::BearingLoss => Some(Place::Bearings),
+            Self::ShaftDragLoss => Some(Place::Shafts),
             Self::Driver | Self::Motions | Self::DriveTorque | Self::Load => None,
         }
     }
@@ -230,6 +246,8 @@ impl Flow {
             Self::Motions => "motions_supplied",
             Self::DriveTorque => "torques_supplied",
             Self::Load => "load_supplied",
+            Self::BearingLoss => "bearings_dissipated",
+            Self::ShaftDragLoss => "shafts_dissipated",
         }
     }
 }

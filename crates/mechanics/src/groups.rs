@@ -202,6 +202,7 @@ impl Group {
             gears: gears.collect(),
             settle: whole.settle,
             gravity: whole.gravity,
+            oil: whole.oil.clone(),
         }
     }
 }

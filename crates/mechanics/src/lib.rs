@@ -68,6 +68,7 @@
 //!     gears: vec![],
 //!     settle: true,
 //!     gravity: Vector::zeros(),
+//!     oil: None,
 //! };
 //! // All parameters out of range at once, or a drive.
 //! let drive = Drive::new(parts).map_err(|problems| format!("{problems:?}"))?;
@@ -127,6 +128,7 @@ mod order;
 mod pose;
 mod profile;
 mod seam;
+mod shaft_loss;
 mod standing;
 mod strength;
 mod struck;
@@ -146,9 +148,9 @@ pub use chains::model::*;
 pub use contact::{Impact, Impacts};
 pub use coupling::Coupling;
 pub use drive::{
-    Adjust, AgainstRoute, Drive, Fit, GearPair, Guide, GuideSupport, Layout, Parts, PlacedChain,
-    PretensionAt, Rotation, Shaft, SpanStart, Sprocket, StartSpeed, Stop, Support, Tighten,
-    Touches,
+    Adjust, AgainstRoute, Drive, Fit, GearPair, Guide, GuideSupport, Layout, OilSupply, Parts,
+    PlacedChain, PretensionAt, Rotation, Shaft, SpanStart, Sprocket, StartSpeed, Stop, Support,
+    Tighten, Touches,
 };
 pub use energy::{Energy, Flow, Place, Store};
 pub use error::{AssemblyError, Clash, DriveError, MemoryError, Pull};
@@ -162,6 +164,7 @@ pub use pose::{
     Body, BodyKind, Figure, FigureChain, Instant, MissingChannel, Placement, PlateShape, Pose,
 };
 pub use seam::{ContactEvent, ContactPair, EventKinds, Observation};
+pub use shaft_loss::{Bearing, BearingLaw, ShaftDrag, ShaftLoss, SkfBearing};
 pub use strength::{Capacity, PowerLimits, Strength, Unrated};
 pub use struck::Struck;
 pub use surface::{Flank, Surface};

@@ -63,6 +63,8 @@ pub struct Record {
     pub(crate) rail_wrenches: Vec<Wrench>,
     /// Derivatives of pushes with a state, for every tensioner.
     pub(crate) pushes: Vec<Slopes>,
+    /// Damping of the losses at every wheel, then of those of every shaft \[N m s\].
+    pub(crate) resisting: Vec<f64>,
 }
 
 impl System {
@@ -292,7 +294,10 @@ impl System {
     pub(crate) fn rates(&self, record: &mut Record) -> Rates {
         let chains = self.chains.iter().zip(&mut record.chains);
         let rates = chains.map(|(member, record)| member.rates_at(&self.bodies, record));
-        rates.fold(self.bodies.own_rates(&record.pushes), Rates::max)
+        rates.fold(
+            self.bodies.own_rates(&record.pushes, &record.resisting),
+            Rates::max,
+        )
     }
 
     /// Accelerations and powers at a moment.
@@ -312,8 +317,12 @@ impl System {
         self.gather(record);
         let wrenches = [&record.wheel_wrenches, &record.rail_wrenches];
         let wrenches = wrenches.map(Vec::as_slice);
+        let found = (
+            record.pushes.as_mut_slice(),
+            record.resisting.as_mut_slice(),
+        );
         self.bodies
-            .accelerate(at, prediction, a, rates, wrenches, &mut record.pushes);
+            .accelerate(at, prediction, a, rates, wrenches, found);
     }
 
     /// Adds up what the chains do to the bodies.
@@ -330,8 +339,8 @@ impl System {
     }
 
     /// ω² and D of everything, as the time scales 1/(D + √(D² + ω²)) and 1/ω.
-    fn renew_time_scales(&mut self, pushes: &[Slopes]) {
-        let own = self.bodies.own_rates(pushes);
+    fn renew_time_scales(&mut self, pushes: &[Slopes], resisting: &[f64]) {
+        let own = self.bodies.own_rates(pushes, resisting);
         let all = self.chains.iter().map(|member| member.rates);
         let Rates {
             squared,
@@ -380,6 +389,7 @@ impl SecondOrderSystem for System {
             wheel_wrenches: vec![Wrench::default(); self.bodies.wheels.len()],
             rail_wrenches: vec![Wrench::default(); self.bodies.rails.len()],
             pushes: vec![Slopes::default(); self.bodies.slides.len()],
+            resisting: vec![0.0; self.bodies.wheels.len() + self.bodies.shafts.len()],
         }
     }
 
@@ -435,7 +445,7 @@ impl SecondOrderSystem for System {
         for (member, record) in self.chains.iter_mut().zip(&mut end.chains) {
             member.commit(t, record, &self.bodies);
         }
-        self.renew_time_scales(&end.pushes);
+        self.renew_time_scales(&end.pushes, &end.resisting);
         for (member, record) in self.chains.iter_mut().zip(&mut end.chains) {
             let entries = member.entries.clone();
             let (q, v) = (&mut q[entries.clone()], &mut v[entries]);

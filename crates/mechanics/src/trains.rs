@@ -86,6 +86,7 @@ mod tests {
             gears: vec![pair([2, 3], 4.0), pair([2, 1], 0.5), pair([0, 1], -2.0)],
             settle: false,
             gravity: Vector::zeros(),
+            oil: None,
         };
         let ratios = |parts: &Parts| -> Vec<(usize, f64)> {
             let all = trains(parts).into_iter();

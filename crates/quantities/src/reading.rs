@@ -8,6 +8,9 @@ use crate::unit::{self, Powers, Unit, UnitProblem};
 /// Name of the quantity whose unit depends on the exponent beside it.
 pub const CONTACT_STIFFNESS: &str = "a contact stiffness";
 
+/// Name of the quantity whose scale has a zero of its own in degrees Celsius.
+const TEMPERATURE: &str = "a temperature";
+
 /// Why a text is not the quantity that is needed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Complaint {
@@ -95,6 +98,16 @@ impl Dimension {
                 "decimals are written with a point".into(),
             ));
         }
+        if let Some(kelvin) = unit::celsius(shift_decimal(number, 0), rest) {
+            return if self.name == TEMPERATURE {
+                Ok(kelvin)
+            } else {
+                Err(complain(
+                    format!("`{text}` is a temperature, needed is {}", self.name),
+                    such_as(),
+                ))
+            };
+        }
         let unit = if rest.trim().is_empty() {
             if !Powers(self.powers).matches(Powers::default()) {
                 return Err(complain(
@@ -152,10 +165,9 @@ impl Dimension {
 
     fn fits(&self, found: Powers, exponent: Option<f64>) -> bool {
         if self.name == CONTACT_STIFFNESS {
-            let [length, mass, time, angle] = found.0;
             // N/mⁿ = kg m^(1−n) s⁻²
-            let n = exponent.unwrap_or(1.0 - length);
-            return Powers([length, mass, time, angle]).matches(Powers([1.0 - n, 1.0, -2.0, 0.0]));
+            let n = exponent.unwrap_or(1.0 - found.0[0]);
+            return found.matches(Powers([1.0 - n, 1.0, -2.0, 0.0, 0.0]));
         }
         let needed = Powers(self.powers);
         if self.strict_angle {
@@ -166,8 +178,8 @@ impl Dimension {
     }
 
     fn hint_for(&self, found: Powers, exponent: Option<f64>) -> String {
-        let per_second = Powers([0.0, 0.0, -1.0, 0.0]);
-        let turning = Powers([0.0, 0.0, -1.0, 1.0]);
+        let per_second = Powers([0.0, 0.0, -1.0, 0.0, 0.0]);
+        let turning = Powers([0.0, 0.0, -1.0, 1.0, 0.0]);
         match self.name {
             "an angular speed" if found.matches(per_second) => {
                 "1/s and Hz count events; write radians or turns, \"10 rad/s\" or \"1500 rpm\""
@@ -190,7 +202,7 @@ fn name_of(powers: Powers) -> String {
     let known = DIMENSIONS.iter().find(|d| powers.matches(Powers(d.powers)));
     match known {
         Some(dimension) => dimension.name.to_owned(),
-        None if powers.matches(Powers([2.0, 1.0, -3.0, 0.0])) => "a power".to_owned(),
+        None if powers.matches(Powers([2.0, 1.0, -3.0, 0.0, 0.0])) => "a power".to_owned(),
         None => format!("in {powers}"),
     }
 }
@@ -344,8 +356,27 @@ mod tests {
     }
 
     #[test]
+    fn temperatures_have_a_zero_of_their_own_in_degrees() {
+        for (text, kelvin) in [("60 degC", 333.15), ("-20 °C", 253.15), ("300 K", 300.0)] {
+            let found = read("a temperature", text).unwrap();
+            assert!((found - kelvin).abs() < 1e-12, "{text}: {found}");
+        }
+        assert_eq!(read("a temperature difference", "40 K"), Ok(40.0));
+        let expansion = read("a thermal expansion", "11.5e-6 1/K");
+        assert_eq!(expansion, Ok(11.5e-6));
+    }
+
+    #[test]
     fn complaints_say_what_to_write() {
         let table = [
+            (
+                "a temperature difference",
+                "40 degC",
+                "is a temperature, needed is a temperature difference",
+                "40 K",
+            ),
+            ("a temperature", "60 deg", "is an angle", "60 degC"),
+            ("a temperature", "60", "has no unit", "60 degC"),
             (
                 "an angular speed",
                 "12 mm",

@@ -1,13 +1,13 @@
 //! Units as they are written: `kN s/m`, `N/m^1.5`, `kg m²`, `rpm`.
 //!
-//! A unit is a factor to SI and the powers of metre, kilogram, second and radian. The radian is
+//! A unit is a factor to SI and the powers of metre, kilogram, second, radian and kelvin. The radian is
 //! kept apart from pure numbers: that is what tells a speed of rotation from a frequency.
 
 use std::f64::consts::{PI, TAU};
 
-/// Powers of the base units m, kg, s and rad.
+/// Powers of the base units m, kg, s, rad and K.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Powers(pub(crate) [f64; 4]);
+pub(crate) struct Powers(pub(crate) [f64; 5]);
 
 impl Powers {
     /// Whether both have the same powers, up to rounding of fractional ones.
@@ -20,15 +20,15 @@ impl Powers {
 
     /// The powers without the radian.
     pub(crate) fn without_angle(self) -> Self {
-        let [length, mass, time, _] = self.0;
-        Self([length, mass, time, 0.0])
+        let [length, mass, time, _, temperature] = self.0;
+        Self([length, mass, time, 0.0, temperature])
     }
 }
 
 impl std::fmt::Display for Powers {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mut separator = "";
-        for (power, symbol) in self.0.iter().zip(["m", "kg", "s", "rad"]) {
+        for (power, symbol) in self.0.iter().zip(["m", "kg", "s", "rad", "K"]) {
             if power.abs() < 1e-9 {
                 continue;
             }
@@ -70,7 +70,7 @@ struct Symbol {
     name: &'static str,
     decade: i32,
     factor: f64,
-    powers: [f64; 4],
+    powers: [f64; 5],
     prefixed: bool,
 }
 
@@ -78,7 +78,7 @@ const fn symbol(
     name: &'static str,
     decade: i32,
     factor: f64,
-    powers: [f64; 4],
+    powers: [f64; 5],
     prefixed: bool,
 ) -> Symbol {
     Symbol {
@@ -90,29 +90,36 @@ const fn symbol(
     }
 }
 
-const SYMBOLS: [Symbol; 22] = [
-    symbol("m", 0, 1.0, [1.0, 0.0, 0.0, 0.0], true),
-    symbol("g", -3, 1.0, [0.0, 1.0, 0.0, 0.0], true),
-    symbol("s", 0, 1.0, [0.0, 0.0, 1.0, 0.0], true),
-    symbol("rad", 0, 1.0, [0.0, 0.0, 0.0, 1.0], true),
-    symbol("N", 0, 1.0, [1.0, 1.0, -2.0, 0.0], true),
-    symbol("Pa", 0, 1.0, [-1.0, 1.0, -2.0, 0.0], true),
-    symbol("W", 0, 1.0, [2.0, 1.0, -3.0, 0.0], true),
-    symbol("Hz", 0, 1.0, [0.0, 0.0, -1.0, 0.0], true),
-    symbol("bar", 5, 1.0, [-1.0, 1.0, -2.0, 0.0], false),
-    symbol("t", 3, 1.0, [0.0, 1.0, 0.0, 0.0], false),
-    symbol("min", 0, 60.0, [0.0, 0.0, 1.0, 0.0], false),
-    symbol("h", 0, 3600.0, [0.0, 0.0, 1.0, 0.0], false),
-    symbol("deg", 0, PI / 180.0, [0.0, 0.0, 0.0, 1.0], false),
-    symbol("°", 0, PI / 180.0, [0.0, 0.0, 0.0, 1.0], false),
-    symbol("r", 0, TAU, [0.0, 0.0, 0.0, 1.0], false),
-    symbol("rev", 0, TAU, [0.0, 0.0, 0.0, 1.0], false),
-    symbol("rpm", 0, TAU / 60.0, [0.0, 0.0, -1.0, 1.0], false),
-    symbol("in", 0, 0.0254, [1.0, 0.0, 0.0, 0.0], false),
-    symbol("ft", 0, 0.3048, [1.0, 0.0, 0.0, 0.0], false),
-    symbol("lb", 0, 0.453_592_37, [0.0, 1.0, 0.0, 0.0], false),
-    symbol("lbf", 0, 4.448_221_615_260_5, [1.0, 1.0, -2.0, 0.0], false),
-    symbol("%", -2, 1.0, [0.0, 0.0, 0.0, 0.0], false),
+const SYMBOLS: [Symbol; 23] = [
+    symbol("m", 0, 1.0, [1.0, 0.0, 0.0, 0.0, 0.0], true),
+    symbol("g", -3, 1.0, [0.0, 1.0, 0.0, 0.0, 0.0], true),
+    symbol("s", 0, 1.0, [0.0, 0.0, 1.0, 0.0, 0.0], true),
+    symbol("rad", 0, 1.0, [0.0, 0.0, 0.0, 1.0, 0.0], true),
+    symbol("N", 0, 1.0, [1.0, 1.0, -2.0, 0.0, 0.0], true),
+    symbol("Pa", 0, 1.0, [-1.0, 1.0, -2.0, 0.0, 0.0], true),
+    symbol("W", 0, 1.0, [2.0, 1.0, -3.0, 0.0, 0.0], true),
+    symbol("Hz", 0, 1.0, [0.0, 0.0, -1.0, 0.0, 0.0], true),
+    symbol("bar", 5, 1.0, [-1.0, 1.0, -2.0, 0.0, 0.0], false),
+    symbol("t", 3, 1.0, [0.0, 1.0, 0.0, 0.0, 0.0], false),
+    symbol("min", 0, 60.0, [0.0, 0.0, 1.0, 0.0, 0.0], false),
+    symbol("h", 0, 3600.0, [0.0, 0.0, 1.0, 0.0, 0.0], false),
+    symbol("deg", 0, PI / 180.0, [0.0, 0.0, 0.0, 1.0, 0.0], false),
+    symbol("°", 0, PI / 180.0, [0.0, 0.0, 0.0, 1.0, 0.0], false),
+    symbol("r", 0, TAU, [0.0, 0.0, 0.0, 1.0, 0.0], false),
+    symbol("rev", 0, TAU, [0.0, 0.0, 0.0, 1.0, 0.0], false),
+    symbol("rpm", 0, TAU / 60.0, [0.0, 0.0, -1.0, 1.0, 0.0], false),
+    symbol("in", 0, 0.0254, [1.0, 0.0, 0.0, 0.0, 0.0], false),
+    symbol("ft", 0, 0.3048, [1.0, 0.0, 0.0, 0.0, 0.0], false),
+    symbol("lb", 0, 0.453_592_37, [0.0, 1.0, 0.0, 0.0, 0.0], false),
+    symbol(
+        "lbf",
+        0,
+        4.448_221_615_260_5,
+        [1.0, 1.0, -2.0, 0.0, 0.0],
+        false,
+    ),
+    symbol("K", 0, 1.0, [0.0, 0.0, 0.0, 0.0, 1.0], false),
+    symbol("%", -2, 1.0, [0.0, 0.0, 0.0, 0.0, 0.0], false),
 ];
 
 const PREFIXES: [(&str, i32); 10] = [
@@ -128,9 +135,17 @@ const PREFIXES: [(&str, i32); 10] = [
     ("G", 9),
 ];
 
+/// Zero of the Celsius scale \[K\].
+const CELSIUS: f64 = 273.15;
+
+/// The temperature \[K\] of a number of degrees Celsius; none where the unit is another one.
+pub(crate) fn celsius(number: f64, unit: &str) -> Option<f64> {
+    matches!(unit.trim(), "degC" | "°C").then_some(number + CELSIUS)
+}
+
 /// The known symbols, for messages.
 pub(crate) fn known() -> String {
-    let names: Vec<_> = SYMBOLS.iter().map(|s| s.name).collect();
+    let names: Vec<_> = SYMBOLS.iter().map(|s| s.name).chain(["degC"]).collect();
     format!("{}; prefixes n µ u m c d k M G", names.join(" "))
 }
 
@@ -156,7 +171,7 @@ pub(crate) fn parse(text: &str) -> Result<Unit, UnitProblem> {
 const NUMBER: Unit = Unit {
     decade: 0,
     factor: 1.0,
-    powers: Powers([0.0; 4]),
+    powers: Powers([0.0; 5]),
 };
 
 struct Reader<'t> {
@@ -334,7 +349,7 @@ fn raise(unit: Unit, power: f64) -> Unit {
 mod tests {
     use super::*;
 
-    fn value(text: &str) -> (f64, [f64; 4]) {
+    fn value(text: &str) -> (f64, [f64; 5]) {
         let unit = parse(text).unwrap_or_else(|problem| panic!("{text}: {problem:?}"));
         (unit.factor * 10_f64.powi(unit.decade), unit.powers.0)
     }
@@ -342,40 +357,43 @@ mod tests {
     #[test]
     fn units_of_the_trade() {
         let table = [
-            ("mm", 1e-3, [1.0, 0.0, 0.0, 0.0]),
-            ("µm", 1e-6, [1.0, 0.0, 0.0, 0.0]),
-            ("um", 1e-6, [1.0, 0.0, 0.0, 0.0]),
-            ("kg", 1.0, [0.0, 1.0, 0.0, 0.0]),
-            ("g", 1e-3, [0.0, 1.0, 0.0, 0.0]),
-            ("MN/m", 1e6, [0.0, 1.0, -2.0, 0.0]),
-            ("N/mm", 1e3, [0.0, 1.0, -2.0, 0.0]),
-            ("kN s/m", 1e3, [0.0, 1.0, -1.0, 0.0]),
-            ("kN*s/m", 1e3, [0.0, 1.0, -1.0, 0.0]),
-            ("N·s/m", 1.0, [0.0, 1.0, -1.0, 0.0]),
-            ("N/m^1.5", 1.0, [-0.5, 1.0, -2.0, 0.0]),
-            ("kN/mm^1.5", 10_f64.powf(7.5), [-0.5, 1.0, -2.0, 0.0]),
-            ("kg m^2", 1.0, [2.0, 1.0, 0.0, 0.0]),
-            ("kg m²", 1.0, [2.0, 1.0, 0.0, 0.0]),
-            ("g mm^2", 1e-9, [2.0, 1.0, 0.0, 0.0]),
-            ("m/s^2", 1.0, [1.0, 0.0, -2.0, 0.0]),
-            ("m/s/s", 1.0, [1.0, 0.0, -2.0, 0.0]),
-            ("m s^-2", 1.0, [1.0, 0.0, -2.0, 0.0]),
-            ("N/(m s)", 1.0, [0.0, 1.0, -3.0, 0.0]),
-            ("1/s", 1.0, [0.0, 0.0, -1.0, 0.0]),
-            ("kHz", 1e3, [0.0, 0.0, -1.0, 0.0]),
-            ("rpm", TAU / 60.0, [0.0, 0.0, -1.0, 1.0]),
-            ("r/min", TAU / 60.0, [0.0, 0.0, -1.0, 1.0]),
-            ("rev/min", TAU / 60.0, [0.0, 0.0, -1.0, 1.0]),
-            ("deg", PI / 180.0, [0.0, 0.0, 0.0, 1.0]),
-            ("°", PI / 180.0, [0.0, 0.0, 0.0, 1.0]),
-            ("mrad", 1e-3, [0.0, 0.0, 0.0, 1.0]),
-            ("%", 1e-2, [0.0, 0.0, 0.0, 0.0]),
-            ("bar", 1e5, [-1.0, 1.0, -2.0, 0.0]),
-            ("MPa", 1e6, [-1.0, 1.0, -2.0, 0.0]),
-            ("mPa s", 1e-3, [-1.0, 1.0, -1.0, 0.0]),
-            ("N m/rad", 1.0, [2.0, 1.0, -2.0, -1.0]),
-            ("in", 0.0254, [1.0, 0.0, 0.0, 0.0]),
-            ("min", 60.0, [0.0, 0.0, 1.0, 0.0]),
+            ("mm", 1e-3, [1.0, 0.0, 0.0, 0.0, 0.0]),
+            ("µm", 1e-6, [1.0, 0.0, 0.0, 0.0, 0.0]),
+            ("um", 1e-6, [1.0, 0.0, 0.0, 0.0, 0.0]),
+            ("kg", 1.0, [0.0, 1.0, 0.0, 0.0, 0.0]),
+            ("g", 1e-3, [0.0, 1.0, 0.0, 0.0, 0.0]),
+            ("MN/m", 1e6, [0.0, 1.0, -2.0, 0.0, 0.0]),
+            ("N/mm", 1e3, [0.0, 1.0, -2.0, 0.0, 0.0]),
+            ("kN s/m", 1e3, [0.0, 1.0, -1.0, 0.0, 0.0]),
+            ("kN*s/m", 1e3, [0.0, 1.0, -1.0, 0.0, 0.0]),
+            ("N·s/m", 1.0, [0.0, 1.0, -1.0, 0.0, 0.0]),
+            ("N/m^1.5", 1.0, [-0.5, 1.0, -2.0, 0.0, 0.0]),
+            ("kN/mm^1.5", 10_f64.powf(7.5), [-0.5, 1.0, -2.0, 0.0, 0.0]),
+            ("kg m^2", 1.0, [2.0, 1.0, 0.0, 0.0, 0.0]),
+            ("kg m²", 1.0, [2.0, 1.0, 0.0, 0.0, 0.0]),
+            ("g mm^2", 1e-9, [2.0, 1.0, 0.0, 0.0, 0.0]),
+            ("m/s^2", 1.0, [1.0, 0.0, -2.0, 0.0, 0.0]),
+            ("m/s/s", 1.0, [1.0, 0.0, -2.0, 0.0, 0.0]),
+            ("m s^-2", 1.0, [1.0, 0.0, -2.0, 0.0, 0.0]),
+            ("N/(m s)", 1.0, [0.0, 1.0, -3.0, 0.0, 0.0]),
+            ("1/s", 1.0, [0.0, 0.0, -1.0, 0.0, 0.0]),
+            ("kHz", 1e3, [0.0, 0.0, -1.0, 0.0, 0.0]),
+            ("rpm", TAU / 60.0, [0.0, 0.0, -1.0, 1.0, 0.0]),
+            ("r/min", TAU / 60.0, [0.0, 0.0, -1.0, 1.0, 0.0]),
+            ("rev/min", TAU / 60.0, [0.0, 0.0, -1.0, 1.0, 0.0]),
+            ("deg", PI / 180.0, [0.0, 0.0, 0.0, 1.0, 0.0]),
+            ("°", PI / 180.0, [0.0, 0.0, 0.0, 1.0, 0.0]),
+            ("mrad", 1e-3, [0.0, 0.0, 0.0, 1.0, 0.0]),
+            ("%", 1e-2, [0.0, 0.0, 0.0, 0.0, 0.0]),
+            ("bar", 1e5, [-1.0, 1.0, -2.0, 0.0, 0.0]),
+            ("MPa", 1e6, [-1.0, 1.0, -2.0, 0.0, 0.0]),
+            ("mPa s", 1e-3, [-1.0, 1.0, -1.0, 0.0, 0.0]),
+            ("N m/rad", 1.0, [2.0, 1.0, -2.0, -1.0, 0.0]),
+            ("in", 0.0254, [1.0, 0.0, 0.0, 0.0, 0.0]),
+            ("mm²/s", 1e-6, [2.0, 0.0, -1.0, 0.0, 0.0]),
+            ("K", 1.0, [0.0, 0.0, 0.0, 0.0, 1.0]),
+            ("1/K", 1.0, [0.0, 0.0, 0.0, 0.0, -1.0]),
+            ("min", 60.0, [0.0, 0.0, 1.0, 0.0, 0.0]),
         ];
         for (text, factor, powers) in table {
             let (found, found_powers) = value(text);

@@ -113,7 +113,8 @@ pub(super) fn contacts(drive: &Drive) -> Vec<ContactFacts> {
     found
 }
 
-/// Effects that the model of a drive leaves out, in words: friction where parts touch, damping of the links, errors of sprockets, gravity.
+/// Effects that the model of a drive leaves out, in words: friction where parts touch, damping of the links, errors of sprockets,
+/// losses of shafts, gravity.
 pub fn left_out(drive: &Drive) -> Vec<&'static str> {
     let contacts = contacts(drive);
     let facts: Vec<LinkFacts> = drive
@@ -135,6 +136,13 @@ pub fn left_out(drive: &Drive) -> Vec<&'static str> {
     });
     let mut sprockets = drive.sprockets.iter().peekable();
     let exact = sprockets.peek().is_some() && sprockets.all(|it| it.tolerance.is_none());
+    let losses = || {
+        let at_sprockets = drive.sprockets.iter().map(|it| &it.loss);
+        at_sprockets.chain(drive.shafts.iter().map(|it| &it.loss))
+    };
+    let turns = !drive.shafts.is_empty();
+    let frictionless = turns && losses().all(|it| it.bearing.is_none());
+    let clear = turns && losses().all(|it| it.drag.is_none());
     let lacks = [
         (slips("teeth"), "friction on teeth"),
         (slips("guides"), "friction on guides"),
@@ -142,6 +150,8 @@ pub fn left_out(drive: &Drive) -> Vec<&'static str> {
         (idle, "friction of pins in their bushes"),
         (undamped, "damping of the links"),
         (exact, "run-out and pitch errors of sprockets"),
+        (frictionless, "friction of the bearings of shafts"),
+        (clear, "drag of oil and air on shafts"),
         (drive.gravity.norm() <= 0.0, "gravity"),
     ];
     let found = lacks.into_iter().filter(|(lacking, _)| *lacking);

@@ -23,6 +23,9 @@ impl fmt::Display for Description {
         for span in &self.out_of_line {
             row(f, "out of line", &span.to_string())?;
         }
+        if let Some(oil) = &self.oil {
+            row(f, "oil", &oil.to_string())?;
+        }
         for train in &self.free_trains {
             row(f, "turned by torques", &train.to_string())?;
         }
@@ -374,6 +377,10 @@ impl fmt::Display for Closing {
                 write!(f, "{name} turned by {:.3}°", self.travel.to_degrees())
             }
             (Some(name), _) => write!(f, "{name} moved by {:.3} mm", self.travel * 1e3),
+        }?;
+        match self.growth {
+            Some(growth) => write!(f, "; the housing then grew by {}", strained(growth)),
+            None => Ok(()),
         }
     }
 }

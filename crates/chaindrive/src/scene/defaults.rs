@@ -211,6 +211,22 @@ defaults! {
     SLIP_SPEED = always(0.05), "m/s", Assumed("small beside the speeds at which chains slide"), ["Friction.slip_speed"];
     /// Normal force at which viscous friction is whole.
     TRANSITION_FORCE = always(1.0), "N", Assumed("small beside the forces of a chain"), ["Friction.transition_force"];
+    /// Speed over which the torque of a bearing reverses.
+    CREEP_SPEED = always(0.1), "rad/s", Assumed("small beside the speeds at which shafts turn"), ["Bearing.creep_speed"];
+    /// Boundary lubrication in rolling bearings.
+    BEARING_BOUNDARY = always(0.15), "1", Source("SKF, Rolling bearings, 2013: generally about 0.15"), ["Bearing.boundary_coefficient"];
+    /// Full film in ball bearings.
+    BEARING_FILM = always(0.05), "1", Source("SKF, Rolling bearings, 2013: 0.05 with mineral, 0.04 with synthetic oil, 0.1 with transmission fluids"), ["Bearing.full_film_coefficient"];
+    /// Growth of the drag of a shaft with its speed.
+    DRAG_EXPONENT = always(2.0), "1", Assumed("oil that is thrown and air that is stirred resist with the square of the speed"), ["ShaftDrag.exponent"];
+    /// Thermal expansion of chain and sprockets.
+    CHAIN_EXPANSION = always(11.5e-6), "1/K", Source("steel, 11e-6 to 13e-6 in the tables"), ["Housing.chain_expansion"];
+    /// Temperature at which a chain was fitted.
+    ASSEMBLED_AT = always(293.15), "K", Assumed("a workshop at 20 °C"), ["Housing.assembled_at"];
+    /// Viscosity index of an oil.
+    VISCOSITY_INDEX = always(95.0), "1", Assumed("mineral oils, 90 to 105"), ["Lubricant.viscosity_index"];
+    /// Density of an oil at 15 °C.
+    OIL_DENSITY = always(880.0), "kg/m^3", Assumed("mineral oils, 860 to 900 kg/m³"), ["Lubricant.density"];
     /// Gap between the extremes of ISO 606.
     GAP = always(0.5), "1", Assumed("half-way between the extreme forms of ISO 606"), ["Sprocket.tooth"];
     /// Radius of a circular seat.

@@ -223,7 +223,10 @@ fn spans_out_of_line_are_described() {
         .unwrap()
         .to_string();
     let span = "span driver-driven: 4.00 mm out of line on 764.9 mm, 0.52 % of the centre distance";
-    assert!(told.contains(span) && told.contains("seals hold 0.1 N m"), "{told}");
+    assert!(
+        told.contains(span) && told.contains("seals hold 0.1 N m"),
+        "{told}"
+    );
 }
 
 /// Every mistake is found where it stands.

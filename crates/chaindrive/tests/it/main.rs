@@ -2,6 +2,7 @@
 
 mod against_reference;
 mod architecture;
+mod bearings;
 mod choice;
 mod choice_statistics;
 mod describe;
@@ -10,6 +11,7 @@ mod dynamics;
 mod energy;
 mod examples;
 mod horizons;
+mod housing;
 mod impacts;
 mod joint_losses;
 mod joints;

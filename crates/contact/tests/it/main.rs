@@ -3,6 +3,7 @@
 mod family;
 mod friction;
 mod johnson;
+mod lubricant;
 mod reference;
 mod restitution;
 mod series;

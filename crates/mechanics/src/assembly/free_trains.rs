@@ -12,7 +12,7 @@
 use chaindrive_integrate::Moment;
 
 use super::setting_off::spread;
-use crate::bodies::Shaft;
+use crate::bodies::{Bodies, Shaft};
 use crate::drive::{Layout, Parts, Rotation, StartSpeed};
 use crate::system::System;
 use crate::{AssemblyError, Torque};
@@ -95,7 +95,7 @@ impl FreeTrain {
                 let holds = |wheel: &usize| shafts.iter().any(|(index, _)| runs(index, *wheel));
                 matches!(placed.layout, Layout::Points { .. }) && on.any(holds)
             }),
-            working_point: working_point(&bodies.shafts, &shafts, system.begin),
+            working_point: working_point(bodies, &shafts, system.begin),
             speed: 0.0,
             torque: 0.0,
             shafts,
@@ -159,7 +159,9 @@ impl FreeTrain {
             let shaft = &bodies.shafts[*index];
             let mut turning = shaft.turn.kinematics(at.t, at.q, at.v);
             turning.rate = c * self.speed;
-            bodies.torque(&shaft.drive, turning, at) + bodies.torque(&shaft.load, turning, at)
+            let given =
+                bodies.torque(&shaft.drive, turning, at) + bodies.torque(&shaft.load, turning, at);
+            given + bodies.idle_torque(*index, turning.rate)
         };
         self.shafts.iter().map(torque).collect()
     }
@@ -201,7 +203,7 @@ pub(super) fn balance(system: &mut System, trains: &[FreeTrain], q: &[f64]) -> T
             // M − J c α
             let share = inertia(system, *index) * c * train.acceleration();
             let shaft = &mut system.bodies.shafts[*index];
-            if shaft.drive.is_empty() && shaft.load.is_empty() && share == 0.0 {
+            if shaft.drive.is_empty() && shaft.load.is_empty() && share == 0.0 && torque == 0.0 {
                 continue;
             }
             shaft.drive.clear();
@@ -265,14 +267,15 @@ fn torques_of<'s>(
 /// balance at rest, none where they never do.
 ///
 /// ```text
-/// F(ω) = Σ c M̄(c ω) = 0      M̄: mean over a turn
+/// F(ω) = Σ c M̄(c ω) = 0      M̄: mean over a turn; bearings carry no chain
 /// ```
-fn working_point(all: &[Shaft], shafts: &[(usize, f64)], t: f64) -> Option<f64> {
-    let torques = || torques_of(all, shafts);
+fn working_point(bodies: &Bodies, shafts: &[(usize, f64)], t: f64) -> Option<f64> {
+    let torques = || torques_of(&bodies.shafts, shafts);
     let sum = |speed: f64| {
-        torques()
-            .map(|(torque, c)| c * torque.mean(t, c * speed))
-            .sum::<f64>()
+        let given = torques().map(|(torque, c)| c * torque.mean(t, c * speed));
+        let lost = shafts.iter();
+        let lost = lost.map(|(index, c)| c * bodies.idle_torque(*index, c * speed));
+        given.sum::<f64>() + lost.sum::<f64>()
     };
     let at_rest = sum(0.0);
     if at_rest == 0.0 {

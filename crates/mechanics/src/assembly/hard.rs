@@ -53,6 +53,10 @@ impl Drive {
                 fit.at = PretensionAt::Phase;
                 *phase = 0.5;
             }
+            if let Layout::Route { fit, .. } = &mut placed.layout {
+                // What it carries before the frame grows is looked for.
+                fit.growth = 0.0;
+            }
             searches.extend((asked > 0.0).then_some(Search {
                 chain: index,
                 asked,
@@ -108,8 +112,8 @@ impl Drive {
                 },
             ) = (layout, own)
             {
-                elsewhere |= fit.at != own.at;
-                (fit.at, *phase) = (own.at, *at);
+                elsewhere |= fit.at != own.at || fit.growth != own.growth;
+                (fit.at, fit.growth, *phase) = (own.at, own.growth, *at);
             }
         }
         if !elsewhere {

@@ -1,6 +1,6 @@
 //! Where the rollers lie before anything pulls at them.
 
-use chaindrive_geometry::{close_by_motion, close_by_strain};
+use chaindrive_geometry::{Wheel, close_by_motion, close_by_strain};
 
 use super::wheels::{shifted, wheels};
 use super::{Fitting, slack};
@@ -162,6 +162,26 @@ fn around(
                 ),
             });
         }
+        for length in &mut moved.chains[index].chain.lengths {
+            *length *= scale;
+        }
+    }
+    if fit.growth != 0.0 {
+        let apart = |wheel: &Wheel| Wheel {
+            centre: wheel.centre * (1.0 + fit.growth),
+            ..*wheel
+        };
+        let apart: Vec<Wheel> = wheels.iter().map(apart).collect();
+        let closes = |wheels: &[Wheel]| {
+            let strain = |phase| Ok(close_by_strain(wheels, pitch, links, phase)?.0);
+            if over_a_tooth {
+                mean_of_phases(strain)
+            } else {
+                strain(phase)
+            }
+        };
+        // ℓ₀ ← ℓ₀ (1 + ε)/(1 + ε_apart): to first order the frame stays as it is, and the chain is shorter.
+        let scale = (1.0 + closes(&wheels)?) / (1.0 + closes(&apart)?);
         for length in &mut moved.chains[index].chain.lengths {
             *length *= scale;
         }

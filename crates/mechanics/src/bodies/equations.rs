@@ -4,7 +4,7 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Moment, Prediction};
 
 use super::slide::Pose;
-use super::{Bodies, RailSupport, WheelSupport};
+use super::{Bodies, RailSupport, Wheel, WheelSupport};
 use crate::contact::Wrench;
 use crate::energy::Flow;
 use crate::tensioner::Slopes;
@@ -18,10 +18,10 @@ impl Bodies {
         a: &mut [f64],
         rates: &mut [f64],
         [wheel_wrenches, rail_wrenches]: [&[Wrench]; 2],
-        pushes: &mut [Slopes],
+        (pushes, resisting): (&mut [Slopes], &mut [f64]),
     ) {
         let (rates, flows) = rates.split_at_mut(Flow::ALL.len());
-        self.turn_shafts(at, a, rates, wheel_wrenches);
+        self.turn_shafts(at, a, rates, wheel_wrenches, resisting);
         for (wheel, wrench) in self.wheels.iter().zip(wheel_wrenches) {
             let centre = || wheel.centre_kinematics(at.t, at.q, at.v, &self.slides);
             match &wheel.support {
@@ -113,7 +113,7 @@ impl Bodies {
     /// Accelerations of the shafts.
     ///
     /// ```text
-    /// (Σ i² J) α = Σ i (M_chain + M_drive + M_load + M_coupling),   over all that turns with a coordinate
+    /// (Σ i² J) α = Σ i (M_chain + M_drive + M_load + M_loss + M_coupling),   over all that turns with a coordinate
     /// ```
     fn turn_shafts(
         &self,
@@ -121,6 +121,7 @@ impl Bodies {
         a: &mut [f64],
         rates: &mut [f64],
         wheel_wrenches: &[Wrench],
+        resisting: &mut [f64],
     ) {
         for (wheel, wrench) in self.wheels.iter().zip(wheel_wrenches) {
             if let Some((dof, ratio)) = wheel.turn.turned_by() {
@@ -147,6 +148,7 @@ impl Bodies {
                 rates[Flow::Driver as usize] += torque * kinematics.rate;
             }
         }
+        self.resist(at, a, rates, wheel_wrenches, resisting);
         for coupling in &self.couplings {
             let [torque, rate] = self.coupling_torque(coupling, at);
             rates[Flow::SupportLoss as usize] += coupling.damping * rate * rate;
@@ -163,6 +165,46 @@ impl Bodies {
         }
         for dof in self.shafts.iter().filter_map(super::shafts::Shaft::led) {
             a[dof] /= self.inertia(dof);
+        }
+    }
+
+    /// Losses of the shafts, at their sprockets and elsewhere; their damping is written down.
+    ///
+    /// ```text
+    /// F = |F_chain + m g|      P = −T ω
+    /// ```
+    fn resist(
+        &self,
+        at: Moment<'_>,
+        a: &mut [f64],
+        rates: &mut [f64],
+        wheel_wrenches: &[Wrench],
+        resisting: &mut [f64],
+    ) {
+        let weighed = |(wheel, wrench): (&Wheel, &Wrench)| {
+            let weight = self.gravity * wheel.mass;
+            (wrench.force[0] + weight.x).hypot(wrench.force[1] + weight.y)
+        };
+        let wheels = self.wheels.iter().zip(wheel_wrenches);
+        let at_wheels = wheels.map(|it| (&it.0.turn, &it.0.loss, Some(it)));
+        let elsewhere = self.shafts.iter().map(|it| (&it.turn, &it.loss, None));
+        for ((turn, loss, carries), damping) in at_wheels.chain(elsewhere).zip(resisting) {
+            if loss.is_none() {
+                continue;
+            }
+            let force = carries.map_or(0.0, weighed);
+            let speed = turn.kinematics(at.t, at.q, at.v).rate;
+            let found = loss.act(force, speed);
+            let [bearing, drag] = found.torques;
+            *damping = found.damping;
+            rates[Flow::BearingLoss as usize] -= bearing * speed;
+            rates[Flow::ShaftDragLoss as usize] -= drag * speed;
+            if let Some((dof, ratio)) = turn.turned_by() {
+                a[dof] += ratio * (bearing + drag);
+            } else {
+                // A motion that is given supplies what resists it.
+                rates[Flow::Driver as usize] -= (bearing + drag) * speed;
+            }
         }
     }
 }

@@ -17,12 +17,18 @@ pub(crate) struct GroupBodies<'a> {
     pub(crate) count: usize,
     /// Slopes of the pushes of all tensioners, where an implicit step is solved.
     pub(crate) pushes: &'a [Slopes],
+    /// Damping of the losses of all shafts, there too.
+    pub(crate) resisting: &'a [f64],
 }
 
 impl<'a> GroupBodies<'a> {
-    /// The same with the slopes of the pushes at the last evaluation.
-    pub(crate) fn with(self, pushes: &'a [Slopes]) -> Self {
-        Self { pushes, ..self }
+    /// The same with the slopes of the pushes and the damping of the losses at the last evaluation.
+    pub(crate) fn with(self, pushes: &'a [Slopes], resisting: &'a [f64]) -> Self {
+        Self {
+            pushes,
+            resisting,
+            ..self
+        }
     }
 }
 
@@ -43,7 +49,7 @@ impl GroupBodies<'_> {
     pub(crate) fn each_own(&self, weights: Weights, mut visit: impl FnMut([usize; 2], f64)) {
         let range = self.range();
         self.all
-            .each_support(weights, self.pushes, |dof, weighted| {
+            .each_support(weights, self.pushes, self.resisting, |dof, weighted| {
                 if range.contains(&dof) {
                     let place = dof - self.first;
                     visit([place; 2], weighted);

@@ -4,7 +4,7 @@ use chaindrive_integrate::Moment;
 
 use super::Bodies;
 use crate::motion::Kinematics;
-use crate::{Coupling, Motion, Torque};
+use crate::{Coupling, Motion, ShaftLoss, Torque};
 
 /// How an angle follows from time or state.
 ///
@@ -86,6 +86,8 @@ pub(crate) struct Shaft {
     pub(crate) inertia: f64,
     pub(crate) drive: Vec<Torque>,
     pub(crate) load: Vec<Torque>,
+    /// Losses beside those at its sprockets.
+    pub(crate) loss: ShaftLoss,
 }
 
 impl Shaft {
@@ -128,6 +130,21 @@ impl Bodies {
         let all = torques.iter();
         all.map(|torque| torque.at(at.t, angle(torque), turning.rate))
             .sum()
+    }
+
+    /// What turns under losses, in the order of their damping: sprockets, then shafts.
+    pub(crate) fn resisted(&self) -> impl Iterator<Item = &Turn> {
+        let wheels = self.wheels.iter().map(|wheel| &wheel.turn);
+        wheels.chain(self.shafts.iter().map(|shaft| &shaft.turn))
+    }
+
+    /// Torque of all losses of a shaft at a speed \[N m\], under the weight of its sprockets: no chain pulls.
+    pub(crate) fn idle_torque(&self, shaft: usize, speed: f64) -> f64 {
+        let on_it = self.wheels.iter().filter(|wheel| wheel.shaft == shaft);
+        let at_wheels = on_it.map(|it| it.loss.act(it.mass * self.gravity.norm(), speed));
+        let own = self.shafts[shaft].loss.act(0.0, speed);
+        let all = at_wheels.chain(std::iter::once(own));
+        all.map(|it| it.torques[0] + it.torques[1]).sum()
     }
 
     /// Everything that turns.

@@ -286,6 +286,7 @@ fn shafts(laid: &Laid, trains: &[InTrain], places: &Places) -> Vec<Shaft> {
             inertia: shaft.inertia,
             drive,
             load,
+            loss: shaft.loss,
         }
     });
     shafts.collect()
@@ -348,6 +349,7 @@ fn wheel(sprocket: &Sprocket, angle: f64, turn: Turn, centre: Option<usize>) -> 
         pitch: gap.pitch,
         eccentricity: sprocket.tolerance.eccentricity(),
         sense: sprocket.side.sense(),
+        loss: sprocket.loss,
     }
 }
 

@@ -22,6 +22,7 @@ impl System {
             first: self.bodies.first + bodies.start,
             count: bodies.len(),
             pushes: &[],
+            resisting: &[],
         }
     }
 

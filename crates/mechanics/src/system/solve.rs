@@ -36,20 +36,21 @@ impl System {
         let c = weights.damping;
         // Lent to the bodies, and put back below.
         let pushes = std::mem::take(&mut record.pushes);
+        let resisting = std::mem::take(&mut record.resisting);
         for (state, dof, slopes) in self.bodies.each_state(&pushes) {
             let inertia = self.bodies.inertias[dof - self.bodies.first];
             y[state] /= 1.0 + c * slopes.settling;
             x[dof] += c * slopes.by_state * y[state] / inertia;
         }
         let solved = if let [member] = self.chains.as_slice() {
-            let bodies = self.group_bodies(0).with(&pushes);
+            let bodies = self.group_bodies(0).with(&pushes, &resisting);
             member
                 .chain
                 .solve(bodies, weights, &mut record.chains[0], x)
         } else {
             let mut groups = 0..self.groups.len();
             groups.all(|group| {
-                let bodies = self.group_bodies(group).with(&pushes);
+                let bodies = self.group_bodies(group).with(&pushes, &resisting);
                 self.solve_group(group, bodies, weights, record, x)
                     .is_some()
             })
@@ -58,6 +59,7 @@ impl System {
             y[state] += weights.stiffness * slopes.flow * x[dof] / (1.0 + c * slopes.settling);
         }
         record.pushes = pushes;
+        record.resisting = resisting;
         solved
     }
 

@@ -61,6 +61,7 @@ fn assembled(chain: Chain, positions: Vec<Point>, velocities: Vec<Vector>) -> As
         gears: Vec::new(),
         settle: false,
         gravity: Vector::zeros(),
+        oil: None,
     };
     Drive::new(parts)
         .unwrap_or_else(|problems| panic!("{problems:?}"))

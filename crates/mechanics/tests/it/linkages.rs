@@ -58,6 +58,7 @@ fn bicycle(model: ChainModel) -> Parts {
         gap_angle: 0.0,
         tolerance: Tolerance::default(),
         lateral: 0.0,
+        loss: chaindrive_mechanics::ShaftLoss::default(),
     };
     let driven = Rotation::Free {
         drive: Vec::new(),
@@ -88,6 +89,7 @@ fn bicycle(model: ChainModel) -> Parts {
                 phase: 0.5,
                 start: SpanStart::Polygon,
                 fit: Fit {
+                    growth: 0.0,
                     sag: None,
                     slack: None,
                     adjust: Adjust::Nothing,
@@ -110,6 +112,7 @@ fn bicycle(model: ChainModel) -> Parts {
         gears: Vec::new(),
         settle: true,
         gravity: Vector::new(0.0, -9.81),
+        oil: None,
     }
 }
 
@@ -528,6 +531,7 @@ fn wheels_beyond_the_room_of_the_rows_change_no_answer() {
                     start: StartSpeed::Joined,
                 },
                 inertia: 0.01,
+                loss: chaindrive_mechanics::ShaftLoss::default(),
             });
             parts.couplings.push(Coupling {
                 name: format!("coupling {behind}"),

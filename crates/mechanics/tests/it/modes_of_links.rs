@@ -97,6 +97,7 @@ fn alone(
         gears: Vec::new(),
         settle: true,
         gravity,
+        oil: None,
     }
 }
 

@@ -167,6 +167,7 @@ impl Span {
             gears: Vec::new(),
             settle: false,
             gravity: Vector::zeros(),
+            oil: None,
         };
         Drive::new(parts)
             .unwrap_or_else(|problems| panic!("{problems:?}"))

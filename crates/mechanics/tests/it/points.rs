@@ -137,6 +137,7 @@ fn assembled(
         gears: Vec::new(),
         settle: false,
         gravity: Vector::zeros(),
+        oil: None,
     };
     let drive = Drive::new(parts).expect("the parts are valid");
     drive.assemble().expect("nothing has to close")
@@ -181,6 +182,7 @@ fn leaf(model: ChainModel, speed: f64) -> Assembled {
         gap_angle: 0.0,
         tolerance: Tolerance::default(),
         lateral: 0.0,
+        loss: chaindrive_mechanics::ShaftLoss::default(),
     };
     let velocities = vec![Vector::new(-speed, 0.0); 4];
     assembled(

@@ -45,6 +45,7 @@ fn sprocket(name: &str, teeth: u32, centre: [f64; 2], rotation: Rotation) -> Tur
         gap_angle: 0.0,
         tolerance: Tolerance::default(),
         lateral: 0.0,
+        loss: chaindrive_mechanics::ShaftLoss::default(),
     };
     (sprocket, rotation)
 }
@@ -73,6 +74,7 @@ pub(crate) fn chain(links: usize, stops: [usize; 2]) -> PlacedChain {
             phase: 0.5,
             start: SpanStart::Polygon,
             fit: Fit {
+                growth: 0.0,
                 sag: None,
                 slack: None,
                 adjust: Adjust::Nothing,
@@ -132,6 +134,7 @@ pub(crate) fn parts(chains: Vec<PlacedChain>, turning: Vec<Turning>) -> Parts {
         gears: Vec::new(),
         settle: true,
         gravity: Vector::new(0.0, -9.81),
+        oil: None,
     }
 }
 

@@ -205,6 +205,10 @@ pub(super) fn friction(
     let mut keys = findings.completed(text.keys.clone(), "Friction", &path);
     let kind = text.word("kind");
     let lubricated = kind == "stribeck";
+    if lubricated && keys.get("viscosity").is_none() {
+        let path = format!("{path}.viscosity");
+        keys["viscosity"] = findings.oil_dynamic_viscosity(&path)?.into();
+    }
     let known = [
         ("length", journal.length, "give it, such as \"12 mm\""),
         (

@@ -10,8 +10,11 @@ mod count;
 mod ends;
 mod flank;
 mod guide;
+mod housing;
 mod law;
 mod links;
+mod loss;
+mod lubricant;
 mod motion;
 mod on_span;
 mod pressed;
@@ -29,7 +32,7 @@ mod written;
 use std::collections::{HashMap, HashSet};
 
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_mechanics::{Drive, DriveError, Parts, PlacedChain};
+use chaindrive_mechanics::{Drive, DriveError, OilSupply, Parts, PlacedChain};
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 
@@ -47,6 +50,7 @@ use chaindrive_quantities::{Length, Ratio};
 pub(crate) fn drive(scene: &SceneText, tree: &Node) -> Result<(Drive, Vec<Assumption>), Problems> {
     let mut findings = Findings::new(tree, scene.defaults.unwrap_or_default());
     let names = Names::new(scene, &mut findings);
+    findings.oil = lubricant::resolve(scene, &mut findings);
     let parts = parts(scene, &names, &mut findings);
     let Some((parts, uncounted)) = parts.filter(|_| findings.problems.is_empty()) else {
         return Err(findings.problems);
@@ -181,6 +185,7 @@ fn parts(
         gears: turning.gears,
         settle: scene.settle,
         gravity,
+        oil: findings.oil.take(),
     };
     Some((parts, uncounted))
 }
@@ -259,6 +264,8 @@ struct Findings<'t> {
     version: Version,
     /// The chain that `chain` and `route` in paths mean, where there are several.
     chain: Option<usize>,
+    /// The oil, and who has asked for it.
+    oil: Option<OilSupply>,
     problems: Problems,
     assumptions: Vec<Assumption>,
     /// The assumption at a place; none where chains differ in it.
@@ -271,6 +278,7 @@ impl<'t> Findings<'t> {
             tree,
             version,
             chain: None,
+            oil: None,
             problems: Problems::default(),
             assumptions: Vec::new(),
             assumed: HashMap::new(),

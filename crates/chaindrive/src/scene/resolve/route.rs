@@ -4,7 +4,7 @@ use chaindrive_geometry::Vector;
 use chaindrive_mechanics::{Adjust, Chain, Fit, Layout, Stop, Tighten};
 
 use super::chains::Described;
-use super::{Findings, Names, start};
+use super::{Findings, Names, housing, start};
 use crate::scene::defaults;
 use crate::scene::schema::{self, Route, SceneText};
 use crate::scene::suggest::one_of;
@@ -65,6 +65,7 @@ pub(super) fn layout(
         phase: findings.or_default(phase, "route.phase", &defaults::PHASE),
         fit: Fit {
             adjust,
+            growth: housing::growth(scene, findings),
             pretension: route.pretension.0,
             tighten,
             sag: route.sag.map(|sag| sag.0),

@@ -3,7 +3,7 @@
 use chaindrive_mechanics::{Coupling, GearPair, Rotation, Shaft, StartSpeed};
 
 use super::ends::Ends;
-use super::{Findings, Names, motion};
+use super::{Findings, Names, loss, motion};
 use crate::scene::schema::{self, SceneText};
 use chaindrive_quantities::{Angle, AngularSpeed};
 
@@ -56,10 +56,12 @@ pub(super) fn resolve(
         let path = format!("shafts[{i}]");
         let turned = (&text.motion, &text.drive, &text.load, text.speed);
         let rotation = rotation(turned, &path, (scene, &ends), findings);
-        shafts.push(rotation.map(|rotation| Shaft {
+        let loss = loss::resolve(text.bearing.as_ref(), text.drag.as_ref(), &path, findings);
+        shafts.push(rotation.zip(loss).map(|(rotation, loss)| Shaft {
             name: Some(text.name.clone()),
             rotation,
             inertia: text.inertia.map_or(0.0, |inertia| inertia.0),
+            loss,
         }));
     }
     let couplings: Vec<_> = scene

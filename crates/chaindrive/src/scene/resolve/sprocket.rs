@@ -9,7 +9,7 @@ use serde_json::json;
 use super::chain::Resolved;
 use super::law::{cylindrical, linear, steel};
 use super::scatter::Normal;
-use super::{Findings, Names, contact, flank, motion, point, tooth};
+use super::{Findings, Names, contact, flank, loss, motion, point, tooth};
 use crate::scene::defaults;
 use crate::scene::schema::{self, SceneText};
 
@@ -95,6 +95,7 @@ fn resolve(
         .as_ref()
         .and_then(|gap| flank::resolve(text, path, scene, gap, chain, findings));
     let tolerance = tolerance(text, path, findings);
+    let loss = loss::resolve(text.bearing.as_ref(), text.drag.as_ref(), path, findings);
     let support = support?;
     let moves = match &support {
         Support::Springs { .. } => true,
@@ -126,6 +127,7 @@ fn resolve(
         ),
         tolerance: tolerance?,
         lateral: text.lateral.0,
+        loss: loss?,
     })
 }
 

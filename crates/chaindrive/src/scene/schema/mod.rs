@@ -7,7 +7,9 @@
 mod chain;
 mod contact;
 mod guide;
+mod housing;
 mod links;
+mod loss;
 mod motion;
 mod route;
 mod run;
@@ -19,7 +21,9 @@ mod written;
 pub(crate) use chain::{Chain, End, NamedChain, Start};
 pub(crate) use contact::{Contact, Contacts, Flank};
 pub(crate) use guide::{Face, Guide, GuideSupport, TravelSide};
+pub(crate) use housing::Housing;
 pub(crate) use links::{ChainModel, Joint, Lateral, Link, Roller, Rollers};
+pub(crate) use loss::{Bearing, BearingFeed, Lubricant, ShaftDrag};
 pub(crate) use motion::{Motion, OrderTerm, StartSpeed, Torque};
 pub(crate) use route::{Adjust, Route};
 pub use run::RunDefaults;
@@ -97,6 +101,12 @@ pub(crate) struct SceneText {
     #[serde(default)]
     #[schemars(extend("maxItems" = 1000))]
     pub(crate) gears: Vec<Gears>,
+    /// The oil; absent: parts that need a viscosity give their own.
+    #[serde(default)]
+    pub(crate) lubricant: Option<Lubricant>,
+    /// The housing; absent: centres stay where they are.
+    #[serde(default)]
+    pub(crate) housing: Option<Housing>,
     /// How a closed chain lies around its sprockets; absent: around all sprockets, in file order.
     #[serde(default)]
     pub(crate) route: Option<Route>,

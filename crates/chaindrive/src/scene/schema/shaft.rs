@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Motion, StartSpeed, Torque};
+use super::{Bearing, Motion, ShaftDrag, StartSpeed, Torque};
 use chaindrive_quantities::{Angle, AngularDamping, AngularSpeed, AngularStiffness, Inertia};
 
 /// A body that turns about one axis: it carries sprockets of any chains, rigidly, or none, such as a wheel behind a coupling.
@@ -35,6 +35,12 @@ pub(crate) struct Shaft {
     /// Torques that load the shaft.
     #[serde(default)]
     pub(crate) load: Vec<Torque>,
+    /// Friction of the bearings beside those at its sprockets, a stated torque; absent: none.
+    #[serde(default)]
+    pub(crate) bearing: Option<Bearing>,
+    /// Drag of oil and air on it beside that at its sprockets; absent: none.
+    #[serde(default)]
+    pub(crate) drag: Option<ShaftDrag>,
 }
 
 /// A torsional spring and damper between two shafts, without stress as assembled.

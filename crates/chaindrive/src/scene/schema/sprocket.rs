@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Contact, Flank, Motion, StartSpeed, Torque};
+use super::{Bearing, Contact, Flank, Motion, ShaftDrag, StartSpeed, Torque};
 use chaindrive_quantities::{
     Angle, AngularSpeed, Damping, Inertia, Length, Mass, Speed, Stiffness,
 };
@@ -50,6 +50,12 @@ pub(crate) struct Sprocket {
     /// Torques that load the shaft.
     #[serde(default)]
     pub(crate) load: Vec<Torque>,
+    /// Friction of the bearings of its shaft; absent: none.
+    #[serde(default)]
+    pub(crate) bearing: Option<Bearing>,
+    /// Drag of oil and air on its shaft; absent: none.
+    #[serde(default)]
+    pub(crate) drag: Option<ShaftDrag>,
     /// Mass [kg]; needed where the centre can move under forces.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]

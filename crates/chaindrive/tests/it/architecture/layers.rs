@@ -16,7 +16,7 @@ const CRATES: [Storeys; 4] = [
         folder: "mechanics",
         layers: &[
             &["applied", "dense", "energy", "error", "lanes"],
-            &["order"],
+            &["order", "shaft_loss"],
             &[
                 "articulation",
                 "coupling",

@@ -90,6 +90,7 @@ impl Strand {
             gears: Vec::new(),
             settle: self.settle,
             gravity: self.gravity.into(),
+            oil: None,
         };
         Drive::new(parts).unwrap_or_else(|problems| panic!("{problems:?}"))
     }

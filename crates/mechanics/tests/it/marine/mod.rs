@@ -59,6 +59,7 @@ pub(crate) fn parts(law: Law) -> Parts {
         gap_angle: 0.0,
         tolerance: Tolerance::default(),
         lateral: 0.0,
+        loss: chaindrive_mechanics::ShaftLoss::default(),
     });
     Parts {
         chains: vec![PlacedChain {
@@ -83,6 +84,7 @@ pub(crate) fn parts(law: Law) -> Parts {
                 phase: 0.5,
                 start: SpanStart::Polygon,
                 fit: Fit {
+                    growth: 0.0,
                     sag: None,
                     slack: None,
                     adjust: Adjust::Nothing,
@@ -102,5 +104,6 @@ pub(crate) fn parts(law: Law) -> Parts {
         gears: Vec::new(),
         settle: true,
         gravity: Vector::new(0.0, -9.81),
+        oil: None,
     }
 }

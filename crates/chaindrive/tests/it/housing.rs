@@ -1,0 +1,117 @@
+//! Housings that grow after the chain was fitted.
+
+use chaindrive::describe::spans_at_rest;
+use chaindrive::{Description, Run, Scene};
+
+const PITCH: f64 = 12.7e-3;
+const TEETH: f64 = 20.0;
+const LINKS: f64 = 80.0;
+/// Centre distance \[m\] of two equal sprockets: 2 C = (n − z) p.
+const CENTRES: f64 = 0.5 * (LINKS - TEETH) * PITCH;
+
+fn scene(chain: &str, tighten: &str, housing: &str) -> Scene {
+    let text = format!(
+        r#"
+        gravity = [0, 0]
+        [chain]
+        links = {LINKS}
+        {chain}
+        [[sprockets]]
+        name = "driver"
+        teeth = {TEETH}
+        centre = [0, 0]
+        motion = {{ kind = "constant", speed = 0 }}
+        [[sprockets]]
+        name = "driven"
+        teeth = {TEETH}
+        centre = [-{CENTRES}, 0]
+        inertia = "0.01 kg m^2"
+        [route]
+        pretension = "300 N"
+        tighten = "{tighten}"
+        adjust = {{ kind = "sprocket", name = "driven", direction = [-1, 0], within = "10 mm" }}
+        {housing}
+        "#
+    );
+    Scene::from_text(&text, "test.toml").unwrap()
+}
+
+fn tension(scene: &Scene) -> f64 {
+    let drive = scene.drive().unwrap();
+    let assembled = drive.assemble().unwrap_or_else(|error| panic!("{error}"));
+    let spans = spans_at_rest(&drive, &assembled);
+    0.5 * (spans[0].tension + spans[1].tension)
+}
+
+const WARM: &str = r#"
+    [housing]
+    expansion = "aluminium"
+    temperature = "90 degC""#;
+
+/// Links that stretch, and teeth that hardly yield.
+const SPRINGS: &str = r#"
+    pitch = "12.7 mm"
+    mass = "9 g"
+    stiffness = "20 MN/m"
+    roller_diameter = "7.92 mm"
+    [contact.teeth]
+    law = { kind = "linear", stiffness = "1e10 N/m" }"#;
+
+/// ΔT = k p · 2 g C/(n p), g = (23e-6 − 11.5e-6) · 70: a loop of links is stretched by what both spans grow. A steel housing does nothing.
+#[test]
+fn a_warm_housing_stretches_the_chain() {
+    let growth = 11.5e-6 * 70.0;
+    let expected = 20e6 * 2.0 * growth * CENTRES / LINKS;
+    for tighten in ["rest-length", "travel"] {
+        let cold = tension(&scene(SPRINGS, tighten, ""));
+        let more = tension(&scene(SPRINGS, tighten, WARM)) - cold;
+        assert!(
+            (more / expected - 1.0).abs() < 0.02,
+            "{tighten}: {more} for {expected}"
+        );
+        let steel = WARM.replace("aluminium", "steel");
+        let same = tension(&scene(SPRINGS, tighten, &steel));
+        assert_eq!(same.to_bits(), cold.to_bits());
+    }
+}
+
+/// Pins with play, and joints that only turn, carry what springs do, as far as these have the stiffness of the whole.
+#[test]
+fn other_chains_are_stretched_as_well() {
+    let grown = |model: &str| {
+        let chain = format!("type = \"08B-1\"\nmodel = \"{model}\"");
+        let [cold, warm] = ["", WARM].map(|it| tension(&scene(&chain, "rest-length", it)));
+        println!("{model}: {cold} {warm}");
+        warm - cold
+    };
+    let springs = grown("particles");
+    assert!(springs > 50.0, "{springs}");
+    let play = grown("clearance-joints");
+    assert!((play / springs - 1.0).abs() < 0.2, "{play} {springs}");
+    // The teeth alone yield.
+    let ideal = grown("ideal-joints");
+    assert!(ideal > springs, "{ideal} {springs}");
+}
+
+/// A cold housing lets the chain sag: no tension is left.
+#[test]
+fn a_cold_housing_slackens_the_chain() {
+    let cold = WARM.replace("90 degC", "-60 degC");
+    let left = tension(&scene(SPRINGS, "rest-length", &cold));
+    assert!(left < 30.0, "{left}");
+}
+
+#[test]
+fn the_growth_is_told() {
+    let drive = scene(SPRINGS, "travel", WARM).drive().unwrap();
+    let text = Description::of(&drive, &Run::default())
+        .unwrap()
+        .to_string();
+    assert!(text.contains("the housing then grew by"), "{text}");
+    let bad = scene(SPRINGS, "travel", "").text().to_owned() + &WARM.replace("90 degC", "900 degC");
+    let error = Scene::from_text(&bad, "test.toml")
+        .err()
+        .map(|it| it.to_string());
+    let error = error.unwrap_or_default();
+    assert!(error.contains("housing.temperature"), "{error}");
+}
