@@ -17,6 +17,7 @@ from chaindrive.drive import Drive
 __all__ = [
     "bicycle",
     "bicycle_crank",
+    "bicycle_derailleur",
     "bicycle_slack",
     "chain_pendulum",
     "hanging_chain",
@@ -112,6 +113,15 @@ def bicycle_crank() -> Drive:
     spring.
     """
     return Drive._of(_core.Drive.preset("bicycle_crank"))
+
+
+def bicycle_derailleur() -> Drive:
+    """Bicycle with a derailleur, 50 to 17 teeth, 250 W: where the watts of a rider go.
+
+    A bicycle with a derailleur: two pulleys on a sprung cage, a chain out of line, and what all of
+    it loses.
+    """
+    return Drive._of(_core.Drive.preset("bicycle_derailleur"))
 
 
 def motorcycle() -> Drive:

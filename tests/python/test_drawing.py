@@ -229,6 +229,7 @@ QUICK = ["industrial_16b", "spinning_ring", "timing_drive", "two_stage_timing"]
 SLOW = [
     "bicycle",
     "bicycle_crank",
+    "bicycle_derailleur",
     "bicycle_slack",
     "chain_pendulum",
     "hanging_chain",

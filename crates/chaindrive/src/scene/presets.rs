@@ -4,7 +4,7 @@ use super::suggest::one_of;
 use super::{Problem, Scene, SceneError};
 
 /// Name, one-line description and text of every embedded scene.
-const PRESETS: [(&str, &str, &str); 15] = [
+const PRESETS: [(&str, &str, &str); 16] = [
     (
         "marine_engine",
         "Camshaft drive of a large two-stroke engine under its pumps and valves: four sprockets, three guide bars, tensioner",
@@ -49,6 +49,11 @@ const PRESETS: [(&str, &str, &str); 15] = [
         "bicycle_crank",
         "A rider who pedals: torque of two legs, chain, rear hub and wheel joined by a torsional spring",
         include_str!("../../scenes/bicycle_crank.toml"),
+    ),
+    (
+        "bicycle_derailleur",
+        "A bicycle with a derailleur: two pulleys on a sprung cage, a chain out of line, and what all of it loses",
+        include_str!("../../scenes/bicycle_derailleur.toml"),
     ),
     (
         "motorcycle",

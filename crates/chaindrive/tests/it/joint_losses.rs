@@ -167,7 +167,7 @@ fn plates_rub_where_the_chain_runs_out_of_line() {
         let of_pins = 0.2 * 9e-3 * slope / (0.1 * PIN);
         let share = one.plates / one.pins / of_pins;
         // But for what the springs hold at either end of the record.
-        assert!((share - 1.0).abs() < 1e-4, "{share}");
+        assert!((share - 1.0).abs() < 1e-3, "{share}");
         let by_hand = 0.2 * 9e-3 * slope * TURNS * one.tensions.iter().sum::<f64>();
         println!("{:.4e} {by_hand:.4e} W", one.plates);
         // Particles take the mean of the tensions on both sides of a joint, one of which is on the teeth.

@@ -33,7 +33,7 @@ const CRATES: [Storeys; 4] = [
             &["joints"],
             &["chains"],
             &["drive"],
-            &["groups"],
+            &["alignment", "groups"],
             &["trains"],
             &["system"],
             &["events", "observe", "standing", "struck"],
