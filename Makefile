@@ -34,7 +34,7 @@ OWN_LAWS := CHAINDRIVE_INSTRUCTION_SET=sse2 cargo test --release --quiet --manif
 	--target-dir target --config Cargo.toml $(SLOWLY)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test quick slowest check check-rust check-python test-rust test-python bench report estimates how-real validation validation-report docs pages site wheels clean
+.PHONY: help setup run test quick slowest check check-rust check-python test-rust test-python bench report estimates bicycle-losses how-real validation validation-report docs pages site wheels clean
 # A build that failed leaves no stamp behind.
 .DELETE_ON_ERROR:
 
@@ -85,6 +85,9 @@ report: setup $(VENV)/test-ready ## Measure speed and error on this machine, and
 
 estimates: ## Hold what runs say of their error against a reference, and write docs/estimates.md
 	cargo run --release --quiet -p chaindrive --example estimates > docs/estimates.md
+
+bicycle-losses: setup $(VENV)/test-ready ## Find where the watts of a rider go, and write docs/bicycle-losses.md
+	$(BIN)/python benchmarks/bicycle_losses
 
 how-real: setup $(VENV)/test-ready ## Try the assumptions and models of presets, and write docs/how-real.md
 	$(BIN)/python benchmarks/how_real
