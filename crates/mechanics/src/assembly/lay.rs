@@ -180,8 +180,13 @@ fn around(
                 strain(phase)
             }
         };
-        // ℓ₀ ← ℓ₀ (1 + ε)/(1 + ε_apart): to first order the frame stays as it is, and the chain is shorter.
-        let scale = (1.0 + closes(&wheels)?) / (1.0 + closes(&apart)?);
+        // The strain of a closing is that of the links off the sprockets, s of all.
+        let on_sprockets = stops.iter().zip(&closing.seats);
+        let on_sprockets = on_sprockets.filter(|(stop, _)| matches!(stop, Stop::Sprocket(_)));
+        let seated: u32 = on_sprockets.map(|(_, seat)| seat.pitches).sum();
+        let share = 1.0 - f64::from(seated) / f64::from(links);
+        // ℓ₀ ← ℓ₀ (1 + s ε)/(1 + s ε_apart): to first order the frame stays as it is, and the chain is shorter.
+        let scale = (1.0 + share * closes(&wheels)?) / (1.0 + share * closes(&apart)?);
         for length in &mut moved.chains[index].chain.lengths {
             *length *= scale;
         }
