@@ -33,11 +33,11 @@ fn scene(chain: &str, tighten: &str, housing: &str) -> Scene {
         {housing}
         "#
     );
-    Scene::from_text(&text, "test.toml").unwrap()
+    Scene::from_text(&text, "test.toml").expect("a scene")
 }
 
 fn tension(scene: &Scene) -> f64 {
-    let drive = scene.drive().unwrap();
+    let drive = scene.drive().expect("a drive");
     let assembled = drive.assemble().unwrap_or_else(|error| panic!("{error}"));
     let spans = spans_at_rest(&drive, &assembled);
     0.5 * (spans[0].tension + spans[1].tension)
