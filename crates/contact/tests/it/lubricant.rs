@@ -7,7 +7,7 @@ const CELSIUS: f64 = 273.15;
 
 fn oil(grade: &str, degrees: f64) -> Lubricant {
     Lubricant {
-        viscosity_40: Lubricant::grade(grade).unwrap(),
+        viscosity_40: Lubricant::grade(grade).expect("a grade of ISO 3448"),
         viscosity_index: 95.0,
         density: 880.0,
         temperature: degrees + CELSIUS,

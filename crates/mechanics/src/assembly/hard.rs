@@ -112,7 +112,7 @@ impl Drive {
                 },
             ) = (layout, own)
             {
-                elsewhere |= fit.at != own.at || fit.growth != own.growth;
+                elsewhere |= fit.at != own.at || (fit.growth - own.growth).abs() > 0.0;
                 (fit.at, fit.growth, *phase) = (own.at, own.growth, *at);
             }
         }

@@ -58,7 +58,9 @@ pub(super) fn lay_one(laid: &mut Laid, index: usize) -> Result<Option<Fitting>, 
                 let named = error.with_names(&name);
                 named.of_chains(std::iter::once(called.as_ref()))
             };
-            Ok(Some(fitting.map_err(told)?))
+            let fitting = fitting.map_err(&told)?;
+            grow(laid, index, (stops, *phase, fit), &fitting).map_err(&told)?;
+            Ok(Some(fitting))
         }
     }
 }
@@ -166,26 +168,6 @@ fn around(
             *length *= scale;
         }
     }
-    if fit.growth != 0.0 {
-        let apart = |wheel: &Wheel| Wheel {
-            centre: wheel.centre * (1.0 + fit.growth),
-            ..*wheel
-        };
-        let apart: Vec<Wheel> = wheels.iter().map(apart).collect();
-        let closes = |wheels: &[Wheel]| {
-            let strain = |phase| Ok(close_by_strain(wheels, pitch, links, phase)?.0);
-            if over_a_tooth {
-                mean_of_phases(strain)
-            } else {
-                strain(phase)
-            }
-        };
-        // ℓ₀ ← ℓ₀ (1 + ε)/(1 + ε_apart): to first order the frame stays as it is, and the chain is shorter.
-        let scale = (1.0 + closes(&wheels)?) / (1.0 + closes(&apart)?);
-        for length in &mut moved.chains[index].chain.lengths {
-            *length *= scale;
-        }
-    }
     laid.parts = moved;
     laid.chains.push(LaidChain { positions, route });
     Ok(Fitting {
@@ -195,6 +177,52 @@ fn around(
         travel,
         wheels,
     })
+}
+
+/// Shortens the links of a chain whose frame grows after it was fitted.
+///
+/// ```text
+/// ℓ₀ ← ℓ₀ (1 + s ε)/(1 + s ε_apart)      ε: strain of the closing, of the share s of links off the sprockets
+/// ```
+///
+/// To first order that is a frame that has grown around a chain as it was.
+fn grow(
+    laid: &mut Laid,
+    index: usize,
+    (stops, phase, fit): (&[Stop], f64, &Fit),
+    fitting: &Fitting,
+) -> Result<(), AssemblyError> {
+    if fit.growth.abs() <= 0.0 {
+        return Ok(());
+    }
+    let chain = &mut laid.parts.chains[index].chain;
+    let pitch = chain.pitch;
+    let (on_sprockets, others): (Vec<_>, Vec<_>) = stops
+        .iter()
+        .zip(&fitting.seated)
+        .partition(|(stop, _)| matches!(stop, Stop::Sprocket(_)));
+    let count = |stops: Vec<(&Stop, &u32)>| stops.iter().map(|(_, seated)| **seated).sum::<u32>();
+    let off = count(others) + fitting.spans.iter().sum::<u32>();
+    let links = off + count(on_sprockets);
+    let share = f64::from(off) / f64::from(links);
+    let closes = |wheels: &[Wheel]| {
+        let strain = |phase| Ok(close_by_strain(wheels, pitch, links, phase)?.0);
+        if fit.at == PretensionAt::MeanPhase {
+            mean_of_phases(strain)
+        } else {
+            strain(phase)
+        }
+    };
+    let apart = |wheel: &Wheel| Wheel {
+        centre: wheel.centre * (1.0 + fit.growth),
+        ..*wheel
+    };
+    let apart: Vec<Wheel> = fitting.wheels.iter().map(apart).collect();
+    let scale = (1.0 + share * closes(&fitting.wheels)?) / (1.0 + share * closes(&apart)?);
+    for length in &mut chain.lengths {
+        *length *= scale;
+    }
+    Ok(())
 }
 
 /// Phases that the mean over a tooth is taken of.
