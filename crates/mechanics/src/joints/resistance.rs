@@ -252,9 +252,9 @@ impl Joints {
             self.largest[1] + self.largest[0] * law.oil(),
         ];
         let [power, squares, seals, plates] = if let Some(beside) = &self.beside {
-            self.hold::<S, L, true>(w, dt, found, turns, law, beside.seal, &beside.plates)
+            self.hold::<S, L, true>(w, dt, found, turns, law, (beside.seal, &beside.plates))
         } else {
-            self.hold::<S, L, false>(w, dt, found, turns, law, 0.0, &self.radius)
+            self.hold::<S, L, false>(w, dt, found, turns, law, (0.0, &self.radius))
         };
         found.stored = 0.5 * stiffness * squares.sum();
         let [seals, plates] = [seals.sum(), plates.sum()];
@@ -268,7 +268,6 @@ impl Joints {
     /// All joints once, where springs hold: the power, the squares of the deflections \[m²\], and what of the power goes into seals and
     /// plates. Without closures, since those that are not inlined are compiled for the oldest processor.
     #[inline(always)]
-    #[expect(clippy::too_many_arguments)]
     fn hold<S: Simd, L: Holding, const BESIDE: bool>(
         &self,
         w: Wide<S>,
@@ -276,8 +275,7 @@ impl Joints {
         found: &mut Resistance,
         turns: &impl Turns<S>,
         law: L,
-        seal: f64,
-        plates: &[f64],
+        (seal, plates): (f64, &[f64]),
     ) -> [Lane<S>; 4] {
         let n = self.radius.len();
         let zero = w.splat(0.0);
