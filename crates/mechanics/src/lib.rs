@@ -138,6 +138,7 @@ mod tensioner;
 mod tolerance;
 mod torque;
 mod trains;
+mod warming;
 
 pub use alignment::Alignment;
 pub use articulation::{Articulation, LateralRub};
@@ -172,6 +173,7 @@ pub use system::{Record, System, SystemMemory};
 pub use tensioner::{Carrier, Push, PushForce, Tensioner, carriers, pushes};
 pub use tolerance::Tolerance;
 pub use torque::{Argument, Torque};
+pub use warming::warming;
 
 /// Hash of the sources of this crate, a part of the identity of a build.
 #[doc(hidden)]

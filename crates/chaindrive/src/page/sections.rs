@@ -3,6 +3,8 @@
 use super::{Section, by_the_step};
 use std::f64::consts::TAU;
 
+use chaindrive_mechanics::{Place, warming};
+
 use crate::describe::left_out;
 use crate::figure::{Measure, Scale, duration, figure, percent};
 use crate::precision::Judgement;
@@ -152,15 +154,43 @@ impl Told<'_> {
         section
     }
 
+    /// By how much the only chain becomes warmer than the air around it; what is lost is not told apart by chains.
+    fn warmth(&self) -> Option<String> {
+        let [placed] = &self.simulation.assembled().drive.chains[..] else {
+            return None;
+        };
+        let inside = [Place::Joints, Place::Rollers, Place::Seals, Place::Offset];
+        let lost = self.summary.losses().into_iter();
+        let lost: f64 = lost
+            .filter(|(place, _)| inside.contains(place))
+            .map(|(_, lost)| lost)
+            .sum();
+        let power = lost / self.summary.duration();
+        let [from, to] = warming(&placed.chain, power, self.chain_speed(0)?)?;
+        (power > 0.0).then(|| {
+            format!(
+                "What joints lose warms the chain, dry in air, by {} to {} K in the long run.",
+                figure(from),
+                figure(to)
+            )
+        })
+    }
+
+    /// Mean speed of a chain \[m/s\], where it passes a sprocket.
+    fn chain_speed(&self, index: usize) -> Option<f64> {
+        let sprockets = &self.summary.bodies().sprockets;
+        let first = sprockets.iter().find(|it| it.chain == index)?;
+        let pitch = self.simulation.assembled().drive.chains[index].chain.pitch;
+        // v = z p ω/2π
+        Some(f64::from(first.teeth) * pitch * first.speed.mean().abs() / TAU)
+    }
+
     /// Links, pitch and speed of every chain.
     fn chain_speeds(&self) -> Vec<String> {
         let drive = &self.simulation.assembled().drive;
-        let sprockets = &self.summary.bodies().sprockets;
         let told = |(index, placed): (usize, &chaindrive_mechanics::PlacedChain)| {
-            let first = sprockets.iter().find(|it| it.chain == index)?;
+            let speed = self.chain_speed(index)?;
             let pitch = placed.chain.pitch;
-            // v = z p ω/2π
-            let speed = f64::from(first.teeth) * pitch * first.speed.mean().abs() / TAU;
             let name = placed.name.as_ref().map(|it| format!(" {it}"));
             Some(format!(
                 "Chain{}: {} links of {} at {}.",
@@ -398,6 +428,7 @@ impl Told<'_> {
         }
         section.sentences.extend(self.balance());
         section.sentences.push(self.efficiency());
+        section.sentences.extend(self.warmth());
         section
     }
 

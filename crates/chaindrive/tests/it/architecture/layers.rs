@@ -33,7 +33,7 @@ const CRATES: [Storeys; 4] = [
             &["joints"],
             &["chains"],
             &["drive"],
-            &["alignment", "groups"],
+            &["alignment", "groups", "warming"],
             &["trains"],
             &["system"],
             &["events", "observe", "standing", "struck"],
