@@ -8,6 +8,7 @@
 //! [numerics], on a page of their own.
 
 mod by_the_step;
+mod losses;
 mod numerics;
 mod sections;
 

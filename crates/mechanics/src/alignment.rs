@@ -7,6 +7,8 @@ use crate::drive::{Layout, Parts, Sprocket, Stop};
 pub struct Alignment {
     /// Its name, as [`System::span_names`](crate::System::span_names) has it.
     pub span: String,
+    /// The sprocket at its beginning.
+    pub sprocket: String,
     /// Distance Δy of the two planes \[m\].
     pub offset: f64,
     /// Length L of the span \[m\].
@@ -23,6 +25,7 @@ impl Alignment {
         let centres = (here.centre - next.centre).norm();
         Self {
             span: format!("{}-{}", here.name, next.name),
+            sprocket: here.name.clone(),
             offset: (here.lateral - next.lateral).abs(),
             length: (centres * centres - across * across).max(0.0).sqrt(),
             centres,

@@ -126,9 +126,13 @@ fn fastest(struck: &[Struck]) -> Option<Reason> {
 /// The span that is most out of line, where that is too much.
 fn out_of_line(parts: &Parts) -> Option<Reason> {
     let spans = parts.out_of_line().into_iter();
-    let spans = spans.map(|it| (it.offset / it.centres, it.span));
-    let (of_centres, span) = spans.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (of_centres > ALIGNED).then_some(Reason::OutOfLine { span, of_centres })
+    let spans = spans.map(|it| (it.offset / it.centres, it));
+    let (of_centres, worst) = spans.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (of_centres > ALIGNED).then_some(Reason::OutOfLine {
+        span: worst.span,
+        sprocket: worst.sprocket,
+        of_centres,
+    })
 }
 
 fn load_that_drives(ledger: &Ledger) -> Option<Reason> {

@@ -181,6 +181,8 @@ pub enum Reason {
     OutOfLine {
         /// The span between them.
         span: String,
+        /// One of them.
+        sprocket: String,
         /// Distance of their planes over that of their shafts \[–\].
         of_centres: f64,
     },
@@ -519,9 +521,13 @@ impl fmt::Display for Reason {
                 f,
                 "{place}: struck at {speed:.1} m/s, and one restitution stands for impacts up to {limit} m/s: give that of such impacts, --set \"contact.….restitution=…\""
             ),
-            Self::OutOfLine { span, of_centres } => write!(
+            Self::OutOfLine {
+                span,
+                sprocket,
+                of_centres,
+            } => write!(
                 f,
-                "the sprockets of span {span} are out of line by {} of the distance of their shafts: align them, or take it for a drive that is meant so",
+                "the sprockets of span {span} are out of line by {} of the distance of their shafts: where that is not meant so, align them with --set \"sprockets.{sprocket}.lateral=…\"",
                 percent(*of_centres)
             ),
             Self::LoadDrives { work } => write!(

@@ -276,6 +276,7 @@ fn specimens() -> Vec<Reason> {
         },
         Reason::OutOfLine {
             span: "ring-cog".into(),
+            sprocket: "ring".into(),
             of_centres: 0.03,
         },
         Reason::LoadDrives { work: 12.0 },

@@ -197,20 +197,20 @@ fn grow(
     }
     let chain = &mut laid.parts.chains[index].chain;
     let pitch = chain.pitch;
-    let (on_sprockets, others): (Vec<_>, Vec<_>) = stops
-        .iter()
-        .zip(&fitting.seated)
-        .partition(|(stop, _)| matches!(stop, Stop::Sprocket(_)));
-    let count = |stops: Vec<(&Stop, &u32)>| stops.iter().map(|(_, seated)| **seated).sum::<u32>();
-    let off = count(others) + fitting.spans.iter().sum::<u32>();
-    let links = off + count(on_sprockets);
-    let share = f64::from(off) / f64::from(links);
+    let links = u32::try_from(chain.links()).unwrap_or(u32::MAX);
+    // s ε
+    let stretch = |wheels: &[Wheel], phase: f64| {
+        let (strain, closing) = close_by_strain(wheels, pitch, links, phase)?;
+        let seats = stops.iter().zip(&closing.seats);
+        let on_sprockets = seats.filter(|(stop, _)| matches!(stop, Stop::Sprocket(_)));
+        let seated: u32 = on_sprockets.map(|(_, seat)| seat.pitches).sum();
+        Ok(strain * (1.0 - f64::from(seated) / f64::from(links)))
+    };
     let closes = |wheels: &[Wheel]| {
-        let strain = |phase| Ok(close_by_strain(wheels, pitch, links, phase)?.0);
         if fit.at == PretensionAt::MeanPhase {
-            mean_of_phases(strain)
+            mean_of_phases(|phase| stretch(wheels, phase))
         } else {
-            strain(phase)
+            stretch(wheels, phase)
         }
     };
     let apart = |wheel: &Wheel| Wheel {
@@ -218,7 +218,7 @@ fn grow(
         ..*wheel
     };
     let apart: Vec<Wheel> = fitting.wheels.iter().map(apart).collect();
-    let scale = (1.0 + share * closes(&fitting.wheels)?) / (1.0 + share * closes(&apart)?);
+    let scale = (1.0 + closes(&fitting.wheels)?) / (1.0 + closes(&apart)?);
     for length in &mut chain.lengths {
         *length *= scale;
     }

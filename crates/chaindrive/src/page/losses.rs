@@ -1,0 +1,93 @@
+//! What a drive loses where.
+
+use chaindrive_mechanics::{Place, warming};
+
+use super::Section;
+use super::sections::Told;
+use crate::figure::{Measure, figure};
+
+impl Told<'_> {
+    pub(super) fn losses(&self) -> Section {
+        let lost = self.summary.losses();
+        let time = self.summary.duration();
+        let columns = ["place", "power [W]", "share [%]"].map(str::to_owned);
+        let mut section = Section::new("losses", columns);
+        let all = self.summary.energy_dissipated();
+        if !lost.is_empty() && time > 0.0 {
+            let names = lost.iter().map(|(place, lost)| (place.name(), *lost));
+            for (place, lost) in names.chain(std::iter::once(("all", all))) {
+                let share = format!("{:.1}", 100.0 * lost / all);
+                section
+                    .rows
+                    .push(vec![place.to_owned(), figure(lost / time), share]);
+            }
+        }
+        section.sentences.extend(self.balance());
+        section.sentences.push(self.efficiency());
+        section.sentences.extend(self.warmth());
+        section
+    }
+
+    /// Power that comes in, goes out and is lost, by the energy of the whole record.
+    fn balance(&self) -> Option<String> {
+        let (ledger, time) = (self.summary.ledger(), self.summary.duration());
+        if !(time > 0.0 && ledger.supplied > 0.0) {
+            return None;
+        }
+        let told = |energy: f64| Measure::Power.told(energy / time);
+        let rest = ledger.supplied - ledger.delivered - ledger.losses;
+        let way = if rest < 0.0 {
+            "came out of"
+        } else {
+            "went into"
+        };
+        Some(format!(
+            "Put in {}, taken out {}, lost {}; {} {way} motion, height and springs, with what is unaccounted for.",
+            told(ledger.supplied),
+            told(ledger.delivered),
+            told(ledger.losses),
+            told(rest.abs())
+        ))
+    }
+
+    /// The efficiency, or the reason why there is none.
+    fn efficiency(&self) -> String {
+        let ledger = self.summary.ledger();
+        if let Some([efficiency, uncertain]) = ledger.efficiency() {
+            let swings = if ledger.supplied_back > 0.0 {
+                " and what goes to and fro"
+            } else {
+                ""
+            };
+            return format!(
+                "Efficiency, 1 less the share that is lost: {:.3} % ± {:.3} % by the energy unaccounted for{swings}.",
+                100.0 * efficiency,
+                100.0 * uncertain
+            );
+        }
+        let why = ledger.unknown().unwrap_or_default();
+        format!("Efficiency: none, {why}.")
+    }
+
+    /// By how much the only chain becomes warmer than the air around it; what is lost is not told apart by chains.
+    fn warmth(&self) -> Option<String> {
+        let [placed] = &self.simulation.assembled().drive.chains[..] else {
+            return None;
+        };
+        let inside = [Place::Joints, Place::Rollers, Place::Seals, Place::Offset];
+        let lost = self.summary.losses().into_iter();
+        let lost: f64 = lost
+            .filter(|(place, _)| inside.contains(place))
+            .map(|(_, lost)| lost)
+            .sum();
+        let power = lost / self.summary.duration();
+        let [from, to] = warming(&placed.chain, power, self.chain_speed(0)?)?;
+        (power > 0.0).then(|| {
+            format!(
+                "What joints lose warms the chain, dry in air, by {} to {} K in the long run.",
+                figure(from),
+                figure(to)
+            )
+        })
+    }
+}
