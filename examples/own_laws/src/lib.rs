@@ -2,7 +2,7 @@
 //!
 //! | law | stands in a scene as |
 //! |---|---|
-//! | [`Stribeck`] | `friction = { kind = "stribeck", … }` of a contact |
+//! | [`Stribeck`] | `friction = { kind = "stribeck-speed", … }` of a contact |
 //! | [`Winkler`] | `law = { kind = "winkler", … }` of a contact |
 //! | [`GasSpring`] | `push = { kind = "gas-spring", … }` of a tensioner |
 
@@ -22,7 +22,7 @@ use chaindrive::laws::{elastic, friction, pushes};
 /// # Errors
 /// When a law is registered twice, or too late.
 pub fn register() -> Result<(), RegistrationError> {
-    friction::register::<Stribeck>("stribeck", 1)?;
+    friction::register::<Stribeck>("stribeck-speed", 1)?;
     elastic::register::<Winkler>("winkler", 1)?;
     pushes::register::<GasSpring>("gas-spring", 1)
 }

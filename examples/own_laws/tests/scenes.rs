@@ -17,7 +17,7 @@ const RUBBING: &str = "contact.teeth.friction";
 const PUSH: &str = "tensioners.tightener.push";
 
 const WINKLER: &str = r#"{ kind = "winkler", modulus = "200 GPa", thickness = "2 mm", length = "60 mm", radius = "30 mm" }"#;
-const STRIBECK: &str = r#"{ kind = "stribeck", static_coefficient = 0.15, coefficient = 0.08, stribeck_speed = "0.2 m/s", transition_speed = "1 cm/s" }"#;
+const STRIBECK: &str = r#"{ kind = "stribeck-speed", static_coefficient = 0.15, coefficient = 0.08, stribeck_speed = "0.2 m/s", transition_speed = "1 cm/s" }"#;
 const GAS: &str = r#"{ kind = "gas-spring", preload = "23.65 kN", length = "33.1 mm", exponent = 1.4, damping = "20 kN s/m" }"#;
 
 /// A preset with other laws; all laws are registered.
@@ -111,13 +111,13 @@ fn describe_and_schema_know_them() -> Outcome {
     let teeth = &described.model.contacts[0];
     assert_eq!(
         (teeth.elastic.as_str(), teeth.friction.as_str()),
-        ("winkler", "stribeck")
+        ("winkler", "stribeck-speed")
     );
 
     let schema = schema();
     for (family, kind, key) in [
         ("Elastic", "winkler", "modulus"),
-        ("Friction", "stribeck", "stribeck_speed"),
+        ("Friction", "stribeck-speed", "stribeck_speed"),
         ("Push", "gas-spring", "preload"),
     ] {
         let kinds = schema["$defs"][family]["oneOf"].as_array();
@@ -172,7 +172,7 @@ fn a_program_without_the_laws_does_not_go_on() -> Outcome {
     let scene = scene("marine_two_sprockets", &[(RUBBING, STRIBECK)])?
         .replace("run.until", "1 ms")?
         .replace("run.run_in", "0 s")?;
-    assert!(Build::here().id.contains("+friction:stribeck=1"));
+    assert!(Build::here().id.contains("+friction:stribeck-speed=1"));
     std::fs::write(
         folder.join("snapshot"),
         moved(&scene, 1e-3)?.snapshot().to_bytes(),
