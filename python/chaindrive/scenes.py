@@ -116,7 +116,7 @@ def bicycle_crank() -> Drive:
 
 
 def bicycle_derailleur() -> Drive:
-    """Bicycle with a derailleur, 50 to 17 teeth, 250 W: where the watts of a rider go.
+    """Bicycle with a derailleur, 50 to 17 teeth, 250 W.
 
     A bicycle with a derailleur: two pulleys on a sprung cage, a chain out of line, and what all of
     it loses.
