@@ -209,7 +209,7 @@ fn viscosity_at_40(y: f64, index: f64) -> f64 {
 /// ```
 ///
 /// # Source
-/// ASTM D2270-10, table X2.1: within 0.12 % of the values of its table 1.
+/// ASTM D2270-10, table X2.1, not compared with the printed table: within 0.12 % of the values of its table 1.
 fn reference_oils(y: f64) -> [f64; 2] {
     // Greatest Y; a, b, c; d, e, f
     const PIECES: [(f64, [f64; 3], [f64; 3]); 16] = [

@@ -79,7 +79,7 @@ pub struct SkfBearing {
     pub full_film_coefficient: f64,
 }
 
-/// Constants R₁ and S₁ by series.
+/// Constants R₁ and S₁ by series: as a public program has them, not compared with the printed table.
 const SERIES: [(&str, [f64; 2]); 16] = [
     ("60", [4.1e-7, 3.73e-3]),
     ("62", [3.9e-7, 3.23e-3]),

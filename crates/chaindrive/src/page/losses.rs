@@ -1,4 +1,4 @@
-//! What a drive loses where.
+//! Losses by place, balance of powers, efficiency.
 
 use chaindrive_mechanics::{Place, warming};
 

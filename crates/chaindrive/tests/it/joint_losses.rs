@@ -1,4 +1,4 @@
-//! What joints lose beside the friction of a line of contact: worn-in pins, oil, seals, plates out of line.
+//! Losses of joints beside the friction of a line of contact: worn-in pins, oil, seals, plates out of line.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 

@@ -134,7 +134,7 @@ impl<'a> Joints<'a> {
         }))
     }
 
-    /// How plates rub sideways, where sprockets are out of line.
+    /// Friction of plates between sprockets out of line.
     fn lateral(&self, plate_height: f64, findings: &mut Findings<'_>) -> Option<LateralRub> {
         let mut places = self.scene.sprockets.iter().map(|it| it.lateral.0);
         let first = places.next()?;

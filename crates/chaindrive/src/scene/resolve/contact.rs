@@ -184,7 +184,7 @@ pub(super) struct Spring {
     pub(super) factor: &'static Default,
 }
 
-/// What is known of a pin in its bush, for friction that says nothing of it.
+/// Measures of a pin in its bush: defaults of its friction.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Journal {
     pub(super) spring: Option<Spring>,

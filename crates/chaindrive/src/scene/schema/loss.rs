@@ -47,7 +47,7 @@ pub(crate) enum Bearing {
         #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
         viscosity: Option<KinematicViscosity>,
-        /// How oil gets into it; absent: from a bath.
+        /// Supply of oil; absent: a bath.
         #[serde(default)]
         feed: BearingFeed,
         /// Coefficient of boundary lubrication [–].
@@ -65,7 +65,7 @@ pub(crate) enum Bearing {
     },
 }
 
-/// How oil gets into a bearing.
+/// Supply of oil to a bearing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum BearingFeed {
