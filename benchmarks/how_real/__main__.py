@@ -1,4 +1,4 @@
-"""Write the tables and the diagram of docs/how-real.md: assumptions, and models side by side.
+"""Write the tables and diagrams of docs/how-real.md: assumptions, what is left out, models, oil.
 
 Run it as ``make how-real``, or ``python benchmarks/how_real [PRESET …] [--quick]``, which prints
 what it would write. It takes some twenty minutes on two cores.
@@ -10,9 +10,11 @@ from pathlib import Path
 import matplotlib as mpl
 
 import models
+import oil
 import seatings
 import tornado
 from assumptions import cases
+from left_out import left_out
 
 mpl.use("Agg")
 
@@ -39,25 +41,38 @@ def main() -> None:
         parser.error(f"unknown preset {', '.join(sorted(unknown))}; there are {', '.join(names)}")
     whole = not (arguments.presets or arguments.quick)
     wanted = arguments.presets or names
-    chosen = [case for case in every if case.preset in wanted]
+    added = left_out()
     if arguments.quick:
-        chosen = [case.shortened() for case in chosen]
+        every, added = (tuple(case.shortened() for case in it) for it in (every, added))
     drives = [drive for drive in models.DRIVES if drive[0] in wanted]
     share = 0.02 if arguments.quick else 1.0
     by_model = [line for drive in drives for line in models.table(*drive, share)]
     struck: list[str] = []
     if seatings.PRESET in wanted:
         struck = list(seatings.table(*((1, 0.2) if arguments.quick else (5, 1.0))))
-    results = [(case, *tornado.effects(case)) for case in chosen]
-    effects = [line for result in results for line in tornado.table(*result)]
+    oiled: list[str] = []
+    if oil.DRY in wanted:
+        oiled = list(oil.table(0.1 if arguments.quick else 1.0))
+    results, results_added = (
+        [(case, *tornado.effects(case)) for case in it if case.preset in wanted]
+        for it in (every, added)
+    )
+    effects, effects_added = (
+        [line for result in it for line in tornado.table(*result)]
+        for it in (results, results_added)
+    )
     if not whole:
-        print("\n".join([*effects, *by_model, *struck]))
+        print("\n".join([*effects, *effects_added, *by_model, *struck, *oiled]))
         return
     page = DOCS / "how-real.md"
     text = write_into(page.read_text(encoding="utf-8"), "assumptions", effects)
+    text = write_into(text, "left-out", effects_added)
     text = write_into(text, "models", by_model)
-    page.write_text(write_into(text, "seatings", struck), encoding="utf-8")
+    text = write_into(text, "seatings", struck)
+    page.write_text(write_into(text, "oil", oiled), encoding="utf-8")
     tornado.draw(results, DOCS / "how-real.png")
+    oil.draw(DOCS / "how-real_oil.png")
+    tornado.draw(results_added, DOCS / "how-real_left-out.png")
 
 
 if __name__ == "__main__":

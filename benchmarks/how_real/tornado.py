@@ -67,7 +67,10 @@ def effects(case: Case) -> tuple[np.ndarray, list[Effect]]:
     all_effects = []
     for assumption in case.assumptions:
         print(f"{case.preset}: {assumption.name}", file=sys.stderr, flush=True)
-        runs = [statistics(case, end, case.phases) - base for end in assumption.ends]
+        runs = [
+            statistics(case, end, case.phases) - base if end else np.zeros_like(base)
+            for end in assumption.ends
+        ]
         change = np.array([run.mean(0) / level for run in runs])
         width = np.array([factor * run.std(0, ddof=1) / level for run in runs])
         all_effects.append(Effect(assumption, change, width))

@@ -24,6 +24,7 @@ __all__ = [
     "industrial_16b",
     "marine_engine",
     "marine_engine_bare",
+    "marine_engine_oil",
     "marine_two_sprockets",
     "motorcycle",
     "pendulum_in_bush",
@@ -55,6 +56,15 @@ def marine_engine_bare() -> Drive:
     The same drive as the paper models it: no friction in the joints, constant loads.
     """
     return Drive._of(_core.Drive.preset("marine_engine_bare"))
+
+
+def marine_engine_oil() -> Drive:
+    """Marine two-stroke engine, camshaft drive with oil in its seats.
+
+    The camshaft drive with oil in the seats of its rollers: what an impact leaves follows from the
+    film.
+    """
+    return Drive._of(_core.Drive.preset("marine_engine_oil"))
 
 
 def marine_two_sprockets() -> Drive:

@@ -235,6 +235,7 @@ SLOW = [
     "hanging_chain",
     "marine_engine",
     "marine_engine_bare",
+    "marine_engine_oil",
     "marine_two_sprockets",
     "motorcycle",
     "pendulum_in_bush",

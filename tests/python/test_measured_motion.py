@@ -62,7 +62,8 @@ def test_m06_timing_chains() -> None:
         case.number(
             "greatest link force, petrol engine",
             float(run["link_tension"].max()),
-            f"{low:.0f} to {high:.0f} N for camshaft torques of 10 to 20 N m.",
+            "Camshaft torques of 10 to 20 N m.",
+            interval=(low, high),
         )
         angle = run["sprocket_angle"] - run["sprocket_angle"][0]
         # Two turns of the crank are one of the camshaft.

@@ -2,9 +2,9 @@
 
 A row of a `reference.json` is a measured number with a tolerance, or a trend in words, with the
 verdict that was recorded and the figure that was found. A test judges every row anew. It fails when
-the verdict is another one, agreement or miss, when the figure has left what was recorded, and when
-a row was forgotten. Where the environment variable `CHAINDRIVE_VERDICTS` names a file, each row is
-appended to it as a line of JSON, before the test can fail.
+the verdict is another one, agreement, miss or undecided, when the figure has left what was
+recorded, and when a row was forgotten. Where the environment variable `CHAINDRIVE_VERDICTS` names
+a file, each row is appended to it as a line of JSON, before the test can fail.
 """
 
 import json
@@ -67,15 +67,32 @@ class MeasuredCase:
         rows: list[dict[str, Any]] = self.data["rows"]
         return next(row for row in rows if row["quantity"] == quantity)
 
-    def number(self, quantity: str, found: float, note: str = "") -> None:
-        """Judge a measured number by its tolerance: absolute, or a share of it ("10 %")."""
+    def number(
+        self,
+        quantity: str,
+        found: float,
+        note: str = "",
+        interval: tuple[float, float] | None = None,
+    ) -> None:
+        """Judge a measured number by its tolerance: absolute, or a share of it ("10 %").
+
+        With an interval over the ranges of the open inputs, that is judged in the place of the
+        number: it agrees where it reaches the tolerance, and is undecided where it does and is
+        wider than the tolerance on both sides.
+        """
         row = self._open.pop(quantity)
         tolerance = row["tolerance"]
         share = isinstance(tolerance, str)
         allowed = float(tolerance.rstrip("% ")) / 100 * abs(row["expected"]) if share else tolerance
         found = float(found)
-        agrees = abs(found - row["expected"]) <= allowed
-        self._judge(row, agrees, float(f"{found:.5g}"), note)
+        low, high = interval or (found, found)
+        reaches = low - allowed <= row["expected"] <= high + allowed
+        verdict = "agrees" if reaches else "misses"
+        if reaches and high - low > 2 * allowed:
+            verdict = "undecided"
+        if interval:
+            note = f"{low:.4g} to {high:.4g} {row['unit']} over the open inputs. {note}".strip()
+        self._judge(row, verdict, float(f"{found:.5g}"), note)
         off = abs(found - row["found"])
         assert off <= STALE * max(abs(row["found"]), abs(row["expected"])), (
             f"{self.name}, {quantity}: {found:.5g}, recorded as {row['found']}"
@@ -83,22 +100,21 @@ class MeasuredCase:
 
     def trend(self, quantity: str, holds: bool, found: str) -> None:
         """Judge a statement about signs and order; `found` tells the figures behind it."""
-        self._judge(self._open.pop(quantity), bool(holds), found, "")
+        self._judge(self._open.pop(quantity), "agrees" if holds else "misses", found, "")
 
-    def _judge(self, row: dict[str, Any], agrees: bool, found: float | str, note: str) -> None:
+    def _judge(self, row: dict[str, Any], now: str, found: float | str, note: str) -> None:
         notes = [note, row.get("note", ""), row.get("missing", "")]
         self._record(
-            judged=row["judged"],
+            judged="undecided" if now == "undecided" else row["judged"],
             quantity=row["quantity"],
             unit=row.get("unit", ""),
             expected=row["expected"],
             found=found,
             tolerance=row.get("tolerance"),
-            agrees=agrees,
+            agrees=now == "agrees",
             note=" ".join(part for part in notes if part),
             kind=row.get("kind", "measured"),
         )
-        now = "agrees" if agrees else "misses"
         print(f"{self.name}, {row['quantity']}: {found}, measured: {row['expected']}: {now}")
         assert now == row["verdict"], (
             f"{self.name}, {row['quantity']}: {now} with {found}, recorded: {row['verdict']} with "

@@ -30,6 +30,7 @@ KEYS = (
     "source",
     "note",
 )
+JUDGED = ("quantitative", "trend", "undecided", "carried")
 # By the first letter of a case, in the order of the report.
 GROUPS = {
     "M": "Measured",
@@ -165,8 +166,8 @@ def read_verdicts(path: Path) -> list[Row]:
             raise ReportError(f"{path}, line {number} lacks {', '.join(absent)}")
         if value["kind"] not in ("measured", "computed"):
             raise ReportError(f"{path}, line {number}: kind is measured or computed")
-        if value["judged"] not in ("quantitative", "trend", "carried"):
-            raise ReportError(f"{path}, line {number}: judged is quantitative, trend or carried")
+        if value["judged"] not in JUDGED:
+            raise ReportError(f"{path}, line {number}: judged is one of {', '.join(JUDGED)}")
         del value["source"]
         row = Row(**{key: value[key] for key in KEYS if key in value})
         # Whoever judged may have rounded differently.
@@ -295,12 +296,14 @@ def summary(cases: dict[str, Case], rows: list[Row]) -> list[str]:
     head = ["", "cases that agree", "cases that miss", "quantities that agree", "that miss"]
     decided = {row.case for row in rows if row.judged != "carried"}
     carried = sum(len(case.carried) for name, case in cases.items() if name in decided)
+    undecided = sum(row.judged == "undecided" for row in rows)
     return [
         f"{len(cases)} cases. A case that is judged by numbers and by trends counts in both lines; "
         "it agrees when all of its quantities do.",
         "",
         *table(head, lines),
         "",
+        f"Undecided, because open inputs leave more room than the measurement: {undecided}. "
         f"Carried without a verdict: quantities of cases that are judged: {carried}; whole "
         f"cases: {len(cases) - len(decided)}.",
     ]
@@ -308,7 +311,7 @@ def summary(cases: dict[str, Case], rows: list[Row]) -> list[str]:
 
 def misses(cases: dict[str, Case], rows: list[Row]) -> list[str]:
     """Misses with the physics that is missing, and what no verdict is passed on."""
-    missed = [row for row in rows if not row.agrees and row.judged != "carried"]
+    missed = [row for row in rows if not row.agrees and row.judged in ("quantitative", "trend")]
     lines = ["## Misses", ""]
     if missed:
         lines += table([*HEAD, "why"], [[*cells(row), escape(row.note)] for row in missed])
@@ -349,6 +352,7 @@ def group(name: str, cases: list[Case], rows: list[Row]) -> list[str]:
         line = [*cells(row), str(row.values)]
         if measured:
             verdict = "agrees" if row.agrees else "**misses**"
+            verdict = "undecided" if row.judged == "undecided" else verdict
             line.append(f"{verdict}: {escape(row.note)}" if row.note.strip() else verdict)
         body.append(line)
     lines += table(head, body) if body else ["No quantity of these cases is judged."]

@@ -132,6 +132,7 @@ channels! {
     BushDepth, "bush_depth", "m", Joint, "indentation of bush and free roller";
     BushOffsetX, "bush_offset_x", "m", Joint, "eccentricity of the bush in its free roller, x";
     BushOffsetY, "bush_offset_y", "m", Joint, "eccentricity of the bush in its free roller, y";
+    FilmThickness, "film_thickness", "m", Roller, "oil between roller and teeth above the roughness; zero where metal bears";
     ContactForce, "contact_force", "N", Roller, "normal force between roller and teeth";
     ContactDepth, "contact_depth", "m", Sprocket, "deepest indentation on the sprocket";
     Contacts, "contacts", "1", Sprocket, "number of closed contacts on the sprocket";
@@ -282,6 +283,7 @@ impl Channel {
                 Self::StrandTensionMax | Self::StrandTensionMin => system.has_strands(),
                 _ => true,
             },
+            Axis::Roller => !matches!(self, Self::FilmThickness) || system.has_films(),
             Axis::Shaft => !system.shaft_names().is_empty(),
             Axis::Coupling => !system.coupling_names().is_empty(),
             _ => true,
@@ -357,6 +359,7 @@ impl Channel {
             Self::BushDepth => to.extend(&sample.bush_depth),
             Self::BushOffsetX => to.extend(&sample.bush_offset_x),
             Self::BushOffsetY => to.extend(&sample.bush_offset_y),
+            Self::FilmThickness => to.extend(&sample.film_thickness),
             Self::ContactForce => to.extend(&sample.contact_force),
             Self::ContactDepth => to.extend(&sample.contact_depth),
             Self::Contacts => to.extend(&sample.contacts),

@@ -42,6 +42,7 @@
 pub mod dissipation;
 pub mod elastic;
 mod error;
+pub mod film;
 pub mod friction;
 mod law;
 pub mod lubricant;
@@ -52,6 +53,7 @@ pub mod restitution;
 pub use chaindrive_quantities::ParameterError;
 pub use dissipation::Dissipation;
 pub use elastic::Elastic;
+pub use film::Film;
 pub use friction::{Friction, Rub};
 pub use law::{Approach, Law, Prepared, Response};
 pub use lubricant::Lubricant;

@@ -9,6 +9,7 @@ mod ahead;
 mod arrivals;
 mod bearing;
 mod bristles;
+mod film;
 mod friction;
 mod holding;
 mod impacts;
@@ -115,7 +116,9 @@ pub(crate) struct Contacts {
     law: SurfaceLaw,
     /// Radius of the touching circles \[m\].
     pub(crate) radius: f64,
-    /// Radius of the largest of them \[m\].
+    /// The same with the film of oil around them \[m\].
+    touching: f64,
+    /// The same of the largest of them \[m\].
     largest: f64,
     /// Differences between them, and between gaps.
     uneven: Option<Box<Uneven>>,
@@ -210,13 +213,16 @@ impl Touch {
 
 impl Contacts {
     pub(crate) fn new(shape: Shape, surface: Surface, flank: Option<Flank>, radius: f64) -> Self {
+        let law = SurfaceLaw::new(&surface, flank);
+        let touching = radius + law.film_thickness();
         Self {
             shape,
             surface,
             flank,
-            law: SurfaceLaw::new(&surface, flank),
+            law,
             radius,
-            largest: radius,
+            touching,
+            largest: touching,
             uneven: None,
             runs: Vec::new(),
             candidates: 0,
@@ -237,6 +243,12 @@ impl Contacts {
             Shape::Teeth(teeth) => teeth.face.stretches.len(),
             Shape::Rail { .. } => 1,
         }
+    }
+
+    /// Oil above the roughness \[m\] in a contact that presses, if there is any between the surfaces.
+    pub(crate) fn film(&self, state: &ContactMemory, slot: usize) -> Option<f64> {
+        let film = self.surface.film?;
+        Some(film.thickness - state.get(Kept::Squeezed, slot))
     }
 
     /// Sum of the elastic energies of all closed slots \[J\].

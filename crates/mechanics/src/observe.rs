@@ -269,17 +269,27 @@ impl System {
             out.sprocket_x.push(centre.x);
             out.sprocket_y.push(centre.y);
         }
+        out.film_thickness.clear();
+        if self.has_films() {
+            out.film_thickness.resize(self.rollers(), f64::NAN);
+        }
+        let mut first = 0;
         for (member, record) in self.chains.iter().zip(&record.chains) {
             for (on, touch) in member.contacts.teeth.iter().zip(&record.loads.teeth) {
                 let slots = on.contacts.slots;
-                on.contacts.for_each_slot(|slot, _| {
-                    for side in 0..on.contacts.sides() {
-                        if touch.state.get(Kept::Gap, side * slots + slot) < 0.0 {
+                on.contacts.for_each_slot(|slot, roller| {
+                    for slot in (0..on.contacts.sides()).map(|side| side * slots + slot) {
+                        if touch.state.get(Kept::Gap, slot) < 0.0 {
                             out.contacts[on.wheel] += 1.0;
+                            if let Some(film) = on.contacts.film(&touch.state, slot) {
+                                let thinnest = &mut out.film_thickness[first + roller];
+                                *thinnest = film.min(*thinnest);
+                            }
                         }
                     }
                 });
             }
+            first += member.chain.rollers();
         }
     }
 

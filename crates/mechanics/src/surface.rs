@@ -1,6 +1,6 @@
 //! Surfaces: how two bodies push and rub on each other.
 
-use chaindrive_contact::{Elastic, Friction, Law};
+use chaindrive_contact::{Elastic, Film, Friction, Law};
 
 use crate::DriveError;
 
@@ -11,6 +11,8 @@ pub struct Surface {
     pub law: Law,
     /// Friction law.
     pub friction: Friction,
+    /// Film of oil between the surfaces. What an impact leaves is a result then, so the law is to have no dissipation of its own.
+    pub film: Option<Film>,
 }
 
 impl Surface {
@@ -23,6 +25,9 @@ impl Surface {
         let mut found = Vec::new();
         found.extend(self.law.check().map_err(law).err());
         found.extend(self.friction.check().map_err(law).err());
+        if let Some(film) = self.film {
+            found.extend(film.check().map_err(law).err());
+        }
         found
     }
 }

@@ -113,6 +113,12 @@ impl System {
             .fold(0.0, f64::max)
     }
 
+    /// Whether there is oil between some rollers and teeth.
+    pub fn has_films(&self) -> bool {
+        let mut teeth = self.chains.iter().flat_map(|it| &it.contacts.teeth);
+        teeth.any(|on| on.contacts.surface.film.is_some())
+    }
+
     /// Whether a chain has damping so stiff that a method had better take it implicitly, and all chains let one do so.
     pub fn prefers_implicit_damping(&self) -> bool {
         let mut chains = self.chains.iter();

@@ -117,6 +117,8 @@ quantities! {
     Volume, "a volume", "m^3", "4 cm^3", [3.0, 0.0, 0.0, 0.0, 0.0], true;
     /// A dynamic viscosity \[Pa s\].
     Viscosity, "a viscosity", "Pa s", "10 mPa s", [-1.0, 1.0, -1.0, 0.0, 0.0], true;
+    /// Relative growth of a viscosity over the pressure \[1/Pa\].
+    PressureCoefficient, "a pressure coefficient", "1/Pa", "20 1/GPa", [1.0, -1.0, 2.0, 0.0, 0.0], true;
     /// A kinematic viscosity \[m²/s\].
     KinematicViscosity, "a kinematic viscosity", "m^2/s", "150 mm^2/s", [2.0, 0.0, -1.0, 0.0, 0.0], true;
     /// A density \[kg/m³\].

@@ -81,6 +81,8 @@ pub struct ContactFacts {
     pub restitution: Option<f64>,
     /// Kind of the friction.
     pub friction: String,
+    /// Thickness of the film of oil that the parts meet \[m\], where there is one.
+    pub film: Option<f64>,
 }
 
 /// The contacts of a drive, each kind of pair once for every law.
@@ -105,6 +107,7 @@ pub(super) fn contacts(drive: &Drive) -> Vec<ContactFacts> {
                 Friction::None => "none".to_owned(),
                 friction => kind(serde_json::to_value(friction)),
             },
+            film: surface.film.map(|film| film.thickness),
         };
         if !found.contains(&facts) {
             found.push(facts);
@@ -113,7 +116,7 @@ pub(super) fn contacts(drive: &Drive) -> Vec<ContactFacts> {
     found
 }
 
-/// Effects that the model of a drive leaves out, in words: friction where parts touch, damping of the links, errors of sprockets,
+/// Effects that the model of a drive leaves out, in words: oil in seats, friction where parts touch, damping of the links, errors of sprockets,
 /// losses of shafts, gravity.
 pub fn left_out(drive: &Drive) -> Vec<&'static str> {
     let contacts = contacts(drive);
@@ -127,6 +130,8 @@ pub fn left_out(drive: &Drive) -> Vec<&'static str> {
         let own = || contacts.iter().filter(|contact| contact.pair == pair);
         own().next().is_some() && own().all(|contact| contact.friction == "none")
     };
+    let mut on_teeth = contacts.iter().filter(|it| it.pair == "teeth").peekable();
+    let dry = on_teeth.peek().is_some() && on_teeth.all(|it| it.film.is_none());
     // Pins that turn in their bushes rub in no contact of these.
     let idle = !facts.is_empty() && facts.iter().all(|it| it.joint_friction.is_none());
     let mut chains = drive.chains.iter();
@@ -144,6 +149,7 @@ pub fn left_out(drive: &Drive) -> Vec<&'static str> {
     let frictionless = turns && losses().all(|it| it.bearing.is_none());
     let clear = turns && losses().all(|it| it.drag.is_none());
     let lacks = [
+        (dry, "oil between rollers and teeth"),
         (slips("teeth"), "friction on teeth"),
         (slips("guides"), "friction on guides"),
         (slips("rollers"), "friction of rollers on their bushes"),

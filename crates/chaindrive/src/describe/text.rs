@@ -418,6 +418,9 @@ impl fmt::Display for ContactFacts {
         if self.friction != "none" {
             write!(f, ", friction {}", self.friction)?;
         }
+        if let Some(film) = self.film {
+            write!(f, ", film of oil of {}", Measure::Length.told(film))?;
+        }
         Ok(())
     }
 }

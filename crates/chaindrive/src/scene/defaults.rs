@@ -185,7 +185,13 @@ defaults! {
     JOINTS_SPRING = always(0.1), "link stiffnesses times the pitch over the radius of the pin, squared", Assumed("explicit steps stay those of the links, and a strand slides when its joints have turned by some 1e-5"), ["Friction.stiffness"];
     /// The same where pins have play, and the spring resists motion as well as rotation.
     PLAY_SPRING = always(0.82), "link stiffnesses", Source("2(1 − ν)/(2 − ν) with ν = 0.3: how much a contact resists across of what it resists along (R. D. Mindlin, J. Appl. Mech. 16, 1949, 259–268); assumed that pins and plates behind it do alike"), ["Friction.stiffness"];
-    /// Hersey number at which metal bears a share 1/e.
+    /// Pressure coefficient of oil.
+    PRESSURE_VISCOSITY = always(20e-9), "1/Pa", Source("machine oils at 60 °C have 20 to 26, from 30 to 100 °C 13 to 29 1/GPa (G. W. Stachowiak, A. W. Batchelor, Engineering Tribology, table 2.3)"), ["Film.pressure_coefficient"];
+    /// Roughness at which metal bears the rest of a film.
+    FILM_ROUGHNESS = always(0.8e-6), "m", Assumed("0.4 to 1.6 µm, as turned and hardened"), ["Film.roughness"];
+    /// Time in which oil comes back.
+    REFILL_TIME = always(0.0), "s", Assumed("flooded: oil follows the surfaces at once, up to the thickness at touch"), ["Film.refill_time"];
+    /// Hersey number at which metal bears half.
     TRANSITION = always(1e-6), "1", Assumed("journals run in oil alone from η ω/P of some 0.5e-6 (McKee's 30 cP rpm/psi) to 11e-6 (what designers keep to) on"), ["Friction.transition"];
     /// Friction of plates where a chain runs out of line.
     LATERAL_FRICTION = always(0.1), "1", Assumed("steel on oiled steel with boundary lubrication, 0.1 to 0.15"), ["Lateral.friction"];

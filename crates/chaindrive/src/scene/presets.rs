@@ -4,7 +4,7 @@ use super::suggest::one_of;
 use super::{Problem, Scene, SceneError};
 
 /// Name, one-line description and text of every embedded scene.
-const PRESETS: [(&str, &str, &str); 16] = [
+const PRESETS: [(&str, &str, &str); 17] = [
     (
         "marine_engine",
         "Camshaft drive of a large two-stroke engine under its pumps and valves: four sprockets, three guide bars, tensioner",
@@ -14,6 +14,11 @@ const PRESETS: [(&str, &str, &str); 16] = [
         "marine_engine_bare",
         "The same drive as the paper models it: no friction in the joints, constant loads",
         include_str!("../../scenes/marine_engine_bare.toml"),
+    ),
+    (
+        "marine_engine_oil",
+        "The camshaft drive with oil in the seats of its rollers: what an impact leaves follows from the film",
+        include_str!("../../scenes/marine_engine_oil.toml"),
     ),
     (
         "marine_two_sprockets",

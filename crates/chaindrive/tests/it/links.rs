@@ -304,6 +304,7 @@ fn joints_are_recorded_where_there_are_any() {
         Channel::BushDepth,
         Channel::BushOffsetX,
         Channel::BushOffsetY,
+        Channel::FilmThickness,
         Channel::ShaftAngle,
         Channel::ShaftSpeed,
         Channel::CouplingTorque,

@@ -10,6 +10,7 @@ mod duty;
 mod dynamics;
 mod energy;
 mod examples;
+mod film;
 mod horizons;
 mod housing;
 mod impacts;

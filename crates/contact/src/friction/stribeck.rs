@@ -11,12 +11,12 @@ use super::Rub;
 ///
 /// ```text
 /// S  = 2 η |v| L/N                          Hersey number η ω/P of a journal, P = N/(2 r L), v = r ω
-/// z′ = z + v h, drawn back to |z′| ≤ μ N exp(−S/S_t)/k
-/// f  = −k z′ − 2 π η L v/ψ                  in steady sliding f/N = −[μ exp(−S/S_t) + π S/ψ] sgn v
+/// z′ = z + v h, drawn back to |z′| ≤ μ N/[1 + (S/S_t)²]/k
+/// f  = −k z′ − 2 π η L v/ψ                  in steady sliding f/N = −[μ/(1 + (S/S_t)²) + π S/ψ] sgn v
 /// ```
 ///
 /// Metal rubs by the coefficient μ, as a [`SpringSlider`](super::SpringSlider) that holds at rest, and by less the faster it slides:
-/// at the Hersey number S_t a share 1/e is left. Oil shears in the clearance ψ = c/r of a journal that runs in the middle (Petroff).
+/// at the Hersey number S_t half of it is left. Oil shears in the clearance ψ = c/r of a journal that runs in the middle (Petroff).
 /// It needs no load: what a joint without tension loses is that. Between the two lies the minimum.
 ///
 /// # Range
@@ -25,8 +25,8 @@ use super::Rub;
 ///
 /// # Source
 /// R. Stribeck, *Z. VDI* **46**, 1902, 1341 (the curve); M. D. Hersey, *J. Wash. Acad. Sci.* **4**, 1914, 542 (the number); N. Petroff,
-/// *Inzhenernyi zhurnal*, 1883 (its hydrodynamic branch). That metal fades exponentially is the usual form over the speed: S. Andersson,
-/// A. Söderberg and S. Björklund, *Tribol. Int.* **40**, 2007, 580–587.
+/// *Inzhenernyi zhurnal*, 1883 (its hydrodynamic branch). Fading with the square, as measured in
+/// lubricated line contacts whose sliding swings: D. P. Hess, A. Soom, *J. Tribol.* **112**, 1990, 147–152, over the speed there.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(inline)]
@@ -34,7 +34,7 @@ pub struct Stribeck {
     /// Coefficient of boundary friction μ \[–\].
     #[schemars(with = "Ratio", extend("minimum" = 0))]
     pub coefficient: f64,
-    /// Hersey number S_t at which metal bears a share 1/e \[–\].
+    /// Hersey number S_t at which metal bears half \[–\].
     #[schemars(with = "Option<Ratio>", extend("exclusiveMinimum" = 0))]
     pub transition: f64,
     /// Dynamic viscosity η of the oil \[Pa s\].
@@ -59,7 +59,7 @@ impl Stribeck {
         2.0 * PI * self.viscosity * self.length / self.relative_clearance
     }
 
-    /// Force \[N\] per slip \[m/s\] at which metal bears a share 1/e.
+    /// Force \[N\] per slip \[m/s\] at which metal bears half.
     #[inline]
     pub fn fading(self) -> f64 {
         // S/S_t = (2 η L/S_t) |v|/N
@@ -72,10 +72,12 @@ impl Stribeck {
         if normal <= 0.0 {
             return [0.0; 2];
         }
-        // μ N exp(−S/S_t)
-        let fading = self.fading();
-        let limit = self.coefficient * normal * (-fading * speed / normal).exp();
-        [limit, -limit * fading / normal]
+        // μ N/(1 + x²),   x = S/S_t
+        let fading = self.fading() / normal;
+        let x = fading * speed;
+        let left = (1.0 + x * x).recip();
+        let limit = self.coefficient * normal * left;
+        [limit, -2.0 * limit * left * x * fading]
     }
 
     /// Tangential force \[N\] of steady sliding; zero at rest.

@@ -130,15 +130,17 @@ impl Bearing {
         let [eccentricity, inverse] = (ex * ex + ey * ey).roots();
         let directed = apart.present & eccentricity.greater(w.splat(CENTRED));
         // Without a direction there is no contact, whatever the clearance.
-        let clearance = w.splat(self.clearance);
+        let clearance = w.splat(self.clearance - self.lanes.film_thickness());
         let gap = directed.select(clearance - eccentricity, clearance.max(zero));
         let gap = apart.present.select(gap, w.splat(FAR));
         let inverse = directed.select(inverse, zero);
         let [nx, ny] = [ex * inverse, ey * inverse];
         let [ux, uy] = apart.rate;
         let closing = nx * ux + ny * uy;
+        let law = &self.lanes;
+        let seen = law.see::<S, true>(w, memory, lane, gap, dt, None);
         let mut grip = Grip {
-            gap,
+            gap: seen.gap,
             normal: [nx, ny],
             force: zero,
             rub: zero,
@@ -149,9 +151,8 @@ impl Bearing {
             across: zero,
             levers: [zero, zero],
         };
-        let law = &self.lanes;
         let Some(pressed) =
-            law.press::<S, true>(w, memory, lane, [gap, closing], None, None, None, tally)
+            law.press::<S, true>(w, memory, lane, seen, closing, None, None, None, tally)
         else {
             return grip;
         };

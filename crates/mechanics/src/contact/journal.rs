@@ -1,7 +1,7 @@
 //! A lubricated journal, on lanes: the law of [`Stribeck`], whose comments say where the equations come from.
 //!
 //! ```text
-//! |z′| ≤ μ N exp(−S/S_t)/k,   S/S_t = (2 η L/S_t) |v|/N
+//! |z′| ≤ μ N/[1 + (S/S_t)²]/k,   S/S_t = (2 η L/S_t) |v|/N
 //! f = −k z′ − 2 π η L v/ψ
 //! ```
 
@@ -22,7 +22,7 @@ pub(crate) struct LaneJournal {
     oil: f64,
 }
 
-/// A normal force \[N\] that no speed is divided by less than.
+/// A normal force \[N\] that nothing is divided by less than.
 const LEAST_FORCE: f64 = 1e-12;
 
 impl LaneJournal {
@@ -75,9 +75,11 @@ impl Holding for LaneJournal {
 
     #[inline(always)]
     fn limit<S: Simd>(&self, w: Wide<S>, normal: Lane<S>, slip: Lane<S>) -> Lane<S> {
-        let share = w.splat(self.fading) * slip.abs() * normal.max(w.splat(LEAST_FORCE)).recip();
-        // exp(−S/S_t) = 1 + (exp(−S/S_t) − 1)
-        let left = w.splat(1.0) + share.decay();
+        // 1/(1 + x²) = 1 − u²/(N² + u²),   u = x N = (2 η L/S_t) v: without oil nothing fades.
+        let load = normal.max(w.splat(LEAST_FORCE));
+        let speed = w.splat(self.fading) * slip;
+        let square = speed * speed;
+        let left = w.splat(1.0).minus(square, square.plus(load, load).recip());
         self.spring.limit(w, normal, slip) * left
     }
 }

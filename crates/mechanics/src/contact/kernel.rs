@@ -103,7 +103,7 @@ impl Contacts {
             }
             Shape::Rail { reference, .. } => Place::at_rail(w, *reference, frame, [dx, dy]),
         };
-        let mut faced = view.faced(w, &place, self.radius, self.law.flank.is_some());
+        let mut faced = view.faced(w, &place, self.touching, self.law.flank.is_some());
         if let Some(uneven) = &slots.uneven {
             faced.gap = faced.gap - uneven.larger(slot.axis);
         }
@@ -172,9 +172,9 @@ impl Contacts {
             None => None,
         };
         let (memory, tally) = (&mut slots.memory, &mut sums.tally);
-        let surfaces = [gap, closing];
+        let seen = law.see::<S, LONG>(w, memory, lane, gap, dt, share);
         let Some(pressed) =
-            law.press::<S, LONG>(w, memory, lane, surfaces, share, None, ahead, tally)
+            law.press::<S, LONG>(w, memory, lane, seen, closing, share, None, ahead, tally)
         else {
             return Some(closing);
         };

@@ -1,8 +1,8 @@
 //! The laws of two surfaces on lanes: what any contact answers to where its surfaces are and how they move.
 //!
 //! ```text
-//! gap, closing speed ─► onset ─► normal force ─► friction ─► tally
-//!                       [`SurfaceLaw::press`]    [`SurfaceLaw::rub`]
+//! gap ─► film ─► onset ─► normal force ─► friction ─► tally
+//!  [`SurfaceLaw::see`]  [`SurfaceLaw::press`]   [`SurfaceLaw::rub`]
 //! ```
 //!
 //! Rollers on teeth and rails, plates on guides, pins in bushes and bushes in rollers find the gap, the
@@ -15,6 +15,7 @@ use pulp::Simd;
 
 use super::LEAST_DEPTH;
 use super::ahead::Ahead;
+use super::film::{Behind, LaneFilm, Seen};
 use super::friction::LaneFriction;
 use super::logarithm::Logarithm;
 use super::memory::MemoryLanes;
@@ -30,6 +31,8 @@ pub(crate) struct SurfaceLaw {
     elastic: LaneElastic,
     /// Differences on flanks.
     pub(super) flank: Option<LaneFlank>,
+    /// Oil between the surfaces.
+    pub(crate) film: Option<Box<LaneFilm>>,
     /// χ of a hysteretic law, otherwise zero.
     factor: f64,
     /// Viscous damping, otherwise zero \[N s/m\].
@@ -78,6 +81,8 @@ pub(crate) struct Pressed<S: Simd> {
     stored: Lane<S>,
     /// −∂F/∂ġ without the limits \[N s/m\], of whole contacts; means something where closed.
     steepest: Lane<S>,
+    /// Stiffness of law and film over that of the law.
+    softer: Lane<S>,
     /// Normal force \[N\], zero where open.
     pub(crate) force: Lane<S>,
 }
@@ -95,11 +100,17 @@ impl SurfaceLaw {
                 elastic: LaneElastic::new(&flank.law(surface)),
                 scale: 0.5 / flank.width,
             }),
+            film: surface.film.map(|film| Box::new(LaneFilm::new(film))),
             factor,
             damping,
             floor: surface.floor(),
             friction: LaneFriction::new(surface.friction),
         }
+    }
+
+    /// Thickness of the film at touch \[m\], zero without one.
+    pub(crate) fn film_thickness(&self) -> f64 {
+        self.film.as_ref().map_or(0.0, |film| film.thickness())
     }
 
     /// Whether one of the laws takes so many operations, or calls, that it would burden the kernels of those that do not: a kernel is
@@ -108,11 +119,35 @@ impl SurfaceLaw {
     pub(crate) fn is_long(&self) -> bool {
         let flank = self.flank.as_ref();
         self.elastic.is_long()
+            || self.film.is_some()
             || flank.is_some_and(|flank| flank.elastic.is_long())
             || self.friction.is_long()
     }
 
-    /// Onset and normal force of a lane of contacts with these gaps and closing speeds; none if all are open.
+    /// Where a lane of contacts is for the law: through the film of oil, if there is one, that drains until `dt` after the accepted state.
+    ///
+    /// The gap is that between the surfaces, less the thickness of the film at touch. The memory of the film is kept.
+    #[inline(always)]
+    pub(crate) fn see<S: Simd, const LONG: bool>(
+        &self,
+        w: Wide<S>,
+        memory: &mut MemoryLanes<'_, S>,
+        lane: usize,
+        gap: Lane<S>,
+        dt: f64,
+        share: Option<Lane<S>>,
+    ) -> Seen<S> {
+        match &self.film {
+            Some(film) if LONG => film.squeeze(w, memory, lane, gap, dt, share, self),
+            _ => Seen {
+                gap,
+                draining: w.splat(0.0),
+                softer: w.splat(1.0),
+            },
+        }
+    }
+
+    /// Onset and normal force of a lane of contacts seen so, with these closing speeds; none if all are open.
     ///
     /// Contacts are closed where the gap is negative. `share` is that of the flank's law, and `weight` the part of every contact
     /// that is counted here: at an eye two plates bear a half each.
@@ -126,13 +161,15 @@ impl SurfaceLaw {
         w: Wide<S>,
         memory: &mut MemoryLanes<'_, S>,
         lane: usize,
-        [gap, closing]: [Lane<S>; 2],
+        seen: Seen<S>,
+        closing: Lane<S>,
         share: Option<Lane<S>>,
         weight: Option<Lane<S>>,
         ahead: Option<Ahead<S>>,
         tally: &mut LaneTally<S>,
     ) -> Option<Pressed<S>> {
         let zero = w.splat(0.0);
+        let Seen { gap, softer, .. } = seen;
         memory.look(lane, gap, closing);
         let depth = (-gap).max(zero);
         let closed = depth.greater(zero);
@@ -184,6 +221,9 @@ impl SurfaceLaw {
         memory.keep_force(lane, force);
         // What is open has a depth of zero, and returns nothing.
         tally.normal_loss = (tally.normal_loss).plus(force - returned, closing);
+        if LONG && self.film.is_some() {
+            tally.normal_loss = tally.normal_loss.plus(force, seen.draining);
+        }
         tally.depth = tally.depth.max(depth);
         Some(Pressed {
             closed,
@@ -194,6 +234,7 @@ impl SurfaceLaw {
             on_seat,
             stored,
             steepest,
+            softer,
             force,
         })
     }
@@ -260,7 +301,10 @@ impl SurfaceLaw {
             .greater(pressed.closing * pressed.inverse_onset);
         let hysteresis = factor * pressed.stored * pressed.inverse_onset;
         let damping = free.select(hysteresis, zero) + w.splat(self.damping);
-        let stiffness = slope * (w.splat(1.0) + factor * pressed.ratio);
+        let mut stiffness = slope * (w.splat(1.0) + factor * pressed.ratio);
+        if LONG && self.film.is_some() {
+            stiffness = stiffness * pressed.softer;
+        }
         [pushes.select(stiffness, zero), pushes.select(damping, zero)]
     }
 
@@ -276,6 +320,20 @@ impl SurfaceLaw {
             }
             None => None,
         }
+    }
+}
+
+impl Behind for SurfaceLaw {
+    /// Of whole contacts, seat and flank together.
+    #[inline(always)]
+    fn elastic<S: Simd>(&self, w: Wide<S>, depth: Lane<S>, share: Option<Lane<S>>) -> [Lane<S>; 2] {
+        let [mut force, mut slope] = self.elastic.both(w, depth);
+        if let (Some(flank), Some(share)) = (&self.flank, share) {
+            let [other, steeper] = flank.elastic.both(w, depth);
+            force = force.plus(share, other - force);
+            slope = slope.plus(share, steeper - slope);
+        }
+        [force, slope]
     }
 }
 
@@ -317,6 +375,13 @@ impl LaneElastic {
             Self::Logarithm(law) => law.force(w, depth),
             Self::General(law) => general(w, law, depth, Part::Force),
         }
+    }
+
+    /// g and dg/dδ, of any law.
+    #[inline(always)]
+    fn both<S: Simd>(&self, w: Wide<S>, depth: Lane<S>) -> [Lane<S>; 2] {
+        let force = self.force::<S, true>(w, depth);
+        [force, self.slope::<S, true>(w, depth, force)]
     }
 
     /// dg/dδ of lanes with a force g.

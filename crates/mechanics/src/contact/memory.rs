@@ -19,7 +19,7 @@ pub(crate) const FAR: f64 = 1.0;
 pub(crate) enum Kept {
     /// Inverse of the closing speed at touch \[s/m\]; zero while open.
     InverseOnset,
-    /// Gap \[m\], negative in contact.
+    /// Gap \[m\], negative in contact; where there is oil, what the law behind the film sees.
     Gap,
     /// Closing speed \[m/s\].
     Closing,
@@ -31,10 +31,13 @@ pub(crate) enum Kept {
     Stick,
     /// Share of the flank's law, where there is one; means something while closed.
     Share,
+    /// What has been squeezed out of the film of oil \[m\], and how fast it drains \[m/s\]; kept where there is one.
+    Squeezed,
+    Draining,
 }
 
 impl Kept {
-    const COUNT: usize = Self::Share as usize + 1;
+    const COUNT: usize = Self::Draining as usize + 1;
 }
 
 /// State of contacts at one instant, whole lanes.
@@ -294,6 +297,19 @@ impl<'a, S: Simd> MemoryLanes<'a, S> {
     #[inline(always)]
     pub(crate) fn keep_share(&mut self, lane: usize, share: Lane<S>) {
         self.keep(Kept::Share, lane, share);
+    }
+
+    /// Gap \[m\] at the last accepted state, what had been squeezed out of the film \[m\], and how fast it drained \[m/s\].
+    #[inline(always)]
+    pub(super) fn squeezed(&self, lane: usize) -> [Lane<S>; 3] {
+        [Kept::Gap, Kept::Squeezed, Kept::Draining].map(|what| self.before(what, lane))
+    }
+
+    /// Keeps the state of the film.
+    #[inline(always)]
+    pub(super) fn keep_squeezed(&mut self, lane: usize, squeezed: Lane<S>, draining: Lane<S>) {
+        self.keep(Kept::Squeezed, lane, squeezed);
+        self.keep(Kept::Draining, lane, draining);
     }
 
     /// State of the friction of contacts that were closed before; the others begin without.

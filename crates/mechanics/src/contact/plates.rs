@@ -338,9 +338,9 @@ impl PlateContact {
             None => None,
         };
         let (weight, tally) = (Some(weight), &mut sums.tally);
-        let surfaces = [gap, closing];
+        let seen = law.see::<S, true>(w, memory, lane, gap, dt, None);
         let Some(pressed) =
-            law.press::<S, true>(w, memory, lane, surfaces, None, weight, ahead, tally)
+            law.press::<S, true>(w, memory, lane, seen, closing, None, weight, ahead, tally)
         else {
             let clear = near.select(found.gap, clear);
             let speeds = [[vx, vy], [wx, wy]];

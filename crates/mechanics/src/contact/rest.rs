@@ -110,6 +110,7 @@ mod tests {
                 onset_floor: 0.01,
             },
             friction: Friction::None,
+            film: None,
         };
         Contacts::new(shape, surface, None, RADIUS)
     }

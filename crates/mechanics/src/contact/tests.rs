@@ -1,5 +1,6 @@
 //! Contacts of rollers with gaps of any shape: how many, how continuous, and what becomes of the energy.
 
+mod film;
 mod plates;
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -143,6 +144,7 @@ fn surface(friction: Friction) -> Surface {
             onset_floor: 0.01,
         },
         friction,
+        film: None,
     }
 }
 
@@ -182,6 +184,8 @@ struct Roller {
     touch: Box<Touch>,
     /// Half of the step \[s\] at whose end velocities are predicted, and not what they are.
     half_step: f64,
+    /// Power lost along the normal \[W\].
+    losing: f64,
 }
 
 impl Roller {
@@ -195,6 +199,7 @@ impl Roller {
             },
             touch: Box::default(),
             half_step: 0.0,
+            losing: 0.0,
         };
         // Moved at will, a roller must be looked at every time.
         roller.contacts.writes_faces = true;
@@ -232,6 +237,7 @@ impl Roller {
         let (touch, wrench) = (&mut self.touch, &mut Wrench::default());
         self.contacts
             .act(w, t, &self.frame, &mut rollers, yielding, touch, wrench);
+        self.losing = wrench.normal_loss;
         std::mem::swap(&mut self.contacts.memory, &mut self.touch);
         self.contacts.accepted = t;
         Vector::new(ax[0], ay[0])
@@ -485,6 +491,7 @@ fn a_contact_begins_without_bristles() {
             frame: used.frame,
             touch: used.touch.clone(),
             half_step: 0.0,
+            losing: 0.0,
         };
         for step in 1..=lifted {
             again.force(1e-3 + 1e-9 * f64::from(step), off, slip);

@@ -78,7 +78,7 @@ impl Contacts {
             self.largest = rollers
                 .iter()
                 .copied()
-                .fold(self.radius, |largest, it| largest.max(self.radius + it));
+                .fold(self.touching, |largest, it| largest.max(self.touching + it));
             self.uneven = Some(Box::new(Uneven {
                 rollers,
                 ..Uneven::default()
@@ -191,6 +191,7 @@ mod tests {
                 onset_floor: 0.01,
             },
             friction: Friction::None,
+            film: None,
         };
         Contacts::new(shape, surface, None, RADIUS).with_errors(deviations)
     }

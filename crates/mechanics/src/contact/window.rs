@@ -287,6 +287,7 @@ mod tests {
                 onset_floor: 0.01,
             },
             friction: Friction::None,
+            film: None,
         };
         let mut contacts = Contacts::new(shape, surface, None, 0.01);
         let whole = Run {

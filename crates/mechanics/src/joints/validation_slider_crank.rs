@@ -70,6 +70,7 @@ impl SliderCrank {
                 onset_floor: 1e-6,
             },
             friction: Friction::None,
+            film: None,
         };
         let (rod, rod_mass) = (input("l"), input("m_conrod"));
         Self {

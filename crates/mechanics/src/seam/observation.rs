@@ -58,6 +58,8 @@ pub struct Observation {
     pub span_tension: Vec<f64>,
     /// Normal force between every roller and the teeth \[N\], (rollers,).
     pub contact_force: Vec<f64>,
+    /// Oil between every roller and the teeth, above the roughness \[m\], (rollers,); zero where metal bears, NaN where nothing presses.
+    pub film_thickness: Vec<f64>,
     /// Deepest indentation on every sprocket \[m\], (sprockets,).
     pub contact_depth: Vec<f64>,
     /// Closed contacts on every sprocket, (sprockets,).

@@ -168,6 +168,7 @@ fn clearance(friction: Friction) -> Joint {
                 onset_floor: 0.01,
             },
             friction,
+            film: None,
         },
     })
 }

@@ -32,6 +32,7 @@ fn guide(name: &str, face: ArcSpline) -> Guide {
         surface: Surface {
             law: law(),
             friction: Friction::None,
+            film: None,
         },
     }
 }

@@ -33,6 +33,7 @@ fn surface(hole: f64, pin: f64, length: f64) -> Surface {
             coefficient: 0.1,
             slip_speed: 0.01,
         }),
+        film: None,
     }
 }
 

@@ -44,6 +44,7 @@ fn clearance() -> Joint {
                 onset_floor: 0.01,
             },
             friction: Friction::None,
+            film: None,
         },
     })
 }

@@ -52,6 +52,7 @@ fn surface(dissipation: Dissipation, friction: Friction) -> Surface {
             onset_floor: 0.01,
         },
         friction,
+        film: None,
     }
 }
 

@@ -30,6 +30,7 @@ fn steel(elastic: Elastic, restitution: f64, series: Option<f64>) -> Surface {
             onset_floor: 0.05,
         },
         friction: Friction::None,
+        film: None,
     }
 }
 

@@ -304,6 +304,7 @@ pub(super) fn refuse_play(text: &schema::Chain, findings: &mut Findings<'_>) {
         ("contact.damping", contact.damping.is_some()),
         ("contact.dissipation", contact.dissipation.is_some()),
         ("contact.onset_floor", contact.onset_floor.is_some()),
+        ("contact.film", contact.film.is_some()),
     ];
     for (key, _) in given.iter().filter(|(_, given)| *given) {
         let hint = "take `model = \"clearance-joints\"` (of clearance 0: joints without play, links that yield), or leave it out";

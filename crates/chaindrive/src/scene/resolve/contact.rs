@@ -5,6 +5,7 @@ use chaindrive_contact::{Dissipation, Elastic, Friction, Law};
 use chaindrive_mechanics::Surface;
 
 use super::Findings;
+use super::film::Strip;
 use super::law::{Pair, elastic};
 use crate::scene::defaults::{self, Default};
 use crate::scene::schema::{Contact, Written};
@@ -13,7 +14,7 @@ use crate::scene::schema::{Contact, Written};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fallback {
     /// Place of the contact that holds for all.
-    path: &'static str,
+    pub(super) path: &'static str,
     restitution: &'static Default,
 }
 
@@ -51,18 +52,21 @@ pub(super) struct Said<'a> {
 }
 
 impl Said<'_> {
-    /// How it pushes and rubs; `absent` knows the elastic law where the scene names none.
+    /// How it pushes and rubs, with what may be between; `absent` knows the elastic law where the scene names none.
     pub(super) fn surface(
         &self,
         pair: Pair,
+        strip: Option<Strip>,
         findings: &mut Findings<'_>,
         absent: impl FnOnce(&mut Findings<'_>) -> Option<Elastic>,
     ) -> Option<Surface> {
         let law = self.law(pair, findings, absent);
         let friction = self.friction(findings);
+        let film = self.film(strip?, findings);
         Some(Surface {
             law: law?,
             friction: friction?,
+            film,
         })
     }
 
@@ -133,6 +137,18 @@ impl Said<'_> {
         } else {
             (common, fallback.path)
         };
+        if let Some((_, film)) = self.film_text() {
+            for (text, place) in [(own, path), (common, fallback.path)] {
+                if says(text) {
+                    let message =
+                        format!("beside a {place} with a restitution, damping or dissipation");
+                    let hint = "keep one of them: what an impact leaves follows from the film";
+                    findings.refuse_once(&film, message, hint);
+                    return None;
+                }
+            }
+            return Some(Dissipation::None);
+        }
         let mut twice = |key: &str, other: &str| {
             let message = format!("`{other}` is given too");
             findings.refuse_once(&format!("{place}.{key}"), message, "keep one of them");

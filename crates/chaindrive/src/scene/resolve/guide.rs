@@ -6,6 +6,7 @@ use chaindrive_geometry::{Arc, ArcSpline, GeometryError, Piece, Point, bar, rail
 use chaindrive_mechanics::{Guide, GuideSupport, Sprocket, Touches};
 
 use super::chain::Resolved;
+use super::film::Strip;
 use super::law::linear;
 use super::on_span::{self, Passing};
 use super::{Findings, Names, contact, motion, point};
@@ -60,7 +61,8 @@ fn resolve(
         common: &scene.contact.guides,
         fallback: contact::GUIDES,
     };
-    let surface = said.surface(chain.roller(), findings, |findings| {
+    let strip = Some(Strip::on_guide(chain.roller()));
+    let surface = said.surface(chain.roller(), strip, findings, |findings| {
         let place = format!("{path}.contact.law");
         let stiffness = chain.link_stiffness();
         let default = &defaults::GUIDES_STIFFNESS;

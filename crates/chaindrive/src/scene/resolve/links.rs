@@ -14,6 +14,7 @@ use serde_json::json;
 
 use super::articulation::Joints;
 use super::body::Body;
+use super::film::Strip;
 use super::law::{Pair, cylindrical, elastic, steel};
 use super::pressed::{PRESSED, stiffness_under_pretension};
 use super::{Findings, contact, strands};
@@ -310,6 +311,7 @@ fn rollers(
             };
             let law = law(said, pair, clearance, "roller", needs.findings);
             let friction = said.friction(needs.findings);
+            let film = said.film(Strip::in_bore(pair), needs.findings);
             Some(RollerModel::Free(FreeRoller {
                 mass: mass?,
                 inertia: inertia?,
@@ -318,6 +320,7 @@ fn rollers(
                 surface: Surface {
                     law: law?,
                     friction: friction?,
+                    film,
                 },
             }))
         }
@@ -383,6 +386,7 @@ fn joint(
             },
         })
     };
+    let film = said.film(Strip::in_bore(pair), needs.findings);
     let law = law?;
     Some(Joint::Clearance(Clearance {
         pin_radius: pin,
@@ -390,6 +394,7 @@ fn joint(
         surface: Surface {
             law,
             friction: friction?,
+            film,
         },
     }))
 }
@@ -413,6 +418,12 @@ fn without_play(
     if let Some(path) = said.law_path() {
         let message = "pins without play have no contact of their own";
         let hint = "leave it out: `series` is the stiffness of the joint then, or give a clearance";
+        needs.findings.refuse_with(&path, message, hint);
+        return None;
+    }
+    if let Some((_, path)) = said.film_text() {
+        let message = "pins without play have no room for oil";
+        let hint = "leave it out, or give `chain.joint.clearance`";
         needs.findings.refuse_with(&path, message, hint);
         return None;
     }

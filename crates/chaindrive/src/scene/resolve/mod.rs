@@ -8,6 +8,7 @@ mod chains;
 mod contact;
 mod count;
 mod ends;
+mod film;
 mod flank;
 mod guide;
 mod housing;

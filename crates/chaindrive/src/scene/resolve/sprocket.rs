@@ -7,6 +7,7 @@ use chaindrive_mechanics::{Sprocket, Support, Tolerance};
 use serde_json::json;
 
 use super::chain::Resolved;
+use super::film::Strip;
 use super::law::{cylindrical, linear, steel};
 use super::scatter::Normal;
 use super::{Findings, Names, contact, flank, loss, motion, point, tooth};
@@ -74,7 +75,9 @@ fn resolve(
         common: &scene.contact.teeth,
         fallback: contact::TEETH,
     };
-    let mut surface = said.surface(chain.roller(), findings, |findings| {
+    let strip = gap.as_ref();
+    let strip = strip.map(|gap| Strip::in_seat(chain.roller(), gap));
+    let mut surface = said.surface(chain.roller(), strip, findings, |findings| {
         let place = format!("{path}.contact.law");
         law(gap.as_ref()?, chain, &place, findings)
     });

@@ -7,7 +7,7 @@ use chaindrive_contact::Friction;
 use chaindrive_contact::dissipation::Hysteresis;
 use chaindrive_contact::elastic::Specification;
 
-use super::Written;
+use super::{Film, Written};
 use chaindrive_quantities::{Damping, Length, Ratio, Speed, Stiffness};
 
 /// Contact laws, one for every kind of pair in the drive.
@@ -80,4 +80,7 @@ pub(crate) struct Contact {
     /// Friction; absent: none, but in joints of a chain whose pin the catalogue knows: a spring and a slider.
     #[serde(default)]
     pub(crate) friction: Option<Written<Friction>>,
+    /// Film of oil between the surfaces; absent: they are dry.
+    #[serde(default)]
+    pub(crate) film: Option<Film>,
 }

@@ -6,6 +6,7 @@
 
 mod chain;
 mod contact;
+mod film;
 mod guide;
 mod housing;
 mod links;
@@ -20,6 +21,7 @@ mod written;
 
 pub(crate) use chain::{Chain, End, NamedChain, Start};
 pub(crate) use contact::{Contact, Contacts, Flank};
+pub(crate) use film::Film;
 pub(crate) use guide::{Face, Guide, GuideSupport, TravelSide};
 pub(crate) use housing::Housing;
 pub(crate) use links::{ChainModel, Joint, Lateral, Link, Roller, Rollers};

@@ -133,6 +133,7 @@ pub(crate) fn surface(stiffness: f64, exponent: f64) -> Surface {
             onset_floor: 1e-9,
         },
         friction: Friction::None,
+        film: None,
     }
 }
 

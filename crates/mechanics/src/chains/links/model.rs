@@ -46,6 +46,10 @@ pub struct LinkBody {
 }
 
 /// How neighbouring links are joined.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a chain has one, and copies it while it is built"
+)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Joint {
     /// An ideal hinge.
@@ -55,6 +59,10 @@ pub enum Joint {
 }
 
 /// The part that runs on the teeth.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a chain has one, and copies it while it is built"
+)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RollerModel {
     /// Rollers that move with the bush: their mass is the link's. They slide, as the particles do.

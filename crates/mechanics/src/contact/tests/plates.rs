@@ -89,6 +89,7 @@ fn plates(face: &ArcSpline, links: usize) -> PlateContact {
             onset_floor: 0.01,
         },
         friction: Friction::Coulomb(FRICTION),
+        film: None,
     };
     let ends = [f64::INFINITY, f64::NEG_INFINITY].map(|x| Point::new(x, x));
     let bounds = face.pieces().iter().fold(ends, |[low, high], piece| {

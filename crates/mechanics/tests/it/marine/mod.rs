@@ -54,6 +54,7 @@ pub(crate) fn parts(law: Law) -> Parts {
         surface: Surface {
             law,
             friction: Friction::None,
+            film: None,
         },
         flank: None,
         gap_angle: 0.0,
