@@ -55,6 +55,7 @@ pub(crate) fn parts(law: Law) -> Parts {
             law,
             friction: Friction::None,
         },
+        stack: None,
         flank: None,
         gap_angle: 0.0,
         tolerance: Tolerance::default(),
