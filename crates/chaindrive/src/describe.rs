@@ -10,6 +10,7 @@ mod links;
 mod oil;
 mod polygon;
 mod route;
+mod stack;
 mod text;
 mod tolerance;
 
@@ -29,6 +30,7 @@ pub use links::{ContactFacts, LinkFacts, left_out};
 pub use oil::OilFacts;
 pub use polygon::PolygonPair;
 pub use route::{SpanAtRest, StopFacts, spans_at_rest};
+pub use stack::{StackFacts, StackTermFacts};
 pub use tolerance::ToleranceFacts;
 
 use crate::{Run, SimulationError, rating};
@@ -49,6 +51,8 @@ pub struct Description {
     pub tolerances: Vec<ToleranceFacts>,
     /// Spans whose sprockets are not in one plane.
     pub out_of_line: Vec<AlignmentFacts>,
+    /// Parts behind teeth that yield, where the scene asks for them.
+    pub stacks: Vec<StackFacts>,
     /// The oil; absent where the scene describes none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub oil: Option<OilFacts>,
@@ -254,6 +258,7 @@ impl Description {
             shafts: shafts(drive, &start),
             tolerances: tolerance::of(drive),
             out_of_line: alignment::of(drive),
+            stacks: stack::of(drive),
             oil: oil::of(drive),
             free_trains: free_train::of(assembled),
             stops: route::stops(drive, assembled, &start),

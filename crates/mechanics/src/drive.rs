@@ -4,7 +4,9 @@ use chaindrive_contact::Lubricant;
 use chaindrive_geometry::{ArcSpline, Point, Side, ToothGap, Vector};
 use serde::{Deserialize, Serialize};
 
-use crate::{Chain, Coupling, Flank, Motion, ShaftLoss, Surface, Tensioner, Tolerance, Torque};
+use crate::{
+    Chain, Coupling, Flank, Motion, ShaftLoss, Surface, Tensioner, Tolerance, ToothStack, Torque,
+};
 
 /// A toothed wheel.
 #[derive(Clone, Debug)]
@@ -27,6 +29,8 @@ pub struct Sprocket {
     pub mass: f64,
     /// Contact with the rollers.
     pub surface: Surface,
+    /// Parts that the spring behind that contact stands for, where a scene asks for them; nothing reads them in motion.
+    pub stack: Option<ToothStack>,
     /// Differences on the flanks, if there are any.
     pub flank: Option<Flank>,
     /// Angle of one gap axis at assembly \[rad\] for wheels that no route passes over; along a

@@ -129,6 +129,7 @@ mod pose;
 mod profile;
 mod seam;
 mod shaft_loss;
+mod stack;
 mod standing;
 mod strength;
 mod struck;
@@ -166,6 +167,10 @@ pub use pose::{
 };
 pub use seam::{ContactEvent, ContactPair, EventKinds, Observation};
 pub use shaft_loss::{Bearing, BearingLaw, ShaftDrag, ShaftLoss, SkfBearing};
+pub use stack::{
+    Beam, BeamEnds, JointMasses, StackTerm, StrikingMass, ToothStack, dry_blow, rim_compliance,
+    wall_compliance,
+};
 pub use strength::{Capacity, PowerLimits, Strength, Unrated};
 pub use struck::Struck;
 pub use surface::{Flank, Surface};

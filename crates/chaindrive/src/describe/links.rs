@@ -117,7 +117,7 @@ pub(super) fn contacts(drive: &Drive) -> Vec<ContactFacts> {
 }
 
 /// Effects that the model of a drive leaves out, in words: oil in seats, friction where parts touch, damping of the links, errors of sprockets,
-/// losses of shafts, gravity.
+/// losses of shafts, what yields behind teeth, gravity.
 pub fn left_out(drive: &Drive) -> Vec<&'static str> {
     let contacts = contacts(drive);
     let facts: Vec<LinkFacts> = drive
@@ -148,6 +148,11 @@ pub fn left_out(drive: &Drive) -> Vec<&'static str> {
     let turns = !drive.shafts.is_empty();
     let frictionless = turns && losses().all(|it| it.bearing.is_none());
     let clear = turns && losses().all(|it| it.drag.is_none());
+    let mut sprockets = drive.sprockets.iter().peekable();
+    let stiff = sprockets.peek().is_some() && sprockets.all(|it| it.stack.is_none());
+    // Pins that move by themselves have what yields behind their own contacts.
+    let mut chains = drive.chains.iter();
+    let stiff = stiff && chains.any(|placed| placed.chain.model.fused()[1]);
     let lacks = [
         (dry, "oil between rollers and teeth"),
         (slips("teeth"), "friction on teeth"),
@@ -158,6 +163,7 @@ pub fn left_out(drive: &Drive) -> Vec<&'static str> {
         (exact, "run-out and pitch errors of sprockets"),
         (frictionless, "friction of the bearings of shafts"),
         (clear, "drag of oil and air on shafts"),
+        (stiff, "bending of pins and bushes behind the teeth"),
         (drive.gravity.norm() <= 0.0, "gravity"),
     ];
     let found = lacks.into_iter().filter(|(lacking, _)| *lacking);

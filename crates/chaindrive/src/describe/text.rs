@@ -23,6 +23,9 @@ impl fmt::Display for Description {
         for span in &self.out_of_line {
             row(f, "out of line", &span.to_string())?;
         }
+        for stack in &self.stacks {
+            row(f, "behind the teeth", &stack.to_string())?;
+        }
         if let Some(oil) = &self.oil {
             row(f, "oil", &oil.to_string())?;
         }

@@ -11,7 +11,7 @@ use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use chaindrive_contact::dissipation::Hysteresis;
-use chaindrive_mechanics::{PretensionAt, SpanStart};
+use chaindrive_mechanics::{BeamEnds, PretensionAt, SpanStart};
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 
@@ -118,6 +118,13 @@ pub(crate) static RUN_IN: Choice<&str> = Choice {
     ],
 };
 
+/// How plates hold pins.
+pub(crate) static PIN_ENDS: Choice<BeamEnds> = Choice {
+    keys: &["Stack.pin_ends"],
+    basis: Assumed("pressed into plates that are thinner than the pin and turn with it"),
+    values: &[(Version::V0_1, BeamEnds::Supported)],
+};
+
 /// How impacts lose energy.
 pub(crate) static DISSIPATION: Choice<Hysteresis> = Choice {
     keys: &["Contact.dissipation"],
@@ -173,6 +180,8 @@ defaults! {
     PINS = always(0.5), "of what the stiffness of a link leaves beside its joint", Assumed("half of it is in the pins, which bend whichever way they are pushed, and half in plates; impacts are then those of rigid links with the whole behind their pins"), ["Contact.series"];
     /// Load at which what lies behind teeth is reckoned.
     BEHIND_TEETH = [(Version::V0_1, 0.0), (Version::V0_2, 0.1)], "breaking loads", Assumed("roller on bush and bush on pin as secants of their conformal laws at a load that strikes; the play of rollers as that of pins"), ["Contact.series"];
+    /// Load at which the contacts of the whole stack behind teeth are reckoned.
+    STACK_LOAD = always(0.1), "1", Assumed("of the breaking load: about a force that strikes"), ["Stack.load"];
     /// Restitution on teeth.
     TEETH_RESTITUTION = always(0.8), "1", Assumed("teeth of steel"), ["Contact.restitution"];
     /// Restitution on guides.
@@ -285,6 +294,7 @@ pub(crate) fn put_into(schema: &mut Json) {
     tell_choice(schema, &SPAN_START);
     tell_choice(schema, &PRETENSION_AT);
     tell_choice(schema, &DISSIPATION);
+    tell_choice(schema, &PIN_ENDS);
     tell_choice(schema, &RUN_IN);
 }
 

@@ -35,6 +35,7 @@ mod run_in;
 mod run_in_by_itself;
 mod said_once;
 mod scenes;
+mod seat;
 mod several_chains;
 mod stack;
 mod strands;

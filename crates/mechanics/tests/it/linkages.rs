@@ -55,6 +55,7 @@ fn bicycle(model: ChainModel) -> Parts {
         inertia,
         mass: 1.0,
         surface: surface(3.982e-3, 3.875e-3, 3.3e-3),
+        stack: None,
         flank: None,
         gap_angle: 0.0,
         tolerance: Tolerance::default(),

@@ -179,6 +179,7 @@ fn leaf(model: ChainModel, speed: f64) -> Assembled {
         inertia: 0.0,
         mass: 1.0,
         surface: steel(Elastic::Johnson(seat), 0.8, None),
+        stack: None,
         flank: None,
         gap_angle: 0.0,
         tolerance: Tolerance::default(),

@@ -42,6 +42,7 @@ fn sprocket(name: &str, teeth: u32, centre: [f64; 2], rotation: Rotation) -> Tur
             friction: Friction::None,
             film: None,
         },
+        stack: None,
         flank: None,
         gap_angle: 0.0,
         tolerance: Tolerance::default(),

@@ -7,7 +7,7 @@ use super::body::Body;
 use super::chains::Described;
 use super::law::Pair;
 use super::scatter::Normal;
-use super::stack::Behind;
+use super::stack::Parts;
 use super::{Findings, catalogue, count, links, motion, strands};
 use crate::catalogue::CatalogueChain;
 use crate::scene::defaults;
@@ -19,8 +19,8 @@ pub(super) struct Resolved {
     pub(super) chain: Chain,
     /// Length of the rollers on the teeth \[m\], where it is known.
     pub(super) roller_length: Option<f64>,
-    /// Stack behind the surfaces of teeth, where it is known.
-    pub(super) behind_teeth: Option<Behind>,
+    /// Parts behind the surfaces of teeth.
+    pub(super) behind_teeth: Parts,
     /// Why the number of links is a guess that must not be used; the other parts are looked at with it.
     pub(super) uncounted: Option<String>,
 }
@@ -125,7 +125,7 @@ pub(super) fn resolve(
     );
     let articulation = joints.articulation(plate_height, findings);
     let damping = damping(text, &stiffness, &masses, &model, findings);
-    let behind_teeth = Behind::new(text, &model, findings);
+    let behind_teeth = Parts::new(text, &model, &masses);
     let chain = Chain {
         pitch,
         lengths,

@@ -8,7 +8,7 @@ use super::Findings;
 use super::film::Strip;
 use super::law::{Pair, elastic};
 use crate::scene::defaults::{self, Default};
-use crate::scene::schema::{Contact, Written};
+use crate::scene::schema::{Contact, Stack, Written};
 
 /// Values on which a contact falls back.
 #[derive(Clone, Copy, Debug)]
@@ -118,8 +118,26 @@ impl Said<'_> {
 
     /// Stiffness \[N/m\] of what lies behind, where the scene says something of it; zero is rigid.
     pub(super) fn series(&self) -> Option<f64> {
-        let given = self.own.series.or(self.common.series);
+        let own_stack = self.own.stack.is_some();
+        let common = self.common.series.filter(|_| !own_stack);
+        let given = self.own.series.or(common);
         given.map(|stiffness| stiffness.0)
+    }
+
+    /// Parts that lie behind, where the scene asks for them, and the place where it does; refused beside a stiffness.
+    pub(super) fn stack(&self, findings: &mut Findings<'_>) -> Option<(Stack, String)> {
+        let own = (self.own, self.path);
+        let common = (self.common, self.fallback.path);
+        for (text, path) in [own, common] {
+            if text.stack.is_some() && text.series.is_some() {
+                let hint = "keep one of them";
+                findings.refuse_once(&format!("{path}.stack"), "`series` is given too", hint);
+                return None;
+            }
+        }
+        let says = |text: &Contact| text.stack.is_some() || text.series.is_some();
+        let (text, path) = if says(self.own) { own } else { common };
+        text.stack.map(|stack| (stack, format!("{path}.stack")))
     }
 
     fn dissipation(&self, findings: &mut Findings<'_>) -> Option<Dissipation> {

@@ -132,6 +132,7 @@ fn parts(
     findings.chain = None;
     let tensioners = tensioner::resolve_all(scene, findings);
     let gravity = gravity(scene, findings);
+    stack::refuse_elsewhere(scene, findings);
     let turning = shafts::resolve(scene, names, findings);
     let described = described?;
     let resolved: Vec<chain::Resolved> = resolved.into_iter().collect::<Option<_>>()?;

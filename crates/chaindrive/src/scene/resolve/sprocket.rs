@@ -2,7 +2,7 @@
 
 use chaindrive_contact::Elastic;
 use chaindrive_geometry::{Side, ToothGap};
-use chaindrive_mechanics::{Sprocket, Support, Tolerance};
+use chaindrive_mechanics::{Sprocket, Support, Surface, Tolerance, ToothStack};
 
 use serde_json::json;
 
@@ -10,7 +10,7 @@ use super::chain::Resolved;
 use super::film::Strip;
 use super::law::{cylindrical, linear, steel};
 use super::scatter::Normal;
-use super::{Findings, Names, contact, flank, loss, motion, point, tooth};
+use super::{Findings, Names, contact, flank, loss, motion, point, stack, tooth};
 use crate::scene::defaults;
 use crate::scene::schema::{self, SceneText};
 
@@ -81,19 +81,9 @@ fn resolve(
         let place = format!("{path}.contact.law");
         law(gap.as_ref()?, chain, &place, findings)
     });
-    // The law that particles have where the scene gives none is that of the whole stack.
-    let of_surfaces =
-        chain.is_rigid() || text.contact.law.is_some() || scene.contact.teeth.law.is_some();
-    if let (Some(surface), Some(behind), None) = (&mut surface, &chain.behind_teeth, said.series())
-    {
-        let place = format!("{path}.contact.series");
-        if of_surfaces && behind.stiffness > 0.0 {
-            surface.law.series = Some(behind.stiffness);
-            findings.assume(&place, behind.stiffness, &*behind.remark);
-        } else {
-            findings.assume(&place, 0.0, "nothing lies behind");
-        }
-    }
+    let stack = surface
+        .as_mut()
+        .and_then(|surface| behind(text, path, &said, surface, chain, findings));
     let flank = gap
         .as_ref()
         .and_then(|gap| flank::resolve(text, path, scene, gap, chain, findings));
@@ -122,6 +112,7 @@ fn resolve(
         inertia: text.inertia.map_or(0.0, |inertia| inertia.0),
         mass: text.mass.map_or(0.0, |mass| mass.0),
         surface: surface?,
+        stack,
         flank,
         gap_angle: findings.or_default(
             text.gap_angle.map(|angle| angle.0),
@@ -132,6 +123,54 @@ fn resolve(
         lateral: text.lateral.0,
         loss: loss?,
     })
+}
+
+/// Puts what lies behind the surface of the teeth into its law: the parts that a scene asks for, which are returned, or the default.
+fn behind(
+    text: &schema::Sprocket,
+    path: &str,
+    said: &contact::Said<'_>,
+    surface: &mut Surface,
+    chain: &Resolved,
+    findings: &mut Findings<'_>,
+) -> Option<ToothStack> {
+    let asked = said.stack(findings);
+    // The law that particles have where the scene gives none is that of the whole stack.
+    let of_surfaces = chain.is_rigid() || said.law_path().is_some();
+    if let Some((stack, place)) = asked {
+        if !of_surfaces {
+            let hint =
+                "give a `law` of the surfaces too: the default of particles has the stack in it";
+            findings.refuse_once(&place, "without a `law`", hint);
+            return None;
+        }
+        let asked = stack::Asked {
+            stack,
+            path: &place,
+            rim: text.rim.map(|it| it.0),
+        };
+        let found = chain.behind_teeth.stack(asked, findings)?;
+        let stiffness = found.stiffness();
+        surface.law.series = stiffness.is_finite().then_some(stiffness);
+        return Some(found);
+    }
+    if text.rim.is_some() {
+        let hint =
+            "ask for the parts behind the teeth, `contact.teeth.stack = {}`, or leave it out";
+        findings.refuse_with(&format!("{path}.rim"), "without a `stack`", hint);
+    }
+    if said.series().is_none()
+        && let Some(behind) = chain.behind_teeth.behind(findings)
+    {
+        let place = format!("{path}.contact.series");
+        if of_surfaces && behind.stiffness > 0.0 {
+            surface.law.series = Some(behind.stiffness);
+            findings.assume(&place, behind.stiffness, &*behind.remark);
+        } else {
+            findings.assume(&place, 0.0, "nothing lies behind");
+        }
+    }
+    None
 }
 
 /// Deviations of a sprocket from its drawing.

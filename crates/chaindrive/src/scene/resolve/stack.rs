@@ -1,8 +1,10 @@
-//! The stack behind a tooth: the roller on its bush and the bush on its pin, where they do not move by themselves.
+//! The stack behind a tooth, where it does not move by itself: roller on bush and bush on pin, and, where a scene asks, all parts that yield.
 //!
 //! ```text
 //! 1/k_s = δ_roller(F)/F + δ_pin(F)/F,   F: a stated share of the breaking load
 //! ```
+
+mod terms;
 
 use chaindrive_contact::Elastic;
 use chaindrive_contact::elastic::{CylinderLaw, Cylinders, ElasticLaw};
@@ -12,74 +14,167 @@ use super::Findings;
 use super::law::steel;
 use crate::catalogue::{CatalogueChain, Number};
 use crate::scene::defaults;
-use crate::scene::schema::{self, Rollers};
+use crate::scene::schema::{self, Contact, Rollers, SceneText};
 
-/// Stiffness of what lies behind the surface of a tooth, zero where that is nothing, and why.
+pub(super) use terms::Asked;
+
+/// Stiffness of roller on bush and bush on pin, zero where that is nothing, and why.
 #[derive(Clone, Debug)]
 pub(super) struct Behind {
     pub(super) stiffness: f64,
     pub(super) remark: String,
 }
 
-impl Behind {
-    /// Under a chain of the catalogue. `text` is the chain completed from the catalogue.
-    pub(super) fn new(
-        text: &schema::Chain,
-        model: &ChainModel,
-        findings: &Findings<'_>,
-    ) -> Option<Self> {
-        let chain = text.of_type.as_deref().and_then(CatalogueChain::named)?;
+/// Parts behind a tooth: dimensions as the scene has them, or the catalogue, of one strand.
+#[derive(Clone, Debug)]
+pub(super) struct Parts {
+    of_type: Option<&'static CatalogueChain>,
+    text: schema::Chain,
+    /// Whether roller and bush, and bush and pin, are one body of the model.
+    fused: [bool; 2],
+    /// Whether rollers are bodies of their own.
+    free_rollers: bool,
+    strands: f64,
+    /// Mean mass at a joint \[kg\], all strands together.
+    mass: f64,
+}
+
+/// Radius of the inner part, clearance and length of two cylinders \[m\].
+type Fit = [f64; 3];
+
+impl Parts {
+    /// `text` is the chain completed from the catalogue, `masses` are those at the joints \[kg\].
+    pub(super) fn new(text: &schema::Chain, model: &ChainModel, masses: &[f64]) -> Self {
+        let of_type = text.of_type.as_deref().and_then(CatalogueChain::named);
+        let [roller, pin] = model.fused();
+        Self {
+            of_type,
+            text: text.clone(),
+            // A chain that the catalogue knows as a bush chain has been completed without rollers.
+            fused: [roller && text.rollers != Some(Rollers::None), pin],
+            free_rollers: model.free_roller().is_some(),
+            strands: model.strands().len().max(1) as f64,
+            mass: masses.iter().sum::<f64>() / masses.len() as f64,
+        }
+    }
+
+    /// What lies behind teeth by default, under a chain of the catalogue.
+    pub(super) fn behind(&self, findings: &Findings<'_>) -> Option<Behind> {
+        let chain = self.of_type?;
         let default = &defaults::BEHIND_TEETH;
         let share = default.value(findings.version);
-        let compliance = compliance(chain, share, text, model, findings);
-        Some(Self {
+        let load = chain.number(Number::BreakingLoad).map(|it| share * it);
+        let compliance = load.and_then(|load| self.contacts(load, findings));
+        Some(Behind {
             stiffness: compliance.map_or(0.0, f64::recip),
             remark: format!("at {share} {}, {}", default.unit, default.basis.remark()),
         })
     }
+
+    /// 1/k_s \[m/N\] of the contacts, where something lies behind and all dimensions are known.
+    fn contacts(&self, load: f64, findings: &Findings<'_>) -> Option<f64> {
+        if load <= 0.0 {
+            return None;
+        }
+        let [on_bush, on_pin] = self.fused;
+        let mut compliance = 0.0;
+        if on_bush {
+            compliance += yields(self.roller_on_bush()?, load, findings)?;
+        }
+        if on_pin {
+            compliance += yields(self.bush_on_pin()?, load, findings)?;
+        }
+        // Strands side by side yield together.
+        compliance /= self.strands;
+        (compliance > 0.0).then_some(compliance)
+    }
+
+    /// A length as the scene has it, or the catalogue \[m\].
+    fn number(&self, given: Option<f64>, of: Number) -> Option<f64> {
+        given.or_else(|| self.of_type?.number(of))
+    }
+
+    /// Radial clearance of the pin in its bush \[m\].
+    fn play(&self) -> Option<f64> {
+        let given = self.text.joint.as_ref().and_then(|it| it.clearance);
+        let given = given.map(|it| it.0).filter(|play| *play > 0.0);
+        given.or_else(|| self.of_type?.joint_clearance())
+    }
+
+    fn bush_diameter(&self) -> Option<f64> {
+        let given = self.text.roller.as_ref().and_then(|it| it.bush_diameter);
+        self.number(given.map(|it| it.0), Number::BushDiameter)
+    }
+
+    fn pin_diameter(&self) -> Option<f64> {
+        let given = self.text.joint.as_ref().and_then(|it| it.pin_diameter);
+        self.number(given.map(|it| it.0), Number::PinDiameter)
+    }
+
+    /// Length of the bush \[m\].
+    fn joint_length(&self) -> Option<f64> {
+        let given = self.text.joint.as_ref().and_then(|it| it.length);
+        given
+            .map(|it| it.0)
+            .or_else(|| self.of_type?.joint_length())
+    }
+
+    /// Length of a roller \[m\]: they fill the space between the inner plates.
+    fn roller_length(&self) -> Option<f64> {
+        let given = self.text.roller.as_ref().and_then(|it| it.length);
+        // That of strands is the length of them all.
+        let of_strand = given.map(|it| it.0 / self.strands);
+        self.number(of_strand, Number::InnerWidth)
+    }
+
+    /// Radial clearance of the roller on its bush \[m\]: not in the catalogue, so that of the pin.
+    fn roller_play(&self) -> Option<f64> {
+        let given = self.text.roller.as_ref().and_then(|it| it.clearance);
+        given.map(|it| it.0).or_else(|| self.play())
+    }
+
+    fn roller_on_bush(&self) -> Option<Fit> {
+        let radius = 0.5 * self.bush_diameter()?;
+        Some([radius, self.roller_play()?, self.roller_length()?])
+    }
+
+    fn bush_on_pin(&self) -> Option<Fit> {
+        let radius = 0.5 * self.pin_diameter()?;
+        Some([radius, self.play()?, self.joint_length()?])
+    }
 }
 
-/// 1/k_s \[m/N\], where something lies behind and all dimensions are known.
-fn compliance(
-    chain: &CatalogueChain,
-    share: f64,
-    text: &schema::Chain,
-    model: &ChainModel,
-    findings: &Findings<'_>,
-) -> Option<f64> {
-    let load = share * chain.number(Number::BreakingLoad)?;
-    if load <= 0.0 {
-        return None;
+/// Refuses a stack anywhere but behind teeth: joints, rollers and guides have none.
+pub(super) fn refuse_elsewhere(scene: &SceneText, findings: &mut Findings<'_>) {
+    let common = &scene.contact;
+    let mut places: Vec<(String, &Contact)> = vec![
+        ("contact.guides".into(), &common.guides),
+        ("contact.joints".into(), &common.joints),
+        ("contact.rollers".into(), &common.rollers),
+    ];
+    for (index, guide) in scene.guides.iter().enumerate() {
+        places.push((format!("guides[{index}].contact"), &guide.contact));
     }
-    // A chain that the catalogue knows as a bush chain has been completed without rollers.
-    let [roller, on_pin] = model.fused();
-    let on_bush = roller && text.rollers != Some(Rollers::None);
-    let number = |given: Option<f64>, of| given.or_else(|| chain.number(of));
-    let joint = text.joint.clone().unwrap_or_default();
-    let play = joint.clearance.map(|it| it.0).filter(|play| *play > 0.0);
-    let play = play.or_else(|| chain.joint_clearance())?;
-    let mut compliance = 0.0;
-    if on_bush {
-        let roller = text.roller.clone().unwrap_or_default();
-        let bush = number(roller.bush_diameter.map(|it| it.0), Number::BushDiameter)?;
-        let length = number(roller.length.map(|it| it.0), Number::InnerWidth)?;
-        // The play of rollers is not in the catalogue: that of the pins.
-        let play = roller.clearance.map_or(play, |it| it.0);
-        compliance += yields([0.5 * bush, play, length], load, findings)?;
+    let only = scene.chain.iter().map(|it| ("chain".to_owned(), it));
+    let several = scene.chains.iter().enumerate();
+    let several = several.map(|(index, it)| (format!("chains[{index}]"), &it.chain));
+    for (place, chain) in only.chain(several) {
+        let joint = chain.joint.as_ref().map(|it| &it.contact);
+        let roller = chain.roller.as_ref().map(|it| &it.contact);
+        places.extend(joint.map(|it| (format!("{place}.joint.contact"), it)));
+        places.extend(roller.map(|it| (format!("{place}.roller.contact"), it)));
     }
-    if on_pin {
-        let pin = number(joint.pin_diameter.map(|it| it.0), Number::PinDiameter)?;
-        let length = joint.length.map(|it| it.0);
-        let length = length.or_else(|| chain.joint_length())?;
-        compliance += yields([0.5 * pin, play, length], load, findings)?;
+    for (path, contact) in places {
+        if contact.stack.is_some() {
+            let hint = "leave it out, or give `series`";
+            let message = "only teeth have a stack behind them";
+            findings.refuse_with(&format!("{path}.stack"), message, hint);
+        }
     }
-    // Strands side by side yield together.
-    compliance /= model.strands().len().max(1) as f64;
-    (compliance > 0.0).then_some(compliance)
 }
 
 /// δ/F \[m/N\] of something round in a bore that is wider, under a load \[N\].
-fn yields([radius, play, length]: [f64; 3], load: f64, findings: &Findings<'_>) -> Option<f64> {
+fn yields([radius, play, length]: Fit, load: f64, findings: &Findings<'_>) -> Option<f64> {
     let steel = steel(findings.version);
     let pair = Cylinders::pin_in_hole(radius + play, radius, length, steel.composite(steel));
     let law: Elastic = CylinderLaw::Conformal.between(&pair).ok()?;

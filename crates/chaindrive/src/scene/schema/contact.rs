@@ -7,7 +7,7 @@ use chaindrive_contact::Friction;
 use chaindrive_contact::dissipation::Hysteresis;
 use chaindrive_contact::elastic::Specification;
 
-use super::{Film, Written};
+use super::{Film, Stack, Written};
 use chaindrive_quantities::{Damping, Length, Ratio, Speed, Stiffness};
 
 /// Contact laws, one for every kind of pair in the drive.
@@ -61,6 +61,9 @@ pub(crate) struct Contact {
     #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) series: Option<Stiffness>,
+    /// Parts behind teeth that yield, in place of `series`; for teeth only. Absent: as `series` says.
+    #[serde(default)]
+    pub(crate) stack: Option<Stack>,
     /// Coefficient of restitution of an impact [–], unless `damping` is given.
     #[serde(default)]
     #[schemars(extend("minimum" = 0, "maximum" = 1))]

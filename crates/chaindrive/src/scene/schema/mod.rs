@@ -16,6 +16,7 @@ mod route;
 mod run;
 mod shaft;
 mod sprocket;
+mod stack;
 mod tensioner;
 mod written;
 
@@ -34,6 +35,7 @@ pub(crate) use shaft::{Coupling, Gears, Shaft};
 pub(crate) use sprocket::{
     GapErrors, GapWave, PathPiece, Seat, Side, Sprocket, Support, TipForm, Tooth,
 };
+pub(crate) use stack::Stack;
 pub(crate) use tensioner::Tensioner;
 pub(crate) use written::Written;
 

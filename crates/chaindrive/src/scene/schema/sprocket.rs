@@ -29,6 +29,11 @@ pub(crate) struct Sprocket {
     /// inside a counter-clockwise loop are.
     #[serde(default)]
     pub(crate) side: Side,
+    /// Depth of the steel below the tooth gaps [m], down to the bore or the inner edge of the rim, for the `stack` of its contact; absent:
+    /// a solid body, which does not yield.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) rim: Option<Length>,
     /// Tooth form; absent: ISO 606 half-way between the extreme forms.
     #[serde(default)]
     pub(crate) tooth: Option<Tooth>,

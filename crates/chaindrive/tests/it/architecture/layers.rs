@@ -22,6 +22,7 @@ const CRATES: [Storeys; 4] = [
                 "coupling",
                 "motion",
                 "profile",
+                "stack",
                 "strength",
                 "surface",
                 "tensioner",

@@ -56,6 +56,7 @@ pub(crate) fn parts(law: Law) -> Parts {
             friction: Friction::None,
             film: None,
         },
+        stack: None,
         flank: None,
         gap_angle: 0.0,
         tolerance: Tolerance::default(),
