@@ -87,11 +87,11 @@ fn a_page_tells_what_the_model_leaves_out() {
     for (changes, left_out) in [
         (
             &[][..],
-            "oil between rollers and teeth, friction on teeth, friction on guides, damping of the links, run-out and pitch errors of sprockets, friction of the bearings of shafts, drag of oil and air on shafts",
+            "oil between rollers and teeth, friction on teeth, friction on guides, damping of the links, run-out and pitch errors of sprockets, friction of the bearings of shafts, drag of oil and air on shafts, bending of pins and bushes behind the teeth",
         ),
         (
             &[rubs][..],
-            "oil between rollers and teeth, friction on teeth, damping of the links, run-out and pitch errors of sprockets, friction of the bearings of shafts, drag of oil and air on shafts",
+            "oil between rollers and teeth, friction on teeth, damping of the links, run-out and pitch errors of sprockets, friction of the bearings of shafts, drag of oil and air on shafts, bending of pins and bushes behind the teeth",
         ),
     ] {
         let scene = preset("marine_engine", changes);

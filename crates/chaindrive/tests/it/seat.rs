@@ -278,7 +278,7 @@ fn stacks_that_cannot_be_are_refused() {
             "type = \"56B-1\"",
             "type = \"04B-1\"",
             "chain.joint.clearance",
-            5,
+            4,
             "radial clearance",
         ),
         (
