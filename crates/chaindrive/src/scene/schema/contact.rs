@@ -61,9 +61,6 @@ pub(crate) struct Contact {
     #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) series: Option<Stiffness>,
-    /// Parts behind teeth that yield, in place of `series`; for teeth only. Absent: as `series` says.
-    #[serde(default)]
-    pub(crate) stack: Option<Stack>,
     /// Coefficient of restitution of an impact [–], unless `damping` is given.
     #[serde(default)]
     #[schemars(extend("minimum" = 0, "maximum" = 1))]
@@ -80,6 +77,9 @@ pub(crate) struct Contact {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) onset_floor: Option<Speed>,
+    /// Parts behind teeth that yield, in place of `series`; for teeth only. Absent: as `series` says.
+    #[serde(default)]
+    pub(crate) stack: Option<Stack>,
     /// Friction; absent: none, but in joints of a chain whose pin the catalogue knows: a spring and a slider.
     #[serde(default)]
     pub(crate) friction: Option<Written<Friction>>,
