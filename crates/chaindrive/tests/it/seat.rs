@@ -1,5 +1,4 @@
 //! What yields behind the teeth where a scene asks for it, printed and felt.
-#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use std::f64::consts::PI;
 
