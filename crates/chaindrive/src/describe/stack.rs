@@ -42,29 +42,28 @@ impl fmt::Display for StackFacts {
         let told = |stiffness: Option<f64>| {
             stiffness.map_or_else(|| "rigid".to_owned(), |it| Measure::Stiffness.told(it))
         };
-        let terms = self.terms.iter().map(|term| {
-            let share = if term.share < 1.0 {
-                format!(" with {:.0} % of the force", 100.0 * term.share)
-            } else {
-                String::new()
-            };
-            format!("{} {}{share}", term.part, told(term.stiffness))
-        });
-        let terms: Vec<String> = terms.collect();
         write!(
             f,
-            "{}: {} at {}: {}; {} kg strike",
+            "{}: {} at {}",
             self.sprockets.join(", "),
             told(self.stiffness),
-            Measure::Force.told(self.load),
-            terms.join(", "),
-            figure(self.lumped_mass),
+            Measure::Force.told(self.load)
         )?;
-        if let Some(hinged) = self.hinged_mass {
-            write!(f, ", {} kg at a joint of hinged links", figure(hinged))?;
+        for term in &self.terms {
+            write!(f, "\n{} {}", term.part, told(term.stiffness))?;
+            if term.share < 1.0 {
+                write!(f, ", {:.0} % of the force", 100.0 * term.share)?;
+            }
         }
-        let blow = Measure::Force.told(self.dry_blow);
-        write!(f, "; dry, without loss, at 1 m/s: {blow}")
+        let [lumped, blow] = [figure(self.lumped_mass), Measure::Force.told(self.dry_blow)];
+        write!(
+            f,
+            "\n{lumped} kg strike, at 1 m/s with {blow} if dry and without loss"
+        )?;
+        match self.hinged_mass {
+            Some(hinged) => write!(f, "; hinged links would with {} kg", figure(hinged)),
+            None => Ok(()),
+        }
     }
 }
 

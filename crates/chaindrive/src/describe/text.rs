@@ -24,7 +24,12 @@ impl fmt::Display for Description {
             row(f, "out of line", &span.to_string())?;
         }
         for stack in &self.stacks {
-            row(f, "behind the teeth", &stack.to_string())?;
+            let labels = ["behind the teeth"]
+                .into_iter()
+                .chain(std::iter::repeat(""));
+            for (label, line) in labels.zip(stack.to_string().lines()) {
+                row(f, label, line)?;
+            }
         }
         if let Some(oil) = &self.oil {
             row(f, "oil", &oil.to_string())?;

@@ -23,8 +23,8 @@ impl JointMasses {
     /// f_i = ½ m_i/m,   f_o = ½ m_o/m
     /// ```
     ///
-    /// The force of an impact accelerates what strikes: the bush carries the half of the inner link that hangs on it, the pin that of the outer one, and the roller needs
-    /// its share itself. A roller and two half links on springs, integrated, strike within 13 % of this rule, harder or softer: they vibrate against each other.
+    /// An impact accelerates what strikes: the bush carries the half of the inner link that hangs on it, the pin that of the outer one. A roller
+    /// and two half links on springs, integrated, strike within 13 % of this rule, harder or softer: they vibrate against each other.
     pub fn shares(&self) -> [f64; 2] {
         // f = ½ m/(m_r + ½ m_i + ½ m_o)
         [self.inner, self.outer].map(|mass| 0.5 * mass / self.lumped())
@@ -37,10 +37,8 @@ impl JointMasses {
     /// a = m/4 + J/p²,   c = m/4 − J/p²,   D = m_r + a_i + a_o
     /// ```
     ///
-    /// Links are bars of mass m and inertia J \[kg m²\] about their middle (inner, outer), hinged at their ends a pitch p \[m\] apart. a and c are the entries of the mass matrix of a link for the speeds
-    /// of its ends; the sum over both half rows has this closed form. For links that are alike it is √(D² − 4 c²).
-    ///
-    /// Positive for inertias of bodies: then |c| < a.
+    /// Links are bars of mass m and inertia J \[kg m²\] about their middle (inner, outer), hinged at their ends a pitch p \[m\] apart. a and c are
+    /// entries of the mass matrix of a link for the speeds of its ends: |c| < a. For links that are alike m is √(D² − 4 c²).
     pub fn hinged(&self, pitch: f64, inertias: [f64; 2]) -> f64 {
         let [inner, outer] =
             [(self.inner, inertias[0]), (self.outer, inertias[1])].map(|(mass, inertia)| {
