@@ -201,7 +201,7 @@ fn lubricated_pins_follow_their_curve() {
         for tension in found.tensions {
             for speed in [SPEED, SPEED * TEETH[0] / TEETH[1]] {
                 let hersey = 2.0 * viscosity * speed * PIN * 25e-3 / tension;
-                let friction = 0.1 * f64::exp(-hersey / 1e-6) + PI * hersey / 0.005;
+                let friction = 0.1 / (1.0 + (hersey / 1e-6).powi(2)) + PI * hersey / 0.005;
                 by_hand += friction * PIN * tension * speed;
             }
         }

@@ -1,20 +1,20 @@
 //! Contacts: what a sprocket or guide says, completed by what holds for all.
 
 use chaindrive_contact::dissipation::{Hysteresis, Viscous};
-use chaindrive_contact::{Dissipation, Elastic, Friction, Law};
+use chaindrive_contact::{Dissipation, Elastic, Film, Friction, Law};
 use chaindrive_mechanics::Surface;
 
 use super::Findings;
-use super::film::Strip;
+use super::film::{self, Strip};
 use super::law::{Pair, elastic};
 use crate::scene::defaults::{self, Default};
-use crate::scene::schema::{Contact, Stack, Written};
+use crate::scene::schema::{self, Contact, Stack, Written};
 
 /// Values on which a contact falls back.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fallback {
     /// Place of the contact that holds for all.
-    pub(super) path: &'static str,
+    path: &'static str,
     restitution: &'static Default,
 }
 
@@ -68,6 +68,20 @@ impl Said<'_> {
             friction: friction?,
             film,
         })
+    }
+
+    /// Where the scene describes a film, if it does.
+    pub(super) fn film_text(&self) -> Option<(&schema::Film, String)> {
+        let own = self.own.film.as_ref().map(|film| (film, self.path));
+        let common = self.common.film.as_ref();
+        let found = own.or(common.map(|film| (film, self.fallback.path)));
+        found.map(|(film, path)| (film, format!("{path}.film")))
+    }
+
+    /// The film of oil between the surfaces; none where the scene describes none, or one that is refused.
+    pub(super) fn film(&self, strip: Strip, findings: &mut Findings<'_>) -> Option<Film> {
+        let (text, path) = self.film_text()?;
+        film::resolve(text, &path, strip, findings)
     }
 
     /// How it rubs.

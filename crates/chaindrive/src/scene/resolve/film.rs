@@ -4,7 +4,6 @@ use chaindrive_contact::Film;
 use chaindrive_geometry::{Piece, ToothGap};
 
 use super::Findings;
-use super::contact::Said;
 use super::law::Pair;
 use crate::scene::defaults;
 use crate::scene::schema;
@@ -66,69 +65,62 @@ fn equivalent(inner: f64, outer: f64) -> Option<f64> {
     (apart > 0.0).then(|| inner * outer / apart)
 }
 
-impl Said<'_> {
-    /// Where the scene describes a film, if it does.
-    pub(super) fn film_text(&self) -> Option<(&schema::Film, String)> {
-        let own = self.own.film.as_ref().map(|film| (film, self.path));
-        let common = self.common.film.as_ref();
-        let found = own.or(common.map(|film| (film, self.fallback.path)));
-        found.map(|(film, path)| (film, format!("{path}.film")))
-    }
-
-    /// The film of oil between the surfaces; none where the scene describes none, or one that is refused.
-    pub(super) fn film(&self, strip: Strip, findings: &mut Findings<'_>) -> Option<Film> {
-        let (text, path) = self.film_text()?;
-        let at = |key: &str| format!("{path}.{key}");
-        let viscosity = match text.viscosity {
-            Some(viscosity) => Some(viscosity.0),
-            None => findings.oil_dynamic_viscosity(&at("viscosity")),
-        };
-        let radius = text.radius.map(|it| it.0);
-        let half_width = text.half_width.map(|it| it.0);
-        let length = text.length.map(|it| it.0);
-        let mut measure = |given: Option<f64>, known: Option<f64>, key: &str, hint: &str| {
-            if given.is_none() {
-                match known {
-                    Some(known) => {
-                        findings.assume(&at(key), known, "follows from the surfaces");
-                    }
-                    None => findings.refuse_with(&at(key), "missing", hint),
+/// The film that a scene describes at `path`, between such surfaces; none where it is refused.
+pub(super) fn resolve(
+    text: &schema::Film,
+    path: &str,
+    strip: Strip,
+    findings: &mut Findings<'_>,
+) -> Option<Film> {
+    let at = |key: &str| format!("{path}.{key}");
+    let viscosity = match text.viscosity {
+        Some(viscosity) => Some(viscosity.0),
+        None => findings.oil_dynamic_viscosity(&at("viscosity")),
+    };
+    let radius = text.radius.map(|it| it.0);
+    let half_width = text.half_width.map(|it| it.0);
+    let length = text.length.map(|it| it.0);
+    let mut measure = |given: Option<f64>, known: Option<f64>, key: &str, hint: &str| {
+        if given.is_none() {
+            match known {
+                Some(known) => {
+                    findings.assume(&at(key), known, "follows from the surfaces");
                 }
+                None => findings.refuse_with(&at(key), "missing", hint),
             }
-            given.or(known)
-        };
-        let hint =
-            "give the radius of the cylinder beside a plane, r₁ r₂/(r₂ − r₁), such as \"2.7 m\"";
-        let radius = measure(radius, strip.radius, "radius", hint);
-        let hint = "give it, such as \"14 mm\"";
-        let half_width = measure(half_width, strip.half_width, "half_width", hint);
-        let length = measure(length, strip.length, "length", hint);
-        let (radius, half_width, length) = (radius?, half_width?, length?);
-        let mut or_default =
-            |given: Option<f64>, key: &str, default| findings.or_default(given, &at(key), default);
-        let pressure = text.pressure_coefficient.map(|it| it.0);
-        let pressure = or_default(
-            pressure,
-            "pressure_coefficient",
-            &defaults::PRESSURE_VISCOSITY,
-        );
-        let roughness = text.roughness.map(|it| it.0);
-        let roughness = or_default(roughness, "roughness", &defaults::FILM_ROUGHNESS);
-        let refill = text.refill_time.map(|it| it.0);
-        let refill_time = or_default(refill, "refill_time", &defaults::REFILL_TIME);
-        let film = Film {
-            viscosity: viscosity?,
-            pressure_coefficient: pressure,
-            radius,
-            half_width,
-            length,
-            leakage_factor: text.leakage_factor.map(|it| it.0),
-            thickness: text.thickness.0,
-            roughness,
-            refill_time,
-        };
-        let sound = film.check();
-        let sound = sound.map_err(|error| findings.refuse_parameter(&path, &error));
-        sound.ok().map(|()| film)
-    }
+        }
+        given.or(known)
+    };
+    let hint = "give the radius of the cylinder beside a plane, r₁ r₂/(r₂ − r₁), such as \"2.7 m\"";
+    let radius = measure(radius, strip.radius, "radius", hint);
+    let hint = "give it, such as \"14 mm\"";
+    let half_width = measure(half_width, strip.half_width, "half_width", hint);
+    let length = measure(length, strip.length, "length", hint);
+    let (radius, half_width, length) = (radius?, half_width?, length?);
+    let mut or_default =
+        |given: Option<f64>, key: &str, default| findings.or_default(given, &at(key), default);
+    let pressure = text.pressure_coefficient.map(|it| it.0);
+    let pressure = or_default(
+        pressure,
+        "pressure_coefficient",
+        &defaults::PRESSURE_VISCOSITY,
+    );
+    let roughness = text.roughness.map(|it| it.0);
+    let roughness = or_default(roughness, "roughness", &defaults::FILM_ROUGHNESS);
+    let refill = text.refill_time.map(|it| it.0);
+    let refill_time = or_default(refill, "refill_time", &defaults::REFILL_TIME);
+    let film = Film {
+        viscosity: viscosity?,
+        pressure_coefficient: pressure,
+        radius,
+        half_width,
+        length,
+        leakage_factor: text.leakage_factor.map(|it| it.0),
+        thickness: text.thickness.0,
+        roughness,
+        refill_time,
+    };
+    let sound = film.check();
+    let sound = sound.map_err(|error| findings.refuse_parameter(path, &error));
+    sound.ok().map(|()| film)
 }
