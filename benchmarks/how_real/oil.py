@@ -71,20 +71,25 @@ def draw(path: Path) -> None:
         figure, axes = plt.subplots(2, 1, figsize=(7.0, 5.5), sharex=True, layout="constrained")
         for film, color in zip(FILMS[1:], CURVES, strict=False):
             drive = oiled.replace(
-                {"contact.teeth.film.thickness": film, "run.run_in": 0.05, "run.step": STEPS[1]}
+                {
+                    "contact.teeth.film.thickness": film,
+                    "run.run_in": 0.05,
+                    "run.step": STEPS[1],
+                    "run.method": "verlet",
+                }
             )
             run = cd.simulate(
                 drive,
                 until=0.03,
                 every=STEPS[1],
-                method="verlet",
-                record=["contact_force", "film_thickness"],
+                record=["contact_force", "film_thickness", "sprocket_angle"],
                 events="teeth",
                 error=False,
             )
             struck = run.drive.impacts()
-            first = int(np.argmax(struck["sprocket_of"].values == WHEEL))
-            roller, start = int(struck["roller_of"][first]), float(struck["start"][first])
+            there = (struck["sprocket_of"].values == WHEEL) & (struck["time_of"].values > 0.01)
+            first = int(np.argmax(there))
+            roller, start = int(struck["roller_of"][first]), float(struck["time_of"][first])
             seen = run.sel(roller=roller, time=slice(start - 2e-4, start + 2e-3))
             time = 1e3 * (seen["time"].values - start)
             look = {"color": color, "label": f"{1e6 * film:.0f} µm at touch"}

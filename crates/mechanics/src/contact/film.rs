@@ -249,8 +249,10 @@ impl LaneFilm {
         let filmed = pressed & thickness.greater(e);
         let rate = filmed.select(rate, zero);
         memory.keep_squeezed(lane, e, rate);
+        // Where oil follows the surfaces there is nothing between them but rounding.
+        let seen = gap + e;
         Seen {
-            gap: gap + e,
+            gap: pressed.select(seen, seen.max(zero)),
             draining: rate,
             softer: filmed.select(softer, one),
         }
