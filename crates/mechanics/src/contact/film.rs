@@ -205,7 +205,9 @@ impl LaneFilm {
         let begins = if dt > 0.0 { zero } else { room };
         let before = known.select(squeezed, begins);
         let rate_before = known.select(draining, zero);
-        let pressed = (-gap).greater(before);
+        // Beyond rounding: a film that follows the surfaces is as thick as they let it be.
+        let nothing = w.splat(NOTHING * self.film.thickness);
+        let pressed = (-gap - nothing).greater(before);
         let refill = self.film.refill_time;
         let parted = if refill > 0.0 {
             room.plus(before - room, w.splat(refill / (refill + dt)))
@@ -236,8 +238,7 @@ impl LaneFilm {
                 let next = (e - excess * slope.recip()).max(before).min(room);
                 let change = pressed.select(next - e, zero);
                 softer = one.plus(theta * step, found.by_film) * slope.recip();
-                let small = w.splat(NOTHING * self.film.thickness);
-                let small = small.plus(w.splat(FOUND), (next - before).abs());
+                let small = nothing.plus(w.splat(FOUND), (next - before).abs());
                 let moves = change.abs().greater(small);
                 e = moves.select(next, e);
                 if !moves.any() {
@@ -249,7 +250,6 @@ impl LaneFilm {
         let filmed = pressed & thickness.greater(e);
         let rate = filmed.select(rate, zero);
         memory.keep_squeezed(lane, e, rate);
-        // Where oil follows the surfaces there is nothing between them but rounding.
         let seen = gap + e;
         Seen {
             gap: pressed.select(seen, seen.max(zero)),

@@ -278,6 +278,9 @@ fn oil_comes_back_between_parted_surfaces() {
             t += 1e-5;
             let force = roller.force(t, place(20e-6), Vector::zeros()).y;
             assert!(force.abs() <= 0.0 && roller.closed() == 0, "{force}");
+            // Looked at again, a last place higher or lower.
+            let again = roller.force(t, place(20e-6 - 4e-18), Vector::zeros()).y;
+            assert!(again.abs() <= 0.0 && roller.closed() == 0, "{again}");
         }
         let squeezed = roller.contacts.memory.state.get(Kept::Squeezed, 0);
         // From the whole film to the 10 µm that the gap leaves: e = 10 + 20 e^(−t/τ) µm
