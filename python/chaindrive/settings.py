@@ -68,6 +68,7 @@ ChannelName: TypeAlias = Literal[
     "bush_depth",
     "bush_offset_x",
     "bush_offset_y",
+    "film_thickness",
     "contact_force",
     "contact_depth",
     "contacts",
