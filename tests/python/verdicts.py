@@ -115,7 +115,8 @@ class MeasuredCase:
             note=" ".join(part for part in notes if part),
             kind=row.get("kind", "measured"),
         )
-        print(f"{self.name}, {row['quantity']}: {found}, measured: {row['expected']}: {now}")
+        told = f"{found}, measured: {row['expected']}: {now}. {note}"
+        print(f"{self.name}, {row['quantity']}: {told}")
         assert now == row["verdict"], (
             f"{self.name}, {row['quantity']}: {now} with {found}, recorded: {row['verdict']} with "
             f"{row['found']}, measured: {row['expected']}"
