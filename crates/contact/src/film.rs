@@ -15,9 +15,8 @@ use crate::error::{require, require_positive};
 /// F = λ L ∫ p dx
 /// ```
 ///
-/// The law is the speed v at which a force thins the film. λ is what flow out of the ends leaves of the force, see
-/// [`Film::leakage`]. Oil does not pull: where the
-/// surfaces part faster than it follows there is none between them. From the roughness down metal bears.
+/// The law is the speed v of the film's thinning under a force. λ is the share of the force beside flow out of the ends, see
+/// [`Film::leakage`]. Oil does not pull. From the roughness down metal bears.
 ///
 /// # Range
 /// H is a parabola, so b is to be well below the radius of the cylinder. Oil has neither mass nor compressibility here, and both surfaces
@@ -47,7 +46,7 @@ pub struct Film {
     pub refill_time: f64,
 }
 
-/// Speed at which a film drains, and how it changes.
+/// Speed of draining, and its change with the force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Draining {
     /// v \[m/s\]
@@ -113,7 +112,7 @@ impl Film {
         }
     }
 
-    /// How fast a film of some thickness \[m\], the roughness included, drains under a force \[N\].
+    /// Speed of draining under a force \[N\], at a thickness \[m\] that includes the roughness.
     pub fn drain(&self, force: f64, film: f64) -> Draining {
         // s = b/√(2Rh)
         let reach = self.half_width / (2.0 * self.radius * film).sqrt();

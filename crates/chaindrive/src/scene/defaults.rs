@@ -118,7 +118,7 @@ pub(crate) static RUN_IN: Choice<&str> = Choice {
     ],
 };
 
-/// How plates hold pins.
+/// Support of pins in their plates.
 pub(crate) static PIN_ENDS: Choice<BeamEnds> = Choice {
     keys: &["Stack.pin_ends"],
     basis: Assumed("pressed into plates that are thinner than the pin and turn with it"),

@@ -55,7 +55,7 @@ const LEAST_PRESSING: f64 = 1e-30;
 /// Least share of the seat, which has the film.
 const LEAST_SHARE: f64 = 1e-9;
 
-/// What bears behind a film.
+/// The law behind a film.
 pub(super) trait Behind {
     /// Force \[N\] and stiffness \[N/m\] at some depths \[m\] in contacts of which the flank has this share.
     fn elastic<S: Simd>(&self, w: Wide<S>, depth: Lane<S>, share: Option<Lane<S>>) -> [Lane<S>; 2];
@@ -75,7 +75,7 @@ pub(crate) struct LaneFilm {
     shapes: Shapes,
 }
 
-/// Where surfaces are for the law behind their film.
+/// Place of surfaces for the law behind their film.
 #[derive(Clone, Copy)]
 pub(crate) struct Seen<S: Simd> {
     /// Gap that the law sees \[m\], negative where it presses.

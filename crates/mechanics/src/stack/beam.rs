@@ -6,7 +6,7 @@ use chaindrive_contact::Elasticity;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How plates hold the ends of a beam.
+/// Support of the ends of a beam.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum BeamEnds {
@@ -38,9 +38,9 @@ pub struct Beam {
     pub inner_radius: f64,
     /// Length l \[m\], loaded from end to end.
     pub length: f64,
-    /// How its ends are held.
+    /// Support of its ends.
     pub ends: BeamEnds,
-    /// What it is made of.
+    /// Material.
     pub material: Elasticity,
 }
 

@@ -52,7 +52,7 @@ pub(super) struct Said<'a> {
 }
 
 impl Said<'_> {
-    /// How it pushes and rubs, with what may be between; `absent` knows the elastic law where the scene names none.
+    /// Normal force, friction and film; `absent` gives the elastic law of a scene without one.
     pub(super) fn surface(
         &self,
         pair: Pair,
@@ -70,7 +70,7 @@ impl Said<'_> {
         })
     }
 
-    /// Where the scene describes a film, if it does.
+    /// Text of the film, and its path.
     pub(super) fn film_text(&self) -> Option<(&schema::Film, String)> {
         let own = self.own.film.as_ref().map(|film| (film, self.path));
         let common = self.common.film.as_ref();
@@ -78,7 +78,7 @@ impl Said<'_> {
         found.map(|(film, path)| (film, format!("{path}.film")))
     }
 
-    /// The film of oil between the surfaces; none where the scene describes none, or one that is refused.
+    /// Film of oil between the surfaces; none without a text, or with a refused one.
     pub(super) fn film(&self, strip: Strip, findings: &mut Findings<'_>) -> Option<Film> {
         let (text, path) = self.film_text()?;
         film::resolve(text, &path, strip, findings)

@@ -8,7 +8,7 @@ use super::law::Pair;
 use crate::scene::defaults;
 use crate::scene::schema;
 
-/// What is between two surfaces, as far as the drive gives it.
+/// Dimensions of the strip between two surfaces, as far as the drive gives them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Strip {
     /// Radius of the cylinder beside a plane \[m\].
@@ -65,7 +65,7 @@ fn equivalent(inner: f64, outer: f64) -> Option<f64> {
     (apart > 0.0).then(|| inner * outer / apart)
 }
 
-/// The film that a scene describes at `path`, between such surfaces; none where it is refused.
+/// Film of the text at `path` between such surfaces; none for a refused text.
 pub(super) fn resolve(
     text: &schema::Film,
     path: &str,

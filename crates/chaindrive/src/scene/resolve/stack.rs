@@ -30,9 +30,9 @@ pub(super) struct Behind {
 pub(super) struct Parts {
     of_type: Option<&'static CatalogueChain>,
     text: schema::Chain,
-    /// Whether roller and bush, and bush and pin, are one body of the model.
+    /// Unity of roller and bush, and of bush and pin, in the model.
     fused: [bool; 2],
-    /// Whether rollers are bodies of their own.
+    /// Rollers as bodies of their own.
     free_rollers: bool,
     strands: f64,
     /// Mean mass at a joint \[kg\], all strands together.
