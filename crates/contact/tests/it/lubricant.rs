@@ -56,11 +56,16 @@ fn grades_have_the_viscosities_of_tables() {
     }
 }
 
-/// Measured dynamic viscosities at 30, 60 and 100 °C of two heavy machine oils, 153/34/9.1 and 250/50.5/12.6 mPa s
+/// Dynamic viscosities \[mPa s\] at 30, 60 and 100 °C of oils of VG 32, 100, 150 and 460, as measured
 /// (G. Stachowiak and A. Batchelor, *Engineering Tribology*, table 2.3). Grade and index are those of the first and last value.
 #[test]
 fn measured_oils_lie_on_their_line() {
-    for [cold, warm, hot] in [[153.0, 34.0, 9.1], [250.0, 50.5, 12.6]] {
+    for (grade, [cold, warm, hot]) in [
+        ("VG 32", [45.0, 12.0, 3.9]),
+        ("VG 100", [153.0, 34.0, 9.1]),
+        ("VG 150", [250.0, 50.5, 12.6]),
+        ("VG 460", [810.0, 135.0, 26.8]),
+    ] {
         let of = |viscosity_40: f64, viscosity_index: f64, degrees: f64| Lubricant {
             viscosity_40,
             viscosity_index,
@@ -71,7 +76,7 @@ fn measured_oils_lie_on_their_line() {
         let mut best = (f64::INFINITY, oil("VG 100", 40.0));
         for index in 0..=150 {
             let index = f64::from(index);
-            let mut between = [20e-6, 400e-6];
+            let mut between = [20e-6, 600e-6];
             for _ in 0..60 {
                 let middle = 0.5 * (between[0] + between[1]);
                 let beyond = of(middle, index, 100.0).dynamic_viscosity() > hot * 1e-3;
@@ -82,8 +87,19 @@ fn measured_oils_lie_on_their_line() {
                 best = (off.abs(), of(between[1], index, 60.0));
             }
         }
-        let found = best.1.dynamic_viscosity() * 1e3;
-        assert!((found / warm - 1.0).abs() < 0.08, "{found} for {warm}");
+        let (off, best) = best;
+        assert!(off < 0.02, "{grade}: {off}");
+        let graded = best.viscosity_40 / Lubricant::grade(grade).unwrap();
+        assert!((0.9..1.1).contains(&graded), "{grade}: {graded}");
+        let found = best.dynamic_viscosity() * 1e3;
+        println!(
+            "{grade}: index {}, {found:.2} for {warm}",
+            best.viscosity_index
+        );
+        assert!(
+            (found / warm - 1.0).abs() < 0.04,
+            "{grade}: {found} for {warm}"
+        );
     }
 }
 

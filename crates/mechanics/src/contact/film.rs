@@ -57,8 +57,23 @@ const LEAST_SHARE: f64 = 1e-9;
 
 /// The law behind a film.
 pub(super) trait Behind {
-    /// Force \[N\] and stiffness \[N/m\] at some depths \[m\] in contacts of which the flank has this share.
-    fn elastic<S: Simd>(&self, w: Wide<S>, depth: Lane<S>, share: Option<Lane<S>>) -> [Lane<S>; 2];
+    /// Forces and stiffness \[N/m\] at some depths \[m\] in contacts of which the flank has this share.
+    fn elastic<S: Simd>(
+        &self,
+        w: Wide<S>,
+        depth: Lane<S>,
+        share: Option<Lane<S>>,
+    ) -> (LaneResponse<S>, Lane<S>);
+}
+
+/// What elastic laws answer to a lane of depths, of whole contacts.
+#[derive(Clone, Copy)]
+pub(super) struct LaneResponse<S: Simd> {
+    /// Force of the seat's law, and of seat and flank together \[N\].
+    pub(super) on_seat: Lane<S>,
+    pub(super) force: Lane<S>,
+    /// ∂F/∂δ of both \[N/m\], where it has been asked for.
+    pub(super) slope: Option<Lane<S>>,
 }
 
 /// A film, prepared.
@@ -82,8 +97,8 @@ pub(crate) struct Seen<S: Simd> {
     pub(crate) gap: Lane<S>,
     /// Speed at which the film drains \[m/s\].
     pub(super) draining: Lane<S>,
-    /// Stiffness of both over that of the law.
-    pub(super) softer: Lane<S>,
+    /// Forces of the law, and the stiffness of law and film, if they are known: the law is not asked again.
+    pub(super) elastic: Option<LaneResponse<S>>,
 }
 
 /// v, ∂v/∂F and −∂v/∂e of a lane.
@@ -219,13 +234,13 @@ impl LaneFilm {
         let onwards = before.plus(step, rate_before).min(thickness);
         let onwards = (-gap).greater(onwards).select(onwards, before);
         let mut e = pressed.select(onwards, parted);
-        let (mut rate, mut softer) = (zero, one);
+        let (mut rate, mut elastic) = (zero, None);
         if pressed.any() {
             let mut theta = one;
             for round in 0..MOST {
                 let depth = (-gap - e).max(zero);
-                let [force, stiffness] = behind.elastic(w, depth, share);
-                let found = self.drain(w, force, thickness - e + roughness, share);
+                let (forces, stiffness) = behind.elastic(w, depth, share);
+                let found = self.drain(w, forces.force, thickness - e + roughness, share);
                 let steep = step * found.by_film.plus(found.by_force, stiffness);
                 if round == 0 {
                     theta = share_of_end(w, steep);
@@ -237,7 +252,12 @@ impl LaneFilm {
                 let slope = one.plus(theta, steep);
                 let next = (e - excess * slope.recip()).max(before).min(room);
                 let change = pressed.select(next - e, zero);
-                softer = one.plus(theta * step, found.by_film) * slope.recip();
+                let softer = one.plus(theta * step, found.by_film) * slope.recip();
+                // Of the last round, which changes nothing, they are those of e.
+                elastic = Some(LaneResponse {
+                    slope: Some(thickness.greater(e).select(stiffness * softer, stiffness)),
+                    ..forces
+                });
                 let small = nothing.plus(w.splat(FOUND), (next - before).abs());
                 let moves = change.abs().greater(small);
                 e = moves.select(next, e);
@@ -254,7 +274,7 @@ impl LaneFilm {
         Seen {
             gap: pressed.select(seen, seen.max(zero)),
             draining: rate,
-            softer: filmed.select(softer, one),
+            elastic,
         }
     }
 

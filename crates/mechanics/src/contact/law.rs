@@ -15,7 +15,7 @@ use pulp::Simd;
 
 use super::LEAST_DEPTH;
 use super::ahead::Ahead;
-use super::film::{Behind, LaneFilm, Seen};
+use super::film::{Behind, LaneFilm, LaneResponse, Seen};
 use super::friction::LaneFriction;
 use super::logarithm::Logarithm;
 use super::memory::MemoryLanes;
@@ -76,13 +76,9 @@ pub(crate) struct Pressed<S: Simd> {
     inverse_onset: Lane<S>,
     /// min(δ̇/v, 4)
     ratio: Lane<S>,
-    /// Elastic force of the seat's law, and of both, of whole contacts \[N\].
-    on_seat: Lane<S>,
-    stored: Lane<S>,
+    elastic: LaneResponse<S>,
     /// −∂F/∂ġ without the limits \[N s/m\], of whole contacts; means something where closed.
     steepest: Lane<S>,
-    /// Stiffness of law and film over that of the law.
-    softer: Lane<S>,
     /// Normal force \[N\], zero where open.
     pub(crate) force: Lane<S>,
 }
@@ -142,7 +138,7 @@ impl SurfaceLaw {
             _ => Seen {
                 gap,
                 draining: w.splat(0.0),
-                softer: w.splat(1.0),
+                elastic: None,
             },
         }
     }
@@ -169,7 +165,7 @@ impl SurfaceLaw {
         tally: &mut LaneTally<S>,
     ) -> Option<Pressed<S>> {
         let zero = w.splat(0.0);
-        let Seen { gap, softer, .. } = seen;
+        let gap = seen.gap;
         memory.look(lane, gap, closing);
         let depth = (-gap).max(zero);
         let closed = depth.greater(zero);
@@ -190,13 +186,14 @@ impl SurfaceLaw {
         memory.keep_onset(lane, inverse_onset);
 
         // F = max(0, g + χ g min(δ̇/v, 4) + c δ̇)
-        let on_seat = self.elastic.force::<S, LONG>(w, depth);
-        let mut stored = on_seat;
-        if let (Some(flank), Some(share)) = (&self.flank, share) {
-            // g = (1 − s) g_seat + s g_flank
-            stored = stored.plus(share, flank.elastic.force::<S, LONG>(w, depth) - stored);
+        let elastic = match seen.elastic {
+            Some(elastic) if LONG => elastic,
+            _ => self.force::<S, LONG>(w, depth, share),
+        };
+        if let (Some(_), Some(share)) = (&self.flank, share) {
             memory.keep_share(lane, share);
         }
+        let stored = elastic.force;
         let [one, factor, damping] = [1.0, self.factor, self.damping].map(|x| w.splat(x));
         let ratio_at = |closing: Lane<S>| (closing * inverse_onset).min(w.splat(RATIO_LIMIT));
         let (mut closing, mut ratio) = (closing, ratio_at(closing));
@@ -231,10 +228,8 @@ impl SurfaceLaw {
             closing,
             inverse_onset,
             ratio,
-            on_seat,
-            stored,
+            elastic,
             steepest,
-            softer,
             force,
         })
     }
@@ -285,27 +280,59 @@ impl SurfaceLaw {
         share: Option<Lane<S>>,
     ) -> [Lane<S>; 2] {
         let zero = w.splat(0.0);
-        let depth = pressed.depth;
-        let elastic = &self.elastic;
-        let mut slope = elastic.slope::<S, LONG>(w, depth, pressed.on_seat);
-        if let (Some(flank), Some(share)) = (&self.flank, share) {
-            let force = flank.elastic.force::<S, LONG>(w, depth);
-            let other = flank.elastic.slope::<S, LONG>(w, depth, force);
-            slope = slope + share * (other - slope);
-        }
+        let slope = match pressed.elastic.slope {
+            Some(slope) if LONG => slope,
+            _ => self.slope::<S, LONG>(w, pressed.depth, share, &pressed.elastic),
+        };
         // ∂F/∂δ = k (1 + χ min(δ̇/v, 4)),   ∂F/∂δ̇ = χ g/v + c
         let factor = w.splat(self.factor);
         let pushes = pressed.force.greater(zero);
         let free = w
             .splat(RATIO_LIMIT)
             .greater(pressed.closing * pressed.inverse_onset);
-        let hysteresis = factor * pressed.stored * pressed.inverse_onset;
+        let hysteresis = factor * pressed.elastic.force * pressed.inverse_onset;
         let damping = free.select(hysteresis, zero) + w.splat(self.damping);
-        let mut stiffness = slope * (w.splat(1.0) + factor * pressed.ratio);
-        if LONG && self.film.is_some() {
-            stiffness = stiffness * pressed.softer;
-        }
+        let stiffness = slope * (w.splat(1.0) + factor * pressed.ratio);
         [pushes.select(stiffness, zero), pushes.select(damping, zero)]
+    }
+
+    /// Elastic forces in contacts of which the flank has this share.
+    #[inline(always)]
+    fn force<S: Simd, const LONG: bool>(
+        &self,
+        w: Wide<S>,
+        depth: Lane<S>,
+        share: Option<Lane<S>>,
+    ) -> LaneResponse<S> {
+        let on_seat = self.elastic.force::<S, LONG>(w, depth);
+        let mut force = on_seat;
+        if let (Some(flank), Some(share)) = (&self.flank, share) {
+            // g = (1 − s) g_seat + s g_flank
+            force = force.plus(share, flank.elastic.force::<S, LONG>(w, depth) - force);
+        }
+        LaneResponse {
+            on_seat,
+            force,
+            slope: None,
+        }
+    }
+
+    /// ∂F/∂δ where these are the forces.
+    #[inline(always)]
+    fn slope<S: Simd, const LONG: bool>(
+        &self,
+        w: Wide<S>,
+        depth: Lane<S>,
+        share: Option<Lane<S>>,
+        forces: &LaneResponse<S>,
+    ) -> Lane<S> {
+        let slope = (self.elastic).slope::<S, LONG>(w, depth, forces.on_seat);
+        let (Some(flank), Some(share)) = (&self.flank, share) else {
+            return slope;
+        };
+        let force = flank.elastic.force::<S, LONG>(w, depth);
+        let other = flank.elastic.slope::<S, LONG>(w, depth, force);
+        slope + share * (other - slope)
     }
 
     /// The flank's share where rollers are so far beyond the hollow, as [`Flank::share`](crate::Flank) has it.
@@ -324,16 +351,16 @@ impl SurfaceLaw {
 }
 
 impl Behind for SurfaceLaw {
-    /// Of whole contacts, seat and flank together.
     #[inline(always)]
-    fn elastic<S: Simd>(&self, w: Wide<S>, depth: Lane<S>, share: Option<Lane<S>>) -> [Lane<S>; 2] {
-        let [mut force, mut slope] = self.elastic.both(w, depth);
-        if let (Some(flank), Some(share)) = (&self.flank, share) {
-            let [other, steeper] = flank.elastic.both(w, depth);
-            force = force.plus(share, other - force);
-            slope = slope.plus(share, steeper - slope);
-        }
-        [force, slope]
+    fn elastic<S: Simd>(
+        &self,
+        w: Wide<S>,
+        depth: Lane<S>,
+        share: Option<Lane<S>>,
+    ) -> (LaneResponse<S>, Lane<S>) {
+        let forces = self.force::<S, true>(w, depth, share);
+        let slope = self.slope::<S, true>(w, depth, share, &forces);
+        (forces, slope)
     }
 }
 
@@ -375,13 +402,6 @@ impl LaneElastic {
             Self::Logarithm(law) => law.force(w, depth),
             Self::General(law) => general(w, law, depth, Part::Force),
         }
-    }
-
-    /// g and dg/dδ, of any law.
-    #[inline(always)]
-    fn both<S: Simd>(&self, w: Wide<S>, depth: Lane<S>) -> [Lane<S>; 2] {
-        let force = self.force::<S, true>(w, depth);
-        [force, self.slope::<S, true>(w, depth, force)]
     }
 
     /// dg/dδ of lanes with a force g.
