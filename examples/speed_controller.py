@@ -35,16 +35,18 @@ def controlled(drive: cd.Drive, until: float) -> np.ndarray:
     """Return time [s], speed [rad/s] and torque [N m] of every period of the controller."""
     simulation = cd.Simulation(drive)
     simulation.set_torque("camshaft", LOAD, at=until / 2.0)
+    view = simulation.view("sprocket_speed")
+    speeds, crank = view["sprocket_speed"], view.labels["sprocket_speed"].index("crank")
     rows = []
     integral = 0.0
     for k in range(round(until / PERIOD) + 1):
         simulation.advance_to(k * PERIOD)
-        speed = float(simulation["sprocket_speed"].sel(sprocket="crank"))
+        speed = float(speeds[crank])
         error = WANTED - speed
         torque = PROPORTIONAL * error + INTEGRAL * integral
         if abs(torque) < LARGEST:
             integral += error * PERIOD  # not while the torque is at its limit
-        torque = float(np.clip(torque, -LARGEST, LARGEST))
+        torque = min(max(torque, -LARGEST), LARGEST)
         simulation.set_torque("crank", torque)
         rows.append((simulation.time, speed, torque))
     return np.array(rows)

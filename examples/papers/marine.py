@@ -215,9 +215,10 @@ def controlled(drive: cd.Drive, length: Length, wanted: float | None) -> np.ndar
     integral = force = 0.0
     smooth = None
     rows = []
+    tensions = simulation.view("span_tension")["span_tension"]
     for k in range(round(length.until / PERIOD) + 1):
         simulation.advance_to(k * PERIOD)
-        tight, _, slack, _ = simulation["span_tension"].values
+        tight, _, slack, _ = tensions.tolist()
         # A first-order filter of 20 ms: the mesh at 100 Hz is not the controller's business.
         smooth = slack if smooth is None else smooth + (slack - smooth) * PERIOD / 20e-3
         if wanted is not None:

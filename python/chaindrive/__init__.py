@@ -59,6 +59,8 @@ if TYPE_CHECKING:
     from chaindrive.friction_law import friction as friction
     from chaindrive.live import Simulation as Simulation
     from chaindrive.live import Snapshot as Snapshot
+    from chaindrive.live import View as View
+    from chaindrive.live import step_many as step_many
     from chaindrive.page import Page as Page
     from chaindrive.precision import work_precision as work_precision
     from chaindrive.profile import Profile as Profile
@@ -109,7 +111,7 @@ _DEFINED_IN = {
     ),
     "exchange": ("save",),
     "friction_law": ("Friction", "friction"),
-    "live": ("Simulation", "Snapshot"),
+    "live": ("Simulation", "Snapshot", "View", "step_many"),
     "precision": ("work_precision",),
     "profile": ("Profile",),
     "page": ("Page",),

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from chaindrive import _core
 from chaindrive.channel import channels
 from chaindrive.drive import Drive, _needed
 from chaindrive.settings import ChannelName, MethodName, Quantity, Target
 
-__all__ = ["Simulation", "Snapshot"]
+__all__ = ["Simulation", "Snapshot", "View", "step_many"]
 
 Snapshot = _core.Snapshot
 """A simulation as it was at a moment, to the last bit; see `Simulation.snapshot`.
@@ -53,6 +55,14 @@ class Simulation:
     >>> simulation.advance_to(2e-3)
     >>> float(simulation["sprocket_speed"].sel(sprocket="camshaft")) > before
     True
+
+    A loop that looks often reads arrays that are filled wherever the drive has moved:
+
+    >>> view = simulation.view(["span_tension", "sprocket_speed"])
+    >>> speed, camshaft = view["sprocket_speed"], view.labels["sprocket_speed"].index("camshaft")
+    >>> for _ in range(10):
+    ...     simulation.advance(1)
+    ...     simulation.set_torque("camshaft", -50.0 * speed[camshaft])
     """
 
     def __init__(
@@ -106,6 +116,43 @@ class Simulation:
         """
         self._inner.advance_to(time)
 
+    def advance(self, steps: int = 1) -> None:
+        """Take steps of the method, and read at the end of the last one.
+
+        Parameters
+        ----------
+        steps
+            How many; each is as long as the method wants, and shorter before an event.
+
+        Raises
+        ------
+        IntegrationError, SimulationError
+            The motion cannot go on, or another thread moves the simulation.
+        KeyboardInterrupt
+            Ctrl-C. The simulation can go on from where it is.
+        """
+        self._inner.advance(steps)
+
+    def view(self, channels: ChannelName | Iterable[ChannelName]) -> View:
+        """Return arrays of channels that are filled wherever the simulation has moved.
+
+        The same channels have the same arrays, as long as the simulation lives.
+
+        Parameters
+        ----------
+        channels
+            Names of channels; see `channels`.
+
+        Raises
+        ------
+        ParameterError
+            There is no channel of this name, or the drive has nothing of the kind.
+        """
+        names = [channels] if isinstance(channels, str) else list(channels)
+        inner = self._inner.view(names)
+        labels = {name: self._inner.labels(name) or [] for name in names}
+        return View(inner, labels)
+
     def __getitem__(self, channel: ChannelName) -> xr.DataArray:
         """Return a channel at the last reading: a number, or one a label; see `channels`."""
         values: Any = self._inner.channel(channel)
@@ -128,15 +175,27 @@ class Simulation:
         attributes = {attribute: unit, "long_name": about.description}
         return xr.DataArray(values, coords=coordinates, dims=dims, name=channel, attrs=attributes)
 
-    def set_torque(self, shaft: str, torque: float, *, at: float | None = None) -> None:
-        """Set a torque on a shaft, beside those of the scene.
+    def set_torque(
+        self,
+        shaft: str,
+        torque: float,
+        *,
+        over: float = 0.0,
+        rate: float = 0.0,
+        at: float | None = None,
+    ) -> None:
+        """Set a torque on a shaft, beside those of the scene; it ends a speed or an angle.
 
         Parameters
         ----------
         shaft
-            Its name, or that of a sprocket on it; one whose motion is given takes no torque.
+            Its name, or that of a sprocket on it; one whose motion the scene gives takes no torque.
         torque
             Torque [N m], counter-clockwise positive; it acts until another one is set.
+        over
+            Time in which it comes there from what it is [s]; zero for a jump.
+        rate
+            How it goes on from there [N m/s].
         at
             From when on [s]; from the last reading on when absent.
 
@@ -145,9 +204,75 @@ class Simulation:
         ParameterError
             No shaft or sprocket has this name, its motion is given, or the time is past.
         """
-        self._inner.set("torque", shaft, torque, at)
+        self._inner.set("torque", shaft, (torque, over, rate), at)
 
-    def set_force(self, tensioner: str, force: float, *, at: float | None = None) -> None:
+    def set_speed(
+        self,
+        shaft: str,
+        speed: float,
+        *,
+        over: float = 0.0,
+        rate: float = 0.0,
+        at: float | None = None,
+    ) -> None:
+        """Let an ideal drive turn a shaft at a speed; it ends torques that were set.
+
+        The work of the drive is ``energy_driver_supplied``, that of a jump included.
+
+        Parameters
+        ----------
+        shaft
+            Its name, or that of a sprocket on it; with or without a motion of the scene.
+        speed
+            Speed [rad/s], counter-clockwise positive.
+        over
+            Time in which it comes there from what it is [s]; zero for a jump.
+        rate
+            Acceleration from there on [rad/s²].
+        at
+            From when on [s]; from the last reading on when absent.
+
+        Raises
+        ------
+        ParameterError
+            No shaft or sprocket has this name, or the time is past.
+        """
+        self._inner.set("speed", shaft, (speed, over, rate), at)
+
+    def set_angle(
+        self, shaft: str, angle: float, *, over: float, speed: float = 0.0, at: float | None = None
+    ) -> None:
+        """Let an ideal drive turn a shaft to an angle, along a cubic without a jump of speed.
+
+        Parameters
+        ----------
+        shaft
+            Its name, or that of a sprocket on it; with or without a motion of the scene.
+        angle
+            Angle [rad] as ``shaft_angle`` or, of a sprocket, ``sprocket_angle`` has it.
+        over
+            Time in which it comes there [s], positive.
+        speed
+            Speed there, at which it goes on [rad/s]; at zero it stays.
+        at
+            From when on [s]; from the last reading on when absent.
+
+        Raises
+        ------
+        ParameterError
+            No shaft or sprocket has this name, no time to come there, or the time is past.
+        """
+        self._inner.set("angle", shaft, (angle, over, speed), at)
+
+    def set_force(
+        self,
+        tensioner: str,
+        force: float,
+        *,
+        over: float = 0.0,
+        rate: float = 0.0,
+        at: float | None = None,
+    ) -> None:
         """Set a force on a tensioner, beside its push.
 
         Parameters
@@ -157,6 +282,10 @@ class Simulation:
         force
             Force [N] along the travel of a slider, or moment [N m] on an arm; it acts until another
             one is set.
+        over
+            Time in which it comes there from what it is [s]; zero for a jump.
+        rate
+            How it goes on from there [N/s or N m/s].
         at
             From when on [s]; from the last reading on when absent.
 
@@ -165,10 +294,15 @@ class Simulation:
         ParameterError
             No tensioner has this name, it is locked, or the time is past.
         """
-        self._inner.set("force", tensioner, force, at)
+        self._inner.set("force", tensioner, (force, over, rate), at)
 
     def set_centre_acceleration(
-        self, sprocket: str, acceleration: tuple[float, float], *, at: float | None = None
+        self,
+        sprocket: str,
+        acceleration: tuple[float, float],
+        *,
+        over: float = 0.0,
+        at: float | None = None,
     ) -> None:
         """Set the acceleration of the centre of a sprocket, which goes on from where it is.
 
@@ -178,6 +312,8 @@ class Simulation:
             Its name; a centre on springs or on a tensioner moves by itself.
         acceleration
             Along x and y [m/s²], until another one is set.
+        over
+            Time in which it comes there from what it is [s]; zero for a jump.
         at
             From when on [s]; from the last reading on when absent.
 
@@ -187,8 +323,29 @@ class Simulation:
             No sprocket has this name, its centre moves by itself, or the time is past.
         """
         x, y = acceleration
-        self._inner.set("centre_x", sprocket, x, at)
-        self._inner.set("centre_y", sprocket, y, at)
+        self._inner.set("centre_x", sprocket, (x, over, 0.0), at)
+        self._inner.set("centre_y", sprocket, (y, over, 0.0), at)
+
+    def tune(self, place: str, value: float, *, at: float | None = None) -> None:
+        """Change a parameter that the scene lists under ``tunable``.
+
+        Parameters
+        ----------
+        place
+            ``sprockets.NAME.load`` or ``shafts.NAME.load``, a factor on the loads [-];
+            ``tensioners.NAME.push.preload`` [N or N m], ``tensioners.NAME.push.stiffness``
+            [N/m or N m/rad] of a spring.
+        value
+            Its value from then on.
+        at
+            From when on [s]; from the last reading on when absent.
+
+        Raises
+        ------
+        ParameterError
+            The scene does not list it, the value is out of its range, or the time is past.
+        """
+        self._inner.set("parameter", place, (value, 0.0, 0.0), at)
 
     def snapshot(self) -> Snapshot:
         """Return the simulation as it is now, to the last bit: contacts and time stepping too."""
@@ -214,3 +371,54 @@ class Simulation:
         method, steps = self._inner.account()
         at = f"t = {self.time:.6g} s, {steps} steps by {method}"
         return f"<chaindrive.Simulation {self._name!r}: {at}>"
+
+
+class View(Mapping[str, NDArray[np.float64]]):
+    """Channels of a `Simulation` by name, as arrays that stay the same while their entries change.
+
+    Each has the shape ``(entries,)``, one entry for a number. They are written wherever the
+    simulation has moved or gone back; copy what is to be kept. See `Simulation.view`.
+    """
+
+    labels: Mapping[str, list[str]]
+    """Labels of the entries of every channel; empty for a number."""
+
+    def __init__(self, inner: _core.View, labels: Mapping[str, list[str]]) -> None:
+        self._inner = inner
+        self._arrays = dict(zip(labels, inner.arrays, strict=True))
+        self.labels = labels
+
+    def __getitem__(self, channel: str) -> NDArray[np.float64]:
+        """Return the array of a channel, always the same one."""
+        return self._arrays[channel]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._arrays)
+
+    def __len__(self) -> int:
+        return len(self._arrays)
+
+    def __repr__(self) -> str:
+        return f"<chaindrive.View of {', '.join(self._arrays)}>"
+
+
+def step_many(simulations: Iterable[Simulation], time: float) -> None:
+    """Move many simulations on to a time, on all cores.
+
+    Parameters
+    ----------
+    simulations
+        Simulations, each once.
+    time
+        Time [s], not before the last reading of any of them.
+
+    Raises
+    ------
+    ParameterError
+        The time is past for one of them.
+    IntegrationError, SimulationError
+        The motion of one of them cannot go on, or another thread moves it. The others have moved.
+    KeyboardInterrupt
+        Ctrl-C. They can go on from where they are.
+    """
+    _core.step_many([simulation._inner for simulation in simulations], time)

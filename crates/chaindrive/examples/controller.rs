@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::io::Write;
 
-use chaindrive::{Control, Run, Scene, Simulation};
+use chaindrive::{Channel, Control, Run, Scene, Simulation};
 
 /// Time between two looks \[s\].
 const PERIOD: f64 = 1e-3;
@@ -19,10 +19,13 @@ pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
         .without("sprockets.crank.motion")?
         .replace("sprockets.crank.inertia", "500 kg m^2")?;
     let mut simulation = Simulation::start(&scene.drive()?, &Run::default())?;
+    let crank = Control::Torque("crank".into());
+    let mut view = simulation.view(&[Channel::SprocketSpeed])?;
     let mut integral = 0.0;
     for period in 0..60 {
-        let observation = simulation.advance_to(f64::from(period) * PERIOD)?;
-        let speed = observation.sprocket_speed[0];
+        simulation.move_to(f64::from(period) * PERIOD, &|| false)?;
+        simulation.read_into(&mut view);
+        let speed = view.values(0)[0];
         let error = WANTED - speed;
         let torque = GAINS[0] * error + GAINS[1] * integral;
         // Not while the torque is at its limit.
@@ -30,7 +33,7 @@ pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
             integral += error * PERIOD;
         }
         let torque = torque.clamp(-LARGEST, LARGEST);
-        simulation.set(&Control::Torque("crank".into()), torque)?;
+        simulation.set(&crank, torque)?;
         if period % 10 == 0 {
             let rpm = speed * 60.0 / TAU;
             writeln!(

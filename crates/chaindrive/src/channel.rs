@@ -1,7 +1,7 @@
 //! The channels: what a run can record, with names, units and dimensions.
 
 use chaindrive_mechanics::{
-    ChainSize, Energy, Flow, Observation, Parts, Place, Store, Support, System,
+    ChainSize, Energy, Flow, Observation, Parts, Place, Sights, Store, Support, System,
 };
 
 use crate::SimulationError;
@@ -335,6 +335,29 @@ impl Channel {
         names
             .map(Self::from_name)
             .try_for_each(|found| found.map(drop))
+    }
+
+    /// What has to be read off a state for it.
+    pub(crate) fn sights(self) -> Sights {
+        Sights {
+            laws: matches!(
+                self,
+                Self::Contacts
+                    | Self::ContactDepth
+                    | Self::FilmThickness
+                    | Self::StrandTensionMax
+                    | Self::StrandTensionMin
+                    | Self::EnergyKinetic
+                    | Self::EnergyStored
+                    | Self::EnergyDissipated
+                    | Self::EnergySupplied
+                    | Self::EnergyResidual
+                    | Self::EnergyStores
+                    | Self::EnergyFlows
+                    | Self::EnergyLosses
+            ),
+            spans: matches!(self, Self::SpanTension),
+        }
     }
 
     /// Appends the entries of one sample; `start` is the energy of the first sample.

@@ -50,9 +50,9 @@ mod zarr;
 pub use catalogue::CatalogueChain;
 pub use chaindrive_integrate::{InstructionSet, Method, Statistics};
 pub use chaindrive_mechanics::{
-    Assembled, Body, BodyKind, Clash, ContactEvent, ContactPair, Drive, Energy, EventKinds, Figure,
-    FigureChain, Flow, Impact, Instant, MissingChannel, Mode, Modes, Observation, Placement,
-    PlateShape, Pose, Store,
+    Assembled, Body, BodyKind, Clash, ContactEvent, ContactPair, Course, Drive, Energy, EventKinds,
+    Figure, FigureChain, Flow, Impact, Instant, MissingChannel, Mode, Modes, Observation,
+    Placement, PlateShape, Pose, Store,
 };
 pub use channel::{Axis, Channel};
 pub use describe::Description;
@@ -70,7 +70,7 @@ pub use run::{Given, Request, RequestError, Run, Settings};
 pub use run_in::{MOST_CIRCUITS, Onlooker, RanIn, run_in};
 pub use scene::{RunIn, Scene};
 pub use seal::SealError;
-pub use simulate::{Control, Simulation, Snapshot, SnapshotError};
+pub use simulate::{Control, Simulation, Snapshot, SnapshotError, View, step_many};
 pub use stepping::Stepping;
 pub use summary::{ImpactStatistics, Summary};
 pub use verdict::{Reason, Rule, Trust, Verdict};

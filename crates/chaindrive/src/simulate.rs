@@ -1,8 +1,10 @@
 //! A drive in motion: step, read, set, sample.
 
 mod live;
+mod many;
 mod sample;
 mod snapshot;
+mod view;
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -10,7 +12,7 @@ use std::time::Duration;
 
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Statistics, Stepper};
 use chaindrive_mechanics::{
-    Assembled, ContactEvent, Energy, EventKinds, Impact, Observation, Record, System,
+    Assembled, ContactEvent, Energy, EventKinds, Impact, Observation, Record, Sights, System,
 };
 
 use crate::{Run, SimulationError};
@@ -74,12 +76,20 @@ impl Moving {
         step.map(drop)
             .map_err(|error| SimulationError::stepping(error, &self.system))
     }
+
+    /// Takes in what ended in the last steps.
+    fn gather(&mut self) {
+        self.ended[1].append(&mut self.system.take_events());
+        self.struck[1].append(&mut self.system.take_impacts());
+    }
 }
 
 use live::Changes;
 pub use live::Control;
+pub use many::step_many;
 pub(crate) use sample::Sample;
 pub use snapshot::{Snapshot, SnapshotError};
+pub use view::View;
 
 /// Fastest that a chain may run at the start \[m/s\]: the speed of sound in steel.
 ///
@@ -207,17 +217,18 @@ impl Simulation {
 
     /// Reads everything off the state at a time \[s\] within the last step.
     fn observe(&mut self, time: f64) {
-        let clock = self.zero() + time;
-        let [q, v, flows, z] = &mut self.buffers;
-        let Moving { system, state, .. } = &self.moving;
-        state.at(clock, q, v);
-        state.quadratures_at(clock, flows);
-        state.states_at(clock, z);
-        let at = Moment { t: clock, q, v, z };
-        system.observe(at, flows, &mut self.record, &mut self.observation);
-        self.observation.time = time;
-        self.start_energy.get_or_insert(self.observation.energy);
         self.read = time;
+        let mut seen = std::mem::take(&mut self.observation);
+        self.look_at(Sights::ALL, &mut seen);
+        self.observation = seen;
+        self.start_energy.get_or_insert(self.observation.energy);
+    }
+
+    /// Reads everything at the time of the last reading, where only [views](View) were read since.
+    pub fn refresh(&mut self) {
+        if self.observation.time.to_bits() != self.read.to_bits() {
+            self.observe(self.read);
+        }
     }
 
     /// Contacts that ended between the sample before the last and the last one, in the order of their

@@ -22,7 +22,7 @@ pub(crate) use slide::Slide;
 pub(crate) use surroundings::Surroundings;
 
 use crate::contact::Frame;
-use crate::motion::Kinematics;
+use crate::kinematics::Kinematics;
 use crate::seam::Rates;
 use crate::tensioner::Slopes;
 use crate::{Coupling, Motion, ShaftLoss};
@@ -225,12 +225,12 @@ impl Bodies {
     /// Visits (entry of the state, mass or inertia) of everything that moves with a coordinate.
     fn each_inertia(&self, mut visit: impl FnMut(usize, f64)) {
         for shaft in &self.shafts {
-            if let Some((dof, ratio)) = shaft.turn.turned_by() {
+            if let Some((dof, ratio)) = shaft.turn.coordinate() {
                 visit(dof, ratio * ratio * shaft.inertia);
             }
         }
         for wheel in &self.wheels {
-            if let Some((dof, ratio)) = wheel.turn.turned_by() {
+            if let Some((dof, ratio)) = wheel.turn.coordinate() {
                 visit(dof, ratio * ratio * wheel.inertia);
             }
             if let WheelSupport::Springs { dof, .. } = wheel.support {
@@ -250,6 +250,11 @@ impl Bodies {
         let mut inertias = vec![0.0; count];
         self.each_inertia(|dof, inertia| inertias[dof - self.first] += inertia);
         self.inertias = inertias;
+        self.renew_rates();
+    }
+
+    /// Works out what follows from the inertias, and from what moves by itself.
+    pub(crate) fn renew_rates(&mut self) {
         let mobilities: Vec<f64> = self.wheels.iter().map(|it| self.mobility(it)).collect();
         for (wheel, mobility) in self.wheels.iter_mut().zip(mobilities) {
             wheel.mobility = mobility;

@@ -5,7 +5,8 @@ use chaindrive_geometry::{ArcSpline, Point, Side, ToothGap, Vector};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Chain, Coupling, Flank, Motion, ShaftLoss, Surface, Tensioner, Tolerance, ToothStack, Torque,
+    Chain, Coupling, Flank, Input, Motion, ShaftLoss, Surface, Tensioner, Tolerance, ToothStack,
+    Torque,
 };
 
 /// A toothed wheel.
@@ -394,6 +395,17 @@ pub struct Parts {
     pub gravity: Vector,
     /// The oil, where one is described.
     pub oil: Option<OilSupply>,
+    /// Parameters that may be changed while the drive moves.
+    pub tunable: Vec<Tunable>,
+}
+
+/// A parameter that may be changed while a drive moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tunable {
+    /// Its place in the scene.
+    pub place: String,
+    /// What it is of the drive.
+    pub input: Input,
 }
 
 /// The oil of a drive. The parameters that follow from it are with the parts: nothing else reads it in motion.

@@ -168,7 +168,7 @@ fn periods(motion: &Motion, repeats: &mut impl FnMut(f64)) {
         | Motion::Constant { .. }
         | Motion::Ramp { .. }
         | Motion::Table(_)
-        | Motion::Onward { .. } => {}
+        | Motion::Onward(_) => {}
     }
 }
 
@@ -208,9 +208,7 @@ fn of_time(motion: &Motion) -> Option<&'static str> {
         Motion::Harmonics { .. } => Some("a motion by frequencies"),
         Motion::Table(_) => Some("a motion over time"),
         Motion::From { motion, .. } => of_time(motion),
-        Motion::Held | Motion::Constant { .. } | Motion::Orders { .. } | Motion::Onward { .. } => {
-            None
-        }
+        Motion::Held | Motion::Constant { .. } | Motion::Orders { .. } | Motion::Onward(_) => None,
     }
 }
 

@@ -203,6 +203,7 @@ impl Group {
             settle: whole.settle,
             gravity: whole.gravity,
             oil: whole.oil.clone(),
+            tunable: Vec::new(),
         }
     }
 }

@@ -69,6 +69,7 @@
 //!     settle: true,
 //!     gravity: Vector::zeros(),
 //!     oil: None,
+//!     tunable: Vec::new(),
 //! };
 //! // All parameters out of range at once, or a drive.
 //! let drive = Drive::new(parts).map_err(|problems| format!("{problems:?}"))?;
@@ -108,6 +109,7 @@ mod chains;
 mod check;
 mod contact;
 mod coupling;
+mod course;
 mod dense;
 mod drive;
 mod energy;
@@ -119,6 +121,7 @@ mod groups;
 #[doc(hidden)]
 pub mod inside;
 mod joints;
+mod kinematics;
 mod lanes;
 mod modes;
 mod motion;
@@ -149,18 +152,20 @@ pub use chains::chain::{Chain, End, Ends};
 pub use chains::model::*;
 pub use contact::{Impact, Impacts};
 pub use coupling::Coupling;
+pub use course::{Course, Path};
 pub use drive::{
     Adjust, AgainstRoute, Drive, Fit, GearPair, Guide, GuideSupport, Layout, OilSupply, Parts,
     PlacedChain, PretensionAt, Rotation, Shaft, SpanStart, Sprocket, StartSpeed, Stop, Support,
-    Tighten, Touches,
+    Tighten, Touches, Tunable,
 };
 pub use energy::{Energy, Flow, Place, Store};
 pub use error::{AssemblyError, Clash, DriveError, MemoryError, Pull};
 pub use fights::Fight;
 pub use joints::{Clearance, FreeRoller};
+pub use kinematics::Kinematics;
 pub use modes::{Mode, Modes};
-pub use motion::{Harmonic, Kinematics, Motion, Table};
-pub use observe::ChainSize;
+pub use motion::{Harmonic, Motion, Table};
+pub use observe::{ChainSize, Sights};
 pub use order::Order;
 pub use pose::{
     Body, BodyKind, Figure, FigureChain, Instant, MissingChannel, Placement, PlateShape, Pose,

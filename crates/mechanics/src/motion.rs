@@ -1,20 +1,9 @@
 //! Motions prescribed in time: a scalar position with its rate and acceleration.
 
-use serde::{Deserialize, Serialize};
-
 use crate::DriveError;
+use crate::course::Path;
+use crate::kinematics::Kinematics;
 use crate::order::Order;
-
-/// Position, rate and acceleration of a prescribed coordinate at one instant.
-#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
-pub struct Kinematics {
-    /// Position x \[m or rad\].
-    pub position: f64,
-    /// Rate ẋ \[m/s or rad/s\].
-    pub rate: f64,
-    /// Acceleration ẍ \[m/s² or rad/s²\].
-    pub acceleration: f64,
-}
 
 /// One sine term of a harmonic motion: A sin(2π f t + φ).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,13 +80,8 @@ pub enum Motion {
     },
     /// Positions at given times, joined by a natural cubic spline.
     Table(Table),
-    /// On from a place and speed at a constant acceleration: x = x₀ + v τ + ½ a τ², τ = t − t₀.
-    Onward {
-        /// Position, rate and acceleration at t₀.
-        from: Kinematics,
-        /// Time t₀ \[s\].
-        since: f64,
-    },
+    /// On from a place and speed, on a course that somebody has set.
+    Onward(Path),
     /// Another motion, counted from where it was when the drive was assembled: x = y(t) − y(t₀).
     From {
         /// Its position y(t₀) \[m or rad\].
@@ -163,16 +147,7 @@ impl Motion {
                 swinging(*rate, t - since, terms)
             }
             Self::Table(table) => table.at(t),
-            Self::Onward { from, since } => {
-                let after = t - since;
-                // x = x₀ + v τ + ½ a τ²
-                let gained = from.acceleration * after;
-                Kinematics {
-                    position: from.position + (from.rate + 0.5 * gained) * after,
-                    rate: from.rate + gained,
-                    ..*from
-                }
-            }
+            Self::Onward(path) => path.at(t),
             Self::From { place, motion } => {
                 let there = motion.at(t);
                 Kinematics {
@@ -188,6 +163,7 @@ impl Motion {
         match self {
             Self::Table(table) => table.next_knot(t),
             Self::From { motion, .. } => motion.next_knot(t),
+            Self::Onward(path) => path.next_knot(t),
             _ => None,
         }
     }
@@ -206,13 +182,8 @@ impl Motion {
             )
         };
         match self {
-            Self::Held | Self::Table(_) => Ok(()),
-            Self::Onward { from, since } => {
-                finite("position", from.position)?;
-                finite("rate", from.rate)?;
-                finite("acceleration", from.acceleration)?;
-                finite("since", *since)
-            }
+            // Courses are checked where they are set.
+            Self::Held | Self::Table(_) | Self::Onward(_) => Ok(()),
             Self::Constant { rate } => finite("rate", *rate),
             Self::From { place, motion } => {
                 finite("place", *place)?;

@@ -8,7 +8,7 @@ use crate::bodies::{OnWheel, RailContact, WheelSupport};
 use crate::contact::Kept;
 use crate::energy::{Energy, Flow, Store};
 use crate::seam::Observation;
-use crate::system::{Member, Record, System};
+use crate::system::{Member, Reading, Record, System};
 use crate::tensioner::Reduced;
 
 /// How much there is of a chain.
@@ -22,6 +22,32 @@ pub struct ChainSize {
     pub joints: usize,
     /// Spans between sprockets.
     pub spans: usize,
+}
+
+/// What is read off a state.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sights {
+    /// What the laws say there: contacts and their depths, films, energies.
+    pub laws: bool,
+    /// Tensions of spans.
+    pub spans: bool,
+}
+
+impl Sights {
+    /// Everything.
+    pub const ALL: Self = Self {
+        laws: true,
+        spans: true,
+    };
+
+    /// What either wants.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            laws: self.laws || other.laws,
+            spans: self.spans || other.spans,
+        }
+    }
 }
 
 impl System {
@@ -146,32 +172,68 @@ impl System {
         record: &mut Record,
         out: &mut Observation,
     ) {
-        let mut a = vec![0.0; self.dofs];
-        let mut rates = vec![0.0; Flow::ALL.len() + self.bodies.states];
-        self.evaluate(at, &mut a, &mut rates, record);
+        self.observe_some(Sights::ALL, at, flows, record, out);
+    }
+
+    /// Reads off what is wanted, as [`observe`](Self::observe) does; the rest is not to be used.
+    ///
+    /// Places, speeds and forces that steps applied need no evaluation of the laws.
+    pub fn observe_some(
+        &self,
+        sights: Sights,
+        at: Moment<'_>,
+        flows: &[f64],
+        record: &mut Record,
+        out: &mut Observation,
+    ) {
+        let known = || self.chains.iter().all(|member| member.chain.has_springs());
+        let evaluates = sights.laws || self.applied.around(at.t).is_none() || !known();
+        if evaluates {
+            let mut reading = std::mem::take(&mut record.reading);
+            reading.a.resize(self.dofs, 0.0);
+            let states = Flow::ALL.len() + self.bodies.states;
+            reading.rates.resize(states, 0.0);
+            self.evaluate(at, &mut reading.a, &mut reading.rates, record);
+            record.reading = reading;
+        }
         out.time = at.t;
         out.clear_chains();
         let mut links = 0;
         for (member, record) in self.chains.iter().zip(&mut record.chains) {
-            member.chain.show_reactions(member.own(at), record);
+            if evaluates {
+                member.chain.show_reactions(member.own(at), record);
+            }
             member.chain.observe(member.own(at), record, out);
             links += member.chain.links();
             out.strand_tension_max.resize(links, f64::NAN);
             out.strand_tension_min.resize(links, f64::NAN);
         }
-        self.observe_forces(at, record, out);
+        self.observe_forces(at, record, evaluates, out);
         self.blend_forces(at.t, out);
-        out.joint_force = lengths(&out.joint_force_x, &out.joint_force_y);
-        out.bush_force = lengths(&out.bush_force_x, &out.bush_force_y);
+        set_lengths(&mut out.joint_force, &out.joint_force_x, &out.joint_force_y);
+        set_lengths(&mut out.bush_force, &out.bush_force_x, &out.bush_force_y);
         self.observe_sprockets(at, record, out);
-        self.observe_spans(out);
+        if evaluates {
+            self.observe_contacts(record, out);
+        }
+        if sights.spans {
+            self.observe_spans(&mut record.reading, out);
+        }
         self.observe_shafts(at, out);
         self.observe_tensioners(at, out);
-        out.energy = self.energy(at, flows, record);
+        if sights.laws {
+            out.energy = self.energy(at, flows, record);
+        }
     }
 
-    /// Forces of contacts and joints, as a record has them.
-    fn observe_forces(&self, at: Moment<'_>, record: &Record, out: &mut Observation) {
+    /// Forces of contacts and joints, as a record has them; zero for rollers where it was not evaluated in the present windows.
+    fn observe_forces(
+        &self,
+        at: Moment<'_>,
+        record: &Record,
+        evaluated: bool,
+        out: &mut Observation,
+    ) {
         for list in forces(out) {
             list.clear();
         }
@@ -188,6 +250,9 @@ impl System {
             out.guide_force_y.push(wrench.force[1]);
         }
         out.contact_force.resize(self.rollers(), 0.0);
+        if !evaluated {
+            return;
+        }
         let mut first = 0;
         for (member, record) in self.chains.iter().zip(&record.chains) {
             for (on, touch) in member.contacts.teeth.iter().zip(&record.loads.teeth) {
@@ -213,7 +278,7 @@ impl System {
                 pairs.for_each(|(list, kept)| std::mem::swap(list, kept));
             };
             lend(&mut seen);
-            self.observe_forces(at, record, &mut seen);
+            self.observe_forces(at, record, true, &mut seen);
             lend(&mut seen);
         });
         self.applied = applied;
@@ -225,25 +290,29 @@ impl System {
         let Some((share, [before, now])) = self.applied.around(t) else {
             return;
         };
-        let tension = out.link_tension.clone();
-        let joints = [out.joint_force_x.clone(), out.joint_force_y.clone()];
-        let lists = before.lists.iter().zip(&now.lists);
-        for ((before, now), list) in lists.zip(forces(out)) {
-            blended(share, before, now, list);
-        }
-        let (mut first, mut first_joint) = (0, 0);
-        for member in &self.chains {
-            let links = first..first + member.chain.links();
-            let own = first_joint..first_joint + member.chain.joints();
-            (first, first_joint) = (links.end, own.end);
-            let reacts = member.chain.has_reactions() && !member.contacts.any();
-            if member.chain.has_springs() || reacts {
-                out.link_tension[links.clone()].copy_from_slice(&tension[links]);
+        for (index, list) in forces(out).into_iter().enumerate() {
+            let [before, now] = [before, now].map(|end| end.lists[index].as_slice());
+            if !OF_CHAINS.contains(&index) {
+                blended(share, before, now, list);
+                continue;
             }
-            if reacts {
-                let [x, y] = &joints;
-                out.joint_force_x[own.clone()].copy_from_slice(&x[own.clone()]);
-                out.joint_force_y[own.clone()].copy_from_slice(&y[own]);
+            let mut first = 0;
+            for member in &self.chains {
+                let chain = &member.chain;
+                let is_tension = index == OF_CHAINS[0];
+                let count = if is_tension {
+                    chain.links()
+                } else {
+                    chain.joints()
+                };
+                let own = first..first + count;
+                first = own.end;
+                let reacts = chain.has_reactions() && !member.contacts.any();
+                if !(reacts || is_tension && chain.has_springs()) {
+                    // A drive begins with one end alone.
+                    let before = before.get(own.clone()).unwrap_or_default();
+                    blended(share, before, &now[own.clone()], &mut list[own]);
+                }
             }
         }
     }
@@ -269,6 +338,10 @@ impl System {
             out.sprocket_x.push(centre.x);
             out.sprocket_y.push(centre.y);
         }
+    }
+
+    /// Contacts of the sprockets, and films in them.
+    fn observe_contacts(&self, record: &Record, out: &mut Observation) {
         out.film_thickness.clear();
         if self.has_films() {
             out.film_thickness.resize(self.rollers(), f64::NAN);
@@ -294,18 +367,16 @@ impl System {
     }
 
     /// Mean tension from the last roller on one sprocket to the first roller on the next.
-    fn observe_spans(&self, out: &mut Observation) {
+    fn observe_spans(&self, reading: &mut Reading, out: &mut Observation) {
+        let Reading { seats, seated, .. } = reading;
         out.span_tension.clear();
         let (mut first_roller, mut first_link) = (0, 0);
         for member in &self.chains {
             let rollers = member.chain.rollers();
             let links = member.chain.links();
-            let seats: Vec<Option<(usize, usize)>> = member
-                .contacts
-                .teeth
-                .iter()
-                .map(|on| self.seated(member, on, first_roller, out))
-                .collect();
+            let teeth = member.contacts.teeth.iter();
+            seats.clear();
+            seats.extend(teeth.map(|on| self.seated(member, on, first_roller, seated, out)));
             let seat_on = |wheel: usize| {
                 let on = member
                     .contacts
@@ -340,6 +411,7 @@ impl System {
         member: &Member,
         on: &OnWheel,
         first_roller: usize,
+        seated: &mut Vec<usize>,
         out: &Observation,
     ) -> Option<(usize, usize)> {
         let centre = Point::new(out.sprocket_x[on.wheel], out.sprocket_y[on.wheel]);
@@ -353,7 +425,7 @@ impl System {
             let d = Point::new(out.roller_x[i], out.roller_y[i]) - centre;
             d.norm_squared() < reach * reach
         };
-        let mut seated = Vec::new();
+        seated.clear();
         on.contacts.for_each_slot(|_, roller| seated.push(roller));
         seated.sort_unstable();
         seated.retain(on_circle);
@@ -402,6 +474,12 @@ impl System {
         let mut energy = Energy::default();
         energy.flows.copy_from_slice(flows);
         let bodies = &self.bodies;
+        for (flow, jumps) in [Flow::Driver, Flow::DriveTorque]
+            .into_iter()
+            .zip(bodies.inputs.jumps)
+        {
+            energy.flows[flow as usize] += jumps.until(at.t);
+        }
         for (member, record) in self.chains.iter().zip(&record.chains) {
             let own = member.own(at);
             member
@@ -492,7 +570,11 @@ fn forces(out: &mut Observation) -> [&mut Vec<f64>; LISTS] {
     ]
 }
 
+/// Among them those of chains of which some keep what the laws say: tensions of links, and forces of joints.
+const OF_CHAINS: [usize; 3] = [6, 7, 8];
+
 /// Lengths of vectors.
-fn lengths(x: &[f64], y: &[f64]) -> Vec<f64> {
-    x.iter().zip(y).map(|(x, y)| x.hypot(*y)).collect()
+fn set_lengths(to: &mut Vec<f64>, x: &[f64], y: &[f64]) {
+    to.clear();
+    to.extend(x.iter().zip(y).map(|(x, y)| x.hypot(*y)));
 }

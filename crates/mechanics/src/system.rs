@@ -65,6 +65,19 @@ pub struct Record {
     pub(crate) pushes: Vec<Slopes>,
     /// Damping of the losses at every wheel, then of those of every shaft \[N m s\].
     pub(crate) resisting: Vec<f64>,
+    /// Work space of readings.
+    #[serde(skip)]
+    pub(crate) reading: Reading,
+}
+
+/// Work space of readings.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Reading {
+    pub(crate) a: Vec<f64>,
+    pub(crate) rates: Vec<f64>,
+    /// First and last roller on every sprocket of a chain.
+    pub(crate) seats: Vec<Option<(usize, usize)>>,
+    pub(crate) seated: Vec<usize>,
 }
 
 impl System {
@@ -396,6 +409,7 @@ impl SecondOrderSystem for System {
             rail_wrenches: vec![Wrench::default(); self.bodies.rails.len()],
             pushes: vec![Slopes::default(); self.bodies.slides.len()],
             resisting: vec![0.0; self.bodies.wheels.len() + self.bodies.shafts.len()],
+            reading: Reading::default(),
         }
     }
 
@@ -445,6 +459,7 @@ impl SecondOrderSystem for System {
     }
 
     fn commit(&mut self, t: f64, q: &mut [f64], v: &mut [f64], end: &mut Record) -> Continuity {
+        self.follow(t, q, v);
         if self.applied.wants(t) {
             self.note_applied(Moment { t, q, v, z: &[] }, end);
         }
@@ -461,7 +476,7 @@ impl SecondOrderSystem for System {
         for (member, record) in self.chains.iter_mut().zip(&mut end.chains) {
             member.look_around(&self.bodies, Moment { t, q, v, z: &[] }, record);
         }
-        if self.take_due(t) {
+        if self.take_due(t, q, v) {
             Continuity::Jump
         } else {
             Continuity::Smooth

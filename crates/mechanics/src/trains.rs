@@ -87,6 +87,7 @@ mod tests {
             settle: false,
             gravity: Vector::zeros(),
             oil: None,
+            tunable: Vec::new(),
         };
         let ratios = |parts: &Parts| -> Vec<(usize, f64)> {
             let all = trains(parts).into_iter();

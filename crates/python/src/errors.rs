@@ -52,6 +52,24 @@ impl IntoException for SceneError {
     }
 }
 
+/// A simulation that is asked for something while another thread moves it.
+pub(crate) fn in_another_thread() -> PyErr {
+    python::SimulationError::new_err((
+        "the simulation is moving in another thread, or stands in a list twice",
+        "simulation",
+        "give every thread a simulation of its own, or wait for the other one",
+    ))
+}
+
+/// A simulation in which a step came to a fault of the program.
+pub(crate) fn broken() -> PyErr {
+    python::SimulationError::new_err((
+        "a fault of the program stopped the simulation in the middle of a step",
+        "simulation",
+        "begin it anew, or restore a snapshot into a new one",
+    ))
+}
+
 /// Mistakes in an argument that is read as scenes are.
 pub(crate) fn in_an_argument(error: SceneError) -> PyErr {
     let told: Vec<String> = error.problems.iter().map(ToString::to_string).collect();

@@ -54,7 +54,7 @@ mod core {
     #[pymodule_export]
     use crate::law::Law;
     #[pymodule_export]
-    use crate::live::{Simulation, Snapshot};
+    use crate::live::{Simulation, Snapshot, View, step_many};
     #[pymodule_export]
     use crate::precision::work_precision;
     #[pymodule_export]

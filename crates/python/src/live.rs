@@ -1,19 +1,36 @@
-//! Drives that Python moves itself: read at any time, torques and forces set, states kept.
+//! Drives that Python moves itself: read at any time, inputs set, states kept.
 
-use chaindrive::{Axis, Channel, Control, Onlooker, Request, Settings, SimulationError};
-use numpy::PyArray1;
+use std::sync::{Mutex, MutexGuard, TryLockError};
+
+use chaindrive::{Axis, Channel, Control, Course, Request, Settings, SimulationError};
+use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::drive::Drive;
-use crate::errors::{IntoException, OrRaise, parameter};
+use crate::errors::{IntoException, OrRaise, broken, in_another_thread, parameter};
 use crate::run::{Setting, merged};
-use crate::signals::{Interpreter, PATIENCE};
+use crate::signals::{Interpreter, watched};
+
+/// Steps that are taken without a look at signals, and while other threads of Python wait.
+const FEW_STEPS: u64 = 100;
 
 /// A drive in motion.
-#[pyclass(module = "chaindrive._core")]
+#[pyclass(frozen, module = "chaindrive._core")]
 #[derive(Debug)]
-pub(crate) struct Simulation(chaindrive::Simulation);
+pub(crate) struct Simulation {
+    moving: Mutex<chaindrive::Simulation>,
+    /// Views that somebody has asked for, filled wherever it has moved.
+    views: Mutex<Vec<Py<View>>>,
+}
+
+/// Arrays of some channels of a drive in motion.
+#[pyclass(frozen, module = "chaindrive._core")]
+#[derive(Debug)]
+pub(crate) struct View {
+    seen: Mutex<chaindrive::View>,
+    arrays: Vec<Py<PyArray1<f64>>>,
+}
 
 /// A simulation as it was.
 #[pyclass(frozen, module = "chaindrive._core")]
@@ -42,15 +59,90 @@ impl Snapshot {
 fn control(kind: &str, name: String) -> PyResult<Control> {
     Ok(match kind {
         "torque" => Control::Torque(name),
+        "speed" => Control::Speed(name),
+        "angle" => Control::Angle(name),
         "force" => Control::Force(name),
         "centre_x" => Control::CentreX(name),
         "centre_y" => Control::CentreY(name),
+        "parameter" => Control::Parameter(name),
         _ => {
-            let known = "torque, force, centre_x, centre_y";
+            let known = "torque, speed, angle, force, centre_x, centre_y, parameter";
             let message = format!("`{kind}` cannot be set; there are {known}");
             return Err(parameter(message, "kind", &format!("one of {known}")));
         }
     })
+}
+
+/// Whoever holds it, even one that has panicked: all it does is to fill arrays anew.
+fn held<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex
+        .lock()
+        .unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
+#[pymethods]
+impl View {
+    /// The arrays, in the order of the channels.
+    #[getter]
+    fn arrays(&self, py: Python<'_>) -> Vec<Py<PyArray1<f64>>> {
+        self.arrays
+            .iter()
+            .map(|array| array.clone_ref(py))
+            .collect()
+    }
+}
+
+impl View {
+    /// Reads the channels off a simulation into the arrays.
+    fn fill(&self, py: Python<'_>, simulation: &mut chaindrive::Simulation) -> PyResult<()> {
+        let mut seen = held(&self.seen);
+        simulation.read_into(&mut seen);
+        for (index, array) in self.arrays.iter().enumerate() {
+            let mut array = array.bind(py).try_readwrite()?;
+            array.as_slice_mut()?.copy_from_slice(seen.values(index));
+        }
+        Ok(())
+    }
+}
+
+impl Simulation {
+    /// The drive, unless another thread moves it.
+    fn moving(&self) -> PyResult<MutexGuard<'_, chaindrive::Simulation>> {
+        match self.moving.try_lock() {
+            Ok(moving) => Ok(moving),
+            Err(TryLockError::WouldBlock) => Err(in_another_thread()),
+            // A step that panicked left it between two states.
+            Err(TryLockError::Poisoned(_)) => Err(broken()),
+        }
+    }
+
+    /// Fills all views.
+    fn show(&self, py: Python<'_>, simulation: &mut chaindrive::Simulation) -> PyResult<()> {
+        let views = held(&self.views);
+        views
+            .iter()
+            .try_for_each(|view| view.get().fill(py, simulation))
+    }
+}
+
+/// Moves simulations on to a time on all cores; Ctrl-C leaves them where they are.
+#[pyfunction]
+pub(crate) fn step_many(
+    py: Python<'_>,
+    simulations: Vec<Py<Simulation>>,
+    time: f64,
+) -> PyResult<()> {
+    let held: PyResult<Vec<_>> = simulations.iter().map(|it| it.get().moving()).collect();
+    let mut held = held?;
+    let mut moving: Vec<&mut chaindrive::Simulation> =
+        held.iter_mut().map(|it| &mut **it).collect();
+    let (moved, raised) =
+        py.detach(|| watched(|stop| chaindrive::step_many(&mut moving, time, stop)));
+    for (simulation, held) in simulations.iter().zip(&mut held) {
+        simulation.get().show(py, held)?;
+    }
+    raised?;
+    moved.into_iter().try_for_each(OrRaise::or_raise)
 }
 
 #[pymethods]
@@ -71,88 +163,143 @@ impl Simulation {
             (made, _) => made.map_err(IntoException::exception)?,
         };
         simulation.advance_to(0.0).or_raise()?;
-        Ok(Self(simulation))
+        Ok(Self {
+            moving: Mutex::new(simulation),
+            views: Mutex::default(),
+        })
     }
 
     /// Moves on to a time; Ctrl-C leaves the simulation where it is, and it can go on from there.
-    fn advance_to(&mut self, py: Python<'_>, time: f64) -> PyResult<()> {
-        let simulation = &mut self.0;
-        let (done, raised) = py.detach(|| {
-            let interpreter = Interpreter::new(None);
-            let done = loop {
-                match simulation.advance_towards(time, PATIENCE) {
-                    Ok(true) => break Ok(()),
-                    Ok(false) if interpreter.stop() => break Err(SimulationError::Interrupted),
-                    Ok(false) => {}
-                    Err(error) => break Err(error),
-                }
-            };
-            (done, interpreter.raised.into_inner())
-        });
-        match (done, raised) {
-            (Err(_), Some(raised)) => Err(raised),
-            (done, _) => done.or_raise(),
+    fn advance_to(&self, py: Python<'_>, time: f64) -> PyResult<()> {
+        let mut moving = self.moving()?;
+        let simulation = &mut *moving;
+        let (done, raised) = py.detach(|| watched(|stop| simulation.move_to(time, stop)));
+        raised?;
+        done.or_raise()?;
+        self.show(py, simulation)
+    }
+
+    /// Takes a number of steps; Ctrl-C leaves the simulation where it is.
+    fn advance(&self, py: Python<'_>, steps: u64) -> PyResult<()> {
+        let mut moving = self.moving()?;
+        let simulation = &mut *moving;
+        if steps <= FEW_STEPS {
+            // Others may wait so long.
+            simulation.step(steps).or_raise()?;
+        } else {
+            let (done, raised) = py.detach(|| {
+                watched(|stop| {
+                    let mut left = steps;
+                    while left > 0 && !stop() {
+                        let some = left.min(FEW_STEPS);
+                        simulation.step(some)?;
+                        left -= some;
+                    }
+                    Ok::<(), SimulationError>(())
+                })
+            });
+            raised?;
+            done.or_raise()?;
         }
+        self.show(py, simulation)
+    }
+
+    /// Arrays of some channels, filled wherever the simulation has moved; the same ones for the same channels.
+    fn view(&self, py: Python<'_>, names: Vec<String>) -> PyResult<Py<View>> {
+        let mut moving = self.moving()?;
+        let channels = Channel::chosen(&names, moving.system()).or_raise()?;
+        let mut views = held(&self.views);
+        let same = |view: &&Py<View>| held(&view.get().seen).channels() == channels;
+        if let Some(known) = views.iter().find(same) {
+            return Ok(known.clone_ref(py));
+        }
+        let seen = moving.view(&channels).or_raise()?;
+        let arrays = (0..channels.len()).map(|index| seen.values(index));
+        let arrays = arrays.map(|values| PyArray1::from_slice(py, values).unbind());
+        let view = View {
+            arrays: arrays.collect(),
+            seen: Mutex::new(seen),
+        };
+        let view = Py::new(py, view)?;
+        views.push(view.clone_ref(py));
+        Ok(view)
     }
 
     /// Time of the last reading.
     #[getter]
-    fn time(&self) -> f64 {
-        self.0.read_at()
+    fn time(&self) -> PyResult<f64> {
+        Ok(self.moving()?.read_at())
     }
 
     /// A channel at the last reading.
     fn channel<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let channels = Channel::chosen(&[name], self.0.system()).or_raise()?;
-        let values = channels.iter().flat_map(|it| self.0.channel(*it)).collect();
+        let mut moving = self.moving()?;
+        let channels = Channel::chosen(&[name], moving.system()).or_raise()?;
+        moving.refresh();
+        let values = channels.iter().flat_map(|it| moving.channel(*it)).collect();
         Ok(PyArray1::from_vec(py, values))
     }
 
     /// Labels of the entries of a channel; none where there is one entry only.
     fn labels(&self, name: &str) -> PyResult<Option<Vec<String>>> {
-        let channels = Channel::chosen(&[name], self.0.system()).or_raise()?;
+        let moving = self.moving()?;
+        let channels = Channel::chosen(&[name], moving.system()).or_raise()?;
         let axis = channels
             .first()
             .map_or(Axis::None, |channel| channel.axis());
-        Ok(chaindrive::channel::labels(axis, self.0.system()))
+        Ok(chaindrive::channel::labels(axis, moving.system()))
     }
 
     /// The attribute that tells the unit of a channel, and the unit.
     fn unit(&self, name: &str) -> PyResult<(&'static str, String)> {
         let channel = Channel::from_name(name).or_raise()?;
-        Ok(channel.unit_attribute(self.0.system()))
+        Ok(channel.unit_attribute(self.moving()?.system()))
     }
 
     /// The chain of every entry of a channel, by name, and the coordinate that tells it; none of one chain.
     fn chains(&self, name: &str) -> PyResult<Option<(&'static str, Vec<String>)>> {
-        let channels = Channel::chosen(&[name], self.0.system()).or_raise()?;
+        let moving = self.moving()?;
+        let channels = Channel::chosen(&[name], moving.system()).or_raise()?;
         let axis = channels
             .first()
             .map_or(Axis::None, |channel| channel.axis());
-        let chains = chaindrive::channel::chains_along(axis, self.0.system());
+        let chains = chaindrive::channel::chains_along(axis, moving.system());
         Ok(axis.chain_coordinate().zip(chains))
     }
 
-    /// Sets what acts on the drive from a time on, that of the last reading where none is given.
-    #[pyo3(signature = (kind, name, value, at))]
-    fn set(&mut self, kind: &str, name: String, value: f64, at: Option<f64>) -> PyResult<()> {
+    /// Sets what acts on the drive from a time on, that of the last reading where none is given: a value, the time within which it comes
+    /// there, and its rate from then on.
+    #[pyo3(signature = (kind, name, course, at))]
+    fn set(
+        &self,
+        kind: &str,
+        name: String,
+        course: (f64, f64, f64),
+        at: Option<f64>,
+    ) -> PyResult<()> {
         let control = control(kind, name)?;
-        let at = at.unwrap_or_else(|| self.0.read_at());
-        self.0.set_at(at, &control, value).or_raise()
+        let (to, over, rate) = course;
+        let mut moving = self.moving()?;
+        let at = at.unwrap_or_else(|| moving.read_at());
+        let course = Course { to, over, rate };
+        moving.set_at(at, &control, course).or_raise()
     }
 
     /// The simulation as it is.
-    fn snapshot(&self) -> Snapshot {
-        Snapshot(self.0.snapshot())
+    fn snapshot(&self) -> PyResult<Snapshot> {
+        Ok(Snapshot(self.moving()?.snapshot()))
     }
 
     /// Goes back, or on, to a snapshot.
-    fn restore(&mut self, snapshot: &Snapshot) -> PyResult<()> {
-        self.0.restore(&snapshot.0).or_raise()
+    fn restore(&self, py: Python<'_>, snapshot: &Snapshot) -> PyResult<()> {
+        let mut moving = self.moving()?;
+        moving.restore(&snapshot.0).or_raise()?;
+        self.show(py, &mut moving)
     }
 
     /// Name of the method, and number of steps taken.
-    fn account(&self) -> (&'static str, u64) {
-        (self.0.method().name(), self.0.statistics().steps)
+    fn account(&self) -> PyResult<(&'static str, u64)> {
+        let moving = self.moving()?;
+        Ok((moving.method().name(), moving.statistics().steps))
     }
 }

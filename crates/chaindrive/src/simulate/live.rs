@@ -2,25 +2,35 @@
 
 use std::time::{Duration, Instant};
 
-use chaindrive_mechanics::{Input, Observation, System};
+use chaindrive_mechanics::{Assembled, Course, Input, Observation};
 
 use super::{Moving, STEPS_PER_LOOK, Simulation};
+use crate::patience::LOOK;
 use crate::{Channel, SimulationError, Stepping};
 
 /// Inputs that can be set while a drive moves, by the names of the scene.
 ///
-/// A value holds until another one is set; at the start nothing acts beside what the scene says.
+/// A [`Course`] holds until another one is set; at the start nothing acts beside what the scene says.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Control {
     /// Torque on a shaft without a given motion, by its name or that of a sprocket on it \[N m\], counter-clockwise positive,
-    /// beside the torques of the scene.
+    /// beside the torques of the scene. It ends a speed or angle of the shaft.
     Torque(String),
+    /// Speed of a shaft \[rad/s\], by its name or that of a sprocket on it, counter-clockwise positive: an ideal drive gives the torque
+    /// that it takes, and the work of a jump. It ends torques that were set on the shaft.
+    Speed(String),
+    /// Angle of a shaft \[rad\], as the channels `shaft_angle` and, for a sprocket, `sprocket_angle` have it. It comes there within the
+    /// time of the course along a cubic without a jump of speed, and passes at the rate of the course.
+    Angle(String),
     /// Force on a tensioner \[N, or N m on an arm\] towards positive coordinates, beside its push.
     Force(String),
     /// Acceleration of the centre of a sprocket along x \[m/s²\]: the centre goes on from where it is.
     CentreX(String),
     /// The same along y.
     CentreY(String),
+    /// A parameter that the scene lists under `tunable`, by its place: `sprockets.NAME.load`, a factor on its loads,
+    /// `tensioners.NAME.push.preload` \[N or N m\] or `tensioners.NAME.push.stiffness` \[N/m or N m/rad\]. It jumps.
+    Parameter(String),
 }
 
 /// Whether somebody may set something at the time that is stepped to.
@@ -65,17 +75,35 @@ impl Simulation {
     /// # Errors
     /// As [`advance_to`](Self::advance_to).
     pub fn advance_towards(&mut self, t: f64, budget: Duration) -> Result<bool, SimulationError> {
+        let reached = self.come_towards(t, budget)?;
+        if reached {
+            self.observe(t);
+        }
+        Ok(reached)
+    }
+
+    /// Moves on to a time \[s\], of which nothing is read but what [views](super::View) ask for; `stop` is asked every 50 ms.
+    ///
+    /// # Errors
+    /// As [`advance_to`](Self::advance_to), and [`SimulationError::Interrupted`].
+    pub fn move_to(&mut self, t: f64, stop: &dyn Fn() -> bool) -> Result<(), SimulationError> {
+        while !self.come_towards(t, LOOK)? {
+            if stop() {
+                return Err(SimulationError::Interrupted);
+            }
+        }
+        self.read = t;
+        Ok(())
+    }
+
+    fn come_towards(&mut self, t: f64, budget: Duration) -> Result<bool, SimulationError> {
         if !(t >= self.read && t.is_finite()) {
             return Err(SimulationError::Past {
                 time: t,
                 read: self.read,
             });
         }
-        let reached = self.step_towards(t, budget, Changes::AtTheEnd)?;
-        if reached {
-            self.observe(t);
-        }
-        Ok(reached)
+        self.step_towards(t, budget, Changes::AtTheEnd)
     }
 
     /// Steps until the state is at a time of the simulation or beyond it, for at most about `budget` of wall time.
@@ -103,14 +131,7 @@ impl Simulation {
             }
         }
         self.stepping_time += begin.elapsed().as_secs_f64();
-        let Moving {
-            system,
-            ended,
-            struck,
-            ..
-        } = moving;
-        ended[1].append(&mut system.take_events());
-        struck[1].append(&mut system.take_impacts());
+        moving.gather();
         Ok(moving.state.t >= time)
     }
 
@@ -120,8 +141,12 @@ impl Simulation {
     ///
     /// # Errors
     /// [`SimulationError::Control`]: nothing has this name, or it cannot be set; a value that is not finite.
-    pub fn set(&mut self, control: &Control, value: f64) -> Result<(), SimulationError> {
-        self.set_at(self.read, control, value)
+    pub fn set(
+        &mut self,
+        control: &Control,
+        course: impl Into<Course>,
+    ) -> Result<(), SimulationError> {
+        self.set_at(self.read, control, course)
     }
 
     /// Plans a change for a time \[s\] not before the last reading; see [`set`](Self::set).
@@ -132,7 +157,7 @@ impl Simulation {
         &mut self,
         time: f64,
         control: &Control,
-        value: f64,
+        course: impl Into<Course>,
     ) -> Result<(), SimulationError> {
         if !(time >= self.read && time.is_finite()) {
             return Err(SimulationError::Past {
@@ -140,14 +165,10 @@ impl Simulation {
                 read: self.read,
             });
         }
-        let input = control.input(&self.moving.system)?;
-        if !value.is_finite() {
-            return Err(SimulationError::Setting {
-                name: "value",
-                value,
-                allowed: "finite",
-            });
-        }
+        let input = control.input(&self.assembled)?;
+        let course = course.into();
+        let checked = self.moving.system.check_course(input, course);
+        checked.map_err(|error| control.refused(error.to_string()))?;
         if time < self.time() {
             match self.before.take() {
                 Some(before) => self.moving = *before,
@@ -162,9 +183,9 @@ impl Simulation {
         let time = self.zero() + time;
         // Somebody may yet go back behind this plan.
         if let Some(before) = &mut self.before {
-            before.plan(time, input, value)?;
+            before.plan(time, input, course)?;
         }
-        self.moving.plan(time, input, value)
+        self.moving.plan(time, input, course)
     }
 
     /// A channel as it was at the last reading; empty where the drive has nothing of the kind.
@@ -196,15 +217,15 @@ impl Moving {
     }
 
     /// Plans a change, and makes it if it is due.
-    fn plan(&mut self, time: f64, input: Input, value: f64) -> Result<(), SimulationError> {
+    fn plan(&mut self, time: f64, input: Input, course: Course) -> Result<(), SimulationError> {
         let Self {
             system,
             state,
             stepper,
             ..
         } = self;
-        system.plan(time, input, value);
-        if system.take_due(state.t) {
+        system.plan(time, input, course);
+        if system.take_due(state.t, &mut state.q, &mut state.v) {
             stepper
                 .jump(system, state)
                 .map_err(|error| SimulationError::stepping(error, system))?;
@@ -216,47 +237,66 @@ impl Moving {
 
 impl Control {
     /// The input of the drive.
-    fn input(&self, system: &System) -> Result<Input, SimulationError> {
-        let (what, known, name) = match self {
-            Self::Force(name) => ("tensioner", system.tensioner_names(), name),
-            Self::Torque(name) => {
+    fn input(&self, assembled: &Assembled) -> Result<Input, SimulationError> {
+        let system = &assembled.system;
+        let (_, name) = self.target();
+        let tunable = &assembled.drive.parts().tunable;
+        let known = match self {
+            Self::Force(_) => system.tensioner_names(),
+            Self::Torque(_) | Self::Speed(_) | Self::Angle(_) => {
                 let mut known = system.sprocket_names();
                 known.extend(system.shaft_names());
-                ("shaft", known, name)
+                known
             }
-            Self::CentreX(name) | Self::CentreY(name) => {
-                ("sprocket", system.sprocket_names(), name)
-            }
-        };
-        let refuse = |reason: String| SimulationError::Control {
-            what,
-            name: name.clone(),
-            reason,
+            Self::CentreX(_) | Self::CentreY(_) => system.sprocket_names(),
+            Self::Parameter(_) => tunable.iter().map(|it| it.place.clone()).collect(),
         };
         let Some(index) = known.iter().position(|known| known == name) else {
-            let known = match known.len() {
-                0 => "there is none in this drive".to_owned(),
+            let known = match (known.len(), self) {
+                (0, Self::Parameter(_)) => {
+                    "the scene lists none; name it under `tunable`".to_owned()
+                }
+                (0, _) => "there is none in this drive".to_owned(),
                 _ => format!("there is none of this name; there are {}", known.join(", ")),
             };
-            return Err(refuse(known));
+            return Err(self.refused(known));
+        };
+        let shaft = || system.shaft_named(name).unwrap_or(index);
+        let centre = |axis| Input::Centre {
+            sprocket: index,
+            axis,
         };
         let input = match self {
             Self::Force(_) => Input::Force { tensioner: index },
-            Self::Torque(name) => Input::Torque {
-                shaft: system.shaft_named(name).unwrap_or(index),
-            },
-            Self::CentreX(_) => Input::Centre {
-                sprocket: index,
-                axis: 0,
-            },
-            Self::CentreY(_) => Input::Centre {
-                sprocket: index,
-                axis: 1,
-            },
+            Self::Torque(_) => Input::Torque { shaft: shaft() },
+            Self::Speed(_) => Input::Speed { shaft: shaft() },
+            Self::Angle(_) => Input::Angle { shaft: shaft() },
+            Self::CentreX(_) => centre(0),
+            Self::CentreY(_) => centre(1),
+            Self::Parameter(_) => tunable[index].input,
         };
         match system.refuses(input) {
-            Some(reason) => Err(refuse(reason.to_owned())),
+            Some(reason) => Err(self.refused(reason.to_owned())),
             None => Ok(input),
+        }
+    }
+
+    /// What it acts on, and its name.
+    fn target(&self) -> (&'static str, &str) {
+        match self {
+            Self::Force(name) => ("tensioner", name),
+            Self::Torque(name) | Self::Speed(name) | Self::Angle(name) => ("shaft", name),
+            Self::CentreX(name) | Self::CentreY(name) => ("sprocket", name),
+            Self::Parameter(place) => ("parameter", place),
+        }
+    }
+
+    fn refused(&self, reason: String) -> SimulationError {
+        let (what, name) = self.target();
+        SimulationError::Control {
+            what,
+            name: name.to_owned(),
+            reason,
         }
     }
 }

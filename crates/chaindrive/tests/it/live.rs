@@ -5,7 +5,7 @@ use chaindrive::{
     Assembled, Channel, Control, Flow, Observation, Run, Scene, Simulation, Snapshot, Stepping,
 };
 
-fn start(scene: &Scene, stepping: Stepping) -> Simulation {
+pub(crate) fn start(scene: &Scene, stepping: Stepping) -> Simulation {
     moving(&assembled(scene), stepping)
 }
 
@@ -21,7 +21,7 @@ fn moving(assembled: &Assembled, stepping: Stepping) -> Simulation {
     Simulation::from_assembled(assembled.clone(), &run).unwrap()
 }
 
-fn preset(name: &str) -> Scene {
+pub(crate) fn preset(name: &str) -> Scene {
     Scene::preset(name).unwrap()
 }
 
@@ -90,7 +90,7 @@ fn oil_has_a_pressure_of_its_own() {
 }
 
 /// Everything that moves, bit by bit.
-fn bits(at: &Observation) -> Vec<u64> {
+pub(crate) fn bits(at: &Observation) -> Vec<u64> {
     let parts = [
         &at.roller_x,
         &at.roller_vy,
@@ -105,7 +105,7 @@ fn bits(at: &Observation) -> Vec<u64> {
     all.map(|value| value.to_bits()).collect()
 }
 
-const METHODS: [Stepping; 3] = [Stepping::Auto, Stepping::Rk4, Stepping::DormandPrince];
+pub(crate) const METHODS: [Stepping; 3] = [Stepping::Auto, Stepping::Rk4, Stepping::DormandPrince];
 
 #[test]
 fn a_run_in_a_hundred_pieces_is_the_run_in_one() {

@@ -5,6 +5,7 @@ mod architecture;
 mod bearings;
 mod choice;
 mod choice_statistics;
+mod courses;
 mod describe;
 mod duty;
 mod dynamics;

@@ -51,7 +51,7 @@ pub(super) fn speeds(
     let given = |shaft: &Shaft| match &shaft.turn.by {
         TurnedBy::Motion(motion) => Some(shaft.turn.ratio * rate(motion)),
         // That of a coordinate would be read off the state.
-        TurnedBy::Coordinate(_) => None,
+        TurnedBy::Coordinate(_) | TurnedBy::Driven { .. } => None,
     };
     let mut speeds: Vec<Option<f64>> = system.bodies.shafts.iter().map(given).collect();
     spread(system, layouts, &mut speeds);

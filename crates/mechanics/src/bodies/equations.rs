@@ -4,7 +4,7 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Moment, Prediction};
 
 use super::slide::Pose;
-use super::{Bodies, RailSupport, Wheel, WheelSupport};
+use super::{Bodies, RailSupport, TurnedBy, Wheel, WheelSupport};
 use crate::contact::Wrench;
 use crate::energy::Flow;
 use crate::tensioner::Slopes;
@@ -83,7 +83,7 @@ impl Bodies {
             let Some(dof) = slide.dof else { continue };
             let mut pose = slide.pose(at.q, at.v);
             let mut state = slide.state(at.z);
-            let input = self.inputs.force(i);
+            let input = self.inputs.force(i, at.t);
             let given = a[dof] + input + slide.weight(pose, self.gravity);
             let reduced = slide.reduced(pose);
             // I s̈ = Σ Q − ½ I′ ṡ²
@@ -135,8 +135,8 @@ impl Bodies {
         }
         for (i, shaft) in self.shafts.iter().enumerate() {
             let kinematics = shaft.turn.kinematics(at.t, at.q, at.v);
-            let driving = self.torque(&shaft.drive, kinematics, at) + self.inputs.torque(i);
-            let loading = self.torque(&shaft.load, kinematics, at);
+            let driving = self.torque(&shaft.drive, kinematics, at) + self.inputs.torque(i, at.t);
+            let loading = shaft.load_factor * self.torque(&shaft.load, kinematics, at);
             rates[Flow::DriveTorque as usize] += driving * kinematics.rate;
             rates[Flow::Load as usize] += loading * kinematics.rate;
             if let Some((dof, ratio)) = shaft.turn.turned_by() {
@@ -163,8 +163,12 @@ impl Bodies {
                 }
             }
         }
-        for dof in self.shafts.iter().filter_map(super::shafts::Shaft::led) {
-            a[dof] /= self.inertia(dof);
+        for shaft in self.shafts.iter().filter(|it| it.leads) {
+            match &shaft.turn.by {
+                TurnedBy::Coordinate(dof) => a[*dof] /= self.inertia(*dof),
+                TurnedBy::Driven { dof, path } => a[*dof] = path.at(at.t).acceleration,
+                TurnedBy::Motion(_) => {}
+            }
         }
     }
 

@@ -1,15 +1,27 @@
-//! Inputs that act on a drive from outside while it moves: torques, forces and motions that somebody sets.
+//! Inputs that act on a drive from outside while it moves: torques, forces, motions and parameters that somebody sets.
 //!
-//! A value holds from the moment at which it is set until another one is. Every change is an event: a step lands on its
+//! A course holds from the moment at which it is set until another one is. Every change is an event: a step lands on its
 //! time, and the next one begins with the new forces.
 
 use serde::{Deserialize, Serialize};
 
+use crate::course::{Course, Ramp};
+
 /// Inputs that can be set from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Input {
-    /// Torque on a free shaft \[N m\], counter-clockwise positive, beside those of the scene.
+    /// Torque on a shaft \[N m\], counter-clockwise positive, beside those of the scene; it ends a speed or angle that was set.
     Torque {
+        /// Index of the shaft.
+        shaft: usize,
+    },
+    /// Speed of a shaft \[rad/s\], counter-clockwise positive, whatever torque that takes; it ends torques that were set.
+    Speed {
+        /// Index of the shaft.
+        shaft: usize,
+    },
+    /// Angle of a shaft \[rad\], to which it comes within the time of the course and where its speed is the rate.
+    Angle {
         /// Index of the shaft.
         shaft: usize,
     },
@@ -26,31 +38,105 @@ pub enum Input {
         /// Axis.
         axis: usize,
     },
+    /// Factor on the loads of a shaft \[–\], 1 at the start.
+    Load {
+        /// Index of the shaft.
+        shaft: usize,
+    },
+    /// Preload of the spring of a tensioner \[N or N m\].
+    Preload {
+        /// Index of the tensioner.
+        tensioner: usize,
+    },
+    /// Stiffness of the spring of a tensioner \[N/m or N m/rad\].
+    Stiffness {
+        /// Index of the tensioner.
+        tensioner: usize,
+    },
 }
 
-/// The values at present, and the changes to come.
+/// The courses at present, and the changes to come.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Inputs {
-    pub(crate) torques: Vec<f64>,
-    pub(crate) forces: Vec<f64>,
+    torques: Vec<Ramp>,
+    forces: Vec<Ramp>,
+    /// Parameters that are no more those of the scene.
+    pub(crate) tuned: Vec<(Input, f64)>,
     /// Changes to come, the earliest first: of equal times in the order of their planning.
-    pub(crate) planned: Vec<(f64, Input, f64)>,
+    pub(crate) planned: Vec<(f64, Input, Course)>,
+    /// Work of speeds that jumped \[J\], and of parameters that were changed.
+    pub(crate) jumps: [Jumps; 2],
+}
+
+/// Work that was done in no time.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Jumps {
+    /// Before the last moment, and at it \[J\].
+    work: [f64; 2],
+    moment: f64,
+}
+
+impl Jumps {
+    /// Counts work \[J\] at a time \[s\].
+    pub(crate) fn count(&mut self, t: f64, work: f64) {
+        if t > self.moment {
+            self.work = [self.work[0] + self.work[1], 0.0];
+            self.moment = t;
+        }
+        self.work[1] += work;
+    }
+
+    /// The work until a time \[s\] not before the last moment but one.
+    pub(crate) fn until(&self, t: f64) -> f64 {
+        let [before, last] = self.work;
+        if t >= self.moment {
+            before + last
+        } else {
+            before
+        }
+    }
 }
 
 impl Inputs {
     /// Torque on a shaft \[N m\].
-    pub(crate) fn torque(&self, shaft: usize) -> f64 {
-        self.torques.get(shaft).copied().unwrap_or(0.0)
+    pub(crate) fn torque(&self, shaft: usize, t: f64) -> f64 {
+        self.torques.get(shaft).map_or(0.0, |ramp| ramp.at(t))
     }
 
     /// Force on a tensioner \[N or N m\].
-    pub(crate) fn force(&self, tensioner: usize) -> f64 {
-        self.forces.get(tensioner).copied().unwrap_or(0.0)
+    pub(crate) fn force(&self, tensioner: usize, t: f64) -> f64 {
+        self.forces.get(tensioner).map_or(0.0, |ramp| ramp.at(t))
     }
 
-    /// Time of the first change after t \[s\].
+    /// Sets a torque on its course.
+    pub(crate) fn set_torque(&mut self, shaft: usize, t: f64, course: Course) {
+        set(&mut self.torques, shaft, t, course);
+    }
+
+    /// Sets a force on its course.
+    pub(crate) fn set_force(&mut self, tensioner: usize, t: f64, course: Course) {
+        set(&mut self.forces, tensioner, t, course);
+    }
+
+    /// Remembers the value of a parameter.
+    pub(crate) fn tune(&mut self, input: Input, value: f64) {
+        self.tuned.retain(|(known, _)| *known != input);
+        self.tuned.push((input, value));
+    }
+
+    /// Time of the first change after t \[s\], or end of a ramp.
     pub(crate) fn next_change(&self, t: f64) -> Option<f64> {
         let mut times = self.planned.iter().map(|(time, ..)| *time);
-        times.find(|time| *time > t)
+        let planned = times.find(|time| *time > t);
+        let ramps = self.torques.iter().chain(&self.forces);
+        let ends = ramps.filter_map(|ramp| ramp.next_knot(t));
+        ends.chain(planned).reduce(f64::min)
     }
+}
+
+fn set(ramps: &mut Vec<Ramp>, index: usize, t: f64, course: Course) {
+    if ramps.len() <= index {
+        ramps.resize(index + 1, Ramp::default());
+    }
+    ramps[index] = Ramp::new(ramps[index].at(t), t, course);
 }

@@ -2,8 +2,9 @@
 
 use chaindrive_integrate::Moment;
 
-use super::Bodies;
-use crate::motion::Kinematics;
+use super::{Bodies, WheelSupport};
+use crate::course::Path;
+use crate::kinematics::Kinematics;
 use crate::{Coupling, Motion, ShaftLoss, Torque};
 
 /// How an angle follows from time or state.
@@ -18,6 +19,8 @@ pub(crate) struct Turn {
     pub(crate) ratio: f64,
     /// Angle z at x = 0 \[rad\].
     pub(crate) zero: f64,
+    /// Index of the shaft that leads its train.
+    pub(crate) train: usize,
 }
 
 /// Drive of a train of shafts.
@@ -26,24 +29,45 @@ pub(crate) enum TurnedBy {
     Motion(Motion),
     /// An entry of the state.
     Coordinate(usize),
+    /// A course that somebody has set, in the place of an entry of the state.
+    Driven {
+        dof: usize,
+        path: Path,
+    },
 }
 
 impl Turn {
     /// The angle and its rates; the acceleration is known where the motion is.
     #[inline(always)]
     pub(crate) fn kinematics(&self, t: f64, q: &[f64], v: &[f64]) -> Kinematics {
-        let of = match &self.by {
-            TurnedBy::Coordinate(dof) => Kinematics {
-                position: q[*dof],
-                rate: v[*dof],
-                acceleration: 0.0,
-            },
-            TurnedBy::Motion(motion) => motion.at(t),
-        };
+        let of = self.driving(t, q, v);
         Kinematics {
             position: self.zero + self.ratio * of.position,
             rate: self.ratio * of.rate,
             acceleration: self.ratio * of.acceleration,
+        }
+    }
+
+    /// What turns it, x and its rates.
+    #[inline(always)]
+    pub(crate) fn driving(&self, t: f64, q: &[f64], v: &[f64]) -> Kinematics {
+        match &self.by {
+            TurnedBy::Motion(motion) => motion.at(t),
+            TurnedBy::Driven { path, .. } if t >= path.since() => path.at(t),
+            // A course begins at the end of a step: within that the coordinate still turned it.
+            TurnedBy::Coordinate(dof) | TurnedBy::Driven { dof, .. } => Kinematics {
+                position: q[*dof],
+                rate: v[*dof],
+                acceleration: 0.0,
+            },
+        }
+    }
+
+    /// The entry of the state that goes with it, and how far it turns with that, whether that moves by itself or not.
+    pub(crate) fn coordinate(&self) -> Option<(usize, f64)> {
+        match self.by {
+            TurnedBy::Coordinate(dof) | TurnedBy::Driven { dof, .. } => Some((dof, self.ratio)),
+            TurnedBy::Motion(_) => None,
         }
     }
 
@@ -52,13 +76,13 @@ impl Turn {
     pub(crate) fn turned_by(&self) -> Option<(usize, f64)> {
         match self.by {
             TurnedBy::Coordinate(dof) => Some((dof, self.ratio)),
-            TurnedBy::Motion(_) => None,
+            TurnedBy::Motion(_) | TurnedBy::Driven { .. } => None,
         }
     }
 
     /// Moves the coordinate.
     pub(crate) fn move_dof(&mut self, place: impl FnOnce(usize) -> usize) {
-        if let TurnedBy::Coordinate(dof) = &mut self.by {
+        if let TurnedBy::Coordinate(dof) | TurnedBy::Driven { dof, .. } = &mut self.by {
             *dof = place(*dof);
         }
     }
@@ -86,6 +110,8 @@ pub(crate) struct Shaft {
     pub(crate) inertia: f64,
     pub(crate) drive: Vec<Torque>,
     pub(crate) load: Vec<Torque>,
+    /// Factor on its loads \[–\].
+    pub(crate) load_factor: f64,
     /// Losses beside those at its sprockets.
     pub(crate) loss: ShaftLoss,
 }
@@ -98,7 +124,8 @@ impl Shaft {
 
     /// Linear resistance of all torques \[N m s\].
     pub(crate) fn drag(&self) -> f64 {
-        self.torques().map(Torque::drag).sum()
+        let sum = |torques: &[Torque]| torques.iter().map(Torque::drag).sum::<f64>();
+        sum(&self.drive) + self.load_factor * sum(&self.load)
     }
 
     /// The coordinate of a train, for the shaft that leads it.
@@ -111,6 +138,54 @@ impl Shaft {
 }
 
 impl Bodies {
+    /// Lets a course turn a train, or its coordinate again.
+    pub(crate) fn turn_by(&mut self, train: usize, path: Option<Path>) {
+        for turn in self.turns_mut().filter(|turn| turn.train == train) {
+            turn.by = match (&turn.by, path) {
+                (TurnedBy::Motion(_), Some(path)) => TurnedBy::Motion(Motion::Onward(path)),
+                (TurnedBy::Coordinate(dof) | TurnedBy::Driven { dof, .. }, Some(path)) => {
+                    TurnedBy::Driven { dof: *dof, path }
+                }
+                (TurnedBy::Driven { dof, .. }, None) => TurnedBy::Coordinate(*dof),
+                (TurnedBy::Motion(_) | TurnedBy::Coordinate(_), None) => continue,
+            };
+        }
+        self.renew_rates();
+    }
+
+    /// Goes on behind the ramps that end at a time \[s\]; whether there are any.
+    pub(crate) fn arrive(&mut self, t: f64) -> bool {
+        let mut arrives = false;
+        for turn in self.turns_mut() {
+            if let TurnedBy::Driven { path, .. } | TurnedBy::Motion(Motion::Onward(path)) =
+                &mut turn.by
+            {
+                arrives |= path.arrive(t);
+            }
+        }
+        for wheel in &mut self.wheels {
+            if let WheelSupport::Prescribed { x, y } = &mut wheel.support {
+                for motion in [x, y] {
+                    if let Motion::Onward(path) = motion {
+                        arrives |= path.arrive(t);
+                    }
+                }
+            }
+        }
+        arrives
+    }
+
+    /// Inertia of all that turns with a train, reduced to what turns it \[kg m²\].
+    pub(crate) fn train_inertia(&self, train: usize) -> f64 {
+        let wheels = self.wheels.iter().map(|it| (&it.turn, it.inertia));
+        let shafts = self.shafts.iter().map(|it| (&it.turn, it.inertia));
+        let all = wheels.chain(shafts);
+        // Σ i² J
+        all.filter(|(turn, _)| turn.train == train)
+            .map(|(turn, inertia)| turn.ratio * turn.ratio * inertia)
+            .sum()
+    }
+
     /// Inertia that goes with a coordinate \[kg or kg m²\].
     pub(crate) fn inertia(&self, dof: usize) -> f64 {
         self.inertias[dof - self.first]

@@ -236,9 +236,14 @@ fn turn(laid: &Laid, train: InTrain, angle: f64, places: &Places) -> Turn {
     let by = places.shafts[leader].clone();
     let zero = match by {
         TurnedBy::Coordinate(_) => angle - ratio * start,
-        TurnedBy::Motion(_) => angle,
+        TurnedBy::Motion(_) | TurnedBy::Driven { .. } => angle,
     };
-    Turn { by, ratio, zero }
+    Turn {
+        by,
+        ratio,
+        zero,
+        train: leader,
+    }
 }
 
 /// The motion of a shaft whose angle is given in time; others get a coordinate.
@@ -286,6 +291,7 @@ fn shafts(laid: &Laid, trains: &[InTrain], places: &Places) -> Vec<Shaft> {
             inertia: shaft.inertia,
             drive,
             load,
+            load_factor: 1.0,
             loss: shaft.loss,
         }
     });

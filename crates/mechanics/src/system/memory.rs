@@ -6,7 +6,7 @@
 use chaindrive_integrate::SecondOrderSystem;
 use serde::{Deserialize, Serialize};
 
-use super::inputs::OnwardCentre;
+use super::inputs::OnCourse;
 use super::{Member, Record, System};
 use crate::MemoryError;
 use crate::applied;
@@ -21,7 +21,7 @@ use crate::seam::Rates;
 pub struct SystemMemory {
     chains: Vec<MemberMemory>,
     inputs: Inputs,
-    centres: Vec<OnwardCentre>,
+    courses: Vec<OnCourse>,
     events: Option<EventLog>,
     applied: applied::AppliedForces,
     time_scales: [f64; 4],
@@ -49,7 +49,7 @@ impl System {
         SystemMemory {
             chains: self.chains.iter().map(Member::memory).collect(),
             inputs: self.bodies.inputs.clone(),
-            centres: self.centres_set(),
+            courses: self.on_courses(),
             events: self.events.clone(),
             applied: self.applied.clone(),
             time_scales: self.time_scales,
@@ -71,7 +71,7 @@ impl System {
             places,
             self.events.as_ref().map_or(0, EventLog::places),
         )?;
-        self.set_centres(&memory.centres)?;
+        self.set_again(&memory.courses, &memory.inputs.tuned)?;
         self.bodies.inputs = memory.inputs;
         self.events = memory.events;
         self.applied = memory.applied;

@@ -62,6 +62,7 @@ fn assembled(chain: Chain, positions: Vec<Point>, velocities: Vec<Vector>) -> As
         settle: false,
         gravity: Vector::zeros(),
         oil: None,
+        tunable: Vec::new(),
     };
     Drive::new(parts)
         .unwrap_or_else(|problems| panic!("{problems:?}"))

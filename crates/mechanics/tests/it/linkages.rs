@@ -115,6 +115,7 @@ fn bicycle(model: ChainModel) -> Parts {
         settle: true,
         gravity: Vector::new(0.0, -9.81),
         oil: None,
+        tunable: Vec::new(),
     }
 }
 

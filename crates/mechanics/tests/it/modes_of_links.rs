@@ -99,6 +99,7 @@ fn alone(
         settle: true,
         gravity,
         oil: None,
+        tunable: Vec::new(),
     }
 }
 

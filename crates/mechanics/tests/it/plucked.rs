@@ -169,6 +169,7 @@ impl Span {
             settle: false,
             gravity: Vector::zeros(),
             oil: None,
+            tunable: Vec::new(),
         };
         Drive::new(parts)
             .unwrap_or_else(|problems| panic!("{problems:?}"))

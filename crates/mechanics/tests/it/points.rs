@@ -139,6 +139,7 @@ fn assembled(
         settle: false,
         gravity: Vector::zeros(),
         oil: None,
+        tunable: Vec::new(),
     };
     let drive = Drive::new(parts).expect("the parts are valid");
     drive.assemble().expect("nothing has to close")

@@ -137,6 +137,7 @@ pub(crate) fn parts(chains: Vec<PlacedChain>, turning: Vec<Turning>) -> Parts {
         settle: true,
         gravity: Vector::new(0.0, -9.81),
         oil: None,
+        tunable: Vec::new(),
     }
 }
 

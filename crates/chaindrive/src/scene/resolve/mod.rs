@@ -28,6 +28,7 @@ mod start;
 mod strands;
 mod tensioner;
 mod tooth;
+mod tunable;
 mod written;
 
 use std::collections::{HashMap, HashSet};
@@ -177,7 +178,7 @@ fn parts(
             guides: described.guides,
         });
     }
-    let parts = Parts {
+    let mut parts = Parts {
         chains,
         sprockets,
         guides,
@@ -188,7 +189,9 @@ fn parts(
         settle: scene.settle,
         gravity,
         oil: findings.oil.take(),
+        tunable: Vec::new(),
     };
+    parts.tunable = tunable::resolve(scene, &parts, findings);
     Some((parts, uncounted))
 }
 

@@ -111,6 +111,11 @@ pub(crate) struct SceneText {
     /// The housing; absent: centres stay where they are.
     #[serde(default)]
     pub(crate) housing: Option<Housing>,
+    /// Places of parameters that may be changed while the drive moves: `sprockets.NAME.load`, a factor on the loads of its shaft, also
+    /// `shafts.NAME.load`; `tensioners.NAME.push.preload` and `tensioners.NAME.push.stiffness` of springs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(extend("maxItems" = 100))]
+    pub(crate) tunable: Vec<String>,
     /// How a closed chain lies around its sprockets; absent: around all sprockets, in file order.
     #[serde(default)]
     pub(crate) route: Option<Route>,

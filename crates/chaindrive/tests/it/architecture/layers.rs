@@ -15,8 +15,8 @@ const CRATES: [Storeys; 4] = [
     Storeys {
         folder: "mechanics",
         layers: &[
-            &["applied", "dense", "energy", "error", "lanes"],
-            &["order", "shaft_loss"],
+            &["applied", "dense", "energy", "error", "kinematics", "lanes"],
+            &["course", "order", "shaft_loss"],
             &[
                 "articulation",
                 "coupling",

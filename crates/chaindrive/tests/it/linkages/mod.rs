@@ -91,6 +91,7 @@ impl Strand {
             settle: self.settle,
             gravity: self.gravity.into(),
             oil: None,
+            tunable: Vec::new(),
         };
         Drive::new(parts).unwrap_or_else(|problems| panic!("{problems:?}"))
     }

@@ -7,7 +7,7 @@ use super::{Particles, Turning};
 use crate::chains::held_end::HeldEnd;
 use crate::energy::Flow;
 use crate::joints::Resistance;
-use crate::motion::Kinematics;
+use crate::kinematics::Kinematics;
 use crate::{End, Motion};
 
 impl Particles {

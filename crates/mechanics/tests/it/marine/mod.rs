@@ -107,5 +107,6 @@ pub(crate) fn parts(law: Law) -> Parts {
         settle: true,
         gravity: Vector::new(0.0, -9.81),
         oil: None,
+        tunable: Vec::new(),
     }
 }
