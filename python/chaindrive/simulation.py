@@ -23,6 +23,7 @@ from chaindrive.errors import (
     VerdictWarning,
 )
 from chaindrive.extras import extra
+from chaindrive.labelled import indexed, labelled
 from chaindrive.page import show_verdicts
 from chaindrive.progress import told
 from chaindrive.settings import (
@@ -324,18 +325,21 @@ def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:
         if name in result["waveform_horizons"]:
             at, found_on = result["waveform_horizons"][name]
             about |= {"waveform_horizon": at, "waveform_horizon_of": found_on}
-        variables[name] = (known[name].dims, values, about)
+        variables[name] = labelled(known[name].dims, values, about)
     for name, values, unit, text in result.get("events", []):
         about = {"long_name": text} if unit is None else {"units": unit, "long_name": text}
         values = np.asarray(values, dtype=np.str_) if isinstance(values, list) else values
-        variables[name] = (("event",), values, about)
-    coordinates: dict[str, Any] = {
+        variables[name] = labelled(("event",), values, about)
+    dimensions: dict[str, Any] = {
         dim: np.arange(labels) if isinstance(labels, int) else np.asarray(labels, dtype=np.str_)
         for dim, labels in result["labels"].items()
     }
-    for name, (dim, chains) in result["chains"].items():
-        coordinates[name] = (dim, np.asarray(chains, dtype=np.str_))
-    coordinates["time"] = ("time", result["time"], {"units": "s", "long_name": "time"})
+    along = {
+        name: labelled((dim,), np.asarray(chains, dtype=np.str_))
+        for name, (dim, chains) in result["chains"].items()
+    }
+    coordinates = indexed(dimensions | {"time": result["time"]}, along)
+    coordinates["time"].attrs.update({"units": "s", "long_name": "time"})
     show_verdicts()
     return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 
