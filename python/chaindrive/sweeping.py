@@ -296,7 +296,7 @@ def _dataset(result: Mapping[str, Any]) -> xr.Dataset:
     coordinates: dict[str, Any] = {}
     swept = result["dims"]
     for name, path, unit, values in result["swept"]:
-        about = {"long_name": path, "path": path} | ({} if unit is None else {"units": unit})
+        about = {"long_name": path, "path": path} | dict([] if unit is None else [unit])
         coordinates[name] = (swept if result["table"] else name, _labels(values), about)
     if result["table"]:
         rows = len(coordinates[result["swept"][0][0]][1])
@@ -307,7 +307,7 @@ def _dataset(result: Mapping[str, Any]) -> xr.Dataset:
         coordinates[name] = (name, _labels(values))
     variables: dict[str, Any] = {}
     for name, dims, values, unit, text in result["quantities"]:
-        variables[name] = (dims, values, {"units": unit, "long_name": text})
+        variables[name] = (dims, values, dict([unit, ("long_name", text)]))
     shape = [len(coordinates[name][1]) for name in swept]
     for name, texts, text in result["texts"]:
         entries = np.asarray(texts, dtype=np.str_).reshape(shape)
