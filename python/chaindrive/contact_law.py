@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from chaindrive import _core
 from chaindrive.arrays import Values, flatten, shaped
 from chaindrive.errors import ParameterError
+from chaindrive.quantity import with_unit
 from chaindrive.settings import DissipationKind, LawKind
 
 __all__ = ["Law", "Response", "json_of", "law"]
@@ -288,9 +289,14 @@ def named(kind: Any) -> Any:
 def json_of(described: Mapping[str, Any], what: str) -> str:
     """Return a description as JSON; anything but finite numbers is a `ParameterError`."""
     try:
-        return json.dumps(described, default=float, allow_nan=False)
+        return json.dumps(described, default=_plain, allow_nan=False)
     except (TypeError, ValueError) as error:
         raise ParameterError(f"{what}: {error}", what, "finite numbers") from error
+
+
+def _plain(value: Any) -> Any:
+    measured = with_unit(value)
+    return float(value) if measured is value else measured
 
 
 def _dissipation(

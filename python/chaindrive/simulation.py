@@ -69,8 +69,8 @@ def simulate(
     drive
         The drive to simulate.
     until
-        End of the run [s], or a text with a unit, as all quantities here may be. This and the next
-        nine come from the scene when absent.
+        End of the run [s], or a text with a unit or a `pint.Quantity`, as all quantities here may
+        be. This and the next nine come from the scene when absent.
     run_in
         Time simulated before t = 0, so that the record begins where the motion is steady: seconds
         [s], turns of a sprocket (``"5 turns"`` of the first one, ``"5 turns of camshaft"``), or

@@ -19,6 +19,7 @@ from chaindrive.drive import Drive, _json, _needed
 from chaindrive.errors import DistrustedResultWarning, ParameterError, SimulationError
 from chaindrive.objects import place_of
 from chaindrive.progress import told
+from chaindrive.quantity import with_unit
 from chaindrive.results import _open
 from chaindrive.settings import ContactPlace, MethodName, Quantity, Recorded, Target
 from chaindrive.signals import heard
@@ -277,6 +278,7 @@ def _column(values: Any) -> Any:
 
 def _values(values: Any, path: str) -> tuple[str, ...]:
     """Return every value at a path as JSON."""
+    values = with_unit(values)
     if isinstance(values, np.ndarray | np.generic | xr.DataArray):
         values = np.asarray(values).tolist()
     single = isinstance(values, str | bytes | Mapping) or not isinstance(values, Iterable)

@@ -1,4 +1,4 @@
-"""Units of results, as other programs read them: pint, and UDUNITS for the CF conventions."""
+"""Units of results as pint and UDUNITS read them, and quantities of pint as arguments."""
 
 import re
 import warnings
@@ -96,3 +96,64 @@ def test_units_of_sweeps_are_units(tmp_path) -> None:
     pytest.importorskip("zarr")
     stored = cd.sweep(cd.scenes.marine_engine(), paths, until=1e-3, output=f"{tmp_path}/sweep.zarr")
     assert told(stored) == told(made)
+
+
+def test_quantities_of_pint_are_settings_of_a_run() -> None:
+    ring = cd.scenes.spinning_ring()
+    every, step = 100 * UREG.us, 0.01 * UREG.ms
+    run = cd.simulate(ring, until=1.5 * UREG.ms, every=every, step=step, method="rk4")
+    same = cd.simulate(ring, until=1.5e-3, every=1e-4, step=1e-5, method="rk4")
+    for name in ("until", "every", "step"):
+        assert run.attrs[name] == pytest.approx(same.attrs[name], rel=1e-12)
+    assert cd.simulate(ring, until=1e-3, accuracy=2 * UREG.percent).attrs["accuracy"] == 0.02
+    simulation = cd.Simulation(ring, step=step, method="rk4")
+    simulation.advance_to(1e-3)
+    assert "100 steps" in repr(simulation)
+    depth = cd.work_precision(
+        ring, methods="verlet", steps=[20 * UREG.us], until=5 * UREG.ms, repeats=1
+    )
+    assert float(depth["step"][0]) == pytest.approx(2e-5)
+
+
+def test_quantities_of_pint_are_values_of_a_scene() -> None:
+    drive = cd.scenes.industrial_16b()
+    torque = UREG.Quantity(-300, "lbf ft")
+    changed = drive.replace(
+        {
+            "sprockets.driver.motion.speed": 200 * UREG.rpm,
+            "chain.stiffness": UREG.Quantity(150, "kN/mm"),
+            "sprockets.driven.load": [{"kind": "constant", "torque": torque}],
+            "sprockets.driven.inertia": UREG.Quantity(500, "kg cm^2"),
+        }
+    )
+    same = drive.replace(
+        {
+            "sprockets.driver.motion.speed": "200 rpm",
+            "chain.stiffness": "150 kN/mm",
+            "sprockets.driven.load": [{"kind": "constant", "torque": "-300 lbf ft"}],
+            "sprockets.driven.inertia": "0.05 kg m^2",
+        }
+    )
+    for path, one, other in cd.diff(changed, same):
+        figure, _, unit = one.partition(" ")
+        expected, _, same_unit = other.partition(" ")
+        assert (float(figure), unit) == (pytest.approx(float(expected), rel=1e-12), same_unit), path
+    sticky = cd.friction("coulomb", coefficient=0.1, slip_speed=2 * UREG.mm / UREG.s)
+    assert sticky.parameters["slip_speed"] == 2e-3
+    speeds = UREG.Quantity([100, 200], "rpm")
+    swept = cd.sweep(drive, {"sprockets.driver.motion.speed": speeds}, until=1e-3)
+    assert swept["speed"].to_numpy() == pytest.approx([10.472, 20.944], rel=1e-4)
+
+
+def test_a_quantity_of_another_dimension_is_refused_in_our_words() -> None:
+    ring = cd.scenes.spinning_ring()
+    with pytest.raises(cd.SceneError, match=r"2\.0 kg.*a time") as caught:
+        cd.simulate(ring, until=2 * UREG.kg)
+    assert caught.value.path == "run.until"
+    with pytest.raises(cd.SceneError, match="a mass") as caught:
+        ring.replace({"chain.mass": 3 * UREG.inch})
+    assert caught.value.path == "chain.mass"
+    with pytest.raises(cd.SceneError, match="a time"):
+        cd.simulate(ring, until=3 * UREG.ampere)
+    with pytest.raises(cd.ParameterError, match="a speed"):
+        cd.friction("coulomb", coefficient=0.1, slip_speed=2 * UREG.kg)
