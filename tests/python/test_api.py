@@ -1,6 +1,7 @@
 """The public surface: drives from everywhere, changed, described, sent around, drawn."""
 
 import copy
+import inspect
 import json
 import pickle
 import signal
@@ -8,6 +9,7 @@ import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -39,6 +41,29 @@ TWO_SPROCKETS = {
         },
     ],
 }
+
+
+def test_methods_of_a_run_show_their_parameters():
+    run = cd.simulate(cd.scenes.spinning_ring(), until=1e-3, error=False)
+    names = {name for name in dir(run.drive) if not name.startswith("_")}
+    functions = {name: getattr(cd.analysis, name, None) for name in names}
+    functions |= {"report": cd.report, "replay": cd.replay, "frame": cd.plot.frame}
+    assert functions.pop("summary") is None
+    for name, function in functions.items():
+        method = getattr(run.drive, name)
+        _, *others = inspect.signature(function).parameters.values()
+        assert [*inspect.signature(method).parameters.values()] == others
+        # Labels by dimension are the only ones without a name of their own.
+        assert {it.name for it in others if it.kind == it.VAR_KEYWORD} <= {"at"}
+        assert all(it.kind != it.VAR_POSITIONAL for it in others)
+        told = method.__doc__.partition("Parameters\n")[2]
+        assert method.__doc__.splitlines()[0] == function.__doc__.splitlines()[0]
+        assert "    run\n" not in told
+        assert "    run, " not in told
+        assert all(it.name in told for it in others)
+    assert "DriveAccessor\n   :members:\n" in (
+        Path(__file__).parents[2] / "docs" / "api" / "analysis.md"
+    ).read_text(encoding="utf-8")
 
 
 def test_all_names_are_there():
