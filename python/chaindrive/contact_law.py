@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from difflib import get_close_matches
 from typing import Any, NamedTuple, cast
 
@@ -72,6 +72,7 @@ class Law:
     """A normal force law, as sprockets and guides use it; made by `law` or `Drive.law`.
 
     Everything broadcasts like NumPy functions and is zero across a gap; numbers give a number.
+    Laws can be pickled.
     """
 
     __slots__ = ("_inner",)
@@ -159,6 +160,9 @@ class Law:
     def parameters(self) -> dict[str, Any]:
         """Elastic law, dissipation and onset floor, with their parameters in SI units."""
         return cast("dict[str, Any]", json.loads(self._inner.to_json()))
+
+    def __reduce__(self) -> tuple[Callable[[str], Law], tuple[str]]:
+        return _from_json, (self._inner.to_json(),)
 
     def __repr__(self) -> str:
         return f"<chaindrive.Law {self.parameters}>"
@@ -253,6 +257,10 @@ def law(
         },
         "law",
     )
+    return _from_json(text)
+
+
+def _from_json(text: str) -> Law:
     return Law._of(_core.Law.from_json(text))
 
 

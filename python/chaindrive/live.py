@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,7 @@ class Simulation:
 
     The method takes its own steps and what is read is interpolated between them: a run in a hundred
     pieces is the run in one, bit for bit. What is set is an event, on whose time a step lands.
+    Copies and pickles go on to the last bit too. They begin anew, which takes its time.
 
     Parameters
     ----------
@@ -80,6 +82,7 @@ class Simulation:
         settings = [(name, value) for name, value in given.items() if value is not None]
         self._inner = _core.Simulation(drive._inner, settings)
         self._name = drive.name
+        self._begun = drive, given
         self._labels: dict[str, Any] = {}
 
     @property
@@ -210,7 +213,17 @@ class Simulation:
         """
         self._inner.restore(snapshot)
 
+    def __reduce__(self) -> tuple[Callable[..., Simulation], tuple[Any, ...]]:
+        return _restored, (*self._begun, self.snapshot())
+
     def __repr__(self) -> str:
         method, steps = self._inner.account()
         at = f"t = {self.time:.6g} s, {steps} steps by {method}"
         return f"<chaindrive.Simulation {self._name!r}: {at}>"
+
+
+def _restored(drive: Drive, settings: dict[str, Any], snapshot: Snapshot) -> Simulation:
+    """Return a simulation that begins anew, with its run-in, and goes on to a snapshot."""
+    simulation = Simulation(drive, **settings)
+    simulation.restore(snapshot)
+    return simulation
