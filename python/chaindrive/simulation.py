@@ -21,6 +21,7 @@ from chaindrive.errors import (
     DistrustedResultWarning,
     ParameterError,
     VerdictWarning,
+    warn,
 )
 from chaindrive.extras import extra
 from chaindrive.labelled import indexed, labelled
@@ -300,13 +301,13 @@ def _concluded(result: Any, output: str | PathLike[str] | None) -> xr.Dataset:
         reached = f"the run got to {dataset.attrs['time_reached']:.6g} s"
         stop.add_note(f"{reached}: `except KeyboardInterrupt as stop` finds it in `stop.result`")
     for clash in result["clashes"]:
-        warnings.warn(clash, ClashWarning, stacklevel=3)
+        warn(clash, ClashWarning)
     if stop is not None:
         raise stop
     if result["warning"] is not None:
-        warnings.warn(result["warning"], DistrustedResultWarning, stacklevel=3)
+        warn(result["warning"], DistrustedResultWarning)
     if result["caution"] is not None and _cautions_are_asked_for():
-        warnings.warn(result["caution"], CautiousResultWarning, stacklevel=3)
+        warn(result["caution"], CautiousResultWarning)
     return dataset
 
 

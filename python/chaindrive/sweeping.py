@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import time
-import warnings
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Executor
 from contextlib import nullcontext
@@ -16,7 +15,7 @@ import xarray as xr
 
 from chaindrive import _core
 from chaindrive.drive import Drive, _json, _needed
-from chaindrive.errors import DistrustedResultWarning, ParameterError, SimulationError
+from chaindrive.errors import DistrustedResultWarning, ParameterError, SimulationError, warn
 from chaindrive.objects import place_of
 from chaindrive.progress import told
 from chaindrive.quantity import with_unit
@@ -230,7 +229,7 @@ def sweep(
     dataset.attrs["wall_time"] = time.perf_counter() - begin
     dataset.attrs["summary"] = result["summary"]
     if result["warning"]:
-        warnings.warn(result["warning"], DistrustedResultWarning, stacklevel=2)
+        warn(result["warning"], DistrustedResultWarning)
     if stop is not None:
         # The very exception, for a class of its own would change the exit code of a script.
         vars(stop)["result"] = dataset

@@ -358,7 +358,7 @@ def test_python_and_the_command_do_the_same_with_joints(tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
-@pytest.mark.parametrize("preset", [name for name, _ in cd._core.presets()])
+@pytest.mark.parametrize("preset", list(cd.scenes.presets()))
 def test_python_and_the_command_do_the_same_with_every_preset(tmp_path, preset, case):
     same_run(tmp_path, preset, CASES[case])
 
