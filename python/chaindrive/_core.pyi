@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chaindrive.objects import Place
+from chaindrive.settings import Quantity
 
 __all__ = [
     "Drive",
@@ -160,6 +161,9 @@ class Profile:
     @staticmethod
     def with_bulges(corners: _Floats, bulges: _Floats) -> Profile: ...
     def bulges(self) -> tuple[_Floats, _Floats]: ...
+    @staticmethod
+    def of_pieces(pieces: Sequence[Sequence[float]], closed: bool) -> Profile: ...
+    def pieces(self) -> list[list[float]]: ...
     def area(self) -> tuple[float, list[float]]: ...
 
 def biarc(
@@ -178,7 +182,7 @@ class Sweep:
         vary: Sequence[tuple[str, Sequence[str]]],
         record: Sequence[str],
         table: bool,
-        given: Sequence[tuple[str, str | float | Sequence[str]]],
+        given: Sequence[tuple[str, Quantity | Sequence[str]]],
     ) -> Sweep: ...
     def __len__(self) -> int: ...
 
@@ -220,7 +224,7 @@ class Snapshot:
 @final
 class Simulation:
     def __new__(
-        cls, drive: Drive, settings: Sequence[tuple[str, str | float | Sequence[str]]]
+        cls, drive: Drive, settings: Sequence[tuple[str, Quantity | Sequence[str]]]
     ) -> Simulation: ...
     def advance_to(self, time: float) -> None: ...
     def advance(self, steps: int) -> None: ...
@@ -246,18 +250,18 @@ class View:
 def step_many(simulations: Sequence[Simulation], time: float) -> None: ...
 def simulate(
     drive: Drive,
-    settings: Sequence[tuple[str, str | float | Sequence[str]]],
+    settings: Sequence[tuple[str, Quantity | Sequence[str]]],
     *,
     output: str | PathLike[str] | None,
     overwrite: bool,
-    checkpoint_every: str | float | Sequence[str] | None,
+    checkpoint_every: Quantity | Sequence[str] | None,
     error: bool,
     progress: Callable[[float], object] | None,
 ) -> Mapping[str, Any]: ...
 def resume(
     path: str | PathLike[str],
     *,
-    until: str | float | Sequence[str] | None,
+    until: Quantity | Sequence[str] | None,
     progress: Callable[[float], object] | None,
 ) -> Mapping[str, Any]: ...
 def work_precision(

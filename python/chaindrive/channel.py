@@ -14,7 +14,7 @@ class Channel(NamedTuple):
     """A quantity that can be recorded."""
 
     unit: str
-    """SI unit."""
+    """SI unit; ``"m or rad"`` where it hangs on the drive, whose recording tells it."""
     dims: tuple[str, ...]
     """Dimensions in a dataset, ``time`` first."""
     description: str

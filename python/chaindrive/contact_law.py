@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from difflib import get_close_matches
 from typing import Any, NamedTuple, cast
 
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from chaindrive import _core
 from chaindrive.arrays import Values, flatten, shaped
 from chaindrive.errors import ParameterError
+from chaindrive.quantity import with_unit
 from chaindrive.settings import DissipationKind, LawKind
 
 __all__ = ["Law", "Response", "json_of", "law"]
@@ -71,6 +72,7 @@ class Law:
     """A normal force law, as sprockets and guides use it; made by `law` or `Drive.law`.
 
     Everything broadcasts like NumPy functions and is zero across a gap; numbers give a number.
+    Laws can be pickled.
     """
 
     __slots__ = ("_inner",)
@@ -158,6 +160,9 @@ class Law:
     def parameters(self) -> dict[str, Any]:
         """Elastic law, dissipation and onset floor, with their parameters in SI units."""
         return cast("dict[str, Any]", json.loads(self._inner.to_json()))
+
+    def __reduce__(self) -> tuple[Callable[[str], Law], tuple[str]]:
+        return _from_json, (self._inner.to_json(),)
 
     def __repr__(self) -> str:
         return f"<chaindrive.Law {self.parameters}>"
@@ -252,6 +257,10 @@ def law(
         },
         "law",
     )
+    return _from_json(text)
+
+
+def _from_json(text: str) -> Law:
     return Law._of(_core.Law.from_json(text))
 
 
@@ -288,9 +297,14 @@ def named(kind: Any) -> Any:
 def json_of(described: Mapping[str, Any], what: str) -> str:
     """Return a description as JSON; anything but finite numbers is a `ParameterError`."""
     try:
-        return json.dumps(described, default=float, allow_nan=False)
+        return json.dumps(described, default=_plain, allow_nan=False)
     except (TypeError, ValueError) as error:
         raise ParameterError(f"{what}: {error}", what, "finite numbers") from error
+
+
+def _plain(value: Any) -> Any:
+    measured = with_unit(value)
+    return float(value) if measured is value else measured
 
 
 def _dissipation(

@@ -15,12 +15,15 @@ from chaindrive import _core, data_sheet
 from chaindrive.contact_law import Law
 from chaindrive.errors import ParameterError, SceneError
 from chaindrive.profile import Profile
+from chaindrive.quantity import with_unit
 
 if TYPE_CHECKING:
     from typing import Self
 
     import xarray as xr
     from numpy.typing import NDArray
+
+    from chaindrive.settings import Quantity
 
 __all__ = ["Description", "Difference", "Drive", "diff", "load", "schema"]
 
@@ -78,9 +81,9 @@ class Drive:
         Parameters
         ----------
         scene
-            Numbers are in SI units, texts may carry a unit (``"88.9 mm"``). NumPy arrays and
-            scalars stand for lists and numbers, so that a measured motion or profile can be put
-            in as it is.
+            Numbers are in SI units, texts may carry a unit (``"88.9 mm"``), and quantities of
+            pint carry theirs. NumPy arrays and scalars stand for lists and numbers, so that a
+            measured motion or profile can be put in as it is.
         name
             Name of the scene in messages.
 
@@ -539,11 +542,12 @@ def _needed(drive: object) -> None:
         raise TypeError(f"the drive is {type(drive).__name__} {drive!r}, needed is {needed}")
 
 
-def _number(drive: Drive, name: str, value: float | str | None) -> float | None:
+def _number(drive: Drive, name: str, value: Quantity | None) -> float | None:
     """Return a setting of a run in SI units; a text is read as the scene reads it."""
+    value = with_unit(value)
     if isinstance(value, str):
         return cast("float", drive.replace({f"run.{name}": value}).run_defaults[name])
-    return value
+    return cast("float | None", value)
 
 
 def _from_text(text: str, name: str) -> Drive:
@@ -563,6 +567,9 @@ def _plain(value: object) -> object:
         return value.tolist()
     if isinstance(value, PathLike):
         return fspath(value)
+    measured = with_unit(value)
+    if measured is not value:
+        return measured
     import xarray as xr
 
     if isinstance(value, xr.DataArray):

@@ -2,10 +2,18 @@
 
 Every exception carries `path`, the place it speaks of, and `hint`, what to try, where they are
 known; otherwise they are None.
+
+A warning points at the line of the program that called this package, and filters know it by its
+class: ``warnings.filterwarnings("error", category=chaindrive.VerdictWarning)``. Python reads its
+option ``-W`` before it can import packages: there, all of them are ``UserWarning``. Nothing else is
+said: functions print nothing and have no loggers. ``logging.captureWarnings(True)`` puts warnings
+into the log of a program.
 """
 
 from __future__ import annotations
 
+import sys
+import warnings
 from collections.abc import Iterable
 from typing import NamedTuple
 
@@ -122,6 +130,14 @@ class ResumeError(ChaindriveError, ValueError):
 
     def __init__(self, message: str, path: object = None, hint: str | None = None) -> None:
         super().__init__(message, None if path is None else str(path), hint)
+
+
+def warn(message: str, category: type[Warning]) -> None:
+    """Warn at the line outside of this package from which it was called, however deep it is."""
+    frame, level = sys._getframe(), 1
+    while frame.f_globals.get("__name__", "").partition(".")[0] == "chaindrive" and frame.f_back:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, category, stacklevel=level)
 
 
 class ResultWarning(UserWarning):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from typing import Any, NamedTuple, cast
 
 from numpy.typing import ArrayLike
@@ -27,7 +28,10 @@ class Rub(NamedTuple):
 
 
 class Friction:
-    """A friction law; made by `friction`. Everything broadcasts like NumPy functions."""
+    """A friction law; made by `friction`.
+
+    Everything broadcasts like NumPy functions. Friction laws can be pickled.
+    """
 
     __slots__ = ("_inner",)
     _inner: _core.Friction
@@ -81,6 +85,9 @@ class Friction:
         """Name and parameters in SI units."""
         return cast("dict[str, Any]", json.loads(self._inner.to_json()))
 
+    def __reduce__(self) -> tuple[Callable[[str], Friction], tuple[str]]:
+        return _from_json, (self._inner.to_json(),)
+
     def __repr__(self) -> str:
         return f"<chaindrive.Friction {self.parameters}>"
 
@@ -123,5 +130,8 @@ def friction(kind: FrictionKind, **parameters: Quantity) -> Friction:
     >>> dry.force(1000.0, [-1e-3, 0.0, 1.0]).round(1)
     array([ 149.9,   -0. , -100. ])
     """
-    text = json_of({"kind": named(kind), **parameters}, "friction")
+    return _from_json(json_of({"kind": named(kind), **parameters}, "friction"))
+
+
+def _from_json(text: str) -> Friction:
     return Friction._of(_core.Friction.from_json(text))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -29,6 +29,7 @@ class Simulation:
 
     The method takes its own steps and what is read is interpolated between them: a run in a hundred
     pieces is the run in one, bit for bit. What is set is an event, on whose time a step lands.
+    Copies and pickles go on to the last bit too. They begin anew, which takes its time.
 
     Parameters
     ----------
@@ -90,6 +91,7 @@ class Simulation:
         settings = [(name, value) for name, value in given.items() if value is not None]
         self._inner = _core.Simulation(drive._inner, settings)
         self._name = drive.name
+        self._begun = drive, given
         self._labels: dict[str, Any] = {}
 
     @property
@@ -367,10 +369,20 @@ class Simulation:
         """
         self._inner.restore(snapshot)
 
+    def __reduce__(self) -> tuple[Callable[..., Simulation], tuple[Any, ...]]:
+        return _restored, (*self._begun, self.snapshot())
+
     def __repr__(self) -> str:
         method, steps = self._inner.account()
         at = f"t = {self.time:.6g} s, {steps} steps by {method}"
         return f"<chaindrive.Simulation {self._name!r}: {at}>"
+
+
+def _restored(drive: Drive, settings: dict[str, Any], snapshot: Snapshot) -> Simulation:
+    """Return a simulation that begins anew, with its run-in, and goes on to a snapshot."""
+    simulation = Simulation(drive, **settings)
+    simulation.restore(snapshot)
+    return simulation
 
 
 class View(Mapping[str, NDArray[np.float64]]):

@@ -104,7 +104,7 @@ def work_precision(
         raise ParameterError(message, "tolerances", "leave them out, or name it")
     depth = _number(drive, "onset_depth", onset_depth)
     variants: list[tuple[str, float | None, float | None, float | None]] = []
-    none: list[float | str | None] = [None]
+    none: list[Quantity | None] = [None]
     for name in names:
         if name in with_tolerance:
             for value in [*tolerances] or none:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, cast
+from collections.abc import Callable
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -35,7 +36,7 @@ class Profile:
     Distances are positive in the void and negative in the material. Behind an open face, whose
     material has no stated thickness, they are negative as far as the normals of the face reach;
     beyond its ends they are those from the end, positive on either side. Coordinates that are not
-    finite give NaN.
+    finite give NaN. Profiles can be pickled.
 
     Examples
     --------
@@ -152,9 +153,16 @@ class Profile:
         """
         return self._inner.outline(tolerance)
 
+    def __reduce__(self) -> tuple[Callable[..., Profile], tuple[Any, ...]]:
+        return _of_pieces, (self._inner.pieces(), self.closed, self.name)
+
     def __repr__(self) -> str:
         kind = "closed" if self.closed else "open"
         return f"<chaindrive.Profile of {self.name!r}: {kind}, {self.length:.4g} m>"
+
+
+def _of_pieces(pieces: list[list[float]], closed: bool, name: str) -> Profile:
+    return Profile._of(_core.Profile.of_pieces(pieces, closed), name)
 
 
 def _pairs(points: ArrayLike) -> tuple[tuple[int, ...], NDArray[np.float64]]:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import warnings
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
 from chaindrive import _core
-from chaindrive.errors import ResultWarning
+from chaindrive.errors import ResultWarning, warn
 from chaindrive.extras import extra
 from chaindrive.objects import Objects, Place, place_of
 from chaindrive.page import show_verdicts
@@ -79,7 +78,7 @@ def open_result(path: str | PathLike[str] | ObjectStore) -> xr.Dataset:
         held = stored.attrs.get("samples", stored.attrs.get("finished"))
         kind = "samples" if "samples" in stored.attrs else "variants"
         ending = f"{status}: {reason}" if reason else status
-        warnings.warn(f"{name}: {ending}; it holds {held} {kind}", ResultWarning, stacklevel=2)
+        warn(f"{name}: {ending}; it holds {held} {kind}", ResultWarning)
     return stored
 
 

@@ -13,6 +13,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Literal, TypeAlias, TypedDict
 
+from chaindrive.quantity import Measured
+
 __all__ = [
     "ChainModel",
     "ChannelName",
@@ -27,8 +29,8 @@ __all__ = [
     "Target",
 ]
 
-Quantity: TypeAlias = float | str
-"""A number in SI units, or a text with a unit such as ``"20 ms"``."""
+Quantity: TypeAlias = float | str | Measured
+"""A number in SI units, a text with a unit such as ``"20 ms"``, or a `pint.Quantity`."""
 
 MethodName: TypeAlias = Literal[
     "auto",

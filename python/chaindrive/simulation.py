@@ -21,8 +21,10 @@ from chaindrive.errors import (
     DistrustedResultWarning,
     ParameterError,
     VerdictWarning,
+    warn,
 )
 from chaindrive.extras import extra
+from chaindrive.labelled import indexed, labelled
 from chaindrive.page import show_verdicts
 from chaindrive.progress import told
 from chaindrive.settings import (
@@ -68,8 +70,8 @@ def simulate(
     drive
         The drive to simulate.
     until
-        End of the run [s], or a text with a unit, as all quantities here may be. This and the next
-        nine come from the scene when absent.
+        End of the run [s], or a text with a unit or a `pint.Quantity`, as all quantities here may
+        be. This and the next nine come from the scene when absent.
     run_in
         Time simulated before t = 0, so that the record begins where the motion is steady: seconds
         [s], turns of a sprocket (``"5 turns"`` of the first one, ``"5 turns of camshaft"``), or
@@ -299,13 +301,13 @@ def _concluded(result: Any, output: str | PathLike[str] | None) -> xr.Dataset:
         reached = f"the run got to {dataset.attrs['time_reached']:.6g} s"
         stop.add_note(f"{reached}: `except KeyboardInterrupt as stop` finds it in `stop.result`")
     for clash in result["clashes"]:
-        warnings.warn(clash, ClashWarning, stacklevel=3)
+        warn(clash, ClashWarning)
     if stop is not None:
         raise stop
     if result["warning"] is not None:
-        warnings.warn(result["warning"], DistrustedResultWarning, stacklevel=3)
+        warn(result["warning"], DistrustedResultWarning)
     if result["caution"] is not None and _cautions_are_asked_for():
-        warnings.warn(result["caution"], CautiousResultWarning, stacklevel=3)
+        warn(result["caution"], CautiousResultWarning)
     return dataset
 
 
@@ -324,18 +326,21 @@ def _dataset(result: Any, attributes: dict[str, Any]) -> xr.Dataset:
         if name in result["waveform_horizons"]:
             at, found_on = result["waveform_horizons"][name]
             about |= {"waveform_horizon": at, "waveform_horizon_of": found_on}
-        variables[name] = (known[name].dims, values, about)
+        variables[name] = labelled(known[name].dims, values, about)
     for name, values, unit, text in result.get("events", []):
         about = {"long_name": text} if unit is None else {"units": unit, "long_name": text}
         values = np.asarray(values, dtype=np.str_) if isinstance(values, list) else values
-        variables[name] = (("event",), values, about)
-    coordinates: dict[str, Any] = {
+        variables[name] = labelled(("event",), values, about)
+    dimensions: dict[str, Any] = {
         dim: np.arange(labels) if isinstance(labels, int) else np.asarray(labels, dtype=np.str_)
         for dim, labels in result["labels"].items()
     }
-    for name, (dim, chains) in result["chains"].items():
-        coordinates[name] = (dim, np.asarray(chains, dtype=np.str_))
-    coordinates["time"] = ("time", result["time"], {"units": "s", "long_name": "time"})
+    along = {
+        name: labelled((dim,), np.asarray(chains, dtype=np.str_))
+        for name, (dim, chains) in result["chains"].items()
+    }
+    coordinates = indexed(dimensions | {"time": result["time"]}, along)
+    coordinates["time"].attrs.update({"units": "s", "long_name": "time"})
     show_verdicts()
     return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import time
-import warnings
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Executor
 from contextlib import nullcontext
@@ -16,9 +15,10 @@ import xarray as xr
 
 from chaindrive import _core
 from chaindrive.drive import Drive, _json, _needed
-from chaindrive.errors import DistrustedResultWarning, ParameterError, SimulationError
+from chaindrive.errors import DistrustedResultWarning, ParameterError, SimulationError, warn
 from chaindrive.objects import place_of
 from chaindrive.progress import told
+from chaindrive.quantity import with_unit
 from chaindrive.results import _open
 from chaindrive.settings import ContactPlace, MethodName, Quantity, Recorded, Target
 from chaindrive.signals import heard
@@ -229,7 +229,7 @@ def sweep(
     dataset.attrs["wall_time"] = time.perf_counter() - begin
     dataset.attrs["summary"] = result["summary"]
     if result["warning"]:
-        warnings.warn(result["warning"], DistrustedResultWarning, stacklevel=2)
+        warn(result["warning"], DistrustedResultWarning)
     if stop is not None:
         # The very exception, for a class of its own would change the exit code of a script.
         vars(stop)["result"] = dataset
@@ -277,6 +277,7 @@ def _column(values: Any) -> Any:
 
 def _values(values: Any, path: str) -> tuple[str, ...]:
     """Return every value at a path as JSON."""
+    values = with_unit(values)
     if isinstance(values, np.ndarray | np.generic | xr.DataArray):
         values = np.asarray(values).tolist()
     single = isinstance(values, str | bytes | Mapping) or not isinstance(values, Iterable)
@@ -296,7 +297,7 @@ def _dataset(result: Mapping[str, Any]) -> xr.Dataset:
     coordinates: dict[str, Any] = {}
     swept = result["dims"]
     for name, path, unit, values in result["swept"]:
-        about = {"long_name": path, "path": path} | ({} if unit is None else {"units": unit})
+        about = {"long_name": path, "path": path} | dict([] if unit is None else [unit])
         coordinates[name] = (swept if result["table"] else name, _labels(values), about)
     if result["table"]:
         rows = len(coordinates[result["swept"][0][0]][1])
@@ -307,7 +308,7 @@ def _dataset(result: Mapping[str, Any]) -> xr.Dataset:
         coordinates[name] = (name, _labels(values))
     variables: dict[str, Any] = {}
     for name, dims, values, unit, text in result["quantities"]:
-        variables[name] = (dims, values, {"units": unit, "long_name": text})
+        variables[name] = (dims, values, dict([unit, ("long_name", text)]))
     shape = [len(coordinates[name][1]) for name in swept]
     for name, texts, text in result["texts"]:
         entries = np.asarray(texts, dtype=np.str_).reshape(shape)

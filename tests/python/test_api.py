@@ -1,6 +1,7 @@
 """The public surface: drives from everywhere, changed, described, sent around, drawn."""
 
 import copy
+import inspect
 import json
 import pickle
 import signal
@@ -8,6 +9,7 @@ import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -39,6 +41,29 @@ TWO_SPROCKETS = {
         },
     ],
 }
+
+
+def test_methods_of_a_run_show_their_parameters():
+    run = cd.simulate(cd.scenes.spinning_ring(), until=1e-3, error=False)
+    names = {name for name in dir(run.drive) if not name.startswith("_")}
+    functions = {name: getattr(cd.analysis, name, None) for name in names}
+    functions |= {"report": cd.report, "replay": cd.replay, "frame": cd.plot.frame}
+    assert functions.pop("summary") is None
+    for name, function in functions.items():
+        method = getattr(run.drive, name)
+        _, *others = inspect.signature(function).parameters.values()
+        assert [*inspect.signature(method).parameters.values()] == others
+        # Labels by dimension are the only ones without a name of their own.
+        assert {it.name for it in others if it.kind == it.VAR_KEYWORD} <= {"at"}
+        assert all(it.kind != it.VAR_POSITIONAL for it in others)
+        told = method.__doc__.partition("Parameters\n")[2]
+        assert method.__doc__.splitlines()[0] == function.__doc__.splitlines()[0]
+        assert "    run\n" not in told
+        assert "    run, " not in told
+        assert all(it.name in told for it in others)
+    assert "DriveAccessor\n   :members:\n" in (
+        Path(__file__).parents[2] / "docs" / "api" / "analysis.md"
+    ).read_text(encoding="utf-8")
 
 
 def test_all_names_are_there():
@@ -110,6 +135,53 @@ def test_drives_travel():
     assert pickle.loads(pickle.dumps(drive)) == drive
     assert copy.deepcopy(drive) == drive
     assert hash(copy.copy(drive)) == hash(drive)
+
+
+COPIES = {"pickle": lambda it: pickle.loads(pickle.dumps(it)), "copy": copy.copy}
+COPIES |= {"deepcopy": copy.deepcopy}
+
+
+@pytest.mark.parametrize("copied", COPIES.values(), ids=COPIES)
+def test_laws_and_profiles_travel(copied):
+    depths, rates = np.linspace(-1e-6, 3e-5, 50), np.linspace(-0.3, 0.3, 50)
+    drive = cd.scenes.timing_drive()
+    pin = {"hole": 1.85e-3, "pin": 1.8e-3, "length": 4.5e-3, "modulus": 113.7e9}
+    for law in [drive.law("crank"), drive.law("fixed"), cd.law("johnson", **pin, restitution=0.7)]:
+        again = copied(law)
+        assert again.parameters == law.parameters
+        assert np.array_equal(again.force(depths, rates, 0.1), law.force(depths, rates, 0.1))
+    laws = {
+        "none": {},
+        "coulomb": {"coefficient": 0.1},
+        "brown-mcphee": {"static_coefficient": 0.15, "coefficient": 0.1, "slip_speed": "1 mm/s"},
+        "lugre": {"static_coefficient": 0.15, "coefficient": 0.1, "stiffness": 1e5},
+        "spring-slider": {"coefficient": 0.1, "stiffness": 1e6},
+    }
+    for kind, parameters in laws.items():
+        friction = cd.friction(kind, **parameters)
+        assert copied(friction).parameters == friction.parameters
+        assert np.array_equal(copied(friction).force(1e3, rates), friction.force(1e3, rates))
+    points = np.random.default_rng(1).uniform(-0.2, 0.2, (50, 2))
+    for name in ("crank", "fixed"):
+        profile = drive.profile(name, settled=False)
+        again = copied(profile)
+        assert (again.name, again.closed, again.length) == (name, profile.closed, profile.length)
+        assert np.array_equal(again.distance(points), profile.distance(points))
+
+
+@pytest.mark.parametrize("copied", COPIES.values(), ids=COPIES)
+def test_a_simulation_goes_on_as_its_copy_does(copied):
+    drive = cd.scenes.marine_two_sprockets()
+    simulation = cd.Simulation(drive, run_in="5 ms", method="verlet", step=2e-5)
+    simulation.advance_to(1e-3)
+    simulation.set_torque("camshaft", 2e5, at=1.5e-3)
+    again = copied(simulation)
+    assert repr(again) == repr(simulation)
+    again.advance_to(2e-3)
+    assert simulation.time == 1e-3
+    simulation.advance_to(2e-3)
+    for channel in ("span_tension", "roller_x", "sprocket_speed"):
+        assert np.array_equal(again[channel], simulation[channel])
 
 
 def test_description_is_a_dict_and_a_text():

@@ -1,6 +1,10 @@
 """Messages: one tree of exceptions, each with the place and a hint where they are known."""
 
 import pickle
+import subprocess
+import sys
+import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -128,3 +132,32 @@ def test_what_was_replaced_stands_in_no_line():
     with pytest.raises(cd.SceneError) as caught:
         cd.simulate(drive, until="1 x")
     assert caught.value.problems[0].line is None
+
+
+def test_a_warning_points_at_the_line_that_called_us() -> None:
+    face = {"kind": "bar", "start": [0.2, 0.86], "end": [-0.2, 0.86], "end_radius": 0.02}
+    rail = {"name": "rail", "touches": "plates", "face": face}
+    drive = cd.scenes.marine_two_sprockets().replace({"guides": [rail], "defaults": "0.1"})
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always", cd.ClashWarning)
+        cd.simulate(drive, until=1e-3, error=False)
+        cd.analysis.run_up(drive, 8.0, 9.0, until=1e-3, error=False)
+    lines = Path(__file__).read_text(encoding="utf-8").splitlines()
+    pointed = [(it.filename, lines[it.lineno - 1].strip().partition("(")[0]) for it in told]
+    assert pointed == [(__file__, "cd.simulate"), (__file__, "cd.analysis.run_up")]
+    with warnings.catch_warnings():
+        warnings.filterwarnings("error", category=cd.ClashWarning)
+        with pytest.raises(cd.ClashWarning):
+            cd.simulate(drive, until=1e-3, error=False)
+
+
+def test_nothing_is_printed_or_logged() -> None:
+    code = (
+        "import logging, chaindrive as cd\n"
+        "cd.simulate(cd.scenes.industrial_16b(), until=1e-3)\n"
+        "assert not logging.root.handlers\n"
+        "assert 'chaindrive' not in logging.root.manager.loggerDict"
+    )
+    command = [sys.executable, "-W", "error", "-c", code]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")

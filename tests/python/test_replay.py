@@ -287,6 +287,19 @@ def test_movies_tell_how_far_they_are(run, tmp_path):
     assert shares == pytest.approx([1 / 3, 2 / 3, 1.0])
 
 
+def test_what_moves_is_drawn_over_what_stands_as_if_all_were_drawn_anew(run):
+    pytest.importorskip("matplotlib")
+    from chaindrive.movies import _Stage
+
+    stage = _Stage(run, np.array([0, 3, 7]), (640, 360))
+    for number in (2, 0, 1):
+        shown = stage.picture(number).copy()
+        for artist in stage.moving:
+            artist.set_animated(False)
+        stage.canvas.draw()
+        assert np.array_equal(shown, stage.canvas.buffer_rgba())
+
+
 def test_movies_are_made_of_the_same_frames(run, tmp_path):
     imageio = pytest.importorskip("imageio.v3")
     pytest.importorskip("imageio_ffmpeg")

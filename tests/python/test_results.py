@@ -57,6 +57,16 @@ def test_every_channel_is_recorded_with_its_dimensions_and_unit(marine):
     assert set(marine.data_vars) == set(cd.channels()) - absent
 
 
+def test_a_dataset_is_the_one_that_xarray_makes(marine):
+    data = {name: (it.dims, it.to_numpy(), it.attrs) for name, it in marine.data_vars.items()}
+    coords = {name: (it.dims, it.to_numpy(), it.attrs) for name, it in marine.coords.items()}
+    made = xr.Dataset(data, coords, marine.attrs)
+    xr.testing.assert_identical(marine, made)
+    assert {name: index.dtype for name, index in marine.indexes.items()} == {
+        name: index.dtype for name, index in made.indexes.items()
+    }
+
+
 def test_coordinates_carry_names(marine):
     assert list(marine["sprocket"].to_numpy()) == ["crank", "camshaft", "tensioner", "idler"]
     assert marine["span"].to_numpy()[0] == "crank-camshaft"
@@ -348,7 +358,7 @@ def test_python_and_the_command_do_the_same_with_joints(tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
-@pytest.mark.parametrize("preset", [name for name, _ in cd._core.presets()])
+@pytest.mark.parametrize("preset", list(cd.scenes.presets()))
 def test_python_and_the_command_do_the_same_with_every_preset(tmp_path, preset, case):
     same_run(tmp_path, preset, CASES[case])
 

@@ -44,6 +44,15 @@ def test_a_run_imports_no_plots() -> None:
     assert "matplotlib" not in found
 
 
+def test_a_run_does_not_wait_for_dask() -> None:
+    pytest.importorskip("dask")
+    code = (
+        "import chaindrive as cd\n"
+        "cd.simulate(cd.scenes.industrial_16b(), until=1e-3, record='all', events=['teeth'])"
+    )
+    assert not imported(code) & {"dask", "scipy"}
+
+
 @pytest.mark.parametrize("argument", ["-V", "--help"])
 def test_the_command_imports_the_core_only(argument: str) -> None:
     code = (

@@ -240,13 +240,7 @@ impl Channel {
     /// The attribute that tells the unit of all entries in a system; where they differ, all of them in the order of the labels.
     pub fn unit_attribute(self, system: &System) -> (&'static str, String) {
         let unit = self.unit_in(system);
-        // Readers take `units` for one unit.
-        let name = if unit.contains(',') {
-            "entry_units"
-        } else {
-            "units"
-        };
-        (name, unit)
+        (unit_attribute(&unit), unit)
     }
 
     /// The unit of all entries in a system; where they differ, all of them in the order of the labels.
@@ -432,6 +426,16 @@ impl Axis {
             Self::Span => Some("span_chain"),
             _ => None,
         }
+    }
+}
+
+/// The attribute that tells a unit: `units`, which readers take for one unit, or `entry_units` for the units of several entries
+/// and for one that hangs on an exponent n.
+pub fn unit_attribute(unit: &str) -> &'static str {
+    if [", ", " or ", "^n"].iter().any(|it| unit.contains(it)) {
+        "entry_units"
+    } else {
+        "units"
     }
 }
 

@@ -15,6 +15,8 @@ mod write_error;
 
 use serde_json::{Map, Value};
 
+use crate::channel::unit_attribute;
+
 pub use bucket::{Object, Objects};
 pub use claim::{Claim, is_being_written, take_over};
 pub(crate) use fault::Fault;
@@ -44,7 +46,7 @@ pub enum Existing {
 
 /// Attributes of an array: its unit, and its name in words.
 pub(crate) fn about(unit: &str, text: &str) -> Map<String, Value> {
-    let entries = [("units", unit), ("long_name", text)];
+    let entries = [(unit_attribute(unit), unit), ("long_name", text)];
     entries
         .into_iter()
         .map(|(key, value)| (key.to_owned(), value.into()))

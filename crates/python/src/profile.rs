@@ -1,14 +1,14 @@
 //! Whole profiles of bodies, asked about points.
 
 use chaindrive_geometry::{
-    ArcSpline, AreaMoments, Foot, Piece, Point, Vector, biarc as tangent_arcs,
+    Arc, ArcSpline, AreaMoments, Foot, Piece, Point, Segment, Vector, biarc as tangent_arcs,
 };
 use numpy::ndarray::ArrayView2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::drawing::points;
-use crate::errors::OrRaise;
+use crate::errors::{OrRaise, parameter};
 
 /// The profile of a sprocket or guide.
 #[pyclass(frozen, module = "chaindrive._core")]
@@ -57,6 +57,49 @@ impl Profile {
     fn bulges<'py>(&self, py: Python<'py>) -> PyResult<Cornered<'py>> {
         let (corners, bulges) = self.0.bulges();
         Ok((points(py, &corners)?, bulges.into_pyarray(py)))
+    }
+
+    /// The curve of pieces as `pieces` returns them, to the last bit.
+    #[staticmethod]
+    fn of_pieces(pieces: Vec<Vec<f64>>, closed: bool) -> PyResult<Self> {
+        let piece = |numbers: Vec<f64>| match *numbers {
+            [x, y, end_x, end_y] => Ok(Piece::Segment(Segment::new(
+                Point::new(x, y),
+                Point::new(end_x, end_y),
+            ))),
+            [x, y, radius, start_angle, sweep] => Ok(Piece::Arc(Arc {
+                centre: Point::new(x, y),
+                radius,
+                start_angle,
+                sweep,
+            })),
+            _ => {
+                let message = format!("a piece of {} numbers", numbers.len());
+                Err(parameter(message, "pieces", "four or five numbers"))
+            }
+        };
+        let pieces: Vec<Piece> = pieces.into_iter().map(piece).collect::<PyResult<_>>()?;
+        let curve = if closed {
+            ArcSpline::closed(&pieces)
+        } else {
+            ArcSpline::open(&pieces)
+        };
+        Ok(Self(curve.or_raise()?))
+    }
+
+    /// Both ends of segments, and centre, radius, angle of the start and sweep of arcs.
+    fn pieces(&self) -> Vec<Vec<f64>> {
+        let numbers = |piece: &Piece| match piece {
+            Piece::Segment(it) => vec![it.start.x, it.start.y, it.end.x, it.end.y],
+            Piece::Arc(it) => vec![
+                it.centre.x,
+                it.centre.y,
+                it.radius,
+                it.start_angle,
+                it.sweep,
+            ],
+        };
+        self.0.pieces().iter().map(numbers).collect()
     }
 
     /// Area that pieces enclose which come back to where they begin, and its centre.

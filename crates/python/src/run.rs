@@ -100,12 +100,17 @@ fn answer(
     Ok(answer)
 }
 
-/// A setting as Python gives it: a text with a unit, a number in SI units, or names.
+/// A setting as Python gives it: a text with a unit or a quantity of pint, a number in SI units, or names.
 #[derive(FromPyObject)]
 pub(crate) enum Setting {
-    Text(String),
+    Text(#[pyo3(from_py_with = with_unit)] String),
     Number(f64),
     Names(Vec<String>),
+}
+
+fn with_unit(given: &Bound<'_, PyAny>) -> PyResult<String> {
+    let quantity = given.py().import("chaindrive.quantity")?;
+    quantity.call_method1("with_unit", (given,))?.extract()
 }
 
 impl From<Setting> for Given {

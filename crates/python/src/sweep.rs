@@ -3,6 +3,7 @@
 mod objects;
 mod tasks;
 
+use chaindrive::channel::unit_attribute;
 use chaindrive::sweep::{self, Arrangement, Coordinate, Stacked};
 use chaindrive::{Request, Scene};
 use numpy::{PyArray1, PyArrayMethods};
@@ -75,7 +76,8 @@ fn fill(answer: &Bound<'_, PyDict>, sweep: &sweep::Sweep, stacked: Stacked) -> P
     let swept = PyList::empty(py);
     for dimension in sweep.dimensions() {
         let values = coordinate(py, &dimension.values)?;
-        swept.append((&dimension.name, &dimension.path, dimension.unit, values))?;
+        let unit = dimension.unit.map(|unit| (unit_attribute(unit), unit));
+        swept.append((&dimension.name, &dimension.path, unit, values))?;
     }
     answer.set_item("swept", swept)?;
     let time = stacked.time.map(|time| PyArray1::from_vec(py, time));
@@ -90,7 +92,8 @@ fn fill(answer: &Bound<'_, PyDict>, sweep: &sweep::Sweep, stacked: Stacked) -> P
         let values = PyArray1::from_vec(py, it.values).reshape(it.shape)?;
         let quantity = it.quantity;
         let text = quantity.description();
-        quantities.append((quantity.name(), it.dims, values, it.unit, text))?;
+        let unit = (unit_attribute(&it.unit), &it.unit);
+        quantities.append((quantity.name(), it.dims, values, unit, text))?;
     }
     answer.set_item("quantities", quantities)?;
     let texts = stacked.texts.into_iter();

@@ -5,13 +5,15 @@ Importing this module registers it; chaindrive does so when it first makes or op
 
 from __future__ import annotations
 
-from os import PathLike
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, overload
+import inspect
+import re
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, TypeVar
 
 import xarray as xr
 
-from chaindrive import plot, replaying
+from chaindrive import plot, replaying, reporting
 from chaindrive.analysis import (
     around,
     capacity,
@@ -29,10 +31,6 @@ from chaindrive.analysis import (
     transmission,
 )
 from chaindrive.page import Page, page_of
-from chaindrive.replaying import Replay
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 __all__ = ["DriveAccessor"]
 
@@ -41,9 +39,32 @@ def __dir__() -> list[str]:
     return list(__all__)
 
 
+Found = TypeVar("Found")
+
+
+def _method(function: Callable[..., Found]) -> Callable[..., Found]:
+    """Return a function of a run as a method, with its signature and its text."""
+
+    @wraps(function)
+    def method(self: DriveAccessor, *args: Any, **options: Any) -> Found:
+        return function(self._run, *args, **options)
+
+    run, *others = inspect.signature(function).parameters.values()
+    itself = inspect.Parameter("self", inspect.Parameter.POSITIONAL_ONLY)
+    told: Any = method
+    told.__signature__ = inspect.signature(function).replace(parameters=[itself, *others])
+    # The run is not among the parameters of the method.
+    alone, among = rf"^( *){run.name}\n(?:\1 +\S.*\n)+", rf"^( *){run.name}, "
+    text = re.sub(alone, "", function.__doc__ or "", count=1, flags=re.MULTILINE)
+    told.__doc__ = re.sub(among, r"\1", text, count=1, flags=re.MULTILINE)
+    return method
+
+
 @xr.register_dataset_accessor("drive")  # type: ignore[no-untyped-call]
 class DriveAccessor:
-    """Analysis of a run; every method stands for the function of the same name in `analysis`.
+    """Analysis of a run; every method is the function of the same name in `analysis`.
+
+    Drawings, replays and reports are those of `chaindrive`.
 
     Examples
     --------
@@ -64,100 +85,25 @@ class DriveAccessor:
         """
         return page_of(self._run)
 
-    def report(self, path: str | PathLike[str] | None = None) -> str:
-        """See `chaindrive.report`."""
-        from chaindrive.reporting import report
-
-        return report(self._run, path)
-
-    def spectrum(self, channel: str | xr.DataArray, **options: Any) -> xr.DataArray:
-        """See `chaindrive.analysis.spectrum`."""
-        return spectra.spectrum(self._run, channel, **options)
-
-    def order_map(self, channel: str | xr.DataArray, shaft: str, **options: Any) -> xr.DataArray:
-        """See `chaindrive.analysis.order_map`."""
-        return orders.order_map(self._run, channel, shaft, **options)
-
-    def order_spectrum(
-        self, channel: str | xr.DataArray, shaft: str, **options: Any
-    ) -> xr.DataArray:
-        """See `chaindrive.analysis.order_spectrum`."""
-        return orders.order_spectrum(self._run, channel, shaft, **options)
-
-    def campbell(self, channel: str | xr.DataArray, shaft: str, **options: Any) -> xr.Dataset:
-        """See `chaindrive.analysis.campbell`."""
-        return orders.campbell(self._run, channel, shaft, **options)
-
-    def running_modes(self, **options: Any) -> xr.Dataset:
-        """See `chaindrive.analysis.running_modes`."""
-        return running.running_modes(self._run, **options)
-
-    def span_frequencies(self, **options: Any) -> xr.Dataset:
-        """See `chaindrive.analysis.span_frequencies`."""
-        return running.span_frequencies(self._run, **options)
-
-    def transmission_error(self, driver: str, driven: str, **options: Any) -> xr.Dataset:
-        """See `chaindrive.analysis.transmission_error`."""
-        return transmission.transmission_error(self._run, driver, driven, **options)
-
-    def speed_ripple(self, **options: Any) -> xr.Dataset:
-        """See `chaindrive.analysis.speed_ripple`."""
-        return transmission.speed_ripple(self._run, **options)
-
-    def span_envelope(self, span: str, **options: Any) -> xr.Dataset:
-        """See `chaindrive.analysis.span_envelope`."""
-        return spans.span_envelope(self._run, span, **options)
-
-    def span_motion(self, span: str, **options: Any) -> xr.DataArray:
-        """See `chaindrive.analysis.span_motion`."""
-        return spans.span_motion(self._run, span, **options)
-
-    def tension_around_loop(self, **options: Any) -> xr.Dataset:
-        """See `chaindrive.analysis.tension_around_loop`."""
-        return around.tension_around_loop(self._run, **options)
-
-    def tooth_load(self, sprocket: str, **options: Any) -> xr.Dataset:
-        """See `chaindrive.analysis.tooth_load`."""
-        return engagement.tooth_load(self._run, sprocket, **options)
-
-    def impacts(self, **options: Any) -> xr.Dataset:
-        """See `chaindrive.analysis.impacts`."""
-        return seating.impacts(self._run, **options)
-
-    def losses(self, **options: Any) -> xr.Dataset:
-        """See `chaindrive.analysis.losses`."""
-        return dissipation.losses(self._run, **options)
-
-    def joint_work(self, **options: Any) -> xr.Dataset:
-        """See `chaindrive.analysis.joint_work`."""
-        return joints.joint_work(self._run, **options)
-
-    def wear(self, **options: Any) -> xr.Dataset:
-        """See `chaindrive.analysis.wear`."""
-        return elongation.wear(self._run, **options)
-
-    def rainflow(self, **options: Any) -> xr.Dataset:
-        """See `chaindrive.analysis.rainflow`."""
-        return fatigue.rainflow(self._run, **options)
-
-    def rating(self, **options: Any) -> xr.Dataset:
-        """See `chaindrive.analysis.rating`."""
-        return capacity.rating(self._run, **options)
-
-    def utilisation(self, **options: Any) -> xr.Dataset:
-        """See `chaindrive.analysis.utilisation`."""
-        return duty.utilisation(self._run, **options)
-
-    def frame(self, time: float, **options: Any) -> Axes:
-        """See `chaindrive.plot.frame`."""
-        return plot.frame(self._run, time, **options)
-
-    @overload
-    def replay(self, path: None = None, **options: Any) -> Replay: ...
-
-    @overload
-    def replay(self, path: str | PathLike[str], **options: Any) -> Replay | Path: ...
-
-    def replay(self, path: str | PathLike[str] | None = None, **options: Any) -> Replay | Path:
-        """See `chaindrive.replay`."""
-        return replaying.replay(self._run, path, **options)
+    spectrum = _method(spectra.spectrum)
+    order_map = _method(orders.order_map)
+    order_spectrum = _method(orders.order_spectrum)
+    campbell = _method(orders.campbell)
+    running_modes = _method(running.running_modes)
+    span_frequencies = _method(running.span_frequencies)
+    transmission_error = _method(transmission.transmission_error)
+    speed_ripple = _method(transmission.speed_ripple)
+    span_envelope = _method(spans.span_envelope)
+    span_motion = _method(spans.span_motion)
+    tension_around_loop = _method(around.tension_around_loop)
+    tooth_load = _method(engagement.tooth_load)
+    impacts = _method(seating.impacts)
+    losses = _method(dissipation.losses)
+    joint_work = _method(joints.joint_work)
+    wear = _method(elongation.wear)
+    rainflow = _method(fatigue.rainflow)
+    rating = _method(capacity.rating)
+    utilisation = _method(duty.utilisation)
+    frame = _method(plot.frame)
+    replay = _method(replaying.replay)
+    report = _method(reporting.report)

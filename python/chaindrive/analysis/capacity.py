@@ -85,7 +85,7 @@ def rating(run: xr.Dataset, *, chain: str | None = None) -> xr.Dataset:
             "shaft_load_angle": (
                 "sprocket",
                 np.degrees(np.asarray(angle)),
-                {"units": "deg", "long_name": "direction of the shaft load"},
+                {"units": "degree", "long_name": "direction of the shaft load"},
             ),
             **{
                 name: ((), told(name), {"units": unit, "long_name": words})

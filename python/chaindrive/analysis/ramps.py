@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from chaindrive.drive import Drive
 from chaindrive.errors import ParameterError
+from chaindrive.quantity import with_unit
+from chaindrive.settings import Quantity
 from chaindrive.simulation import simulate
 
 __all__ = ["prescribed", "run_up", "with_run_up"]
@@ -27,11 +29,11 @@ _KNOTS = 40
 
 def run_up(
     drive: Drive,
-    from_: float | str,
-    to: float | str,
+    from_: Quantity,
+    to: Quantity,
     *,
     until: float,
-    run_in: float | str | None = None,
+    run_in: Quantity | None = None,
     of: str | None = None,
     record: Any = None,
     **settings: Any,
@@ -87,11 +89,11 @@ def run_up(
 
 def with_run_up(
     drive: Drive,
-    from_: float | str,
-    to: float | str,
+    from_: Quantity,
+    to: Quantity,
     *,
     until: float,
-    run_in: float | str | None = None,
+    run_in: Quantity | None = None,
     of: str | None = None,
 ) -> tuple[Drive, str, tuple[float, float]]:
     """Return a drive that runs up, the sprocket or shaft with the ramp, and the speeds [rad/s].
@@ -125,13 +127,14 @@ def with_run_up(
             "drive",
         )
     fastest = max(start, end) * max(float(term["order"]) for term in terms) / (2 * math.pi)
-    if isinstance(run_in, str):
+    in_seconds: Any = with_unit(run_in)
+    if isinstance(in_seconds, str):
         raise ParameterError(
-            f"run_in = {run_in!r}: {path} has orders, give the time in seconds", "run_in"
+            f"run_in = {in_seconds!r}: {path} has orders, give the time in seconds", "run_in"
         )
     # Knots beyond both ends: the curvature of a natural spline vanishes at its own.
     step = 1.0 / (_KNOTS * fastest)
-    before = math.ceil((run_in or 0.0) / step) + 4
+    before = math.ceil((in_seconds or 0.0) / step) + 4
     after = math.ceil(until / step) + 4
     time = np.linspace(-before * step, after * step, before + after + 1)
     smooth = direction * _ramp(start, end, until, time)[0]

@@ -8,6 +8,7 @@ use zarrs::array::builder::ArrayBuilderFillValue;
 use zarrs::array::{DataType, data_type};
 
 use super::{Arrays, Place, StoreSink, every_chunk};
+use crate::channel::unit_attribute;
 use crate::sweep::coordinator::{Coordinator, Watch, carry_out};
 use crate::sweep::layout::Layout;
 use crate::sweep::sink::Sink;
@@ -335,7 +336,7 @@ fn put_coordinates(
     for dimension in sweep.dimensions() {
         let mut about = Map::new();
         if let Some(unit) = dimension.unit {
-            about.insert("units".into(), unit.into());
+            about.insert(unit_attribute(unit).into(), unit.into());
         }
         about.insert("long_name".into(), dimension.path.as_str().into());
         about.insert("path".into(), dimension.path.as_str().into());
