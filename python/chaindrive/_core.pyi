@@ -21,6 +21,7 @@ __all__ = [
     "Sweep",
     "SweepCoordinator",
     "SweepWorker",
+    "View",
     "__build__",
     "__version__",
     "_cli",
@@ -47,6 +48,7 @@ __all__ = [
     "resume",
     "schema",
     "simulate",
+    "step_many",
     "take_over",
     "work_precision",
 ]

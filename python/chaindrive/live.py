@@ -152,7 +152,7 @@ class Simulation:
         """
         names = [channels] if isinstance(channels, str) else list(channels)
         inner = self._inner.view(names)
-        labels = {name: self._inner.labels(name) or [] for name in names}
+        labels: dict[str, list[str]] = {name: self._inner.labels(name) or [] for name in names}
         return View(inner, labels)
 
     def __getitem__(self, channel: ChannelName) -> xr.DataArray:

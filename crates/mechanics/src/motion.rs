@@ -81,7 +81,7 @@ pub enum Motion {
     /// Positions at given times, joined by a natural cubic spline.
     Table(Table),
     /// On from a place and speed, on a course that somebody has set.
-    Onward(Path),
+    Onward(Box<Path>),
     /// Another motion, counted from where it was when the drive was assembled: x = y(t) − y(t₀).
     From {
         /// Its position y(t₀) \[m or rad\].

@@ -1,6 +1,6 @@
 //! Drives that Python moves itself: read at any time, inputs set, states kept.
 
-use std::sync::{Mutex, MutexGuard, TryLockError};
+use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 
 use chaindrive::{Axis, Channel, Control, Course, Request, Settings, SimulationError};
 use numpy::{PyArray1, PyArrayMethods};
@@ -75,9 +75,7 @@ fn control(kind: &str, name: String) -> PyResult<Control> {
 
 /// Whoever holds it, even one that has panicked: all it does is to fill arrays anew.
 fn held<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex
-        .lock()
-        .unwrap_or_else(|poisoned| poisoned.into_inner())
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 #[pymethods]

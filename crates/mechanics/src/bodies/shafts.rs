@@ -32,7 +32,7 @@ pub(crate) enum TurnedBy {
     /// A course that somebody has set, in the place of an entry of the state.
     Driven {
         dof: usize,
-        path: Path,
+        path: Box<Path>,
     },
 }
 
@@ -142,9 +142,12 @@ impl Bodies {
     pub(crate) fn turn_by(&mut self, train: usize, path: Option<Path>) {
         for turn in self.turns_mut().filter(|turn| turn.train == train) {
             turn.by = match (&turn.by, path) {
-                (TurnedBy::Motion(_), Some(path)) => TurnedBy::Motion(Motion::Onward(path)),
+                (TurnedBy::Motion(_), Some(path)) => {
+                    TurnedBy::Motion(Motion::Onward(Box::new(path)))
+                }
                 (TurnedBy::Coordinate(dof) | TurnedBy::Driven { dof, .. }, Some(path)) => {
-                    TurnedBy::Driven { dof: *dof, path }
+                    let (dof, path) = (*dof, Box::new(path));
+                    TurnedBy::Driven { dof, path }
                 }
                 (TurnedBy::Driven { dof, .. }, None) => TurnedBy::Coordinate(*dof),
                 (TurnedBy::Motion(_) | TurnedBy::Coordinate(_), None) => continue,

@@ -142,7 +142,7 @@ impl System {
                 Input::Centre { sprocket, axis } => {
                     if let Some(motion) = self.centre_motion(sprocket, axis) {
                         let path = Path::accelerated(motion.at(t), t, course);
-                        *motion = Motion::Onward(path);
+                        *motion = Motion::Onward(Box::new(path));
                     }
                 }
                 Input::Load { .. } | Input::Preload { .. } | Input::Stiffness { .. } => {
@@ -183,10 +183,10 @@ impl System {
     /// Hands the turning of a train back to its coordinate, with the angle and speed that it has.
     fn release(&mut self, shaft: usize, t: f64, q: &mut [f64], v: &mut [f64]) {
         let turn = &self.bodies.shafts[shaft].turn;
-        if let TurnedBy::Driven { dof, path } = turn.by {
+        if let TurnedBy::Driven { dof, path } = &turn.by {
             let now = path.at(t);
-            q[dof] = now.position;
-            v[dof] = now.rate;
+            q[*dof] = now.position;
+            v[*dof] = now.rate;
             self.bodies.turn_by(turn.train, None);
         }
     }
@@ -275,7 +275,7 @@ impl System {
             for (axis, motion) in [x, y].into_iter().enumerate() {
                 if let Motion::Onward(path) = motion {
                     let body = OnPath::Centre { sprocket, axis };
-                    found.push(OnCourse { body, path: *path });
+                    found.push(OnCourse { body, path: **path });
                 }
             }
         }
@@ -284,7 +284,7 @@ impl System {
                 &shaft.turn.by
             {
                 let body = OnPath::Train(shaft.turn.train);
-                found.push(OnCourse { body, path: *path });
+                found.push(OnCourse { body, path: **path });
             }
         }
         found
@@ -306,7 +306,7 @@ impl System {
                 OnPath::Centre { sprocket, axis } => {
                     MemoryError::unless_within("a motion of sprocket", sprocket + 1, sprockets)?;
                     let motion = self.centre_motion(sprocket, axis);
-                    *motion.ok_or(MemoryError::Model)? = Motion::Onward(path);
+                    *motion.ok_or(MemoryError::Model)? = Motion::Onward(Box::new(path));
                 }
                 OnPath::Train(leader) => {
                     MemoryError::unless_within("a motion of shaft", leader + 1, shafts)?;
