@@ -1,8 +1,8 @@
 """A rider's torque on the cranks of a bicycle, read from the angle of the pedals at 1 kHz.
 
 The legs push hardest where the cranks are level and hardly at all where they stand upright, and
-give way as the cranks turn faster: a torque that no table over time has. The chain feels it as a
-tight span that swells and fades twice a turn.
+give way as the cranks turn faster: a torque that no table over time has. The chain
+feels it as a pull that swells and fades twice a turn.
 
 Run it as ``python examples/rider.py [--until SECONDS] [--results FOLDER]``.
 """
@@ -40,7 +40,7 @@ def legs(angle: float, speed: float) -> float:
 
 
 def ride(drive: cd.Drive, until: float) -> np.ndarray:
-    """Return time [s], torque [N m], cadence [rad/s] and tight span [N] of every period."""
+    """Return time [s], torque [N m], cadence [rad/s] and pull [N] of every period."""
     simulation = cd.Simulation(drive)
     view = simulation.view(["sprocket_angle", "sprocket_speed", "span_tension"])
     angle, speed, tension = view["sprocket_angle"], view["sprocket_speed"], view["span_tension"]
@@ -49,7 +49,7 @@ def ride(drive: cd.Drive, until: float) -> np.ndarray:
         simulation.advance_to(k * PERIOD)
         torque = legs(angle[0], speed[0])
         simulation.set_torque("chainring", torque)
-        rows.append((simulation.time, torque, speed[0], tension.max()))
+        rows.append((simulation.time, torque, speed[0], np.ptp(tension)))
     return np.array(rows)
 
 
@@ -60,15 +60,15 @@ def main() -> None:
     arguments = parser.parse_args()
     arguments.results.mkdir(parents=True, exist_ok=True)
 
-    time, torque, speed, tension = ride(ridden(), arguments.until).T
+    time, torque, speed, pull = ride(ridden(), arguments.until).T
     print(f"cadence {speed.max() * -9.5493:.1f} to {speed.min() * -9.5493:.1f} rpm")
-    print(f"tight span {tension.min():.0f} to {tension.max():.0f} N")
+    print(f"pull, tight span less slack span, {pull.min():.0f} to {pull.max():.0f} N")
     mpl.use("Agg")
     from matplotlib import pyplot as plt
 
     figure, axes = plt.subplots(3, sharex=True, figsize=(8, 7), layout="constrained")
-    labels = ("torque [N m]", "cadence [rpm]", "tight span [N]")
-    for axis, values, label in zip(axes, (torque, speed * -9.5493, tension), labels, strict=True):
+    labels = ("torque [N m]", "cadence [rpm]", "pull of the chain [N]")
+    for axis, values, label in zip(axes, (torque, speed * -9.5493, pull), labels, strict=True):
         axis.plot(time, values)
         axis.set_ylabel(label)
     axes[-1].set_xlabel("time [s]")

@@ -176,7 +176,7 @@ fn a_shaft_is_taken_over_and_handed_back_a_hundred_times() {
         let amount = scattered(1000 + u32::try_from(k).unwrap()) - 0.5;
         match k % 3 {
             0 => {
-                let over = if k % 2 == 0 { 0.0 } else { 5e-5 };
+                let over = if k.is_multiple_of(2) { 0.0 } else { 5e-5 };
                 let rate = 50.0 * amount;
                 let to = 40.0 + amount;
                 simulation.set(&as_speed, Course { to, over, rate })
