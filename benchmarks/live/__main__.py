@@ -1,4 +1,4 @@
-"""Cost of stepping from outside: ``python -m benchmarks.live``, or ``python benchmarks/live``.
+"""Cost of stepping from outside: ``python benchmarks/live``.
 
 Three figures, each a median of pairs that are interleaved:
 
@@ -87,7 +87,7 @@ def controller(until: float = 0.5, pairs: int = 21) -> list[float]:
     simulation = cd.Simulation(free)
     start = simulation.snapshot()
     torques = loop()
-    # The same torque in steps: every knot twice, a microsecond apart.
+    # The same torque in steps: every knot twice, a nanosecond apart.
     knots = np.column_stack([times, times + PERIOD - 1e-9]).ravel()
     table = {
         "kind": "time-table",

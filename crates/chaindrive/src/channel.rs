@@ -331,7 +331,7 @@ impl Channel {
             .try_for_each(|found| found.map(drop))
     }
 
-    /// What has to be read off a state for it.
+    /// Sights that it needs of a state.
     pub(crate) fn sights(self) -> Sights {
         Sights {
             laws: matches!(

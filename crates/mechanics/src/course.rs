@@ -80,7 +80,7 @@ impl Ramp {
 pub struct Path {
     /// As it was before, on the ramp, and behind it.
     pieces: [Piece; 3],
-    /// Whether a step has ended where the ramp does: until then the ramp goes on, for its acceleration is that at the end of the step.
+    /// Arrival of a step at the end of the ramp. Until then the ramp goes on: the end of the step has its acceleration.
     arrived: bool,
 }
 

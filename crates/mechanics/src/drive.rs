@@ -404,7 +404,7 @@ pub struct Parts {
 pub struct Tunable {
     /// Its place in the scene.
     pub place: String,
-    /// What it is of the drive.
+    /// Input of the drive.
     pub input: Input,
 }
 

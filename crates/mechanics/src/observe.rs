@@ -24,10 +24,10 @@ pub struct ChainSize {
     pub spans: usize,
 }
 
-/// What is read off a state.
+/// Readings of a state beside places, speeds and forces that steps applied.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sights {
-    /// What the laws say there: contacts and their depths, films, energies.
+    /// Answers of the laws: contacts and their depths, films, energies.
     pub laws: bool,
     /// Tensions of spans.
     pub spans: bool,
@@ -40,7 +40,7 @@ impl Sights {
         spans: true,
     };
 
-    /// What either wants.
+    /// The sights of both.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {
@@ -292,14 +292,14 @@ impl System {
         };
         for (index, list) in forces(out).into_iter().enumerate() {
             let [before, now] = [before, now].map(|end| end.lists[index].as_slice());
-            if !OF_CHAINS.contains(&index) {
+            let is_tension = index == LINK_TENSION;
+            if !is_tension && !JOINT_FORCES.contains(&index) {
                 blended(share, before, now, list);
                 continue;
             }
             let mut first = 0;
             for member in &self.chains {
                 let chain = &member.chain;
-                let is_tension = index == OF_CHAINS[0];
                 let count = if is_tension {
                     chain.links()
                 } else {
@@ -570,8 +570,9 @@ fn forces(out: &mut Observation) -> [&mut Vec<f64>; LISTS] {
     ]
 }
 
-/// Among them those of chains of which some keep what the laws say: tensions of links, and forces of joints.
-const OF_CHAINS: [usize; 3] = [6, 7, 8];
+/// Places of the tensions of links and of the forces of joints among them. Some chains have those of the laws there.
+const LINK_TENSION: usize = 6;
+const JOINT_FORCES: [usize; 2] = [7, 8];
 
 /// Lengths of vectors.
 fn set_lengths(to: &mut Vec<f64>, x: &[f64], y: &[f64]) {

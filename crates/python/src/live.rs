@@ -73,7 +73,7 @@ fn control(kind: &str, name: String) -> PyResult<Control> {
     })
 }
 
-/// Whoever holds it, even one that has panicked: all it does is to fill arrays anew.
+/// The value, also after a panic elsewhere: arrays are filled anew.
 fn held<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -281,7 +281,7 @@ impl Control {
         }
     }
 
-    /// What it acts on, and its name.
+    /// Kind and name of its target.
     fn target(&self) -> (&'static str, &str) {
         match self {
             Self::Force(name) => ("tensioner", name),

@@ -1,4 +1,4 @@
-//! Views: some channels of a drive in motion, in memory that is allocated once.
+//! Views: some channels of a drive in motion, in memory of their own.
 
 use chaindrive_integrate::Moment;
 use chaindrive_mechanics::{Observation, Sights};
@@ -26,7 +26,7 @@ use crate::{Channel, SimulationError};
 #[derive(Clone, Debug)]
 pub struct View {
     channels: Vec<Channel>,
-    /// Where the entries of every channel end.
+    /// Ends of the entries of every channel.
     ends: Vec<usize>,
     values: Vec<f64>,
     sights: Sights,
@@ -74,7 +74,7 @@ impl Simulation {
 
     /// Reads the channels of a view at the time of the last reading.
     ///
-    /// They are what [`channel`](Self::channel) says there, to the bit. Nothing is allocated once a view has been read.
+    /// They are what [`channel`](Self::channel) says there, to the bit.
     pub fn read_into(&mut self, view: &mut View) {
         let View {
             channels,
@@ -98,7 +98,7 @@ impl Simulation {
     /// Steps are those of the method: shorter before an event, and of their own length where it follows the error.
     ///
     /// # Errors
-    /// What keeps the motion from going on.
+    /// [`SimulationError::Integration`]: the motion ceases to be finite.
     pub fn step(&mut self, steps: u64) -> Result<f64, SimulationError> {
         self.before = None;
         let moving = &mut self.moving;
@@ -119,7 +119,7 @@ impl Simulation {
         Ok(self.read)
     }
 
-    /// Reads some of what there is at the time of the last reading.
+    /// Reads these sights at the time of the last reading.
     pub(super) fn look_at(&mut self, sights: Sights, seen: &mut Observation) {
         let clock = self.zero() + self.read;
         let [q, v, flows, z] = &mut self.buffers;

@@ -48,7 +48,7 @@ impl Turn {
         }
     }
 
-    /// What turns it, x and its rates.
+    /// Motion or coordinate x, with its rates.
     #[inline(always)]
     pub(crate) fn driving(&self, t: f64, q: &[f64], v: &[f64]) -> Kinematics {
         match &self.by {

@@ -66,7 +66,7 @@ pub(super) trait Behind {
     ) -> (LaneResponse<S>, Lane<S>);
 }
 
-/// What elastic laws answer to a lane of depths, of whole contacts.
+/// Answer of elastic laws to a lane of depths, of whole contacts.
 #[derive(Clone, Copy)]
 pub(super) struct LaneResponse<S: Simd> {
     /// Force of the seat's law, and of seat and flank together \[N\].

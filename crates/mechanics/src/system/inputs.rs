@@ -10,7 +10,7 @@ use crate::course::{Course, Path};
 use crate::kinematics::Kinematics;
 use crate::{MemoryError, Motion, Push};
 
-/// A course that somebody has set a body on.
+/// A body on a course from outside.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct OnCourse {
     body: OnPath,

@@ -33,7 +33,7 @@ pub(super) fn resolve(
     found
 }
 
-/// All that could be listed.
+/// All loads and springs of these parts.
 fn all(parts: &Parts) -> Vec<Tunable> {
     let mut found = Vec::new();
     for (shaft, turning) in parts.shafts.iter().enumerate() {
