@@ -20,7 +20,7 @@ if _signal.getsignal(_signal.SIGINT) is _signal.default_int_handler:
 
 import sys  # noqa: E402
 
-from chaindrive import _core  # noqa: E402
+from chaindrive import _core, fmu  # noqa: E402
 from chaindrive.signals import hear  # noqa: E402
 
 
@@ -45,6 +45,8 @@ def main() -> int:
             _signal.signal(_signal.SIGINT, _signal.default_int_handler)
         hear()
         arguments = ["chaindrive", *sys.argv[1:]]
+        if arguments[1:2] == ["fmu"] and not any(it.startswith("--library") for it in arguments):
+            arguments += ["--library", str(fmu.LIBRARY)]
         drawn = _core._drawn(arguments)
         return _core._cli(arguments) if drawn is None else _draw(arguments[1], *drawn)
     except KeyboardInterrupt:

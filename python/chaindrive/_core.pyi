@@ -33,6 +33,8 @@ __all__ = [
     "centre_distance_for",
     "channels",
     "diff",
+    "fmu",
+    "fmu_library",
     "inspect",
     "is_being_written",
     "layout_around",
@@ -260,6 +262,18 @@ def simulate(
     error: bool,
     progress: Callable[[float], object] | None,
 ) -> Mapping[str, Any]: ...
+def fmu(
+    drive: Drive,
+    settings: Sequence[tuple[str, Quantity | Sequence[str]]],
+    *,
+    path: str | PathLike[str],
+    name: str,
+    version: int,
+    run: bool,
+    library: str | PathLike[str],
+    progress: Callable[[float], object] | None,
+) -> int: ...
+def fmu_library() -> str: ...
 def resume(
     path: str | PathLike[str],
     *,

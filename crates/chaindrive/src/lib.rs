@@ -69,7 +69,7 @@ pub use record::{Checkpoint, End, Memory, Recording, Sink};
 pub use run::{Given, Request, RequestError, Run, Settings};
 pub use run_in::{MOST_CIRCUITS, Onlooker, RanIn, run_in};
 pub use scene::{RunIn, Scene};
-pub use seal::SealError;
+pub use seal::{SealError, Sealed, opened, sealed};
 pub use simulate::{Control, Simulation, Snapshot, SnapshotError, View, step_many};
 pub use stepping::Stepping;
 pub use summary::{ImpactStatistics, Summary};

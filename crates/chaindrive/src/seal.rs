@@ -18,7 +18,7 @@ const BUILD: &str = "build ";
 const INSTRUCTION_SET: &str = "instruction set ";
 
 /// Values that can be written down.
-pub(crate) trait Sealed: Serialize + DeserializeOwned {
+pub trait Sealed: Serialize + DeserializeOwned {
     /// Its name in messages and in the first line.
     const KIND: &'static str;
 }
@@ -45,7 +45,7 @@ pub enum SealError {
 ///
 /// # Panics
 /// Never: the values are plain data, and the memory takes them.
-pub(crate) fn sealed<T: Sealed>(value: &T) -> Vec<u8> {
+pub fn sealed<T: Sealed>(value: &T) -> Vec<u8> {
     let content = postcard::to_stdvec(value).expect("plain data has a length known beforehand");
     let mut bytes = heading::<T>(&Origin::here(), &content).into_bytes();
     bytes.extend(content);
@@ -53,7 +53,10 @@ pub(crate) fn sealed<T: Sealed>(value: &T) -> Vec<u8> {
 }
 
 /// The value that bytes were made of.
-pub(crate) fn opened<T: Sealed>(bytes: &[u8]) -> Result<T, SealError> {
+///
+/// # Errors
+/// [`SealError`]: something else, damaged, or of another build or instruction set.
+pub fn opened<T: Sealed>(bytes: &[u8]) -> Result<T, SealError> {
     let kind = T::KIND;
     let foreign = || SealError::Foreign { kind };
     let end = bytes.iter().position(|byte| *byte == b'\n');

@@ -5,6 +5,7 @@ pub(crate) mod check;
 pub(crate) mod describe;
 pub(crate) mod design;
 pub(crate) mod draw;
+pub(crate) mod fmu;
 pub(crate) mod lists;
 pub(crate) mod output;
 pub(crate) mod replay;

@@ -1,5 +1,7 @@
 //! How a command ends when it does not end well.
 
+use std::convert::Infallible;
+
 use chaindrive::record::{ReadError, ResumeError, WriteError};
 use chaindrive::scene::SceneError;
 use chaindrive::sweep::SweepError;
@@ -79,6 +81,12 @@ pub(crate) enum Failure {
     /// The user stopped the run.
     #[error("interrupted")]
     Interrupted,
+}
+
+impl From<Infallible> for Failure {
+    fn from(never: Infallible) -> Self {
+        match never {}
+    }
 }
 
 impl From<SweepError> for Failure {

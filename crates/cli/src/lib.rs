@@ -27,7 +27,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use terminal::say;
 
 use commands::{
-    bench, check, describe, design, draw, lists, replay, report, resume, run as run_command,
+    bench, check, describe, design, draw, fmu, lists, replay, report, resume, run as run_command,
     scenes, shell, sweep,
 };
 
@@ -75,6 +75,7 @@ enum Verb {
     Describe(describe::Arguments),
     Design(design::Arguments),
     Draw(draw::Arguments),
+    Fmu(fmu::Arguments),
     Resolve(scenes::Resolve),
     Diff(scenes::Diff),
     Scenes(lists::Scenes),
@@ -154,6 +155,7 @@ where
         Verb::Describe(arguments) => describe::describe(arguments, interrupted),
         Verb::Design(arguments) => design::design(arguments, interrupted),
         Verb::Draw(arguments) => draw::draw(arguments, interrupted),
+        Verb::Fmu(arguments) => fmu::fmu(arguments, interrupted),
         Verb::Resolve(arguments) => scenes::resolve(arguments, interrupted),
         Verb::Diff(arguments) => scenes::diff(arguments, interrupted),
         Verb::Scenes(arguments) => lists::scenes(arguments),

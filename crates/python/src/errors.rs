@@ -5,6 +5,7 @@ use chaindrive::scene::SceneError;
 use chaindrive::sweep::SweepError;
 use chaindrive::{RequestError, RunError, SealError, SimulationError, SnapshotError};
 use chaindrive_contact::ParameterError;
+use chaindrive_couple::{ModelError, PackageError};
 use chaindrive_geometry::GeometryError;
 use chaindrive_integrate::IntegrationError;
 use chaindrive_mechanics::AssemblyError;
@@ -308,6 +309,32 @@ impl IntoException for WriteError {
             | Self::GivenUp { path }
             | Self::Io { path, .. }
             | Self::Store { path, .. } => python::WriteError::new_err((message, path)),
+            _ => python::WriteError::new_err((message,)),
+        }
+    }
+}
+
+impl IntoException for ModelError {
+    fn exception(self) -> PyErr {
+        match self {
+            Self::Scene(error) => error.exception(),
+            Self::Request(error) => error.exception(),
+            Self::Output(error) => error.exception(),
+            other => python::SimulationError::new_err((other.to_string(),)),
+        }
+    }
+}
+
+impl IntoException for PackageError {
+    fn exception(self) -> PyErr {
+        let message = self.to_string();
+        match self {
+            Self::Library { .. } => python::ParameterError::new_err((
+                message,
+                "library",
+                "must be the library of units of this build",
+            )),
+            Self::File { path, .. } => python::WriteError::new_err((message, path)),
             _ => python::WriteError::new_err((message,)),
         }
     }

@@ -13,6 +13,7 @@ mod design;
 mod drawing;
 mod drive;
 mod errors;
+mod fmu;
 mod friction;
 mod kinematics;
 mod law;
@@ -47,6 +48,8 @@ mod core {
     use crate::drawing::Figure;
     #[pymodule_export]
     use crate::drive::{Drive, catalogue, diff, presets, schema};
+    #[pymodule_export]
+    use crate::fmu::{fmu, fmu_library};
     #[pymodule_export]
     use crate::friction::Friction;
     #[pymodule_export]

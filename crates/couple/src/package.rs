@@ -1,0 +1,124 @@
+//! The archive of a functional mock-up unit.
+
+use std::fs;
+use std::io::{Cursor, Write};
+use std::path::{Path, PathBuf};
+
+use zip::result::ZipError;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
+
+use crate::{Model, Standard};
+
+/// Name of the library in a unit, without the ending of its platform.
+pub const LIBRARY: &str = "chaindrive_fmu";
+
+/// Why a unit was not written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PackageError {
+    /// No library is there.
+    #[error("{}: the library of units cannot be read: {source}; name it, or install chaindrive anew", .path.display())]
+    Library {
+        /// Where it was looked for.
+        path: PathBuf,
+        /// Why it cannot be read.
+        source: std::io::Error,
+    },
+
+    /// The archive cannot be made.
+    #[error("the archive cannot be made: {0}")]
+    Archive(#[from] ZipError),
+
+    /// The archive cannot be made.
+    #[error("the archive cannot be made: {0}")]
+    Bytes(#[from] std::io::Error),
+
+    /// The file cannot be written.
+    #[error("{}: {source}", .path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why it cannot be written.
+        source: std::io::Error,
+    },
+}
+
+/// Folder of libraries of a platform in a unit, such as `linux64` or `x86_64-linux`, and the ending of their names.
+pub fn platform(standard: Standard) -> (String, &'static str) {
+    let (architecture, system) = (std::env::consts::ARCH, std::env::consts::OS);
+    let folder = match standard {
+        Standard::Two => {
+            let system = match system {
+                "windows" => "win",
+                "macos" => "darwin",
+                other => other,
+            };
+            match architecture {
+                "x86_64" => format!("{system}64"),
+                "x86" => format!("{system}32"),
+                // The standard names no others; importers have agreed on this.
+                other => format!("{other}-{system}"),
+            }
+        }
+        Standard::Three => {
+            let system = if system == "macos" { "darwin" } else { system };
+            format!("{architecture}-{system}")
+        }
+    };
+    (folder, std::env::consts::DLL_SUFFIX)
+}
+
+/// A unit of a model as the bytes of its archive, with the library of this platform.
+///
+/// The same model and library give the same bytes.
+///
+/// # Errors
+/// [`PackageError`]: the library cannot be read.
+pub fn package(model: &Model, standard: Standard, library: &Path) -> Result<Vec<u8>, PackageError> {
+    let code = fs::read(library).map_err(|source| PackageError::Library {
+        path: library.to_owned(),
+        source,
+    })?;
+    let options = SimpleFileOptions::default()
+        .compression_method(CompressionMethod::Deflated)
+        .last_modified_time(zip::DateTime::default());
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    let mut file = |name: &str, content: &[u8], mode: u32| {
+        archive.start_file(name, options.unix_permissions(mode))?;
+        archive.write_all(content)?;
+        Ok::<(), PackageError>(())
+    };
+    let description = standard.description(model);
+    file("modelDescription.xml", description.as_bytes(), 0o644)?;
+    let (folder, ending) = platform(standard);
+    file(
+        &format!("binaries/{folder}/{LIBRARY}{ending}"),
+        &code,
+        0o755,
+    )?;
+    for (name, text) in model.export().resources() {
+        file(&format!("resources/{name}"), text.as_bytes(), 0o644)?;
+    }
+    Ok(archive.finish()?.into_inner())
+}
+
+/// Writes a unit to a file, and returns its size in bytes. Whoever reads the file finds the old one or the new one, whole.
+///
+/// # Errors
+/// As [`package`], and [`PackageError::File`].
+pub fn write(
+    model: &Model,
+    standard: Standard,
+    library: &Path,
+    path: &Path,
+) -> Result<usize, PackageError> {
+    let unit = package(model, standard, library)?;
+    let part = path.with_extension("fmu.part");
+    let written = fs::write(&part, &unit).and_then(|()| fs::rename(&part, path));
+    written.map_err(|source| PackageError::File {
+        path: path.to_owned(),
+        source,
+    })?;
+    Ok(unit.len())
+}

@@ -1,0 +1,119 @@
+//! Calls: numbers looked up, panics caught, refusals told.
+
+use std::any::Any;
+use std::ffi::{CString, c_int};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::TryLockError;
+
+use chaindrive_couple::{Fault, Instance, Model};
+
+use crate::logger::Logger;
+use crate::units::{Handle, Unit, find, keep};
+
+/// Status of a call, the same numbers in both versions of the standard.
+pub(crate) const OK: c_int = 0;
+/// The call was made, and did not do all.
+pub(crate) const DISCARD: c_int = 2;
+/// The call was refused.
+pub(crate) const ERROR: c_int = 3;
+/// The instance is lost.
+pub(crate) const FATAL: c_int = 4;
+
+/// Category of refusals, and of calls that were made.
+const REFUSED: &str = "logStatusError";
+const CALLED: &str = "logAll";
+
+/// Makes a call on an instance.
+pub(crate) fn on(
+    handle: Handle,
+    function: &str,
+    act: impl FnOnce(&Unit, &mut Instance) -> Result<(), Fault>,
+) -> c_int {
+    let Some(unit) = find(handle) else {
+        // There is nobody else to tell it to.
+        eprintln!("{function}: no instance has this handle; it was never made, or is freed");
+        return ERROR;
+    };
+    let made = catch_unwind(AssertUnwindSafe(|| match unit.instance.try_lock() {
+        Ok(mut instance) => act(&unit, &mut instance).map_err(|fault| (ERROR, fault.0)),
+        Err(TryLockError::WouldBlock) => {
+            let busy = "another thread is in a call of this instance";
+            Err((ERROR, busy.to_owned()))
+        }
+        Err(TryLockError::Poisoned(_)) => {
+            let lost = "the instance was lost in a call before; free it";
+            Err((FATAL, lost.to_owned()))
+        }
+    }));
+    let (status, message) = match made {
+        Ok(Ok(())) => {
+            if unit.logger.follows() {
+                unit.logger.tell(OK, CALLED, function);
+            }
+            return OK;
+        }
+        Ok(Err(refused)) => refused,
+        Err(panic) => (FATAL, said(panic.as_ref())),
+    };
+    // The instance is free again: an importer may call it from its logger.
+    unit.logger
+        .tell(status, REFUSED, &format!("{function}: {message}"));
+    status
+}
+
+/// Refuses a call that co-simulation has no use for.
+pub(crate) fn refuse(handle: Handle, function: &str, reason: &str) -> c_int {
+    on(handle, function, |_, _| Err(Fault(reason.to_owned())))
+}
+
+/// Makes an instance of the unit whose resources lie in a folder; null where there is none.
+pub(crate) fn instantiate(
+    function: &str,
+    token: Option<&str>,
+    resources: Option<&Path>,
+    logger: Logger,
+) -> Handle {
+    let made = catch_unwind(|| {
+        let resources = resources.ok_or("the folder of the resources is missing")?;
+        let token = token.ok_or("the token of modelDescription.xml is missing")?;
+        let model = Model::of_resources(resources).map_err(|error| error.to_string())?;
+        let token = token.trim_matches(['{', '}']);
+        if token != model.token() {
+            let own = model.token();
+            return Err(format!(
+                "the token {token} is of another unit; this one has {own}"
+            ));
+        }
+        Ok(Instance::new(model))
+    });
+    let message = match made {
+        Ok(Ok(instance)) => return keep(instance, logger),
+        Ok(Err(reason)) => reason,
+        Err(panic) => said(panic.as_ref()),
+    };
+    logger.tell(ERROR, REFUSED, &format!("{function}: {message}"));
+    std::ptr::null_mut()
+}
+
+/// Refuses to make an instance of another kind.
+pub(crate) fn make_none(function: &str, logger: &Logger) -> Handle {
+    let reason = "the unit has co-simulation only";
+    logger.tell(ERROR, REFUSED, &format!("{function}: {reason}"));
+    std::ptr::null_mut()
+}
+
+/// Name of an instance in messages.
+pub(crate) fn named(name: Option<&std::ffi::CStr>) -> CString {
+    name.unwrap_or(c"drive").to_owned()
+}
+
+/// What a panic said.
+fn said(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
+    format!(
+        "a mistake of chaindrive, please report it: {}",
+        text.unwrap_or("no message")
+    )
+}
