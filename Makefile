@@ -11,6 +11,9 @@ SOURCES := Cargo.toml Cargo.lock pyproject.toml \
 	$(shell find crates -type f \( -path '*/src/*' -o -path '*/scenes/*' -o -path '*/page/*' -o -name Cargo.toml -o -name build.rs \)) \
 	$(shell find python -type f \( -name '*.py' -o -name '*.pyi' -o -name '*.css' -o -name py.typed \))
 
+# As compilers of this system call the library that goes into functional mock-up units.
+FMU_LIBRARY := $(if $(filter Windows_NT,$(OS)),chaindrive_fmu.dll,$(if $(filter Darwin,$(shell uname -s)),libchaindrive_fmu.dylib,libchaindrive_fmu.so))
+
 # Every test that judges a validation case appends to it.
 VERDICTS := $(abspath target/verdicts.jsonl)
 
@@ -115,8 +118,13 @@ pages: setup $(VENV)/site-ready docs ## Build the documentation in target/site; 
 site: browser pages ## Build the documentation, and test replays and reports in a browser
 	$(BIN)/pytest tests/site
 
+# Both are linked against a C library that old machines have.
+WHEEL_TARGET = $(shell rustc -vV | sed -n 's/^host: //p')
+
 wheels: $(VENV)/wheels-ready ## Build a wheel for Linux and the source distribution in dist, and try them
 	rm -rf dist
+	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/cargo-zigbuild zigbuild --release --quiet -p chaindrive-fmu --target $(WHEEL_TARGET).2.17
+	cp target/$(WHEEL_TARGET)/release/libchaindrive_fmu.so python/chaindrive/
 	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/maturin build --release --sdist --zig --compatibility manylinux2014 --out dist
 	$(BIN)/python tests/wheels/fresh.py dist
 
@@ -162,6 +170,9 @@ $(VENV)/installed: $(VENV)/ready $(SOURCES)
 	@touch $@.begun
 	rm -rf target/wheels/chaindrive-*.whl
 	@echo "Building the core in release: some four minutes on two cores the first time, and what changed later on."
+	@# The library of functional mock-up units; with the bindings, so that both are of the same compiled crates.
+	cargo build --release --quiet -p chaindrive-python -p chaindrive-fmu
+	cp $(addprefix target/release/,$(FMU_LIBRARY)) python/chaindrive/
 	$(BIN)/maturin build --release --quiet --interpreter $(BIN)/python --out target/wheels
 	$(PIP) --force-reinstall --no-deps target/wheels/chaindrive-*.whl
 	@mv $@.begun $@

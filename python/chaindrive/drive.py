@@ -7,24 +7,23 @@ import math
 import tomllib
 from collections.abc import Callable, Mapping
 from os import PathLike, fspath
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
-from chaindrive import _core, data_sheet
+from chaindrive import _core, data_sheet, fmu
 from chaindrive.contact_law import Law
 from chaindrive.errors import ParameterError, SceneError
 from chaindrive.profile import Profile
 from chaindrive.quantity import with_unit
 
 if TYPE_CHECKING:
-    from pathlib import Path
     from typing import Self
 
     import xarray as xr
     from numpy.typing import NDArray
 
-    from chaindrive.settings import MethodName, Quantity, Recorded, Target
+    from chaindrive.settings import Quantity
 
 __all__ = ["Description", "Difference", "Drive", "diff", "load", "schema"]
 
@@ -409,96 +408,7 @@ class Drive:
         """
         return self._inner.figure(settled, 0.0).svg(self.title or self.name)
 
-    def fmu(
-        self,
-        path: str | PathLike[str],
-        *,
-        fmi: Literal[2, 3] = 3,
-        record: Recorded | None = None,
-        run: bool = True,
-        until: Quantity | None = None,
-        run_in: Quantity | None = None,
-        method: MethodName | None = None,
-        step: Quantity | None = None,
-        tolerance: Quantity | None = None,
-        onset_depth: Quantity | None = None,
-        accuracy: Quantity | None = None,
-        accuracy_of: Target | None = None,
-        library: str | PathLike[str] | None = None,
-        overwrite: bool = False,
-        progress: Callable[[float], object] | None = None,
-    ) -> Path:
-        """Write a functional mock-up unit (FMU) for co-simulation in other programs.
-
-        The unit needs neither Python nor this package. Every shaft takes ``set_torque``,
-        ``set_speed`` or ``set_angle``, which its parameter ``input`` chooses; tensioners take
-        ``set_force``, fixed centres ``set_centre_x`` and ``set_centre_y``, and what the scene lists
-        under ``tunable`` is a tunable parameter. Outputs are the entries of channels, such as
-        ``span_tension[crank-camshaft]``, in SI units.
-
-        Parameters
-        ----------
-        path
-            The file to write; its name ends in ``.fmu``.
-        fmi
-            Version of the standard.
-        record
-            Channels whose entries are outputs; those of sprockets, shafts, spans, tensioners and
-            energies when absent.
-        run
-            Whether a run without inputs is made, whose verdict and horizon the constants
-            ``at_export`` hold.
-        until, run_in, method, step, tolerance, onset_depth, accuracy, accuracy_of
-            As in `Simulation`; `until` ends that run.
-        library
-            Library of the unit; that of this package when absent.
-        overwrite
-            Whether an earlier file of this name is replaced.
-        progress
-            Called with the share of that run that is done.
-
-        Returns
-        -------
-        Path
-            The file.
-
-        Raises
-        ------
-        ParameterError, SceneError
-            A setting out of range, another ending, or a channel that the drive does not have.
-        AssemblyError
-            The drive does not close or settle.
-        WriteError
-            The file exists, or cannot be written.
-
-        Examples
-        --------
-        >>> import chaindrive as cd
-        >>> unit = cd.scenes.marine_two_sprockets().fmu("drive.fmu", run=False)  # doctest: +SKIP
-        """
-        from chaindrive import fmu as units
-
-        settings = {
-            "record": record,
-            "until": until,
-            "run_in": run_in,
-            "method": method,
-            "step": step,
-            "tolerance": tolerance,
-            "onset_depth": onset_depth,
-            "accuracy": accuracy,
-            "accuracy_of": accuracy_of,
-        }
-        return units.write(
-            self,
-            path,
-            settings,
-            fmi=fmi,
-            run=run,
-            library=library,
-            overwrite=overwrite,
-            progress=progress,
-        )
+    fmu = fmu.export
 
     def __repr__(self) -> str:
         return data_sheet.text(self.name, self.title, self._rows())

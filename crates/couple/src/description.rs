@@ -5,8 +5,9 @@ mod xml;
 
 use std::collections::BTreeSet;
 
-use crate::variable::{EXTRAPOLATION, SHAFT_INPUT};
-use crate::{Causality, Choices, Kind, LIBRARY, Model, Variable};
+use crate::export::LIBRARY;
+use crate::model::Model;
+use crate::variable::{Causality, Choices, EXTRAPOLATION, Kind, SHAFT_INPUT, Variable};
 
 use xml::Xml;
 
@@ -62,7 +63,7 @@ impl Standard {
             ],
         );
         self.interface(&mut xml);
-        self.units(&mut xml, model);
+        units_of(&mut xml, model);
         self.types(&mut xml);
         xml.open("LogCategories", &[]);
         for (name, description) in CATEGORIES {
@@ -108,30 +109,6 @@ impl Standard {
             attributes.push(("canNotUseMemoryManagementFunctions", yes));
         }
         xml.empty("CoSimulation", &attributes);
-    }
-
-    fn units(self, xml: &mut Xml, model: &Model) {
-        let used: BTreeSet<_> = model
-            .variables()
-            .iter()
-            .filter_map(Variable::unit)
-            .collect();
-        xml.open("UnitDefinitions", &[]);
-        for unit in used {
-            xml.open("Unit", &[("name", unit)]);
-            let base: Vec<_> = units::base(unit)
-                .iter()
-                .map(|(name, exponent)| (*name, exponent.to_string()))
-                .collect();
-            let base: Vec<_> = base.iter().map(|(name, it)| (*name, it.as_str())).collect();
-            xml.empty("BaseUnit", &base);
-            if let Some((shown, factor)) = units::shown(unit) {
-                let factor = factor.to_string();
-                xml.empty("DisplayUnit", &[("name", shown), ("factor", &factor)]);
-            }
-            xml.close("Unit");
-        }
-        xml.close("UnitDefinitions");
     }
 
     fn types(self, xml: &mut Xml) {
@@ -186,6 +163,30 @@ impl Standard {
         }
         xml.close("ModelStructure");
     }
+}
+
+fn units_of(xml: &mut Xml, model: &Model) {
+    let used: BTreeSet<_> = model
+        .variables()
+        .iter()
+        .filter_map(Variable::unit)
+        .collect();
+    xml.open("UnitDefinitions", &[]);
+    for unit in used {
+        xml.open("Unit", &[("name", unit)]);
+        let base: Vec<_> = units::base(unit)
+            .iter()
+            .map(|(name, exponent)| (*name, exponent.to_string()))
+            .collect();
+        let base: Vec<_> = base.iter().map(|(name, it)| (*name, it.as_str())).collect();
+        xml.empty("BaseUnit", &base);
+        if let Some((shown, factor)) = units::shown(unit) {
+            let factor = factor.to_string();
+            xml.empty("DisplayUnit", &[("name", shown), ("factor", &factor)]);
+        }
+        xml.close("Unit");
+    }
+    xml.close("UnitDefinitions");
 }
 
 fn items(xml: &mut Xml, choices: &Choices) {

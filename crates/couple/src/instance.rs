@@ -6,9 +6,12 @@ use std::sync::Arc;
 use chaindrive::{SealError, Sealed, Simulation, Snapshot, View, opened, sealed};
 use serde::{Deserialize, Serialize};
 
+use crate::fault::Fault;
+use crate::model::Model;
 use crate::signal::{Held, Point, Signal};
-use crate::variable::{EXTRAPOLATION, HELD, LINEAR, Role, SCENE, SHAFT_INPUT};
-use crate::{Causality, Fault, Kind, Model, Variable};
+use crate::variable::{
+    Causality, EXTRAPOLATION, HELD, Kind, LINEAR, Role, SCENE, SHAFT_INPUT, Variable,
+};
 
 /// Difference of a communication point from the time of the drive that rounding may make, over the time and step.
 const SAME_TIME: f64 = 1e-9;
@@ -111,6 +114,9 @@ impl Saved {
 
 impl Instance {
     /// A drive before its start.
+    ///
+    /// # Panics
+    /// Never: the channels of the ports are those of the drive.
     pub fn new(model: Arc<Model>) -> Self {
         let mut simulation = model.begin.clone();
         let view = simulation.view(&model.ports.channels);

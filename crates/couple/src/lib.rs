@@ -13,6 +13,7 @@
 //! | [`package`] | the archive |
 
 mod description;
+mod export;
 mod fault;
 mod instance;
 mod model;
@@ -22,8 +23,9 @@ mod signal;
 mod variable;
 
 pub use description::Standard;
+pub use export::{Export, Facts, LIBRARY, ResourceError, RunFacts};
 pub use fault::Fault;
 pub use instance::{Instance, Phase, Saved};
-pub use model::{Export, Facts, Model, ModelError};
-pub use package::{LIBRARY, PackageError, package, platform, write};
+pub use model::{Model, ModelError};
+pub use package::{PackageError, package, platform, write};
 pub use variable::{Causality, Choices, Kind, Variable};

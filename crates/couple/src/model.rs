@@ -1,25 +1,17 @@
 //! A drive at the start of its run, as a part of another simulation.
 
 use std::collections::HashMap;
-use std::convert::Infallible;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
-use chaindrive::record::Provenance;
 use chaindrive::scene::SceneError;
 use chaindrive::{
-    Build, Channel, End, Onlooker, Request, RequestError, RunError, Scene, Settings, Simulation,
-    SimulationError, Sink, Stop, execute,
+    Build, Channel, Request, RequestError, Scene, Settings, Simulation, SimulationError,
 };
-use serde::{Deserialize, Serialize};
-use uuid::Uuid;
 
+use crate::export::{Export, ResourceError, identifier};
 use crate::ports::{Ports, usual};
-use crate::{Causality, Variable};
-
-/// Files of a unit among its resources.
-const SCENE: &str = "scene.toml";
-const EXPORT: &str = "export.json";
+use crate::variable::{Causality, Variable};
 
 /// A drive at the start of its run, and its variables: what all instances share.
 #[derive(Debug)]
@@ -34,80 +26,13 @@ pub struct Model {
     every: f64,
 }
 
-/// What a unit is made of.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Export {
-    /// Text of the scene, settings of the run included.
-    pub scene: String,
-    /// What is known of it beside.
-    pub facts: Facts,
-}
-
-/// What a unit says beside its scene.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Facts {
-    /// Build that made the unit.
-    pub build: String,
-    /// Name in the importer.
-    pub name: String,
-    /// Channels whose entries are outputs; empty for the usual ones.
-    pub outputs: Vec<String>,
-    /// A run at the export.
-    pub run: Option<RunFacts>,
-    /// Name-based identifier of the list of variables; empty until it is known. A library of another list would mistake their references.
-    pub variables: String,
-}
-
-/// A run of the scene at the export, without inputs.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct RunFacts {
-    /// Verdict: trusted, caution or distrusted.
-    pub verdict: String,
-    /// Its reasons in words.
-    pub note: String,
-    /// Time up to which waveforms could be followed \[s\]; none where nothing limits them, or nobody knows.
-    pub horizon: Option<f64>,
-    /// The same in words.
-    pub horizon_note: String,
-    /// End of the run \[s\].
-    pub until: f64,
-}
-
-/// Keeps no samples.
-struct Unkept;
-
-impl Sink for Unkept {
-    type Error = Infallible;
-
-    fn begin(&mut self, _: &Simulation, _: &[Channel], _: &Provenance) -> Result<(), Infallible> {
-        Ok(())
-    }
-
-    fn keeps_samples(&self) -> bool {
-        false
-    }
-
-    fn push(&mut self, _: &Simulation) -> Result<(), Infallible> {
-        Ok(())
-    }
-
-    fn end(&mut self, _: &End<'_>) -> Result<(), Infallible> {
-        Ok(())
-    }
-}
-
 /// Why there is no model.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModelError {
     /// A resource cannot be read.
-    #[error("{}: {reason}; export the unit anew", .path.display())]
-    Resource {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        reason: String,
-    },
+    #[error(transparent)]
+    Resource(#[from] ResourceError),
 
     /// The unit was made by a build with other variables.
     #[error(
@@ -137,82 +62,6 @@ pub enum ModelError {
     Output(#[from] SimulationError),
 }
 
-impl Export {
-    /// The scene of a request, settings included, under a name in the importer. The channels to record are the outputs; without them, the
-    /// usual ones.
-    pub fn new(request: &Request, name: &str) -> Self {
-        Self {
-            scene: request.scene.text().to_owned(),
-            facts: Facts {
-                build: Build::here().id.clone(),
-                name: name.to_owned(),
-                outputs: request.record.clone(),
-                run: None,
-                variables: String::new(),
-            },
-        }
-    }
-
-    /// Carries out the request, and keeps what the run says of itself.
-    ///
-    /// # Errors
-    /// [`RunError`] when the run cannot begin.
-    pub fn tell_run(
-        &mut self,
-        request: &Request,
-        onlooker: &dyn Onlooker,
-    ) -> Result<(), RunError<Infallible>> {
-        let report = execute(request, &mut Unkept, onlooker)?;
-        if matches!(report.stop, Stop::Interrupted) {
-            return Err(RunError::Interrupted);
-        }
-        let text = |name: &str| {
-            let text = report.attributes.get(name).and_then(|it| it.as_str());
-            text.unwrap_or_default().to_owned()
-        };
-        let horizon = report.attributes.get("waveform_horizon");
-        self.facts.run = Some(RunFacts {
-            verdict: text("verdict"),
-            note: text("verdict_note"),
-            horizon: horizon.and_then(serde_json::Value::as_f64),
-            horizon_note: text("waveform_note"),
-            until: report.run.until,
-        });
-        Ok(())
-    }
-
-    /// Reads the resources of a unit.
-    ///
-    /// # Errors
-    /// [`ModelError::Resource`].
-    pub fn read(folder: &Path) -> Result<Self, ModelError> {
-        let read = |name: &str| {
-            let path = folder.join(name);
-            std::fs::read_to_string(&path).map_err(|error| ModelError::Resource {
-                path,
-                reason: error.to_string(),
-            })
-        };
-        let scene = read(SCENE)?;
-        let facts = serde_json::from_str(&read(EXPORT)?);
-        let facts = facts.map_err(|error| ModelError::Resource {
-            path: folder.join(EXPORT),
-            reason: error.to_string(),
-        })?;
-        Ok(Self { scene, facts })
-    }
-
-    /// The resources of a unit, by their names.
-    pub(crate) fn resources(&self) -> [(&'static str, String); 2] {
-        [(SCENE, self.scene.clone()), (EXPORT, self.told())]
-    }
-
-    fn told(&self) -> String {
-        // Plain data under names.
-        serde_json::to_string_pretty(&self.facts).unwrap_or_default()
-    }
-}
-
 impl Model {
     /// Starts the drive of an export.
     ///
@@ -240,7 +89,7 @@ impl Model {
         }
         Ok(Self {
             ports,
-            token: token(&export),
+            token: export.token(),
             title: scene.title().to_owned(),
             until: request.run.until,
             every: request.run.every,
@@ -259,7 +108,7 @@ impl Model {
         let export = Export::read(folder)?;
         let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
         let known = known.get_or_insert_with(HashMap::new);
-        let token = token(&export);
+        let token = export.token();
         if let Some(model) = known.get(&token).and_then(Weak::upgrade) {
             return Ok(model);
         }
@@ -300,8 +149,9 @@ impl Model {
         (self.until, self.every)
     }
 
-    pub(crate) fn export(&self) -> &Export {
-        &self.export
+    /// Files that a unit has among its resources: names and texts.
+    pub fn resources(&self) -> [(&'static str, String); 2] {
+        self.export.resources()
     }
 
     /// References of the variables of a direction.
@@ -310,13 +160,4 @@ impl Model {
         all.filter(move |(_, it)| it.causality == causality)
             .map(|(index, _)| index)
     }
-}
-
-fn token(export: &Export) -> String {
-    identifier(&format!("{}\n{}", export.scene, export.told()))
-}
-
-/// Name-based, so that the same text has the same one everywhere.
-fn identifier(text: &str) -> String {
-    Uuid::new_v5(&Uuid::NAMESPACE_OID, text.as_bytes()).to_string()
 }

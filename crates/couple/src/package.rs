@@ -8,10 +8,9 @@ use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-use crate::{Model, Standard};
-
-/// Name of the library in a unit, without the ending of its platform.
-pub const LIBRARY: &str = "chaindrive_fmu";
+use crate::description::Standard;
+use crate::export::LIBRARY;
+use crate::model::Model;
 
 /// Why a unit was not written.
 #[derive(Debug, thiserror::Error)]
@@ -97,7 +96,7 @@ pub fn package(model: &Model, standard: Standard, library: &Path) -> Result<Vec<
         &code,
         0o755,
     )?;
-    for (name, text) in model.export().resources() {
+    for (name, text) in model.resources() {
         file(&format!("resources/{name}"), text.as_bytes(), 0o644)?;
     }
     Ok(archive.finish()?.into_inner())

@@ -6,7 +6,7 @@ use chaindrive::channel::labels;
 use chaindrive::{Channel, Control, Simulation};
 use chaindrive_mechanics::{Input, Parts, Push, Support, System};
 
-use crate::model::Facts;
+use crate::export::Facts;
 use crate::signal::{Kind as Acts, Signal};
 use crate::variable::{
     ANGLE, Causality, EXTRAPOLATION, HELD, Kind, Role, SCENE, SHAFT_INPUT, SPEED, TORQUE, Variable,

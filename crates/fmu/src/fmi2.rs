@@ -196,8 +196,10 @@ pub unsafe extern "C" fn fmi2GetInteger(
     count: usize,
     values: *mut c_int,
 ) -> c_int {
-    // Choices are few.
-    let get = |it: &mut Instance, reference| it.choice(reference).map(|it| it as c_int);
+    let get = |it: &mut Instance, reference| {
+        it.choice(reference)
+            .map(|it| c_int::try_from(it).unwrap_or(c_int::MAX))
+    };
     // SAFETY: the caller promises arrays of this length.
     unsafe {
         read(

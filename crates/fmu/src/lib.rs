@@ -11,10 +11,13 @@ pub mod fmi3;
 
 mod calls;
 mod logger;
+#[cfg(test)]
+mod misuse;
 mod pointers;
 mod states;
 mod units;
 
 /// Blocks that begin where a cache line does, as in the other forms of the program.
+#[cfg(not(test))]
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;

@@ -41,7 +41,7 @@ fn project_files() -> Vec<PathBuf> {
 /// Which crates of the workspace each crate may name.
 #[test]
 fn arrows_point_down() {
-    let allowed: [(&str, &[&str]); 9] = [
+    let allowed: [(&str, &[&str]); 11] = [
         ("validation", &[]),
         ("geometry", &[]),
         ("quantities", &[]),
@@ -62,7 +62,9 @@ fn arrows_point_down() {
             ],
         ),
         ("replay", &["geometry", "mechanics", "chaindrive"]),
-        ("cli", &["chaindrive", "replay"]),
+        ("couple", &["mechanics", "chaindrive"]),
+        ("fmu", &["couple"]),
+        ("cli", &["chaindrive", "couple", "replay"]),
     ];
     // `validation` judges, so nothing but tests may ask for it: it stands in nobody's list.
     for (folder, may) in allowed {
@@ -239,7 +241,14 @@ fn no_member_of_the_chain_family_is_named_outside() {
     ];
     let crates = root().join("crates");
     let mut looked_at = 0;
-    for part in ["mechanics", "chaindrive", "cli", "python", "replay"] {
+    for part in [
+        "mechanics",
+        "chaindrive",
+        "cli",
+        "couple",
+        "python",
+        "replay",
+    ] {
         for path in sources(&crates.join(part).join("src")) {
             let within = inside.iter().any(|it| path.starts_with(crates.join(it)));
             if within || path.ends_with("tests.rs") {

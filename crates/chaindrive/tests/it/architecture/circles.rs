@@ -11,7 +11,7 @@ use std::path::Path;
 
 use super::{arrows, root, sources};
 
-const CRATES: [&str; 11] = [
+const CRATES: [&str; 13] = [
     "identity",
     "quantities",
     "geometry",
@@ -20,6 +20,8 @@ const CRATES: [&str; 11] = [
     "validation",
     "mechanics",
     "chaindrive",
+    "couple",
+    "fmu",
     "replay",
     "cli",
     "python",

@@ -11,7 +11,7 @@ struct Storeys {
     exceptions: &'static [(&'static str, &'static str, &'static str)],
 }
 
-const CRATES: [Storeys; 4] = [
+const CRATES: [Storeys; 6] = [
     Storeys {
         folder: "mechanics",
         layers: &[
@@ -67,6 +67,30 @@ const CRATES: [Storeys; 4] = [
         exceptions: &[],
     },
     Storeys {
+        folder: "couple",
+        layers: &[
+            &["export", "fault", "signal", "variable"],
+            &["ports"],
+            &["model"],
+            &["description", "instance"],
+            &["package"],
+        ],
+        exceptions: &[],
+    },
+    Storeys {
+        folder: "fmu",
+        layers: &[
+            &["logger", "pointers"],
+            &["units"],
+            &["calls"],
+            &["states"],
+            &["fmi3"],
+            &["fmi2"],
+            &["misuse"],
+        ],
+        exceptions: &[],
+    },
+    Storeys {
         folder: "cli",
         layers: &[
             &["failure", "suggested"],
@@ -83,7 +107,7 @@ const CRATES: [Storeys; 4] = [
             &["friction", "profile"],
             &["drive"],
             &["design", "run"],
-            &["live", "precision", "replay", "sweep"],
+            &["fmu", "live", "precision", "replay", "sweep"],
         ],
         exceptions: &[],
     },
