@@ -88,7 +88,7 @@ struct Coupled {
     signals: Vec<Held>,
     shafts: Vec<i64>,
     extrapolation: i64,
-    /// Energy through the inputs, and that of their delay \[J\].
+    /// Work of the inputs, and what of it has not arrived \[J\].
     work: f64,
     error: f64,
 }

@@ -8,7 +8,7 @@
 //! |---|---|
 //! | [`Variable`] | an input, parameter, output or constant, by its value reference |
 //! | [`Instance`] | phases, values, steps, saved states |
-//! | `signal` | an input between two communication points, and the energy that its delay makes |
+//! | `signal` | an input between two communication points, and what of its work has not arrived |
 //! | `description` | `modelDescription.xml` of both versions |
 //! | [`package`] | the archive |
 

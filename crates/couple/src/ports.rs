@@ -126,7 +126,7 @@ impl Ports {
             Causality::Output,
             Role::Work,
         );
-        let error = "energy that the delay of the inputs has made since the start";
+        let error = "energy that was given and has not arrived, since inputs come late; negative where the coupling makes energy";
         let name = "coupling_energy_error";
         builder.add(
             name,

@@ -9,16 +9,15 @@
 //!
 //! Angles and places come where they are told within the step, on a cubic without a jump of speed: to u_k, one step late, or to u_k + r h.
 //!
-//! The value that comes at the end of a step is not the one that acted there. What the other side gave or took with it went astray:
+//! The value that comes at the end of a step is not the one that acted there: work that the other side has given has not arrived.
 //!
 //! ```text
-//! ΔE = Σ (u_k − u(t_k⁻)) Δx_k        u: torque or force, Δx: way of its point within the step that ends at t_k
+//! ΔE = Σ (u_k − u(t_k⁻)) Δx_k         u: torque or force, Δx: way of its point within the step that ends at t_k
 //! ΔE = Σ −τ_k (u_k − u(t_k⁻)) h       u: speed, τ: torque of the chains on the shaft
 //! ΔE = Σ −τ_k (u_k − u_{k−1} − Δx_k)  u: angle
 //! ```
 //!
-//! The first is the sum Σ (τ_k − τ_{k−1}) ω h of held inputs. Positive sums are energy that the delay makes: a coupling that grows unstable
-//! shows it before the motion does.
+//! The first is the sum Σ (τ_k − τ_{k−1}) ω h of held inputs. It is negative where the coupling makes energy: one that grows unstable shows it.
 
 use chaindrive::{Control, Course};
 use serde::{Deserialize, Serialize};

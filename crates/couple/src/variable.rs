@@ -102,9 +102,9 @@ pub(crate) enum Role {
     Extrapolation,
     /// An output, by its place among all values that are read.
     Value(usize),
-    /// Energy that came through inputs.
+    /// Work of the inputs.
     Work,
-    /// Energy that their delay made.
+    /// What of it has not arrived.
     WorkError,
     Constant,
 }
