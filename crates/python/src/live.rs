@@ -1,11 +1,12 @@
 //! Drives that Python moves itself: read at any time, inputs set, states kept.
 
+use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 
 use chaindrive::{Axis, Channel, Control, Course, Request, Settings, SimulationError};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
+use pyo3::types::{PyBytes, PySlice};
 
 use crate::drive::Drive;
 use crate::errors::{IntoException, OrRaise, broken, in_another_thread, parameter};
@@ -29,7 +30,8 @@ pub(crate) struct Simulation {
 #[derive(Debug)]
 pub(crate) struct View {
     seen: Mutex<chaindrive::View>,
-    arrays: Vec<Py<PyArray1<f64>>>,
+    /// All entries, one channel behind the other: NumPy lends one array sooner than many.
+    all: Py<PyArray1<f64>>,
 }
 
 /// A simulation as it was.
@@ -80,13 +82,16 @@ fn held<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 #[pymethods]
 impl View {
-    /// The arrays, in the order of the channels.
+    /// The arrays, in the order of the channels: parts of one.
     #[getter]
-    fn arrays(&self, py: Python<'_>) -> Vec<Py<PyArray1<f64>>> {
-        self.arrays
-            .iter()
-            .map(|array| array.clone_ref(py))
-            .collect()
+    fn arrays<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        let seen = held(&self.seen);
+        let part = |channel| {
+            let Range { start, end } = seen.range(channel);
+            let part = PySlice::new(py, start.cast_signed(), end.cast_signed(), 1);
+            self.all.bind(py).get_item(part)
+        };
+        (0..seen.channels().len()).map(part).collect()
     }
 }
 
@@ -95,10 +100,8 @@ impl View {
     fn fill(&self, py: Python<'_>, simulation: &mut chaindrive::Simulation) -> PyResult<()> {
         let mut seen = held(&self.seen);
         simulation.read_into(&mut seen);
-        for (index, array) in self.arrays.iter().enumerate() {
-            let mut array = array.bind(py).try_readwrite()?;
-            array.as_slice_mut()?.copy_from_slice(seen.values(index));
-        }
+        let mut all = self.all.bind(py).try_readwrite()?;
+        all.as_slice_mut()?.copy_from_slice(seen.all());
         Ok(())
     }
 }
@@ -212,10 +215,8 @@ impl Simulation {
             return Ok(known.clone_ref(py));
         }
         let seen = moving.view(&channels).or_raise()?;
-        let arrays = (0..channels.len()).map(|index| seen.values(index));
-        let arrays = arrays.map(|values| PyArray1::from_slice(py, values).unbind());
         let view = View {
-            arrays: arrays.collect(),
+            all: PyArray1::from_slice(py, seen.all()).unbind(),
             seen: Mutex::new(seen),
         };
         let view = Py::new(py, view)?;

@@ -1,5 +1,7 @@
 //! Views: some channels of a drive in motion, in memory of their own.
 
+use std::ops::Range;
+
 use chaindrive_integrate::Moment;
 use chaindrive_mechanics::{Observation, Sights};
 
@@ -44,8 +46,21 @@ impl View {
     /// # Panics
     /// There are not so many channels.
     pub fn values(&self, channel: usize) -> &[f64] {
+        &self.values[self.range(channel)]
+    }
+
+    /// Entries of all channels, one behind the other.
+    pub fn all(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// Places of a channel among all entries.
+    ///
+    /// # Panics
+    /// There are not so many channels.
+    pub fn range(&self, channel: usize) -> Range<usize> {
         let start = channel.checked_sub(1).map_or(0, |before| self.ends[before]);
-        &self.values[start..self.ends[channel]]
+        start..self.ends[channel]
     }
 }
 
@@ -124,10 +139,22 @@ impl Simulation {
         let clock = self.zero() + self.read;
         let [q, v, flows, z] = &mut self.buffers;
         let Moving { system, state, .. } = &self.moving;
-        state.at(clock, q, v);
-        state.quadratures_at(clock, flows);
-        state.states_at(clock, z);
-        let at = Moment { t: clock, q, v, z };
+        let (at, flows) = if clock.to_bits() == state.t.to_bits() {
+            (
+                Moment {
+                    t: clock,
+                    q: &state.q,
+                    v: &state.v,
+                    z: &state.z,
+                },
+                &*state.quadratures,
+            )
+        } else {
+            state.at(clock, q, v);
+            state.quadratures_at(clock, flows);
+            state.states_at(clock, z);
+            (Moment { t: clock, q, v, z }, flows.as_slice())
+        };
         system.observe_some(sights, at, flows, &mut self.record, seen);
         seen.time = self.read;
     }
