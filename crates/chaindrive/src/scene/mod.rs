@@ -58,6 +58,7 @@ mod edit;
 mod error;
 mod expected;
 mod format;
+mod keys;
 mod limits;
 mod path;
 mod presets;

@@ -3,16 +3,18 @@
 //! Afterwards serde can read the tree: what it would refuse has been refused here, with a place,
 //! a line and a hint.
 
+use std::cell::OnceCell;
 use std::collections::{HashMap, HashSet};
 
 use serde_json::{Map, Value as Json};
 
 use super::error::{Problem, Problems};
 use super::expected::{Expected, Reading, kind_of, request};
+use super::keys::Keys;
 use super::path::push_step;
 use super::run_in::RunIn;
 use super::schema::Version;
-use super::suggest::{nearest, one_of};
+use super::suggest::{did_you_mean, distance, nearest, one_of};
 use super::tree::{Entry, Node, Value};
 use crate::plain::shorten;
 use chaindrive_quantities::{CONTACT_STIFFNESS, Dimension, Range};
@@ -20,21 +22,22 @@ use chaindrive_quantities::{CONTACT_STIFFNESS, Dimension, Range};
 /// Checks `tree` against `schema` and normalises it: quantities become SI numbers, bare names of
 /// kinds become tables.
 pub(crate) fn validate(tree: &mut Node, schema: &Json) -> Problems {
-    let mut validator = Validator::new(schema);
+    let mut validator = Validator::new(schema, schema);
     validator.visit(tree, schema, "", None);
     validator.problems
 }
 
 /// The same of a part on its own, by the name that its type has in the schema.
 pub(crate) fn validate_part(tree: &mut Node, schema: &Json, name: &str) -> Problems {
-    let mut validator = Validator::new(schema);
-    validator.visit(tree, &schema["$defs"][name], "", None);
+    let part = &schema["$defs"][name];
+    let mut validator = Validator::new(schema, part);
+    validator.visit(tree, part, "", None);
     validator.problems
 }
 
 /// SI units of the quantities of a valid tree, by path; the tree is normalised.
 pub(crate) fn units(tree: &mut Node, schema: &Json) -> HashMap<String, &'static str> {
-    let mut validator = Validator::new(schema);
+    let mut validator = Validator::new(schema, schema);
     validator.units = Some(HashMap::new());
     validator.visit(tree, schema, "", None);
     validator.units.unwrap_or_default()
@@ -68,15 +71,20 @@ pub(crate) fn known_version(tree: &Node) -> Result<(), Problem> {
 
 struct Validator<'s> {
     schema: Reading<'s>,
+    /// Schema of the tree, and the keys that it has anywhere: needed for the first unknown one.
+    root: &'s Json,
+    keys: OnceCell<Keys>,
     problems: Problems,
     /// Units of the quantities passed, where they are wanted.
     units: Option<HashMap<String, &'static str>>,
 }
 
 impl<'s> Validator<'s> {
-    fn new(schema: &'s Json) -> Self {
+    fn new(schema: &'s Json, root: &'s Json) -> Self {
         Self {
             schema: Reading::new(schema),
+            root,
+            keys: OnceCell::new(),
             problems: Problems::default(),
             units: None,
         }
@@ -185,7 +193,10 @@ impl<'s> Validator<'s> {
                     None => self.visit(&mut entry.node, property, &place, exponent),
                 },
                 None => self.problems.push_with(|| {
-                    let (near, problem) = unknown_key(entry, &place, &known, kind);
+                    let keys = self
+                        .keys
+                        .get_or_init(|| Keys::below(self.root, &self.schema));
+                    let (near, problem) = unknown_key(entry, path, &known, kind, keys);
                     meant.extend(near);
                     problem
                 }),
@@ -447,19 +458,31 @@ fn number(node: &Node) -> Option<f64> {
     }
 }
 
+/// The problem of a key that the table at `path` does not have, and the key of that table that was meant.
 fn unknown_key(
     entry: &Entry,
-    place: &str,
+    path: &str,
     known: &[&str],
     kind: Option<&str>,
+    keys: &Keys,
 ) -> (Option<String>, Problem) {
     let message = match kind {
         Some(kind) => format!("unknown key; a `{kind}` has no `{}`", shorten(&entry.key)),
         None => "unknown key".to_owned(),
     };
-    let problem = Problem::new(place, entry.line, message);
-    let near = nearest(&entry.key, known).map(str::to_owned);
-    (near, problem.hint(one_of(&entry.key, known)))
+    let problem = Problem::new(&below(path, &entry.key), entry.line, message);
+    let near = nearest(&entry.key, known);
+    let typing_errors = near.and_then(|near| distance(&entry.key, near));
+    match keys.elsewhere((&entry.key, &entry.node.value), path) {
+        // One typing error is likelier than a wrong table, and a wrong table than two typing errors.
+        Some((far, paths)) if typing_errors.is_none_or(|errors| errors > far + 1) => {
+            (None, problem.hint(did_you_mean(&paths)))
+        }
+        _ => {
+            let near = near.map(str::to_owned);
+            (near, problem.hint(one_of(&entry.key, known)))
+        }
+    }
 }
 
 /// A path with one more step.

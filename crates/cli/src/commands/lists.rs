@@ -2,7 +2,7 @@
 
 use chaindrive::catalogue::{CatalogueChain, Number, catalogue as chains};
 use chaindrive::figure::{Measure, with_digits};
-use chaindrive::scene::{presets, schema as scene_schema};
+use chaindrive::scene::{chain_named, presets, schema as scene_schema};
 use chaindrive::{Build, Channel, InstructionSet, Origin, Scene};
 use clap::Args;
 
@@ -101,8 +101,8 @@ const SHOWN: [(Number, &str, f64); 8] = [
 
 pub(crate) fn catalogue(arguments: &Catalogue) -> Result<(), Failure> {
     if let Some(name) = &arguments.name {
-        let unknown = || Failure::Argument(format!("no chain of the catalogue is named `{name}`"));
-        return entry(CatalogueChain::named(name).ok_or_else(unknown)?);
+        let chain = chain_named(name).map_err(|problem| Failure::Argument(problem.to_string()));
+        return entry(chain?);
     }
     let heading = SHOWN.map(|(_, heading, _)| format!("{heading:>10}"));
     print(format_args!(
