@@ -170,6 +170,7 @@ where
 }
 
 fn told(failure: &failure::Failure) -> u8 {
-    say(failure);
+    // With excerpts.
+    say(format_args!("{failure:#}"));
     failure.exit_code()
 }

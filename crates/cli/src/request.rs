@@ -153,13 +153,12 @@ impl SceneArguments {
     }
 }
 
-/// The mistake in a value that an option gave: it stands in no line of the scene.
-fn by_option(mut error: SceneError, option: &str) -> SceneError {
-    option.clone_into(&mut error.source_name);
-    for problem in &mut error.problems {
-        problem.line = None;
+/// The mistake in a value that an option gave.
+fn by_option(error: SceneError, option: &str) -> SceneError {
+    SceneError {
+        source_name: option.to_owned(),
+        ..error.nowhere()
     }
-    error
 }
 
 impl RunArguments {

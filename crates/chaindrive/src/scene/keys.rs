@@ -114,10 +114,13 @@ const FIRST: &str = "0";
 
 /// Keys of a table, of all members of a family, or the entry of a list.
 fn steps(schema: &Json) -> Vec<(&str, &Json)> {
-    let properties = |table: &'_ Json| -> Vec<(&str, &Json)> { Vec::from_iter(keys_of(table)) };
     match Expected::of(schema) {
-        Expected::Table(table) => properties(table),
-        Expected::List(list) => list.get("items").map(|it| (FIRST, it)).into_iter().collect(),
+        Expected::Table(table) => keys_of(table).collect(),
+        Expected::List(list) => list
+            .get("items")
+            .map(|it| (FIRST, it))
+            .into_iter()
+            .collect(),
         Expected::Kinds(members, _) => members
             .iter()
             .filter(|member| kind_of(member).is_some())
@@ -130,7 +133,9 @@ fn steps(schema: &Json) -> Vec<(&str, &Json)> {
 
 fn keys_of(table: &Json) -> impl Iterator<Item = (&str, &Json)> {
     let all = table.get("properties").and_then(Json::as_object);
-    all.into_iter().flatten().map(|(key, it)| (key.as_str(), it))
+    all.into_iter()
+        .flatten()
+        .map(|(key, it)| (key.as_str(), it))
 }
 
 /// A path with entry 0 in place of every other.
@@ -150,7 +155,8 @@ mod tests {
 
     fn elsewhere(written: &str, value: &Value, within: &str) -> Vec<String> {
         let keys = Keys::below(format::raw(), &Reading::new(format::raw()));
-        keys.elsewhere((written, value), within).map_or_else(Vec::new, |(_, paths)| paths)
+        keys.elsewhere((written, value), within)
+            .map_or_else(Vec::new, |(_, paths)| paths)
     }
 
     #[test]
@@ -170,7 +176,13 @@ mod tests {
         let speed = elsewhere("speed", &number, "sprockets[3]");
         assert_eq!(speed, ["sprockets[3].motion.speed"]);
         let friction = elsewhere("friction", &Value::Table(Vec::new()), "contact");
-        assert!(friction.contains(&"contact.teeth.friction".to_owned()), "{friction:?}");
-        assert!(friction.iter().all(|path| path.starts_with("contact.")), "{friction:?}");
+        assert!(
+            friction.contains(&"contact.teeth.friction".to_owned()),
+            "{friction:?}"
+        );
+        assert!(
+            friction.iter().all(|path| path.starts_with("contact.")),
+            "{friction:?}"
+        );
     }
 }

@@ -4,6 +4,7 @@ mod bench;
 mod command;
 mod first_use;
 mod interrupt;
+mod mistakes;
 mod replay;
 mod resume;
 mod same_run;
