@@ -1,5 +1,7 @@
 //! How a command ends when it does not end well.
 
+use std::io::ErrorKind;
+
 use chaindrive::record::{ReadError, ResumeError, WriteError};
 use chaindrive::scene::SceneError;
 use chaindrive::sweep::SweepError;
@@ -58,7 +60,7 @@ pub(crate) enum Failure {
     Read(#[from] ReadError),
 
     /// The result could not be written.
-    #[error("{path}: {source}")]
+    #[error("{path}: {source}{}", remedy(.source))]
     File {
         path: String,
         source: std::io::Error,
@@ -79,6 +81,15 @@ pub(crate) enum Failure {
     /// The user stopped the run.
     #[error("interrupted")]
     Interrupted,
+}
+
+/// What to do where a file cannot be written.
+fn remedy(error: &std::io::Error) -> &'static str {
+    match error.kind() {
+        ErrorKind::NotFound => "; make the folder first, or choose another",
+        ErrorKind::PermissionDenied => "; choose a place where you may write",
+        _ => "",
+    }
 }
 
 impl From<SweepError> for Failure {

@@ -24,7 +24,7 @@ use std::path::PathBuf;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
-use terminal::say;
+use terminal::tell;
 
 use commands::{
     bench, check, describe, design, draw, lists, replay, report, resume, run as run_command,
@@ -170,7 +170,6 @@ where
 }
 
 fn told(failure: &failure::Failure) -> u8 {
-    // With excerpts.
-    say(format_args!("{failure:#}"));
+    tell(failure);
     failure.exit_code()
 }

@@ -28,16 +28,16 @@ pub(crate) struct SceneArguments {
 #[derive(Debug, Default, Args)]
 pub(crate) struct RunArguments {
     /// End of the run, such as "1 s" or 1
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     until: Option<String>,
 
     /// Time simulated before t = 0: seconds, turns of a sprocket such as "5 turns of camshaft", or auto, until the
     /// tensions are steady
-    #[arg(long, value_name = "TIME|TURNS|auto")]
+    #[arg(long, value_name = "TIME|TURNS|auto", allow_hyphen_values = true)]
     run_in: Option<String>,
 
     /// Time between two samples, such as "0.1 ms"
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     every: Option<String>,
 
     /// Method of time stepping; implicit-damping and generalized-alpha are for rigid links and free rollers
@@ -45,7 +45,7 @@ pub(crate) struct RunArguments {
     method: Option<String>,
 
     /// Step of a method with a fixed step, longest step of an adaptive one
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     step: Option<String>,
 
     /// Relative tolerance of an adaptive method

@@ -90,13 +90,13 @@ impl Scene {
         let text = if is_json(&self.text) {
             let mut root: Json = serde_json::from_str(&self.text).unwrap_or_default();
             put_json(&mut root, &keys, json)
-                .ok_or_else(|| self.refuse(path, "nothing can be put here", None))?;
+                .ok_or_else(|| self.refuse(path, "nothing can be put here", Some(PUT.into())))?;
             format!("{root:#}\n")
         } else {
             let text = self.text.strip_prefix('\u{feff}').unwrap_or(&self.text);
             let mut document: DocumentMut = text.parse().unwrap_or_default();
             put_toml(document.as_item_mut(), &keys, toml)
-                .ok_or_else(|| self.refuse(path, "nothing can be put here", None))?;
+                .ok_or_else(|| self.refuse(path, "nothing can be put here", Some(PUT.into())))?;
             document.to_string()
         };
         self.edited(&text, &keys)
@@ -138,6 +138,9 @@ impl Scene {
         Ok(keys)
     }
 }
+
+/// Remedy for a path that goes on behind a value.
+const PUT: &str = "give the path of a table or a value, such as `chain.links`";
 
 enum Key {
     Name(String),

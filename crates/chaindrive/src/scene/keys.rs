@@ -1,5 +1,7 @@
 //! Places of keys in the format, for whoever writes a key without the tables that lead to it.
 
+use std::collections::HashSet;
+
 use serde_json::Value as Json;
 
 use super::expected::{Expected, Reading, kind_of};
@@ -54,7 +56,7 @@ impl Takes {
 
 impl Keys {
     pub(crate) fn below(root: &Json, schema: &Reading<'_>) -> Self {
-        let mut keys = Vec::new();
+        let (mut keys, mut seen) = (Vec::new(), HashSet::new());
         let mut tables = vec![(String::new(), root)];
         for level in 0..LEVELS {
             let mut next = Vec::new();
@@ -62,8 +64,10 @@ impl Keys {
                 for (step, inner) in steps(schema.core(table)) {
                     let mut place = path.clone();
                     push_step(&mut place, step);
-                    let is_entry = step == FIRST;
-                    if !is_entry && !keys.iter().any(|key: &Key| key.path == place) {
+                    if !seen.insert(place.clone()) {
+                        continue;
+                    }
+                    if step != FIRST {
                         keys.push(Key {
                             level,
                             path: place.clone(),
@@ -164,7 +168,10 @@ mod tests {
         let (number, table) = (Value::Integer(20), Value::Table(Vec::new()));
         assert_eq!(elsewhere("links", &number, ""), ["chain.links"]);
         assert_eq!(elsewhere("Pretension", &number, ""), ["route.pretension"]);
-        assert_eq!(elsewhere("teeth", &number, ""), ["sprockets[0].teeth"]);
+        assert_eq!(
+            elsewhere("teeth", &number, ""),
+            ["sprockets[0].teeth", "gears[0].teeth"]
+        );
         assert_eq!(elsewhere("teeth", &table, ""), ["contact.teeth"]);
         assert_eq!(elsewhere("xyzzy", &number, ""), [""; 0]);
     }
@@ -173,8 +180,8 @@ mod tests {
     #[test]
     fn keys_below_the_table_go_first() {
         let number = Value::Float(0.1);
-        let speed = elsewhere("speed", &number, "sprockets[3]");
-        assert_eq!(speed, ["sprockets[3].motion.speed"]);
+        let preload = elsewhere("preload", &number, "tensioners[3]");
+        assert_eq!(preload, ["tensioners[3].push.preload"]);
         let friction = elsewhere("friction", &Value::Table(Vec::new()), "contact");
         assert!(
             friction.contains(&"contact.teeth.friction".to_owned()),

@@ -7,7 +7,7 @@ use clap::Args;
 use crate::failure::Failure;
 use crate::progress::waiting;
 use crate::request::load;
-use crate::terminal::{print, say};
+use crate::terminal::{print, say, tell};
 
 /// Reads scenes, assembles their drives, and reports everything that is wrong.
 #[derive(Debug, Args)]
@@ -24,7 +24,7 @@ pub(crate) fn check(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
             Ok(what) => print(format_args!("{name}: {what}"))?,
             Err(Failure::Interrupted) => return Err(Failure::Interrupted),
             Err(failure) => {
-                say(failure);
+                tell(&failure);
                 wrong += 1;
             }
         }

@@ -84,7 +84,7 @@ const SCENES: [(&str, &str); 28] = [
     ("links = 78", "links = 78.5"),
     ("links = 78", "links = \"many\""),
     ("links = 78", "links = -4"),
-    ("links = 78", "links = 70"),
+    ("links = 78", "links = 2"),
     ("links = 78", "lynks = 78"),
     ("links = 78", "links = = 78"),
     ("[chain]\n", "links = 78\n[chain]\n"),
