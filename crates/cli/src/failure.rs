@@ -145,6 +145,27 @@ impl Failure {
         }
     }
 
+    /// File, scene or result that it is about, where it is known.
+    pub(crate) fn place(&self) -> Option<String> {
+        match self {
+            Self::Scene(error) => Some(error.source_name.clone()),
+            Self::Sweep(SweepError::Scene(error)) => Some(error.source_name.clone()),
+            Self::Start { scene, .. }
+            | Self::Simulation { scene, .. }
+            | Self::Distrusted { scene } => Some(scene.clone()),
+            Self::File { path, .. } | Self::Taken { path, .. } => Some(path.clone()),
+            _ => None,
+        }
+    }
+
+    /// The mistakes in a scene, if it is about some.
+    pub(crate) fn scene_error(&self) -> Option<&SceneError> {
+        match self {
+            Self::Scene(error) | Self::Sweep(SweepError::Scene(error)) => Some(error),
+            _ => None,
+        }
+    }
+
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
             Self::Simulation { .. } | Self::Variants { .. } => 1,

@@ -74,6 +74,13 @@ pub(crate) struct RunArguments {
     events: Vec<String>,
 }
 
+/// Reads a number of things, at least one.
+pub(crate) fn some<T: TryFrom<u64>>(text: &str) -> Result<T, String> {
+    let number = text.parse().ok().filter(|number: &u64| *number > 0);
+    let number = number.and_then(|number| T::try_from(number).ok());
+    number.ok_or_else(|| "must be a whole number, 1 or more".to_owned())
+}
+
 /// Channels as shells complete them.
 pub(crate) fn channels() -> Suggested {
     let names = Channel::ALL.iter().map(|channel| channel.name());

@@ -250,6 +250,11 @@ impl Scene {
         &self.text
     }
 
+    /// The scene as JSON, as it was written: quantities may be texts with a unit.
+    pub fn json(&self) -> serde_json::Value {
+        self.tree.to_json()
+    }
+
     /// Settings of a run and channels to record, unless the caller gives others.
     pub fn run_defaults(&self) -> RunDefaults {
         let version = self.content.defaults.unwrap_or_default();

@@ -4,6 +4,7 @@ use chaindrive::precision::choose;
 use chaindrive::{Description, Request, assemble, patiently};
 use clap::Args;
 
+use crate::answer::answer;
 use crate::failure::Failure;
 use crate::request::{RunArguments, SceneArguments};
 use crate::terminal::{print, say};
@@ -34,7 +35,8 @@ pub(crate) fn describe(
         ..
     } = arguments.run.apply(&arguments.scene.load(interrupted)?)?;
     let drive = scene.drive()?;
-    for note in arguments.scene.notes(&scene) {
+    let notes = arguments.scene.notes(&scene);
+    for note in notes.iter().filter(|_| !arguments.json) {
         say(note);
     }
     // Assembled once: long chains that sag take half a minute to settle.
@@ -49,8 +51,7 @@ pub(crate) fn describe(
     let described = described.and_then(|described| described);
     let description = Failure::or_interrupted(described, scene.name())?;
     if arguments.json {
-        let json = serde_json::to_string_pretty(&description);
-        print(json.map_err(|error| Failure::Argument(error.to_string()))?)
+        answer(&description)
     } else {
         let title = scene.title();
         let title = if title.is_empty() {

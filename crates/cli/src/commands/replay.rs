@@ -10,6 +10,7 @@ use clap::Args;
 
 use crate::Drawn;
 use crate::failure::Failure;
+use crate::request::some;
 use crate::terminal::say;
 
 const PAGES: &str = "\
@@ -39,7 +40,7 @@ pub(crate) struct Arguments {
     plot: Option<Vec<String>>,
 
     /// Largest number of frames, 5001 unless given; of more samples every n-th is taken
-    #[arg(long, value_name = "NUMBER", value_parser = some_frames)]
+    #[arg(long, value_name = "NUMBER", value_parser = some::<usize>)]
     frames: Option<usize>,
 
     #[command(flatten)]
@@ -64,13 +65,6 @@ struct Movie {
     /// Makes a movie instead (.gif), by the command of the Python package
     #[arg(long, conflicts_with = "plot")]
     gif: bool,
-}
-
-fn some_frames(text: &str) -> Result<usize, String> {
-    match text.parse() {
-        Ok(0) | Err(_) => Err("must be a whole number, 1 or more".into()),
-        Ok(number) => Ok(number),
-    }
 }
 
 impl Arguments {

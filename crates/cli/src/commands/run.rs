@@ -6,8 +6,12 @@ use std::path::PathBuf;
 use chaindrive::record::{Existing, take_over};
 use chaindrive::{Given, Onlooker, Report, RunError, Simulation, Stop, execute};
 use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::{Map, Value};
 
 use super::output::Target;
+use crate::answer::answer;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::request::{RunArguments, SceneArguments};
@@ -46,6 +50,37 @@ pub(crate) struct Arguments {
 
     #[command(flatten)]
     telling: Telling,
+
+    /// Prints JSON in place of the page: how the run ended, warnings, and the attributes of the result
+    #[arg(long, conflicts_with_all = ["quiet", "numerics"])]
+    json: bool,
+}
+
+/// Answer of `chaindrive run --json`.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct Answer {
+    /// File or embedded scene.
+    scene: String,
+    /// How it ended; of a run that is not complete, stderr says why.
+    status: Status,
+    /// Where the samples are; absent where they were not kept.
+    output: Option<PathBuf>,
+    /// How far the result can be trusted, and whatever else was noticed; empty where there is nothing to say.
+    warnings: Vec<String>,
+    /// All that the result says of itself, as in a store: numbers in SI units, texts, and lists of them.
+    attributes: Map<String, Value>,
+}
+
+/// How a run or a sweep ended.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Status {
+    /// It reached its end.
+    Complete,
+    /// It was stopped; what there is was kept.
+    Interrupted,
+    /// It failed, or some variants did; what there is was kept.
+    Failed,
 }
 
 /// How much is said of a result, and how strictly it is taken.
@@ -68,10 +103,12 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
     let target = Target::of(arguments.output.as_deref())?;
     let mut request = arguments.run.apply(&arguments.scene.load(interrupted)?)?;
     let scene = request.scene.name().to_owned();
-    if !arguments.telling.quiet {
-        for note in arguments.scene.notes(&request.scene) {
-            say(note);
-        }
+    let notes = arguments.scene.notes(&request.scene);
+    for note in notes
+        .iter()
+        .filter(|_| !arguments.telling.quiet && !arguments.json)
+    {
+        say(note);
     }
     if let Some(every) = &arguments.checkpoint_every {
         target.for_checkpoints()?;
@@ -95,6 +132,22 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
     let report = execute(&request, &mut result, &terminal);
     let report = report.map_err(|error| not_run(error, &scene))?;
     drop(terminal);
+    if arguments.json {
+        let clashes = report.simulation.assembled().warnings.iter();
+        let warnings = notes.into_iter().chain(clashes.map(ToString::to_string));
+        answer(&Answer {
+            scene: scene.clone(),
+            status: match report.stop {
+                Stop::End => Status::Complete,
+                Stop::Interrupted => Status::Interrupted,
+                Stop::Failed(_) => Status::Failed,
+            },
+            output: arguments.output.clone(),
+            warnings: warnings.chain(report.verdict.warning()).collect(),
+            attributes: report.attributes.clone(),
+        })?;
+        return ended(report, &scene, arguments.telling.strict);
+    }
     concluded(report, &scene, arguments.telling)
 }
 
@@ -133,6 +186,11 @@ pub(super) fn concluded(report: Report, scene: &str, telling: Telling) -> Result
     if !quiet && report.summary.samples > 0 {
         print(told(&report, numerics))?;
     }
+    ended(report, scene, strict)
+}
+
+/// How a run ended, as the exit code tells it.
+fn ended(report: Report, scene: &str, strict: bool) -> Result<(), Failure> {
     match report.stop {
         Stop::End if strict && report.verdict.is_distrusted() => Err(Failure::Distrusted {
             scene: scene.to_owned(),

@@ -4,18 +4,21 @@ mod design;
 mod output;
 mod vary;
 
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use chaindrive::Request;
 use chaindrive::record::{Existing, take_over};
 use chaindrive::sweep::{Coordinator, Go, Sweep, SweepMemory, SweepStore, Tally};
 use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::output::Target;
+use super::run::Status;
+use crate::answer::answer;
 use crate::failure::Failure;
 use crate::progress::Progress;
-use crate::request::{RunArguments, SceneArguments};
+use crate::request::{some, RunArguments, SceneArguments};
 use crate::terminal::{print, say};
 use output::Table;
 
@@ -77,8 +80,8 @@ pub(crate) struct Arguments {
     run: RunArguments,
 
     /// Variants at a time; as many as there are cores unless given
-    #[arg(short, long, value_name = "N")]
-    jobs: Option<NonZeroUsize>,
+    #[arg(short, long, value_name = "N", value_parser = some::<usize>)]
+    jobs: Option<usize>,
 
     /// Where the result goes: a Zarr store (.zarr), or a table with a row a variant (.csv)
     #[arg(short, long, value_name = "OUT")]
@@ -95,6 +98,67 @@ pub(crate) struct Arguments {
     /// Prints errors only, and a line if variants are not to be trusted
     #[arg(short, long)]
     quiet: bool,
+
+    /// Prints JSON in place of the report
+    #[arg(long, conflicts_with = "quiet")]
+    json: bool,
+}
+
+/// Answer of `chaindrive sweep --json`.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct Answer {
+    /// File or embedded scene.
+    scene: String,
+    /// How it ended.
+    status: Status,
+    /// Where the result is; absent where it was not kept.
+    output: Option<PathBuf>,
+    /// Paths that were varied, in the order of their dimensions.
+    swept: Vec<String>,
+    /// Number of variants.
+    variants: usize,
+    /// Variants that reached their end.
+    finished: usize,
+    /// Variants that failed.
+    failed: usize,
+    /// Variants that were not carried out.
+    open: usize,
+    /// Variants that contradict themselves, among those that reached their end.
+    distrusted: usize,
+    /// The first failures, with their variants.
+    failures: Vec<String>,
+    /// What speaks against the result; empty where nothing does.
+    warnings: Vec<String>,
+}
+
+impl Answer {
+    fn of(arguments: &Arguments, sweep: &Sweep, tally: &Tally) -> Self {
+        Self {
+            scene: sweep.scene().name().to_owned(),
+            status: match tally.failed {
+                _ if tally.open > 0 => Status::Interrupted,
+                0 => Status::Complete,
+                _ => Status::Failed,
+            },
+            output: arguments.output.clone(),
+            swept: sweep
+                .dimensions()
+                .iter()
+                .map(|it| it.path.clone())
+                .collect(),
+            variants: sweep.len(),
+            finished: tally.finished,
+            failed: tally.failed,
+            open: tally.open,
+            distrusted: tally.distrusted,
+            failures: tally
+                .failures(sweep)
+                .into_iter()
+                .map(|it| it.to_string())
+                .collect(),
+            warnings: tally.warning(sweep).into_iter().collect(),
+        }
+    }
 }
 
 pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
@@ -118,7 +182,7 @@ pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
     if let Some(path) = arguments.output.as_ref().filter(|_| arguments.take_over) {
         take_over(path)?;
     }
-    let jobs = arguments.jobs.map(NonZeroUsize::get);
+    let jobs = arguments.jobs;
     let mut progress = Progress::new(arguments.quiet);
     let mut table = None;
     let mut coordinator: Box<dyn Coordinator> = match target {
@@ -165,14 +229,18 @@ fn conclude(
     tally: &Tally,
     report: String,
 ) -> Result<(), Failure> {
-    if !arguments.quiet {
-        print(report)?;
-    }
-    if let Some(warning) = tally.warning(sweep) {
-        say(warning);
-    }
-    for failure in tally.failures(sweep) {
-        say(failure);
+    if arguments.json {
+        answer(&Answer::of(arguments, sweep, tally))?;
+    } else {
+        if !arguments.quiet {
+            print(report)?;
+        }
+        if let Some(warning) = tally.warning(sweep) {
+            say(warning);
+        }
+        for failure in tally.failures(sweep) {
+            say(failure);
+        }
     }
     match tally.failed {
         _ if tally.open > 0 => Err(Failure::Interrupted),

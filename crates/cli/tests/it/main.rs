@@ -5,6 +5,7 @@ mod command;
 mod first_use;
 mod interrupt;
 mod mistakes;
+mod misuse;
 mod replay;
 mod resume;
 mod same_run;

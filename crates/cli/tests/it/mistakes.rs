@@ -90,7 +90,7 @@ const SCENES: [(&str, &str); 28] = [
     ("[chain]\n", "links = 78\n[chain]\n"),
     ("[chain]\n", "[chan]\n"),
     ("restitution = 0.8", "restitution = 1.4"),
-    ("restitution = 0.8", "restitution = \"0.8\""),
+    ("restitution = 0.8", "restitution = \"often\""),
     ("restitution = 0.8", "friction = { kind = \"columb\" }"),
     ("restitution = 0.8", "law = { kind = \"power\", stiffness = \"6e11 N/m\", exponent = 1.5 }"),
     ("name = \"driven\"", "name = \"driver\""),

@@ -70,7 +70,8 @@ const CRATES: [Storeys; 4] = [
         folder: "cli",
         layers: &[
             &["failure", "suggested"],
-            &["csv", "progress", "request", "terminal"],
+            &["complaint", "csv", "progress", "request", "terminal"],
+            &["answer"],
             &["commands"],
         ],
         exceptions: &[],
