@@ -148,8 +148,9 @@ impl Failure {
     /// File, scene or result that it is about, where it is known.
     pub(crate) fn place(&self) -> Option<String> {
         match self {
-            Self::Scene(error) => Some(error.source_name.clone()),
-            Self::Sweep(SweepError::Scene(error)) => Some(error.source_name.clone()),
+            Self::Scene(error) | Self::Sweep(SweepError::Scene(error)) => {
+                Some(error.source_name.clone())
+            }
             Self::Start { scene, .. }
             | Self::Simulation { scene, .. }
             | Self::Distrusted { scene } => Some(scene.clone()),

@@ -18,6 +18,7 @@ mod csv;
 mod failure;
 mod progress;
 mod request;
+mod stream;
 mod suggested;
 mod terminal;
 

@@ -76,9 +76,18 @@ pub(crate) struct RunArguments {
 
 /// Reads a number of things, at least one.
 pub(crate) fn some<T: TryFrom<u64>>(text: &str) -> Result<T, String> {
-    let number = text.parse().ok().filter(|number: &u64| *number > 0);
+    counted(text, 1)
+}
+
+/// Reads a number of things, perhaps none.
+pub(crate) fn any<T: TryFrom<u64>>(text: &str) -> Result<T, String> {
+    counted(text, 0)
+}
+
+fn counted<T: TryFrom<u64>>(text: &str, least: u64) -> Result<T, String> {
+    let number = text.parse().ok().filter(|number| *number >= least);
     let number = number.and_then(|number| T::try_from(number).ok());
-    number.ok_or_else(|| "must be a whole number, 1 or more".to_owned())
+    number.ok_or_else(|| format!("must be a whole number, {least} or more"))
 }
 
 /// Channels as shells complete them.

@@ -17,7 +17,7 @@ pub struct Problem {
     /// The values that are allowed, or something to try.
     pub hint: Option<String>,
     /// The line of the text with a caret under the place, two lines; absent without a place.
-    pub excerpt: Option<String>,
+    pub excerpt: Option<Box<str>>,
 }
 
 impl Problem {
@@ -134,7 +134,8 @@ impl SceneError {
     pub(crate) fn within(mut self, text: &str) -> Self {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         for problem in &mut self.problems {
-            problem.excerpt = problem.place.and_then(|place| place.excerpt(text));
+            let excerpt = problem.place.and_then(|place| place.excerpt(text));
+            problem.excerpt = excerpt.map(String::into_boxed_str);
         }
         self
     }

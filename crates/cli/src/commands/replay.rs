@@ -10,6 +10,7 @@ use clap::Args;
 
 use crate::Drawn;
 use crate::failure::Failure;
+use crate::progress::waiting;
 use crate::request::some;
 use crate::terminal::say;
 
@@ -108,7 +109,9 @@ pub(crate) fn replay(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> R
     };
     let wanted = |channel: &str| selection.wants(channel);
     let recorded = Recorded::open(&arguments.result, &wanted, selection.frames)?;
-    let film = film(&recorded, &selection, interrupted);
+    let film = waiting("drawing", interrupted, |stop| {
+        film(&recorded, &selection, stop)
+    });
     let film = film.map_err(|error| no_film(error, &arguments.result))?;
     let text = page(&film);
     fs::write(&output, &text).map_err(|source| Failure::File {

@@ -3,19 +3,18 @@
 use std::cell::RefCell;
 use std::path::PathBuf;
 
-use chaindrive::record::{Existing, take_over};
 use chaindrive::{Given, Onlooker, Report, RunError, Simulation, Stop, execute};
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use super::output::Target;
+use super::output::{ONE_DOCUMENT, Page, Place, Target};
 use crate::answer::answer;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::request::{RunArguments, SceneArguments};
-use crate::terminal::{print, say};
+use crate::terminal::say;
 
 /// Simulates a scene and ends with a summary.
 #[derive(Debug, Args)]
@@ -26,17 +25,8 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     run: RunArguments,
 
-    /// Where the samples go: a Zarr store (.zarr), readable while the run goes on, or a table (.csv)
-    #[arg(short, long, value_name = "OUT")]
-    output: Option<PathBuf>,
-
-    /// Replaces an earlier result of the same name
-    #[arg(long)]
-    overwrite: bool,
-
-    /// Takes over where another user, or a process that died, left the folder of a writer
-    #[arg(long)]
-    take_over: bool,
+    #[command(flatten)]
+    place: Place,
 
     /// Simulated time between two checkpoints in a Zarr result, such as "10 ms": killed at any moment, the run goes on
     /// from the last one by `chaindrive resume`. The samples are the same as without, to the last bit
@@ -100,7 +90,11 @@ pub(super) struct Telling {
 }
 
 pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
-    let target = Target::of(arguments.output.as_deref())?;
+    let target = Target::of(&arguments.place)?;
+    let page = target.page();
+    if arguments.json && page == Page::Aside {
+        return Err(Failure::Argument(ONE_DOCUMENT.to_owned()));
+    }
     let mut request = arguments.run.apply(&arguments.scene.load(interrupted)?)?;
     let scene = request.scene.name().to_owned();
     let notes = arguments.scene.notes(&request.scene);
@@ -119,15 +113,7 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
     if arguments.no_error {
         request = request.without_estimate();
     }
-    let existing = if arguments.overwrite {
-        Existing::Replace
-    } else {
-        Existing::Keep
-    };
-    if let Some(path) = arguments.output.as_ref().filter(|_| arguments.take_over) {
-        take_over(path)?;
-    }
-    let mut result = target.output(existing);
+    let mut result = target.output(arguments.place.existing()?);
     let terminal = Terminal::new(arguments.telling.quiet, interrupted);
     let report = execute(&request, &mut result, &terminal);
     let report = report.map_err(|error| not_run(error, &scene))?;
@@ -142,13 +128,13 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
                 Stop::Interrupted => Status::Interrupted,
                 Stop::Failed(_) => Status::Failed,
             },
-            output: arguments.output.clone(),
+            output: arguments.place.output.clone(),
             warnings: warnings.chain(report.verdict.warning()).collect(),
             attributes: report.attributes.clone(),
         })?;
         return ended(report, &scene, arguments.telling.strict);
     }
-    concluded(report, &scene, arguments.telling)
+    concluded(report, &scene, arguments.telling, page)
 }
 
 /// Why there is no report.
@@ -169,7 +155,12 @@ pub(super) fn not_run<E: std::error::Error + Into<Failure>>(
 }
 
 /// Says what came of a run.
-pub(super) fn concluded(report: Report, scene: &str, telling: Telling) -> Result<(), Failure> {
+pub(super) fn concluded(
+    report: Report,
+    scene: &str,
+    telling: Telling,
+    page: Page,
+) -> Result<(), Failure> {
     let Telling {
         quiet,
         numerics,
@@ -184,7 +175,7 @@ pub(super) fn concluded(report: Report, scene: &str, telling: Telling) -> Result
         say(format_args!("{scene}: {warning}"));
     }
     if !quiet && report.summary.samples > 0 {
-        print(told(&report, numerics))?;
+        page.tell(told(&report, numerics))?;
     }
     ended(report, scene, strict)
 }
@@ -221,6 +212,7 @@ impl<'a> Terminal<'a> {
 
 impl Onlooker for Terminal<'_> {
     fn stop(&self) -> bool {
+        self.progress.borrow_mut().rest();
         (self.interrupted)()
     }
 

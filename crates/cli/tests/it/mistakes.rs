@@ -126,7 +126,7 @@ fn mistakes_of_command_lines() {
     insta::assert_snapshot!(told);
 }
 
-/// Every message has a place, an excerpt, and one thing to do.
+/// Every message has a place and an excerpt, and says what is allowed or what to do.
 #[test]
 fn mistakes_in_scenes() {
     let folder = folder();

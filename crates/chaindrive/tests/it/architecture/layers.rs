@@ -71,7 +71,7 @@ const CRATES: [Storeys; 4] = [
         layers: &[
             &["failure", "suggested"],
             &["complaint", "csv", "progress", "request", "terminal"],
-            &["answer"],
+            &["answer", "stream"],
             &["commands"],
         ],
         exceptions: &[],
