@@ -58,7 +58,7 @@ fn random(seed: u64) -> usize {
     let mut z = seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    usize::try_from((z ^ (z >> 31)) >> 33).unwrap()
+    usize::try_from((z ^ (z >> 31)) >> 33).expect("31 bits")
 }
 
 #[test]
