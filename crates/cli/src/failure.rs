@@ -48,7 +48,7 @@ pub(crate) enum Failure {
     Variants { failed: usize, variants: usize },
 
     /// The result could not be written.
-    #[error(transparent)]
+    #[error("{0}{remedy}", remedy = remedy_of(.0))]
     Write(#[from] WriteError),
 
     /// There is nothing to go on with.
@@ -88,6 +88,13 @@ fn remedy(error: &std::io::Error) -> &'static str {
     match error.kind() {
         ErrorKind::NotFound => "; make the folder first, or choose another",
         ErrorKind::PermissionDenied => "; choose a place where you may write",
+        _ => "",
+    }
+}
+
+fn remedy_of(error: &WriteError) -> &'static str {
+    match error {
+        WriteError::Io { source, .. } => remedy(source),
         _ => "",
     }
 }
@@ -155,6 +162,7 @@ impl Failure {
             | Self::Simulation { scene, .. }
             | Self::Distrusted { scene } => Some(scene.clone()),
             Self::File { path, .. } | Self::Taken { path, .. } => Some(path.clone()),
+            Self::Write(WriteError::Io { path, .. }) => Some(path.display().to_string()),
             _ => None,
         }
     }

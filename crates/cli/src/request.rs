@@ -112,8 +112,8 @@ pub(crate) fn load(name: &str, interrupted: &dyn Fn() -> bool) -> Result<Scene, 
     let path = Path::new(name);
     let preset = presets().iter().any(|(known, _)| *known == name);
     let looks_like_a_file = path.extension().is_some() || path.components().count() > 1;
-    // Whatever exists that is no folder is to be read: pipes and devices too.
-    if (path.exists() && !path.is_dir()) || (looks_like_a_file && !preset) {
+    // Whatever exists is to be read, pipes and devices too, but for a folder that is called like an embedded scene.
+    if (path.exists() && !path.is_dir()) || ((path.exists() || looks_like_a_file) && !preset) {
         let path = path.to_owned();
         read(Box::new(|| Scene::read(path)))
     } else {
