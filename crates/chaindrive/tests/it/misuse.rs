@@ -31,7 +31,7 @@ impl Seeded {
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        usize::try_from((z ^ (z >> 31)) >> 33).unwrap() % bound
+        usize::try_from((z ^ (z >> 31)) >> 33).expect("31 bits") % bound
     }
 
     fn one_of<'a>(&mut self, choices: &[&'a str]) -> &'a str {
